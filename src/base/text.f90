@@ -1,0 +1,137 @@
+!> Small tools on text: numbers to text, upper case, the nearest known word.
+module text
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use kinds, only: i8, wp
+  implicit none
+  private
+  public :: string_t, to_text, upper_case, nearest_word, edit_distance, join
+
+  !> A text of its own length, so that arrays of words need no padding.
+  type :: string_t
+    character(len=:), allocatable :: s
+  end type string_t
+
+  !> Shortest plain text of an integer or a real.
+  interface to_text
+    module procedure :: integer_to_text
+    module procedure :: long_to_text
+    module procedure :: real_to_text
+  end interface to_text
+
+contains
+
+  pure function integer_to_text(value) result(s)
+    integer, intent(in) :: value
+    character(len=:), allocatable :: s
+    character(len=24) :: buffer
+
+    write (buffer, '(i0)') value
+    s = trim(buffer)
+  end function integer_to_text
+
+  pure function long_to_text(value) result(s)
+    integer(i8), intent(in) :: value
+    character(len=:), allocatable :: s
+    character(len=24) :: buffer
+
+    write (buffer, '(i0)') value
+    s = trim(buffer)
+  end function long_to_text
+
+  !> `digits` significant digits (default 6), no leading or trailing blanks.
+  pure function real_to_text(value, digits) result(s)
+    real(wp), intent(in) :: value
+    integer, intent(in), optional :: digits
+    character(len=:), allocatable :: s
+    character(len=40) :: buffer, form
+    integer :: n, e
+
+    n = 6
+    if (present(digits)) n = digits
+    if (.not. ieee_is_finite(value)) then
+      write (buffer, '(g0)') value
+      s = trim(adjustl(buffer))
+      return
+    end if
+    write (form, '(a,i0,a)') '(es40.', n - 1, 'e3)'
+    write (buffer, form) value
+    read (buffer(37:40), '(i4)') e
+    if (e >= -3 .and. e < 7) then
+      write (form, '(a,i0,a)') '(f40.', max(n - 1 - e, 0), ')'
+      write (buffer, form) value
+      s = trim(adjustl(buffer))
+      if (index(s, '.') > 0) s = s(1:verify(s, '0', back=.true.))
+      if (s(len(s):) == '.') s = s(:len(s) - 1)
+      if (s(1:1) == '.') s = '0'//s
+      if (s == '-0') s = '0'
+    else
+      s = trim(adjustl(buffer))
+    end if
+  end function real_to_text
+
+  pure function upper_case(s) result(u)
+    character(len=*), intent(in) :: s
+    character(len=len(s)) :: u
+    integer :: i, c
+
+    do i = 1, len(s)
+      c = iachar(s(i:i))
+      if (c >= iachar('a') .and. c <= iachar('z')) c = c - 32
+      u(i:i) = achar(c)
+    end do
+  end function upper_case
+
+  !> Words in one line, `separator` between them.
+  pure function join(words, separator) result(s)
+    type(string_t), intent(in) :: words(:)
+    character(len=*), intent(in) :: separator
+    character(len=:), allocatable :: s
+    integer :: i
+
+    s = ''
+    do i = 1, size(words)
+      if (i > 1) s = s//separator
+      s = s//words(i)%s
+    end do
+  end function join
+
+  !> The known word closest to `word`, or '' when none is close enough to be a slip of the finger.
+  pure function nearest_word(word, known) result(nearest)
+    character(len=*), intent(in) :: word
+    type(string_t), intent(in) :: known(:)
+    character(len=:), allocatable :: nearest
+    integer :: i, d, best
+
+    nearest = ''
+    best = max(2, len(word)/2) + 1
+    do i = 1, size(known)
+      d = edit_distance(upper_case(word), upper_case(known(i)%s))
+      if (d < best) then
+        best = d
+        nearest = known(i)%s
+      end if
+    end do
+  end function nearest_word
+
+  !> Levenshtein's distance: the least number of letters inserted, removed or changed.
+  pure function edit_distance(a, b) result(d)
+    character(len=*), intent(in) :: a, b
+    integer :: d
+    integer :: row(0:len(b)), i, j, corner, above
+
+    do j = 0, len(b)
+      row(j) = j
+    end do
+    do i = 1, len(a)
+      corner = row(0)
+      row(0) = i
+      do j = 1, len(b)
+        above = row(j)
+        row(j) = min(row(j - 1) + 1, above + 1, corner + merge(0, 1, a(i:i) == b(j:j)))
+        corner = above
+      end do
+    end do
+    d = row(len(b))
+  end function edit_distance
+
+end module text

@@ -1,0 +1,103 @@
+!> A deck as its reader delivers it: cards, rows, fields.
+module deck_card
+  use deck_field, only: field_t
+  use diagnostics, only: diagnostics_t, location_t
+  use text, only: nearest_word, string_t
+  implicit none
+  private
+  public :: field_t, row_t, card_t, deck_t, refuse_unknown, fingerprint_text
+
+  !> The fields of one line, the keyword left out.
+  type :: row_t
+    type(field_t), allocatable :: fields(:)
+    integer :: file = 0
+    integer :: line = 0
+  end type row_t
+
+  !> A keyword, the fields after it, and its data rows.
+  type :: card_t
+    character(len=:), allocatable :: keyword
+    type(row_t) :: head
+    type(row_t), allocatable :: rows(:)
+    !> A cursor has been opened on it.
+    logical :: taken = .false.
+  end type card_t
+
+  !> A deck: its cards, and the text from which the same cards can be read again.
+  type :: deck_t
+    character(len=:), allocatable :: path
+    !> Included files in place, overrides at the head, comments gone.
+    character(len=:), allocatable :: text
+    type(card_t), allocatable :: cards(:)
+  end type deck_t
+
+contains
+
+  !> An error for each card whose keyword is none of the known.
+  subroutine refuse_unknown(deck, known_keywords, diagnostics)
+    type(deck_t), intent(in) :: deck
+    type(string_t), intent(in) :: known_keywords(:)
+    type(diagnostics_t), intent(inout) :: diagnostics
+    character(len=:), allocatable :: nearest
+    integer :: i, k
+
+    do i = 1, size(deck%cards)
+      do k = 1, size(known_keywords)
+        if (known_keywords(k)%s == deck%cards(i)%keyword) exit
+      end do
+      if (k <= size(known_keywords)) cycle
+      nearest = nearest_word(deck%cards(i)%keyword, known_keywords)
+      if (nearest /= '') nearest = '; nearest: '''//nearest//''''
+      call diagnostics%add(location_t(deck%cards(i)%head%file, deck%cards(i)%head%line, 1), deck%cards(i)%keyword, &
+                           'there is no such card'//nearest)
+    end do
+  end subroutine refuse_unknown
+
+  !> What the cards say and nothing else, for a fingerprint which does not change with comments, blanks,
+  !> file names or the way a number is written. One line per row; numbers with all their digits.
+  subroutine fingerprint_text(deck, text)
+    type(deck_t), intent(in) :: deck
+    character(len=:), allocatable, intent(out) :: text
+    integer :: pass, length, i, j
+
+    do pass = 1, 2
+      length = 0
+      do i = 1, size(deck%cards)
+        call put(deck%cards(i)%keyword)
+        call put_row(deck%cards(i)%head)
+        do j = 1, size(deck%cards(i)%rows)
+          call put_row(deck%cards(i)%rows(j))
+        end do
+      end do
+      if (pass == 1) allocate (character(len=length) :: text)
+    end do
+
+  contains
+
+    subroutine put_row(row)
+      type(row_t), intent(in) :: row
+      character(len=26) :: number
+      integer :: k
+
+      do k = 1, size(row%fields)
+        if (row%fields(k)%numeric) then
+          ! Adding zero makes -0 the same as 0.
+          write (number, '(es26.16e3)') row%fields(k)%value + 0.0_wp
+          call put(' '//trim(adjustl(number)))
+        else
+          call put(' '''//row%fields(k)%text//'''')
+        end if
+      end do
+      call put(new_line('a'))
+    end subroutine put_row
+
+    subroutine put(one)
+      character(len=*), intent(in) :: one
+
+      if (pass == 2) text(length + 1:length + len(one)) = one
+      length = length + len(one)
+    end subroutine put
+
+  end subroutine fingerprint_text
+
+end module deck_card

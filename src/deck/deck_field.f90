@@ -1,0 +1,170 @@
+!> Blank-separated fields of one line: where they begin, quotes, bytes that do not belong there.
+!>
+!> A quote, single or double, may only open a field: `'a b'`. What it holds is always a word and is taken as
+!> it stands. TITLE has no quotes, so that an apostrophe may be written there.
+module deck_field
+  use kinds, only: wp
+  use diagnostics, only: diagnostics_t, location_t
+  use text, only: to_text, upper_case
+  implicit none
+  private
+  public :: field_t, scan_fields, first_word, comment_column, is_title, keyword_letters, letters, digits
+
+  character(len=*), parameter :: digits = '0123456789'
+  character(len=*), parameter :: upper_letters = 'ABCDEFGHIJKLMNOPQRSTUVWXYZ'
+  character(len=*), parameter :: letters = upper_letters//'abcdefghijklmnopqrstuvwxyz'
+  character(len=*), parameter :: keyword_letters = upper_letters//digits
+  character(len=*), parameter :: quotes = '''"'
+
+  !> One field, a word or a number.
+  type :: field_t
+    !> As written, without quotes; the word itself where a parameter stands for a word.
+    character(len=:), allocatable :: text
+    logical :: numeric = .false.
+    logical :: quoted = .false.
+    !> Its mistake is already recorded: whoever reads it keeps silent.
+    logical :: faulty = .false.
+    real(wp) :: value = 0
+    integer :: column = 0
+  end type field_t
+
+contains
+
+  !> The keyword of a line which is a card, empty for a data row.
+  pure function first_word(line) result(word)
+    character(len=*), intent(in) :: line
+    character(len=:), allocatable :: word
+
+    word = line(:index(line//' ', ' ') - 1)
+  end function first_word
+
+  !> Whether the line is a TITLE card, where quotes mean nothing (small letters are refused elsewhere).
+  pure function is_title(line) result(title)
+    character(len=*), intent(in) :: line
+    logical :: title
+
+    title = .false.
+    if (len(line) < 5) return
+    if (upper_case(line(:5)) /= 'TITLE') return
+    title = len(line) == 5 .or. index(' !', line(6:min(6, len(line)))) > 0
+  end function is_title
+
+  !> Column of the `!` which starts a comment, or one past the end.
+  pure function comment_column(line) result(column)
+    character(len=*), intent(in) :: line
+    integer :: column
+    integer :: closing
+    logical :: title, at_start
+
+    title = is_title(line)
+    at_start = .true.
+    column = 1
+    do while (column <= len(line))
+      if (line(column:column) == '!') return
+      if (at_start .and. .not. title .and. scan(line(column:column), quotes) == 1) then
+        closing = index(line(column + 1:), line(column:column))
+        if (closing == 0) then
+          column = len(line)
+        else
+          column = column + closing
+        end if
+      end if
+      at_start = line(column:column) == ' '
+      column = column + 1
+    end do
+  end function comment_column
+
+  !> Fields of `line` from column `start` on; no comment, no tabs. Mistakes are recorded at once.
+  subroutine scan_fields(line, start, where, keyword, fields, diagnostics)
+    character(len=*), intent(in) :: line, keyword
+    integer, intent(in) :: start
+    type(location_t), intent(in) :: where
+    type(field_t), allocatable, intent(out) :: fields(:)
+    type(diagnostics_t), intent(inout) :: diagnostics
+    type(field_t), allocatable :: longer(:)
+    integer :: n, first, last, i
+
+    allocate (fields(8))
+    n = 0
+    first = start
+    do
+      do while (first <= len(line))
+        if (line(first:first) /= ' ') exit
+        first = first + 1
+      end do
+      if (first > len(line)) exit
+      if (n == size(fields)) then
+        allocate (longer(2*n))
+        longer(:n) = fields
+        call move_alloc(longer, fields)
+      end if
+      n = n + 1
+      call scan_one(line, first, where, keyword, fields(n), last, diagnostics)
+      first = last + 1
+    end do
+    allocate (longer(n))
+    do i = 1, n
+      longer(i) = fields(i)
+    end do
+    call move_alloc(longer, fields)
+  end subroutine scan_fields
+
+  !> The field which begins at column `first`; `last` is its last column.
+  subroutine scan_one(line, first, where, keyword, field, last, diagnostics)
+    character(len=*), intent(in) :: line, keyword
+    integer, intent(in) :: first
+    type(location_t), intent(in) :: where
+    type(field_t), intent(out) :: field
+    integer, intent(out) :: last
+    type(diagnostics_t), intent(inout) :: diagnostics
+    integer :: closing, i, code
+
+    field%column = first
+    field%quoted = scan(line(first:first), quotes) == 1
+    last = first + index(line(first:)//' ', ' ') - 2
+    if (field%quoted) then
+      closing = index(line(first + 1:), line(first:first))
+      if (closing == 0) then
+        last = len(line)
+        field%text = line(first + 1:)
+        call record(first, 'the quote is not closed on this line')
+        return
+      end if
+      closing = first + closing
+      field%text = line(first + 1:closing - 1)
+      last = closing + index(line(closing + 1:)//' ', ' ') - 1
+      if (last > closing) then
+        call record(closing + 1, 'expected a blank after the closing quote, found '''//line(closing + 1:closing + 1)//'''')
+        return
+      else if (closing == first + 1) then
+        call record(first, 'the quotes hold nothing')
+        return
+      end if
+    else
+      field%text = line(first:last)
+    end if
+    do i = first, last
+      code = ichar(line(i:i))
+      if (code < 32 .or. code > 126) then
+        call record(i, 'byte '//to_text(code)//' is not a printable ASCII character')
+        return
+      end if
+      if (i > first .and. .not. field%quoted .and. scan(line(i:i), quotes) == 1) then
+        call record(i, 'a quote may only stand at the begin and at the end of a field')
+        return
+      end if
+    end do
+
+  contains
+
+    subroutine record(column, message)
+      integer, intent(in) :: column
+      character(len=*), intent(in) :: message
+
+      field%faulty = .true.
+      call diagnostics%add(location_t(where%file, where%line, column), keyword, message)
+    end subroutine record
+
+  end subroutine scan_one
+
+end module deck_field

@@ -1,0 +1,132 @@
+!> The ELEM family: what an element declares of itself and the interface by which the element loop calls it.
+!>
+!> Objects stop at the loop's door: an element gets plain arrays for a block of elements and answers
+!> forces, matrices and the trial state. Local unknowns: x of all nodes, y of all nodes, then the
+!> pilot of the die faced (x, y, angle) where the element has one.
+module elem_api
+  use kinds, only: wp
+  use kinematics_api, only: kinematics_t
+  use law_api, only: law_t
+  use materials, only: material_t
+  use scene, only: group_t, scene_t
+  use state_variables, only: state_variable_t
+  implicit none
+  private
+  public :: elem_t, instant_t, report_t, totals_t, elem_compute_i, elem_variables_i, elem_measure_i
+  public :: block_done, block_inverted, block_law_failed
+  public :: add_totals
+
+  !> Answers of a block.
+  integer, parameter :: block_done = 0
+  integer, parameter :: block_inverted = 1     !! an element has turned inside out
+  integer, parameter :: block_law_failed = 2   !! a law gave up
+
+  !> The instant at which a block is computed.
+  type :: instant_t
+    !> End of the step and its length [time].
+    real(wp) :: time = 0.0_wp, dt = 0.0_wp
+    !> Pilots at the start of the step (x, y, angle; ndie).
+    real(wp), allocatable :: pilots(:, :)
+    !> Multipliers at the end of the step.
+    real(wp), allocatable :: multipliers(:)
+    !> Matrices are wanted.
+    logical :: tangent = .true.
+  end type instant_t
+
+  !> What a block has to say: its answer, the element at fault, the largest strain increment.
+  type :: report_t
+    integer :: status = block_done
+    integer :: element = 0
+    real(wp) :: strain = 0.0_wp
+  end type report_t
+
+  !> Sums over a group at an accepted instant (per radian when axisymmetric), and extremes.
+  type :: totals_t
+    real(wp) :: volume = 0.0_wp
+    real(wp) :: elastic_energy = 0.0_wp
+    real(wp) :: plastic_work = 0.0_wp
+    real(wp) :: friction_work = 0.0_wp
+    !> Least increment of dissipated work at any point since the instant before.
+    real(wp) :: least_dissipation = 0.0_wp
+    real(wp) :: max_penetration = 0.0_wp
+    real(wp) :: allowed_penetration = huge(1.0_wp)
+    integer :: open = 0, stick = 0, slip = 0
+  end type totals_t
+
+  type :: elem_t
+    character(len=:), allocatable :: name, purpose
+    integer :: nnode = 0
+    !> Uses a law of this kind (law_api), or none (0).
+    integer :: law_kind = 0
+    !> Has the pilot of a die among its unknowns.
+    logical :: pilot = .false.
+    !> Works on the present geometry even where kinematics are SMALL.
+    logical :: follows = .false.
+    !> Its matrix is symmetric when the law's is.
+    logical :: symmetric = .true.
+    !> Effect its time is booked under (page 6).
+    character(len=:), allocatable :: effect
+    procedure(elem_variables_i), nopass, pointer :: variables => null()
+    procedure(elem_compute_i), nopass, pointer :: compute => null()
+    !> Not associated for elements without state.
+    procedure(elem_measure_i), nopass, pointer :: measure => null()
+  end type elem_t
+
+  abstract interface
+    !> State of a point of this element with this law.
+    pure subroutine elem_variables_i(law, variables)
+      import :: law_t, state_variable_t
+      type(law_t), intent(in) :: law
+      type(state_variable_t), allocatable, intent(out) :: variables(:)
+    end subroutine elem_variables_i
+
+    !> Forces, matrices and trial state of elements first ... first + nb - 1 of a group.
+    subroutine elem_compute_i(scene, group, kinematics, law, instant, first, x, du, committed, trial, force, stiffness, report)
+      import :: group_t, instant_t, kinematics_t, law_t, report_t, scene_t, wp
+      type(scene_t), intent(in) :: scene
+      type(group_t), intent(in) :: group
+      type(kinematics_t), intent(in) :: kinematics
+      type(law_t), intent(in) :: law
+      type(instant_t), intent(in) :: instant
+      integer, intent(in) :: first
+      real(wp), intent(in) :: x(:, :, :)              !! (2, nnode, nb) at the start of the step [length]
+      real(wp), intent(in) :: du(:, :)                !! (ndof, nb) motion of the step
+      real(wp), intent(in), contiguous :: committed(:, :, :)   !! (nstate, npoint, nb)
+      real(wp), intent(inout), contiguous :: trial(:, :, :)
+      real(wp), intent(out) :: force(:, :)            !! (ndof, nb) [force, per radian when axisymmetric]
+      real(wp), intent(inout) :: stiffness(:, :, :)   !! (ndof, ndof, nb), written when instant%tangent
+      type(report_t), intent(out) :: report
+    end subroutine elem_compute_i
+
+    !> Sums over a group at an accepted instant; x (2, nnode, nelem) is the geometry then.
+    subroutine elem_measure_i(scene, group, law, x, state, before, totals)
+      import :: group_t, law_t, scene_t, totals_t, wp
+      type(scene_t), intent(in) :: scene
+      type(group_t), intent(in) :: group
+      type(law_t), intent(in) :: law
+      real(wp), intent(in) :: x(:, :, :)
+      real(wp), intent(in) :: state(:, :, :), before(:, :, :)  !! at the accepted instant, and one step before
+      type(totals_t), intent(out) :: totals
+    end subroutine elem_measure_i
+  end interface
+
+contains
+
+  !> Add what one group says to the totals of the scene.
+  pure subroutine add_totals(sum, part)
+    type(totals_t), intent(inout) :: sum
+    type(totals_t), intent(in) :: part
+
+    sum%volume = sum%volume + part%volume
+    sum%elastic_energy = sum%elastic_energy + part%elastic_energy
+    sum%plastic_work = sum%plastic_work + part%plastic_work
+    sum%friction_work = sum%friction_work + part%friction_work
+    sum%least_dissipation = min(sum%least_dissipation, part%least_dissipation)
+    sum%max_penetration = max(sum%max_penetration, part%max_penetration)
+    sum%allowed_penetration = min(sum%allowed_penetration, part%allowed_penetration)
+    sum%open = sum%open + part%open
+    sum%stick = sum%stick + part%stick
+    sum%slip = sum%slip + part%slip
+  end subroutine add_totals
+
+end module elem_api

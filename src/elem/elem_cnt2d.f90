@@ -1,0 +1,321 @@
+!> CNT2D: contact of a 3-node side of the part with a die (annex 3).
+!>
+!> Walking 1 -> 2 -> 3 the part is on the left. At an integration point e_T is the side's tangent,
+!> e_R the part's inner normal, and the traction on the part is p e_R - tau e_T. Penetration d is
+!> measured along e_R (die_search) and linearised exactly, dd = n.(dy - dx - d de_R)/(n.e_R).
+!>
+!> The slip of a step is the way of the part's point relative to the die, taken in the axes of the
+!> pilot, along e_T: a rigid motion of part and die together makes none. When contact begins inside
+!> the step only the share d/(d - d_start) of the way counts.
+!>
+!> Forces are integrated consistently over the side. The reaction acts on the pilot: force and
+!> moment about it.
+module elem_cnt2d
+  use die_search, only: box_distance, find_foot, foot_t
+  use dies, only: die_t
+  use elem_api, only: elem_t, instant_t, report_t, totals_t
+  use kinds, only: wp
+  use kinematics_api, only: kinematics_t
+  use law_api, only: contact_law, contact_open, contact_slip, contact_stick, law_t
+  use materials, only: material_t
+  use quadrature, only: line_rule
+  use scene, only: axisymmetric, group_t, scene_t
+  use shape_functions, only: line3
+  use state_variables, only: state_variable, state_variable_t, transfer_contact, transfer_recompute
+  implicit none
+  private
+  public :: elem_cnt2d_row
+
+  !> Places in the state of a point.
+  integer, parameter :: at_pressure = 1, at_tau = 2, at_penetration = 3, at_status = 4, at_slip = 5, &
+                        at_augmentation = 6, at_work = 7, at_piece = 8
+  integer, parameter :: nstate = 8
+  !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle.
+  integer, parameter :: ndof = 9
+
+  !> A point of the side in the present geometry, with derivatives along the local unknowns.
+  type :: contact_point_t
+    real(wp) :: x(2), tangent(2), length, e_t(2), e_r(2), radius
+    real(wp) :: dx(2, ndof), dtangent(2, ndof), de_r(2, ndof), de_t(2, ndof), dradius(ndof)
+  end type contact_point_t
+
+contains
+
+  function elem_cnt2d_row() result(row)
+    type(elem_t) :: row
+
+    row%name = 'CNT2D'
+    row%purpose = 'contact of a side with a die'
+    row%nnode = 3
+    row%law_kind = contact_law
+    row%pilot = .true.
+    row%follows = .true.
+    row%symmetric = .false.
+    row%effect = 'contact'
+    row%variables => variables
+    row%compute => compute
+    row%measure => measure
+  end function elem_cnt2d_row
+
+  pure subroutine variables(law, list)
+    type(law_t), intent(in) :: law
+    type(state_variable_t), allocatable, intent(out) :: list(:)
+    integer :: k
+
+    list = [state_variable('pressure', 'stress', transfer_contact), &
+            state_variable('friction', 'stress', transfer_contact), &
+            state_variable('penetration', 'length', transfer_recompute), &
+            state_variable('contact_status', '-', transfer_recompute), &
+            state_variable('slip', 'length', transfer_contact), &
+            state_variable('augmentation', 'stress', transfer_contact), &
+            state_variable('friction_work', 'stress*length', transfer_contact), &
+            state_variable('die_piece', '-', transfer_recompute), law%history]
+    do k = 1, size(list)
+      list(k)%first = k
+    end do
+  end subroutine variables
+
+  subroutine compute(scene, group, kinematics, law, instant, first, x, du, committed, trial, force, stiffness, report)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(kinematics_t), intent(in) :: kinematics
+    type(law_t), intent(in) :: law
+    type(instant_t), intent(in) :: instant
+    integer, intent(in) :: first
+    real(wp), intent(in) :: x(:, :, :), du(:, :)
+    real(wp), intent(in), contiguous :: committed(:, :, :)
+    real(wp), intent(inout), contiguous :: trial(:, :, :)
+    real(wp), intent(out) :: force(:, :)
+    real(wp), intent(inout) :: stiffness(:, :, :)
+    type(report_t), intent(out) :: report
+    real(wp), allocatable :: xi(:), weight(:)
+    real(wp) :: side, pilot(3, 2)
+    integer :: e, p
+    logical :: axisym
+
+    axisym = scene%plane_state == axisymmetric
+    call line_rule(group%npoint, xi, weight)
+    do e = 1, size(x, 3)
+      force(:, e) = 0
+      if (instant%tangent) stiffness(:, :, e) = 0
+      trial(:, :, e) = committed(:, :, e)
+      trial([at_pressure, at_tau, at_status, at_penetration, at_piece], :, e) = 0
+      side = side_length(scene, group%connectivity(:, first + e - 1))
+      pilot(:, 1) = instant%pilots(:, group%die)
+      pilot(:, 2) = pilot(:, 1) + du(7:9, e)
+      if (far(scene%dies(group%die), x(:, :, e), du(:, e), pilot(:, 2), side)) cycle
+      do p = 1, size(xi)
+        call contact_at(scene%dies(group%die), law, scene%materials(group%material), axisym, group%amplitude, side, &
+                        x(:, :, e), du(:, e), pilot, xi(p), weight(p), instant%tangent, &
+                        committed(:, p, e), trial(:, p, e), force(:, e), stiffness(:, :, e))
+      end do
+    end do
+  end subroutine compute
+
+  !> Side and die are further apart than the search would reach: the side sleeps.
+  pure function far(die, x, du, pilot, reach) result(asleep)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: x(2, 3), du(:), pilot(3), reach
+    logical :: asleep
+    real(wp) :: y(2, 3)
+    integer :: k
+
+    do k = 1, 3
+      y(:, k) = turned([x(1, k) + du(k), x(2, k) + du(k + 3)] - pilot(1:2), -pilot(3))
+    end do
+    asleep = box_distance(die, [minval(y(1, :)), minval(y(2, :)), maxval(y(1, :)), maxval(y(2, :))]) > reach
+  end function far
+
+  !> Contact at one integration point: state, forces, matrix.
+  pure subroutine contact_at(die, law, material, axisym, modulus, side, x, du, pilot, xi, weight, tangent_wanted, &
+                             committed, trial, force, stiffness)
+    type(die_t), intent(in) :: die
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    logical, intent(in) :: axisym, tangent_wanted
+    real(wp), intent(in) :: modulus, side, x(2, 3), du(ndof), pilot(3, 2), xi, weight
+    real(wp), intent(in) :: committed(:)
+    real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
+    type(contact_point_t) :: point
+    type(foot_t) :: foot
+    real(wp) :: phi(3), dphi(3), normal(2), lever(2), way(2), turn(2), q(2), moment, share, slip
+    real(wp) :: dd(ndof), dlever(2, ndof), dway(2, ndof), dslip(ndof), dp(ndof), dtau(ndof), dq(2, ndof), dmoment(ndof)
+    real(wp) :: penalty(2), pressure, tau, law_tangent(2, 2), start(2)
+    integer :: status, j, k
+
+    call line3(xi, phi, dphi)
+    call side_point(phi, dphi, axisym, x, du, point)
+    call find_foot(die, turned(point%x - pilot(1:2, 2), -pilot(3, 2)), turned(point%e_r, -pilot(3, 2)), side, foot)
+    if (foot%piece == 0) return
+    trial(at_penetration) = foot%d
+    trial(at_piece) = foot%piece
+    normal = turned(foot%normal, pilot(3, 2))
+
+    ! d along the unknowns: dy is the rigid motion of the die's point, dc + dtheta k x lever
+    lever = point%x + foot%d*point%e_r - pilot(1:2, 2)
+    dd = matmul(normal, -point%dx - foot%d*point%de_r)
+    dd(7:8) = dd(7:8) + normal
+    dd(9) = dd(9) + dot_product(normal, [-lever(2), lever(1)])
+    dd = dd/dot_product(normal, point%e_r)
+
+    ! way relative to the die, in its axes, turned back into the present ones
+    start = matmul(x, phi) - pilot(1:2, 1)
+    turn = turned(start, pilot(3, 2) - pilot(3, 1))
+    way = point%x - pilot(1:2, 2) - turn
+    slip = dot_product(point%e_t, way)
+    dway = point%dx
+    dway(1, 7) = dway(1, 7) - 1
+    dway(2, 8) = dway(2, 8) - 1
+    dway(:, 9) = dway(:, 9) - [-turn(2), turn(1)]
+    dslip = matmul(point%e_t, dway) + matmul(way, point%de_t)
+    if (nint(committed(at_status)) == contact_open .and. committed(at_penetration) < 0 .and. foot%d > 0) then
+      share = foot%d/(foot%d - committed(at_penetration))
+      dslip = share*dslip - slip*committed(at_penetration)/(foot%d - committed(at_penetration))**2*dd
+      slip = share*slip
+    end if
+
+    penalty = penalties(material, modulus, side)
+    call law%slide(material, penalty, committed(at_augmentation), foot%d, slip, committed(at_tau), &
+                   pressure, tau, law_tangent, status)
+    trial(at_pressure) = pressure
+    trial(at_tau) = tau
+    trial(at_status) = status
+    if (status == contact_open) return
+    trial(at_slip) = committed(at_slip) + slip
+    if (status == contact_slip) trial(at_work) = committed(at_work) + tau*(slip - (tau - committed(at_tau))/penalty(2))
+
+    ! traction times length and radius; the part gets it, the pilot its opposite
+    q = (pressure*[-point%tangent(2), point%tangent(1)] - tau*point%tangent)*weight
+    moment = lever(1)*q(2) - lever(2)*q(1)
+    force(1:3) = force(1:3) - phi*q(1)*point%radius
+    force(4:6) = force(4:6) - phi*q(2)*point%radius
+    force(7:8) = force(7:8) + q*point%radius
+    force(9) = force(9) + moment*point%radius
+    if (.not. tangent_wanted) return
+
+    dp = law_tangent(1, 1)*dd + law_tangent(1, 2)*dslip
+    dtau = law_tangent(2, 1)*dd + law_tangent(2, 2)*dslip
+    do j = 1, ndof
+      dq(:, j) = weight*(dp(j)*[-point%tangent(2), point%tangent(1)] - dtau(j)*point%tangent &
+                         + pressure*[-point%dtangent(2, j), point%dtangent(1, j)] - tau*point%dtangent(:, j))
+      dlever(:, j) = point%dx(:, j) + dd(j)*point%e_r + foot%d*point%de_r(:, j)
+    end do
+    dlever(1, 7) = dlever(1, 7) - 1
+    dlever(2, 8) = dlever(2, 8) - 1
+    dmoment = dlever(1, :)*q(2) - dlever(2, :)*q(1) + lever(1)*dq(2, :) - lever(2)*dq(1, :)
+    do j = 1, ndof
+      dq(:, j) = dq(:, j)*point%radius + q*point%dradius(j)
+      dmoment(j) = dmoment(j)*point%radius + moment*point%dradius(j)
+      do k = 1, 3
+        stiffness(k, j) = stiffness(k, j) - phi(k)*dq(1, j)
+        stiffness(k + 3, j) = stiffness(k + 3, j) - phi(k)*dq(2, j)
+      end do
+      stiffness(7:8, j) = stiffness(7:8, j) + dq(:, j)
+      stiffness(9, j) = stiffness(9, j) + dmoment(j)
+    end do
+  end subroutine contact_at
+
+  !> Position, tangent, normals and radius of a point of the side, and their derivatives.
+  pure subroutine side_point(phi, dphi, axisym, x, du, point)
+    real(wp), intent(in) :: phi(3), dphi(3), x(2, 3), du(ndof)
+    logical, intent(in) :: axisym
+    type(contact_point_t), intent(out) :: point
+    real(wp) :: y(2, 3), turn
+    integer :: j
+
+    y(1, :) = x(1, :) + du(1:3)
+    y(2, :) = x(2, :) + du(4:6)
+    point%x = matmul(y, phi)
+    point%tangent = matmul(y, dphi)
+    point%length = norm2(point%tangent)
+    point%e_t = point%tangent/point%length
+    point%e_r = [-point%e_t(2), point%e_t(1)]
+    point%radius = 1
+    point%dx = 0
+    point%dtangent = 0
+    point%dradius = 0
+    point%dx(1, 1:3) = phi
+    point%dx(2, 4:6) = phi
+    point%dtangent(1, 1:3) = dphi
+    point%dtangent(2, 4:6) = dphi
+    do j = 1, ndof
+      turn = dot_product(point%e_r, point%dtangent(:, j))/point%length
+      point%de_t(:, j) = turn*point%e_r
+      point%de_r(:, j) = -turn*point%e_t
+    end do
+    if (axisym) then
+      point%radius = point%x(1)
+      point%dradius(1:3) = phi
+    end if
+  end subroutine side_point
+
+  !> Normal and tangential penalty: as given, or such that a pressure of one hundredth of the
+  !> body's modulus makes the allowed penetration.
+  pure function penalties(material, modulus, side) result(penalty)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: modulus, side
+    real(wp) :: penalty(2)
+
+    penalty(1) = material%values(2)
+    if (.not. penalty(1) > 0) penalty(1) = 0.01_wp*modulus/(material%values(1)*side)
+    penalty(2) = material%values(3)
+    if (.not. penalty(2) > 0) penalty(2) = penalty(1)
+  end function penalties
+
+  !> Chord of a side in the mesh as it began.
+  pure function side_length(scene, nodes) result(length)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: nodes(3)
+    real(wp) :: length
+
+    length = norm2(scene%mesh%coordinates(:, nodes(3)) - scene%mesh%coordinates(:, nodes(1)))
+  end function side_length
+
+  pure function turned(v, angle) result(w)
+    real(wp), intent(in) :: v(2), angle
+    real(wp) :: w(2)
+
+    w = [cos(angle)*v(1) - sin(angle)*v(2), sin(angle)*v(1) + cos(angle)*v(2)]
+  end function turned
+
+  !> Friction work, penetration found and allowed, number of points in each contact state.
+  subroutine measure(scene, group, law, x, state, before, totals)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(law_t), intent(in) :: law
+    real(wp), intent(in) :: x(:, :, :), state(:, :, :), before(:, :, :)
+    type(totals_t), intent(out) :: totals
+    real(wp), allocatable :: xi(:), weight(:)
+    real(wp) :: phi(3), dphi(3), area, side
+    integer :: e, p
+
+    call line_rule(group%npoint, xi, weight)
+    associate (values => scene%materials(group%material)%values)
+      do e = 1, size(x, 3)
+        side = side_length(scene, group%connectivity(:, e))
+        if (values(1) > 0) then
+          totals%allowed_penetration = min(totals%allowed_penetration, values(1)*side)
+        end if
+        do p = 1, size(xi)
+          select case (nint(state(at_status, p, e)))
+          case (contact_stick)
+            totals%stick = totals%stick + 1
+          case (contact_slip)
+            totals%slip = totals%slip + 1
+          case default
+            totals%open = totals%open + 1
+          end select
+          if (nint(state(at_status, p, e)) /= contact_open) then
+            totals%max_penetration = max(totals%max_penetration, state(at_penetration, p, e))
+          end if
+          call line3(xi(p), phi, dphi)
+          area = norm2(matmul(x(:, :, e), dphi))*weight(p)
+          if (scene%plane_state == axisymmetric) area = area*dot_product(phi, x(1, :, e))
+          totals%friction_work = totals%friction_work + area*state(at_work, p, e)
+          totals%least_dissipation = min(totals%least_dissipation, state(at_work, p, e) - before(at_work, p, e))
+        end do
+      end do
+    end associate
+  end subroutine measure
+
+end module elem_cnt2d

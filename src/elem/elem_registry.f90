@@ -1,0 +1,14 @@
+!> The list of elements. Only its submodule knows the members.
+module elem_registry
+  use elem_api, only: elem_t
+  implicit none
+  private
+  public :: list_elems
+
+  interface
+    !> All elements, in a fixed order: an element's place is its `elem_id`.
+    module subroutine list_elems(elems)
+      type(elem_t), allocatable, intent(out) :: elems(:)
+    end subroutine list_elems
+  end interface
+end module elem_registry

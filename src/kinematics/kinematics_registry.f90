@@ -1,0 +1,14 @@
+!> The list of kinematics. Only its submodule knows the members.
+module kinematics_registry
+  use kinematics_api, only: kinematics_t
+  implicit none
+  private
+  public :: list_kinematics
+
+  interface
+    !> All kinematics, in a fixed order: a member's place is its `kinematics_id`.
+    module subroutine list_kinematics(rows)
+      type(kinematics_t), allocatable, intent(out) :: rows(:)
+    end subroutine list_kinematics
+  end interface
+end module kinematics_registry

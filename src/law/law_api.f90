@@ -1,0 +1,180 @@
+!> The LAW family: what a law declares of itself and the one interface by which elements call it.
+!>
+!> A law is written for small strains, `stress = law(elastic trial strain, history)`; kinematics
+!> (src/kinematics) wrap it into large strains. Strain and stress have the components xx, yy, xy, zz;
+!> in this interface the shear strain is the engineering one (2 eps_xy), so tangents are symmetric
+!> for associated laws. A block of points is treated in one call.
+module law_api
+  use kinds, only: wp
+  use materials, only: material_t
+  use state_variables, only: state_variable_t
+  implicit none
+  private
+  public :: law_t, law_line_t, parameter_t, law_update_i, law_slide_i
+  public :: parameter, law_line, find_parameter
+  public :: law_done, law_not_converged
+  public :: contact_open, contact_stick, contact_slip
+  public :: solid_law, contact_law
+  public :: line_values, line_choice, line_pairs
+
+  !> Answers of a law for a point.
+  integer, parameter :: law_done = 0
+  integer, parameter :: law_not_converged = 1
+
+  !> Kinds of law: for solid elements, or for contact elements.
+  integer, parameter :: solid_law = 1
+  integer, parameter :: contact_law = 2
+
+  !> Contact states of a point.
+  integer, parameter :: contact_open = 0
+  integer, parameter :: contact_stick = 1
+  integer, parameter :: contact_slip = 2
+
+  !> One number of a law's card.
+  type :: parameter_t
+    character(len=:), allocatable :: name, unit, meaning
+    !> Allowed range, bounds included unless `strict` (then the lower bound itself is refused).
+    real(wp) :: lower = -huge(1.0_wp), upper = huge(1.0_wp)
+    logical :: strict = .false.
+    !> May be left out (only on lines of name-value pairs); then this value is taken.
+    logical :: optional = .false.
+    real(wp) :: default = 0.0_wp
+  end type parameter_t
+
+  !> Kinds of line: values in order; one of several lines chosen by its first word; name-value pairs in any order.
+  integer, parameter :: line_values = 1
+  integer, parameter :: line_choice = 2
+  integer, parameter :: line_pairs = 3
+
+  !> One line of a law's card.
+  type :: law_line_t
+    integer :: kind = line_values
+    !> The word that chooses this line among its neighbours of kind `line_choice`.
+    character(len=:), allocatable :: word
+    type(parameter_t), allocatable :: parameters(:)
+    !> Rows of two numbers follow (a curve).
+    logical :: curve = .false.
+  end type law_line_t
+
+  type :: law_t
+    character(len=:), allocatable :: name
+    !> LAGAMINE's number (ITYPE).
+    integer :: number = 0
+    integer :: kind = solid_law
+    character(len=:), allocatable :: purpose, source
+    type(law_line_t), allocatable :: lines(:)
+    !> History of a point beside stress and elastic strain.
+    type(state_variable_t), allocatable :: history(:)
+    !> Its tangent is symmetric.
+    logical :: symmetric = .true.
+    !> Effects it asks for, names separated by blanks (page 6).
+    character(len=:), allocatable :: effects
+    procedure(law_update_i), nopass, pointer :: update => null()
+    procedure(law_slide_i), nopass, pointer :: slide => null()
+  end type law_t
+
+  abstract interface
+    !> Advance a block of n points from the committed history.
+    !>
+    !> `trial_strain` is the elastic strain if the step were elastic; on return `elastic_strain` is
+    !> what is left of it after flow, `stress` follows from it, `history` is the trial history and
+    !> `tangent` = d stress / d trial_strain. Pure: called by several threads.
+    pure subroutine law_update_i(material, dt, trial_strain, committed, stress, elastic_strain, history, tangent, status)
+      import :: material_t, wp
+      type(material_t), intent(in) :: material
+      real(wp), intent(in) :: dt                   !! length of the step [time]
+      real(wp), intent(in) :: trial_strain(:, :)   !! (4, n) [-]
+      real(wp), intent(in) :: committed(:, :)      !! (nhistory, n)
+      real(wp), intent(out) :: stress(:, :)        !! (4, n) [stress]
+      real(wp), intent(out) :: elastic_strain(:, :) !! (4, n) [-]
+      real(wp), intent(out) :: history(:, :)       !! (nhistory, n)
+      real(wp), intent(out) :: tangent(:, :, :)    !! (4, 4, n) [stress]
+      integer, intent(out) :: status(:)            !! (n) law_done or another answer
+    end subroutine law_update_i
+
+    !> Contact law at one point: pressure and friction from penetration and slip.
+    pure subroutine law_slide_i(material, penalty, augmentation, penetration, slip, tau_committed, &
+                                pressure, tau, tangent, status)
+      import :: material_t, wp
+      type(material_t), intent(in) :: material
+      real(wp), intent(in) :: penalty(2)      !! normal and tangential stiffness [stress/length]
+      real(wp), intent(in) :: augmentation    !! multiplier carried from earlier augmentations [stress]
+      real(wp), intent(in) :: penetration     !! d > 0 inside the die [length]
+      real(wp), intent(in) :: slip            !! relative slip of the step [length]
+      real(wp), intent(in) :: tau_committed   !! friction stress at the start of the step [stress]
+      real(wp), intent(out) :: pressure, tau  !! [stress]
+      real(wp), intent(out) :: tangent(2, 2)  !! d(pressure, tau)/d(penetration, slip)
+      integer, intent(out) :: status          !! contact_open, contact_stick or contact_slip
+    end subroutine law_slide_i
+  end interface
+
+contains
+
+  !> A parameter in one line; `above` is a lower bound that is itself refused.
+  pure function parameter(name, unit, meaning, lower, above, upper, default) result(p)
+    character(len=*), intent(in) :: name, unit, meaning
+    real(wp), intent(in), optional :: lower, above, upper, default
+    type(parameter_t) :: p
+
+    p%name = name
+    p%unit = unit
+    p%meaning = meaning
+    if (present(lower)) p%lower = lower
+    if (present(above)) then
+      p%lower = above
+      p%strict = .true.
+    end if
+    if (present(upper)) p%upper = upper
+    if (present(default)) then
+      p%optional = .true.
+      p%default = default
+    end if
+  end function parameter
+
+  !> A line of a card; with `word` it is one of several to choose from.
+  pure function law_line(parameters, word, pairs, curve) result(line)
+    type(parameter_t), intent(in) :: parameters(:)
+    character(len=*), intent(in), optional :: word
+    logical, intent(in), optional :: pairs, curve
+    type(law_line_t) :: line
+
+    line%parameters = parameters
+    line%word = ''
+    if (present(word)) then
+      line%kind = line_choice
+      line%word = word
+    end if
+    if (present(pairs)) then
+      if (pairs) line%kind = line_pairs
+    end if
+    if (present(curve)) line%curve = curve
+  end function law_line
+
+  !> Place of a parameter of a line among all values of a material, 0 when unknown.
+  !>
+  !> Values are laid out line after line; a group of choice lines takes one value for the choice
+  !> (1, 2, ...) followed by the parameters of every line of the group.
+  pure function find_parameter(law, name, word) result(k)
+    type(law_t), intent(in) :: law
+    character(len=*), intent(in) :: name
+    character(len=*), intent(in), optional :: word
+    integer :: k
+    integer :: i, p
+    logical :: choosing
+
+    k = 0
+    choosing = .false.
+    do i = 1, size(law%lines)
+      if (law%lines(i)%kind == line_choice .and. .not. choosing) k = k + 1
+      choosing = law%lines(i)%kind == line_choice
+      do p = 1, size(law%lines(i)%parameters)
+        k = k + 1
+        if (law%lines(i)%parameters(p)%name /= name) cycle
+        if (.not. present(word)) return
+        if (law%lines(i)%word == word) return
+      end do
+    end do
+    k = 0
+  end function find_parameter
+
+end module law_api

@@ -1,0 +1,16 @@
+!> Members of the LAW family: a new law is one file and one line here.
+submodule(law_registry) law_members
+  use law_coul2d, only: law_coul2d_row
+  use law_ela, only: law_ela_row
+  use law_epla, only: law_epla_row
+  implicit none
+contains
+
+  module procedure list_laws
+    allocate (laws(3))
+    laws(1) = law_ela_row()
+    laws(2) = law_epla_row()
+    laws(3) = law_coul2d_row()
+  end procedure list_laws
+
+end submodule law_members

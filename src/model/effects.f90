@@ -1,0 +1,30 @@
+!> The effects a scene may call for: on because a card needs them, off otherwise.
+module effects
+  implicit none
+  private
+  public :: effect_t, find_effect
+
+  type :: effect_t
+    character(len=:), allocatable :: name
+    logical :: on = .false.
+    !> The card that asks for it, or why it is off.
+    character(len=:), allocatable :: why
+    !> What it adds: unknowns, state per point.
+    character(len=:), allocatable :: adds
+  end type effect_t
+
+contains
+
+  !> Place of an effect, 0 when it is not listed.
+  pure function find_effect(effects, name) result(k)
+    type(effect_t), intent(in) :: effects(:)
+    character(len=*), intent(in) :: name
+    integer :: k
+
+    do k = 1, size(effects)
+      if (effects(k)%name == name) return
+    end do
+    k = 0
+  end function find_effect
+
+end module effects

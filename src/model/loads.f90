@@ -1,0 +1,64 @@
+!> Multipliers in time (.LIC), imposed displacements, motions of dies, nodal forces.
+module loads
+  use kinds, only: wp
+  implicit none
+  private
+  public :: multiplier_t, fixation_t, die_motion_t, nodal_force_t, multiplier_at
+
+  !> Piecewise linear in time, constant outside its points.
+  type :: multiplier_t
+    character(len=:), allocatable :: name
+    real(wp), allocatable :: time(:), value(:)
+  end type multiplier_t
+
+  !> Displacement of some nodes in one direction: amplitude times multiplier (0 = held).
+  type :: fixation_t
+    integer, allocatable :: nodes(:)
+    !> 1 = x, 2 = y.
+    integer :: component = 0
+    real(wp) :: amplitude = 0.0_wp
+    integer :: multiplier = 0
+    !> As the deck names it, for listings.
+    character(len=:), allocatable :: label
+  end type fixation_t
+
+  !> Displacement of a die's pilot: component 1 = x, 2 = y, 3 = angle.
+  type :: die_motion_t
+    integer :: die = 0
+    integer :: component = 0
+    real(wp) :: amplitude = 1.0_wp
+    integer :: multiplier = 0
+  end type die_motion_t
+
+  !> Force on one node (per radian when axisymmetric): amplitude times multiplier.
+  type :: nodal_force_t
+    integer :: node = 0
+    integer :: component = 0
+    real(wp) :: amplitude = 0.0_wp
+    integer :: multiplier = 0
+  end type nodal_force_t
+
+contains
+
+  !> Value of a multiplier at a time.
+  pure function multiplier_at(multiplier, time) result(value)
+    type(multiplier_t), intent(in) :: multiplier
+    real(wp), intent(in) :: time
+    real(wp) :: value
+    integer :: i, n
+
+    n = size(multiplier%time)
+    if (time <= multiplier%time(1)) then
+      value = multiplier%value(1)
+    else if (time >= multiplier%time(n)) then
+      value = multiplier%value(n)
+    else
+      do i = 2, n
+        if (time <= multiplier%time(i)) exit
+      end do
+      value = multiplier%value(i - 1) + (multiplier%value(i) - multiplier%value(i - 1)) &
+              *(time - multiplier%time(i - 1))/(multiplier%time(i) - multiplier%time(i - 1))
+    end if
+  end function multiplier_at
+
+end module loads

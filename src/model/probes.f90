@@ -1,0 +1,28 @@
+!> What PROBE cards ask for: one column of the history each.
+module probes
+  use kinds, only: wp
+  implicit none
+  private
+  public :: probe_t
+  public :: probe_node, probe_reaction, probe_point, probe_maximum, probe_minimum
+
+  !> Kinds: coordinate or displacement of a node; sum of reactions of a set; state at a point; extremes over a group.
+  integer, parameter :: probe_node = 1
+  integer, parameter :: probe_reaction = 2
+  integer, parameter :: probe_point = 3
+  integer, parameter :: probe_maximum = 4
+  integer, parameter :: probe_minimum = 5
+
+  type :: probe_t
+    character(len=:), allocatable :: name, unit
+    integer :: kind = 0
+    !> Node kind: 1 = x, 2 = y, 3 = displacement x, 4 = displacement y. Reaction kind: 1 = x, 2 = y.
+    integer :: quantity = 0
+    !> Nodes asked for (one for the node kind).
+    integer, allocatable :: nodes(:)
+    !> Group, element and point, and component of the state, for the kinds that read the state.
+    integer :: group = 0, element = 0, point = 0, component = 0
+    !> Factor, for instance 2 pi for forces of axisymmetric scenes.
+    real(wp) :: factor = 1.0_wp
+  end type probe_t
+end module probes

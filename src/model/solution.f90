@@ -1,0 +1,67 @@
+!> The state of a run at an accepted instant, and the trial state of the step under way.
+module solution
+  use kinds, only: wp
+  use scene, only: scene_t
+  use state_variables, only: total_components
+  implicit none
+  private
+  public :: solution_t, group_state_t, start_solution
+
+  !> State of the points of a group (component, point, element).
+  type :: group_state_t
+    real(wp), allocatable :: committed(:, :, :)
+    real(wp), allocatable :: trial(:, :, :)
+  end type group_state_t
+
+  type :: solution_t
+    !> Time reached and number of accepted steps.
+    real(wp) :: time = 0.0_wp
+    integer :: step = 0
+    !> Length of the last accepted step and the one proposed for the next [time].
+    real(wp) :: last_step = 0.0_wp, next_step = 0.0_wp
+    !> Displacement of the nodes since the mesh began (2, nnode) [length].
+    real(wp), allocatable :: displacement(:, :)
+    !> Pilots of the dies: (x, y, angle; ndie).
+    real(wp), allocatable :: pilots(:, :)
+    !> Motion of all nodes and pilots in the last accepted step, for the predictor.
+    real(wp), allocatable :: last_increment(:, :), last_pilot_increment(:, :)
+    type(group_state_t), allocatable :: groups(:)
+    !> Totals since the start.
+    integer :: iterations = 0, cutbacks = 0
+    real(wp) :: external_work = 0.0_wp
+    !> Forces at prescribed unknowns at the last accepted instant (2, nnode), (3, ndie).
+    real(wp), allocatable :: reactions(:, :), pilot_reactions(:, :)
+  end type solution_t
+
+contains
+
+  !> Everything at rest: no displacement, pilots at their start, states at their declared values.
+  pure subroutine start_solution(scene, solution)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(out) :: solution
+    integer :: g, v, c, nnode, ndie, npoint
+
+    nnode = size(scene%mesh%coordinates, 2)
+    ndie = size(scene%dies)
+    allocate (solution%displacement(2, nnode), solution%last_increment(2, nnode), solution%reactions(2, nnode), source=0.0_wp)
+    allocate (solution%pilots(3, ndie), solution%last_pilot_increment(3, ndie), solution%pilot_reactions(3, ndie), source=0.0_wp)
+    do g = 1, ndie
+      solution%pilots(:, g) = scene%dies(g)%pilot
+    end do
+    solution%next_step = scene%strategy%first_step
+    allocate (solution%groups(size(scene%groups)))
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g), state => solution%groups(g))
+        npoint = abs(group%npoint)
+        allocate (state%committed(total_components(group%variables), npoint, size(group%connectivity, 2)), source=0.0_wp)
+        do v = 1, size(group%variables)
+          do c = group%variables(v)%first, group%variables(v)%first + group%variables(v)%ncomp - 1
+            state%committed(c, :, :) = group%variables(v)%initial
+          end do
+        end do
+        state%trial = state%committed
+      end associate
+    end do
+  end subroutine start_solution
+
+end module solution

@@ -1,0 +1,82 @@
+!> What the state of a point is made of: names, units, and how a remesh may carry each part over.
+!> Elements and laws declare their variables here; files and REMDATA read nothing else.
+module state_variables
+  use kinds, only: wp
+  use text, only: string_t
+  implicit none
+  private
+  public :: state_variable_t, state_variable, component_names, find_variable, total_components
+  public :: transfer_scalar, transfer_tensor, transfer_fraction, transfer_contact, transfer_recompute
+
+  character(len=*), parameter :: transfer_scalar = 'scalar'
+  character(len=*), parameter :: transfer_tensor = 'tensor'
+  character(len=*), parameter :: transfer_fraction = 'fraction'
+  character(len=*), parameter :: transfer_contact = 'contact'
+  character(len=*), parameter :: transfer_recompute = 'recompute'
+
+  !> One declared part of the state. Units are words: `stress`, `length`, `-`, ... since decks are free in their units.
+  type :: state_variable_t
+    character(len=:), allocatable :: name
+    character(len=:), allocatable :: unit
+    character(len=:), allocatable :: transfer
+    !> Number of components: 1, or 4 for a tensor in the order xx, yy, xy, zz.
+    integer :: ncomp = 1
+    !> First component in the state array of the group.
+    integer :: first = 0
+    !> Value at the start of a scene.
+    real(wp) :: initial = 0.0_wp
+  end type state_variable_t
+
+contains
+
+  !> A declaration in one line.
+  pure function state_variable(name, unit, transfer, ncomp) result(variable)
+    character(len=*), intent(in) :: name, unit, transfer
+    integer, intent(in), optional :: ncomp
+    type(state_variable_t) :: variable
+
+    variable%name = name
+    variable%unit = unit
+    variable%transfer = transfer
+    if (present(ncomp)) variable%ncomp = ncomp
+  end function state_variable
+
+  !> Components of all variables together.
+  pure function total_components(variables) result(n)
+    type(state_variable_t), intent(in) :: variables(:)
+    integer :: n
+
+    n = sum(variables%ncomp)
+  end function total_components
+
+  !> Position of a variable in the list, 0 when it is not declared.
+  pure function find_variable(variables, name) result(k)
+    type(state_variable_t), intent(in) :: variables(:)
+    character(len=*), intent(in) :: name
+    integer :: k
+
+    do k = 1, size(variables)
+      if (variables(k)%name == name) return
+    end do
+    k = 0
+  end function find_variable
+
+  !> Names of all components in order: `plastic_strain`, `stress_xx`, `stress_yy`, ...
+  pure subroutine component_names(variables, names)
+    type(state_variable_t), intent(in) :: variables(:)
+    type(string_t), allocatable, intent(out) :: names(:)
+    character(len=2), parameter :: suffix(4) = ['xx', 'yy', 'xy', 'zz']
+    integer :: i, c, n
+
+    allocate (names(total_components(variables)))
+    n = 0
+    do i = 1, size(variables)
+      do c = 1, variables(i)%ncomp
+        n = n + 1
+        names(n)%s = variables(i)%name
+        if (variables(i)%ncomp > 1) names(n)%s = variables(i)%name//'_'//suffix(c)
+      end do
+    end do
+  end subroutine component_names
+
+end module state_variables

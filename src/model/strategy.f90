@@ -1,0 +1,29 @@
+!> How a run marches: steps, iterations, norms, savings (cards STRAT, NORMS, SAVE, STOP).
+module strategy
+  use kinds, only: wp
+  implicit none
+  private
+  public :: strategy_t
+
+  type :: strategy_t
+    !> First, least and largest step [time].
+    real(wp) :: first_step = 0.0_wp, least_step = 0.0_wp, largest_step = 0.0_wp
+    !> End of the scene [time].
+    real(wp) :: end_time = 0.0_wp
+    !> After n iterations the step is multiplied by (nopti/n)**(1/nalpha), within [dminmu, dmaxmu].
+    integer :: nopti = 5
+    real(wp) :: nalpha = 3.0_wp
+    real(wp) :: dminmu = 0.25_wp, dmaxmu = 1.5_wp
+    !> Iterations after which a step is cut.
+    integer :: max_iterations = 20
+    !> Residual force over reference force, correction over the step's displacement.
+    real(wp) :: force_norm = 1.0e-6_wp, displacement_norm = 1.0e-5_wp
+    !> Largest strain increment of a step at any point (norm of the logarithmic strain).
+    real(wp) :: strain_bound = 0.25_wp
+    !> Fields are saved every so many steps, and at these times.
+    integer :: save_every = 0
+    real(wp), allocatable :: save_times(:)
+    !> A checkpoint is written every so many steps (0 = with the fields and at the end only).
+    integer :: checkpoint_every = 0
+  end type strategy_t
+end module strategy

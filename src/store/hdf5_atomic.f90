@@ -1,0 +1,115 @@
+!> HDF5 files that are whole or not there, and that know when they were altered.
+!>
+!>     call create_atomic(file, 'NAME.ckp.h5', error)
+!>     call file%write(...)
+!>     call commit_atomic(file, error, keep_previous=.true.)
+!>
+!> The root carries a digest over all contents; `commit_atomic` reads the closed file back and
+!> compares before it takes the place of the older one, `open_verified` compares before any reading.
+module hdf5_atomic
+  use atomic, only: replace_file, temporary_name
+  use errors, only: error_t, exit_bug, exit_input, exit_machine
+  use hdf5_file, only: digest_attribute, hdf5_file_t
+  use system, only: file_exists, remove_file
+  implicit none
+  private
+  public :: create_atomic, commit_atomic, discard_atomic, open_verified
+
+contains
+
+  !> Begin a file that shows under its name `path` only after `commit_atomic`.
+  subroutine create_atomic(file, path, error)
+    type(hdf5_file_t), intent(inout) :: file
+    character(len=*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+
+    call file%create(temporary_name(path), error)
+  end subroutine create_atomic
+
+  !> Close the file, read it back, put it in the place of the older one, which stays as
+  !> `previous_name` when `keep_previous`. After any error since `create_atomic` the older file is
+  !> untouched, and the new one is gone.
+  subroutine commit_atomic(file, error, keep_previous)
+    type(hdf5_file_t), intent(inout) :: file
+    type(error_t), allocatable, intent(out) :: error
+    logical, intent(in), optional :: keep_previous
+    character(len=:), allocatable :: temporary, digest
+
+    temporary = file%path()
+    if (.not. is_temporary(temporary)) call file%record_error(exit_bug, 'commit of a file that create_atomic did not begin')
+    call file%digest(digest)
+    call file%write_attribute('/', digest_attribute, digest)
+    call file%close(error)
+    if (.not. allocated(error)) then
+      call verify(temporary, error)
+      ! Whatever is wrong now, the disk did it.
+      if (allocated(error)) error%code = exit_machine
+    end if
+    if (.not. allocated(error)) call replace_file(final_name(temporary), error, keep_previous)
+    if (allocated(error)) call discard(temporary)
+  end subroutine commit_atomic
+
+  !> Give up a file begun by `create_atomic`.
+  subroutine discard_atomic(file)
+    type(hdf5_file_t), intent(inout) :: file
+    type(error_t), allocatable :: ignored
+
+    call file%close(ignored)
+    call discard(file%path())
+  end subroutine discard_atomic
+
+  !> Open a committed file for reading, after its contents were found to agree with its digest.
+  subroutine open_verified(file, path, error)
+    type(hdf5_file_t), intent(inout) :: file
+    character(len=*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: stored, digest
+    type(error_t), allocatable :: ignored
+
+    call file%open(path, error)
+    if (allocated(error)) return
+    call file%read_attribute('/', digest_attribute, stored)
+    call file%digest(digest)
+    if (digest /= stored) call file%record_error(exit_input, 'altered or damaged: its contents do not agree with its digest')
+    call file%status(error)
+    if (.not. allocated(error)) return
+    call file%close(ignored)
+  end subroutine open_verified
+
+  !> Do the contents of the file agree with its digest?
+  subroutine verify(path, error)
+    character(len=*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+
+    call open_verified(file, path, error)
+    if (.not. allocated(error)) call file%close(error)
+  end subroutine verify
+
+  !> Remove a temporary file, and only such a one.
+  subroutine discard(path)
+    character(len=*), intent(in) :: path
+    type(error_t), allocatable :: ignored
+
+    if (is_temporary(path)) then
+      if (file_exists(path)) call remove_file(path, ignored)
+    end if
+  end subroutine discard
+
+  !> Is this a name that `temporary_name` makes?
+  pure function is_temporary(path)
+    character(len=*), intent(in) :: path
+    logical :: is_temporary
+
+    is_temporary = temporary_name(final_name(path)) == path
+  end function is_temporary
+
+  !> The inverse of `temporary_name`.
+  pure function final_name(path) result(name)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: name
+
+    name = path(:max(len(path) - len(temporary_name('')), 0))
+  end function final_name
+
+end module hdf5_atomic

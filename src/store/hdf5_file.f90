@@ -1,0 +1,339 @@
+!> HDF5 files as the system uses them: named arrays in groups, attributes beside them.
+!>
+!> A file object remembers its first error, and every later call is then a cheap no-op (what is read
+!> is empty or zero), so that a chain of writes or reads needs one check at its end:
+!>
+!>     call file%create('out/a.h5', error)
+!>     call file%write('mesh/nodes', x)
+!>     call file%write_attribute('mesh/nodes', 'unit', 'mm')
+!>     call file%close(error)
+!>
+!> Arrays keep the natural Fortran order: what is (a, b) here shows as (b, a) in C, h5py, ParaView.
+!> Numbers are stored as little-endian IEEE doubles and 32-bit integers and without times, so that
+!> the same run gives the same bytes on any machine. Text is UTF-8 of fixed length, padded with nulls.
+!> The procedures live in the submodules `hdf5_file_{access,write,read,attributes,digest}`.
+module hdf5_file
+  use hdf5, only: hid_t
+  use errors, only: error_t
+  use kinds, only: wp
+  use text, only: string_t
+  implicit none
+  private
+  public :: hdf5_file_t, digest_attribute
+
+  !> What HDF5 never gives to an open object.
+  integer(hid_t), parameter :: closed = -1
+  !> Attribute of the root that carries the digest of the file; it alone is not part of the digest.
+  character(len=*), parameter :: digest_attribute = 'digest'
+
+  type :: hdf5_file_t
+    !> Gzip level 0-9 of the arrays written from now on; 0, the default, is none.
+    integer :: compression = 0
+    integer(hid_t), private :: id = closed
+    logical, private :: writable = .false.
+    character(len=:), allocatable, private :: file_path
+    type(error_t), allocatable, private :: first_error
+  contains
+    procedure :: create
+    procedure :: open => open_to_read
+    procedure :: open_append
+    procedure :: close => close_file
+    procedure :: status
+    procedure :: failed
+    procedure :: record_error
+    procedure :: path => path_of_file
+    procedure :: group
+    procedure :: has
+    procedure :: list
+    procedure :: remove
+    procedure :: digest => digest_of_file
+
+    !> `write(path, value)`: a new dataset; missing groups are made. A second one of the same name is an error.
+    generic :: write => write_real, write_reals, write_reals_2, write_reals_3, write_integer, write_integers, write_integers_2, &
+      write_text, write_words
+    procedure, private :: write_real
+    procedure, private :: write_reals
+    procedure, private :: write_reals_2
+    procedure, private :: write_reals_3
+    procedure, private :: write_integer
+    procedure, private :: write_integers
+    procedure, private :: write_integers_2
+    procedure, private :: write_text
+    procedure, private :: write_words
+
+    !> `read(path, value)`: a dataset of just this type and rank; arrays and texts are allocated.
+    generic :: read => read_real, read_reals, read_reals_2, read_reals_3, read_integer, read_integers, read_integers_2, &
+      read_text, read_words
+    procedure, private :: read_real
+    procedure, private :: read_reals
+    procedure, private :: read_reals_2
+    procedure, private :: read_reals_3
+    procedure, private :: read_integer
+    procedure, private :: read_integers
+    procedure, private :: read_integers_2
+    procedure, private :: read_text
+    procedure, private :: read_words
+
+    !> `write_attribute(path, name, value)` of a dataset or group ('/' is the root); an old value is replaced.
+    generic :: write_attribute => write_text_attribute, write_integer_attribute, write_real_attribute
+    procedure, private :: write_text_attribute
+    procedure, private :: write_integer_attribute
+    procedure, private :: write_real_attribute
+
+    !> `read_attribute(path, name, value)`; a missing attribute is an error (ask `has_attribute`).
+    generic :: read_attribute => read_text_attribute, read_integer_attribute, read_real_attribute
+    procedure, private :: read_text_attribute
+    procedure, private :: read_integer_attribute
+    procedure, private :: read_real_attribute
+    procedure :: has_attribute
+  end type hdf5_file_t
+
+  ! Opening, closing, looking around: hdf5_file_access.
+  interface
+    !> Make a new file, in the place of any older one of this name.
+    module subroutine create(self, path, error)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      type(error_t), allocatable, intent(out) :: error
+    end subroutine create
+
+    !> Open a file for reading. What is missing, not HDF5, or cut short is refused.
+    module subroutine open_to_read(self, path, error)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      type(error_t), allocatable, intent(out) :: error
+    end subroutine open_to_read
+
+    !> Open an existing file for reading and writing.
+    module subroutine open_append(self, path, error)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      type(error_t), allocatable, intent(out) :: error
+    end subroutine open_append
+
+    !> Write out what is still in memory, close the file, and deliver the first error of its life.
+    module subroutine close_file(self, error)
+      class(hdf5_file_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+    end subroutine close_file
+
+    !> The first error so far; unallocated when there was none. The file stays open.
+    pure module subroutine status(self, error)
+      class(hdf5_file_t), intent(in) :: self
+      type(error_t), allocatable, intent(out) :: error
+    end subroutine status
+
+    !> Was there an error since the file was opened?
+    pure module function failed(self)
+      class(hdf5_file_t), intent(in) :: self
+      logical :: failed
+    end function failed
+
+    !> Let the file object carry an error found by the caller (a wrong schema, say), unless it has one.
+    !> The path of the file is put before `message`.
+    pure module subroutine record_error(self, code, message)
+      class(hdf5_file_t), intent(inout) :: self
+      integer, intent(in) :: code
+      character(len=*), intent(in) :: message
+    end subroutine record_error
+
+    !> The path under which the file was opened last.
+    pure module function path_of_file(self) result(path)
+      class(hdf5_file_t), intent(in) :: self
+      character(len=:), allocatable :: path
+    end function path_of_file
+
+    !> Make a group and those above it; one that is there already is fine.
+    module subroutine group(self, path)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+    end subroutine group
+
+    !> Is there a dataset or a group of this name?
+    module function has(self, path)
+      class(hdf5_file_t), intent(in) :: self
+      character(len=*), intent(in) :: path
+      logical :: has
+    end function has
+
+    !> Names of the members of a group, in alphabetic order.
+    module subroutine list(self, path, names)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      type(string_t), allocatable, intent(out) :: names(:)
+    end subroutine list
+
+    !> Remove a dataset, or a group with all in it; nothing there is fine. The room in the file is not won back.
+    module subroutine remove(self, path)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+    end subroutine remove
+
+    !> SHA-256 over all groups, datasets and attributes (names, types, extents, contents).
+    module subroutine digest_of_file(self, digest)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=:), allocatable, intent(out) :: digest
+    end subroutine digest_of_file
+  end interface
+
+  ! Writing datasets: hdf5_file_write.
+  interface
+    module subroutine write_real(self, path, value)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      real(wp), intent(in), target :: value
+    end subroutine write_real
+
+    module subroutine write_reals(self, path, values)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      real(wp), intent(in), target, contiguous :: values(:)
+    end subroutine write_reals
+
+    module subroutine write_reals_2(self, path, values)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      real(wp), intent(in), target, contiguous :: values(:, :)
+    end subroutine write_reals_2
+
+    module subroutine write_reals_3(self, path, values)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      real(wp), intent(in), target, contiguous :: values(:, :, :)
+    end subroutine write_reals_3
+
+    module subroutine write_integer(self, path, value)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      integer, intent(in), target :: value
+    end subroutine write_integer
+
+    module subroutine write_integers(self, path, values)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      integer, intent(in), target, contiguous :: values(:)
+    end subroutine write_integers
+
+    module subroutine write_integers_2(self, path, values)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      integer, intent(in), target, contiguous :: values(:, :)
+    end subroutine write_integers_2
+
+    module subroutine write_text(self, path, value)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      character(len=*), intent(in) :: value
+    end subroutine write_text
+
+    module subroutine write_words(self, path, values)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      type(string_t), intent(in) :: values(:)
+    end subroutine write_words
+  end interface
+
+  ! Reading datasets: hdf5_file_read.
+  interface
+    module subroutine read_real(self, path, value)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      real(wp), intent(out), target :: value
+    end subroutine read_real
+
+    module subroutine read_reals(self, path, values)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      real(wp), allocatable, intent(out), target :: values(:)
+    end subroutine read_reals
+
+    module subroutine read_reals_2(self, path, values)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      real(wp), allocatable, intent(out), target :: values(:, :)
+    end subroutine read_reals_2
+
+    module subroutine read_reals_3(self, path, values)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      real(wp), allocatable, intent(out), target :: values(:, :, :)
+    end subroutine read_reals_3
+
+    module subroutine read_integer(self, path, value)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      integer, intent(out), target :: value
+    end subroutine read_integer
+
+    module subroutine read_integers(self, path, values)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      integer, allocatable, intent(out), target :: values(:)
+    end subroutine read_integers
+
+    module subroutine read_integers_2(self, path, values)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      integer, allocatable, intent(out), target :: values(:, :)
+    end subroutine read_integers_2
+
+    module subroutine read_text(self, path, value)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      character(len=:), allocatable, intent(out) :: value
+    end subroutine read_text
+
+    module subroutine read_words(self, path, values)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      type(string_t), allocatable, intent(out) :: values(:)
+    end subroutine read_words
+  end interface
+
+  ! Attributes: hdf5_file_attributes.
+  interface
+    module subroutine write_text_attribute(self, path, name, value)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path, name
+      character(len=*), intent(in) :: value
+    end subroutine write_text_attribute
+
+    module subroutine write_integer_attribute(self, path, name, value)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path, name
+      integer, intent(in), target :: value
+    end subroutine write_integer_attribute
+
+    module subroutine write_real_attribute(self, path, name, value)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path, name
+      real(wp), intent(in), target :: value
+    end subroutine write_real_attribute
+
+    module subroutine read_text_attribute(self, path, name, value)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path, name
+      character(len=:), allocatable, intent(out) :: value
+    end subroutine read_text_attribute
+
+    module subroutine read_integer_attribute(self, path, name, value)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path, name
+      integer, intent(out), target :: value
+    end subroutine read_integer_attribute
+
+    module subroutine read_real_attribute(self, path, name, value)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path, name
+      real(wp), intent(out), target :: value
+    end subroutine read_real_attribute
+
+    !> Is there a dataset or group of this path with an attribute of this name?
+    module function has_attribute(self, path, name)
+      class(hdf5_file_t), intent(in) :: self
+      character(len=*), intent(in) :: path, name
+      logical :: has_attribute
+    end function has_attribute
+  end interface
+
+end module hdf5_file

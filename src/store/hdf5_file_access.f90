@@ -1,0 +1,200 @@
+!> Opening, closing, groups and names of HDF5 files.
+submodule(hdf5_file) hdf5_file_access
+  use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_local_f, &
+    h5fclose_f, h5fcreate_f, h5fflush_f, h5fis_hdf5_f, h5fopen_f, h5gclose_f, h5gcreate_f, h5gget_obj_info_idx_f, h5gn_members_f, &
+    h5iis_valid_f, h5ldelete_f, h5lexists_f, h5open_f, h5p_file_access_f, h5p_link_create_f, h5pclose_f, h5pcreate_f, &
+    h5pset_create_inter_group_f, h5pset_fclose_degree_f, h5t_native_double
+  use errors, only: exit_bug, exit_input, exit_machine, fail
+  use system, only: file_exists, set_environment
+  implicit none
+
+contains
+
+  module procedure create
+    integer(hid_t) :: access
+    integer :: flag(2)
+
+    call begin(self, path, .true.)
+    call make_access(access)
+    call h5fcreate_f(path, h5f_acc_trunc_f, self%id, flag(1), access_prp=access)
+    call h5pclose_f(access, flag(2))
+    if (flag(1) /= 0) then
+      self%id = closed
+      call self%record_error(exit_machine, 'cannot be made (no such directory, no permission, or open elsewhere)')
+    end if
+    call self%status(error)
+  end procedure create
+
+  module procedure open_to_read
+    call begin(self, path, .false.)
+    call open_existing(self, 'read')
+    call self%status(error)
+  end procedure open_to_read
+
+  module procedure open_append
+    call begin(self, path, .true.)
+    call open_existing(self, 'readwrite')
+    call self%status(error)
+  end procedure open_append
+
+  !> Open the file at `self%file_path`, or record why it is refused.
+  subroutine open_existing(self, action)
+    class(hdf5_file_t), intent(inout) :: self
+    character(len=*), intent(in) :: action
+    character(len=200) :: why
+    integer(hid_t) :: access
+    integer :: unit, flag, ignored
+    logical :: is_hdf5
+
+    if (.not. file_exists(self%file_path)) then
+      call self%record_error(exit_input, 'no such file')
+      return
+    end if
+    ! Fortran's own opening says best what the system has against it.
+    open (newunit=unit, file=self%file_path, status='old', action=action, access='stream', iostat=flag, iomsg=why)
+    if (flag /= 0) then
+      call self%record_error(exit_input, trim(why))
+      return
+    end if
+    close (unit)
+    is_hdf5 = .false.
+    call h5fis_hdf5_f(self%file_path, is_hdf5, flag)
+    if (flag /= 0 .or. .not. is_hdf5) then
+      call self%record_error(exit_input, 'not an HDF5 file')
+      return
+    end if
+    call make_access(access)
+    call h5fopen_f(self%file_path, merge(h5f_acc_rdwr_f, h5f_acc_rdonly_f, self%writable), self%id, flag, access_prp=access)
+    call h5pclose_f(access, ignored)
+    if (flag /= 0) then
+      self%id = closed
+      call self%record_error(exit_input, 'an HDF5 file cut short or damaged')
+    end if
+  end subroutine open_existing
+
+  !> Forget what the object held before, and make the library ready.
+  subroutine begin(self, path, writable)
+    class(hdf5_file_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    logical, intent(in) :: writable
+    type(error_t), allocatable :: ignored
+
+    if (self%id /= closed) call self%close(ignored)
+    if (allocated(self%first_error)) deallocate (self%first_error)
+    self%file_path = path
+    self%writable = writable
+    call start_library()
+  end subroutine begin
+
+  !> Start HDF5 once (each further h5open_f would leak its type handles), silence its own error
+  !> printing, and do without file locks: they fail on some network disks, and a run must not stop
+  !> because somebody looks at its results. The user's own setting of the variable prevails.
+  subroutine start_library()
+    type(error_t), allocatable :: ignored
+    integer :: flag
+    logical :: started
+
+    call set_environment('HDF5_USE_FILE_LOCKING', 'FALSE', ignored, overwrite=.false.)
+    call h5iis_valid_f(h5t_native_double, started, flag)
+    if (flag /= 0 .or. .not. started) call h5open_f(flag)
+    call h5eset_auto_f(0, flag)
+  end subroutine start_library
+
+  !> Access properties: closing the file closes all that is open in it.
+  subroutine make_access(access)
+    integer(hid_t), intent(out) :: access
+    integer :: flag
+
+    call h5pcreate_f(h5p_file_access_f, access, flag)
+    call h5pset_fclose_degree_f(access, h5f_close_strong_f, flag)
+  end subroutine make_access
+
+  module procedure close_file
+    integer :: flag(2)
+
+    if (self%id /= closed) then
+      flag = 0
+      if (self%writable) call h5fflush_f(self%id, h5f_scope_local_f, flag(1))
+      call h5fclose_f(self%id, flag(2))
+      if (any(flag /= 0)) call self%record_error(exit_machine, 'writing failed at the closing of the file (disk full?)')
+      self%id = closed
+    end if
+    call self%status(error)
+    if (allocated(self%first_error)) deallocate (self%first_error)
+  end procedure close_file
+
+  module procedure status
+    if (allocated(self%first_error)) allocate (error, source=self%first_error)
+  end procedure status
+
+  module procedure failed
+    failed = allocated(self%first_error)
+  end procedure failed
+
+  module procedure record_error
+    if (.not. allocated(self%first_error)) call fail(self%first_error, code, "'"//self%path()//"': "//message)
+  end procedure record_error
+
+  module procedure path_of_file
+    path = ''
+    if (allocated(self%file_path)) path = self%file_path
+  end procedure path_of_file
+
+  module procedure group
+    integer(hid_t) :: links, id
+    integer :: flag(4)
+
+    if (self%failed()) return
+    if (self%has(path)) return
+    call h5pcreate_f(h5p_link_create_f, links, flag(1))
+    call h5pset_create_inter_group_f(links, 1, flag(2))
+    call h5gcreate_f(self%id, path, id, flag(3), lcpl_id=links)
+    if (flag(3) == 0) call h5gclose_f(id, flag(3))
+    call h5pclose_f(links, flag(4))
+    if (any(flag /= 0)) call self%record_error(exit_machine, "the group '"//path//"' cannot be made")
+  end procedure group
+
+  module procedure has
+    integer :: last, flag
+
+    has = self%id /= closed .and. .not. self%failed()
+    last = 0
+    ! HDF5 answers for the last link of a path only when those before it exist.
+    do while (has .and. last < len(path))
+      last = last + max(index(path(last + 1:)//'/', '/'), 1)
+      if (path(:last - 1) == '') cycle
+      call h5lexists_f(self%id, path(:last - 1), has, flag)
+      has = has .and. flag == 0
+    end do
+  end procedure has
+
+  module procedure list
+    character(len=256) :: name
+    integer :: n, i, kind, flag
+
+    allocate (names(0))
+    if (self%failed()) return
+    call h5gn_members_f(self%id, path, n, flag)
+    if (flag /= 0) then
+      call self%record_error(exit_input, "no group '"//path//"'")
+      return
+    end if
+    deallocate (names)
+    allocate (names(n))
+    do i = 1, n
+      call h5gget_obj_info_idx_f(self%id, path, i - 1, name, kind, flag)
+      names(i)%s = trim(name)
+    end do
+  end procedure list
+
+  module procedure remove
+    integer :: flag
+
+    if (self%failed()) return
+    if (.not. self%has(path)) return
+    flag = -1
+    if (self%writable) call h5ldelete_f(self%id, path, flag)
+    if (flag /= 0) call self%record_error(exit_bug, "cannot remove '"//path//"'")
+  end procedure remove
+
+end submodule hdf5_file_access
