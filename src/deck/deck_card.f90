@@ -2,6 +2,7 @@
 module deck_card
   use deck_field, only: field_t
   use diagnostics, only: diagnostics_t, location_t
+  use kinds, only: wp
   use text, only: nearest_word, string_t
   implicit none
   private
@@ -76,14 +77,15 @@ contains
 
     subroutine put_row(row)
       type(row_t), intent(in) :: row
-      character(len=26) :: number
+      ! Sign, one digit, point, 16 digits, exponent: every number has this width.
+      character(len=24) :: number
       integer :: k
 
       do k = 1, size(row%fields)
         if (row%fields(k)%numeric) then
           ! Adding zero makes -0 the same as 0.
-          write (number, '(es26.16e3)') row%fields(k)%value + 0.0_wp
-          call put(' '//trim(adjustl(number)))
+          if (pass == 2) write (number, '(es24.16e3)') row%fields(k)%value + 0.0_wp
+          call put(' '//number)
         else
           call put(' '''//row%fields(k)%text//'''')
         end if

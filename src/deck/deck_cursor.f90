@@ -135,8 +135,8 @@ contains
     below = .false.
     if (present(strict_lower)) above = strict_lower
     if (present(strict_upper)) below = strict_upper
-    wanted = what
-    if (present(unit)) wanted = wanted//' ('//unit//')'
+    wanted = what//''
+    if (present(unit)) wanted = what//' ('//unit//')'
     call add_bounds(wanted, lower, upper, above, below)
     call self%take(wanted, field)
     if (.not. self%silent) then

@@ -13,6 +13,9 @@ module deck_definitions
   type :: override_t
     character(len=:), allocatable :: name, value
     type(location_t) :: where
+    !> It comes from a stored text, and a new one may replace it.
+    logical :: stored = .false.
+    !> Some PARAM line has its name.
     logical :: declared = .false.
   end type override_t
 
@@ -22,7 +25,7 @@ contains
   subroutine merge_overrides(stored, new, options, diagnostics)
     type(string_t), allocatable, intent(inout) :: stored(:)
     type(string_t), intent(in) :: new(:)
-    type(override_t), allocatable, intent(out) :: options(:)
+    type(override_t), allocatable, intent(inout) :: options(:)
     type(diagnostics_t), intent(inout) :: diagnostics
     type(string_t), allocatable :: all(:)
     type(override_t), allocatable :: parts(:)
@@ -31,7 +34,8 @@ contains
     allocate (all(size(stored) + size(new)), parts(size(stored) + size(new)))
     n = 0
     do i = 1, size(all)
-      if (i <= size(stored)) then
+      parts(n + 1)%stored = i <= size(stored)
+      if (parts(n + 1)%stored) then
         all(n + 1)%s = trim(adjustl(stored(i)%s))
       else
         all(n + 1)%s = trim(adjustl(new(i - size(stored))%s))
@@ -49,13 +53,14 @@ contains
       end do
       if (old > n) then
         n = n + 1
-      else if (old > size(stored)) then
+      else if (.not. parts(old)%stored) then
         call diagnostics%add(parts(n + 1)%where, '', ''''//parts(old)%name//''' is given twice')
       else
         parts(old) = parts(n + 1)
         all(old)%s = all(n + 1)%s
       end if
     end do
+    if (allocated(options)) deallocate (options)
     allocate (options(n))
     deallocate (stored)
     allocate (stored(n))

@@ -74,16 +74,18 @@ contains
     end do
   end function comment_column
 
-  !> Fields of `line` from column `start` on; no comment, no tabs. Mistakes are recorded at once.
+  !> All fields of `line` from column `start` on; no comment, no tabs. Mistakes are recorded at once.
+  !> (`fields` is not intent(out): gfortran 12 warns of the caller's empty array then.)
   subroutine scan_fields(line, start, where, keyword, fields, diagnostics)
     character(len=*), intent(in) :: line, keyword
     integer, intent(in) :: start
     type(location_t), intent(in) :: where
-    type(field_t), allocatable, intent(out) :: fields(:)
+    type(field_t), allocatable, intent(inout) :: fields(:)
     type(diagnostics_t), intent(inout) :: diagnostics
     type(field_t), allocatable :: longer(:)
     integer :: n, first, last, i
 
+    if (allocated(fields)) deallocate (fields)
     allocate (fields(8))
     n = 0
     first = start

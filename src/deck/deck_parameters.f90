@@ -26,6 +26,8 @@ module deck_parameters
     integer :: n = 0
     !> Names that some PARAM line of the deck declares, be it further down.
     type(string_t), allocatable :: declared(:)
+    !> Which of the declared names are used before their PARAM line.
+    logical, allocatable :: wanted(:)
     !> False when an included file is missing: then an unknown name is no news.
     logical :: complete = .true.
   contains
@@ -63,6 +65,7 @@ contains
     class(parameters_t), intent(inout) :: self
     type(parameter_t), intent(in) :: item
     type(parameter_t), allocatable :: longer(:)
+    integer :: i
 
     if (.not. allocated(self%items)) allocate (self%items(16))
     if (self%n == size(self%items)) then
@@ -72,6 +75,9 @@ contains
     end if
     self%n = self%n + 1
     self%items(self%n) = item
+    do i = 1, size(self%declared)
+      if (self%declared(i)%s == item%name .and. self%wanted(i)) self%items(self%n)%used = .true.
+    end do
   end subroutine append
 
   !> Mark every `$name` of the text, whether the expression around it is right or wrong.
@@ -87,7 +93,13 @@ contains
       first = first + i
       last = first + verify(text(first:)//' ', letters//digits//'_') - 2
       i = self%find(text(first:last))
-      if (i > 0) self%items(i)%used = .true.
+      if (i > 0) then
+        self%items(i)%used = .true.
+      else
+        do i = 1, size(self%declared)
+          if (self%declared(i)%s == text(first:last)) self%wanted(i) = .true.
+        end do
+      end if
       if (last >= len(text)) return
     end do
   end subroutine mark_used

@@ -8,7 +8,7 @@ module deck_reader
   use deck_parameters, only: parameters_t
   use deck_source, only: load_file, load_text, source_t, write_text
   use diagnostics, only: diagnostics_t, location_t
-  use text, only: string_t, upper_case
+  use text, only: string_t, to_text, upper_case
   implicit none
   private
   public :: field_t, row_t, card_t, deck_t, read_deck, read_deck_text, refuse_unknown, fingerprint_text
@@ -31,6 +31,7 @@ contains
 
   !> Read a deck from `deck%text` of an earlier reading: the same cards, and no file is touched.
   !> Overrides of then hold still, unless `overrides` has one of the same name.
+  !> `text` must not be a component of `deck` itself, which is emptied first.
   subroutine read_deck_text(text, path, overrides, deck, diagnostics)
     character(len=*), intent(in) :: text, path
     type(string_t), intent(in) :: overrides(:)
@@ -56,6 +57,8 @@ contains
     call write_text(source, source%overrides, diagnostics, deck%text)
     call classify(source, kinds, diagnostics)
     call declared_names(source, kinds, parameters%declared)
+    allocate (parameters%wanted(size(parameters%declared)))
+    parameters%wanted = .false.
     parameters%complete = source%complete
     call build_cards(source, kinds, options, parameters, deck%cards, diagnostics)
     if (source%complete) call refuse_unused(parameters, options, diagnostics)

@@ -4,7 +4,7 @@
 !> `!@file "name" line` gives the place of the line that follows, and `!@param NAME=VALUE` is an override.
 module deck_source
   use diagnostics, only: diagnostics_t, location_t
-  use deck_field, only: comment_column, field_t, first_word, scan_fields
+  use deck_field, only: comment_column, digits, field_t, first_word, scan_fields
   use kinds, only: i8
   use text, only: string_t, to_text, upper_case
   implicit none
@@ -159,11 +159,13 @@ contains
     character(len=*), intent(in) :: mark
     integer, intent(inout) :: file, line
     type(diagnostics_t), intent(inout) :: diagnostics
-    integer :: closing, number, status
+    integer :: closing, last, number, status
 
     closing = index(mark, '" ', back=.true.)
     if (closing <= len(file_mark)) return
-    read (mark(closing + 1:), *, iostat=status) number
+    last = len_trim(mark)
+    if (verify(mark(closing + 2:last), digits) > 0 .or. last < closing + 2 .or. last > closing + 10) return
+    read (mark(closing + 2:last), *, iostat=status) number
     if (status /= 0 .or. number < 1) return
     line = number - 1
     call diagnostics%register(mark(len(file_mark) + 1:closing - 1), file)
@@ -219,6 +221,7 @@ contains
     integer :: i, file, column
 
     column = 1
+    path = ''
     call scan_fields(card, 6, where, 'INCLU', fields, diagnostics)
     if (size(fields) == 0) then
       failure = 'expected the name of a file, found the end of the line'

@@ -37,6 +37,8 @@ module elem_api
   type :: report_t
     integer :: status = block_done
     integer :: element = 0
+    !> Filled in by the element loop.
+    integer :: group = 0
     real(wp) :: strain = 0.0_wp
   end type report_t
 

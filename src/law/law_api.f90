@@ -138,7 +138,7 @@ contains
     logical, intent(in), optional :: pairs, curve
     type(law_line_t) :: line
 
-    line%parameters = parameters
+    allocate (line%parameters, source=parameters)
     line%word = ''
     if (present(word)) then
       line%kind = line_choice

@@ -20,7 +20,7 @@ contains
     row%kind = contact_law
     row%purpose = 'contact with Coulomb friction'
     row%source = 'Charlier; seed, annex 3'
-    row%lines = [law_line([ &
+    allocate (row%lines, source=[law_line([ &
                           parameter('PENETR', '-', 'allowed penetration, share of the element side (0: AKP is given)', &
                                     lower=0.0_wp, upper=0.1_wp, default=1.0e-3_wp), &
                           parameter('AKP', 'stress/length', 'normal penalty (0: from PENETR)', lower=0.0_wp, default=0.0_wp), &
@@ -29,7 +29,7 @@ contains
                           parameter('PBOUE', 'stress', 'cohesion', lower=0.0_wp, default=0.0_wp), &
                           parameter('TAUMAX', 'stress', 'largest friction stress', above=0.0_wp, default=huge(1.0_wp)), &
                           parameter('AUGMENT', '-', 'largest number of augmentations in a step', &
-                                    lower=0.0_wp, upper=50.0_wp, default=0.0_wp)], pairs=.true.)]
+                                    lower=0.0_wp, upper=50.0_wp, default=0.0_wp)], pairs=.true.)])
     allocate (row%history(0))
     row%symmetric = .false.
     row%effects = 'contact friction'

@@ -17,8 +17,8 @@ contains
     row%number = 1
     row%purpose = 'isotropic linear elasticity'
     row%source = 'Hooke'
-    row%lines = [law_line([parameter('E', 'stress', 'Young''s modulus', above=0.0_wp), &
-                           parameter('NU', '-', 'Poisson''s ratio', lower=0.0_wp, upper=0.499999_wp)])]
+    allocate (row%lines, source=[law_line([parameter('E', 'stress', 'Young''s modulus', above=0.0_wp), &
+                           parameter('NU', '-', 'Poisson''s ratio', lower=0.0_wp, upper=0.499999_wp)])])
     allocate (row%history(0))
     row%effects = ''
     row%update => update

@@ -31,7 +31,7 @@ contains
     row%number = 55
     row%purpose = 'von Mises elastoplasticity, isotropic hardening'
     row%source = 'Simo and Taylor 1985 (radial return, consistent tangent)'
-    row%lines = [law_line([parameter('E', 'stress', 'Young''s modulus', above=0.0_wp), &
+    allocate (row%lines, source=[law_line([parameter('E', 'stress', 'Young''s modulus', above=0.0_wp), &
                            parameter('NU', '-', 'Poisson''s ratio', lower=0.0_wp, upper=0.499999_wp)]), &
                  law_line([parameter('RE', 'stress', 'yield stress', above=0.0_wp), &
                            parameter('ET', 'stress', 'plastic modulus d(yield)/d(plastic strain)')], word='LINEAR'), &
@@ -43,7 +43,7 @@ contains
                            parameter('E0', '-', 'strain offset', above=0.0_wp), &
                            parameter('N', '-', 'exponent', lower=0.0_wp, upper=1.0_wp)], word='SWIFT'), &
                  law_line([parameter('NPOINT', '-', 'rows: plastic strain, yield stress', lower=1.0_wp)], &
-                          word='TABLE', curve=.true.)]
+                          word='TABLE', curve=.true.)])
     row%history = [state_variable('plastic_strain', '-', transfer_scalar), &
                    state_variable('plastic_work', 'stress', transfer_scalar)]
     row%effects = 'plasticity'

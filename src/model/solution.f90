@@ -28,9 +28,17 @@ module solution
     type(group_state_t), allocatable :: groups(:)
     !> Totals since the start.
     integer :: iterations = 0, cutbacks = 0
+    !> Work done on the scene from outside, per radian when axisymmetric.
     real(wp) :: external_work = 0.0_wp
-    !> Forces at prescribed unknowns at the last accepted instant (2, nnode), (3, ndie).
-    real(wp), allocatable :: reactions(:, :), pilot_reactions(:, :)
+    !> Volume at the start, for the drift; 0 before it is measured.
+    real(wp) :: initial_volume = 0.0_wp
+    !> What the scene has borne so far, worst of all accepted steps.
+    real(wp) :: worst_linear_residual = 0.0_wp, worst_penetration = 0.0_wp, least_dissipation = 0.0_wp
+    !> Forces below this are round-off (set at the first evaluation of a mesh).
+    real(wp) :: force_floor = 0.0_wp
+    !> Forces from outside at the last accepted instant: reactions, nodal forces, pressures, on
+    !> nodes (2, nnode) and on pilots (3, ndie).
+    real(wp), allocatable :: applied(:, :), pilot_applied(:, :)
   end type solution_t
 
 contains
@@ -43,8 +51,8 @@ contains
 
     nnode = size(scene%mesh%coordinates, 2)
     ndie = size(scene%dies)
-    allocate (solution%displacement(2, nnode), solution%last_increment(2, nnode), solution%reactions(2, nnode), source=0.0_wp)
-    allocate (solution%pilots(3, ndie), solution%last_pilot_increment(3, ndie), solution%pilot_reactions(3, ndie), source=0.0_wp)
+    allocate (solution%displacement(2, nnode), solution%last_increment(2, nnode), solution%applied(2, nnode), source=0.0_wp)
+    allocate (solution%pilots(3, ndie), solution%last_pilot_increment(3, ndie), solution%pilot_applied(3, ndie), source=0.0_wp)
     do g = 1, ndie
       solution%pilots(:, g) = scene%dies(g)%pilot
     end do

@@ -43,9 +43,10 @@ contains
 
     keep = .false.
     if (present(keep_previous)) keep = keep_previous
+    if (keep) keep = file_exists(path)
     call flush_to_disk(temporary_name(path), error)
     if (allocated(error)) return
-    if (keep .and. file_exists(path)) then
+    if (keep) then
       call keep_as_previous(path, error)
       if (allocated(error)) return
     end if
@@ -80,7 +81,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: ignored
     character(len=200) :: why
-    integer :: unit, status, closing
+    integer(i8) :: length
+    integer :: unit, status
 
     open (newunit=unit, file=temporary_name(path), status='replace', action='write', access='stream', form='unformatted', &
       iostat=status, iomsg=why)
@@ -89,10 +91,11 @@ contains
       return
     end if
     write (unit, iostat=status, iomsg=why) text
-    if (status == 0) flush (unit, iostat=status, iomsg=why)
-    close (unit, iostat=closing)
-    if (status == 0 .and. closing /= 0) then
-      status = closing
+    close (unit)
+    ! gfortran's close says nothing of a full disk: the length tells.
+    if (status == 0) then
+      inquire (file=temporary_name(path), size=length)
+      status = merge(0, 1, length == len(text, i8))
       why = 'disk full?'
     end if
     if (status /= 0) then

@@ -1,9 +1,9 @@
 !> Opening, closing, groups and names of HDF5 files.
 submodule(hdf5_file) hdf5_file_access
-  use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_local_f, &
-    h5fclose_f, h5fcreate_f, h5fflush_f, h5fis_hdf5_f, h5fopen_f, h5gclose_f, h5gcreate_f, h5gget_obj_info_idx_f, h5gn_members_f, &
-    h5iis_valid_f, h5ldelete_f, h5lexists_f, h5open_f, h5p_file_access_f, h5p_link_create_f, h5pclose_f, h5pcreate_f, &
-    h5pset_create_inter_group_f, h5pset_fclose_degree_f, h5t_native_double
+  use hdf5, only: h5dont_atexit_f, h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_close_strong_f, &
+    h5f_scope_local_f, h5fclose_f, h5fcreate_f, h5fflush_f, h5fis_hdf5_f, h5fopen_f, h5gclose_f, h5gcreate_f, &
+    h5gget_obj_info_idx_f, h5gn_members_f, h5iis_valid_f, h5ldelete_f, h5lexists_f, h5open_f, h5p_file_access_f, &
+    h5p_link_create_f, h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_fclose_degree_f, h5t_native_double
   use errors, only: exit_bug, exit_input, exit_machine, fail
   use system, only: file_exists, set_environment
   implicit none
@@ -89,12 +89,15 @@ contains
   !> Start HDF5 once (each further h5open_f would leak its type handles), silence its own error
   !> printing, and do without file locks: they fail on some network disks, and a run must not stop
   !> because somebody looks at its results. The user's own setting of the variable prevails.
+  !> HDF5's own closing of what is left at the end of the program is turned off too: after a failed
+  !> write it crashes (1.10.8), and the exit code is lost.
   subroutine start_library()
     type(error_t), allocatable :: ignored
     integer :: flag
     logical :: started
 
     call set_environment('HDF5_USE_FILE_LOCKING', 'FALSE', ignored, overwrite=.false.)
+    call h5dont_atexit_f(flag)
     call h5iis_valid_f(h5t_native_double, started, flag)
     if (flag /= 0 .or. .not. started) call h5open_f(flag)
     call h5eset_auto_f(0, flag)

@@ -5,7 +5,7 @@ submodule(hdf5_file) hdf5_file_attributes
     h5oopen_f, h5s_scalar_f, h5sclose_f, h5screate_f, h5t_float_f, h5t_ieee_f64le, h5t_integer_f, h5t_native_double, &
     h5t_native_integer, h5t_std_i32le, h5t_string_f, h5tclose_f, h5tget_class_f, h5tget_size_f, h5tis_variable_str_f, size_t
   use errors, only: exit_bug, exit_input, exit_machine
-  use hdf5_text, only: letters_of, make_text_type, words_of
+  use hdf5_text, only: get_words, letters_of, make_text_type
   implicit none
 
   !> HDF5 keeps an attribute in the header of its object, which holds 64 KiB.
@@ -51,7 +51,7 @@ contains
     call read_value(self, path, name, attribute, type, c_loc(letters))
     call h5tclose_f(type, flag)
     if (self%failed()) return
-    words = words_of(letters, 1)
+    call get_words(letters, words)
     value = words(1)%s
   end procedure read_text_attribute
 

@@ -5,7 +5,7 @@ submodule(hdf5_file) hdf5_file_read
     h5sget_simple_extent_ndims_f, h5t_float_f, h5t_integer_f, h5t_native_double, h5t_native_integer, h5t_string_f, h5tclose_f, &
     h5tget_class_f, h5tget_size_f, h5tis_variable_str_f, hsize_t, size_t
   use errors, only: exit_input
-  use hdf5_text, only: make_text_type, words_of
+  use hdf5_text, only: get_words, make_text_type
   use text, only: to_text
   implicit none
 
@@ -208,7 +208,7 @@ contains
     call make_text_type(int(width), type)
     call read_block(self, path, dataset, type, c_loc(letters))
     call h5tclose_f(type, flag)
-    if (.not. self%failed()) words = words_of(letters, size(words))
+    if (.not. self%failed()) call get_words(letters, words)
   end subroutine read_letters
 
 end submodule hdf5_file_read

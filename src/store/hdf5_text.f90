@@ -1,11 +1,11 @@
 !> Text as HDF5 keeps it here: single characters, each word filled up with nulls to one width.
 module hdf5_text
-  use hdf5, only: h5t_cset_utf8_f, h5t_str_nullpad_f, h5t_string, h5tcopy_f, h5tset_cset_f, h5tset_size_f, h5tset_strpad_f, hid_t, &
+  use hdf5, only: h5t_c_s1, h5t_cset_utf8_f, h5t_str_nullpad_f, h5tcopy_f, h5tset_cset_f, h5tset_size_f, h5tset_strpad_f, hid_t, &
     size_t
   use text, only: string_t
   implicit none
   private
-  public :: make_text_type, letters_of, words_of
+  public :: make_text_type, letters_of, get_words
 
   character(len=1), parameter :: null = achar(0)
 
@@ -18,7 +18,7 @@ contains
     integer :: flag
 
     ! A call that fails leaves a handle that HDF5 refuses later: that is where it is noticed.
-    call h5tcopy_f(h5t_string, type, flag)
+    call h5tcopy_f(h5t_c_s1, type, flag)
     call h5tset_size_f(type, int(width, size_t), flag)
     call h5tset_strpad_f(type, h5t_str_nullpad_f, flag)
     call h5tset_cset_f(type, h5t_cset_utf8_f, flag)
@@ -43,15 +43,14 @@ contains
     end do
   end subroutine letters_of
 
-  !> The `n` words in `letters`, without the nulls behind them.
-  pure function words_of(letters, n) result(words)
+  !> The words in `letters`, without the nulls behind them; `words` has the right size already.
+  pure subroutine get_words(letters, words)
     character(len=1), intent(in) :: letters(:)
-    integer, intent(in) :: n
-    type(string_t) :: words(n)
+    type(string_t), intent(inout) :: words(:)
     integer :: width, length, i, j
 
-    width = size(letters)/max(n, 1)
-    do i = 1, n
+    width = size(letters)/max(size(words), 1)
+    do i = 1, size(words)
       associate (word => letters((i - 1)*width + 1:i*width))
         length = width
         do while (length > 0)
@@ -64,6 +63,6 @@ contains
         end do
       end associate
     end do
-  end function words_of
+  end subroutine get_words
 
 end module hdf5_text

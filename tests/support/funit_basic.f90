@@ -104,9 +104,8 @@ contains
     character(len=*), intent(in) :: expected, actual(:)
     character(len=*), intent(in), optional :: message
     type(SourceLocation), intent(in), optional :: location
-    integer :: i
 
-    call equal_text_lists([character(len=len(expected)) :: (expected, i=1, size(actual))], actual, message, location)
+    call equal_text_lists(spread(expected, 1, size(actual)), actual, message, location)
   end subroutine equal_text_list
 
   subroutine equal_text_lists(expected, actual, message, location)

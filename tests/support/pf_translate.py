@@ -79,6 +79,8 @@ class Translator:
         self.out = []
 
     def run(self, lines):
+        # The compiler, too, shall name the test file.
+        self.out.append(f'#line 1 "{self.path}"')
         for number, line in enumerate(lines, 1):
             line = line.rstrip("\r\n")
             if not line.strip() or line.lstrip().startswith("!"):

@@ -148,7 +148,8 @@ def test_passes(folder):
 
 def test_nothing(folder):
     path = os.path.join(folder, "test_one.pf")
-    for name, text in (("no test", ""), ("all disabled", TEST.format("a", "@assertTrue(.true.)").replace("@test\n", "@test\n@disable\n"))):
+    disabled = TEST.format("a", "@assertTrue(.true.)").replace("@test\n", "@test\n@disable\n")
+    for name, text in (("no test", ""), ("all disabled", disabled)):
         with open(path, "w", encoding="utf-8") as out:
             out.write(MODULE.format(text))
         code, said = run(build(folder, path, "nothing"))

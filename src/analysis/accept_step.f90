@@ -1,0 +1,151 @@
+!> What happens when a step is accepted: the trial state becomes the state, and every check is made.
+module accept_step
+  use elem_api, only: add_totals, totals_t
+  use element_loop, only: group_geometry
+  use equations, only: equations_t
+  use errors, only: error_t, exit_bug, fail
+  use kinds, only: wp
+  use newton, only: outcome_t
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use text, only: to_text
+  implicit none
+  private
+  public :: accept, measure_scene
+
+  !> Dissipated work may fall by this share of the largest work density: round-off of a sum.
+  real(wp), parameter :: dissipation_slack = 1.0e-12_wp
+
+contains
+
+  !> Commit the step, book its work, measure the scene, check it. An error is a bug of ours: exit 6.
+  subroutine accept(scene, equations, dt, outcome, solution, totals, error)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: dt
+    type(outcome_t), intent(in) :: outcome
+    type(solution_t), intent(inout) :: solution
+    type(totals_t), intent(out) :: totals
+    type(error_t), allocatable, intent(out) :: error
+    integer :: k, c, d
+
+    call book_work(equations, outcome%du, solution)
+    do k = 1, size(equations%dofs%node, 2)
+      do c = 1, 2
+        d = equations%dofs%node(c, k)
+        if (d > 0) solution%last_increment(c, k) = outcome%du(d)
+      end do
+    end do
+    do k = 1, size(equations%dofs%pilot, 2)
+      do c = 1, 3
+        d = equations%dofs%pilot(c, k)
+        if (d > 0) solution%last_pilot_increment(c, k) = outcome%du(d)
+      end do
+    end do
+    solution%displacement = solution%displacement + solution%last_increment
+    solution%pilots = solution%pilots + solution%last_pilot_increment
+    solution%time = solution%time + dt
+    solution%last_step = dt
+    solution%step = solution%step + 1
+    solution%iterations = solution%iterations + outcome%iterations
+    solution%worst_linear_residual = max(solution%worst_linear_residual, outcome%linear_residual)
+
+    call measure_scene(scene, equations, solution, totals)
+    solution%worst_penetration = max(solution%worst_penetration, totals%max_penetration)
+    solution%least_dissipation = min(solution%least_dissipation, totals%least_dissipation)
+    call check(solution, totals, error)
+    do k = 1, size(solution%groups)
+      solution%groups(k)%committed = solution%groups(k)%trial
+    end do
+  end subroutine accept
+
+  !> External work by the trapezoidal rule: forces from outside on nodes and pilots times their motion.
+  !> What acts from outside on an unknown is the internal force there, without the elements that are loads.
+  subroutine book_work(equations, du, solution)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: du(:)
+    type(solution_t), intent(inout) :: solution
+    real(wp) :: applied(equations%dofs%ndof)
+    integer :: g, k, c, d, m
+
+    applied = equations%force
+    do g = 1, size(equations%dofs%groups)
+      if (.not. equations%is_load(g)) cycle
+      m = equations%pattern%force_start(g)
+      do k = 1, size(equations%dofs%groups(g)%dof, 2)
+        do c = 1, size(equations%dofs%groups(g)%dof, 1)
+          m = m + 1
+          d = equations%dofs%groups(g)%dof(c, k)
+          applied(d) = applied(d) - equations%buffers%force(m)
+        end do
+      end do
+    end do
+    do k = 1, size(equations%dofs%node, 2)
+      do c = 1, 2
+        call book(equations%dofs%node(c, k), solution%applied(c, k))
+      end do
+    end do
+    do k = 1, size(equations%dofs%pilot, 2)
+      do c = 1, 3
+        call book(equations%dofs%pilot(c, k), solution%pilot_applied(c, k))
+      end do
+    end do
+
+  contains
+
+    subroutine book(dof, force)
+      integer, intent(in) :: dof
+      real(wp), intent(inout) :: force
+
+      if (dof == 0) return
+      solution%external_work = solution%external_work + 0.5_wp*(force + applied(dof))*du(dof)
+      force = applied(dof)
+    end subroutine book
+
+  end subroutine book_work
+
+  !> Sums over all groups at the present displacement, from the trial state (equal to the committed one at rest).
+  subroutine measure_scene(scene, equations, solution, totals)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    type(totals_t), intent(out) :: totals
+    type(totals_t) :: part
+    real(wp), allocatable :: x(:, :, :)
+    integer :: g, law
+
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g), row => equations%elems(scene%groups(g)%elem_id))
+        if (.not. associated(row%measure)) cycle
+        law = scene%materials(group%material)%law_id
+        call group_geometry(scene, group, row, solution%displacement, x)
+        call row%measure(scene, group, equations%laws(law), x, solution%groups(g)%trial, solution%groups(g)%committed, part)
+        call add_totals(totals, part)
+      end associate
+    end do
+  end subroutine measure_scene
+
+  !> Invariants of an accepted step.
+  subroutine check(solution, totals, error)
+    type(solution_t), intent(in) :: solution
+    type(totals_t), intent(in) :: totals
+    type(error_t), allocatable, intent(out) :: error
+    integer :: g
+    real(wp) :: scale
+
+    scale = 0
+    do g = 1, size(solution%groups)
+      if (size(solution%groups(g)%trial) == 0) cycle
+      scale = max(scale, maxval(abs(solution%groups(g)%trial)))
+      if (.not. all(abs(solution%groups(g)%trial) <= huge(1.0_wp))) then
+        call fail(error, exit_bug, 'step '//to_text(solution%step)//': not a number in the state of group '//to_text(g))
+        return
+      end if
+    end do
+    if (totals%least_dissipation < -dissipation_slack*scale) then
+      call fail(error, exit_bug, 'step '//to_text(solution%step)//': dissipated work fell by ' &
+                //to_text(-totals%least_dissipation, 3)//' at a point')
+    end if
+  end subroutine check
+
+end module accept_step

@@ -1,0 +1,146 @@
+!> `history.csv`: one row per accepted step. Forces and energies are those of the full circumference
+!> when the scene is axisymmetric.
+module history
+  use csv_writer, only: csv_t
+  use elem_api, only: totals_t
+  use errors, only: error_t
+  use kinds, only: pi, wp
+  use newton, only: outcome_t
+  use probes, only: probe_maximum, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
+  use scene, only: axisymmetric, scene_t
+  use solution, only: solution_t
+  use text, only: string_t
+  implicit none
+  private
+  public :: open_history, write_row, circumference
+
+contains
+
+  !> Factor from per radian to what people see.
+  pure function circumference(scene) result(factor)
+    type(scene_t), intent(in) :: scene
+    real(wp) :: factor
+
+    factor = merge(2*pi, 1.0_wp, scene%plane_state == axisymmetric)
+  end function circumference
+
+  !> Begin the table, or take it up again after the step of a checkpoint.
+  subroutine open_history(scene, solution, path, resume, table, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    character(len=*), intent(in) :: path
+    logical, intent(in) :: resume
+    type(csv_t), intent(inout) :: table
+    type(error_t), allocatable, intent(out) :: error
+    type(string_t), allocatable :: columns(:)
+
+    call name_columns(scene, columns)
+    if (resume) then
+      call table%resume(path, columns, solution%step, error)
+    else
+      call table%create(path, columns, error)
+    end if
+  end subroutine open_history
+
+  subroutine name_columns(scene, columns)
+    type(scene_t), intent(in) :: scene
+    type(string_t), allocatable, intent(out) :: columns(:)
+    integer :: k, n
+
+    allocate (columns(14 + 6*size(scene%dies) + size(scene%probes)))
+    n = 0
+    call add('time [time]')
+    call add('step [-]')
+    call add('step_length [time]')
+    call add('iterations [-]')
+    call add('cutbacks [-]')
+    call add('strain_increment [-]')
+    call add('external_work [energy]')
+    call add('elastic_energy [energy]')
+    call add('plastic_work [energy]')
+    call add('friction_work [energy]')
+    call add('volume_drift [-]')
+    call add('max_penetration [length]')
+    call add('points_sticking [-]')
+    call add('points_slipping [-]')
+    do k = 1, size(scene%dies)
+      call add('force_x_'//scene%dies(k)%name//' [force]')
+      call add('force_y_'//scene%dies(k)%name//' [force]')
+      call add('moment_'//scene%dies(k)%name//' [force*length]')
+      call add('displacement_x_'//scene%dies(k)%name//' [length]')
+      call add('displacement_y_'//scene%dies(k)%name//' [length]')
+      call add('rotation_'//scene%dies(k)%name//' [rad]')
+    end do
+    do k = 1, size(scene%probes)
+      call add(scene%probes(k)%name//' ['//scene%probes(k)%unit//']')
+    end do
+
+  contains
+
+    subroutine add(name)
+      character(len=*), intent(in) :: name
+
+      n = n + 1
+      columns(n)%s = name
+    end subroutine add
+
+  end subroutine name_columns
+
+  !> The row of the step just accepted. A die's force is what the part does to it.
+  subroutine write_row(scene, solution, outcome, totals, table, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(outcome_t), intent(in) :: outcome
+    type(totals_t), intent(in) :: totals
+    type(csv_t), intent(inout) :: table
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: factor
+    integer :: k
+
+    factor = circumference(scene)
+    call table%put(solution%time)
+    call table%put([solution%step])
+    call table%put(solution%last_step)
+    call table%put([outcome%iterations, solution%cutbacks])
+    call table%put(outcome%strain)
+    call table%put(factor*[solution%external_work, totals%elastic_energy, totals%plastic_work, totals%friction_work])
+    call table%put([totals%volume/solution%initial_volume - 1, totals%max_penetration])
+    call table%put([totals%stick, totals%slip])
+    do k = 1, size(scene%dies)
+      call table%put(-factor*solution%pilot_applied(:, k))
+      call table%put(solution%pilots(:, k) - scene%dies(k)%pilot)
+    end do
+    do k = 1, size(scene%probes)
+      call table%put(probe_value(scene, solution, scene%probes(k)))
+    end do
+    call table%end_row()
+    call table%status(error)
+  end subroutine write_row
+
+  !> What a probe reads at the accepted instant.
+  pure function probe_value(scene, solution, probe) result(value)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(probe_t), intent(in) :: probe
+    real(wp) :: value
+
+    value = 0
+    select case (probe%kind)
+    case (probe_node)
+      associate (node => probe%nodes(1), c => 2 - mod(probe%quantity, 2))
+        value = solution%displacement(c, node)
+        if (probe%quantity <= 2) value = value + scene%mesh%coordinates(c, node)
+      end associate
+    case (probe_reaction)
+      value = sum(solution%applied(probe%quantity, probe%nodes))
+    case (probe_point)
+      value = solution%groups(probe%group)%committed(probe%component, probe%point, probe%element)
+    case (probe_maximum)
+      value = maxval(solution%groups(probe%group)%committed(probe%component, :, :))
+    case (probe_minimum)
+      value = minval(solution%groups(probe%group)%committed(probe%component, :, :))
+    end select
+    value = value*probe%factor
+  end function probe_value
+
+end module history

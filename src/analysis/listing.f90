@@ -1,0 +1,147 @@
+!> The listing (`NAME.log`) and the line that shows progress on a terminal.
+module listing
+  use elem_api, only: totals_t
+  use equations, only: equations_t
+  use errors, only: error_t, exit_machine, fail
+  use kinds, only: wp
+  use newton, only: outcome_t
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use system, only: is_terminal, wall_seconds
+  use text, only: string_t, to_text
+  implicit none
+  private
+  public :: listing_t, open_listing, close_listing, list_lines, list_step, list_cut, show_progress, end_progress
+
+  type :: listing_t
+    integer :: unit = -1
+    !> Progress is shown on the terminal.
+    logical :: live = .false.
+    real(wp) :: started = 0.0_wp, shown = 0.0_wp
+    !> Share of the scene already done when the program started (a resumed run).
+    real(wp) :: start_share = 0.0_wp
+  end type listing_t
+
+  integer, parameter :: standard_output = 1
+  !> Seconds between two progress lines.
+  real(wp), parameter :: refresh = 0.2_wp
+
+contains
+
+  subroutine open_listing(path, resume, quiet, share, listing, error)
+    character(len=*), intent(in) :: path
+    logical, intent(in) :: resume, quiet
+    real(wp), intent(in) :: share
+    type(listing_t), intent(out) :: listing
+    type(error_t), allocatable, intent(out) :: error
+    integer :: status
+
+    if (resume) then
+      open (newunit=listing%unit, file=path, action='write', position='append', iostat=status)
+    else
+      open (newunit=listing%unit, file=path, action='write', status='replace', iostat=status)
+    end if
+    if (status /= 0) call fail(error, exit_machine, path//': cannot be written')
+    listing%live = .not. quiet .and. is_terminal(standard_output)
+    listing%started = wall_seconds()
+    listing%start_share = share
+  end subroutine open_listing
+
+  subroutine close_listing(listing)
+    type(listing_t), intent(inout) :: listing
+
+    if (listing%unit /= -1) close (listing%unit)
+    listing%unit = -1
+  end subroutine close_listing
+
+  subroutine list_lines(listing, lines)
+    type(listing_t), intent(in) :: listing
+    type(string_t), intent(in) :: lines(:)
+    integer :: k
+
+    do k = 1, size(lines)
+      write (listing%unit, '(a)') lines(k)%s
+    end do
+    flush (listing%unit)
+  end subroutine list_lines
+
+  !> An accepted step with its iterations.
+  subroutine list_step(listing, solution, outcome, totals)
+    type(listing_t), intent(in) :: listing
+    type(solution_t), intent(in) :: solution
+    type(outcome_t), intent(in) :: outcome
+    type(totals_t), intent(in) :: totals
+
+    write (listing%unit, '(a)') 'step '//to_text(solution%step)//'  time '//to_text(solution%time)//'  length ' &
+      //to_text(solution%last_step)//'  iterations '//to_text(outcome%iterations)
+    call list_iterations(listing, outcome)
+    write (listing%unit, '(a)') '  strain increment '//to_text(outcome%strain, 3)//'  contact '//to_text(totals%stick) &
+      //' stick '//to_text(totals%slip)//' slip '//to_text(totals%open)//' open  penetration ' &
+      //to_text(totals%max_penetration, 3)//'  linear residual '//to_text(outcome%linear_residual, 2)
+    flush (listing%unit)
+  end subroutine list_step
+
+  subroutine list_iterations(listing, outcome)
+    type(listing_t), intent(in) :: listing
+    type(outcome_t), intent(in) :: outcome
+    integer :: k
+
+    write (listing%unit, '(a)') '  iteration   residual/force  correction/motion  line search'
+    do k = 1, size(outcome%history)
+      associate (line => outcome%history(k))
+        if (k == 1) then
+          write (listing%unit, '(i10,es17.3)') k - 1, line%force_norm
+        else
+          write (listing%unit, '(i10,es17.3,es19.3,f13.3)') k - 1, line%force_norm, line%displacement_norm, line%line_search
+        end if
+      end associate
+    end do
+  end subroutine list_iterations
+
+  !> A step that was cut: why, where, and what comes next.
+  subroutine list_cut(listing, scene, solution, dt, next, outcome)
+    type(listing_t), intent(in) :: listing
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt, next
+    type(outcome_t), intent(in) :: outcome
+    character(len=:), allocatable :: where_at
+
+    where_at = ''
+    if (outcome%group > 0) where_at = ' (element '//to_text(outcome%element)//' of '//scene%groups(outcome%group)%name//')'
+    write (listing%unit, '(a)') 'cut: step '//to_text(solution%step + 1)//'  time '//to_text(solution%time)//'  length ' &
+      //to_text(dt)//' -> '//to_text(next)//': '//outcome%reason//where_at
+    call list_iterations(listing, outcome)
+    flush (listing%unit)
+  end subroutine list_cut
+
+  !> One line on the terminal: step, time, iterations, share done, time left.
+  subroutine show_progress(listing, scene, solution, iterations)
+    type(listing_t), intent(inout) :: listing
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: iterations
+    real(wp) :: now, share, left
+    character(len=120) :: line
+
+    if (.not. listing%live) return
+    now = wall_seconds()
+    share = solution%time/scene%strategy%end_time
+    if (now - listing%shown < refresh .and. share < 1) return
+    listing%shown = now
+    left = (now - listing%started)*(1 - share)/max(share - listing%start_share, tiny(1.0_wp))
+    line = 'step '//to_text(solution%step)//'  time '//to_text(solution%time, 4)//'  iterations '//to_text(iterations) &
+           //'  '//to_text(100*share, 3)//' %  '//to_text(now - listing%started, 3)//' s, left ' &
+           //to_text(min(left, 1.0e9_wp), 3)//' s'
+    write (*, '(a)', advance='no') achar(13)//line(:79)
+    flush (6)
+  end subroutine show_progress
+
+  !> Leave the progress line.
+  subroutine end_progress(listing)
+    type(listing_t), intent(in) :: listing
+
+    if (listing%live .and. listing%shown > 0) write (*, '(a)') ''
+  end subroutine end_progress
+
+end module listing

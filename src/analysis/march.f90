@@ -1,0 +1,186 @@
+!> The march in time: the page that reads like the method.
+module march
+  use accept_step, only: accept, measure_scene
+  use csv_writer, only: csv_t
+  use elem_api, only: totals_t
+  use equations, only: equations_t, set_up
+  use errors, only: error_t, exit_done, exit_no_convergence, exit_signal, fail
+  use exchange, only: write_checkpoint
+  use history, only: open_history, write_row
+  use kinds, only: eps, wp
+  use listing, only: list_cut, list_step, listing_t, show_progress
+  use newton, only: outcome_t, solve_step
+  use results, only: open_results, results_t, save_fields
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use step_strategy, only: after_failure, after_success, choose_step
+  use system, only: caught_signal
+  use text, only: to_text
+  implicit none
+  private
+  public :: run_t, march_to_end
+
+  !> A run: its files, and what is needed to write them.
+  type :: run_t
+    !> Path of the run's files without endings; the deck's path and canonical text.
+    character(len=:), allocatable :: stem, deck_path, deck_text
+    logical :: resume = .false.
+    type(equations_t) :: equations
+    type(listing_t) :: listing
+    type(csv_t) :: table
+    type(results_t) :: results
+    type(totals_t) :: totals
+    integer :: exit_code = exit_done
+    character(len=:), allocatable :: stop_reason
+  end type run_t
+
+contains
+
+  !> March from where the solution stands to the end of the scene, or to where it must stop.
+  subroutine march_to_end(scene, solution, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+    type(outcome_t) :: outcome
+    real(wp) :: dt
+    logical :: give_up
+
+    call start(scene, solution, run, error)
+    do while (.not. allocated(error) .and. solution%time < scene%strategy%end_time*(1 - 64*eps))
+      dt = choose_step(scene, solution%time, solution%next_step)
+
+      call solve_step(scene, run%equations, solution, dt, outcome)
+      if (allocated(outcome%error)) then
+        call move_alloc(outcome%error, error)
+        exit
+      end if
+
+      if (.not. outcome%converged) then
+        solution%cutbacks = solution%cutbacks + 1
+        call after_failure(scene, dt, solution%next_step, give_up)
+        call list_cut(run%listing, scene, solution, dt, solution%next_step, outcome)
+        if (give_up) call stop_here(scene, solution, dt, outcome, error)
+        cycle
+      end if
+
+      solution%next_step = after_success(scene, dt, solution%next_step, outcome%iterations)
+      call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
+      if (allocated(error)) exit
+      call list_step(run%listing, solution, outcome, run%totals)
+      call show_progress(run%listing, scene, solution, outcome%iterations)
+      call record(scene, solution, outcome, run, error)
+      if (caught_signal() /= 0) exit
+    end do
+    call finish(scene, solution, run, error)
+  end subroutine march_to_end
+
+  !> Equations, files, and the scene at rest.
+  subroutine start(scene, solution, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+
+    call set_up(scene, run%equations, error)
+    if (allocated(error)) return
+    call measure_scene(scene, run%equations, solution, run%totals)
+    if (.not. solution%initial_volume > 0) solution%initial_volume = run%totals%volume
+    call open_history(scene, solution, run%stem//'.history.csv', run%resume, run%table, error)
+    if (allocated(error)) return
+    call open_results(scene, solution, run%stem, run%resume, run%results, error)
+    if (allocated(error) .or. run%resume) return
+    call save_fields(scene, solution, run%results, error)
+  end subroutine start
+
+  !> History after every step; fields and checkpoint when they are due.
+  subroutine record(scene, solution, outcome, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(outcome_t), intent(in) :: outcome
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+    logical :: fields_due
+
+    call write_row(scene, solution, outcome, run%totals, run%table, error)
+    if (allocated(error)) return
+    fields_due = is_due(solution%step, scene%strategy%save_every) .or. at_end(scene, solution) &
+                 .or. is_save_time(scene, solution)
+    if (fields_due) call save_fields(scene, solution, run%results, error)
+    if (allocated(error)) return
+    if (fields_due .or. is_due(solution%step, scene%strategy%checkpoint_every) .or. caught_signal() /= 0) then
+      call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, error)
+    end if
+  end subroutine record
+
+  pure function is_due(step, every) result(due)
+    integer, intent(in) :: step, every
+    logical :: due
+
+    due = .false.
+    if (every > 0) due = mod(step, every) == 0
+  end function is_due
+
+  pure function at_end(scene, solution) result(reached)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    logical :: reached
+
+    reached = solution%time >= scene%strategy%end_time*(1 - 64*eps)
+  end function at_end
+
+  pure function is_save_time(scene, solution) result(due)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    logical :: due
+
+    due = .false.
+    if (allocated(scene%strategy%save_times)) then
+      due = any(abs(scene%strategy%save_times - solution%time) <= 64*eps*scene%strategy%end_time)
+    end if
+  end function is_save_time
+
+  !> The smallest step has failed: say why, where, and what to try.
+  subroutine stop_here(scene, solution, dt, outcome, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt
+    type(outcome_t), intent(in) :: outcome
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: where_at
+
+    where_at = ''
+    if (outcome%group > 0) where_at = ', element '//to_text(outcome%element)//' of '//scene%groups(outcome%group)%name
+    call fail(error, exit_no_convergence, 'no convergence: step '//to_text(solution%step + 1)//' from time ' &
+              //to_text(solution%time)//', length '//to_text(dt)//where_at//': '//outcome%reason, &
+              'the last good state is in the checkpoint; look at the fields saved at this time; a limit load, a mesh too ' &
+              //'distorted or a step too small for STRAT are the usual causes')
+  end subroutine stop_here
+
+  !> Leave files that tell how the run ended.
+  subroutine finish(scene, solution, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(inout) :: error
+    type(error_t), allocatable :: late
+
+    run%exit_code = exit_done
+    run%stop_reason = 'end of the scene'
+    if (allocated(error)) then
+      run%exit_code = error%code
+      run%stop_reason = error%message
+      if (error%code == exit_no_convergence .and. solution%step > 0) then
+        call save_fields(scene, solution, run%results, late)
+        if (.not. allocated(late)) then
+          call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, late)
+        end if
+      end if
+    else if (caught_signal() /= 0 .and. .not. at_end(scene, solution)) then
+      run%exit_code = exit_signal + caught_signal()
+      run%stop_reason = 'stopped by signal '//to_text(caught_signal())//' at step '//to_text(solution%step)
+    end if
+    call run%table%close(late)
+  end subroutine finish
+
+end module march

@@ -1,0 +1,190 @@
+!> `lagamine DECK`: from a deck to its results.
+module run_deck
+  use deck_reader, only: deck_t, fingerprint_text, read_deck
+  use diagnostics, only: diagnostics_t
+  use equations, only: equations_t
+  use errors, only: error_t, exit_done, exit_input, exit_machine, fail
+  use exchange, only: read_checkpoint, read_deck_of_checkpoint
+  use kinds, only: wp
+  use law_api, only: law_t
+  use law_manual, only: law_card
+  use law_registry, only: law_names, list_laws
+  use listing, only: close_listing, end_progress, list_lines, open_listing
+  use march, only: march_to_end, run_t
+  use run_options, only: run_options_t, version_text
+  use scene, only: scene_t
+  use scene_reader, only: read_scene
+  use scene_summary, only: scene_lines
+  use solution, only: solution_t, start_solution
+  use summary, only: run_facts_t, summary_lines, write_summary
+  use system, only: catch_signals, join_path, make_directory, single_thread_blas, wall_seconds
+  use text, only: nearest_word, string_t
+  use threads, only: number_of_threads, set_threads
+  use unknowns_summary, only: unknowns_lines
+  implicit none
+  private
+  public :: run_options_on_deck, print_law
+
+contains
+
+  !> Do what the options ask for; `code` is the program's exit code when `error` stays unallocated.
+  subroutine run_options_on_deck(options, code, error)
+    type(run_options_t), intent(in) :: options
+    integer, intent(out) :: code
+    type(error_t), allocatable, intent(out) :: error
+    type(deck_t) :: deck
+    type(scene_t) :: scene
+    type(solution_t) :: solution
+    type(run_t) :: run
+
+    code = exit_done
+    call single_thread_blas()
+    call set_threads(options%threads)
+    call read_input(options, deck, scene, run%deck_text, error)
+    if (allocated(error)) return
+    if (options%check) then
+      call print_check(scene, error)
+      return
+    end if
+    call start_solution(scene, solution)
+    run%resume = allocated(options%resume)
+    if (run%resume) call take_up(options%resume, run%deck_text, scene, solution, error)
+    if (allocated(error)) return
+    call make_directory(options%out, error)
+    if (allocated(error)) return
+    run%deck_path = options%deck
+    run%stem = join_path(options%out, stem(options%deck))
+    call catch_signals()
+    call run_and_report(options, scene, solution, run, error)
+    code = run%exit_code
+  end subroutine run_options_on_deck
+
+  !> Deck and scene, with all mistakes at once.
+  subroutine read_input(options, deck, scene, text, error)
+    type(run_options_t), intent(in) :: options
+    type(deck_t), intent(out) :: deck
+    type(scene_t), intent(out) :: scene
+    character(len=:), allocatable, intent(out) :: text
+    type(error_t), allocatable, intent(out) :: error
+    type(diagnostics_t) :: diagnostics
+
+    call read_deck(options%deck, options%overrides, deck, diagnostics)
+    call read_scene(deck, scene, diagnostics)
+    call diagnostics%error(error)
+    if (.not. allocated(error)) call fingerprint_text(deck, text)
+  end subroutine read_input
+
+  !> Take up the state of a checkpoint, which must come from the same deck.
+  subroutine take_up(path, text, scene, solution, error)
+    character(len=*), intent(in) :: path, text
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: old_path, old_text
+
+    call read_deck_of_checkpoint(path, old_path, old_text, error)
+    if (allocated(error)) return
+    if (old_text /= text) then
+      call fail(error, exit_input, path//': made from another deck than the one given (it was '//old_path//')', &
+                'resume with the same deck and the same -p options')
+      return
+    end if
+    call read_checkpoint(path, scene, solution, error)
+  end subroutine take_up
+
+  !> March, then write summary and listing whatever happened.
+  subroutine run_and_report(options, scene, solution, run, error)
+    type(run_options_t), intent(in) :: options
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+    type(run_facts_t) :: facts
+    type(error_t), allocatable :: late
+    type(string_t), allocatable :: lines(:)
+    real(wp) :: started
+    integer :: k
+
+    started = wall_seconds()
+    call open_listing(run%stem//'.log', run%resume, options%quiet, solution%time/scene%strategy%end_time, run%listing, error)
+    if (allocated(error)) return
+    call scene_lines(scene, lines)
+    call list_lines(run%listing, lines)
+    call march_to_end(scene, solution, run, error)
+    call end_progress(run%listing)
+
+    facts%version = version_text
+    facts%deck = options%deck
+    facts%deck_text = run%deck_text
+    facts%status = merge('done   ', 'stopped', run%exit_code == exit_done)
+    facts%status = trim(facts%status)
+    facts%stop_reason = run%stop_reason
+    facts%exit_code = run%exit_code
+    facts%threads = number_of_threads()
+    facts%wall = wall_seconds() - started
+    call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
+    call list_lines(run%listing, lines)
+    call close_listing(run%listing)
+    if (.not. options%quiet) then
+      do k = 1, size(lines)
+        write (*, '(a)') lines(k)%s
+      end do
+    end if
+    call write_summary(run%stem//'.summary.json', facts, scene, run%equations, solution, run%totals, late)
+    if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
+  end subroutine run_and_report
+
+  !> --check: the scene in words.
+  subroutine print_check(scene, error)
+    type(scene_t), intent(in) :: scene
+    type(error_t), allocatable, intent(out) :: error
+    type(string_t), allocatable :: lines(:), more(:)
+    integer :: k
+
+    call scene_lines(scene, lines)
+    call unknowns_lines(scene, more, error)
+    if (allocated(error)) return
+    do k = 1, size(lines)
+      write (*, '(a)') lines(k)%s
+    end do
+    do k = 1, size(more)
+      write (*, '(a)') more(k)%s
+    end do
+  end subroutine print_check
+
+  !> --law NAME: the card of a law.
+  subroutine print_law(name, error)
+    character(len=*), intent(in) :: name
+    type(error_t), allocatable, intent(out) :: error
+    type(law_t), allocatable :: laws(:)
+    type(string_t), allocatable :: names(:), lines(:)
+    character(len=:), allocatable :: nearest
+    integer :: k, i
+
+    call list_laws(laws)
+    do k = 1, size(laws)
+      if (laws(k)%name /= name) cycle
+      call law_card(laws(k), lines)
+      do i = 1, size(lines)
+        write (*, '(a)') lines(i)%s
+      end do
+      return
+    end do
+    call law_names(laws, names)
+    nearest = nearest_word(name, names)
+    if (nearest /= '') nearest = '; nearest: '''//nearest//''''
+    call fail(error, exit_input, 'no law is called '''//name//''''//nearest)
+  end subroutine print_law
+
+  !> Name of a file without folders and ending.
+  pure function stem(path) result(name)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: name
+    integer :: dot
+
+    name = path(index(path, '/', back=.true.) + 1:)
+    dot = index(name, '.', back=.true.)
+    if (dot > 1) name = name(:dot - 1)
+  end function stem
+
+end module run_deck

@@ -1,0 +1,148 @@
+!> The command line of `lagamine`.
+module run_options
+  use errors, only: error_t, exit_input, fail
+  use text, only: nearest_word, string_t
+  implicit none
+  private
+  public :: run_options_t, read_options, usage_text, version_text
+
+  character(len=*), parameter :: version_text = '0.1.0'
+
+  type :: run_options_t
+    character(len=:), allocatable :: deck
+    !> Folder of the results; by default the deck's name, in the present folder.
+    character(len=:), allocatable :: out
+    character(len=:), allocatable :: resume
+    !> Law whose card is asked for.
+    character(len=:), allocatable :: law
+    type(string_t), allocatable :: overrides(:)
+    logical :: check = .false., quiet = .false., help = .false., version = .false.
+    integer :: threads = 0   !! 0: as OpenMP finds
+  end type run_options_t
+
+contains
+
+  !> Read the arguments of the program; all mistakes end in `error`.
+  subroutine read_options(options, error)
+    type(run_options_t), intent(out) :: options
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: word
+    integer :: k, status
+
+    allocate (options%overrides(0))
+    k = 0
+    do while (k < command_argument_count() .and. .not. allocated(error))
+      k = k + 1
+      call argument(k, word)
+      select case (word)
+      case ('--help', '-h')
+        options%help = .true.
+      case ('--version')
+        options%version = .true.
+      case ('--check')
+        options%check = .true.
+      case ('--quiet')
+        options%quiet = .true.
+      case ('--out')
+        call value_of(word, k, options%out, error)
+      case ('--resume')
+        call value_of(word, k, options%resume, error)
+      case ('--law')
+        call value_of(word, k, options%law, error)
+      case ('-p')
+        call value_of('-p', k, word, error)
+        options%overrides = [options%overrides, string_t(word)]
+      case ('--threads')
+        call value_of('--threads', k, word, error)
+        if (allocated(error)) exit
+        read (word, *, iostat=status) options%threads
+        if (status /= 0 .or. options%threads < 1 .or. verify(word, '0123456789') > 0) then
+          call fail(error, exit_input, '--threads: expected a number of threads (1, 2, ...), found '''//word//'''')
+        end if
+      case default
+        if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
+          call refuse(word, error)
+        else if (allocated(options%deck)) then
+          call fail(error, exit_input, 'one deck at a time: found '''//options%deck//''' and '''//word//'''')
+        else
+          options%deck = word
+        end if
+      end select
+    end do
+    if (allocated(error) .or. options%help .or. options%version .or. allocated(options%law)) return
+    if (.not. allocated(options%deck)) then
+      call fail(error, exit_input, 'no deck given', 'lagamine --help shows how to call')
+    else if (.not. allocated(options%out)) then
+      options%out = stem_of(options%deck)
+    end if
+  end subroutine read_options
+
+  subroutine argument(k, word)
+    integer, intent(in) :: k
+    character(len=:), allocatable, intent(out) :: word
+    integer :: length
+
+    call get_command_argument(k, length=length)
+    allocate (character(len=length) :: word)
+    if (length > 0) call get_command_argument(k, word)
+  end subroutine argument
+
+  !> The argument after an option.
+  subroutine value_of(option, k, value, error)
+    character(len=*), intent(in) :: option
+    integer, intent(inout) :: k
+    character(len=:), allocatable, intent(inout) :: value
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (k == command_argument_count()) then
+      call fail(error, exit_input, option//': a value is missing after it', 'lagamine --help shows how to call')
+      return
+    end if
+    k = k + 1
+    call argument(k, value)
+  end subroutine value_of
+
+  subroutine refuse(word, error)
+    character(len=*), intent(in) :: word
+    type(error_t), allocatable, intent(out) :: error
+    type(string_t) :: known(9)
+    character(len=:), allocatable :: nearest
+
+    known = [string_t('--help'), string_t('--version'), string_t('--check'), string_t('--quiet'), string_t('--out'), &
+             string_t('--resume'), string_t('--law'), string_t('-p'), string_t('--threads')]
+    nearest = nearest_word(word, known)
+    if (nearest /= '') nearest = '; nearest: '''//nearest//''''
+    call fail(error, exit_input, 'unknown option '''//word//''''//nearest, 'lagamine --help shows how to call')
+  end subroutine refuse
+
+  !> Name of a file without folders and ending.
+  pure function stem_of(path) result(stem)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: stem
+    integer :: dot
+
+    stem = path(index(path, '/', back=.true.) + 1:)
+    dot = index(stem, '.', back=.true.)
+    if (dot > 1) stem = stem(:dot - 1)
+  end function stem_of
+
+  !> What --help prints.
+  function usage_text() result(text)
+    character(len=:), allocatable :: text
+    character(len=*), parameter :: nl = new_line('a')
+
+    text = 'lagamine: metal forming and heat treatment in two dimensions'//nl//nl// &
+           'lagamine DECK [--out DIR] [--check] [--resume CHECKPOINT] [-p NAME=VALUE]... [--threads N] [--quiet]'//nl// &
+           'lagamine --law NAME | --help | --version'//nl//nl// &
+           '  --out DIR       folder of the results (default: the deck''s name)'//nl// &
+           '  --check         read the deck, print the scene, run nothing'//nl// &
+           '  --resume FILE   go on from a checkpoint of the same deck'//nl// &
+           '  -p NAME=VALUE   set a parameter of the deck'//nl// &
+           '  --threads N     threads of the element loop; results are the same bits for any number'//nl// &
+           '  --quiet         print errors only'//nl// &
+           '  --law NAME      print the card of a law: parameters, units, state, source'//nl//nl// &
+           'Exit codes: 0 done, 2 input refused, 3 no convergence at the smallest step, 4 remesh due,'//nl// &
+           '            5 the machine failed, 6 a check of our own failed, 128+n stopped by signal n'
+  end function usage_text
+
+end module run_options

@@ -1,0 +1,197 @@
+!> `summary.json` for scripts, and the table a run ends with.
+module summary
+  use effects, only: effect_t
+  use elem_api, only: totals_t
+  use equations, only: equations_t
+  use errors, only: error_t
+  use hash, only: sha256
+  use history, only: circumference
+  use json_writer, only: json_t
+  use kinds, only: i8, wp
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use system, only: cpu_seconds, peak_memory_mb
+  use text, only: string_t, to_text
+  implicit none
+  private
+  public :: run_facts_t, write_summary, summary_lines
+
+  !> What the run knows of itself.
+  type :: run_facts_t
+    character(len=:), allocatable :: version, deck, deck_text, status, stop_reason
+    integer :: exit_code = 0, threads = 1
+    real(wp) :: wall = 0.0_wp
+  end type run_facts_t
+
+contains
+
+  subroutine write_summary(path, facts, scene, equations, solution, totals, error)
+    character(len=*), intent(in) :: path
+    type(run_facts_t), intent(in) :: facts
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    type(totals_t), intent(in) :: totals
+    type(error_t), allocatable, intent(out) :: error
+    type(json_t) :: json
+
+    call json%begin_object()
+    call json%add('program', 'lagamine')
+    call json%add('version', facts%version)
+    call json%add('deck', facts%deck)
+    call json%add('title', scene%title)
+    call json%add('deck_sha256', sha256(facts%deck_text))
+    call json%add('status', facts%status)
+    call json%add('exit_code', facts%exit_code)
+    call json%add('stop_reason', facts%stop_reason)
+    call json%add('time', solution%time)
+    call json%add('end_time', scene%strategy%end_time)
+    call json%add('steps', solution%step)
+    call json%add('iterations', solution%iterations)
+    call json%add('cutbacks', solution%cutbacks)
+    call json%add('remeshings', scene%generation - 1)
+    call json%add('wall_s', facts%wall)
+    call json%add('cpu_s', cpu_seconds())
+    call json%add('peak_rss_mb', peak_memory_mb())
+    call json%add('threads', facts%threads)
+    call json%add('dofs', equations%dofs%neq)
+    call json%add('elements', solid_elements(scene))
+    call json%add('symmetric', equations%pattern%symmetric)
+    call add_effects(json, scene, equations)
+    call add_seconds(json, equations)
+    call json%begin_object('checks')
+    call json%add('volume_drift', totals%volume/solution%initial_volume - 1)
+    call json%add('max_penetration', solution%worst_penetration)
+    if (totals%allowed_penetration < huge(1.0_wp)) call json%add('allowed_penetration', totals%allowed_penetration)
+    call json%add('worst_linear_residual', solution%worst_linear_residual)
+    call json%add('least_dissipation', solution%least_dissipation)
+    call json%add('energy_imbalance', energy_imbalance(solution, totals))
+    call json%end_object()
+    call json%begin_object('energy')
+    call json%add('external_work', circumference(scene)*solution%external_work)
+    call json%add('elastic', circumference(scene)*totals%elastic_energy)
+    call json%add('plastic', circumference(scene)*totals%plastic_work)
+    call json%add('friction', circumference(scene)*totals%friction_work)
+    call json%end_object()
+    call json%end_object()
+    call json%write_file(path, error)
+  end subroutine write_summary
+
+  !> External work that is neither stored nor dissipated, over the external work. Steps of finite
+  !> length and the penalty's own energy are in it.
+  pure function energy_imbalance(solution, totals) result(share)
+    type(solution_t), intent(in) :: solution
+    type(totals_t), intent(in) :: totals
+    real(wp) :: share
+
+    share = 0
+    if (abs(solution%external_work) > 0) then
+      share = (solution%external_work - totals%elastic_energy - totals%plastic_work - totals%friction_work) &
+              /abs(solution%external_work)
+    end if
+  end function energy_imbalance
+
+  !> Calls and seconds of each effect: an effect's time is booked by the elements that carry it.
+  subroutine add_effects(json, scene, equations)
+    type(json_t), intent(inout) :: json
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    integer(i8) :: calls
+    real(wp) :: seconds
+    integer :: k
+
+    call json%begin_object('effects')
+    do k = 1, size(scene%effects)
+      call booked(equations, scene%effects(k), calls, seconds)
+      call json%begin_object(scene%effects(k)%name)
+      call json%add('on', scene%effects(k)%on)
+      call json%add('why', scene%effects(k)%why)
+      call json%add('adds', scene%effects(k)%adds)
+      call json%add('calls', calls)
+      call json%add('wall_s', seconds)
+      call json%end_object()
+    end do
+    call json%end_object()
+  end subroutine add_effects
+
+  !> Calls and seconds in the ledger under the effect's name; an effect inside another's loop has none of its own.
+  subroutine booked(equations, effect, calls, seconds)
+    type(equations_t), intent(in) :: equations
+    type(effect_t), intent(in) :: effect
+    integer(i8), intent(out) :: calls
+    real(wp), intent(out) :: seconds
+    integer :: t
+
+    calls = 0
+    seconds = 0
+    do t = 1, equations%timers%size()
+      if (equations%timers%name(t) /= effect%name) cycle
+      calls = equations%timers%calls(t)
+      seconds = equations%timers%seconds(t)
+    end do
+  end subroutine booked
+
+  !> Where the rest of the time went.
+  subroutine add_seconds(json, equations)
+    type(json_t), intent(inout) :: json
+    type(equations_t), intent(in) :: equations
+    integer :: t
+
+    call json%begin_object('seconds')
+    do t = 1, equations%timers%size()
+      call json%add(equations%timers%name(t), equations%timers%seconds(t))
+    end do
+    call json%end_object()
+  end subroutine add_seconds
+
+  pure function solid_elements(scene) result(n)
+    type(scene_t), intent(in) :: scene
+    integer :: n
+    integer :: g
+
+    n = 0
+    do g = 1, size(scene%groups)
+      if (size(scene%groups(g)%connectivity, 1) == 8) n = n + size(scene%groups(g)%connectivity, 2)
+    end do
+  end function solid_elements
+
+  !> The short table at the end of a run.
+  subroutine summary_lines(facts, scene, equations, solution, totals, lines)
+    type(run_facts_t), intent(in) :: facts
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    type(totals_t), intent(in) :: totals
+    type(string_t), allocatable, intent(out) :: lines(:)
+    integer :: t, n
+
+    allocate (lines(8 + equations%timers%size()))
+    lines(1)%s = ''
+    lines(2)%s = facts%status//': '//facts%stop_reason
+    lines(3)%s = '  time '//to_text(solution%time)//' of '//to_text(scene%strategy%end_time)//', '//to_text(solution%step) &
+                 //' steps, '//to_text(solution%iterations)//' iterations, '//to_text(solution%cutbacks)//' cutbacks'
+    lines(4)%s = '  volume drift '//to_text(100*(totals%volume/solution%initial_volume - 1), 3)//' %, energy imbalance ' &
+                 //to_text(100*energy_imbalance(solution, totals), 3)//' %, worst linear residual ' &
+                 //to_text(solution%worst_linear_residual, 2)
+    lines(5)%s = '  largest penetration '//to_text(solution%worst_penetration, 3)
+    if (totals%allowed_penetration < huge(1.0_wp)) then
+      lines(5)%s = lines(5)%s//' (allowed '//to_text(totals%allowed_penetration, 3)//')'
+      if (solution%worst_penetration > totals%allowed_penetration) then
+        lines(5)%s = lines(5)%s//' WARNING: above the allowed; ask for AUGMENT or a smaller PENETR'
+      end if
+    end if
+    if (size(scene%dies) == 0) lines(5)%s = '  no contact'
+    lines(6)%s = '  '//to_text(equations%dofs%neq)//' equations, '//to_text(solid_elements(scene))//' elements, ' &
+                 //to_text(facts%threads)//' threads, '//to_text(facts%wall, 4)//' s on the wall, ' &
+                 //to_text(cpu_seconds(), 4)//' s of processor, '//to_text(peak_memory_mb(), 4)//' MB'
+    lines(7)%s = '  seconds by effect and task:'
+    n = 7
+    do t = 1, equations%timers%size()
+      n = n + 1
+      lines(n)%s = '    '//equations%timers%name(t)//'  '//to_text(equations%timers%seconds(t), 4)//' s in ' &
+                   //to_text(equations%timers%calls(t))//' calls'
+    end do
+    lines(n + 1)%s = ''
+  end subroutine summary_lines
+
+end module summary

@@ -1,0 +1,265 @@
+!> NODES, element cards (PL8LS) and SIDES: a mesh written out.
+module cards_mesh
+  use cards_laws, only: read_material
+  use deck_cursor, only: cursor_t
+  use deck_reader, only: deck_t
+  use diagnostics, only: diagnostics_t, location_t
+  use elem_api, only: elem_t
+  use kinds, only: wp
+  use law_api, only: solid_law
+  use mesh, only: side_set_t
+  use mesh_parts, only: body_t, find_label, mesh_parts_t, sort_labels
+  use scene_draft, only: close_card, draft_t
+  use shape_functions, only: quad8_side
+  use text, only: string_t, to_text
+  implicit none
+  private
+  public :: read_nodes, read_elements, read_side_sets, read_body_head, is_body_elem
+
+  !> Nodes of an element of a body; a rule of Gauss points it may have.
+  integer, parameter :: nnode = 8
+  integer, parameter :: rules(2) = [4, 9]
+
+contains
+
+  !> Whether a keyword is an element that bodies are made of.
+  pure function is_body_elem(elem) result(yes)
+    type(elem_t), intent(in) :: elem
+    logical :: yes
+
+    yes = elem%law_kind == solid_law .and. elem%nnode == nnode
+  end function is_body_elem
+
+  !> All NODES cards: labels and coordinates, and the index of labels.
+  subroutine read_nodes(deck, draft, parts, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(mesh_parts_t), intent(inout) :: parts
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    integer, allocatable :: order(:)
+    integer :: i, n, most
+
+    most = 0
+    do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword == 'NODES') most = most + size(deck%cards(i)%rows)
+    end do
+    deallocate (parts%coordinates, parts%labels, parts%where)
+    allocate (parts%coordinates(2, most), parts%labels(most), parts%where(most))
+    n = 0
+    do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword /= 'NODES') cycle
+      call cursor%open(deck%cards(i), diagnostics)
+      call cursor%next_row('label, x and y of a node')
+      do while (.not. cursor%failed())
+        n = n + 1
+        call cursor%integer('the label of a node', parts%labels(n), lower=1)
+        parts%where(n) = cursor%where()
+        call cursor%real('x', parts%coordinates(1, n), unit='length')
+        call cursor%real('y', parts%coordinates(2, n), unit='length')
+        if (cursor%failed()) n = n - 1
+        if (.not. cursor%more_rows()) exit
+        call cursor%next_row('label, x and y of a node')
+      end do
+      call close_card(draft, cursor, deck%cards(i))
+      parts%sound = parts%sound .and. .not. cursor%failed()
+    end do
+    parts%nexplicit = n
+    parts%coordinates = parts%coordinates(:, :n)
+    parts%labels = parts%labels(:n)
+    parts%where = parts%where(:n)
+    parts%parent = [(i, i=1, n)]
+
+    call sort_labels(parts%labels, order)
+    draft%sorted_labels = parts%labels(order)
+    draft%labelled_nodes = order
+    do i = 2, n
+      if (draft%sorted_labels(i) /= draft%sorted_labels(i - 1)) cycle
+      parts%sound = .false.
+      call diagnostics%add(parts%where(order(i)), 'NODES', 'node '//to_text(draft%sorted_labels(i))//' is already given at ' &
+                           //diagnostics%place(parts%where(order(i - 1))))
+    end do
+  end subroutine read_nodes
+
+  !> All cards of elements written out: one body each.
+  subroutine read_elements(deck, draft, parts, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(mesh_parts_t), intent(inout) :: parts
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    type(body_t) :: body
+    integer :: i, k
+
+    do i = 1, size(deck%cards)
+      do k = 1, size(draft%elems)
+        if (is_body_elem(draft%elems(k)) .and. draft%elems(k)%name == deck%cards(i)%keyword) exit
+      end do
+      if (k > size(draft%elems)) cycle
+      call cursor%open(deck%cards(i), diagnostics)
+      body%elem = draft%elems(k)%name
+      call read_body_head(cursor, draft, diagnostics, body%elem, 0, body)
+      call read_rows(cursor, size(deck%cards(i)%rows), draft, body)
+      call close_card(draft, cursor, deck%cards(i))
+      parts%sound = parts%sound .and. .not. cursor%failed()
+      parts%bodies = [parts%bodies, body]
+    end do
+    call refuse_same_labels(parts, diagnostics)
+  end subroutine read_elements
+
+  !> `name [element] npoint law`, as on the cards of elements and on BLOCK.
+  subroutine read_body_head(cursor, draft, diagnostics, keyword, item, body)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+    type(diagnostics_t), intent(in), target :: diagnostics
+    character(len=*), intent(in) :: keyword
+    integer, intent(in) :: item      !! what the name stands for: 0, or the first set of sides of a block
+    type(body_t), intent(inout) :: body
+    type(string_t), allocatable :: known(:)
+    integer :: k, n
+
+    body%is_block = keyword == 'BLOCK'
+    call draft%places%define(cursor, 'the name of the body', keyword, item, diagnostics, body%name)
+    if (body%is_block) then
+      allocate (known(count([(is_body_elem(draft%elems(k)), k=1, size(draft%elems))])))
+      n = 0
+      do k = 1, size(draft%elems)
+        if (.not. is_body_elem(draft%elems(k))) cycle
+        n = n + 1
+        known(n)%s = draft%elems(k)%name
+      end do
+      call cursor%name('an element', known, k)
+      body%elem = known(max(k, 1))%s
+    end if
+    call cursor%integer('the number of integration points, 4 or 9', body%npoint)
+    if (all(rules /= body%npoint)) then
+      call cursor%fail('expected 4 or 9 integration points, found '//to_text(body%npoint))
+      body%npoint = rules(1)
+    end if
+    call read_material(cursor, draft, solid_law, body%material)
+    call cursor%end_row()
+  end subroutine read_body_head
+
+  !> Rows of an element card: label and nodes, turned from labels into places.
+  subroutine read_rows(cursor, nrow, draft, body)
+    type(cursor_t), intent(inout) :: cursor
+    integer, intent(in) :: nrow
+    type(draft_t), intent(in) :: draft
+    type(body_t), intent(inout) :: body
+    integer :: i, j, k, label
+
+    if (allocated(body%labels)) deallocate (body%labels, body%where, body%connectivity)
+    allocate (body%labels(nrow), body%where(nrow), body%connectivity(nnode, nrow))
+    if (nrow == 0) call cursor%next_row('the label of an element and its 8 nodes')
+    do i = 1, nrow
+      call cursor%next_row('the label of an element and its 8 nodes')
+      call cursor%integer('the label of an element', body%labels(i), lower=1)
+      body%where(i) = cursor%where()
+      do j = 1, nnode
+        call cursor%integer('the label of node '//to_text(j), label, lower=1)
+        if (cursor%failed()) exit
+        k = find_label(draft%sorted_labels, label)
+        if (k == 0) then
+          call cursor%fail('there is no node '//to_text(label))
+          exit
+        end if
+        body%connectivity(j, i) = draft%labelled_nodes(k)
+        if (any(body%connectivity(:j - 1, i) == body%connectivity(j, i))) &
+          call cursor%fail('node '//to_text(label)//' is given twice')
+      end do
+      if (cursor%failed()) exit
+    end do
+    if (.not. cursor%failed()) return
+    body%labels = body%labels(:i - 1)
+    body%where = body%where(:i - 1)
+    body%connectivity = body%connectivity(:, :i - 1)
+  end subroutine read_rows
+
+  subroutine refuse_same_labels(parts, diagnostics)
+    type(mesh_parts_t), intent(inout) :: parts
+    type(diagnostics_t), intent(inout) :: diagnostics
+    integer, allocatable :: labels(:), order(:)
+    type(location_t), allocatable :: where(:)
+    integer :: i
+
+    allocate (labels(0), where(0))
+    do i = 1, size(parts%bodies)
+      labels = [labels, parts%bodies(i)%labels]
+      where = [where, parts%bodies(i)%where]
+    end do
+    call sort_labels(labels, order)
+    do i = 2, size(labels)
+      if (labels(order(i)) /= labels(order(i - 1))) cycle
+      parts%sound = .false.
+      call diagnostics%add(where(order(i)), 'PL8LS', 'element '//to_text(labels(order(i)))//' is already given at ' &
+                           //diagnostics%place(where(order(i - 1))))
+    end do
+  end subroutine refuse_same_labels
+
+  !> All SIDES cards: sets of sides of labelled elements.
+  subroutine read_side_sets(deck, draft, parts, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(mesh_parts_t), intent(inout) :: parts
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    type(side_set_t) :: set
+    integer, allocatable :: labels(:), order(:), nodes(:, :)
+    integer :: i, k, n, label, side
+
+    call all_elements(parts, labels, nodes)
+    call sort_labels(labels, order)
+    labels = labels(order)
+    do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword /= 'SIDES') cycle
+      call cursor%open(deck%cards(i), diagnostics)
+      call draft%places%define(cursor, 'the name of the set of sides', 'SIDES', size(draft%scene%mesh%sides) + 1, &
+                               diagnostics, set%name)
+      if (allocated(set%nodes)) deallocate (set%nodes)
+      allocate (set%nodes(3, size(deck%cards(i)%rows)))
+      n = 0
+      call cursor%next_row('the label of an element and a side')
+      do while (.not. cursor%failed())
+        call cursor%integer('the label of an element', label, lower=1)
+        k = find_label(labels, label)
+        if (k == 0) call cursor%fail('no element card has element '//to_text(label))
+        call cursor%integer('a side of the element', side, lower=1, upper=4)
+        if (cursor%failed()) exit
+        n = n + 1
+        set%nodes(:, n) = nodes(quad8_side(:, side), order(k))
+        if (any(set%nodes(2, :n - 1) == set%nodes(2, n))) &
+          call cursor%fail('side '//to_text(side)//' of element '//to_text(label)//' is given twice')
+        if (.not. cursor%more_rows()) exit
+        call cursor%next_row('the label of an element and a side')
+      end do
+      call close_card(draft, cursor, deck%cards(i))
+      parts%sound = parts%sound .and. .not. cursor%failed()
+      set%nodes = set%nodes(:, :n)
+      draft%scene%mesh%sides = [draft%scene%mesh%sides, set]
+      parts%joined = [parts%joined, location_t()]
+    end do
+  end subroutine read_side_sets
+
+  !> Labels and nodes of all elements that cards write out.
+  subroutine all_elements(parts, labels, nodes)
+    type(mesh_parts_t), intent(in) :: parts
+    integer, allocatable, intent(out) :: labels(:), nodes(:, :)
+    integer :: i, n
+
+    n = 0
+    do i = 1, size(parts%bodies)
+      n = n + size(parts%bodies(i)%labels)
+    end do
+    allocate (labels(n), nodes(nnode, n))
+    n = 0
+    do i = 1, size(parts%bodies)
+      associate (body => parts%bodies(i))
+        if (size(body%labels) == 0) cycle
+        labels(n + 1:n + size(body%labels)) = body%labels
+        nodes(:, n + 1:n + size(body%labels)) = body%connectivity
+        n = n + size(body%labels)
+      end associate
+    end do
+  end subroutine all_elements
+
+end module cards_mesh

@@ -1,0 +1,161 @@
+!> Unknowns by the scene: numbered only where a card calls for them.
+!>
+!> An unknown is a displacement of a node or a motion of a die's pilot. Each is free (it has an
+!> equation) or prescribed (its motion is known: elimination, no penalty).
+module dofs
+  use elem_api, only: elem_t
+  use kinds, only: wp
+  use loads, only: multiplier_at
+  use scene, only: scene_t
+  implicit none
+  private
+  public :: dofs_t, group_dofs_t, number_dofs, prescribed_motion
+
+  type :: group_dofs_t
+    !> Unknowns of each element, in the local order of the ELEM family (ndof, nelem).
+    integer, allocatable :: dof(:, :)
+  end type group_dofs_t
+
+  !> An unknown whose motion is amplitude times multiplier; multiplier 0 holds it.
+  type :: prescribed_t
+    integer :: dof = 0
+    real(wp) :: amplitude = 0.0_wp
+    integer :: multiplier = 0
+  end type prescribed_t
+
+  type :: dofs_t
+    integer :: ndof = 0
+    !> Number of equations.
+    integer :: neq = 0
+    !> Unknowns of the nodes (2, nnode) and of the pilots (3, ndie); 0 where there is none.
+    integer, allocatable :: node(:, :), pilot(:, :)
+    !> Equation of each unknown, 0 when prescribed.
+    integer, allocatable :: equation(:)
+    type(prescribed_t), allocatable :: prescribed(:)
+    type(group_dofs_t), allocatable :: groups(:)
+  end type dofs_t
+
+contains
+
+  !> Number the unknowns of a scene.
+  subroutine number_dofs(scene, elems, dofs)
+    type(scene_t), intent(in) :: scene
+    type(elem_t), intent(in) :: elems(:)
+    type(dofs_t), intent(out) :: dofs
+    integer :: g, e, k, d, nnode
+
+    nnode = size(scene%mesh%coordinates, 2)
+    allocate (dofs%node(2, nnode), dofs%pilot(3, size(scene%dies)), source=0)
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        do e = 1, size(group%connectivity, 2)
+          dofs%node(:, group%connectivity(:, e)) = 1
+        end do
+        if (elems(group%elem_id)%pilot) dofs%pilot(:, group%die) = 1
+      end associate
+    end do
+    do k = 1, nnode
+      do d = 1, 2
+        call take_number(dofs%node(d, k))
+      end do
+    end do
+    do k = 1, size(scene%dies)
+      do d = 1, 3
+        call take_number(dofs%pilot(d, k))
+      end do
+    end do
+
+    call list_prescribed(scene, dofs)
+    allocate (dofs%equation(dofs%ndof), source=1)
+    dofs%equation(dofs%prescribed%dof) = 0
+    do k = 1, dofs%ndof
+      if (dofs%equation(k) == 0) cycle
+      dofs%neq = dofs%neq + 1
+      dofs%equation(k) = dofs%neq
+    end do
+    call list_elements(scene, elems, dofs)
+
+  contains
+
+    subroutine take_number(place)
+      integer, intent(inout) :: place
+
+      if (place == 0) return
+      dofs%ndof = dofs%ndof + 1
+      place = dofs%ndof
+    end subroutine take_number
+
+  end subroutine number_dofs
+
+  !> Fixations, imposed displacements and pilots; an unknown held twice is listed once.
+  subroutine list_prescribed(scene, dofs)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(inout) :: dofs
+    type(prescribed_t) :: by_dof(dofs%ndof)
+    integer :: k, i, d
+
+    do k = 1, size(dofs%pilot, 2)
+      if (dofs%pilot(1, k) > 0) by_dof(dofs%pilot(:, k))%dof = dofs%pilot(:, k)
+    end do
+    do k = 1, size(scene%die_motions)
+      associate (motion => scene%die_motions(k))
+        if (dofs%pilot(1, motion%die) == 0) cycle
+        d = dofs%pilot(motion%component, motion%die)
+        by_dof(d) = prescribed_t(d, motion%amplitude, motion%multiplier)
+      end associate
+    end do
+    do k = 1, size(scene%fixations)
+      associate (fixation => scene%fixations(k))
+        do i = 1, size(fixation%nodes)
+          d = dofs%node(fixation%component, fixation%nodes(i))
+          by_dof(d) = prescribed_t(d, fixation%amplitude, fixation%multiplier)
+        end do
+      end associate
+    end do
+    dofs%prescribed = pack(by_dof, by_dof%dof > 0)
+  end subroutine list_prescribed
+
+  !> Unknowns of every element.
+  subroutine list_elements(scene, elems, dofs)
+    type(scene_t), intent(in) :: scene
+    type(elem_t), intent(in) :: elems(:)
+    type(dofs_t), intent(inout) :: dofs
+    integer :: g, e, n, ndof
+
+    allocate (dofs%groups(size(scene%groups)))
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g), row => elems(scene%groups(g)%elem_id))
+        n = row%nnode
+        ndof = 2*n
+        if (row%pilot) ndof = ndof + 3
+        allocate (dofs%groups(g)%dof(ndof, size(group%connectivity, 2)))
+        do e = 1, size(group%connectivity, 2)
+          dofs%groups(g)%dof(:n, e) = dofs%node(1, group%connectivity(:, e))
+          dofs%groups(g)%dof(n + 1:2*n, e) = dofs%node(2, group%connectivity(:, e))
+          if (row%pilot) dofs%groups(g)%dof(2*n + 1:, e) = dofs%pilot(:, group%die)
+        end do
+      end associate
+    end do
+  end subroutine list_elements
+
+  !> Motion of the prescribed unknowns from time t0 (or from rest) to t1, in the order of the list.
+  pure subroutine prescribed_motion(scene, dofs, from_rest, t0, t1, motion)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(in) :: dofs
+    logical, intent(in) :: from_rest
+    real(wp), intent(in) :: t0, t1
+    real(wp), intent(out) :: motion(:)
+    integer :: k
+
+    do k = 1, size(dofs%prescribed)
+      motion(k) = 0
+      associate (p => dofs%prescribed(k))
+        if (p%multiplier == 0) cycle
+        motion(k) = multiplier_at(scene%multipliers(p%multiplier), t1)
+        if (.not. from_rest) motion(k) = motion(k) - multiplier_at(scene%multipliers(p%multiplier), t0)
+        motion(k) = p%amplitude*motion(k)
+      end associate
+    end do
+  end subroutine prescribed_motion
+
+end module dofs

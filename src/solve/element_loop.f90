@@ -1,0 +1,193 @@
+!> The element loop: forces, matrices and trial state of all groups at a trial motion.
+!>
+!> Blocks of elements are spread over threads; each writes its own slices of flat arrays, which are
+!> then gathered in a fixed order, so results are the same bits for any number of threads.
+module element_loop
+  use dofs, only: dofs_t
+  use elem_api, only: block_done, elem_t, instant_t, report_t
+  use kinds, only: wp
+  use kinematics_api, only: kinematics_t
+  use law_api, only: law_t
+  use scene, only: group_t, scene_t
+  use solution, only: solution_t
+  use sparsity, only: pattern_t
+  use timers, only: ledger_t
+  implicit none
+  private
+  public :: element_buffers_t, run_elements, gather_forces, gather_matrix, add_prescribed, group_geometry
+
+  !> Elements per block: their arrays stay in the first-level caches.
+  integer, parameter :: block_size = 16
+
+  type :: element_buffers_t
+    !> Element forces and matrices of all groups, one after the other.
+    real(wp), allocatable :: force(:), matrix(:)
+  end type element_buffers_t
+
+contains
+
+  !> Compute all groups at the motion `du` of the step. `report` holds the first failure met, in
+  !> the order of groups and elements.
+  subroutine run_elements(scene, elems, kinematics, laws, dofs, pattern, instant, du, solution, buffers, timers, report)
+    type(scene_t), intent(in) :: scene
+    type(elem_t), intent(in) :: elems(:)
+    type(kinematics_t), intent(in) :: kinematics
+    type(law_t), intent(in) :: laws(:)
+    type(dofs_t), intent(in) :: dofs
+    type(pattern_t), intent(in) :: pattern
+    type(instant_t), intent(in) :: instant
+    real(wp), intent(in) :: du(:)             !! motion of every unknown (ndof)
+    type(solution_t), intent(inout) :: solution
+    type(element_buffers_t), intent(inout) :: buffers
+    type(ledger_t), intent(inout) :: timers
+    type(report_t), intent(out) :: report
+    type(report_t), allocatable :: reports(:)
+    integer :: g, b, nelem, ndof, first, last, f, m, timer
+
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g), row => elems(scene%groups(g)%elem_id), state => solution%groups(g))
+        call timers%add(row%effect, timer)
+        call timers%start(timer)
+        nelem = size(group%connectivity, 2)
+        ndof = size(dofs%groups(g)%dof, 1)
+        allocate (reports((nelem + block_size - 1)/block_size))
+        !$omp parallel do schedule(dynamic) private(first, last, f, m) if (size(reports) > 1)
+        do b = 1, size(reports)
+          first = (b - 1)*block_size + 1
+          last = min(b*block_size, nelem)
+          f = pattern%force_start(g) + (first - 1)*ndof
+          m = pattern%matrix_start(g) + (first - 1)*ndof*ndof
+          call run_block(scene, group, row, kinematics, laws, instant, dofs%groups(g)%dof(:, first:last), first, &
+                         last - first + 1, ndof, du, solution%displacement, state%committed(:, :, first:last), &
+                         state%trial(:, :, first:last), buffers%force(f + 1), buffers%matrix(m + 1), reports(b))
+        end do
+        !$omp end parallel do
+        do b = 1, size(reports)
+          report%strain = max(report%strain, reports(b)%strain)
+          if (report%status /= block_done .or. reports(b)%status == block_done) cycle
+          report%status = reports(b)%status
+          report%element = reports(b)%element
+          report%group = g
+        end do
+        deallocate (reports)
+        call timers%stop(timer)
+      end associate
+      if (report%status /= block_done) return
+    end do
+  end subroutine run_elements
+
+  !> One block: gather its geometry and motion, then call the element.
+  subroutine run_block(scene, group, row, kinematics, laws, instant, dof, first, nb, ndof, du, displacement, &
+                       committed, trial, force, matrix, report)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(elem_t), intent(in) :: row
+    type(kinematics_t), intent(in) :: kinematics
+    type(law_t), intent(in) :: laws(:)
+    type(instant_t), intent(in) :: instant
+    integer, intent(in) :: first, nb, ndof, dof(ndof, nb)
+    real(wp), intent(in) :: du(:), displacement(:, :)
+    real(wp), intent(in), contiguous :: committed(:, :, :)
+    real(wp), intent(inout), contiguous :: trial(:, :, :)
+    real(wp), intent(inout) :: force(ndof, nb), matrix(ndof, ndof, nb)
+    type(report_t), intent(out) :: report
+    real(wp) :: x(2, row%nnode, nb), motion(ndof, nb)
+    integer :: e, law
+
+    law = 1
+    if (group%material > 0) law = scene%materials(group%material)%law_id
+    call gather_geometry(scene, row, kinematics%finite, group%connectivity(:, first:first + nb - 1), displacement, x)
+    do e = 1, nb
+      motion(:, e) = du(dof(:, e))
+    end do
+    call row%compute(scene, group, kinematics, laws(law), instant, first, x, motion, committed, trial, force, matrix, report)
+  end subroutine run_block
+
+  !> Coordinates the elements work on: moved with the displacements, unless kinematics are SMALL and the element does not follow.
+  pure subroutine gather_geometry(scene, row, finite, connectivity, displacement, x)
+    type(scene_t), intent(in) :: scene
+    type(elem_t), intent(in) :: row
+    logical, intent(in) :: finite
+    integer, intent(in) :: connectivity(:, :)
+    real(wp), intent(in) :: displacement(:, :)
+    real(wp), intent(out) :: x(:, :, :)
+    integer :: e
+
+    do e = 1, size(connectivity, 2)
+      x(:, :, e) = scene%mesh%coordinates(:, connectivity(:, e))
+      if (finite .or. row%follows) x(:, :, e) = x(:, :, e) + displacement(:, connectivity(:, e))
+    end do
+  end subroutine gather_geometry
+
+  !> Geometry of a whole group.
+  pure subroutine group_geometry(scene, group, row, displacement, x)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(elem_t), intent(in) :: row
+    real(wp), intent(in) :: displacement(:, :)
+    real(wp), allocatable, intent(out) :: x(:, :, :)
+
+    allocate (x(2, row%nnode, size(group%connectivity, 2)))
+    call gather_geometry(scene, row, scene%finite, group%connectivity, displacement, x)
+  end subroutine group_geometry
+
+  !> Internal force on every unknown, and the sum of the sizes of what is added there.
+  subroutine gather_forces(pattern, buffers, force, magnitude)
+    type(pattern_t), intent(in) :: pattern
+    type(element_buffers_t), intent(in) :: buffers
+    real(wp), intent(out) :: force(:), magnitude(:)
+    integer :: d, k
+
+    !$omp parallel do private(k) schedule(static)
+    do d = 1, size(force)
+      force(d) = 0
+      magnitude(d) = 0
+      do k = pattern%force_first(d), pattern%force_first(d + 1) - 1
+        force(d) = force(d) + buffers%force(pattern%force_entry(k))
+        magnitude(d) = magnitude(d) + abs(buffers%force(pattern%force_entry(k)))
+      end do
+    end do
+    !$omp end parallel do
+  end subroutine gather_forces
+
+  !> Nonzeros of the assembled matrix.
+  subroutine gather_matrix(pattern, buffers, values)
+    type(pattern_t), intent(in) :: pattern
+    type(element_buffers_t), intent(in) :: buffers
+    real(wp), intent(out) :: values(:)
+    integer :: n, k
+
+    !$omp parallel do private(k) schedule(static)
+    do n = 1, pattern%nnz
+      values(n) = 0
+      do k = pattern%first(n), pattern%first(n + 1) - 1
+        values(n) = values(n) + buffers%matrix(pattern%entry(k))
+      end do
+    end do
+    !$omp end parallel do
+  end subroutine gather_matrix
+
+  !> Add K du to the internal force for a motion of prescribed unknowns not yet in `du` (the rest of `motion` is zero).
+  subroutine add_prescribed(dofs, pattern, buffers, motion, force)
+    type(dofs_t), intent(in) :: dofs
+    type(pattern_t), intent(in) :: pattern
+    type(element_buffers_t), intent(in) :: buffers
+    real(wp), intent(in) :: motion(:)
+    real(wp), intent(inout) :: force(:)
+    integer :: g, e, j, m, ndof
+
+    do g = 1, size(dofs%groups)
+      associate (dof => dofs%groups(g)%dof)
+        ndof = size(dof, 1)
+        do e = 1, size(dof, 2)
+          do j = 1, ndof
+            if (.not. abs(motion(dof(j, e))) > 0) cycle
+            m = pattern%matrix_start(g) + ((e - 1)*ndof + j - 1)*ndof
+            force(dof(:, e)) = force(dof(:, e)) + buffers%matrix(m + 1:m + ndof)*motion(dof(j, e))
+          end do
+        end do
+      end associate
+    end do
+  end subroutine add_prescribed
+
+end module element_loop

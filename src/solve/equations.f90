@@ -1,0 +1,212 @@
+!> The discrete equations of a scene: unknowns, pattern, element loop, linear solver.
+module equations
+  use dofs, only: dofs_t, number_dofs
+  use elem_api, only: block_done, elem_t, instant_t, report_t
+  use elem_registry, only: list_elems
+  use element_loop, only: element_buffers_t, gather_forces, gather_matrix, run_elements
+  use errors, only: error_t
+  use kinds, only: wp
+  use kinematics_api, only: kinematics_t
+  use kinematics_registry, only: list_kinematics
+  use law_api, only: law_t, solid_law
+  use law_registry, only: list_laws
+  use linear_solver, only: analyse, factorise, linear_solver_t, solve_linear
+  use loads, only: multiplier_at
+  use ordering, only: order_equations
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use sparsity, only: build_pattern, pattern_t
+  use timers, only: ledger_t
+  implicit none
+  private
+  public :: equations_t, set_up, evaluate, solve_correction, external_forces
+
+  type :: equations_t
+    type(elem_t), allocatable :: elems(:)
+    type(law_t), allocatable :: laws(:)
+    type(kinematics_t) :: kinematics
+    type(dofs_t) :: dofs
+    type(pattern_t) :: pattern
+    type(element_buffers_t) :: buffers
+    type(linear_solver_t) :: solver
+    type(ledger_t) :: timers
+    !> Internal force (element forces summed) at the last evaluation, and the sum of their sizes (ndof).
+    real(wp), allocatable :: force(:), magnitude(:)
+    real(wp), allocatable :: values(:)
+    !> Groups that are loads: their forces come from outside.
+    logical, allocatable :: is_load(:)
+    !> Diagonal of the box around the mesh [length].
+    real(wp) :: size = 0.0_wp
+  end type equations_t
+
+  !> Motions below this share of the mesh's size are round-off of coordinates, with a margin of 500.
+  real(wp), parameter :: round_off_motion = 1.0e-13_wp
+
+contains
+
+  !> Number the unknowns, build and order the pattern, analyse it: once per mesh.
+  subroutine set_up(scene, equations, error)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(error_t), allocatable, intent(out) :: error
+    type(kinematics_t), allocatable :: rows(:)
+    integer, allocatable :: position(:), solids(:, :)
+    integer :: g, timer
+
+    call equations%timers%add('analysis', timer)
+    call equations%timers%start(timer)
+    call list_elems(equations%elems)
+    call list_laws(equations%laws)
+    call list_kinematics(rows)
+    equations%kinematics = rows(scene%kinematics_id)
+    call number_dofs(scene, equations%elems, equations%dofs)
+    call build_pattern(equations%dofs, is_symmetric(scene, equations), equations%pattern)
+    allocate (equations%force(equations%dofs%ndof), equations%magnitude(equations%dofs%ndof))
+    allocate (equations%values(equations%pattern%nnz))
+    allocate (equations%buffers%force(equations%pattern%force_length), equations%buffers%matrix(equations%pattern%matrix_length))
+    equations%size = norm2(maxval(scene%mesh%coordinates, 2) - minval(scene%mesh%coordinates, 2))
+
+    allocate (equations%is_load(size(scene%groups)))
+    do g = 1, size(scene%groups)
+      equations%is_load(g) = equations%elems(scene%groups(g)%elem_id)%law_kind == 0
+    end do
+
+    allocate (solids(8, 0))
+    do g = 1, size(scene%groups)
+      if (equations%elems(scene%groups(g)%elem_id)%law_kind /= solid_law) cycle
+      solids = reshape([solids, scene%groups(g)%connectivity], [8, size(solids, 2) + size(scene%groups(g)%connectivity, 2)])
+    end do
+    call order_equations(solids, equations%dofs, position, error)
+    if (.not. allocated(error) .and. equations%dofs%neq > 0) then
+      call analyse(equations%solver, equations%pattern, position, error)
+    end if
+    call equations%timers%stop(timer)
+  end subroutine set_up
+
+  !> Everything the scene calls for is symmetric.
+  pure function is_symmetric(scene, equations) result(symmetric)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    logical :: symmetric
+    integer :: g
+
+    symmetric = .true.
+    do g = 1, size(scene%groups)
+      associate (row => equations%elems(scene%groups(g)%elem_id), m => scene%groups(g)%material)
+        symmetric = symmetric .and. (row%symmetric .or. .not. (row%follows .or. scene%finite))
+        if (m > 0) symmetric = symmetric .and. equations%laws(scene%materials(m)%law_id)%symmetric
+      end associate
+    end do
+  end function is_symmetric
+
+  !> The instant at the end of a step.
+  subroutine make_instant(scene, solution, dt, tangent, instant)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt
+    logical, intent(in) :: tangent
+    type(instant_t), intent(out) :: instant
+    integer :: k
+
+    instant%time = solution%time + dt
+    instant%dt = dt
+    instant%tangent = tangent
+    instant%pilots = solution%pilots
+    allocate (instant%multipliers(size(scene%multipliers)))
+    do k = 1, size(scene%multipliers)
+      instant%multipliers(k) = multiplier_at(scene%multipliers(k), instant%time)
+    end do
+  end subroutine make_instant
+
+  !> Internal force, and matrices when wanted, at the motion `du` of the step.
+  subroutine evaluate(scene, equations, solution, dt, du, tangent, report)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt, du(:)
+    logical, intent(in) :: tangent
+    type(report_t), intent(out) :: report
+    type(instant_t) :: instant
+    integer :: timer
+
+    call make_instant(scene, solution, dt, tangent, instant)
+    call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, equations%pattern, &
+                      instant, du, solution, equations%buffers, equations%timers, report)
+    if (report%status /= block_done) return
+    call equations%timers%add('assembly', timer)
+    call equations%timers%start(timer)
+    call gather_forces(equations%pattern, equations%buffers, equations%force, equations%magnitude)
+    if (tangent) then
+      call gather_matrix(equations%pattern, equations%buffers, equations%values)
+      if (.not. solution%force_floor > 0) call set_floor(scene, equations, solution%force_floor)
+    end if
+    call equations%timers%stop(timer)
+  end subroutine evaluate
+
+  !> Size of round-off in forces: what a motion of round-off makes through the diagonals of the solid elements' matrices.
+  pure subroutine set_floor(scene, equations, force_floor)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(out) :: force_floor
+    integer :: g, e, i, ndof, m
+    real(wp) :: sum
+
+    sum = 0
+    do g = 1, size(scene%groups)
+      if (equations%elems(scene%groups(g)%elem_id)%law_kind /= solid_law) cycle
+      ndof = size(equations%dofs%groups(g)%dof, 1)
+      do e = 1, size(equations%dofs%groups(g)%dof, 2)
+        m = equations%pattern%matrix_start(g) + (e - 1)*ndof*ndof
+        do i = 1, ndof
+          sum = sum + equations%buffers%matrix(m + (i - 1)*ndof + i)**2
+        end do
+      end do
+    end do
+    force_floor = round_off_motion*equations%size*sqrt(sum)
+  end subroutine set_floor
+
+  !> Nodal forces at a time (ndof).
+  pure subroutine external_forces(scene, dofs, time, force)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(in) :: dofs
+    real(wp), intent(in) :: time
+    real(wp), intent(out) :: force(:)
+    integer :: k, d
+
+    force = 0
+    do k = 1, size(scene%forces)
+      associate (load => scene%forces(k))
+        d = dofs%node(load%component, load%node)
+        force(d) = force(d) + load%amplitude*multiplier_at(scene%multipliers(load%multiplier), time)
+      end associate
+    end do
+  end subroutine external_forces
+
+  !> Correction of the free unknowns for a residual (ndof); prescribed ones are not touched.
+  subroutine solve_correction(equations, residual, correction, error)
+    type(equations_t), intent(inout) :: equations
+    real(wp), intent(in) :: residual(:)
+    real(wp), intent(out) :: correction(:)
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: rhs(equations%dofs%neq), x(equations%dofs%neq)
+    integer :: d, timer
+
+    do d = 1, equations%dofs%ndof
+      if (equations%dofs%equation(d) > 0) rhs(equations%dofs%equation(d)) = residual(d)
+    end do
+    call equations%timers%add('factorisation', timer)
+    call equations%timers%start(timer)
+    call factorise(equations%solver, equations%values, error)
+    call equations%timers%stop(timer)
+    if (allocated(error)) return
+    call equations%timers%add('solution', timer)
+    call equations%timers%start(timer)
+    call solve_linear(equations%solver, equations%pattern, rhs, x, error)
+    call equations%timers%stop(timer)
+    correction = 0
+    do d = 1, equations%dofs%ndof
+      if (equations%dofs%equation(d) > 0) correction(d) = x(equations%dofs%equation(d))
+    end do
+  end subroutine solve_correction
+
+end module equations

@@ -1,0 +1,81 @@
+!> Length of the steps, in LAGAMINE's tradition: after a step of n iterations the next is multiplied
+!> by (NOPTI/n)**(1/NALPHA), between DMINMU and DMAXMU. Corners of multipliers, times of saving and
+!> the end are hit exactly.
+module step_strategy
+  use kinds, only: eps, wp
+  use scene, only: scene_t
+  implicit none
+  private
+  public :: choose_step, after_success, after_failure
+
+  !> A failed step is tried again with this share of its length.
+  real(wp), parameter :: cut = 0.5_wp
+  !> A time is reached when it is this close, relative to the end of the scene.
+  real(wp), parameter :: reached = 64*eps
+
+contains
+
+  !> Length of the next step: what was proposed, no more than the largest, and no further than the
+  !> next time to hit. Two equal steps rather than a long and a tiny one before such a time.
+  pure function choose_step(scene, time, proposed) result(dt)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: time, proposed
+    real(wp) :: dt
+    real(wp) :: left
+
+    dt = min(proposed, scene%strategy%largest_step)
+    left = next_time(scene, time) - time
+    if (left <= dt*(1 + reached)) then
+      dt = left
+    else if (left < 2*dt) then
+      dt = 0.5_wp*left
+    end if
+  end function choose_step
+
+  !> The first time after `time` that must be hit.
+  pure function next_time(scene, time) result(next)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: time
+    real(wp) :: next
+    real(wp) :: after
+    integer :: k
+
+    next = scene%strategy%end_time
+    after = time + reached*max(abs(next), abs(time))
+    do k = 1, size(scene%multipliers)
+      next = min(next, minval(scene%multipliers(k)%time, mask=scene%multipliers(k)%time > after))
+    end do
+    if (allocated(scene%strategy%save_times)) then
+      next = min(next, minval(scene%strategy%save_times, mask=scene%strategy%save_times > after))
+    end if
+  end function next_time
+
+  !> Proposal after an accepted step. A step shortened to hit a time does not shorten the proposal.
+  pure function after_success(scene, dt, proposed, iterations) result(next)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: dt, proposed
+    integer, intent(in) :: iterations
+    real(wp) :: next
+    real(wp) :: factor
+
+    associate (s => scene%strategy)
+      factor = (real(s%nopti, wp)/real(max(iterations, 1), wp))**(1/s%nalpha)
+      factor = min(max(factor, s%dminmu), s%dmaxmu)
+      next = dt*factor
+      if (dt < proposed .and. factor >= 1) next = max(next, min(proposed, s%largest_step))
+      next = min(max(next, s%least_step), s%largest_step)
+    end associate
+  end function after_success
+
+  !> Length to try after a failed step; `give_up` when that is below the least step.
+  pure subroutine after_failure(scene, dt, next, give_up)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: dt
+    real(wp), intent(out) :: next
+    logical, intent(out) :: give_up
+
+    next = cut*dt
+    give_up = next < scene%strategy%least_step
+  end subroutine after_failure
+
+end module step_strategy

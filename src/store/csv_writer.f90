@@ -1,0 +1,296 @@
+!> Tables that grow by a row at a time, such as `history.csv`: a header of `name [unit]`, then rows
+!> of numbers. Reals are the shortest text that reads back as the same number. The file is open only
+!> while a row is added, so that others can watch and a killed run loses nothing.
+!>
+!> A table taken up again with `resume` is cut after the step of the checkpoint, so that an
+!> interrupted run leaves the very file of an uninterrupted one.
+module csv_writer
+  use atomic, only: read_text, write_text
+  use errors, only: error_t, exit_bug, exit_input, exit_machine, fail
+  use exact_numbers, only: exact_text
+  use kinds, only: i8, wp
+  use system, only: file_exists
+  use text, only: join, string_t, to_text
+  implicit none
+  private
+  public :: csv_t
+
+  !> The column of the step, which `resume` looks at; the first one is the time.
+  integer, parameter :: step_column = 2
+
+  !> A table open for writing. It remembers its first error; later calls then do nothing.
+  type :: csv_t
+    private
+    character(len=:), allocatable :: path
+    character(len=:), allocatable :: row  !! the cells of the row in the making
+    integer :: ncolumn = 0
+    integer :: ncell = 0
+    integer(i8) :: length = 0             !! of the file so far, in bytes
+    logical :: ready = .false.
+    type(error_t), allocatable :: first_error
+  contains
+    procedure :: create
+    procedure :: resume
+    procedure :: end_row
+    procedure :: status
+    procedure :: close => close_table
+    !> `put(value)`: the next cell of the row, or several cells from an array.
+    generic :: put => put_real, put_integer, put_reals, put_integers
+    procedure, private :: put_real
+    procedure, private :: put_integer
+    procedure, private :: put_reals
+    procedure, private :: put_integers
+    procedure, private :: put_cell
+    procedure, private :: get_ready
+    procedure, private :: append
+    procedure, private :: record
+  end type csv_t
+
+contains
+
+  !> A new table with these column titles, `name [unit]`, in the place of an older one.
+  subroutine create(self, path, columns, error)
+    class(csv_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    type(string_t), intent(in) :: columns(:)
+    type(error_t), allocatable, intent(out) :: error
+
+    call begin(self, path, columns)
+    call write_text(path, header(columns), error)
+    call self%get_ready(error)
+  end subroutine create
+
+  !> Go on with a table after `step`: rows of later steps, and a row half written, are removed. The
+  !> columns must be those of the file; where there is no file, a new one begins.
+  subroutine resume(self, path, columns, step, error)
+    class(csv_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    type(string_t), intent(in) :: columns(:)
+    integer, intent(in) :: step
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: old
+    integer :: length
+
+    if (.not. file_exists(path)) then
+      call self%create(path, columns, error)
+      return
+    end if
+    call begin(self, path, columns)
+    call read_text(path, old, error)
+    if (.not. allocated(error)) then
+      if (index(old, header(columns)) == 1) then
+        length = kept_length(old, size(columns), step)
+        if (length < len(old)) call write_text(path, old(:length), error)
+      else
+        call fail(error, exit_input, "'"//path//"' has other columns than this run, which would go on with it: "// &
+          first_line(old), advice='move it away, or write the results into another directory')
+      end if
+    end if
+    call self%get_ready(error)
+  end subroutine resume
+
+  !> Length of the text of the header and the whole rows up to `step`, line ends included.
+  pure function kept_length(text, ncolumn, step) result(length)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: ncolumn, step
+    integer :: length, line, row_step
+
+    length = 0
+    do
+      line = index(text(length + 1:), new_line('a'))
+      if (line == 0) return
+      if (length > 0) then
+        row_step = step_of(text(length + 1:length + line - 1), ncolumn)
+        if (row_step < 0 .or. row_step > step) return
+      end if
+      length = length + line
+    end do
+  end function kept_length
+
+  !> The step of a row, -1 when it is not a whole row.
+  pure function step_of(row, ncolumn) result(step)
+    character(len=*), intent(in) :: row
+    integer, intent(in) :: ncolumn
+    integer :: step, i, ncell, first, last, flag
+
+    step = -1
+    ncell = 1
+    first = 1
+    last = len(row)
+    do i = 1, len(row)
+      if (row(i:i) /= ',') cycle
+      if (ncell == step_column) last = i - 1
+      ncell = ncell + 1
+      if (ncell == step_column) first = i + 1
+    end do
+    if (ncell /= ncolumn .or. last < first) return
+    if (verify(row(first:last), '0123456789') /= 0) return
+    read (row(first:last), *, iostat=flag) step
+    if (flag /= 0) step = -1
+  end function step_of
+
+  subroutine put_real(self, value)
+    class(csv_t), intent(inout) :: self
+    real(wp), intent(in) :: value
+
+    call self%put_cell(exact_text(value))
+  end subroutine put_real
+
+  subroutine put_integer(self, value)
+    class(csv_t), intent(inout) :: self
+    integer, intent(in) :: value
+
+    call self%put_cell(to_text(value))
+  end subroutine put_integer
+
+  subroutine put_reals(self, values)
+    class(csv_t), intent(inout) :: self
+    real(wp), intent(in) :: values(:)
+    integer :: i
+
+    do i = 1, size(values)
+      call self%put_cell(exact_text(values(i)))
+    end do
+  end subroutine put_reals
+
+  subroutine put_integers(self, values)
+    class(csv_t), intent(inout) :: self
+    integer, intent(in) :: values(:)
+    integer :: i
+
+    do i = 1, size(values)
+      call self%put_cell(to_text(values(i)))
+    end do
+  end subroutine put_integers
+
+  subroutine put_cell(self, cell)
+    class(csv_t), intent(inout) :: self
+    character(len=*), intent(in) :: cell
+
+    if (.not. self%ready) return
+    if (self%ncell > 0) self%row = self%row//','
+    self%row = self%row//cell
+    self%ncell = self%ncell + 1
+  end subroutine put_cell
+
+  !> The row is complete: add it to the file.
+  subroutine end_row(self)
+    class(csv_t), intent(inout) :: self
+
+    if (.not. self%ready .or. allocated(self%first_error)) return
+    if (self%ncell == self%ncolumn) then
+      call self%append(self%row//new_line('a'))
+    else
+      call self%record(exit_bug, "'"//self%path//"': a row of "//to_text(self%ncell)//' cells, '//to_text(self%ncolumn)//' wanted')
+    end if
+    self%row = ''
+    self%ncell = 0
+  end subroutine end_row
+
+  !> Add a line to the file. gfortran's flush and close say nothing of a full disk, its `inquire` of
+  !> the length of a closed file does.
+  subroutine append(self, line)
+    class(csv_t), intent(inout) :: self
+    character(len=*), intent(in) :: line
+    character(len=200) :: why
+    integer(i8) :: length
+    integer :: unit, flag
+
+    open (newunit=unit, file=self%path, status='old', action='write', access='stream', form='unformatted', position='append', &
+      iostat=flag, iomsg=why)
+    if (flag == 0) then
+      write (unit, iostat=flag, iomsg=why) line
+      close (unit)
+    end if
+    if (flag == 0) then
+      self%length = self%length + len(line, i8)
+      inquire (file=self%path, size=length)
+      flag = merge(0, 1, length == self%length)
+      why = 'disk full?'
+    end if
+    if (flag /= 0) call self%record(exit_machine, "cannot write '"//self%path//"': "//trim(why))
+  end subroutine append
+
+  !> The first error so far; unallocated when there was none.
+  pure subroutine status(self, error)
+    class(csv_t), intent(in) :: self
+    type(error_t), allocatable, intent(out) :: error
+
+    if (allocated(self%first_error)) allocate (error, source=self%first_error)
+  end subroutine status
+
+  !> The table is finished: deliver the first error since it was opened.
+  subroutine close_table(self, error)
+    class(csv_t), intent(inout) :: self
+    type(error_t), allocatable, intent(out) :: error
+
+    self%ready = .false.
+    call self%status(error)
+  end subroutine close_table
+
+  !> Forget what the object held before.
+  subroutine begin(self, path, columns)
+    class(csv_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    type(string_t), intent(in) :: columns(:)
+
+    self%ready = .false.
+    if (allocated(self%first_error)) deallocate (self%first_error)
+    self%path = path
+    self%row = ''
+    self%ncolumn = size(columns)
+    self%ncell = 0
+  end subroutine begin
+
+  !> Rows may come, unless something went wrong up to here.
+  subroutine get_ready(self, error)
+    class(csv_t), intent(inout) :: self
+    type(error_t), allocatable, intent(in) :: error
+
+    self%ready = .not. allocated(error)
+    if (self%ready) then
+      inquire (file=self%path, size=self%length)
+    else
+      call self%record(error%code, error%message)
+    end if
+  end subroutine get_ready
+
+  !> Remember the first error.
+  pure subroutine record(self, code, message)
+    class(csv_t), intent(inout) :: self
+    integer, intent(in) :: code
+    character(len=*), intent(in) :: message
+
+    if (.not. allocated(self%first_error)) call fail(self%first_error, code, message)
+  end subroutine record
+
+  !> The titles in one line, in quotes where they hold a comma or a quote (RFC 4180).
+  pure function header(columns) result(line)
+    type(string_t), intent(in) :: columns(:)
+    character(len=:), allocatable :: line
+    type(string_t) :: titles(size(columns))
+    integer :: i, j
+
+    do i = 1, size(columns)
+      if (scan(columns(i)%s, ',"') == 0) then
+        titles(i)%s = columns(i)%s
+        cycle
+      end if
+      titles(i)%s = '"'
+      do j = 1, len(columns(i)%s)
+        titles(i)%s = titles(i)%s//repeat(columns(i)%s(j:j), merge(2, 1, columns(i)%s(j:j) == '"'))
+      end do
+      titles(i)%s = titles(i)%s//'"'
+    end do
+    line = join(titles, ',')//new_line('a')
+  end function header
+
+  !> The text up to its first line end.
+  pure function first_line(text) result(line)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: line
+
+    line = text(:index(text//new_line('a'), new_line('a')) - 1)
+  end function first_line
+
+end module csv_writer

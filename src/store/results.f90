@@ -1,0 +1,265 @@
+!> Fields for people: one HDF5 file per mesh generation, one XDMF over all of them.
+!>
+!> `NAME.gNN.h5`: mesh/ (coordinates, topology from 0, groups), dies/, steps/NNNNNN/ with the
+!> coordinates reached, nodal fields (node/NAME) and the raw state of the points (points/GROUP).
+module results
+  use errors, only: error_t
+  use hdf5_file, only: hdf5_file_t
+  use kinds, only: wp
+  use nodal_average, only: add_to_nodes
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use state_variables, only: component_names
+  use system, only: base_name, file_exists
+  use text, only: string_t, to_text
+  use xdmf_writer, only: xdmf_field_t, xdmf_grid_t, xdmf_t
+  implicit none
+  private
+  public :: results_t, open_results, save_fields
+
+  type :: results_t
+    !> Path of the run's files without endings, of the present generation's HDF5 file, and the XDMF.
+    character(len=:), allocatable :: stem, path
+    type(xdmf_t) :: xdmf
+  end type results_t
+
+contains
+
+  !> Begin the files of this generation, or take them up again after the step of a checkpoint.
+  subroutine open_results(scene, solution, stem, resume, results, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    character(len=*), intent(in) :: stem
+    logical, intent(in) :: resume
+    type(results_t), intent(out) :: results
+    type(error_t), allocatable, intent(out) :: error
+
+    results%stem = stem
+    results%path = stem//'.g'//two_digits(scene%generation)//'.h5'
+    if (resume) then
+      call results%xdmf%resume(stem//'.xdmf', solution%time, error)
+      if (allocated(error)) return
+    end if
+    if (resume .and. file_exists(results%path)) then
+      call forget_later_steps(results%path, solution%step, error)
+    else
+      call write_mesh(results%path, scene, error)
+    end if
+  end subroutine open_results
+
+  !> Steps saved after the checkpoint are made again: take them out.
+  subroutine forget_later_steps(path, step, error)
+    character(len=*), intent(in) :: path
+    integer, intent(in) :: step
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+    type(string_t), allocatable :: names(:)
+    integer :: k, number, status
+
+    call file%open_append(path, error)
+    if (allocated(error)) return
+    if (file%has('steps')) then
+      call file%list('steps', names)
+      do k = 1, size(names)
+        read (names(k)%s, *, iostat=status) number
+        if (status == 0 .and. number > step) call file%remove('steps/'//names(k)%s)
+      end do
+    end if
+    call file%close(error)
+  end subroutine forget_later_steps
+
+  subroutine write_mesh(path, scene, error)
+    character(len=*), intent(in) :: path
+    type(scene_t), intent(in) :: scene
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+    integer, allocatable :: topology(:, :)
+    character(len=:), allocatable :: place
+    integer :: g
+
+    call file%create(path, error)
+    if (allocated(error)) return
+    call solid_topology(scene, topology)
+    call file%write('mesh/coordinates', scene%mesh%coordinates)
+    call file%write('mesh/topology', topology)
+    call file%write_attribute('/', 'title', scene%title)
+    call file%write_attribute('/', 'plane_state', scene%plane_state)
+    call file%write_attribute('/', 'generation', scene%generation)
+    do g = 1, size(scene%groups)
+      place = 'mesh/groups/'//to_text(g)
+      call file%write(place//'/connectivity', scene%groups(g)%connectivity - 1)
+      call file%write_attribute(place, 'name', scene%groups(g)%name)
+      call file%write_attribute(place, 'elem', scene%groups(g)%elem)
+    end do
+    do g = 1, size(scene%dies)
+      call file%write('dies/'//scene%dies(g)%name, scene%dies(g)%pieces)
+    end do
+    call file%close(error)
+  end subroutine write_mesh
+
+  !> Nodes of all 8-node elements, counted from 0.
+  pure subroutine solid_topology(scene, topology)
+    type(scene_t), intent(in) :: scene
+    integer, allocatable, intent(out) :: topology(:, :)
+    integer :: g
+
+    allocate (topology(8, 0))
+    do g = 1, size(scene%groups)
+      if (size(scene%groups(g)%connectivity, 1) /= 8) cycle
+      topology = reshape([topology, scene%groups(g)%connectivity - 1], [8, size(topology, 2) + &
+                                                                        size(scene%groups(g)%connectivity, 2)])
+    end do
+  end subroutine solid_topology
+
+  !> Save the accepted instant.
+  subroutine save_fields(scene, solution, results, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(results_t), intent(inout) :: results
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+    type(xdmf_grid_t) :: grid
+    character(len=:), allocatable :: place
+    character(len=6) :: number
+    integer :: nnode, g
+
+    nnode = size(scene%mesh%coordinates, 2)
+    write (number, '(i6.6)') solution%step
+    place = 'steps/'//number
+    call file%open_append(results%path, error)
+    if (allocated(error)) return
+    call file%write(place//'/coordinates', scene%mesh%coordinates + solution%displacement)
+    call file%write_attribute(place, 'time', solution%time)
+    call file%write_attribute(place, 'step', solution%step)
+    if (size(scene%dies) > 0) call file%write(place//'/pilots', solution%pilots)
+    grid%time = solution%time
+    grid%file = base_name(results%path)
+    grid%geometry = place//'/coordinates'
+    grid%nnode = nnode
+    grid%topology = 'mesh/topology'
+    allocate (grid%fields(0))
+    do g = 1, size(scene%groups)
+      if (size(scene%groups(g)%connectivity, 1) == 8) grid%nelement = grid%nelement + size(scene%groups(g)%connectivity, 2)
+    end do
+    call put_vector(file, place, 'displacement', solution%displacement, grid)
+    call put_vector(file, place, 'applied_force', solution%applied, grid)
+    call put_nodal_fields(file, place, scene, solution, grid)
+    call put_points(file, place, scene, solution)
+    call file%close(error)
+    if (.not. allocated(error)) call results%xdmf%add(grid, error)
+    if (.not. allocated(error)) call results%xdmf%write_file(results%stem//'.xdmf', error)
+  end subroutine save_fields
+
+  !> A vector at the nodes, with the third component ParaView asks for.
+  subroutine put_vector(file, place, name, vector, grid)
+    type(hdf5_file_t), intent(inout) :: file
+    character(len=*), intent(in) :: place, name
+    real(wp), intent(in) :: vector(:, :)
+    type(xdmf_grid_t), intent(inout) :: grid
+    real(wp) :: padded(3, size(vector, 2))
+
+    padded(1:2, :) = vector
+    padded(3, :) = 0
+    call file%write(place//'/node/'//name, padded)
+    grid%fields = [grid%fields, xdmf_field_t(name, 'Node', 'Vector', place//'/node/'//name)]
+  end subroutine put_vector
+
+  !> Every component of the solid groups' states at the nodes, and von Mises' equivalent stress.
+  subroutine put_nodal_fields(file, place, scene, solution, grid)
+    type(hdf5_file_t), intent(inout) :: file
+    character(len=*), intent(in) :: place
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(xdmf_grid_t), intent(inout) :: grid
+    type(string_t), allocatable :: names(:), done(:)
+    integer :: g, c
+
+    allocate (done(0))
+    call put_field('mises', 0)
+    do g = 1, size(scene%groups)
+      if (size(scene%groups(g)%connectivity, 1) /= 8) cycle
+      call component_names(scene%groups(g)%variables, names)
+      do c = 1, size(names)
+        if (any_is(done, names(c)%s)) cycle
+        call put_field(names(c)%s, 1)
+        done = [done, names(c)]
+      end do
+    end do
+
+  contains
+
+    subroutine put_field(name, kind)
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: kind
+      real(wp) :: at(size(scene%mesh%coordinates, 2)), count_at(size(scene%mesh%coordinates, 2))
+      type(string_t), allocatable :: own(:)
+      integer :: h, k
+
+      at = 0
+      count_at = 0
+      do h = 1, size(scene%groups)
+        if (size(scene%groups(h)%connectivity, 1) /= 8) cycle
+        associate (state => solution%groups(h)%committed, nodes => scene%groups(h)%connectivity)
+          if (kind == 0) then
+            call add_to_nodes(nodes, mises(state(1:4, :, :)), at, count_at)
+          else
+            call component_names(scene%groups(h)%variables, own)
+            do k = 1, size(own)
+              if (own(k)%s == name) call add_to_nodes(nodes, state(k, :, :), at, count_at)
+            end do
+          end if
+        end associate
+      end do
+      where (count_at > 0) at = at/count_at
+      call file%write(place//'/node/'//name, at)
+      grid%fields = [grid%fields, xdmf_field_t(name, 'Node', 'Scalar', place//'/node/'//name)]
+    end subroutine put_field
+
+  end subroutine put_nodal_fields
+
+  !> State of all points of all groups, as the solver holds it.
+  subroutine put_points(file, place, scene, solution)
+    type(hdf5_file_t), intent(inout) :: file
+    character(len=*), intent(in) :: place
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(string_t), allocatable :: names(:)
+    integer :: g
+
+    do g = 1, size(scene%groups)
+      if (size(scene%groups(g)%variables) == 0) cycle
+      call component_names(scene%groups(g)%variables, names)
+      call file%write(place//'/points/'//to_text(g)//'/state', solution%groups(g)%committed)
+      call file%write(place//'/points/'//to_text(g)//'/components', names)
+    end do
+  end subroutine put_points
+
+  !> von Mises' equivalent stress of stresses (4, npoint, nelem).
+  pure function mises(stress) result(q)
+    real(wp), intent(in) :: stress(:, :, :)
+    real(wp) :: q(size(stress, 2), size(stress, 3))
+
+    q = sqrt(0.5_wp*((stress(1, :, :) - stress(2, :, :))**2 + (stress(2, :, :) - stress(4, :, :))**2 &
+                     + (stress(4, :, :) - stress(1, :, :))**2) + 3*stress(3, :, :)**2)
+  end function mises
+
+  pure function any_is(words, word) result(found)
+    type(string_t), intent(in) :: words(:)
+    character(len=*), intent(in) :: word
+    logical :: found
+    integer :: k
+
+    found = .false.
+    do k = 1, size(words)
+      found = found .or. words(k)%s == word
+    end do
+  end function any_is
+
+  pure function two_digits(n) result(s)
+    integer, intent(in) :: n
+    character(len=2) :: s
+
+    write (s, '(i2.2)') n
+  end function two_digits
+
+end module results

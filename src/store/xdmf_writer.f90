@@ -1,0 +1,242 @@
+!> The one file that ParaView opens: `NAME.xdmf`, a collection in time of the grids saved in the HDF5
+!> files of all mesh generations (what both the XDMF 2 and the XDMF 3 reader of ParaView 5 understand).
+!>
+!> The arrays stay in the HDF5 files, in the natural Fortran order, which XDMF sees reversed:
+!> coordinates (2, nodes), topology (8, elements) with nodes counted from 0, corners first, then the
+!> mid-side nodes as in `shape_functions`; fields (components, nodes) or (components, elements).
+!> ParaView wants 3 components of a vector (the third 0) and of a symmetric tensor
+!> (xx, xy, xz, yy, yz, zz).
+module xdmf_writer
+  use atomic, only: read_text, write_text
+  use errors, only: error_t, exit_bug, exit_input, fail
+  use exact_numbers, only: exact_text
+  use kinds, only: wp
+  use system, only: file_exists
+  use text, only: string_t, to_text
+  implicit none
+  private
+  public :: xdmf_t, xdmf_grid_t, xdmf_field_t
+
+  !> A field on a grid.
+  type :: xdmf_field_t
+    character(len=:), allocatable :: name     !! shown to the user
+    character(len=:), allocatable :: center   !! Node or Cell
+    character(len=:), allocatable :: kind     !! Scalar, Vector (3), Tensor6 (6) or Tensor (9 components)
+    character(len=:), allocatable :: dataset  !! path in the HDF5 file
+    logical :: is_integer = .false.           !! 32-bit integers rather than doubles
+  end type xdmf_field_t
+
+  !> What was saved at one step.
+  type :: xdmf_grid_t
+    real(wp) :: time = 0
+    character(len=:), allocatable :: file      !! HDF5 file, relative to the directory of the XDMF file
+    character(len=:), allocatable :: geometry  !! dataset of coordinates
+    integer :: nnode = 0
+    integer :: ndim = 2                        !! coordinates per node: 2 or 3
+    character(len=:), allocatable :: topology  !! dataset of nodes per element
+    integer :: nelement = 0
+    character(len=:), allocatable :: shape     !! XDMF's name; unallocated = Quadrilateral_8
+    integer :: nodes_per_element = 8
+    type(xdmf_field_t), allocatable :: fields(:)
+  end type xdmf_grid_t
+
+  !> The collection; each grid is kept as its text.
+  type :: xdmf_t
+    private
+    type(string_t), allocatable :: grids(:)
+  contains
+    procedure :: add
+    procedure :: resume
+    procedure :: write_file
+    procedure :: size => number_of_grids
+  end type xdmf_t
+
+  character(len=*), parameter :: nl = new_line('a')
+  character(len=*), parameter :: head = '<?xml version="1.0" encoding="UTF-8"?>'//nl// &
+    '<Xdmf Version="3.0">'//nl//' <Domain>'//nl// &
+    '  <Grid Name="history" GridType="Collection" CollectionType="Temporal">'//nl
+  character(len=*), parameter :: foot = '  </Grid>'//nl//' </Domain>'//nl//'</Xdmf>'//nl
+  !> How each grid begins and ends in a file of ours; `resume` looks for them.
+  character(len=*), parameter :: grid_head = '   <Grid Name="mesh" GridType="Uniform">'//nl//'    <Time Value="'
+  character(len=*), parameter :: grid_foot = '   </Grid>'//nl
+
+contains
+
+  !> Add the grid of a saved step.
+  subroutine add(self, grid, error)
+    class(xdmf_t), intent(inout) :: self
+    type(xdmf_grid_t), intent(in) :: grid
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: s, shape
+    integer :: i
+
+    shape = 'Quadrilateral_8'
+    if (allocated(grid%shape)) shape = grid%shape
+    s = grid_head//exact_text(grid%time)//'"/>'//nl// &
+      '    <Geometry GeometryType="'//trim(merge('XY ', 'XYZ', grid%ndim == 2))//'">'//nl// &
+      data_item(grid, grid%geometry, grid%nnode, grid%ndim, .false.)//'    </Geometry>'//nl// &
+      '    <Topology TopologyType="'//shape//'" NumberOfElements="'//to_text(grid%nelement)//'">'//nl// &
+      data_item(grid, grid%topology, grid%nelement, grid%nodes_per_element, .true.)//'    </Topology>'//nl
+    if (allocated(grid%fields)) then
+      do i = 1, size(grid%fields)
+        call check_field(grid%fields(i), error)
+        if (allocated(error)) return
+        s = s//field_text(grid, grid%fields(i))
+      end do
+    end if
+    if (.not. allocated(self%grids)) allocate (self%grids(0))
+    self%grids = [self%grids, string_t(s//grid_foot)]
+  end subroutine add
+
+  !> Take over the grids of an older file of ours up to `time`; no file is no grids.
+  subroutine resume(self, path, time, error)
+    class(xdmf_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    real(wp), intent(in) :: time
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: old
+    real(wp) :: grid_time
+    integer :: first, last, number, flag
+
+    if (allocated(self%grids)) deallocate (self%grids)
+    allocate (self%grids(0))
+    if (.not. file_exists(path)) return
+    call read_text(path, old, error)
+    if (allocated(error)) return
+    if (index(old, head) /= 1) then
+      call fail(error, exit_input, "'"//path//"' is not an XDMF file of this system")
+      return
+    end if
+    first = len(head) + 1
+    do while (index(old(first:), grid_head) == 1)
+      last = first - 1 + index(old(first:), nl//grid_foot) + len(grid_foot)
+      number = first + len(grid_head)
+      read (old(number:number + index(old(number:), '"') - 2), *, iostat=flag) grid_time
+      if (flag /= 0) exit
+      if (grid_time > time) exit
+      self%grids = [self%grids, string_t(old(first:last))]
+      first = last + 1
+    end do
+  end subroutine resume
+
+  !> Write all grids into the file `path`, in one step.
+  subroutine write_file(self, path, error)
+    class(xdmf_t), intent(in) :: self
+    character(len=*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: s
+    integer :: i, n
+
+    n = len(head) + len(foot)
+    do i = 1, self%size()
+      n = n + len(self%grids(i)%s)
+    end do
+    allocate (character(len=n) :: s)
+    s(:len(head)) = head
+    n = len(head)
+    do i = 1, self%size()
+      s(n + 1:n + len(self%grids(i)%s)) = self%grids(i)%s
+      n = n + len(self%grids(i)%s)
+    end do
+    s(n + 1:) = foot
+    call write_text(path, s, error)
+  end subroutine write_file
+
+  !> How many grids there are.
+  pure function number_of_grids(self) result(n)
+    class(xdmf_t), intent(in) :: self
+    integer :: n
+
+    n = 0
+    if (allocated(self%grids)) n = size(self%grids)
+  end function number_of_grids
+
+  !> One field as XDMF has it.
+  pure function field_text(grid, field) result(s)
+    type(xdmf_grid_t), intent(in) :: grid
+    type(xdmf_field_t), intent(in) :: field
+    character(len=:), allocatable :: s
+    integer :: n
+
+    n = grid%nnode
+    if (field%center == 'Cell') n = grid%nelement
+    s = '    <Attribute Name="'//escaped(field%name)//'" AttributeType="'//field%kind//'" Center="'//field%center//'">'//nl// &
+      data_item(grid, field%dataset, n, components(field%kind), field%is_integer)//'    </Attribute>'//nl
+  end function field_text
+
+  !> Where an array lies and how large it is: `n` rows, of several columns unless `ncomponent` is 1.
+  pure function data_item(grid, dataset, n, ncomponent, is_integer) result(s)
+    type(xdmf_grid_t), intent(in) :: grid
+    character(len=*), intent(in) :: dataset
+    integer, intent(in) :: n, ncomponent
+    logical, intent(in) :: is_integer
+    character(len=:), allocatable :: s
+
+    s = to_text(n)
+    if (ncomponent > 1) s = s//' '//to_text(ncomponent)
+    s = '     <DataItem Format="HDF" Dimensions="'//s//'" '
+    if (is_integer) then
+      s = s//'NumberType="Int" Precision="4">'
+    else
+      s = s//'NumberType="Float" Precision="8">'
+    end if
+    s = s//escaped(grid%file)//':'
+    if (index(dataset, '/') /= 1) s = s//'/'
+    s = s//escaped(dataset)//'</DataItem>'//nl
+  end function data_item
+
+  !> Components of a kind of field, 0 when it is unknown.
+  pure function components(kind) result(n)
+    character(len=*), intent(in) :: kind
+    integer :: n
+
+    select case (kind)
+    case ('Scalar')
+      n = 1
+    case ('Vector')
+      n = 3
+    case ('Tensor6')
+      n = 6
+    case ('Tensor')
+      n = 9
+    case default
+      n = 0
+    end select
+  end function components
+
+  !> Refuse what ParaView would not understand.
+  pure subroutine check_field(field, error)
+    type(xdmf_field_t), intent(in) :: field
+    type(error_t), allocatable, intent(out) :: error
+
+    if (components(field%kind) == 0) then
+      call fail(error, exit_bug, "XDMF field '"//field%name//"': kind '"//field%kind//"' is not Scalar, Vector, Tensor6 or Tensor")
+    else if (field%center /= 'Node' .and. field%center /= 'Cell') then
+      call fail(error, exit_bug, "XDMF field '"//field%name//"': center '"//field%center//"' is neither Node nor Cell")
+    end if
+  end subroutine check_field
+
+  !> Text with XML's own characters escaped.
+  pure function escaped(text) result(s)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: s
+    integer :: i
+
+    s = ''
+    do i = 1, len(text)
+      select case (text(i:i))
+      case ('&')
+        s = s//'&amp;'
+      case ('<')
+        s = s//'&lt;'
+      case ('>')
+        s = s//'&gt;'
+      case ('"')
+        s = s//'&quot;'
+      case default
+        s = s//text(i:i)
+      end select
+    end do
+  end function escaped
+
+end module xdmf_writer
