@@ -11,7 +11,7 @@ module listing
   use text, only: string_t, to_text
   implicit none
   private
-  public :: listing_t, open_listing, close_listing, list_lines, list_step, list_cut, show_progress, end_progress
+  public :: listing_t, open_listing, close_listing, list_lines, list_step, list_cut, list_event, show_progress, end_progress
 
   type :: listing_t
     integer :: unit = -1
@@ -42,7 +42,8 @@ contains
       open (newunit=listing%unit, file=path, action='write', status='replace', iostat=status)
     end if
     if (status /= 0) call fail(error, exit_machine, path//': cannot be written')
-    listing%live = .not. quiet .and. is_terminal(standard_output)
+    listing%live = is_terminal(standard_output)
+    if (quiet) listing%live = .false.
     listing%started = wall_seconds()
     listing%start_share = share
   end subroutine open_listing
@@ -114,6 +115,15 @@ contains
     call list_iterations(listing, outcome)
     flush (listing%unit)
   end subroutine list_cut
+
+  !> A step shortened to the moment when contact begins.
+  subroutine list_event(listing, solution, dt)
+    type(listing_t), intent(in) :: listing
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt
+
+    write (listing%unit, '(a)') 'event: contact begins, step '//to_text(solution%step + 1)//' shortened to '//to_text(dt)
+  end subroutine list_event
 
   !> One line on the terminal: step, time, iterations, share done, time left.
   subroutine show_progress(listing, scene, solution, iterations)

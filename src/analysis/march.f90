@@ -8,13 +8,13 @@ module march
   use exchange, only: write_checkpoint
   use history, only: open_history, write_row
   use kinds, only: eps, wp
-  use listing, only: list_cut, list_step, listing_t, show_progress
+  use listing, only: list_cut, list_event, list_step, listing_t, show_progress
   use newton, only: outcome_t, solve_step
   use results, only: open_results, results_t, save_fields
   use scene, only: scene_t
   use solution, only: solution_t
   use step_strategy, only: after_failure, after_success, choose_step
-  use system, only: caught_signal
+  use system, only: caught_signal, join_path
   use text, only: to_text
   implicit none
   private
@@ -22,8 +22,8 @@ module march
 
   !> A run: its files, and what is needed to write them.
   type :: run_t
-    !> Path of the run's files without endings; the deck's path and canonical text.
-    character(len=:), allocatable :: stem, deck_path, deck_text
+    !> Folder of the results, path of the run's own files without endings; the deck's path and canonical text.
+    character(len=:), allocatable :: folder, stem, deck_path, deck_text
     logical :: resume = .false.
     type(equations_t) :: equations
     type(listing_t) :: listing
@@ -51,6 +51,11 @@ contains
       dt = choose_step(scene, solution%time, solution%next_step)
 
       call solve_step(scene, run%equations, solution, dt, outcome)
+      do while (outcome%event < 1)
+        dt = max(outcome%event*dt, scene%strategy%least_step)
+        call list_event(run%listing, solution, dt)
+        call solve_step(scene, run%equations, solution, dt, outcome)
+      end do
       if (allocated(outcome%error)) then
         call move_alloc(outcome%error, error)
         exit
@@ -86,7 +91,7 @@ contains
     if (allocated(error)) return
     call measure_scene(scene, run%equations, solution, run%totals)
     if (.not. solution%initial_volume > 0) solution%initial_volume = run%totals%volume
-    call open_history(scene, solution, run%stem//'.history.csv', run%resume, run%table, error)
+    call open_history(scene, solution, join_path(run%folder, 'history.csv'), run%resume, run%table, error)
     if (allocated(error)) return
     call open_results(scene, solution, run%stem, run%resume, run%results, error)
     if (allocated(error) .or. run%resume) return

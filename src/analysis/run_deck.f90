@@ -32,7 +32,7 @@ contains
     type(run_options_t), intent(in) :: options
     integer, intent(out) :: code
     type(error_t), allocatable, intent(out) :: error
-    type(deck_t) :: deck
+    type(deck_t), target :: deck
     type(scene_t) :: scene
     type(solution_t) :: solution
     type(run_t) :: run
@@ -53,7 +53,8 @@ contains
     call make_directory(options%out, error)
     if (allocated(error)) return
     run%deck_path = options%deck
-    run%stem = join_path(options%out, stem(options%deck))
+    run%folder = options%out
+    run%stem = join_path(run%folder, stem(options%deck))
     call catch_signals()
     call run_and_report(options, scene, solution, run, error)
     code = run%exit_code
@@ -62,11 +63,11 @@ contains
   !> Deck and scene, with all mistakes at once.
   subroutine read_input(options, deck, scene, text, error)
     type(run_options_t), intent(in) :: options
-    type(deck_t), intent(out) :: deck
+    type(deck_t), intent(out), target :: deck
     type(scene_t), intent(out) :: scene
     character(len=:), allocatable, intent(out) :: text
     type(error_t), allocatable, intent(out) :: error
-    type(diagnostics_t) :: diagnostics
+    type(diagnostics_t), target :: diagnostics
 
     call read_deck(options%deck, options%overrides, deck, diagnostics)
     call read_scene(deck, scene, diagnostics)
@@ -130,7 +131,7 @@ contains
         write (*, '(a)') lines(k)%s
       end do
     end if
-    call write_summary(run%stem//'.summary.json', facts, scene, run%equations, solution, run%totals, late)
+    call write_summary(join_path(run%folder, 'summary.json'), facts, scene, run%equations, solution, run%totals, late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
   end subroutine run_and_report
 

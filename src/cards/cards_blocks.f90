@@ -1,6 +1,7 @@
 !> BLOCK and JOIN: a mesh made of blocks with four sides.
 module cards_blocks
   use block_mesh, only: block_t, mesh_block, polygon_area, side_arc, side_parabola, side_straight
+  use card_points, only: read_xy
   use cards_mesh, only: read_body_head
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
@@ -66,8 +67,7 @@ contains
 
     call cursor%next_row('the four corners')
     do k = 1, 4
-      call cursor%real('x of corner '//to_text(k), block%corners(1, k), unit='length')
-      call cursor%real('y of corner '//to_text(k), block%corners(2, k), unit='length')
+      call read_xy(cursor, 'corner '//to_text(k), block%corners(:, k))
     end do
     if (cursor%failed()) return
     if (.not. polygon_area(block%corners) > 0) &
@@ -108,8 +108,7 @@ contains
       if (cursor%failed()) return
       if (block%form(k) /= side_straight) call cursor%fail('side '//to_text(k)//' is given twice')
       call cursor%name('a form of side', forms, form)
-      call cursor%real('x of the point', block%point(1, k), unit='length')
-      call cursor%real('y of the point', block%point(2, k), unit='length')
+      call read_xy(cursor, 'the point', block%point(:, k))
       if (cursor%failed()) return
       block%form(k) = merge(side_arc, side_parabola, form == 1)
       call check_curve(cursor, block%corners(:, k), block%corners(:, mod(k, 4) + 1), block%form(k), block%point(:, k))

@@ -1,5 +1,6 @@
 !> DIE cards: segments, parabolas and arcs, end to end.
 module cards_dies
+  use card_points, only: read_xy
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
@@ -65,8 +66,7 @@ contains
     if (.not. cursor%more()) return
     call words_of('PILOT', words)
     call cursor%name('PILOT or the end of the line', words, k)
-    call cursor%real('x of the pilot', pilot(1), unit='length')
-    call cursor%real('y of the pilot', pilot(2), unit='length')
+    call read_xy(cursor, 'the pilot', pilot(1:2))
   end subroutine read_pilot
 
   !> One row: a form, its points, for an arc its tolerance.
@@ -80,7 +80,7 @@ contains
     integer :: form, n
 
     call cursor%name('a form of piece', forms, form)
-    call read_point(cursor, 'first', first)
+    call read_xy(cursor, 'the first point', first)
     n = size(die%pieces, 3)
     if (n > 0 .and. .not. cursor%failed()) then
       gap = norm2(first - die%pieces(:, 3, n))
@@ -91,8 +91,8 @@ contains
       first = die%pieces(:, 3, n)
     end if
     middle = 0
-    if (form > 1) call read_point(cursor, 'middle', middle)
-    call read_point(cursor, 'last', last)
+    if (form > 1) call read_xy(cursor, 'the middle point', middle)
+    call read_xy(cursor, 'the last point', last)
     if (form == 3) call cursor%real('the tolerance of the arc', tolerance, lower=0.0_wp, strict_lower=.true., unit='length')
     if (cursor%failed()) return
     if (.not. norm2(last - first) > gap_tolerance*max(maxval(abs(first)), maxval(abs(last)))) then
@@ -115,15 +115,6 @@ contains
     if (cursor%failed()) return
     die%pieces = reshape([die%pieces, pieces], [2, 3, n + size(pieces, 3)])
   end subroutine read_piece
-
-  subroutine read_point(cursor, which, x)
-    type(cursor_t), intent(inout) :: cursor
-    character(len=*), intent(in) :: which
-    real(wp), intent(out) :: x(2)
-
-    call cursor%real('x of the '//which//' point', x(1), unit='length')
-    call cursor%real('y of the '//which//' point', x(2), unit='length')
-  end subroutine read_point
 
   !> Equal parabolas along the arc through three points, as few as stay within `tolerance` of the circle.
   !>

@@ -214,23 +214,23 @@ contains
     type(cursor_t), intent(inout) :: cursor
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
-    real(wp) :: augmentations
+    integer :: k
 
     if (cursor%failed()) return
-    select case (law%name)
-    case ('EPLA')
-      if (size(material%curve, 2) == 0) return
+    if (law%name == 'EPLA' .and. size(material%curve, 2) > 0) then
       if (abs(material%curve(1, 1)) > 0) then
         call cursor%fail('the first plastic strain of the table must be 0, found '//to_text(material%curve(1, 1)))
       else if (any(.not. material%curve(2, :) > 0)) then
         call cursor%fail('all yield stresses of the table must be above 0, found '//to_text(minval(material%curve(2, :))))
       end if
-    case ('COUL2D')
+    end if
+    if (find_parameter(law, 'PENETR') > 0 .and. find_parameter(law, 'AKP') > 0) then
       if (.not. (material%values(find_parameter(law, 'PENETR')) > 0 .or. material%values(find_parameter(law, 'AKP')) > 0)) &
         call cursor%fail('PENETR and AKP are both zero: one of them must be above 0')
-      augmentations = material%values(find_parameter(law, 'AUGMENT'))
-      if (abs(augmentations - anint(augmentations)) > 0) call cursor%fail('AUGMENT must be a whole number')
-    end select
+    end if
+    k = find_parameter(law, 'AUGMENT')
+    if (k == 0) return
+    if (abs(material%values(k) - anint(material%values(k))) > 0) call cursor%fail('AUGMENT must be a whole number')
   end subroutine check_numbers
 
   !> Read the name of a LAW of a kind (solid or contact): place of the material, 0 after a mistake.

@@ -1,5 +1,6 @@
 !> NODES, element cards (PL8LS) and SIDES: a mesh written out.
 module cards_mesh
+  use card_points, only: read_xy
   use cards_laws, only: read_material
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
@@ -55,8 +56,7 @@ contains
         n = n + 1
         call cursor%integer('the label of a node', parts%labels(n), lower=1)
         parts%where(n) = cursor%where()
-        call cursor%real('x', parts%coordinates(1, n), unit='length')
-        call cursor%real('y', parts%coordinates(2, n), unit='length')
+        call read_xy(cursor, 'the node', parts%coordinates(:, n))
         if (cursor%failed()) n = n - 1
         if (.not. cursor%more_rows()) exit
         call cursor%next_row('label, x and y of a node')
@@ -90,7 +90,9 @@ contains
     type(cursor_t) :: cursor
     type(body_t) :: body
     integer :: i, k
+    logical :: all_sound
 
+    all_sound = parts%sound
     do i = 1, size(deck%cards)
       do k = 1, size(draft%elems)
         if (is_body_elem(draft%elems(k)) .and. draft%elems(k)%name == deck%cards(i)%keyword) exit
@@ -99,11 +101,12 @@ contains
       call cursor%open(deck%cards(i), diagnostics)
       body%elem = draft%elems(k)%name
       call read_body_head(cursor, draft, diagnostics, body%elem, 0, body)
-      call read_rows(cursor, size(deck%cards(i)%rows), draft, body)
+      call read_rows(cursor, size(deck%cards(i)%rows), draft, parts%sound, body)
       call close_card(draft, cursor, deck%cards(i))
-      parts%sound = parts%sound .and. .not. cursor%failed()
+      all_sound = all_sound .and. .not. cursor%failed()
       parts%bodies = [parts%bodies, body]
     end do
+    parts%sound = all_sound
     call refuse_same_labels(parts, diagnostics)
   end subroutine read_elements
 
@@ -141,38 +144,42 @@ contains
   end subroutine read_body_head
 
   !> Rows of an element card: label and nodes, turned from labels into places.
-  subroutine read_rows(cursor, nrow, draft, body)
+  subroutine read_rows(cursor, nrow, draft, nodes_known, body)
     type(cursor_t), intent(inout) :: cursor
     integer, intent(in) :: nrow
     type(draft_t), intent(in) :: draft
+    logical, intent(in) :: nodes_known     !! false after a mistake on NODES: then an unknown label is no news
     type(body_t), intent(inout) :: body
-    integer :: i, j, k, label
+    integer :: i, j, k, label, missing
 
     if (allocated(body%labels)) deallocate (body%labels, body%where, body%connectivity)
     allocate (body%labels(nrow), body%where(nrow), body%connectivity(nnode, nrow))
     if (nrow == 0) call cursor%next_row('the label of an element and its 8 nodes')
+    missing = 0
     do i = 1, nrow
       call cursor%next_row('the label of an element and its 8 nodes')
       call cursor%integer('the label of an element', body%labels(i), lower=1)
       body%where(i) = cursor%where()
       do j = 1, nnode
         call cursor%integer('the label of node '//to_text(j), label, lower=1)
-        if (cursor%failed()) exit
         k = find_label(draft%sorted_labels, label)
-        if (k == 0) then
-          call cursor%fail('there is no node '//to_text(label))
-          exit
+        body%connectivity(j, i) = 0
+        if (k > 0) then
+          body%connectivity(j, i) = draft%labelled_nodes(k)
+          if (any(body%connectivity(:j - 1, i) == body%connectivity(j, i))) &
+            call cursor%fail('node '//to_text(label)//' is given twice')
+        else
+          missing = missing + 1
+          if (nodes_known) call cursor%fail('there is no node '//to_text(label))
         end if
-        body%connectivity(j, i) = draft%labelled_nodes(k)
-        if (any(body%connectivity(:j - 1, i) == body%connectivity(j, i))) &
-          call cursor%fail('node '//to_text(label)//' is given twice')
+        if (cursor%failed()) exit
       end do
       if (cursor%failed()) exit
     end do
-    if (.not. cursor%failed()) return
-    body%labels = body%labels(:i - 1)
-    body%where = body%where(:i - 1)
-    body%connectivity = body%connectivity(:, :i - 1)
+    if (missing == 0 .and. .not. cursor%failed()) return
+    body%labels = body%labels(:0)
+    body%where = body%where(:0)
+    body%connectivity = body%connectivity(:, :0)
   end subroutine read_rows
 
   subroutine refuse_same_labels(parts, diagnostics)
@@ -206,10 +213,12 @@ contains
     type(side_set_t) :: set
     integer, allocatable :: labels(:), order(:), nodes(:, :)
     integer :: i, k, n, label, side
+    logical :: all_sound
 
     call all_elements(parts, labels, nodes)
     call sort_labels(labels, order)
     labels = labels(order)
+    all_sound = parts%sound
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword /= 'SIDES') cycle
       call cursor%open(deck%cards(i), diagnostics)
@@ -222,22 +231,25 @@ contains
       do while (.not. cursor%failed())
         call cursor%integer('the label of an element', label, lower=1)
         k = find_label(labels, label)
-        if (k == 0) call cursor%fail('no element card has element '//to_text(label))
+        if (k == 0 .and. parts%sound) call cursor%fail('no element card has element '//to_text(label))
         call cursor%integer('a side of the element', side, lower=1, upper=4)
         if (cursor%failed()) exit
-        n = n + 1
-        set%nodes(:, n) = nodes(quad8_side(:, side), order(k))
-        if (any(set%nodes(2, :n - 1) == set%nodes(2, n))) &
-          call cursor%fail('side '//to_text(side)//' of element '//to_text(label)//' is given twice')
+        if (k > 0) then
+          n = n + 1
+          set%nodes(:, n) = nodes(quad8_side(:, side), order(k))
+          if (any(set%nodes(2, :n - 1) == set%nodes(2, n))) &
+            call cursor%fail('side '//to_text(side)//' of element '//to_text(label)//' is given twice')
+        end if
         if (.not. cursor%more_rows()) exit
         call cursor%next_row('the label of an element and a side')
       end do
       call close_card(draft, cursor, deck%cards(i))
-      parts%sound = parts%sound .and. .not. cursor%failed()
+      all_sound = all_sound .and. .not. cursor%failed()
       set%nodes = set%nodes(:, :n)
       draft%scene%mesh%sides = [draft%scene%mesh%sides, set]
       parts%joined = [parts%joined, location_t()]
     end do
+    parts%sound = all_sound
   end subroutine read_side_sets
 
   !> Labels and nodes of all elements that cards write out.

@@ -57,6 +57,7 @@ contains
       call renumber(parts%bodies(i)%connectivity, number)
       call fill_group(draft, parts%bodies(i), draft%scene%groups(i))
       draft%group_where = [draft%group_where, location_t()]
+      draft%groups_sound = draft%groups_sound .and. size(draft%scene%groups(i)%variables) > 0
     end do
     draft%mesh_sound = parts%sound
     if (.not. parts%sound) return
@@ -179,6 +180,8 @@ contains
 
     do e = 1, size(body%connectivity, 2)
       message = ''
+      keyword = body%elem
+      which = ''
       x = coordinates(:, body%connectivity(:, e))
       if (.not. polygon_area(x(:, 1:4)) > 0) then
         message = 'its corners must run counter-clockwise, and they do not'
@@ -195,7 +198,6 @@ contains
         which = to_text(mod(e - 1, body%across) + 1)//' along side 1, '//to_text((e - 1)/body%across + 1)//' along side 2'
       else
         where = body%where(e)
-        keyword = body%elem
         which = to_text(body%labels(e))
       end if
       call diagnostics%add(where, keyword, 'element '//which//': '//message)

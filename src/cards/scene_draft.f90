@@ -33,6 +33,8 @@ module scene_draft
     integer, allocatable :: sharing(:), owner(:)
     !> Nodes, groups and sides are all there: points and places can be looked up.
     logical :: mesh_sound = .false.
+    !> No group is missing, and the state of each is known.
+    logical :: groups_sound = .true.
     !> Length of the diagonal of the box around the mesh [length].
     real(wp) :: mesh_size = 0.0_wp
   end type draft_t

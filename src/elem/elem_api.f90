@@ -40,6 +40,10 @@ module elem_api
     !> Filled in by the element loop.
     integer :: group = 0
     real(wp) :: strain = 0.0_wp
+    !> Share of the step after which contact begins somewhere, with little overlap; 1 when it need not be shortened.
+    real(wp) :: event = 1.0_wp
+    !> Largest change of penetration at a point already in contact, over the side.
+    real(wp) :: jump = 0.0_wp
   end type report_t
 
   !> Sums over a group at an accepted instant (per radian when axisymmetric), and extremes.

@@ -3,6 +3,7 @@
 !> p = augmentation + AKP d where positive; stick dtau = AKTAU ds; slip |tau| = min(PHI p + PBOUE, TAUMAX),
 !> non-associated: no opening by slip. The slip tangent dtau = PHI AKP sign(tau) dd is unsymmetric.
 module law_coul2d
+  use contact_penalties, only: penalty_parameters
   use kinds, only: wp
   use law_api, only: contact_law, contact_open, contact_slip, contact_stick, law_line, law_t, parameter
   use materials, only: material_t
@@ -20,16 +21,13 @@ contains
     row%kind = contact_law
     row%purpose = 'contact with Coulomb friction'
     row%source = 'Charlier; seed, annex 3'
-    allocate (row%lines, source=[law_line([ &
-                          parameter('PENETR', '-', 'allowed penetration, share of the element side (0: AKP is given)', &
-                                    lower=0.0_wp, upper=0.1_wp, default=1.0e-3_wp), &
-                          parameter('AKP', 'stress/length', 'normal penalty (0: from PENETR)', lower=0.0_wp, default=0.0_wp), &
-                          parameter('AKTAU', 'stress/length', 'tangential penalty (0: as AKP)', lower=0.0_wp, default=0.0_wp), &
-                          parameter('PHI', '-', 'friction coefficient', lower=0.0_wp), &
-                          parameter('PBOUE', 'stress', 'cohesion', lower=0.0_wp, default=0.0_wp), &
-                          parameter('TAUMAX', 'stress', 'largest friction stress', above=0.0_wp, default=huge(1.0_wp)), &
-                          parameter('AUGMENT', '-', 'largest number of augmentations in a step', &
-                                    lower=0.0_wp, upper=50.0_wp, default=0.0_wp)], pairs=.true.)])
+    allocate (row%lines, source=[law_line([penalty_parameters(), &
+                                           parameter('PHI', '-', 'friction coefficient', lower=0.0_wp), &
+                                           parameter('PBOUE', 'stress', 'cohesion', lower=0.0_wp, default=0.0_wp), &
+                                           parameter('TAUMAX', 'stress', 'largest friction stress', &
+                                                     above=0.0_wp, default=huge(1.0_wp)), &
+                                           parameter('AUGMENT', '-', 'largest number of augmentations in a step', &
+                                                     lower=0.0_wp, upper=50.0_wp, default=0.0_wp)], pairs=.true.)])
     allocate (row%history(0))
     row%symmetric = .false.
     row%effects = 'contact friction'

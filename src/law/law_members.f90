@@ -3,14 +3,16 @@ submodule(law_registry) law_members
   use law_coul2d, only: law_coul2d_row
   use law_ela, only: law_ela_row
   use law_epla, only: law_epla_row
+  use law_glue2d, only: law_glue2d_row
   implicit none
 contains
 
   module procedure list_laws
-    allocate (laws(3))
+    allocate (laws(4))
     laws(1) = law_ela_row()
     laws(2) = law_epla_row()
     laws(3) = law_coul2d_row()
+    laws(4) = law_glue2d_row()
   end procedure list_laws
 
 end submodule law_members

@@ -64,6 +64,8 @@ contains
         !$omp end parallel do
         do b = 1, size(reports)
           report%strain = max(report%strain, reports(b)%strain)
+          report%jump = max(report%jump, reports(b)%jump)
+          report%event = min(report%event, reports(b)%event)
           if (report%status /= block_done .or. reports(b)%status == block_done) cycle
           report%status = reports(b)%status
           report%element = reports(b)%element

@@ -56,6 +56,8 @@ contains
     associate (id => solver%mumps)
       id%icntl(1:3) = -1      ! no output
       id%icntl(4) = 0
+      id%icntl(8) = 0         ! no scaling: unknowns are displacements throughout
+      id%cntl(1) = 0          ! no pivoting, until a residual asks for it
       id%icntl(6) = 0         ! no column permutation: the pattern is symmetric and diagonals are large
       id%icntl(7) = 1         ! order given
       id%icntl(14) = 30       ! extra workspace, percent

@@ -31,6 +31,8 @@ module newton
     integer :: group = 0, element = 0
     integer :: iterations = 0
     type(iteration_t), allocatable :: history(:)
+    !> Contact begins after this share of the step: it should be no longer.
+    real(wp) :: event = 1.0_wp
     !> Motion of every unknown (ndof).
     real(wp), allocatable :: du(:)
     !> Largest strain increment, worst residual of the linear solves.
@@ -39,12 +41,18 @@ module newton
     type(error_t), allocatable :: error
   end type outcome_t
 
+  !> The proportional predictor is kept while it changes no penetration by more than this share of a
+  !> side. Otherwise contact has changed the motion: only its onset is kept, and the matrix there
+  !> (loading, with the contacts of now) spreads the rest.
+  real(wp), parameter :: smooth_contact = 2.0e-3_wp, onset = 0.02_wp
   !> Line search: sought when the residual along the correction keeps more than this share.
   real(wp), parameter :: search_above = 0.8_wp
   integer, parameter :: max_searches = 4
   !> A residual this many times larger than the first one, after `patience` iterations, is hopeless.
   real(wp), parameter :: hopeless = 1.0e3_wp
   integer, parameter :: patience = 6
+  !> The residual stagnates when the best of the last `patience` - 1 iterations is above this share of the best before.
+  real(wp), parameter :: stagnant = 0.3_wp
 
 contains
 
@@ -65,6 +73,8 @@ contains
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     call predict(scene, equations, solution, dt, outcome, missing, report)
     if (allocated(outcome%reason)) return
+    if (dt > scene%strategy%least_step) outcome%event = report%event
+    if (outcome%event < 1) return
     first_norm = 0
     previous_norm = 0
     correction = 0
@@ -94,6 +104,13 @@ contains
       if (k > patience .and. norm > hopeless*first_norm) then
         outcome%reason = 'diverged: residual '//to_text(norm, 3)
         return
+      end if
+      if (k >= patience) then
+        if (minval(outcome%history(k - patience + 3:k + 1)%force_norm) > &
+            stagnant*minval(outcome%history(2:k - patience + 2)%force_norm)) then
+          outcome%reason = 'residual stagnates at '//to_text(norm, 3)
+          return
+        end if
       end if
       previous_norm = norm
 
@@ -132,6 +149,10 @@ contains
     if (solution%last_step > 0) ratio = dt/solution%last_step
     call spread(equations, ratio, solution, outcome%du)
     call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
+    if (report%status == block_done .and. report%event >= 1 .and. report%jump > smooth_contact) then
+      call spread(equations, onset*ratio, solution, outcome%du)
+      call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
+    end if
     if (report%status /= block_done .and. ratio > 0) then
       outcome%du = 0
       call evaluate(scene, equations, solution, dt, outcome%du, .true., report)

@@ -33,6 +33,7 @@ contains
     logical, intent(in) :: resume
     type(results_t), intent(out) :: results
     type(error_t), allocatable, intent(out) :: error
+    logical :: there
 
     results%stem = stem
     results%path = stem//'.g'//two_digits(scene%generation)//'.h5'
@@ -40,7 +41,8 @@ contains
       call results%xdmf%resume(stem//'.xdmf', solution%time, error)
       if (allocated(error)) return
     end if
-    if (resume .and. file_exists(results%path)) then
+    there = file_exists(results%path)
+    if (resume .and. there) then
       call forget_later_steps(results%path, solution%step, error)
     else
       call write_mesh(results%path, scene, error)

@@ -1,0 +1,264 @@
+!> PROBE cards: columns of the history.
+module cards_probes
+  use card_places, only: place_t, read_place
+  use card_points, only: read_xy
+  use deck_cursor, only: cursor_t
+  use deck_reader, only: deck_t
+  use diagnostics, only: diagnostics_t
+  use kinds, only: pi, wp
+  use mesh, only: nearest_node
+  use probes, only: probe_maximum, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
+  use quadrature, only: line_rule, square_rule
+  use scene, only: axisymmetric, group_t
+  use scene_draft, only: close_card, draft_t, words_of
+  use shape_functions, only: line3, quad8
+  use state_variables, only: component_names, state_variable_t
+  use text, only: string_t, to_text
+  implicit none
+  private
+  public :: read_probes
+
+  !> A point further out of the box around the mesh than this share of its size is a slip.
+  real(wp), parameter :: outside_tolerance = 1.0e-3_wp
+
+contains
+
+  !> All PROBE cards.
+  subroutine read_probes(deck, draft, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    type(string_t), allocatable :: kinds_of_probe(:)
+    type(probe_t) :: probe, none
+    integer :: i
+
+    ! In the order of the numbers in module `probes`.
+    call words_of('NODE REACT POINT MAX MIN', kinds_of_probe)
+    allocate (draft%scene%probes(0))
+    do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword /= 'PROBE') cycle
+      call cursor%open(deck%cards(i), diagnostics)
+      probe = none
+      call draft%probes%define(cursor, 'the name of the probe', 'PROBE', size(draft%scene%probes) + 1, diagnostics, probe%name)
+      call cursor%name('a kind of probe', kinds_of_probe, probe%kind)
+      allocate (probe%nodes(0))
+      probe%unit = '-'
+      select case (probe%kind)
+      case (probe_node)
+        call read_node_probe(cursor, draft, probe)
+      case (probe_reaction)
+        call read_reaction_probe(cursor, draft, probe)
+      case (probe_point)
+        call read_point_probe(cursor, draft, probe)
+      case (probe_maximum, probe_minimum)
+        call read_extreme_probe(cursor, draft, probe)
+      end select
+      call close_card(draft, cursor, deck%cards(i))
+      draft%scene%probes = [draft%scene%probes, probe]
+    end do
+  end subroutine read_probes
+
+  !> `X|Y|UX|UY x y`: the node nearest to a point of the mesh as it begins.
+  subroutine read_node_probe(cursor, draft, probe)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(probe_t), intent(inout) :: probe
+    type(string_t), allocatable :: quantities(:)
+    real(wp) :: x(2), distance
+    integer :: node
+
+    call words_of('X Y UX UY', quantities)
+    call cursor%name('a quantity', quantities, probe%quantity)
+    probe%unit = 'length'
+    call read_point(cursor, draft, x)
+    if (cursor%failed() .or. .not. draft%mesh_sound) return
+    call nearest_node(draft%scene%mesh%coordinates, x, node, distance)
+    probe%nodes = [node]
+  end subroutine read_node_probe
+
+  !> `X|Y place`: the sum of the reactions there, over the full circumference.
+  subroutine read_reaction_probe(cursor, draft, probe)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+    type(probe_t), intent(inout) :: probe
+    type(string_t), allocatable :: directions(:)
+    type(place_t) :: place
+    logical :: asked(size(draft%scene%mesh%labels)), held
+    integer :: k
+
+    call words_of('X Y', directions)
+    call cursor%name('a direction', directions, probe%quantity)
+    probe%unit = 'force'
+    if (draft%scene%plane_state == axisymmetric) probe%factor = 2*pi
+    call read_place(cursor, draft, .false., place)
+    if (cursor%failed() .or. .not. draft%mesh_sound) return
+    probe%nodes = place%nodes
+    asked = .false.
+    asked(place%nodes) = .true.
+    held = .false.
+    do k = 1, size(draft%scene%fixations)
+      if (draft%scene%fixations(k)%component == probe%quantity) held = held .or. any(asked(draft%scene%fixations(k)%nodes))
+    end do
+    if (.not. held) call cursor%fail('no motion is given there in this direction: the reaction would always be zero')
+  end subroutine read_reaction_probe
+
+  !> `component x y`: the integration point nearest to a point of the mesh as it begins.
+  subroutine read_point_probe(cursor, draft, probe)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(probe_t), intent(inout) :: probe
+    character(len=:), allocatable :: component
+    real(wp) :: x(2), distance, nearest
+    integer :: g, k, e, p
+
+    call read_component(cursor, draft, component)
+    call read_point(cursor, draft, x)
+    if (cursor%failed() .or. .not. (draft%mesh_sound .and. draft%groups_sound)) return
+    nearest = huge(nearest)
+    do g = 1, size(draft%scene%groups)
+      associate (group => draft%scene%groups(g))
+        k = find_component(group, component)
+        if (k == 0) cycle
+        call nearest_point(draft%scene%mesh%coordinates, group, x, e, p, distance)
+        if (.not. distance < nearest) cycle
+        nearest = distance
+        probe%group = g
+        probe%element = e
+        probe%point = p
+        probe%component = k
+        probe%unit = unit_of(group%variables, k)
+      end associate
+    end do
+  end subroutine read_point_probe
+
+  !> `component group`: the largest or smallest over all points of a group.
+  subroutine read_extreme_probe(cursor, draft, probe)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(probe_t), intent(inout) :: probe
+    character(len=:), allocatable :: component
+    type(string_t), allocatable :: names(:)
+    integer :: g
+
+    call read_component(cursor, draft, component)
+    if (.not. draft%groups_sound) then
+      call cursor%word('the name of a group', component)
+      return
+    end if
+    allocate (names(size(draft%scene%groups)))
+    do g = 1, size(names)
+      names(g)%s = draft%scene%groups(g)%name
+    end do
+    call cursor%name('the name of a group', names, g)
+    if (g == 0) return
+    probe%group = g
+    probe%component = find_component(draft%scene%groups(g), component)
+    if (probe%component == 0) then
+      call cursor%fail('group '''//names(g)%s//''' has no component '''//component//'''')
+    else
+      probe%unit = unit_of(draft%scene%groups(g)%variables, probe%component)
+    end if
+  end subroutine read_extreme_probe
+
+  !> A component of the state of any group.
+  subroutine read_component(cursor, draft, component)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    character(len=:), allocatable, intent(out) :: component
+    type(string_t), allocatable :: known(:), names(:)
+    integer :: g, k
+
+    if (.not. draft%groups_sound) then
+      call cursor%word('a component of the state', component)
+      return
+    end if
+    allocate (known(0))
+    do g = 1, size(draft%scene%groups)
+      call component_names(draft%scene%groups(g)%variables, names)
+      known = [known, names]
+    end do
+    call cursor%name('a component of the state', known, k)
+    component = ''
+    if (k > 0) component = known(k)%s
+  end subroutine read_component
+
+  pure function find_component(group, component) result(k)
+    type(group_t), intent(in) :: group
+    character(len=*), intent(in) :: component
+    type(string_t), allocatable :: names(:)
+    integer :: k
+
+    call component_names(group%variables, names)
+    do k = 1, size(names)
+      if (names(k)%s == component) return
+    end do
+    k = 0
+  end function find_component
+
+  pure function unit_of(variables, component) result(unit)
+    type(state_variable_t), intent(in) :: variables(:)
+    integer, intent(in) :: component
+    character(len=:), allocatable :: unit
+    integer :: k
+
+    unit = '-'
+    do k = 1, size(variables)
+      if (component >= variables(k)%first .and. component < variables(k)%first + variables(k)%ncomp) unit = variables(k)%unit
+    end do
+  end function unit_of
+
+  !> Coordinates, which must lie in the box around the mesh.
+  subroutine read_point(cursor, draft, x)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    real(wp), intent(out) :: x(2)
+    real(wp) :: low(2), high(2)
+
+    call read_xy(cursor, 'the point', x)
+    if (cursor%failed() .or. .not. draft%mesh_sound) return
+    low = minval(draft%scene%mesh%coordinates, 2) - outside_tolerance*draft%mesh_size
+    high = maxval(draft%scene%mesh%coordinates, 2) + outside_tolerance*draft%mesh_size
+    if (any(x < low .or. x > high)) &
+      call cursor%fail('the point '//to_text(x(1))//' '//to_text(x(2))//' lies outside of the mesh')
+  end subroutine read_point
+
+  !> Integration point of a group nearest to x.
+  subroutine nearest_point(coordinates, group, x, element, point, distance)
+    real(wp), intent(in) :: coordinates(:, :)
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: x(2)
+    integer, intent(out) :: element, point
+    real(wp), intent(out) :: distance
+    real(wp), allocatable :: phi(:, :), dphi(:, :), xi(:, :), line(:), weight(:)
+    real(wp) :: d
+    integer :: e, p, n
+
+    n = size(group%connectivity, 1)
+    allocate (phi(n, abs(group%npoint)), dphi(2, n))
+    if (n == 3) then
+      call line_rule(group%npoint, line, weight)
+      do p = 1, size(line)
+        call line3(line(p), phi(:, p), dphi(1, :))
+      end do
+    else
+      call square_rule(group%npoint, xi, weight)
+      do p = 1, size(xi, 2)
+        call quad8(xi(1, p), xi(2, p), phi(:, p), dphi)
+      end do
+    end if
+    element = 0
+    point = 0
+    distance = huge(distance)
+    do e = 1, size(group%connectivity, 2)
+      do p = 1, size(phi, 2)
+        d = norm2(matmul(coordinates(:, group%connectivity(:, e)), phi(:, p)) - x)
+        if (.not. d < distance) cycle
+        distance = d
+        element = e
+        point = p
+      end do
+    end do
+  end subroutine nearest_point
+
+end module cards_probes

@@ -1,0 +1,177 @@
+!> CNT2D and PRES2D: elements that lie on sides of bodies.
+module cards_sides
+  use card_places, only: numbers_after_name, read_sides
+  use cards_laws, only: read_material
+  use deck_cursor, only: cursor_t
+  use deck_reader, only: deck_t
+  use diagnostics, only: diagnostics_t, location_t
+  use kinds, only: wp
+  use law_api, only: contact_law, find_parameter
+  use scene, only: group_t
+  use scene_draft, only: close_card, draft_t, find_elem
+  use text, only: to_text
+  implicit none
+  private
+  public :: read_contacts, read_pressures
+
+  !> Points of a side: Gauss, or Lobatto (negative).
+  integer, parameter :: rules(4) = [2, 3, 4, -3]
+
+contains
+
+  !> All CNT2D cards: `place die npoint law`, a group each.
+  subroutine read_contacts(deck, draft, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    type(group_t) :: group
+    character(len=:), allocatable :: label
+    integer :: i, k, law
+
+    do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword /= 'CNT2D') cycle
+      call cursor%open(deck%cards(i), diagnostics)
+      call start_group('CNT2D', draft, group)
+      call read_sides(cursor, draft, huge(k), label, group%connectivity)
+      call refuse_inner_sides(cursor, draft, group%connectivity)
+      call draft%places%find(cursor, 'the name of a DIE', k)
+      if (k > 0) then
+        if (draft%places%keywords(k)%s /= 'DIE') &
+          call cursor%fail(''''//draft%places%words(k)%s//''' is a '//draft%places%keywords(k)%s//', expected a DIE')
+        group%die = draft%places%item(k)
+        group%name = label//'/'//draft%places%words(k)%s
+      end if
+      call read_rule(cursor, group%npoint)
+      call read_material(cursor, draft, contact_law, group%material)
+      if (.not. cursor%failed()) call refuse_second_contact(cursor, draft, group, diagnostics)
+      call close_card(draft, cursor, deck%cards(i))
+      law = 0
+      if (.not. cursor%failed()) law = draft%scene%materials(group%material)%law_id
+      if (law == 0) then
+        draft%groups_sound = .false.
+        cycle
+      end if
+      deallocate (group%variables)
+      call draft%elems(group%elem_id)%variables(draft%laws(law), group%variables)
+      group%amplitude = modulus_behind(draft, group%connectivity)
+      call append_group(draft, group, cursor%where())
+    end do
+  end subroutine read_contacts
+
+  !> All PRES2D cards: `place npoint amplitude lic`, a group each.
+  subroutine read_pressures(deck, draft, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    type(group_t) :: group
+    character(len=:), allocatable :: label
+    integer :: i, k, g
+
+    do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword /= 'PRES2D') cycle
+      call cursor%open(deck%cards(i), diagnostics)
+      call start_group('PRES2D', draft, group)
+      ! The two numbers before the multiplier are not sides.
+      call read_sides(cursor, draft, numbers_after_name(deck%cards(i)) - 2, label, group%connectivity)
+      call refuse_inner_sides(cursor, draft, group%connectivity)
+      call read_rule(cursor, group%npoint)
+      call cursor%real('the amplitude of the pressure', group%amplitude, unit='stress')
+      call draft%multipliers%find(cursor, 'the name of a LIC', k)
+      if (k > 0) then
+        group%multiplier = draft%multipliers%item(k)
+        group%name = label//'/'//draft%multipliers%words(k)%s
+        do g = 1, size(draft%scene%groups)
+          if (draft%scene%groups(g)%name == group%name) call cursor%fail('this pressure is already given at ' &
+                                                                         //diagnostics%place(draft%group_where(g)))
+        end do
+      end if
+      call close_card(draft, cursor, deck%cards(i))
+      if (cursor%failed()) then
+        draft%groups_sound = .false.
+      else
+        call append_group(draft, group, cursor%where())
+      end if
+    end do
+  end subroutine read_pressures
+
+  subroutine start_group(elem, draft, group)
+    character(len=*), intent(in) :: elem
+    type(draft_t), intent(in) :: draft
+    type(group_t), intent(out) :: group
+
+    group%name = ''
+    group%elem = elem
+    group%elem_id = find_elem(draft%elems, elem)
+    allocate (group%variables(0))
+  end subroutine start_group
+
+  subroutine append_group(draft, group, where)
+    type(draft_t), intent(inout) :: draft
+    type(group_t), intent(in) :: group
+    type(location_t), intent(in) :: where
+
+    draft%scene%groups = [draft%scene%groups, group]
+    draft%group_where = [draft%group_where, where]
+  end subroutine append_group
+
+  subroutine read_rule(cursor, npoint)
+    type(cursor_t), intent(inout) :: cursor
+    integer, intent(out) :: npoint
+
+    call cursor%integer('the number of integration points, 2, 3, 4 or -3', npoint)
+    if (all(rules /= npoint)) call cursor%fail('expected 2, 3 or 4 Gauss points or -3 for Lobatto''s, found '//to_text(npoint))
+  end subroutine read_rule
+
+  !> Nothing from outside can act on a side between two elements.
+  subroutine refuse_inner_sides(cursor, draft, sides)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    integer, intent(in) :: sides(:, :)
+    integer :: k
+
+    do k = 1, size(sides, 2)
+      if (draft%sharing(sides(2, k)) == 1) cycle
+      call cursor%fail('this place is inside the part: one of its sides belongs to two elements')
+      return
+    end do
+  end subroutine refuse_inner_sides
+
+  !> A side faces a die once.
+  subroutine refuse_second_contact(cursor, draft, group, diagnostics)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(group_t), intent(in) :: group
+    type(diagnostics_t), intent(in), target :: diagnostics
+    logical :: facing(size(draft%scene%mesh%labels))
+    integer :: g
+
+    if (.not. draft%mesh_sound) return
+    do g = 1, size(draft%scene%groups)
+      if (draft%scene%groups(g)%die /= group%die) cycle
+      facing = .false.
+      facing(draft%scene%groups(g)%connectivity(2, :)) = .true.
+      if (any(facing(group%connectivity(2, :)))) &
+        call cursor%fail('one of these sides faces this die already, see '//diagnostics%place(draft%group_where(g)))
+    end do
+  end subroutine refuse_second_contact
+
+  !> Largest Young's modulus of the bodies that the sides belong to.
+  pure function modulus_behind(draft, sides) result(modulus)
+    type(draft_t), intent(in) :: draft
+    integer, intent(in) :: sides(:, :)
+    real(wp) :: modulus
+    integer :: k, place
+
+    modulus = 0
+    do k = 1, size(sides, 2)
+      associate (material => draft%scene%materials(draft%owner(sides(2, k))))
+        if (material%law_id == 0) cycle
+        place = find_parameter(draft%laws(material%law_id), 'E')
+        if (place > 0 .and. place <= size(material%values)) modulus = max(modulus, material%values(place))
+      end associate
+    end do
+  end function modulus_behind
+
+end module cards_sides

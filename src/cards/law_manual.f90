@@ -1,0 +1,94 @@
+!> A law in words, for `lagamine --law NAME`: its card, its numbers, its state, where it comes from.
+module law_manual
+  use kinds, only: wp
+  use law_api, only: contact_law, law_line_t, law_t, line_choice, line_pairs, parameter_t
+  use text, only: string_t, to_text
+  implicit none
+  private
+  public :: law_card
+
+contains
+
+  subroutine law_card(law, lines)
+    type(law_t), intent(in) :: law
+    type(string_t), allocatable, intent(out) :: lines(:)
+    integer :: i, k
+
+    allocate (lines(0))
+    call put(lines, law%name//' ('//to_text(law%number)//'): '//law%purpose)
+    call put(lines, 'source: '//law%source)
+    if (law%kind == contact_law) then
+      call put(lines, 'for: contact (CNT2D)')
+    else
+      call put(lines, 'for: solids (PL8LS)')
+    end if
+    call put(lines, 'tangent: '//trim(merge('symmetric  ', 'unsymmetric', law%symmetric)))
+    call put(lines, '')
+    call put(lines, 'LAW name '//law%name)
+    do i = 1, size(law%lines)
+      call put(lines, card_line(law%lines(i)))
+      do k = 1, size(law%lines(i)%parameters)
+        call put(lines, parameter_line(law%lines(i)%parameters(k)))
+      end do
+    end do
+    call put(lines, '')
+    if (size(law%history) == 0) call put(lines, 'state of a point beside that of the element: none')
+    if (size(law%history) > 0) call put(lines, 'state of a point beside that of the element:')
+    do i = 1, size(law%history)
+      call put(lines, '  '//padded(law%history(i)%name, 18)//padded('['//law%history(i)%unit//']', 18) &
+               //to_text(law%history(i)%ncomp)//' component(s), carried over as '//law%history(i)%transfer)
+    end do
+  end subroutine law_card
+
+  !> What a row of the card looks like.
+  pure function card_line(line) result(s)
+    type(law_line_t), intent(in) :: line
+    character(len=:), allocatable :: s
+    integer :: k
+
+    select case (line%kind)
+    case (line_pairs)
+      s = '  pairs NAME value, in any order, on one or more rows'
+      return
+    case (line_choice)
+      s = '  either '//line%word
+    case default
+      s = '  '
+    end select
+    do k = 1, size(line%parameters)
+      s = s//' '//line%parameters(k)%name
+    end do
+    if (line%curve) s = s//', then rows of two numbers'
+  end function card_line
+
+  pure function parameter_line(parameter) result(s)
+    type(parameter_t), intent(in) :: parameter
+    character(len=:), allocatable :: s
+
+    s = '    '//padded(parameter%name, 9)//padded('['//parameter%unit//']', 17)//parameter%meaning
+    if (parameter%lower > -huge(1.0_wp)) &
+      s = s//'; '//trim(merge('above   ', 'at least', parameter%strict))//' '//to_text(parameter%lower)
+    if (parameter%upper < huge(1.0_wp)) s = s//'; at most '//to_text(parameter%upper)
+    if (parameter%optional .and. parameter%default < huge(1.0_wp)) s = s//'; default '//to_text(parameter%default)
+    if (parameter%optional .and. .not. parameter%default < huge(1.0_wp)) s = s//'; default: no bound'
+  end function parameter_line
+
+  !> Text with blanks up to a width, and at least one.
+  pure function padded(s, width) result(t)
+    character(len=*), intent(in) :: s
+    integer, intent(in) :: width
+    character(len=:), allocatable :: t
+
+    t = s//repeat(' ', max(1, width - len(s)))
+  end function padded
+
+  subroutine put(lines, s)
+    type(string_t), allocatable, intent(inout) :: lines(:)
+    character(len=*), intent(in) :: s
+    type(string_t) :: line
+
+    line%s = s
+    lines = [lines, line]
+  end subroutine put
+
+end module law_manual

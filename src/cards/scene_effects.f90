@@ -1,0 +1,141 @@
+!> Effects of a scene: each on because a card needs it, and off otherwise.
+module scene_effects
+  use deck_reader, only: deck_t
+  use diagnostics, only: diagnostics_t
+  use effects, only: effect_t
+  use elem_api, only: elem_t
+  use law_api, only: find_parameter, law_t
+  use scene, only: scene_t
+  use scene_draft, only: head_location
+  use state_variables, only: total_components
+  use text, only: to_text
+  implicit none
+  private
+  public :: list_effects
+
+contains
+
+  !> All effects in a fixed order. The scene is without mistakes.
+  subroutine list_effects(deck, laws, elems, diagnostics, scene)
+    type(deck_t), intent(in) :: deck
+    type(law_t), intent(in) :: laws(:)
+    type(elem_t), intent(in) :: elems(:)
+    type(diagnostics_t), intent(in) :: diagnostics
+    type(scene_t), intent(inout) :: scene
+    integer :: g, k
+
+    allocate (scene%effects(8))
+    call set(1, 'displacement', 'no body')
+    call set(2, 'large strain', 'KINEM '//scene%kinematics)
+    call set(3, 'plasticity', 'no LAW with a yield stress is used')
+    call set(4, 'contact', 'no CNT2D card')
+    call set(5, 'friction', 'no contact law with friction is used')
+    call set(6, 'pressure', 'no PRES2D card')
+    call set(7, 'heat', 'no card asks for it')
+    call set(8, 'phases', 'no card asks for it')
+
+    call switch_on(2, scene%finite, 'KINEM', scene%kinematics, 'geometry that follows, geometric matrix')
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        select case (elems(group%elem_id)%effect)
+        case ('displacement')
+          call switch_on(1, .true., group%elem, group%name, &
+                         to_text(2*size(scene%mesh%labels))//' unknowns, 8 state per point (stress, elastic strain)')
+        case ('contact')
+          call switch_on(4, .true., group%elem, before_slash(group%name), &
+                         '3 unknowns per die (its pilot), '//to_text(total_components(group%variables))//' state per point')
+        case ('pressure')
+          call switch_on(6, .true., group%elem, before_slash(group%name), 'forces and matrix of the loaded sides')
+        end select
+        if (group%material == 0) cycle
+        associate (material => scene%materials(group%material))
+          if (asks(laws(material%law_id), 'plasticity')) &
+            call switch_on(3, .true., 'LAW', material%name, &
+                           to_text(total_components(laws(material%law_id)%history))//' state per point')
+          if (asks(laws(material%law_id), 'friction')) then
+            scene%effects(5)%why = 'PHI and PBOUE of every contact law are 0'
+            call switch_on(5, rubs(laws(material%law_id), g), 'LAW', material%name, 'unsymmetric matrix, friction work')
+          end if
+        end associate
+      end associate
+    end do
+    do k = 1, size(scene%effects)
+      if (.not. scene%effects(k)%on) scene%effects(k)%adds = 'nothing'
+    end do
+
+  contains
+
+    subroutine set(k, name, why)
+      integer, intent(in) :: k
+      character(len=*), intent(in) :: name, why
+
+      scene%effects(k)%name = name
+      scene%effects(k)%why = why
+      scene%effects(k)%adds = ''
+    end subroutine set
+
+    !> The first card that asks for an effect is the one named.
+    subroutine switch_on(k, condition, keyword, first_field, adds)
+      integer, intent(in) :: k
+      logical, intent(in) :: condition
+      character(len=*), intent(in) :: keyword, first_field, adds
+
+      if (scene%effects(k)%on .or. .not. condition) return
+      scene%effects(k)%on = .true.
+      scene%effects(k)%why = card_text(keyword, first_field)
+      scene%effects(k)%adds = adds
+    end subroutine switch_on
+
+    !> A card as people name it: keyword, first field, file and line. A body may come from a BLOCK.
+    function card_text(keyword, first_field) result(s)
+      character(len=*), intent(in) :: keyword, first_field
+      character(len=:), allocatable :: s, body
+      integer :: i
+
+      body = scene%groups(1)%elem
+      s = keyword//' '//first_field
+      do i = 1, size(deck%cards)
+        if (deck%cards(i)%keyword /= keyword .and. .not. (deck%cards(i)%keyword == 'BLOCK' .and. keyword == body)) cycle
+        if (size(deck%cards(i)%head%fields) == 0) cycle
+        if (deck%cards(i)%head%fields(1)%text /= first_field) cycle
+        s = deck%cards(i)%keyword//' '//first_field//' at '//diagnostics%place(head_location(deck%cards(i)))
+        s = s(:index(s, ':', back=.true.) - 1)
+        return
+      end do
+    end function card_text
+
+    pure function asks(law, effect) result(yes)
+      type(law_t), intent(in) :: law
+      character(len=*), intent(in) :: effect
+      logical :: yes
+
+      yes = index(' '//law%effects//' ', ' '//effect//' ') > 0
+    end function asks
+
+    !> Coulomb's law without coefficient and cohesion has no friction; another law always has it.
+    pure function rubs(law, g) result(yes)
+      type(law_t), intent(in) :: law
+      integer, intent(in) :: g
+      logical :: yes
+      integer :: phi, cohesion
+
+      phi = find_parameter(law, 'PHI')
+      cohesion = find_parameter(law, 'PBOUE')
+      yes = phi == 0 .or. cohesion == 0
+      if (yes) return
+      associate (values => scene%materials(scene%groups(g)%material)%values)
+        yes = values(phi) > 0 .or. values(cohesion) > 0
+      end associate
+    end function rubs
+
+    !> Field a group's card begins with: the name of the block or set without its sides.
+    pure function before_slash(name) result(s)
+      character(len=*), intent(in) :: name
+      character(len=:), allocatable :: s
+
+      s = name(:scan(name//'/', './') - 1)
+    end function before_slash
+
+  end subroutine list_effects
+
+end module scene_effects

@@ -1,0 +1,175 @@
+!> From the cards of a deck to a scene. Cards may come in any order; all mistakes are told in one go.
+module scene_reader
+  use cards_blocks, only: join_blocks, read_blocks
+  use cards_dies, only: read_dies
+  use cards_laws, only: read_laws
+  use cards_loads, only: read_loads, read_multipliers
+  use cards_mesh, only: is_body_elem, read_elements, read_nodes, read_side_sets
+  use cards_probes, only: read_probes
+  use cards_sides, only: read_contacts, read_pressures
+  use cards_strategy, only: read_strategy
+  use deck_cursor, only: cursor_t
+  use deck_reader, only: deck_t, refuse_unknown
+  use diagnostics, only: diagnostics_t, location_t
+  use mesh_finish, only: finish_mesh
+  use mesh_parts, only: mesh_parts_t, start_parts
+  use scene, only: plane_state_names, scene_t
+  use scene_draft, only: close_card, draft_t, only_card, start_draft, words_of
+  use scene_effects, only: list_effects
+  use text, only: string_t
+  implicit none
+  private
+  public :: read_scene, known_cards
+
+contains
+
+  !> Fill `scene` from the cards. It is only of use when `diagnostics` has no mistakes afterwards.
+  subroutine read_scene(deck, scene, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(scene_t), intent(out) :: scene
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(draft_t) :: draft
+    type(mesh_parts_t) :: parts
+    type(string_t), allocatable :: keywords(:)
+
+    call start_draft(draft)
+    call start_parts(parts)
+    call known_cards(keywords)
+    call refuse_unknown(deck, keywords, diagnostics)
+
+    call read_head(deck, draft, diagnostics)
+    call read_multipliers(deck, draft, diagnostics)
+    call read_laws(deck, draft, diagnostics)
+    call read_dies(deck, draft, diagnostics)
+
+    allocate (draft%scene%mesh%sides(0))
+    call read_nodes(deck, draft, parts, diagnostics)
+    call read_elements(deck, draft, parts, diagnostics)
+    call read_blocks(deck, draft, parts, diagnostics)
+    call read_side_sets(deck, draft, parts, diagnostics)
+    call join_blocks(deck, draft, parts, diagnostics)
+    call finish_mesh(draft, parts, diagnostics)
+    if (size(parts%bodies) == 0) call refuse_empty(deck, diagnostics)
+
+    call read_contacts(deck, draft, diagnostics)
+    call read_pressures(deck, draft, diagnostics)
+    call read_loads(deck, draft, diagnostics)
+    call read_strategy(deck, draft, diagnostics)
+    call read_probes(deck, draft, diagnostics)
+    call refuse_unused_names(deck, draft, keywords, diagnostics)
+
+    if (diagnostics%count() == 0) call list_effects(deck, draft%laws, draft%elems, diagnostics, draft%scene)
+    scene = draft%scene
+  end subroutine read_scene
+
+  !> Keywords that have a meaning, those of body elements last.
+  subroutine known_cards(keywords)
+    type(string_t), allocatable, intent(out) :: keywords(:)
+    type(draft_t) :: draft
+    type(string_t), allocatable :: more(:)
+    integer :: k
+
+    call start_draft(draft)
+    call words_of('TITLE STATE KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D FIXED MOVE FORCE LIC STRAT NORMS STOP ' &
+                  //'SAVE CKPT PROBE', keywords)
+    allocate (more(1))
+    do k = 1, size(draft%elems)
+      if (.not. is_body_elem(draft%elems(k))) cycle
+      more(1)%s = draft%elems(k)%name
+      keywords = [keywords, more]
+    end do
+  end subroutine known_cards
+
+  !> TITLE, STATE and KINEM.
+  subroutine read_head(deck, draft, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    type(string_t), allocatable :: names(:)
+    integer :: k, i
+
+    draft%scene%title = ''
+    call only_card(deck, 'TITLE', .true., diagnostics, k)
+    if (k > 0) then
+      call cursor%open(deck%cards(k), diagnostics)
+      call cursor%text('a title', draft%scene%title)
+      call close_card(draft, cursor, deck%cards(k))
+    end if
+
+    call only_card(deck, 'STATE', .true., diagnostics, k)
+    if (k > 0) then
+      allocate (names(size(plane_state_names)))
+      do i = 1, size(names)
+        names(i)%s = trim(plane_state_names(i))
+      end do
+      call cursor%open(deck%cards(k), diagnostics)
+      call cursor%name('a plane state', names, draft%scene%plane_state)
+      call close_card(draft, cursor, deck%cards(k))
+      deallocate (names)
+    end if
+
+    draft%scene%kinematics = ''
+    call only_card(deck, 'KINEM', .true., diagnostics, k)
+    if (k > 0) then
+      allocate (names(size(draft%kinematics)))
+      do i = 1, size(names)
+        names(i)%s = draft%kinematics(i)%name
+      end do
+      call cursor%open(deck%cards(k), diagnostics)
+      call cursor%name('the name of kinematics', names, i)
+      if (i > 0) then
+        draft%scene%kinematics = names(i)%s
+        draft%scene%kinematics_id = i
+        draft%scene%finite = draft%kinematics(i)%finite
+      end if
+      call close_card(draft, cursor, deck%cards(k))
+    end if
+  end subroutine read_head
+
+  subroutine refuse_empty(deck, diagnostics)
+    type(deck_t), intent(in) :: deck
+    type(diagnostics_t), intent(inout) :: diagnostics
+    type(location_t) :: where
+
+    call diagnostics%register(deck%path, where%file)
+    call diagnostics%add(where, 'BLOCK', 'the deck has no body: expected a BLOCK or PL8LS card')
+  end subroutine refuse_empty
+
+  !> What is defined must be used. Words on cards that nobody knows count as uses.
+  subroutine refuse_unused_names(deck, draft, keywords, diagnostics)
+    type(deck_t), intent(in) :: deck
+    type(draft_t), intent(inout) :: draft
+    type(string_t), intent(in) :: keywords(:)
+    type(diagnostics_t), intent(inout) :: diagnostics
+    integer :: i, k, g
+
+    do i = 1, size(deck%cards)
+      do k = 1, size(keywords)
+        if (keywords(k)%s == deck%cards(i)%keyword) exit
+      end do
+      if (k <= size(keywords)) cycle
+      do k = 1, size(deck%cards(i)%head%fields)
+        associate (word => deck%cards(i)%head%fields(k)%text)
+          call draft%materials%mention(word)
+          call draft%multipliers%mention(word)
+          call draft%places%mention(word)
+        end associate
+      end do
+    end do
+    call draft%materials%refuse_unused('LAW', '', diagnostics)
+    call draft%multipliers%refuse_unused('LIC', '', diagnostics)
+    call draft%places%refuse_unused('SIDES', '', diagnostics)
+    call draft%places%refuse_unused('DIE', ': a CNT2D card must name it', diagnostics)
+    if (.not. draft%groups_sound) return
+    do k = 1, size(draft%places%words)
+      if (draft%places%keywords(k)%s /= 'DIE' .or. .not. draft%places%used(k)) cycle
+      do g = 1, size(draft%scene%groups)
+        if (draft%scene%groups(g)%die == draft%places%item(k)) exit
+      end do
+      if (g > size(draft%scene%groups)) call diagnostics%add(draft%places%where(k), 'DIE', ''''//draft%places%words(k)%s &
+                                                               //''' touches nothing: a CNT2D card must name it')
+    end do
+  end subroutine refuse_unused_names
+
+end module scene_reader

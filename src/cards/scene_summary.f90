@@ -1,0 +1,104 @@
+!> What a scene holds, in lines for people: printed by `--check` and at the start of a run.
+module scene_summary
+  use scene, only: plane_state_names, scene_t
+  use text, only: string_t, to_text
+  implicit none
+  private
+  public :: scene_lines
+
+  character(len=*), parameter :: directions(3) = ['x', 'y', 'a']
+
+contains
+
+  subroutine scene_lines(scene, lines)
+    type(scene_t), intent(in) :: scene
+    type(string_t), allocatable, intent(out) :: lines(:)
+    integer :: k
+
+    allocate (lines(0))
+    call put('scene      '//scene%title)
+    call put('           '//trim(plane_state_names(scene%plane_state))//', kinematics '//scene%kinematics//', until time ' &
+             //to_text(scene%strategy%end_time))
+    call put('nodes      '//to_text(size(scene%mesh%labels)))
+    do k = 1, size(scene%groups)
+      associate (group => scene%groups(k))
+        call put('group      '//padded(group%name, 24)//padded(to_text(size(group%connectivity, 2))//' '//group%elem, 14) &
+                 //to_text(abs(group%npoint))//trim(merge(' Lobatto', '        ', group%npoint < 0))//' points'//driven_by(k))
+      end associate
+    end do
+    do k = 1, size(scene%materials)
+      call put('law        '//padded(scene%materials(k)%name, 24)//scene%materials(k)%law)
+    end do
+    do k = 1, size(scene%dies)
+      call put('die        '//padded(scene%dies(k)%name, 24)//to_text(size(scene%dies(k)%pieces, 3))//' pieces, '//motion_of(k))
+    end do
+    do k = 1, size(scene%fixations)
+      call put('load       '//padded(scene%fixations(k)%label, 24)//to_text(size(scene%fixations(k)%nodes))//' nodes')
+    end do
+    do k = 1, size(scene%forces)
+      call put('load       '//padded('FORCE node '//to_text(scene%mesh%labels(scene%forces(k)%node))//' ' &
+                                     //directions(scene%forces(k)%component), 24) &
+               //to_text(scene%forces(k)%amplitude)//' x '//scene%multipliers(scene%forces(k)%multiplier)%name)
+    end do
+    do k = 1, size(scene%probes)
+      call put('probe      '//padded(scene%probes(k)%name, 24)//'['//scene%probes(k)%unit//']')
+    end do
+    do k = 1, size(scene%effects)
+      associate (effect => scene%effects(k))
+        if (effect%on) then
+          call put('effect     '//padded(effect%name, 14)//'on   '//effect%why//'; adds '//effect%adds)
+        else
+          call put('effect     '//padded(effect%name, 14)//'off  '//effect%why)
+        end if
+      end associate
+    end do
+
+  contains
+
+    subroutine put(s)
+      character(len=*), intent(in) :: s
+      type(string_t) :: line
+
+      line%s = s
+      lines = [lines, line]
+    end subroutine put
+
+    !> Law of a group of elements, or the multiplier of its load.
+    pure function driven_by(g) result(s)
+      integer, intent(in) :: g
+      character(len=:), allocatable :: s
+
+      s = ''
+      if (scene%groups(g)%material > 0) s = ', law '//scene%materials(scene%groups(g)%material)%name
+      if (scene%groups(g)%multiplier > 0) s = ', '//to_text(scene%groups(g)%amplitude)//' x ' &
+                                              //scene%multipliers(scene%groups(g)%multiplier)%name
+    end function driven_by
+
+    pure function motion_of(die) result(s)
+      integer, intent(in) :: die
+      character(len=:), allocatable :: s
+      integer :: i
+
+      s = ''
+      do i = 1, size(scene%die_motions)
+        associate (motion => scene%die_motions(i))
+          if (motion%die /= die) cycle
+          if (s /= '') s = s//', '
+          s = s//directions(motion%component)//' = '//to_text(motion%amplitude)//' x '//scene%multipliers(motion%multiplier)%name
+        end associate
+      end do
+      if (s == '') s = 'at rest'
+    end function motion_of
+
+  end subroutine scene_lines
+
+  !> Text with blanks up to a width, and at least one.
+  pure function padded(s, width) result(t)
+    character(len=*), intent(in) :: s
+    integer, intent(in) :: width
+    character(len=:), allocatable :: t
+
+    t = s//repeat(' ', max(1, width - len(s)))
+  end function padded
+
+end module scene_summary

@@ -1,0 +1,44 @@
+!> GLUE2D: a side that sticks to its die whatever happens: no opening, no slip.
+!>
+!> p = AKP d of either sign, dtau = AKTAU ds: sticking dies of the classic upsetting tests, and
+!> anything welded or shrunk on.
+module law_glue2d
+  use contact_penalties, only: penalty_parameters
+  use kinds, only: wp
+  use law_api, only: contact_law, contact_stick, law_line, law_t
+  use materials, only: material_t
+  implicit none
+  private
+  public :: law_glue2d_row
+
+contains
+
+  function law_glue2d_row() result(row)
+    type(law_t) :: row
+
+    row%name = 'GLUE2D'
+    row%number = 9401
+    row%kind = contact_law
+    row%purpose = 'side glued to a die: sticks, pulls and pushes'
+    row%source = 'COUL2D''s stick equations without its limits'
+    allocate (row%lines, source=[law_line(penalty_parameters(), pairs=.true.)])
+    allocate (row%history(0))
+    row%symmetric = .false.
+    row%effects = 'contact'
+    row%slide => slide
+  end function law_glue2d_row
+
+  pure subroutine slide(material, penalty, augmentation, penetration, slip, tau_committed, pressure, tau, tangent, status)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: penalty(2), augmentation, penetration, slip, tau_committed
+    real(wp), intent(out) :: pressure, tau, tangent(2, 2)
+    integer, intent(out) :: status
+
+    status = contact_stick
+    pressure = augmentation + penalty(1)*penetration
+    tau = tau_committed + penalty(2)*slip
+    tangent(:, 1) = [penalty(1), 0.0_wp]
+    tangent(:, 2) = [0.0_wp, penalty(2)]
+  end subroutine slide
+
+end module law_glue2d

@@ -1,0 +1,103 @@
+"""`lagareport DIR`: arguments -> page -> exit code."""
+import argparse
+import os
+import sys
+import tempfile
+from typing import List, NoReturn, Sequence
+
+from .contact import contact_picture
+from .curves import energy_picture, force_picture, probes_picture, seconds_picture, steps_picture
+from .errors import EXIT_DONE, EXIT_INPUT, EXIT_MACHINE, ReportError
+from .page import page
+from .pictures import (MAIN_FIELDS, Picture, fields_of, fields_picture, generations_picture, known_field, mesh_picture,
+                       series_picture)
+from .reader import Run
+from .scene_view import SceneView
+from .short import print_short
+
+EXIT_CODES = "Exit codes: 0 done, 2 no results or a damaged file, 5 the page cannot be written."
+
+
+class _Parser(argparse.ArgumentParser):
+    """Mistakes in one line, as the other programs have it."""
+
+    def error(self, message: str) -> NoReturn:
+        print(f"{self.prog}: {message}", file=sys.stderr)
+        print(f"{self.prog} --help shows how to call", file=sys.stderr)
+        sys.exit(EXIT_INPUT)
+
+
+def main(arguments: Sequence[str], version: str) -> int:
+    """Read the arguments, make the page, tell the short result."""
+    parser = _Parser("lagareport", description="The results of a run as one self-contained HTML page with pictures.",
+                     epilog=EXIT_CODES)
+    parser.add_argument("folder", metavar="DIR", help="folder of the results: what `lagamine DECK --out DIR` wrote")
+    parser.add_argument("--out", metavar="FILE", help="the page (default: DIR/report.html)")
+    parser.add_argument("--field", metavar="NAME", action="append", default=[],
+                        help="show this field large and over time, instead of the usual ones; may be repeated")
+    parser.add_argument("--png", metavar="DIR", help="write the pictures as PNG files into this folder too")
+    parser.add_argument("--mirror", action="store_true", help="axisymmetric scenes: show both halves of the section")
+    parser.add_argument("--quiet", action="store_true", help="print nothing when all goes well")
+    parser.add_argument("--version", action="version", version=f"lagareport {version}")
+    options = parser.parse_args(list(arguments))
+    try:
+        run = Run(options.folder)
+        pictures = make_pictures(run, options.field, options.mirror)
+        target = options.out or os.path.join(options.folder, "report.html")
+        write(target, page(run, pictures, version).encode("utf-8"))
+        if options.png:
+            write_pngs(options.png, pictures)
+        for picture in pictures:
+            picture.close()
+    except ReportError as error:
+        print(error, file=sys.stderr)
+        if error.advice:
+            print(error.advice, file=sys.stderr)
+        return error.code
+    if not options.quiet:
+        print_short(run)
+        print(f"  page: {target}")
+    return EXIT_DONE
+
+
+def make_pictures(run: Run, fields: Sequence[str] = (), mirror: bool = False) -> List[Picture]:
+    """All pictures that the run has something to show for, in the order of the page."""
+    view = SceneView(run, mirror)
+    names = fields_of(run)
+    chosen = [known_field(run, name) for name in dict.fromkeys(fields)] or [name for name in names if name in MAIN_FIELDS] or names[:2]
+    over_time = chosen if fields else [name for name in ("plastic_strain", "temperature") if name in names] or chosen[:1]
+    pictures = [mesh_picture(view), generations_picture(view), fields_picture(view, chosen),
+                fields_picture(view, [name for name in names if name not in chosen], "more", small=True)]
+    pictures += [series_picture(view, name) for name in over_time]
+    pictures += [force_picture(run), contact_picture(run), probes_picture(run), steps_picture(run), energy_picture(run),
+                 seconds_picture(run)]
+    return [picture for picture in pictures if picture is not None]
+
+
+def write_pngs(folder: str, pictures: Sequence[Picture]) -> None:
+    """mesh.png, fields.png, force.png ... into a folder."""
+    try:
+        os.makedirs(folder, exist_ok=True)
+    except OSError as error:
+        raise ReportError(f"{folder}: cannot be made: {error.strerror}", EXIT_MACHINE) from error
+    for picture in pictures:
+        write(os.path.join(folder, picture.name + ".png"), picture.png())
+
+
+def write(path: str, content: bytes) -> None:
+    """Write a file under a temporary name, then rename it: never half a file."""
+    temporary = None
+    try:
+        handle, temporary = tempfile.mkstemp(prefix=".lagareport-", dir=os.path.dirname(os.path.abspath(path)))
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(temporary, 0o666 & ~mask)
+        os.replace(temporary, path)
+    except OSError as error:
+        if temporary and os.path.exists(temporary):
+            os.unlink(temporary)
+        raise ReportError(f"{path}: cannot be written: {error.strerror or error}", EXIT_MACHINE) from error

@@ -1,0 +1,160 @@
+"""Curves of the history: forces, probes, steps, energies, seconds."""
+from typing import Dict, List, Optional
+
+import numpy as np
+from matplotlib import pyplot
+from matplotlib.ticker import MaxNLocator
+
+from .pictures import Picture
+from .reader import Run
+from .style import LINES, SOFT, WARN, figure
+from .tables import Column, number
+
+FIXED_COLUMNS = ["time", "step", "step_length", "iterations", "cutbacks", "strain_increment", "external_work", "elastic_energy",
+                 "plastic_work", "friction_work", "volume_drift", "max_penetration", "points_sticking", "points_slipping"]
+DIE_COLUMNS = ["force_x_", "force_y_", "moment_", "displacement_x_", "displacement_y_", "rotation_"]
+
+
+def moved(values: np.ndarray) -> float:
+    """How far a quantity went."""
+    finite = values[np.isfinite(values)]
+    return float(np.ptp(finite)) if finite.size else 0.0
+
+
+def die_abscissa(history: Dict[str, Column], die: str) -> Column:
+    """What a die's force is drawn over: its larger motion, the time when it does not move."""
+    motions = [history[f"displacement_{c}_{die}"] for c in "xy" if f"displacement_{c}_{die}" in history]
+    motions.sort(key=lambda column: -moved(column.values))
+    if motions and moved(motions[0].values) > 0:
+        return motions[0]
+    return history["time"]
+
+
+def force_picture(run: Run) -> Optional[Picture]:
+    """Force of each die over its stroke; its moment too, when it turns."""
+    history = run.history
+    dies = [die for die in run.die_names if f"force_y_{die}" in history]
+    if not dies or not len(history["time"].values):
+        return None
+    turning = {die for die in dies if moved(history[f"rotation_{die}"].values) > 0} if dies else set()
+    panels = [(die, "force") for die in dies] + [(die, "moment") for die in dies if die in turning]
+    columns = min(2, len(panels))
+    rows = -(-len(panels) // columns)
+    fig, axes = figure(rows, columns, (4.7 * columns + (1.6 if columns == 1 else 0), 3.1 * rows))
+    for panel, (die, kind) in zip(axes.flat, panels):
+        if kind == "force":
+            abscissa = die_abscissa(history, die)
+            for c, colour in (("y", LINES[0]), ("x", LINES[1])):
+                column = history[f"force_{c}_{die}"]
+                panel.plot(abscissa.values, column.values, color=colour, label=column.name)
+            panel.set_xlabel(abscissa.title)
+            panel.set_ylabel("force of the part on the die")
+            if abscissa.values[-1] < abscissa.values[0]:
+                panel.invert_xaxis()
+        else:
+            panel.plot(history[f"rotation_{die}"].values, history[f"moment_{die}"].values, color=LINES[2], label=f"moment_{die}")
+            panel.set_xlabel(history[f"rotation_{die}"].title)
+            panel.set_ylabel("moment about the pilot")
+        panel.axhline(0, color=SOFT, lw=0.7)
+        panel.set_title(f"{die}: {kind}")
+        panel.legend()
+    for panel in axes.flat[len(panels):]:
+        panel.set_visible(False)
+    words = "over the full circumference" if run.axisymmetric else "per unit of thickness"
+    return Picture("force", f"forces {words}, as the part exerts them on the die", fig, vector=True)
+
+
+def probe_columns(run: Run) -> List[Column]:
+    """Columns of the deck's PROBE cards: those that are not of the system."""
+    of_dies = {prefix + die for prefix in DIE_COLUMNS for die in run.die_names}
+    return [column for name, column in run.history.items() if name not in FIXED_COLUMNS and name not in of_dies]
+
+
+def probes_picture(run: Run) -> Optional[Picture]:
+    """What the probes read, over time."""
+    probes = probe_columns(run)
+    if not probes or not len(run.history["time"].values):
+        return None
+    columns = min(3, len(probes))
+    rows = -(-len(probes) // columns)
+    fig, axes = figure(rows, columns, (3.3 * columns + (1.2 if columns == 1 else 0), 2.4 * rows))
+    for panel, probe, colour in zip(axes.flat, probes, LINES * len(probes)):
+        panel.plot(run.history["time"].values, probe.values, color=colour)
+        panel.set_title(probe.title)
+        panel.set_xlabel("time")
+    for panel in axes.flat[len(probes):]:
+        panel.set_visible(False)
+    return Picture("probes", "what the deck's PROBE cards ask for", fig, vector=True)
+
+
+def steps_picture(run: Run) -> Optional[Picture]:
+    """Length, iterations and cutbacks of the steps."""
+    history = run.history
+    if not {"step", "step_length", "iterations", "cutbacks"} <= set(history) or not len(history["step"].values):
+        return None
+    step = history["step"].values
+    fig, axes = figure(3, 1, (9.2, 5.0), sharex=True, gridspec_kw={"height_ratios": [1.3, 1.1, 0.8]})
+    length, iterations, cuts = axes[:, 0]
+    length.step(step, history["step_length"].values, where="mid", color=LINES[0])
+    positive = history["step_length"].values[history["step_length"].values > 0]
+    if positive.size and positive.max() > 20 * positive.min():
+        length.set_yscale("log")
+    length.set_title("length of the step")
+    iterations.bar(step, history["iterations"].values, width=0.9, color="#9db8d1")
+    iterations.set_title("iterations")
+    cuts.step(step, history["cutbacks"].values, where="mid", color=WARN)
+    cuts.set_title("cutbacks so far")
+    cuts.set_ylim(bottom=0)
+    cuts.set_xlabel("step")
+    for panel in (iterations, cuts):
+        panel.yaxis.set_major_locator(MaxNLocator(4, integer=True))
+    cuts.xaxis.set_major_locator(MaxNLocator(12, integer=True))
+    return Picture("steps", "how the march in time went", fig, vector=True)
+
+
+def energy_picture(run: Run) -> Optional[Picture]:
+    """Work from outside against what became of it."""
+    history = run.history
+    names = ["elastic_energy", "plastic_work", "friction_work"]
+    if not set(names + ["external_work"]) <= set(history) or not len(history["time"].values):
+        return None
+    time, work = history["time"].values, history["external_work"].values
+    parts = [history[name].values for name in names]
+    fig, axes = figure(1, 2, (9.2, 3.3), gridspec_kw={"width_ratios": [1.5, 1]})
+    energy, rest = axes[0]
+    energy.stackplot(time, *parts, labels=["elastic", "plastic", "friction"], colors=["#a9c4de", "#efc9a6", "#b9d8c0"], lw=0)
+    energy.plot(time, work, color="black", lw=1.3, dashes=(5, 3), label="work from outside")
+    energy.set_title("energy")
+    energy.set_xlabel("time")
+    energy.legend(loc="upper left")
+    share = np.divide(work - sum(parts), np.abs(work), out=np.full(len(work), np.nan), where=np.abs(work) > 0)
+    rest.plot(time, 100 * share, color=LINES[0])
+    rest.axhspan(-2, 2, color="#e4efe6", zorder=0)
+    rest.axhline(0, color=SOFT, lw=0.7)
+    reach = np.nanpercentile(np.abs(100 * share), 90) if np.isfinite(share).any() else 0
+    rest.set_ylim(-max(4, 1.3 * reach), max(4, 1.3 * reach))
+    rest.set_title("neither stored nor dissipated [% of the work]")
+    rest.set_xlabel("time")
+    return Picture("energy", "work from outside against elastic energy, plastic and friction work; shaded: within 2 %", fig, vector=True)
+
+
+def seconds_picture(run: Run) -> Optional[Picture]:
+    """Where the time went: effects and tasks."""
+    seconds = {name: number(value) for name, value in run.summary["seconds"].items()}
+    seconds = {name: value for name, value in seconds.items() if value > 0}
+    if not seconds:
+        return None
+    names = sorted(seconds, key=lambda name: seconds[name])
+    fig, axes = pyplot.subplots(figsize=(9.2, 0.55 + 0.3 * len(names)), layout="constrained")
+    effects = run.summary["effects"]
+    colours = [LINES[0] if name in effects else "#9fb0bf" for name in names]
+    axes.barh(names, [seconds[name] for name in names], color=colours, height=0.66)
+    wall = number(run.summary.get("wall_s"))
+    for k, name in enumerate(names):
+        share = f"  {seconds[name]:.3g} s" + (f", {100 * seconds[name] / wall:.0f} %" if wall > 0 else "")
+        axes.text(seconds[name], k, share, va="center", fontsize=8.5, color=SOFT)
+    axes.set_xlim(0, 1.18 * max(seconds.values()))
+    axes.grid(False, axis="y")
+    axes.tick_params(axis="y", length=0, labelsize=9.5, labelcolor="#22303c")
+    axes.set_xlabel("seconds on the wall (blue: effects of the scene; grey: tasks of the solver)")
+    return Picture("seconds", "where the time went; an entry may lie inside another", fig, vector=True)

@@ -1,0 +1,185 @@
+"""The page: one HTML file with everything in it, which asks nothing of the network."""
+import html
+import os
+from typing import Dict, Iterable, List, Sequence, Tuple
+
+from .pictures import Picture
+from .reader import Run
+from .short import Check, checks, command
+from .style import brief
+from .tables import number
+
+# Sections in reading order: anchor, heading, pictures by name.
+SECTIONS: List[Tuple[str, str, Sequence[str]]] = [
+    ("shape", "Shape and mesh", ("mesh", "meshes")),
+    ("fields", "Fields at the end", ("fields", "more")),
+    ("series", "Fields over time", ("series",)),
+    ("forces", "Forces on the dies", ("force",)),
+    ("contact", "Contact", ("contact",)),
+    ("probes", "Probes", ("probes",)),
+    ("march", "Steps and iterations", ("steps",)),
+    ("energy", "Energies", ("energy",)),
+    ("seconds", "Seconds", ("seconds",)),
+]
+LONGEST_LIST = 40
+
+
+def escape(value) -> str:
+    return html.escape(str(value), quote=True)
+
+
+def page(run: Run, pictures: Sequence[Picture], version: str) -> str:
+    """The whole page as text."""
+    judged = checks(run)
+    body = _sections(pictures) + _checks(judged) + _effects(run) + _notes(run) + _origin(run)
+    links = "".join(f'<a href="#{anchor}">{escape(heading)}</a>' for anchor, heading, _ in body)
+    sections = "\n".join(f'<section id="{anchor}">\n<h2>{escape(heading)}</h2>\n{content}\n</section>'
+                         for anchor, heading, content in body)
+    with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "page.css"), encoding="utf-8") as file:
+        style = file.read()
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{escape(run.title)}</title>
+<style>
+{style}</style>
+</head>
+<body>
+<header>
+<h1>{escape(run.title)}</h1>
+{_status(run)}
+{_tiles(run)}
+{_alerts(run, judged)}
+<nav>{links}</nav>
+</header>
+<main>
+{sections}
+</main>
+<footer>lagareport {escape(version)}, from {escape(os.path.basename(os.path.abspath(run.folder)))}/ of
+{escape(run.summary.get('program', 'lagamine'))} {escape(run.summary.get('version', ''))}. Lengths, forces and stresses are in the units of the
+deck.</footer>
+</body>
+</html>
+"""
+
+
+def _status(run: Run) -> str:
+    s = run.summary
+    done = s.get("exit_code", 0) == 0
+    reason = s.get("stop_reason") or ""
+    code = "" if done else f'<span>exit code {escape(s.get("exit_code"))}</span>'
+    return (f'<p class="reason"><span class="status{"" if done else " stopped"}">{escape(s["status"])}</span>'
+            f'<span>{escape(reason)}</span>{code}</p>')
+
+
+def _tiles(run: Run) -> str:
+    s = run.summary
+    tiles = [(brief(number(s.get("time"))), f"time reached, of {brief(number(s.get('end_time')))}")]
+    for key, word in (("steps", "steps"), ("iterations", "iterations"), ("cutbacks", "cutbacks"), ("remeshings", "remeshings"),
+                      ("elements", "elements"), ("dofs", "equations")):
+        if key in s:
+            tiles.append((brief(number(s[key]), 9), word))
+    for die in run.die_names:
+        columns = [run.history[name] for name in (f"force_y_{die}", f"force_x_{die}") if name in run.history]
+        columns = [column for column in columns if len(column.values)]
+        if columns:
+            column = max(columns, key=lambda column: abs(column.values).max())
+            tiles.append((brief(column.values[abs(column.values).argmax()]), f"largest {column.name}"))
+    for field in ("plastic_strain", "mises"):
+        if field in run.names(run.steps[-1], "node"):
+            tiles.append((brief(float(run.nodal(run.steps[-1], field).max())), f"largest {field} at the nodes, at the end"))
+    tiles.append((f"{brief(number(s.get('wall_s')), 3)} s", f"on the wall, {escape(s.get('threads', '?'))} threads"))
+    if "peak_rss_mb" in s:
+        tiles.append((f"{brief(number(s['peak_rss_mb']), 3)} MB", "memory at its peak"))
+    return '<div class="tiles">' + "".join(f'<div class="tile"><b>{escape(value)}</b><span>{escape(word)}</span></div>'
+                                           for value, word in tiles) + "</div>"
+
+
+def _alerts(run: Run, judged: Iterable[Check]) -> str:
+    lines = [f"<b>{escape(check.name)}</b> {escape(check.found)}, allowed {escape(check.allowed)}: {escape(check.advice)}"
+             for check in judged if check.good is False]
+    if run.summary.get("exit_code", 0) != 0:
+        lines.insert(0, f"<b>The run did not reach its end:</b> {escape(run.summary.get('stop_reason', ''))}")
+    if not lines:
+        return ""
+    return '<div class="alerts" role="note">' + "".join(f"<p>{line}</p>" for line in lines) + "</div>"
+
+
+def _sections(pictures: Sequence[Picture]) -> List[Tuple[str, str, str]]:
+    """Pictures under their headings; a heading without pictures is left out."""
+    by_name: Dict[str, Picture] = {picture.name: picture for picture in pictures}
+    result = []
+    for anchor, heading, names in SECTIONS:
+        own = [by_name[name] for name in names if name in by_name]
+        if anchor == "series":
+            own += [picture for picture in pictures if picture.name.startswith("series_")]
+        parts = [figure(picture, heading) for picture in own]
+        if own:
+            result.append((anchor, heading, "\n".join(parts)))
+    return result
+
+
+def figure(picture: Picture, heading: str) -> str:
+    return (f'<figure><img alt="{escape(picture.heading or heading)}: {escape(picture.caption)}" src="{picture.data_uri()}">'
+            f"<figcaption>{escape(picture.caption)}</figcaption></figure>")
+
+
+def table(head: Sequence[str], rows: Iterable[Tuple[str, Sequence[str]]]) -> str:
+    """Cells are HTML already; each row comes with its class."""
+    text = "".join(f"<th>{escape(cell)}</th>" for cell in head)
+    lines = [f"<table><thead><tr>{text}</tr></thead><tbody>"]
+    for look, cells in rows:
+        lines.append(f'<tr{f" class={chr(34)}{look}{chr(34)}" if look else ""}>' + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
+    return "\n".join(lines + ["</tbody></table>"])
+
+
+def _checks(judged: Sequence[Check]) -> List[Tuple[str, str, str]]:
+    if not judged:
+        return []
+    marks = {True: '<span class="good">✓ holds</span>', False: '<span class="bad">! warning</span>', None: ""}
+    rows = [("bad" if check.good is False else "",
+             (escape(check.name), escape(check.found), escape(check.allowed), marks[check.good], escape(check.advice)))
+            for check in judged]
+    return [("checks", "Checks", table(("check", "found", "allowed", "", "what to do"), rows))]
+
+
+def _effects(run: Run) -> List[Tuple[str, str, str]]:
+    if not run.summary["effects"]:
+        return []
+    rows = []
+    for name, effect in run.summary["effects"].items():
+        calls, seconds = number(effect.get("calls", 0)), number(effect.get("wall_s", 0))
+        cost = f"{brief(seconds, 3)} s in {brief(calls, 9)} calls" if calls > 0 else ""
+        rows.append(("" if effect.get("on") else "off", (f"<b>{escape(name)}</b>" if effect.get("on") else escape(name),
+                     "on" if effect.get("on") else "off", escape(effect.get("why", "")), escape(effect.get("adds", "")), cost)))
+    return [("effects", "Effects", table(("effect", "", "why", "adds", "cost"), rows))]
+
+
+def _notes(run: Run) -> List[Tuple[str, str, str]]:
+    parts = []
+    for kind, heading in (("warnings", "Warnings"), ("cuts", "Steps that were cut")):
+        lines = run.notes[kind]
+        if not lines:
+            continue
+        text = "\n".join(escape(line) for line in lines[:LONGEST_LIST])
+        more = ""
+        if len(lines) > LONGEST_LIST:
+            rest = "\n".join(escape(line) for line in lines[LONGEST_LIST:])
+            more = f"<details><summary>{len(lines) - LONGEST_LIST} more</summary><pre>{rest}</pre></details>"
+        parts.append(f"<h3>{heading}: {len(lines)}</h3>\n<pre>{text}</pre>{more}")
+    if not parts:
+        parts = ["<p>No warnings, no cuts.</p>"]
+    return [("notes", "From the listing", "\n".join(parts))]
+
+
+def _origin(run: Run) -> List[Tuple[str, str, str]]:
+    s = run.summary
+    rows = [("", ("deck", f"<code>{escape(s['deck'])}</code>")),
+            ("", ("SHA-256 of the deck", f"<code>{escape(s.get('deck_sha256', 'not told'))}</code>")),
+            ("", ("program", escape(f"{s.get('program', 'lagamine')} {s.get('version', '')}"))),
+            ("", ("fields", "<br>".join(f"<code>{escape(os.path.basename(generation.path))}</code> {len(generation.steps)} saved "
+                                        f"steps, {len(generation.topology)} elements" for generation in run.generations)))]
+    return [("origin", "To make it again", f"<pre>{escape(command(run))}</pre>\n" + table(("", ""), rows))]

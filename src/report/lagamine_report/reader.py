@@ -1,0 +1,216 @@
+"""A run's folder: its texts at once, its fields when they are asked for."""
+import glob
+import os
+import re
+from dataclasses import dataclass, field
+from typing import Dict, List, Optional, Tuple
+
+import h5py
+import numpy as np
+
+from .errors import ReportError
+from .tables import read_history, read_notes, read_summary
+
+AXISYMMETRIC = 2
+
+
+@dataclass
+class Group:
+    """Elements of one kind: name, LAGAMINE's element name, nodes from 0, points of a side (negative: Lobatto)."""
+
+    number: str
+    name: str
+    elem: str
+    connectivity: np.ndarray
+    npoint: int = 0
+
+
+@dataclass
+class Step:
+    """A saved instant, and where it is kept."""
+
+    generation: "Generation"
+    place: str
+    number: int
+    time: float
+
+
+@dataclass
+class Generation:
+    """One mesh generation: NAME.gNN.h5. Coordinates (node, 2), topology (element, 8), pieces (piece, 3, 2)."""
+
+    path: str
+    number: int
+    title: str
+    plane_state: int
+    coordinates: np.ndarray
+    topology: np.ndarray
+    groups: List[Group]
+    dies: Dict[str, np.ndarray]
+    die_order: Dict[str, int]
+    steps: List[Step] = field(default_factory=list)
+
+
+class Run:
+    """Results in a folder. Everything that is missing or damaged is refused by name (ReportError)."""
+
+    def __init__(self, folder: str) -> None:
+        if not os.path.isdir(folder):
+            raise ReportError(f"{folder}: no such folder")
+        self.folder = folder
+        if not os.path.exists(os.path.join(folder, "summary.json")):
+            advice = "give the folder that `lagamine DECK --out DIR` has written; a run writes its summary when it ends"
+            raise ReportError(f"{os.path.join(folder, 'summary.json')}: missing: no results of a finished run here", advice=advice)
+        self.summary = read_summary(os.path.join(folder, "summary.json"))
+        self.name = os.path.splitext(os.path.basename(self.summary["deck"]))[0]
+        self.history = read_history(os.path.join(folder, "history.csv"))
+        self.notes = read_notes(os.path.join(folder, self.name + ".log"))
+        self.generations = [read_generation(path) for path in self._generation_files()]
+        self.steps = [step for generation in self.generations for step in generation.steps]
+        if not self.steps:
+            raise ReportError(f"{self.generations[0].path}: no saved steps")
+        self.die_names = self._order_dies()
+
+    def _generation_files(self) -> List[str]:
+        """NAME.g01.h5, NAME.g02.h5 ... without a gap."""
+        stem = os.path.join(self.folder, self.name)
+        found = {}
+        for path in glob.glob(glob.escape(stem) + ".g*.h5"):
+            match = re.fullmatch(re.escape(stem) + r"\.g(\d+)\.h5", path)
+            if match:
+                found[int(match.group(1))] = path
+        if not found:
+            raise ReportError(f"{stem}.g01.h5: missing")
+        for number in range(min(found), max(found) + 1):
+            if number not in found:
+                raise ReportError(f"{stem}.g{number:02d}.h5: missing, though there is {os.path.basename(found[max(found)])}")
+        return [found[number] for number in sorted(found)]
+
+    def _order_dies(self) -> List[str]:
+        """Dies in the order of the pilots: the deck's, which the columns of the history keep (HDF5 sorts names)."""
+        names = list(self.generations[-1].dies)
+        order = self.generations[-1].die_order
+        if len(order) == len(names):
+            return sorted(names, key=lambda name: order[name])
+        columns = [column[len("force_x_"):] for column in self.history if column.startswith("force_x_")]
+        return [name for name in columns if name in names] + [name for name in names if name not in columns]
+
+    @property
+    def axisymmetric(self) -> bool:
+        return self.generations[0].plane_state == AXISYMMETRIC
+
+    @property
+    def title(self) -> str:
+        return self.summary.get("title") or self.generations[0].title or self.name
+
+    def read(self, step: Step, dataset: str) -> np.ndarray:
+        """A dataset of a saved step."""
+        return _in_file(step.generation.path, lambda file: _dataset(file, f"{step.place}/{dataset}"))
+
+    def names(self, step: Step, group: str) -> List[str]:
+        """Names of what a group of a saved step holds; empty when there is none."""
+        return _in_file(step.generation.path, lambda file: list(file[f"{step.place}/{group}"])
+                        if f"{step.place}/{group}" in file else [])
+
+    def coordinates(self, step: Step) -> np.ndarray:
+        """Where the nodes are at a saved step (node, 2)."""
+        x = self.read(step, "coordinates")
+        if x.shape != step.generation.coordinates.shape or not np.isfinite(x).all():
+            raise ReportError(f"{step.generation.path}: damaged: '{step.place}/coordinates' does not fit the mesh")
+        return x
+
+    def nodal(self, step: Step, name: str) -> np.ndarray:
+        """A field at the nodes; of a vector, its length."""
+        values = self.read(step, f"node/{name}")
+        if len(values) != len(step.generation.coordinates):
+            raise ReportError(f"{step.generation.path}: damaged: '{step.place}/node/{name}' has {len(values)} rows, "
+                              f"the mesh {len(step.generation.coordinates)} nodes")
+        return np.sqrt((values**2).sum(axis=1)) if values.ndim == 2 else values
+
+    def points(self, step: Step, group: Group) -> Optional[Tuple[List[str], np.ndarray]]:
+        """Component names and state (element, point, component) of a group, None when it has none."""
+        if "state" not in self.names(step, f"points/{group.number}"):
+            return None
+        state = self.read(step, f"points/{group.number}/state")
+        names = [_text(name) for name in self.read(step, f"points/{group.number}/components")]
+        if state.ndim != 3 or state.shape[2] != len(names) or state.shape[0] != len(group.connectivity):
+            raise ReportError(f"{step.generation.path}: damaged: '{step.place}/points/{group.number}/state' "
+                              "does not fit its components and elements")
+        return names, state
+
+    def pilots(self, step: Step) -> Dict[str, np.ndarray]:
+        """Position (x, y, angle) of every die at a saved step."""
+        if not self.die_names:
+            return {}
+        pilots = self.read(step, "pilots")
+        if pilots.shape != (len(self.die_names), 3):
+            raise ReportError(f"{step.generation.path}: damaged: '{step.place}/pilots' does not fit {len(self.die_names)} dies")
+        return dict(zip(self.die_names, pilots))
+
+
+def read_generation(path: str) -> Generation:
+    """Mesh, groups, dies and the list of saved steps of one file."""
+    return _in_file(path, lambda file: _generation(path, file))
+
+
+def _in_file(path: str, action):
+    """Do something with an open HDF5 file; its failures name the file."""
+    try:
+        with h5py.File(path, "r") as file:
+            return action(file)
+    except ReportError as error:
+        raise ReportError(f"{path}: {error}", error.code) from error
+    except (OSError, KeyError, RuntimeError, ValueError) as error:
+        if not os.path.exists(path):
+            raise ReportError(f"{path}: missing") from error
+        raise ReportError(f"{path}: damaged or not of this system: {str(error).splitlines()[0].strip(chr(34))}") from error
+
+
+def _dataset(file: h5py.File, place: str) -> np.ndarray:
+    if place not in file:
+        raise ReportError(f"damaged: '{place}' is missing")
+    return file[place][()]
+
+
+def _attribute(item, name: str, default=None):
+    if name not in item.attrs:
+        if default is None:
+            raise ReportError(f"damaged: attribute '{name}' of '{item.name}' is missing")
+        return default
+    value = item.attrs[name]
+    return _text(value) if isinstance(value, (bytes, str, h5py.Empty)) else value
+
+
+def _text(value) -> str:
+    """Text of an attribute or a word of a dataset."""
+    if isinstance(value, h5py.Empty):
+        return ""
+    return value.decode("utf-8", "replace").rstrip("\0 ") if isinstance(value, bytes) else str(value)
+
+
+def _generation(path: str, file: h5py.File) -> Generation:
+    coordinates = _dataset(file, "mesh/coordinates")
+    topology = _dataset(file, "mesh/topology").astype(int)
+    if coordinates.ndim != 2 or coordinates.shape[1] != 2 or not np.isfinite(coordinates).all():
+        raise ReportError("damaged: 'mesh/coordinates' are not two finite numbers a node")
+    if topology.ndim != 2 or topology.shape[1] != 8 or not len(topology):
+        raise ReportError("damaged: 'mesh/topology' holds no 8-node elements")
+    groups = []
+    for number in sorted(file.get("mesh/groups", {}), key=int):
+        item = file[f"mesh/groups/{number}"]
+        nodes = _dataset(file, f"mesh/groups/{number}/connectivity").astype(int)
+        groups.append(Group(number, _attribute(item, "name"), _attribute(item, "elem"), nodes, int(_attribute(item, "npoint", 0))))
+    for nodes in [topology] + [group.connectivity for group in groups]:
+        if nodes.size and (nodes.min() < 0 or nodes.max() >= len(coordinates)):
+            raise ReportError("damaged: an element has a node that does not exist")
+    dies, order = {}, {}
+    for name, item in file.get("dies", {}).items():
+        dies[name] = item[()].reshape(-1, 3, 2)
+        if "number" in item.attrs:
+            order[name] = int(item.attrs["number"])
+    generation = Generation(path, int(_attribute(file, "generation")), _attribute(file, "title", "") or "",
+                            int(_attribute(file, "plane_state")), coordinates, topology, groups, dies, order)
+    for name in sorted(file.get("steps", {})):
+        item = file[f"steps/{name}"]
+        generation.steps.append(Step(generation, f"steps/{name}", int(_attribute(item, "step")), float(_attribute(item, "time"))))
+    return generation

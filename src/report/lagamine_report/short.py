@@ -1,0 +1,103 @@
+"""What a run came to, judged and told in a few lines."""
+import sys
+from dataclasses import dataclass
+from typing import List, Optional, TextIO, Union
+
+from .reader import Run
+from .style import brief
+from .tables import number
+
+# Above these the page warns: shares of the work and of the volume, and what a sound linear solution leaves.
+ENERGY_IMBALANCE, VOLUME_DRIFT, LINEAR_RESIDUAL = 0.02, 0.01, 1e-10
+
+
+@dataclass
+class Check:
+    """A check: what was found, what is allowed, whether it holds (None: nothing to hold it against), what to do."""
+
+    name: str
+    found: str
+    allowed: str
+    good: Optional[bool]
+    advice: str = ""
+
+
+def percent(value: float) -> str:
+    return f"{brief(100 * value, 3)} %"
+
+
+def checks(run: Run) -> List[Check]:
+    """The checks in summary.json, held against what is allowed."""
+    given = run.summary["checks"]
+    values = {name: number(value) for name, value in given.items()}
+    result = []
+
+    def within(name: str, title: str, limit: float, shown, advice: str) -> None:
+        if name in given:
+            good = abs(values[name]) <= limit
+            result.append(Check(title, shown(values[name]), shown(limit), good, "" if good else advice))
+
+    if "max_penetration" in given:
+        allowed = values.get("allowed_penetration")
+        good = None if allowed is None else values["max_penetration"] <= allowed
+        result.append(Check("largest penetration", brief(values["max_penetration"], 3), "–" if allowed is None else brief(allowed, 3),
+                            good, "ask for AUGMENT, or a smaller PENETR, in the contact law" if good is False else ""))
+    within("energy_imbalance", "energy imbalance", ENERGY_IMBALANCE, percent, "take smaller steps (STRAT) and compare")
+    within("volume_drift", "volume drift", VOLUME_DRIFT, percent, "look for large elastic volume changes or distorted elements")
+    within("worst_linear_residual", "worst linear residual", LINEAR_RESIDUAL, lambda value: brief(value, 2),
+           "the equations are badly scaled or nearly singular: look at the supports")
+    if "least_dissipation" in given:
+        slack = 1e-12 * max(abs(number(run.summary["energy"].get("external_work", 0))), 1e-300)
+        good = values["least_dissipation"] >= -slack
+        result.append(Check("least friction work of a step", brief(values["least_dissipation"], 3), "not negative", good,
+                            "" if good else "friction gave energy back: report it with the deck"))
+    known = {"max_penetration", "allowed_penetration", "energy_imbalance", "volume_drift", "worst_linear_residual", "least_dissipation"}
+    for name in given:
+        if name not in known:
+            result.append(Check(name.replace("_", " "), brief(values[name], 4), "–", None))
+    return result
+
+
+def command(run: Run) -> str:
+    """The command that makes these results again."""
+    given = run.summary.get("command")
+    if isinstance(given, str) and given:
+        return given
+    words = ["lagamine", run.summary["deck"], "--out", run.folder.rstrip("/") or "/"]
+    if isinstance(run.summary.get("parameters"), dict):
+        words += [f"-p {name}={value}" for name, value in run.summary["parameters"].items()]
+    return " ".join(words)
+
+
+def headline(run: Run) -> str:
+    """`done: end of the scene`."""
+    reason = run.summary.get("stop_reason") or ""
+    return run.summary["status"] + (f": {reason}" if reason else "")
+
+
+def short_lines(run: Run) -> List[str]:
+    """The result in a few lines for a terminal."""
+    s = run.summary
+    lines = [run.title, headline(run),
+             f"  time {brief(number(s.get('time')))} of {brief(number(s.get('end_time')))}, {s.get('steps', '?')} steps, "
+             f"{s.get('iterations', '?')} iterations, {s.get('cutbacks', '?')} cutbacks, {s.get('remeshings', 0)} remeshings",
+             f"  {s.get('elements', '?')} elements, {s.get('dofs', '?')} equations, {brief(number(s.get('wall_s')), 3)} s"]
+    for die in run.die_names:
+        for axis in "yx":
+            force = run.history.get(f"force_{axis}_{die}")
+            if force is not None and len(force.values) and abs(force.values).max() > 0:
+                worst = force.values[abs(force.values).argmax()]
+                lines.append(f"  {force.name}: last {brief(force.values[-1])}, largest {brief(worst)}")
+                break
+    for check in checks(run):
+        if check.good is False:
+            lines.append(f"  WARNING: {check.name} {check.found}, allowed {check.allowed}: {check.advice}")
+    return lines
+
+
+def print_short(run: Union[Run, str], file: Optional[TextIO] = None) -> None:
+    """Print the short result of a run, or of the folder it is in."""
+    if isinstance(run, str):
+        run = Run(run)
+    for line in short_lines(run):
+        print(line, file=file or sys.stdout)

@@ -1,0 +1,73 @@
+"""One look for all pictures: colours, fonts, names of fields as people say them."""
+import math
+from typing import Tuple
+
+import matplotlib
+
+matplotlib.use("Agg")
+from matplotlib import pyplot  # noqa: E402  (the backend comes first)
+
+INK, SOFT, FAINT = "#22303c", "#6b7a88", "#d5dce2"
+BODIES = ["#dbe6f0", "#efe4d4", "#dfeadb", "#eadfec"]
+DIE_FILL, DIE_LINE = "#c3c9cf", "#4a5560"
+LINES = ["#1f5f99", "#c8562c", "#3b8a5a", "#8a5aa8", "#b08a1e", "#4f9aa8", "#a8415b", "#6b7a88"]
+GOOD, WARN = "#2e7d4f", "#b3541e"
+POSITIVE, SIGNED = "viridis", "RdBu_r"
+
+matplotlib.rcParams.update({
+    "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 9.5,
+    "axes.titlesize": 10.5, "axes.titleweight": "bold", "axes.titlelocation": "left", "axes.titlecolor": INK,
+    "axes.labelsize": 9.5, "axes.labelcolor": INK, "axes.edgecolor": SOFT, "axes.linewidth": 0.8, "axes.axisbelow": True,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.formatter.useoffset": False,
+    "axes.formatter.limits": (-4, 5), "axes.formatter.use_mathtext": True, "axes.unicode_minus": True,
+    "grid.color": FAINT, "grid.linewidth": 0.7, "xtick.color": SOFT, "ytick.color": SOFT,
+    "xtick.labelsize": 8.5, "ytick.labelsize": 8.5, "text.color": INK, "legend.frameon": False, "legend.fontsize": 8.5,
+    "lines.linewidth": 1.7, "lines.solid_capstyle": "round", "figure.facecolor": "white", "savefig.facecolor": "white",
+    "axes.prop_cycle": matplotlib.cycler(color=LINES), "svg.hashsalt": "lagareport", "svg.fonttype": "path",
+    "figure.max_open_warning": 0,
+})
+
+DIRECTIONS = {"xx": ("xx", "radial"), "yy": ("yy", "axial"), "xy": ("xy", "shear"), "zz": ("zz", "hoop")}
+WORDS = {"mises": "von Mises stress", "plastic_strain": "equivalent plastic strain", "plastic_work": "plastic work per volume",
+         "displacement": "displacement (length)", "applied_force": "applied force at nodes", "temperature": "temperature"}
+# Fields that cannot be negative: what a fit through integration points leaves below 0 is not shown as a colour.
+NOT_NEGATIVE = {"mises", "plastic_strain", "plastic_work", "displacement", "applied_force"}
+
+
+def field_title(name: str, axisymmetric: bool = False) -> str:
+    """`stress_xx` as `stress xx (radial)`, `plastic_strain` as `equivalent plastic strain`."""
+    if name in WORDS:
+        return WORDS[name]
+    base, _, suffix = name.rpartition("_")
+    if base and suffix in DIRECTIONS:
+        plain, round_axis = DIRECTIONS[suffix]
+        return f"{base.replace('_', ' ')} {plain}" + (f" ({round_axis})" if axisymmetric else "")
+    return name.replace("_", " ")
+
+
+def brief(value: float, digits: int = 4) -> str:
+    """A number as one reads it: 1 234 567 stays whole, 1.2e-07 stays short."""
+    if not math.isfinite(value):
+        return "not a number" if math.isnan(value) else ("∞" if value > 0 else "−∞")
+    if value == 0:
+        return "0"
+    if 1e-3 <= abs(value) < 1e7:
+        decimals = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
+        text = f"{value:,.{decimals}f}".replace(",", "\u202f")
+        text = text.rstrip("0").rstrip(".") if "." in text else text
+    else:
+        mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
+        text = f"{mantissa.rstrip('0').rstrip('.')}e{int(exponent)}"
+    return text.replace("-", "−")
+
+
+def figure(rows: int, columns: int, size: Tuple[float, float], **options):
+    """A figure with axes (rows, columns) that leaves no holes."""
+    fig, axes = pyplot.subplots(rows, columns, figsize=size, squeeze=False, layout="constrained", **options)
+    return fig, axes
+
+
+def panel_size(width: float, height: float, widest: float, highest: float) -> Tuple[float, float]:
+    """Inches for a drawing of this width and height, inside a box of inches."""
+    scale = min(widest / max(width, 1e-300), highest / max(height, 1e-300))
+    return max(width * scale, 1.2), max(height * scale, 0.8)

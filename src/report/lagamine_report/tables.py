@@ -1,0 +1,100 @@
+"""The files of a run that are text: summary.json, history.csv and the listing."""
+import csv
+import json
+import math
+from dataclasses import dataclass
+from typing import Any, Dict, List
+
+import numpy as np
+
+from .errors import ReportError
+
+
+@dataclass
+class Column:
+    """A column of the history: `name [unit]` and its numbers, one per accepted step."""
+
+    name: str
+    unit: str
+    values: np.ndarray
+
+    @property
+    def title(self) -> str:
+        """Name and unit as an axis shows them."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+def read_text(path: str) -> str:
+    """Text of a file. What is not UTF-8 (a title in an old deck) is read as Latin-1."""
+    try:
+        with open(path, "rb") as file:
+            raw = file.read()
+    except OSError as error:
+        raise ReportError(f"{path}: {missing_or(error)}") from error
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError:
+        return raw.decode("latin-1")
+
+
+def missing_or(error: OSError) -> str:
+    """Why a file could not be read, in words."""
+    return "missing" if isinstance(error, FileNotFoundError) else f"cannot be read: {error.strerror or error}"
+
+
+def read_summary(path: str) -> Dict[str, Any]:
+    """The object in summary.json, with the entries that the page cannot do without."""
+    try:
+        summary = json.loads(read_text(path))
+    except ValueError as error:
+        raise ReportError(f"{path}: damaged: not JSON: {error}") from error
+    if not isinstance(summary, dict):
+        raise ReportError(f"{path}: damaged: an object was expected")
+    for name in ("deck", "status"):
+        if not isinstance(summary.get(name), str):
+            raise ReportError(f"{path}: damaged: '{name}' is missing or not a text")
+    for name in ("effects", "seconds", "checks", "energy"):
+        if not isinstance(summary.setdefault(name, {}), dict):
+            raise ReportError(f"{path}: damaged: '{name}' is not an object")
+    for name, effect in summary["effects"].items():
+        if not isinstance(effect, dict):
+            raise ReportError(f"{path}: damaged: effect '{name}' is not an object")
+    return summary
+
+
+def read_history(path: str) -> Dict[str, Column]:
+    """Columns of history.csv by name, in the order of the file."""
+    rows = list(csv.reader(read_text(path).splitlines()))
+    if not rows or not rows[0] or not rows[0][0].startswith("time"):
+        raise ReportError(f"{path}: damaged: no header that begins with 'time'")
+    numbers = np.empty((len(rows) - 1, len(rows[0])))
+    for line, row in enumerate(rows[1:], start=2):
+        if len(row) != len(rows[0]):
+            raise ReportError(f"{path}:{line}: damaged: {len(row)} cells, {len(rows[0])} expected")
+        try:
+            numbers[line - 2] = [float(cell) for cell in row]
+        except ValueError as error:
+            raise ReportError(f"{path}:{line}: damaged: {error}") from error
+    columns: Dict[str, Column] = {}
+    for k, title in enumerate(rows[0]):
+        name, _, unit = title.partition(" [")
+        columns[name.strip()] = Column(name.strip(), unit.rstrip("] "), numbers[:, k])
+    return columns
+
+
+def read_notes(path: str) -> Dict[str, List[str]]:
+    """From the listing: the steps that were cut, and its warnings."""
+    notes: Dict[str, List[str]] = {"cuts": [], "warnings": []}
+    for line in read_text(path).splitlines():
+        if line.startswith("cut:"):
+            notes["cuts"].append(line[4:].strip())
+        elif "WARNING" in line or line.lower().startswith("warning:"):
+            notes["warnings"].append(line.strip())
+    return notes
+
+
+def number(value: Any) -> float:
+    """A JSON number; NaN for what is none (the solver writes NaN and infinity as null)."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return math.nan
+    return float(value)
