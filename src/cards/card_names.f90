@@ -18,7 +18,7 @@ module card_names
     type(string_t), allocatable :: words(:)
     !> Keyword of the card that defines it, and its place.
     type(string_t), allocatable :: keywords(:)
-    type(location_t), allocatable :: where(:)
+    type(location_t), allocatable :: location(:)
     !> Place of the thing named in a list of the scene.
     integer, allocatable :: item(:)
     logical, allocatable :: used(:)
@@ -35,8 +35,8 @@ contains
   subroutine clear(self)
     class(names_t), intent(inout) :: self
 
-    if (allocated(self%words)) deallocate (self%words, self%keywords, self%where, self%item, self%used)
-    allocate (self%words(0), self%keywords(0), self%where(0), self%item(0), self%used(0))
+    if (allocated(self%words)) deallocate (self%words, self%keywords, self%location, self%item, self%used)
+    allocate (self%words(0), self%keywords(0), self%location(0), self%item(0), self%used(0))
   end subroutine clear
 
   !> Read a new name. After a mistake (no name, or one that exists) nothing is added and `word` is empty.
@@ -59,7 +59,7 @@ contains
     end if
     do k = 1, size(self%words)
       if (self%words(k)%s == word) call cursor%fail('the name '''//word//''' is taken by the '//self%keywords(k)%s//' at ' &
-                                                    //diagnostics%place(self%where(k)))
+                                                    //diagnostics%place(self%location(k)))
     end do
     if (cursor%failed()) then
       word = ''
@@ -69,7 +69,7 @@ contains
     entry_keyword%s = keyword
     self%words = [self%words, entry_word]
     self%keywords = [self%keywords, entry_keyword]
-    self%where = [self%where, cursor%where()]
+    self%location = [self%location, cursor%where()]
     self%item = [self%item, item]
     self%used = [self%used, .false.]
   end subroutine define
@@ -112,7 +112,7 @@ contains
 
     do k = 1, size(self%words)
       if (self%used(k) .or. self%keywords(k)%s /= keyword) cycle
-      call diagnostics%add(self%where(k), keyword, ''''//self%words(k)%s//''' is defined and never used'//advice)
+      call diagnostics%add(self%location(k), keyword, ''''//self%words(k)%s//''' is defined and never used'//advice)
     end do
   end subroutine refuse_unused
 

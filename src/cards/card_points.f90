@@ -7,8 +7,8 @@ module card_points
   private
   public :: read_xy
 
-  !> Further out products of four lengths overflow.
-  real(wp), parameter :: farthest = 1.0e50_wp
+  !> Beyond these, products of four lengths overflow or vanish.
+  real(wp), parameter :: farthest = 1.0e50_wp, nearest = 1.0e-50_wp
 
 contains
 
@@ -24,6 +24,8 @@ contains
       call cursor%real(names(c)//' of '//of, x(c), unit='length')
       if (abs(x(c)) > farthest) then
         call cursor%fail(names(c)//' of '//of//' is too large: '//to_text(x(c)))
+        x(c) = 0
+      else if (abs(x(c)) < nearest) then
         x(c) = 0
       end if
     end do

@@ -17,6 +17,8 @@ module cards_blocks
 
   !> Both ends of an arc are equally far from its centre, to this share of the radius.
   real(wp), parameter :: radius_tolerance = 1.0e-9_wp
+  !> A side shorter than this share of the block is none.
+  real(wp), parameter :: least_side = 1.0e-9_wp
   !> Nodes of joined sides coincide, to this share of the side's length.
   real(wp), parameter :: join_tolerance = 1.0e-6_wp
   !> Half a turn: which way round is not told by the centre (round-off of the angle).
@@ -63,6 +65,7 @@ contains
   subroutine read_corners(cursor, block)
     type(cursor_t), intent(inout) :: cursor
     type(block_t), intent(out) :: block
+    real(wp) :: extent
     integer :: k
 
     call cursor%next_row('the four corners')
@@ -70,6 +73,11 @@ contains
       call read_xy(cursor, 'corner '//to_text(k), block%corners(:, k))
     end do
     if (cursor%failed()) return
+    extent = maxval(abs(block%corners))
+    do k = 1, 4
+      if (norm2(block%corners(:, k) - block%corners(:, mod(k, 4) + 1)) > least_side*extent) cycle
+      call cursor%fail('corners '//to_text(k)//' and '//to_text(mod(k, 4) + 1)//' are the same point')
+    end do
     if (.not. polygon_area(block%corners) > 0) &
       call cursor%fail('the corners must run counter-clockwise around an area; theirs is ' &
                        //to_text(polygon_area(block%corners)))
@@ -156,16 +164,16 @@ contains
     new = size(coordinates, 2)
     body%connectivity = body%connectivity + n
     body%across = block%divisions(1)
-    if (allocated(body%labels)) deallocate (body%labels, body%where)
-    allocate (body%labels(0), body%where(1))
-    body%where = where
+    if (allocated(body%labels)) deallocate (body%labels, body%location)
+    allocate (body%labels(0), body%location(1))
+    body%location = where
     parts%bodies = [parts%bodies, body]
     parts%coordinates = reshape([parts%coordinates, coordinates], [2, n + new])
     parts%labels = [parts%labels, spread(0, 1, new)]
     parts%parent = [parts%parent, (n + k, k=1, new)]
     allocate (places(new))
     places = where
-    parts%where = [parts%where, places]
+    parts%location = [parts%location, places]
     do k = 1, 4
       set%name = body%name//'.'//to_text(k)
       set%nodes = sides(:, first(k):first(k + 1) - 1) + n

@@ -88,11 +88,11 @@ contains
   end subroutine read_loads
 
   !> `place X|Y|XY`: held where it is.
-  subroutine read_fixed(cursor, draft, prescribed, where, diagnostics)
+  subroutine read_fixed(cursor, draft, prescribed, given, diagnostics)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
     integer, intent(inout) :: prescribed(:, :)
-    type(location_t), allocatable, intent(inout) :: where(:)
+    type(location_t), allocatable, intent(inout) :: given(:)
     type(diagnostics_t), intent(in), target :: diagnostics
     type(string_t), allocatable :: directions(:)
     type(place_t) :: place
@@ -107,16 +107,16 @@ contains
       fixation%nodes = place%nodes
       fixation%component = component
       fixation%label = 'FIXED '//place%label//' '//directions(component)%s
-      call add_fixation(cursor, draft, fixation, prescribed, where, diagnostics)
+      call add_fixation(cursor, draft, fixation, prescribed, given, diagnostics)
     end do
   end subroutine read_fixed
 
   !> `place X|Y lic [amplitude]` or `die X|Y|A lic [amplitude]`.
-  subroutine read_move(cursor, draft, prescribed, where, motion_where, diagnostics)
+  subroutine read_move(cursor, draft, prescribed, given, motion_where, diagnostics)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
     integer, intent(inout) :: prescribed(:, :)
-    type(location_t), allocatable, intent(inout) :: where(:), motion_where(:)
+    type(location_t), allocatable, intent(inout) :: given(:), motion_where(:)
     type(diagnostics_t), intent(in), target :: diagnostics
     type(string_t), allocatable :: directions(:)
     type(place_t) :: place
@@ -142,32 +142,32 @@ contains
       fixation%amplitude = amplitude
       fixation%multiplier = draft%multipliers%item(k)
       fixation%label = 'MOVE '//place%label//' '//directions(direction)%s//' '//draft%multipliers%words(k)%s
-      call add_fixation(cursor, draft, fixation, prescribed, where, diagnostics)
+      call add_fixation(cursor, draft, fixation, prescribed, given, diagnostics)
     end if
   end subroutine read_move
 
   !> A node's component has one motion: the same again is welcome, another is refused.
-  subroutine add_fixation(cursor, draft, fixation, prescribed, where, diagnostics)
+  subroutine add_fixation(cursor, draft, fixation, prescribed, given, diagnostics)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
     type(fixation_t), intent(in) :: fixation
     integer, intent(inout) :: prescribed(:, :)
-    type(location_t), allocatable, intent(inout) :: where(:)
+    type(location_t), allocatable, intent(inout) :: given(:)
     type(diagnostics_t), intent(in), target :: diagnostics
     integer :: i, other
 
     do i = 1, size(fixation%nodes)
       other = prescribed(fixation%component, fixation%nodes(i))
-      prescribed(fixation%component, fixation%nodes(i)) = size(where) + 1
+      prescribed(fixation%component, fixation%nodes(i)) = size(given) + 1
       if (other == 0) cycle
-      if (other == size(where) + 1) cycle
+      if (other == size(given) + 1) cycle
       if (same_motion(draft%scene%fixations(other), fixation)) cycle
       call cursor%fail('another motion of '//node_text(draft, fixation%nodes(i))//' in this direction is given at ' &
-                       //diagnostics%place(where(other)))
+                       //diagnostics%place(given(other)))
       exit
     end do
     draft%scene%fixations = [draft%scene%fixations, fixation]
-    where = [where, cursor%where()]
+    given = [given, cursor%where()]
   end subroutine add_fixation
 
   pure function same_motion(a, b) result(same)
@@ -178,30 +178,30 @@ contains
     if (.not. same) same = a%multiplier == b%multiplier .and. .not. abs(a%amplitude - b%amplitude) > 0
   end function same_motion
 
-  subroutine add_motion(cursor, draft, motion, where, diagnostics)
+  subroutine add_motion(cursor, draft, motion, given, diagnostics)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
     type(die_motion_t), intent(in) :: motion
-    type(location_t), allocatable, intent(inout) :: where(:)
+    type(location_t), allocatable, intent(inout) :: given(:)
     type(diagnostics_t), intent(in), target :: diagnostics
     integer :: i
 
-    do i = 1, size(where)
+    do i = 1, size(given)
       associate (other => draft%scene%die_motions(i))
         if (other%die == motion%die .and. other%component == motion%component) &
-          call cursor%fail('a motion of this die in this direction is already given at '//diagnostics%place(where(i)))
+          call cursor%fail('a motion of this die in this direction is already given at '//diagnostics%place(given(i)))
       end associate
     end do
     draft%scene%die_motions = [draft%scene%die_motions, motion]
-    where = [where, cursor%where()]
+    given = [given, cursor%where()]
   end subroutine add_motion
 
   !> `NODE label|POINT x y  X|Y  amplitude  lic`.
-  subroutine read_force(cursor, draft, prescribed, where, diagnostics)
+  subroutine read_force(cursor, draft, prescribed, given, diagnostics)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
     integer, intent(in) :: prescribed(:, :)
-    type(location_t), intent(in) :: where(:)
+    type(location_t), intent(in) :: given(:)
     type(diagnostics_t), intent(in), target :: diagnostics
     type(string_t), allocatable :: directions(:), forms(:)
     type(place_t) :: place
@@ -221,7 +221,7 @@ contains
       force%node = place%nodes(1)
       k = prescribed(force%component, force%node)
       if (k > 0) call cursor%fail('the force would do nothing: the motion of '//node_text(draft, force%node) &
-                                  //' in this direction is given at '//diagnostics%place(where(k)))
+                                  //' in this direction is given at '//diagnostics%place(given(k)))
     end if
     call cursor%real('the amplitude', force%amplitude, unit='force, per radian when axisymmetric')
     call draft%multipliers%find(cursor, 'the name of a LIC', k)

@@ -45,8 +45,8 @@ contains
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword == 'NODES') most = most + size(deck%cards(i)%rows)
     end do
-    deallocate (parts%coordinates, parts%labels, parts%where)
-    allocate (parts%coordinates(2, most), parts%labels(most), parts%where(most))
+    deallocate (parts%coordinates, parts%labels, parts%location)
+    allocate (parts%coordinates(2, most), parts%labels(most), parts%location(most))
     n = 0
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword /= 'NODES') cycle
@@ -55,7 +55,7 @@ contains
       do while (.not. cursor%failed())
         n = n + 1
         call cursor%integer('the label of a node', parts%labels(n), lower=1)
-        parts%where(n) = cursor%where()
+        parts%location(n) = cursor%where()
         call read_xy(cursor, 'the node', parts%coordinates(:, n))
         if (cursor%failed()) n = n - 1
         if (.not. cursor%more_rows()) exit
@@ -67,7 +67,7 @@ contains
     parts%nexplicit = n
     parts%coordinates = parts%coordinates(:, :n)
     parts%labels = parts%labels(:n)
-    parts%where = parts%where(:n)
+    parts%location = parts%location(:n)
     parts%parent = [(i, i=1, n)]
 
     call sort_labels(parts%labels, order)
@@ -76,8 +76,8 @@ contains
     do i = 2, n
       if (draft%sorted_labels(i) /= draft%sorted_labels(i - 1)) cycle
       parts%sound = .false.
-      call diagnostics%add(parts%where(order(i)), 'NODES', 'node '//to_text(draft%sorted_labels(i))//' is already given at ' &
-                           //diagnostics%place(parts%where(order(i - 1))))
+      call diagnostics%add(parts%location(order(i)), 'NODES', 'node '//to_text(draft%sorted_labels(i))//' is already given at ' &
+                           //diagnostics%place(parts%location(order(i - 1))))
     end do
   end subroutine read_nodes
 
@@ -152,14 +152,14 @@ contains
     type(body_t), intent(inout) :: body
     integer :: i, j, k, label, missing
 
-    if (allocated(body%labels)) deallocate (body%labels, body%where, body%connectivity)
-    allocate (body%labels(nrow), body%where(nrow), body%connectivity(nnode, nrow))
+    if (allocated(body%labels)) deallocate (body%labels, body%location, body%connectivity)
+    allocate (body%labels(nrow), body%location(nrow), body%connectivity(nnode, nrow))
     if (nrow == 0) call cursor%next_row('the label of an element and its 8 nodes')
     missing = 0
     do i = 1, nrow
       call cursor%next_row('the label of an element and its 8 nodes')
       call cursor%integer('the label of an element', body%labels(i), lower=1)
-      body%where(i) = cursor%where()
+      body%location(i) = cursor%where()
       do j = 1, nnode
         call cursor%integer('the label of node '//to_text(j), label, lower=1)
         k = find_label(draft%sorted_labels, label)
@@ -178,7 +178,7 @@ contains
     end do
     if (missing == 0 .and. .not. cursor%failed()) return
     body%labels = body%labels(:0)
-    body%where = body%where(:0)
+    body%location = body%location(:0)
     body%connectivity = body%connectivity(:, :0)
   end subroutine read_rows
 
@@ -186,20 +186,20 @@ contains
     type(mesh_parts_t), intent(inout) :: parts
     type(diagnostics_t), intent(inout) :: diagnostics
     integer, allocatable :: labels(:), order(:)
-    type(location_t), allocatable :: where(:)
+    type(location_t), allocatable :: location(:)
     integer :: i
 
-    allocate (labels(0), where(0))
+    allocate (labels(0), location(0))
     do i = 1, size(parts%bodies)
       labels = [labels, parts%bodies(i)%labels]
-      where = [where, parts%bodies(i)%where]
+      location = [location, parts%bodies(i)%location]
     end do
     call sort_labels(labels, order)
     do i = 2, size(labels)
       if (labels(order(i)) /= labels(order(i - 1))) cycle
       parts%sound = .false.
-      call diagnostics%add(where(order(i)), 'PL8LS', 'element '//to_text(labels(order(i)))//' is already given at ' &
-                           //diagnostics%place(where(order(i - 1))))
+      call diagnostics%add(location(order(i)), 'PL8LS', 'element '//to_text(labels(order(i)))//' is already given at ' &
+                           //diagnostics%place(location(order(i - 1))))
     end do
   end subroutine refuse_same_labels
 

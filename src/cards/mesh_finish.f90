@@ -143,7 +143,7 @@ contains
     end do
     do i = 1, parts%nexplicit
       if (attached(number(i))) cycle
-      call diagnostics%add(parts%where(i), 'NODES', 'node '//to_text(parts%labels(i))//' belongs to no element')
+      call diagnostics%add(parts%location(i), 'NODES', 'node '//to_text(parts%labels(i))//' belongs to no element')
     end do
   end subroutine refuse_lonely_nodes
 
@@ -160,8 +160,8 @@ contains
     do i = 1, size(kept)
       if (draft%scene%mesh%coordinates(1, i) >= -axis_tolerance*draft%mesh_size) cycle
       ! A block is told of once.
-      if (parts%where(kept(i))%line == last%line .and. parts%where(kept(i))%file == last%file) cycle
-      last = parts%where(kept(i))
+      if (parts%location(kept(i))%line == last%line .and. parts%location(kept(i))%file == last%file) cycle
+      last = parts%location(kept(i))
       call diagnostics%add(last, merge('NODES', 'BLOCK', kept(i) <= parts%nexplicit), &
                            'a node lies at the radius '//to_text(draft%scene%mesh%coordinates(1, i)) &
                            //'; in an axisymmetric scene x must not be below 0')
@@ -193,11 +193,11 @@ contains
       end do
       if (message == '') cycle
       if (body%is_block) then
-        where = body%where(1)
+        where = body%location(1)
         keyword = 'BLOCK'
         which = to_text(mod(e - 1, body%across) + 1)//' along side 1, '//to_text((e - 1)/body%across + 1)//' along side 2'
       else
-        where = body%where(e)
+        where = body%location(e)
         which = to_text(body%labels(e))
       end if
       call diagnostics%add(where, keyword, 'element '//which//': '//message)

@@ -15,7 +15,7 @@ module mesh_parts
     !> Nodes (8, nelem), and where each element or their block stands in the deck.
     integer, allocatable :: connectivity(:, :)
     integer, allocatable :: labels(:)
-    type(location_t), allocatable :: where(:)
+    type(location_t), allocatable :: location(:)
     !> Made by a BLOCK card, with a number of elements along side 1.
     logical :: is_block = .false.
     integer :: across = 0
@@ -25,7 +25,7 @@ module mesh_parts
     !> Explicit nodes first (nexplicit), then those of the blocks.
     real(wp), allocatable :: coordinates(:, :)
     integer, allocatable :: labels(:)
-    type(location_t), allocatable :: where(:)
+    type(location_t), allocatable :: location(:)
     !> A node that became one with another points to it.
     integer, allocatable :: parent(:)
     integer :: nexplicit = 0
@@ -41,7 +41,7 @@ contains
   subroutine start_parts(parts)
     type(mesh_parts_t), intent(out) :: parts
 
-    allocate (parts%coordinates(2, 0), parts%labels(0), parts%where(0), parts%parent(0), parts%bodies(0), parts%joined(0))
+    allocate (parts%coordinates(2, 0), parts%labels(0), parts%location(0), parts%parent(0), parts%bodies(0), parts%joined(0))
   end subroutine start_parts
 
   !> Order that makes labels ascend; equal labels keep theirs. Merge sort from the bottom up.

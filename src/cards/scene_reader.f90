@@ -8,9 +8,12 @@ module scene_reader
   use cards_probes, only: read_probes
   use cards_sides, only: read_contacts, read_pressures
   use cards_strategy, only: read_strategy
+  use cards_tractions, only: read_tractions
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t, refuse_unknown
   use diagnostics, only: diagnostics_t, location_t
+  use elem_api, only: elem_t
+  use elem_registry, only: list_elems
   use mesh_finish, only: finish_mesh
   use mesh_parts, only: mesh_parts_t, start_parts
   use scene, only: plane_state_names, scene_t
@@ -54,6 +57,7 @@ contains
     call read_contacts(deck, draft, diagnostics)
     call read_pressures(deck, draft, diagnostics)
     call read_loads(deck, draft, diagnostics)
+    call read_tractions(deck, draft, diagnostics)
     call read_strategy(deck, draft, diagnostics)
     call read_probes(deck, draft, diagnostics)
     call refuse_unused_names(deck, draft, keywords, diagnostics)
@@ -65,17 +69,17 @@ contains
   !> Keywords that have a meaning, those of body elements last.
   subroutine known_cards(keywords)
     type(string_t), allocatable, intent(out) :: keywords(:)
-    type(draft_t) :: draft
+    type(elem_t), allocatable :: elems(:)
     type(string_t), allocatable :: more(:)
     integer :: k
 
-    call start_draft(draft)
-    call words_of('TITLE STATE KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D FIXED MOVE FORCE LIC STRAT NORMS STOP ' &
+    call list_elems(elems)
+    call words_of('TITLE STATE KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D TRACT FIXED MOVE FORCE LIC STRAT NORMS STOP ' &
                   //'SAVE CKPT PROBE', keywords)
     allocate (more(1))
-    do k = 1, size(draft%elems)
-      if (.not. is_body_elem(draft%elems(k))) cycle
-      more(1)%s = draft%elems(k)%name
+    do k = 1, size(elems)
+      if (.not. is_body_elem(elems(k))) cycle
+      more(1)%s = elems(k)%name
       keywords = [keywords, more]
     end do
   end subroutine known_cards
@@ -167,7 +171,7 @@ contains
       do g = 1, size(draft%scene%groups)
         if (draft%scene%groups(g)%die == draft%places%item(k)) exit
       end do
-      if (g > size(draft%scene%groups)) call diagnostics%add(draft%places%where(k), 'DIE', ''''//draft%places%words(k)%s &
+      if (g > size(draft%scene%groups)) call diagnostics%add(draft%places%location(k), 'DIE', ''''//draft%places%words(k)%s &
                                                                //''' touches nothing: a CNT2D card must name it')
     end do
   end subroutine refuse_unused_names

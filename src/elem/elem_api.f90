@@ -12,7 +12,7 @@ module elem_api
   use state_variables, only: state_variable_t
   implicit none
   private
-  public :: elem_t, instant_t, report_t, totals_t, elem_compute_i, elem_variables_i, elem_measure_i
+  public :: elem_t, instant_t, report_t, totals_t, elem_compute_i, elem_variables_i, elem_measure_i, elem_augment_i
   public :: block_done, block_inverted, block_law_failed
   public :: add_totals
 
@@ -76,6 +76,8 @@ module elem_api
     procedure(elem_compute_i), nopass, pointer :: compute => null()
     !> Not associated for elements without state.
     procedure(elem_measure_i), nopass, pointer :: measure => null()
+    !> Associated for elements with penalties that can be augmented (Uzawa).
+    procedure(elem_augment_i), nopass, pointer :: augment => null()
   end type elem_t
 
   abstract interface
@@ -103,6 +105,18 @@ module elem_api
       real(wp), intent(inout) :: stiffness(:, :, :)   !! (ndof, ndof, nb), written when instant%tangent
       type(report_t), intent(out) :: report
     end subroutine elem_compute_i
+
+    !> After equilibrium: carry the reached pressures into the committed multipliers where penetrations
+    !> are above the allowed, at most so many `times` in a step. `changed` asks for equilibrium again.
+    subroutine elem_augment_i(scene, group, times, committed, trial, changed)
+      import :: group_t, scene_t, wp
+      type(scene_t), intent(in) :: scene
+      type(group_t), intent(in) :: group
+      integer, intent(in) :: times
+      real(wp), intent(inout) :: committed(:, :, :)
+      real(wp), intent(in) :: trial(:, :, :)
+      logical, intent(out) :: changed
+    end subroutine elem_augment_i
 
     !> Sums over a group at an accepted instant; x (2, nnode, nelem) is the geometry then.
     subroutine elem_measure_i(scene, group, law, x, state, before, totals)

@@ -29,7 +29,8 @@ module elem_cnt2d
   !> Places in the state of a point.
   integer, parameter :: at_pressure = 1, at_tau = 2, at_penetration = 3, at_status = 4, at_slip = 5, &
                         at_augmentation = 6, at_work = 7, at_piece = 8
-  integer, parameter :: nstate = 8
+  !> Place of COUL2D's largest number of augmentations among its values.
+  integer, parameter :: at_augment = 7
   !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle.
   integer, parameter :: ndof = 9
 
@@ -62,6 +63,7 @@ contains
     row%variables => variables
     row%compute => compute
     row%measure => measure
+    row%augment => augment
   end function elem_cnt2d_row
 
   pure subroutine variables(law, list)
@@ -106,7 +108,7 @@ contains
       force(:, e) = 0
       if (instant%tangent) stiffness(:, :, e) = 0
       trial(:, :, e) = committed(:, :, e)
-      trial([at_pressure, at_tau, at_status, at_penetration, at_piece], :, e) = 0
+      trial([at_pressure, at_tau, at_status, at_penetration, at_piece, at_augmentation], :, e) = 0
       side = side_length(scene, group%connectivity(:, first + e - 1))
       pilot(:, 1) = instant%pilots(:, group%die)
       pilot(:, 2) = pilot(:, 1) + du(7:9, e)
@@ -205,6 +207,7 @@ contains
     trial(at_tau) = tau
     trial(at_status) = status
     if (status == contact_open) return
+    trial(at_augmentation) = committed(at_augmentation)
     trial(at_slip) = committed(at_slip) + slip
     if (status == contact_slip) trial(at_work) = committed(at_work) + tau*(slip - (tau - committed(at_tau))/penalty(2))
 
@@ -301,6 +304,29 @@ contains
 
     w = [cos(angle)*v(1) - sin(angle)*v(2), sin(angle)*v(1) + cos(angle)*v(2)]
   end function turned
+
+  !> Uzawa: the pressure reached becomes the multiplier, p = multiplier + AKP d, so that the same
+  !> pressure needs no penetration any more.
+  subroutine augment(scene, group, times, committed, trial, changed)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    integer, intent(in) :: times
+    real(wp), intent(inout) :: committed(:, :, :)
+    real(wp), intent(in) :: trial(:, :, :)
+    logical, intent(out) :: changed
+    integer :: e
+
+    changed = .false.
+    associate (values => scene%materials(group%material)%values)
+      if (size(values) < at_augment) return
+      if (times >= nint(values(at_augment))) return
+      do e = 1, size(trial, 3)
+        changed = changed .or. any(trial(at_penetration, :, e) > values(1)*side_length(scene, group%connectivity(:, e)) &
+                                   .and. nint(trial(at_status, :, e)) /= contact_open)
+      end do
+    end associate
+    if (changed) committed(at_augmentation, :, :) = trial(at_pressure, :, :)
+  end subroutine augment
 
   !> Friction work, penetration found and allowed, number of points in each contact state.
   subroutine measure(scene, group, law, x, state, before, totals)

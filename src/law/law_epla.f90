@@ -34,7 +34,8 @@ contains
     allocate (row%lines, source=[law_line([parameter('E', 'stress', 'Young''s modulus', above=0.0_wp), &
                            parameter('NU', '-', 'Poisson''s ratio', lower=0.0_wp, upper=0.499999_wp)]), &
                  law_line([parameter('RE', 'stress', 'yield stress', above=0.0_wp), &
-                           parameter('ET', 'stress', 'plastic modulus d(yield)/d(plastic strain)')], word='LINEAR'), &
+                           parameter('ET', 'stress', 'plastic modulus d(yield)/d(plastic strain)', lower=0.0_wp)], &
+                          word='LINEAR'), &
                  law_line([parameter('RE', 'stress', 'yield stress', above=0.0_wp), &
                            parameter('Q', 'stress', 'rise at saturation', lower=0.0_wp), &
                            parameter('B', '-', 'rate of saturation', lower=0.0_wp), &
@@ -56,7 +57,7 @@ contains
     real(wp), intent(out) :: stress(:, :), elastic_strain(:, :), history(:, :), tangent(:, :, :)
     integer, intent(out) :: status(:)
     real(wp) :: bulk, shear, hooke(4, 4), a(4)
-    real(wp) :: deviator(4), mean, q, sy, slope, dp
+    real(wp) :: deviator(4), mean, q, sy, sy_start, slope, dp
     integer :: n, form, first, last
 
     call moduli(material%values(1), material%values(2), bulk, shear)
@@ -80,11 +81,12 @@ contains
       call yield_stress(form, a, material%curve, committed(1, n), sy, slope)
       if (q <= sy*(1 + yield_tolerance)) cycle
 
+      sy_start = sy
       call return_to_yield(form, a, material%curve, committed(1, n), q, 3*shear, dp, sy, slope, status(n))
       stress(:, n) = mean*[1, 1, 0, 1] + deviator*(sy/q)
       elastic_strain(:, n) = trial_strain(:, n) - (1.5_wp*dp/q)*deviator*[1, 1, 2, 1]
       history(1, n) = committed(1, n) + dp
-      history(2, n) = committed(2, n) + sy*dp
+      history(2, n) = committed(2, n) + 0.5_wp*(sy_start + sy)*dp
       tangent(:, :, n) = consistent_tangent(bulk, shear, deviator/(q*sqrt(2.0_wp/3)), dp, q, slope)
     end do
   end subroutine update

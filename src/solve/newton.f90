@@ -67,9 +67,12 @@ contains
     real(wp) :: norm, first_norm, previous_norm
     type(report_t) :: report
     type(iteration_t) :: line
-    integer :: k
+    integer :: k, augmentations, first_iteration
+    logical :: changed
 
     allocate (outcome%history(0))
+    augmentations = 0
+    first_iteration = 0
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     call predict(scene, equations, solution, dt, outcome, missing, report)
     if (allocated(outcome%reason)) return
@@ -78,7 +81,9 @@ contains
     first_norm = 0
     previous_norm = 0
     correction = 0
-    do k = 0, scene%strategy%max_iterations
+    k = -1
+    do while (k - first_iteration < scene%strategy%max_iterations)
+      k = k + 1
       residual = external - equations%force
       norm = relative_residual(equations, solution%force_floor, external, residual)
       if (.not. norm <= huge(norm)) then
@@ -95,19 +100,26 @@ contains
         if (norm <= scene%strategy%force_norm) then
           if (k == 0) line%displacement_norm = 0
           if (line%displacement_norm*min(1.0_wp, fall(norm, previous_norm)) <= scene%strategy%displacement_norm) then
-            call accept(scene, report, outcome)
-            return
+            call augment_contacts(scene, equations, solution, augmentations, changed)
+            if (.not. changed) then
+              call accept(scene, report, outcome)
+              return
+            end if
+            augmentations = augmentations + 1
+            call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
+            residual = external - equations%force
+            first_iteration = k
           end if
         end if
       end if
-      if (k == scene%strategy%max_iterations) exit
-      if (k > patience .and. norm > hopeless*first_norm) then
+      if (k - first_iteration == scene%strategy%max_iterations) exit
+      if (k - first_iteration > patience .and. norm > hopeless*first_norm) then
         outcome%reason = 'diverged: residual '//to_text(norm, 3)
         return
       end if
-      if (k >= patience) then
+      if (k - first_iteration >= patience) then
         if (minval(outcome%history(k - patience + 3:k + 1)%force_norm) > &
-            stagnant*minval(outcome%history(2:k - patience + 2)%force_norm)) then
+            stagnant*minval(outcome%history(first_iteration + 2:k - patience + 2)%force_norm)) then
           outcome%reason = 'residual stagnates at '//to_text(norm, 3)
           return
         end if
@@ -311,6 +323,26 @@ contains
     end function relative_fall
 
   end subroutine search
+
+  !> Uzawa's update of all contacts that ask for it.
+  subroutine augment_contacts(scene, equations, solution, times, changed)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(inout) :: solution
+    integer, intent(in) :: times
+    logical, intent(out) :: changed
+    logical :: group_changed
+    integer :: g
+
+    changed = .false.
+    do g = 1, size(scene%groups)
+      associate (row => equations%elems(scene%groups(g)%elem_id), state => solution%groups(g))
+        if (.not. associated(row%augment)) cycle
+        call row%augment(scene, scene%groups(g), times, state%committed, state%trial, group_changed)
+        changed = changed .or. group_changed
+      end associate
+    end do
+  end subroutine augment_contacts
 
   !> Say which element stopped the step, and why.
   subroutine blame(report, outcome)

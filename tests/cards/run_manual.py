@@ -2,10 +2,10 @@
 """The examples of the deck manual, decks/README.md, are read by `lagamine --check`.
 
 usage: run_manual.py [-v]
-A block fenced with ```lag is a whole deck when it has a TITLE card. Otherwise it is put into the manual's skeleton, the block
+A block fenced with ```lag is a whole deck when it has an END card. Otherwise it is put into the manual's skeleton, the block
 fenced with ```lag skeleton, in place of its line `! your cards here`; a card of the example that may be given only once takes
 the place of the skeleton's. A block fenced with ```lag file NAME is a file for the examples after it.
-A card with a heading (### `KEYWORD`) must be used in an example under it.
+A card with a heading (### `KEYWORD`) must be used in the first example after it.
 LAGAMINE_BIN is the folder of `lagamine` (default: build/bin of this project).
 """
 import os
@@ -46,7 +46,7 @@ def keywords(lines):
 
 def whole_deck(example, skeleton):
     """The lines of a deck with the example in it."""
-    if "TITLE" in keywords(example["lines"]):
+    if "END" in keywords(example["lines"]):
         return example["lines"]
     replaced = ONCE.intersection(keywords(example["lines"]))
     deck = []
@@ -68,7 +68,6 @@ def main():
     if len(skeletons) != 1:
         sys.exit(f"{manual}: {len(skeletons)} skeletons, wanted one")
     passed = failed = 0
-    shown = set()
     with tempfile.TemporaryDirectory() as folder:
         for example in examples:
             if example["kind"][1:2] == ["file"]:
@@ -76,7 +75,6 @@ def main():
                     file.write("\n".join(example["lines"]) + "\n")
                 continue
             deck = whole_deck(example, skeletons[0])
-            shown |= {(example["heading"].split()[0], keyword) for keyword in keywords(example["lines"])}
             with open(os.path.join(folder, "deck.lag"), "w") as file:
                 file.write("\n".join(deck) + "\n")
             run = subprocess.run([os.path.join(BIN, "lagamine"), "deck.lag", "--check"], cwd=folder, text=True, timeout=60,
@@ -88,15 +86,16 @@ def main():
                 print("\n".join(f"{number:4} {line}" for number, line in enumerate(deck, 1)))
             elif "-v" in sys.argv[1:]:
                 print(f"--- decks/README.md:{example['at']} ({example['heading']})\n{run.stdout}", end="")
-    for line in open(manual):
+    for number, line in enumerate(open(manual), 1):
         heading = re.match(r"### `([A-Z0-9]+)`", line)
         if not heading:
             continue
-        good = (heading.group(1), heading.group(1)) in shown
+        after = [example for example in examples if example["at"] > number and example["kind"][1:2] != ["file"]][:1]
+        good = bool(after) and heading.group(1) in keywords(after[0]["lines"])
         passed += good
         failed += not good
         if not good:
-            print(f"FAILED decks/README.md: no example of {heading.group(1)} under its heading")
+            print(f"FAILED decks/README.md:{number}: the example after this heading has no {heading.group(1)} card")
     print(f"{passed} passed, {failed} failed")
     return 1 if failed or not passed else 0
 

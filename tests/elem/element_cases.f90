@@ -1,0 +1,248 @@
+!> Scenes of one element, built in code, for the tests of the ELEM family.
+module element_cases
+  use dies, only: die_t, finish_die
+  use elem_api, only: elem_t, instant_t, report_t, totals_t
+  use elem_registry, only: list_elems
+  use kinds, only: wp
+  use kinematics_api, only: kinematics_t
+  use kinematics_registry, only: list_kinematics
+  use law_api, only: law_t
+  use law_cases, only: elastic_material, law_row, plastic_material
+  use materials, only: material_t
+  use scene, only: scene_t
+  use state_variables, only: total_components
+  implicit none
+  private
+  public :: case_t, solid_case, contact_case, pressure_case, evaluate, accept, difference_matrix, totals_of
+  public :: die_of, segment, shape_of_test, elem_row, kinematics_row
+  public :: step_of_differences, tolerance_of_differences
+
+  !> One element with all it needs: at the start of a step.
+  type :: case_t
+    type(scene_t) :: scene
+    type(elem_t) :: elem
+    type(law_t) :: law
+    type(kinematics_t) :: kinematics
+    type(instant_t) :: instant
+    real(wp), allocatable :: x(:, :, :), committed(:, :, :)
+  end type case_t
+
+  !> Differences of fourth order, steps h and 2h: truncation (h/l)**4, with l the length over which the
+  !> answer changes: a size of 1 times a strain of 3e-3 (yield, or a penetration), makes 1e-10;
+  !> round-off eps f/(h k), with forces f of 1e-1 k at most, 2e-12. Tolerance with a margin of 100.
+  real(wp), parameter :: step_of_differences = 1.0e-5_wp
+  real(wp), parameter :: tolerance_of_differences = 1.0e-8_wp
+
+contains
+
+  function elem_row(name) result(row)
+    character(len=*), intent(in) :: name
+    type(elem_t) :: row
+    type(elem_t), allocatable :: rows(:)
+    integer :: i
+
+    call list_elems(rows)
+    do i = 1, size(rows)
+      if (rows(i)%name == name) row = rows(i)
+    end do
+  end function elem_row
+
+  function kinematics_row(name) result(row)
+    character(len=*), intent(in) :: name
+    type(kinematics_t) :: row
+    type(kinematics_t), allocatable :: rows(:)
+    integer :: i
+
+    call list_kinematics(rows)
+    do i = 1, size(rows)
+      if (rows(i)%name == name) row = rows(i)
+    end do
+  end function kinematics_row
+
+  !> What all cases share: one group of one element on the nodes x.
+  subroutine begin_case(elem, kinematics, plane_state, npoint, x, case)
+    character(len=*), intent(in) :: elem, kinematics
+    integer, intent(in) :: plane_state, npoint
+    real(wp), intent(in) :: x(:, :)
+    type(case_t), intent(out) :: case
+    integer :: i
+
+    case%elem = elem_row(elem)
+    case%kinematics = kinematics_row(kinematics)
+    case%scene%plane_state = plane_state
+    case%scene%finite = case%kinematics%finite
+    case%scene%mesh%coordinates = x
+    allocate (case%x(2, size(x, 2), 1), case%scene%groups(1), case%scene%dies(0), case%instant%pilots(3, 0))
+    case%x(:, :, 1) = x
+    case%instant%dt = 1
+    allocate (case%instant%multipliers(1), source=1.0_wp)
+    case%scene%groups(1)%npoint = npoint
+    case%scene%groups(1)%elem = elem
+    case%scene%groups(1)%connectivity = reshape([(i, i=1, size(x, 2))], [size(x, 2), 1])
+  end subroutine begin_case
+
+  !> Give the case its law and its state at rest.
+  subroutine add_law(case, material)
+    type(case_t), intent(inout) :: case
+    type(material_t), intent(in) :: material
+
+    case%law = law_row(material%law)
+    allocate (case%scene%materials(1), source=[material])
+    associate (group => case%scene%groups(1))
+      group%material = 1
+      call case%elem%variables(case%law, group%variables)
+      allocate (case%committed(total_components(group%variables), abs(group%npoint), 1), source=0.0_wp)
+    end associate
+  end subroutine add_law
+
+  !> PL8LS; `hardening` as in `plastic_material`, 0 for ELA.
+  function solid_case(plane_state, kinematics, hardening, npoint, x) result(case)
+    integer, intent(in) :: plane_state, hardening, npoint
+    character(len=*), intent(in) :: kinematics
+    real(wp), intent(in) :: x(2, 8)
+    type(case_t) :: case
+
+    call begin_case('PL8LS', kinematics, plane_state, npoint, x, case)
+    if (hardening == 0) then
+      call add_law(case, elastic_material())
+    else
+      call add_law(case, plastic_material(hardening))
+    end if
+  end function solid_case
+
+  !> CNT2D on a die whose pilot stands at `pilot`; the die is given with its pilot at (0, 0, 0).
+  function contact_case(plane_state, material, npoint, x, die, pilot) result(case)
+    integer, intent(in) :: plane_state, npoint
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: x(2, 3)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: pilot(3)
+    type(case_t) :: case
+
+    call begin_case('CNT2D', 'LOG', plane_state, npoint, x, case)
+    deallocate (case%scene%dies, case%instant%pilots)
+    allocate (case%scene%dies(1), source=[die])
+    allocate (case%instant%pilots(3, 1), source=reshape(pilot, [3, 1]))
+    case%scene%groups(1)%die = 1
+    call add_law(case, material)
+  end function contact_case
+
+  !> PRES2D.
+  function pressure_case(plane_state, npoint, x, pressure) result(case)
+    integer, intent(in) :: plane_state, npoint
+    real(wp), intent(in) :: x(2, 3), pressure
+    type(case_t) :: case
+
+    call begin_case('PRES2D', 'LOG', plane_state, npoint, x, case)
+    case%scene%groups(1)%multiplier = 1
+    case%scene%groups(1)%amplitude = pressure
+    allocate (case%scene%materials(0), case%committed(0, abs(npoint), 1))
+  end function pressure_case
+
+  !> Force, matrix and trial state at the motion du of the step.
+  subroutine evaluate(case, du, force, stiffness, trial, report)
+    type(case_t), intent(in) :: case
+    real(wp), intent(in) :: du(:)
+    real(wp), intent(out) :: force(:), stiffness(:, :)
+    real(wp), allocatable, intent(out) :: trial(:, :, :)
+    type(report_t), intent(out) :: report
+    real(wp) :: motion(size(du), 1), f(size(du), 1), k(size(du), size(du), 1)
+
+    motion(:, 1) = du
+    k = 0
+    allocate (trial(size(case%committed, 1), size(case%committed, 2), 1))
+    call case%elem%compute(case%scene, case%scene%groups(1), case%kinematics, case%law, case%instant, 1, case%x, motion, &
+                           case%committed, trial, f, k, report)
+    force = f(:, 1)
+    stiffness = k(:, :, 1)
+  end subroutine evaluate
+
+  !> Take the motion du: the case stands at the end of the step.
+  subroutine accept(case, du)
+    type(case_t), intent(inout) :: case
+    real(wp), intent(in) :: du(:)
+    real(wp), allocatable :: trial(:, :, :)
+    real(wp) :: force(size(du)), stiffness(size(du), size(du))
+    type(report_t) :: report
+    integer :: n
+
+    call evaluate(case, du, force, stiffness, trial, report)
+    case%committed = trial
+    n = case%elem%nnode
+    if (case%kinematics%finite .or. case%elem%follows) then
+      case%x(1, :, 1) = case%x(1, :, 1) + du(:n)
+      case%x(2, :, 1) = case%x(2, :, 1) + du(n + 1:2*n)
+    end if
+    if (case%elem%pilot) case%instant%pilots(:, 1) = case%instant%pilots(:, 1) + du(2*n + 1:)
+  end subroutine accept
+
+  !> d force / d du by differences of fourth order.
+  subroutine difference_matrix(case, du, matrix)
+    type(case_t), intent(in) :: case
+    real(wp), intent(in) :: du(:)
+    real(wp), intent(out) :: matrix(:, :)
+    real(wp) :: force(size(du), -2:2), unused(size(du), size(du)), moved(size(du))
+    real(wp), allocatable :: trial(:, :, :)
+    type(report_t) :: report
+    integer :: j, k
+
+    do j = 1, size(du)
+      force = 0
+      do k = -2, 2
+        if (k == 0) cycle
+        moved = du
+        moved(j) = moved(j) + k*step_of_differences
+        call evaluate(case, moved, force(:, k), unused, trial, report)
+      end do
+      matrix(:, j) = (8*(force(:, 1) - force(:, -1)) - (force(:, 2) - force(:, -2)))/(12*step_of_differences)
+    end do
+  end subroutine difference_matrix
+
+  !> What the element measures at its committed state.
+  function totals_of(case, before) result(totals)
+    type(case_t), intent(in) :: case
+    real(wp), intent(in), optional :: before(:, :, :)
+    type(totals_t) :: totals
+
+    if (present(before)) then
+      call case%elem%measure(case%scene, case%scene%groups(1), case%law, case%x, case%committed, before, totals)
+    else
+      call case%elem%measure(case%scene, case%scene%groups(1), case%law, case%x, case%committed, case%committed, totals)
+    end if
+  end function totals_of
+
+  !> Die of the pieces given, with its pilot at the origin.
+  function die_of(pieces) result(die)
+    real(wp), intent(in) :: pieces(:, :, :)
+    type(die_t) :: die
+
+    die%name = 'tool'
+    allocate (die%pieces, source=pieces)
+    call finish_die(die)
+  end function die_of
+
+  !> The three points of a straight piece.
+  pure function segment(from, to) result(piece)
+    real(wp), intent(in) :: from(2), to(2)
+    real(wp) :: piece(2, 3, 1)
+
+    piece(:, 1, 1) = from
+    piece(:, 2, 1) = 0.5_wp*(from + to)
+    piece(:, 3, 1) = to
+  end function segment
+
+  !> A unit quadrilateral, its nodes in the order of PL8LS, with sides bent and corners moved by up to `bend`;
+  !> its left side stands at x = 2.
+  pure function shape_of_test(bend) result(x)
+    real(wp), intent(in) :: bend
+    real(wp) :: x(2, 8)
+    real(wp), parameter :: square(2, 8) = reshape([0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 1.0_wp, &
+                                                   0.5_wp, 0.0_wp, 1.0_wp, 0.5_wp, 0.5_wp, 1.0_wp, 0.0_wp, 0.5_wp], [2, 8])
+    real(wp), parameter :: moves(2, 8) = reshape([0.3_wp, -0.8_wp, -0.5_wp, 0.4_wp, 0.9_wp, 0.7_wp, -1.0_wp, 0.2_wp, &
+                                                  0.1_wp, 0.6_wp, 0.7_wp, -0.3_wp, -0.2_wp, -0.5_wp, 0.4_wp, 0.5_wp], [2, 8])
+
+    x = square + bend*moves
+    x(1, :) = x(1, :) + 2
+  end function shape_of_test
+
+end module element_cases
