@@ -52,6 +52,7 @@ contains
 
     call measure_scene(scene, equations, solution, totals)
     solution%worst_penetration = max(solution%worst_penetration, totals%max_penetration)
+    solution%worst_penetration_ratio = max(solution%worst_penetration_ratio, totals%penetration_ratio)
     solution%least_dissipation = min(solution%least_dissipation, totals%least_dissipation)
     call check(solution, totals, error)
     do k = 1, size(solution%groups)

@@ -54,8 +54,9 @@ module elem_api
     real(wp) :: friction_work = 0.0_wp
     !> Least increment of dissipated work at any point since the instant before.
     real(wp) :: least_dissipation = 0.0_wp
+    !> Largest penetration, and the largest over what its side allows.
     real(wp) :: max_penetration = 0.0_wp
-    real(wp) :: allowed_penetration = huge(1.0_wp)
+    real(wp) :: penetration_ratio = 0.0_wp
     integer :: open = 0, stick = 0, slip = 0
   end type totals_t
 
@@ -143,7 +144,7 @@ contains
     sum%friction_work = sum%friction_work + part%friction_work
     sum%least_dissipation = min(sum%least_dissipation, part%least_dissipation)
     sum%max_penetration = max(sum%max_penetration, part%max_penetration)
-    sum%allowed_penetration = min(sum%allowed_penetration, part%allowed_penetration)
+    sum%penetration_ratio = max(sum%penetration_ratio, part%penetration_ratio)
     sum%open = sum%open + part%open
     sum%stick = sum%stick + part%stick
     sum%slip = sum%slip + part%slip

@@ -29,8 +29,8 @@ module elem_cnt2d
   !> Places in the state of a point.
   integer, parameter :: at_pressure = 1, at_tau = 2, at_penetration = 3, at_status = 4, at_slip = 5, &
                         at_augmentation = 6, at_work = 7, at_piece = 8
-  !> Place of COUL2D's largest number of augmentations among its values.
-  integer, parameter :: at_augment = 7
+  !> Place of the largest number of augmentations among a contact law's values (contact_penalties).
+  integer, parameter :: at_augment = 4
   !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle.
   integer, parameter :: ndof = 9
 
@@ -318,7 +318,6 @@ contains
 
     changed = .false.
     associate (values => scene%materials(group%material)%values)
-      if (size(values) < at_augment) return
       if (times >= nint(values(at_augment))) return
       do e = 1, size(trial, 3)
         changed = changed .or. any(trial(at_penetration, :, e) > values(1)*side_length(scene, group%connectivity(:, e)) &
@@ -343,9 +342,6 @@ contains
     associate (values => scene%materials(group%material)%values)
       do e = 1, size(x, 3)
         side = side_length(scene, group%connectivity(:, e))
-        if (values(1) > 0) then
-          totals%allowed_penetration = min(totals%allowed_penetration, values(1)*side)
-        end if
         do p = 1, size(xi)
           select case (nint(state(at_status, p, e)))
           case (contact_stick)
@@ -357,6 +353,9 @@ contains
           end select
           if (nint(state(at_status, p, e)) /= contact_open) then
             totals%max_penetration = max(totals%max_penetration, state(at_penetration, p, e))
+            if (values(1) > 0) then
+              totals%penetration_ratio = max(totals%penetration_ratio, state(at_penetration, p, e)/(values(1)*side))
+            end if
           end if
           call line3(xi(p), phi, dphi)
           area = norm2(matmul(x(:, :, e), dphi))*weight(p)

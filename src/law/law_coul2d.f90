@@ -25,9 +25,7 @@ contains
                                            parameter('PHI', '-', 'friction coefficient', lower=0.0_wp), &
                                            parameter('PBOUE', 'stress', 'cohesion', lower=0.0_wp, default=0.0_wp), &
                                            parameter('TAUMAX', 'stress', 'largest friction stress', &
-                                                     above=0.0_wp, default=huge(1.0_wp)), &
-                                           parameter('AUGMENT', '-', 'largest number of augmentations in a step', &
-                                                     lower=0.0_wp, upper=50.0_wp, default=0.0_wp)], pairs=.true.)])
+                                                     above=0.0_wp, default=huge(1.0_wp))], pairs=.true.)])
     allocate (row%history(0))
     row%symmetric = .false.
     row%effects = 'contact friction'
@@ -49,9 +47,9 @@ contains
       pressure = 0
       return
     end if
-    phi = material%values(4)
-    cohesion = material%values(5)
-    tau_max = material%values(6)
+    phi = material%values(5)
+    cohesion = material%values(6)
+    tau_max = material%values(7)
     tangent(1, 1) = penalty(1)
     trial = tau_committed + penalty(2)*slip
     limit = min(phi*pressure + cohesion, tau_max)

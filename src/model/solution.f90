@@ -33,7 +33,8 @@ module solution
     !> Volume at the start, for the drift; 0 before it is measured.
     real(wp) :: initial_volume = 0.0_wp
     !> What the scene has borne so far, worst of all accepted steps.
-    real(wp) :: worst_linear_residual = 0.0_wp, worst_penetration = 0.0_wp, least_dissipation = 0.0_wp
+    real(wp) :: worst_linear_residual = 0.0_wp, worst_penetration = 0.0_wp, worst_penetration_ratio = 0.0_wp
+    real(wp) :: least_dissipation = 0.0_wp
     !> Forces below this are round-off (set at the first evaluation of a mesh).
     real(wp) :: force_floor = 0.0_wp
     !> Forces from outside at the last accepted instant: reactions, nodal forces, pressures, on

@@ -87,7 +87,8 @@ contains
     call file%write('progress/external_work', solution%external_work)
     call file%write('progress/initial_volume', solution%initial_volume)
     call file%write('progress/force_floor', solution%force_floor)
-    call file%write('progress/worst', [solution%worst_linear_residual, solution%worst_penetration, solution%least_dissipation])
+    call file%write('progress/worst', [solution%worst_linear_residual, solution%worst_penetration, &
+                                      solution%worst_penetration_ratio, solution%least_dissipation])
     call file%write('nodes/displacement', solution%displacement)
     call file%write_attribute('nodes/displacement', 'unit', 'length')
     call file%write('nodes/last_increment', solution%last_increment)
@@ -195,10 +196,11 @@ contains
     call file%read('progress/initial_volume', solution%initial_volume)
     call file%read('progress/force_floor', solution%force_floor)
     call file%read('progress/worst', worst)
-    if (size(worst) == 3) then
+    if (size(worst) == 4) then
       solution%worst_linear_residual = worst(1)
       solution%worst_penetration = worst(2)
-      solution%least_dissipation = worst(3)
+      solution%worst_penetration_ratio = worst(3)
+      solution%least_dissipation = worst(4)
     end if
     call read_matrix(file, 'nodes/displacement', solution%displacement)
     call read_matrix(file, 'nodes/last_increment', solution%last_increment)

@@ -1,12 +1,13 @@
 !> Materials and single points for the tests of laws and of what is built on them.
 module law_cases
+  use contact_penalties, only: penalty_parameters
   use kinds, only: wp
-  use law_api, only: law_t
+  use law_api, only: find_parameter, law_t
   use law_registry, only: list_laws
   use materials, only: material_t
   implicit none
   private
-  public :: law_row, elastic_material, plastic_material, plastic_names, contact_material
+  public :: law_row, elastic_material, plastic_material, plastic_names, contact_material, set_value
   public :: point_t, update_point, tangent_by_differences, von_mises, closed_form_yield
   public :: young, poisson, shear_modulus, step_of_differences, tolerance_of_differences
 
@@ -86,11 +87,20 @@ contains
 
     material%name = 'rough'
     material%law = 'COUL2D'
-    allocate (material%values, source=[0.0_wp, akp, aktau, phi, 0.0_wp, huge(1.0_wp), 0.0_wp])
-    if (present(cohesion)) material%values(5) = cohesion
-    if (present(tau_max)) material%values(6) = tau_max
+    allocate (material%values, source=[0.0_wp, akp, aktau, 0.0_wp, phi, 0.0_wp, huge(1.0_wp)])
+    if (present(cohesion)) material%values(6) = cohesion
+    if (present(tau_max)) material%values(7) = tau_max
     allocate (material%curve(2, 0))
   end function contact_material
+
+  !> Change a number of a material by its name on the card.
+  subroutine set_value(material, name, value)
+    type(material_t), intent(inout) :: material
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: value
+
+    material%values(find_parameter(law_row(material%law), name)) = value
+  end subroutine set_value
 
   !> The curves of `plastic_material`, written once more.
   pure function closed_form_yield(k, p) result(sy)

@@ -110,7 +110,7 @@ def make_run(folder, name="billet", generations=1, stop=0, title="Billet <10 x 3
         first, last = (g - 1) * nsteps // generations, g * nsteps // generations
         material, topology, sides = block(4 + 2 * g, 6 + 2 * g, width, height)
         steps = []
-        for step in range(first, last + 1, 3):
+        for step in sorted({*range(first, last + 1, 3), last}):
             time = step / nsteps
             share = 0.5 * time
             strain = -np.log(1 - share) * (0.3 + 1.4 * (1 - material[:, 1] / height) * (1 - 0.5 * material[:, 0] / width))
@@ -147,7 +147,8 @@ def write_history(folder, nsteps, height):
 
 def write_summary(folder, name, title, generations, nsteps, stop, bad):
     effects = {"displacement": (True, f"BLOCK billet at {name}.lag:6", "300 unknowns", 494, 0.11),
-               "contact": (True, f"CNT2D billet at {name}.lag:16", "3 unknowns per die", 457, 0.02), "heat": (False, "no card asks for it", "nothing", 0, 0.)}
+               "contact": (True, f"CNT2D billet at {name}.lag:16", "3 unknowns per die", 457, 0.02),
+               "heat": (False, "no card asks for it", "nothing", 0, 0.)}
     summary = {"program": "lagamine", "version": "0.1.0", "deck": f"decks/{name}.lag", "title": title, "deck_sha256": "0f" * 32,
                "status": "stopped" if stop else "done", "exit_code": stop,
                "stop_reason": "no convergence: step 25 from time 1" if stop else "end of the scene", "time": 1.0, "end_time": 1.0,

@@ -3,16 +3,10 @@ import argparse
 import os
 import sys
 import tempfile
-from typing import List, NoReturn, Sequence
+from typing import NoReturn, Sequence
 
-from .contact import contact_picture
-from .curves import energy_picture, force_picture, probes_picture, seconds_picture, steps_picture
 from .errors import EXIT_DONE, EXIT_INPUT, EXIT_MACHINE, ReportError
-from .page import page
-from .pictures import (MAIN_FIELDS, Picture, fields_of, fields_picture, generations_picture, known_field, mesh_picture,
-                       series_picture)
 from .reader import Run
-from .scene_view import SceneView
 from .short import print_short
 
 EXIT_CODES = "Exit codes: 0 done, 2 no results or a damaged file, 5 the page cannot be written."
@@ -40,8 +34,13 @@ def main(arguments: Sequence[str], version: str) -> int:
     parser.add_argument("--quiet", action="store_true", help="print nothing when all goes well")
     parser.add_argument("--version", action="version", version=f"lagareport {version}")
     options = parser.parse_args(list(arguments))
+    for stream in (sys.stdout, sys.stderr):
+        stream.reconfigure(errors="replace")     # a title may hold letters that the terminal has not
     try:
         run = Run(options.folder)
+        # Only now: matplotlib takes its time, and what is refused is refused at once.
+        from .album import make_pictures
+        from .page import page
         pictures = make_pictures(run, options.field, options.mirror)
         target = options.out or os.path.join(options.folder, "report.html")
         write(target, page(run, pictures, version).encode("utf-8"))
@@ -60,21 +59,7 @@ def main(arguments: Sequence[str], version: str) -> int:
     return EXIT_DONE
 
 
-def make_pictures(run: Run, fields: Sequence[str] = (), mirror: bool = False) -> List[Picture]:
-    """All pictures that the run has something to show for, in the order of the page."""
-    view = SceneView(run, mirror)
-    names = fields_of(run)
-    chosen = [known_field(run, name) for name in dict.fromkeys(fields)] or [name for name in names if name in MAIN_FIELDS] or names[:2]
-    over_time = chosen if fields else [name for name in ("plastic_strain", "temperature") if name in names] or chosen[:1]
-    pictures = [mesh_picture(view), generations_picture(view), fields_picture(view, chosen),
-                fields_picture(view, [name for name in names if name not in chosen], "more", small=True)]
-    pictures += [series_picture(view, name) for name in over_time]
-    pictures += [force_picture(run), contact_picture(run), probes_picture(run), steps_picture(run), energy_picture(run),
-                 seconds_picture(run)]
-    return [picture for picture in pictures if picture is not None]
-
-
-def write_pngs(folder: str, pictures: Sequence[Picture]) -> None:
+def write_pngs(folder: str, pictures: Sequence) -> None:
     """mesh.png, fields.png, force.png ... into a folder."""
     try:
         os.makedirs(folder, exist_ok=True)

@@ -4,7 +4,7 @@ from typing import List, Optional, Tuple
 import numpy as np
 
 from .geometry import chains, side_curves, side_points
-from .pictures import Picture, when
+from .picture import Picture, when
 from .reader import Group, Run, Step
 from .style import LINES, SOFT, figure
 

@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib import pyplot
 from matplotlib.ticker import MaxNLocator
 
-from .pictures import Picture
+from .picture import Picture
 from .reader import Run
 from .style import LINES, SOFT, WARN, figure
 from .tables import Column, number
@@ -135,7 +135,8 @@ def energy_picture(run: Run) -> Optional[Picture]:
     rest.set_ylim(-max(4, 1.3 * reach), max(4, 1.3 * reach))
     rest.set_title("neither stored nor dissipated [% of the work]")
     rest.set_xlabel("time")
-    return Picture("energy", "work from outside against elastic energy, plastic and friction work; shaded: within 2 %", fig, vector=True)
+    caption = "work from outside against elastic energy, plastic and friction work; shaded: within 2 %"
+    return Picture("energy", caption, fig, vector=True)
 
 
 def seconds_picture(run: Run) -> Optional[Picture]:

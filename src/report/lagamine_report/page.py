@@ -3,11 +3,11 @@ import html
 import os
 from typing import Dict, Iterable, List, Sequence, Tuple
 
-from .pictures import Picture
+from .picture import Picture
 from .reader import Run
 from .short import Check, checks, command
-from .style import brief
 from .tables import number
+from .words import brief
 
 # Sections in reading order: anchor, heading, pictures by name.
 SECTIONS: List[Tuple[str, str, Sequence[str]]] = [
@@ -59,8 +59,8 @@ def page(run: Run, pictures: Sequence[Picture], version: str) -> str:
 {sections}
 </main>
 <footer>lagareport {escape(version)}, from {escape(os.path.basename(os.path.abspath(run.folder)))}/ of
-{escape(run.summary.get('program', 'lagamine'))} {escape(run.summary.get('version', ''))}. Lengths, forces and stresses are in the units of the
-deck.</footer>
+{escape(run.summary.get('program', 'lagamine'))} {escape(run.summary.get('version', ''))}.
+Lengths, forces and stresses are in the units of the deck.</footer>
 </body>
 </html>
 """
@@ -132,7 +132,8 @@ def table(head: Sequence[str], rows: Iterable[Tuple[str, Sequence[str]]]) -> str
     text = "".join(f"<th>{escape(cell)}</th>" for cell in head)
     lines = [f"<table><thead><tr>{text}</tr></thead><tbody>"]
     for look, cells in rows:
-        lines.append(f'<tr{f" class={chr(34)}{look}{chr(34)}" if look else ""}>' + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
+        start = f'<tr class="{look}">' if look else "<tr>"
+        lines.append(start + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
     return "\n".join(lines + ["</tbody></table>"])
 
 

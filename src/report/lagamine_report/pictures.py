@@ -1,53 +1,17 @@
 """Pictures of the part: mesh, fields, fields over time, meshes of the generations."""
-import base64
-import io
-from dataclasses import dataclass
 from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
-from matplotlib import pyplot
-from matplotlib.figure import Figure
 
 from .errors import ReportError
+from .picture import Picture, when
 from .reader import Run, Step
 from .scene_view import SceneView, colour_bar, scale_for, value_range
-from .style import DIRECTIONS, INK, NOT_NEGATIVE, SOFT, brief, field_title, figure, panel_size
+from .style import INK, SOFT, figure, panel_size
+from .words import DIRECTIONS, NOT_NEGATIVE, brief, field_title
 
 MAIN_FIELDS = ["mises", "plastic_strain", "temperature"]
 HIDDEN_FIELDS = ["applied_force"]
-
-
-@dataclass
-class Picture:
-    """A figure with its file name for --png, its heading and caption; `vector` ones go into the page as SVG."""
-
-    name: str
-    caption: str
-    figure: Figure
-    vector: bool = False
-    heading: str = ""
-
-    def png(self, dpi: int = 150) -> bytes:
-        buffer = io.BytesIO()
-        self.figure.savefig(buffer, format="png", dpi=dpi, bbox_inches="tight", pad_inches=0.08, metadata={"Software": None})
-        return buffer.getvalue()
-
-    def data_uri(self) -> str:
-        """The picture as it stands in the page."""
-        if not self.vector:
-            return "data:image/png;base64," + base64.b64encode(self.png()).decode()
-        buffer = io.BytesIO()
-        self.figure.savefig(buffer, format="svg", bbox_inches="tight", pad_inches=0.08, metadata={"Date": None})
-        return "data:image/svg+xml;base64," + base64.b64encode(buffer.getvalue()).decode()
-
-    def close(self) -> None:
-        pyplot.close(self.figure)
-
-
-def when(run: Run, step: Step) -> str:
-    """`time 0.5, step 12`, with the generation where there are several."""
-    generation = f", mesh {step.generation.number}" if len(run.generations) > 1 else ""
-    return f"time {brief(step.time)}, step {step.number}{generation}"
 
 
 def mesh_picture(view: SceneView) -> Picture:
@@ -55,8 +19,8 @@ def mesh_picture(view: SceneView) -> Picture:
     run = view.run
     first, last = run.steps[0], run.steps[-1]
     box = view.box([first, last])
-    wide = panel_size(box[1] - box[0], box[3] - box[2], 4.6, 4.8)
     beside = (box[1] - box[0]) < 2.2 * (box[3] - box[2])
+    wide = panel_size(box[1] - box[0], box[3] - box[2], 4.6 if beside else 8.6, 4.8)
     rows, columns = (1, 2) if beside else (2, 1)
     fig, axes = figure(rows, columns, (columns * (wide[0] + 0.6), rows * (wide[1] + 0.6)))
     for panel, step, word in zip(axes.flat, (first, last), ("start", "end")):
@@ -181,8 +145,10 @@ def series_picture(view: SceneView, field: str, most: int = 8) -> Optional[Pictu
 
 
 def _grid(view: SceneView, steps: Sequence[Step], widest: float, highest: float):
-    """Small panels with one frame for all steps."""
+    """Small panels with one frame for all steps, dies drawn; returns figure and panels."""
     box = view.box(steps, 0.1)
+    if len(steps) < 5:      # these few stand in one row
+        widest = min(widest, 9.2 / len(steps) - 0.25)
     inches = panel_size(box[1] - box[0], box[3] - box[2], widest, highest)
     columns = min(len(steps), max(1, int(9.2 / (inches[0] + 0.2))))
     rows = -(-len(steps) // columns)

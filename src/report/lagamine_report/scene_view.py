@@ -12,7 +12,8 @@ from matplotlib.tri import Triangulation
 
 from .geometry import Triangles, all_sides, die_body, die_curve, side_curves
 from .reader import Generation, Run, Step
-from .style import BODIES, DIE_FILL, DIE_LINE, INK, NOT_NEGATIVE, POSITIVE, SIGNED, SOFT
+from .style import BODIES, DIE_FILL, DIE_LINE, INK, POSITIVE, SIGNED, SOFT
+from .words import NOT_NEGATIVE
 
 Box = Tuple[float, float, float, float]
 
@@ -78,7 +79,10 @@ class SceneView:
                 axes.plot(*(curve * flip).T, color=DIE_LINE, lw=1.4, zorder=4, solid_joinstyle="round")
 
     def outline(self, axes: Axes, generation: Generation, x: np.ndarray, **look) -> None:
-        self._lines(axes, side_curves(x, self.sides(generation)[1]), **{"colors": INK, "linewidths": 1.0, "zorder": 3, **look})
+        sides = self.sides(generation)[1]
+        if self.mirror:     # the axis is no side of the whole
+            sides = sides[(np.abs(x[sides, 0]) > 1e-9 * np.abs(x).max()).any(axis=1)]
+        self._lines(axes, side_curves(x, sides), **{"colors": INK, "linewidths": 1.0, "zorder": 3, **look})
 
     def mesh(self, axes: Axes, generation: Generation, x: np.ndarray, fill: bool = True, **look) -> None:
         """All sides as curves, bodies in pale colours."""
@@ -124,7 +128,7 @@ class Scale:
     colours: str
 
 
-def scale_for(name: str, low: float, high: float, count: int = 14) -> Scale:
+def scale_for(name: str, low: float, high: float, count: int = 16) -> Scale:
     """Levels between two values; a field of both signs is centred on 0."""
     if name in NOT_NEGATIVE:
         low = max(low, 0.0)
@@ -141,7 +145,8 @@ def colour_bar(fig: Figure, drawn, panels, title: str = "", shrink: float = 0.86
     """A colour bar without ornaments."""
     bar = fig.colorbar(drawn, ax=panels, shrink=shrink, aspect=20, pad=0.02)
     levels = np.asarray(drawn.levels)
-    bar.set_ticks(levels[::max(1, -(-len(levels) // 7))])
+    stride = max(1, -(-len(levels) // 7))
+    bar.set_ticks(levels[int(np.abs(levels).argmin()) % stride::stride])     # 0 is among them
     bar.ax.minorticks_off()
     bar.outline.set_visible(False)
     bar.ax.tick_params(length=0, labelsize=8)

@@ -1,14 +1,18 @@
 """What a run came to, judged and told in a few lines."""
+import math
+import shlex
 import sys
 from dataclasses import dataclass
 from typing import List, Optional, TextIO, Union
 
 from .reader import Run
-from .style import brief
 from .tables import number
+from .words import brief
 
 # Above these the page warns: shares of the work and of the volume, and what a sound linear solution leaves.
 ENERGY_IMBALANCE, VOLUME_DRIFT, LINEAR_RESIDUAL = 0.02, 0.01, 1e-10
+# Signs of the page that not every terminal has.
+PLAIN = {0x2212: "-", 0x202F: None, 0x221E: "infinite", 0x2013: "-"}
 
 
 @dataclass
@@ -23,7 +27,7 @@ class Check:
 
 
 def percent(value: float) -> str:
-    return f"{brief(100 * value, 3)} %"
+    return f"{brief(100 * value, 3)} %" if math.isfinite(value) else brief(value)
 
 
 def checks(run: Run) -> List[Check]:
@@ -40,8 +44,9 @@ def checks(run: Run) -> List[Check]:
     if "max_penetration" in given:
         allowed = values.get("allowed_penetration")
         good = None if allowed is None else values["max_penetration"] <= allowed
-        result.append(Check("largest penetration", brief(values["max_penetration"], 3), "–" if allowed is None else brief(allowed, 3),
-                            good, "ask for AUGMENT, or a smaller PENETR, in the contact law" if good is False else ""))
+        result.append(Check("largest penetration", brief(values["max_penetration"], 3),
+                            "–" if allowed is None else brief(allowed, 3), good,
+                            "ask for AUGMENT, or a smaller PENETR, in the contact law" if good is False else ""))
     within("energy_imbalance", "energy imbalance", ENERGY_IMBALANCE, percent, "take smaller steps (STRAT) and compare")
     within("volume_drift", "volume drift", VOLUME_DRIFT, percent, "look for large elastic volume changes or distorted elements")
     within("worst_linear_residual", "worst linear residual", LINEAR_RESIDUAL, lambda value: brief(value, 2),
@@ -51,7 +56,8 @@ def checks(run: Run) -> List[Check]:
         good = values["least_dissipation"] >= -slack
         result.append(Check("least friction work of a step", brief(values["least_dissipation"], 3), "not negative", good,
                             "" if good else "friction gave energy back: report it with the deck"))
-    known = {"max_penetration", "allowed_penetration", "energy_imbalance", "volume_drift", "worst_linear_residual", "least_dissipation"}
+    known = {"max_penetration", "allowed_penetration", "energy_imbalance", "volume_drift", "worst_linear_residual",
+             "least_dissipation"}
     for name in given:
         if name not in known:
             result.append(Check(name.replace("_", " "), brief(values[name], 4), "–", None))
@@ -65,8 +71,9 @@ def command(run: Run) -> str:
         return given
     words = ["lagamine", run.summary["deck"], "--out", run.folder.rstrip("/") or "/"]
     if isinstance(run.summary.get("parameters"), dict):
-        words += [f"-p {name}={value}" for name, value in run.summary["parameters"].items()]
-    return " ".join(words)
+        for name, value in run.summary["parameters"].items():
+            words += ["-p", f"{name}={value}"]
+    return shlex.join(words)
 
 
 def headline(run: Run) -> str:
@@ -76,7 +83,7 @@ def headline(run: Run) -> str:
 
 
 def short_lines(run: Run) -> List[str]:
-    """The result in a few lines for a terminal."""
+    """The result in a few lines for a terminal; numbers in plain letters."""
     s = run.summary
     lines = [run.title, headline(run),
              f"  time {brief(number(s.get('time')))} of {brief(number(s.get('end_time')))}, {s.get('steps', '?')} steps, "
@@ -92,7 +99,7 @@ def short_lines(run: Run) -> List[str]:
     for check in checks(run):
         if check.good is False:
             lines.append(f"  WARNING: {check.name} {check.found}, allowed {check.allowed}: {check.advice}")
-    return lines
+    return [line.translate(PLAIN) for line in lines]
 
 
 def print_short(run: Union[Run, str], file: Optional[TextIO] = None) -> None:

@@ -1,5 +1,4 @@
-"""One look for all pictures: colours, fonts, names of fields as people say them."""
-import math
+"""One look for all pictures: colours, fonts, sizes."""
 from typing import Tuple
 
 import matplotlib
@@ -26,39 +25,6 @@ matplotlib.rcParams.update({
     "axes.prop_cycle": matplotlib.cycler(color=LINES), "svg.hashsalt": "lagareport", "svg.fonttype": "path",
     "figure.max_open_warning": 0,
 })
-
-DIRECTIONS = {"xx": ("xx", "radial"), "yy": ("yy", "axial"), "xy": ("xy", "shear"), "zz": ("zz", "hoop")}
-WORDS = {"mises": "von Mises stress", "plastic_strain": "equivalent plastic strain", "plastic_work": "plastic work per volume",
-         "displacement": "displacement (length)", "applied_force": "applied force at nodes", "temperature": "temperature"}
-# Fields that cannot be negative: what a fit through integration points leaves below 0 is not shown as a colour.
-NOT_NEGATIVE = {"mises", "plastic_strain", "plastic_work", "displacement", "applied_force"}
-
-
-def field_title(name: str, axisymmetric: bool = False) -> str:
-    """`stress_xx` as `stress xx (radial)`, `plastic_strain` as `equivalent plastic strain`."""
-    if name in WORDS:
-        return WORDS[name]
-    base, _, suffix = name.rpartition("_")
-    if base and suffix in DIRECTIONS:
-        plain, round_axis = DIRECTIONS[suffix]
-        return f"{base.replace('_', ' ')} {plain}" + (f" ({round_axis})" if axisymmetric else "")
-    return name.replace("_", " ")
-
-
-def brief(value: float, digits: int = 4) -> str:
-    """A number as one reads it: 1 234 567 stays whole, 1.2e-07 stays short."""
-    if not math.isfinite(value):
-        return "not a number" if math.isnan(value) else ("∞" if value > 0 else "−∞")
-    if value == 0:
-        return "0"
-    if 1e-3 <= abs(value) < 1e7:
-        decimals = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
-        text = f"{value:,.{decimals}f}".replace(",", "\u202f")
-        text = text.rstrip("0").rstrip(".") if "." in text else text
-    else:
-        mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
-        text = f"{mantissa.rstrip('0').rstrip('.')}e{int(exponent)}"
-    return text.replace("-", "−")
 
 
 def figure(rows: int, columns: int, size: Tuple[float, float], **options):

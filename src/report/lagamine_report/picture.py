@@ -1,0 +1,43 @@
+"""A finished picture, as the page and --png want it."""
+import base64
+import io
+from dataclasses import dataclass
+
+from matplotlib import pyplot
+from matplotlib.figure import Figure
+
+from .reader import Run, Step
+from .words import brief
+
+
+@dataclass
+class Picture:
+    """A figure with its file name for --png, its heading and caption; `vector` ones go into the page as SVG."""
+
+    name: str
+    caption: str
+    figure: Figure
+    vector: bool = False
+    heading: str = ""
+
+    def png(self, dpi: int = 150) -> bytes:
+        buffer = io.BytesIO()
+        self.figure.savefig(buffer, format="png", dpi=dpi, bbox_inches="tight", pad_inches=0.08, metadata={"Software": None})
+        return buffer.getvalue()
+
+    def data_uri(self) -> str:
+        """The picture as it stands in the page."""
+        if not self.vector:
+            return "data:image/png;base64," + base64.b64encode(self.png()).decode()
+        buffer = io.BytesIO()
+        self.figure.savefig(buffer, format="svg", bbox_inches="tight", pad_inches=0.08, metadata={"Date": None})
+        return "data:image/svg+xml;base64," + base64.b64encode(buffer.getvalue()).decode()
+
+    def close(self) -> None:
+        pyplot.close(self.figure)
+
+
+def when(run: Run, step: Step) -> str:
+    """`time 0.5, step 12`, with the generation where there are several."""
+    generation = f", mesh {step.generation.number}" if len(run.generations) > 1 else ""
+    return f"time {brief(step.time)}, step {step.number}{generation}"
