@@ -117,6 +117,7 @@ contains
     facts%version = version_text
     facts%deck = options%deck
     facts%deck_text = run%deck_text
+    facts%overrides = options%overrides
     facts%status = merge('done   ', 'stopped', run%exit_code == exit_done)
     facts%status = trim(facts%status)
     facts%stop_reason = run%stop_reason

@@ -19,6 +19,8 @@ module summary
   !> What the run knows of itself.
   type :: run_facts_t
     character(len=:), allocatable :: version, deck, deck_text, status, stop_reason
+    !> Parameters set on the command line, NAME=VALUE.
+    type(string_t), allocatable :: overrides(:)
     integer :: exit_code = 0, threads = 1
     real(wp) :: wall = 0.0_wp
   end type run_facts_t
@@ -37,12 +39,20 @@ contains
     type(totals_t), intent(in) :: totals
     type(error_t), allocatable, intent(out) :: error
     type(json_t) :: json
+    integer :: k
 
     call json%begin_object()
     call json%add('program', 'lagamine')
     call json%add('version', facts%version)
     call json%add('deck', facts%deck)
     call json%add('title', scene%title)
+    call json%begin_object('parameters')
+    do k = 1, size(facts%overrides)
+      associate (word => facts%overrides(k)%s)
+        call json%add(word(:index(word, '=') - 1), word(index(word, '=') + 1:))
+      end associate
+    end do
+    call json%end_object()
     call json%add('deck_sha256', sha256(facts%deck_text))
     call json%add('status', facts%status)
     call json%add('exit_code', facts%exit_code)

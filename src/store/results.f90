@@ -20,6 +20,8 @@ module results
   type :: results_t
     !> Path of the run's files without endings, of the present generation's HDF5 file, and the XDMF.
     character(len=:), allocatable :: stem, path
+    !> Step saved last, -1 before the first.
+    integer :: saved_step = -1
     type(xdmf_t) :: xdmf
   end type results_t
 
@@ -43,28 +45,32 @@ contains
     end if
     there = file_exists(results%path)
     if (resume .and. there) then
-      call forget_later_steps(results%path, solution%step, error)
+      call forget_later_steps(results%path, solution%step, results%saved_step, error)
     else
       call write_mesh(results%path, scene, error)
     end if
   end subroutine open_results
 
-  !> Steps saved after the checkpoint are made again: take them out.
-  subroutine forget_later_steps(path, step, error)
+  !> Steps saved after the checkpoint are made again: take them out. `saved` is the checkpoint's own step if it is there.
+  subroutine forget_later_steps(path, step, saved, error)
     character(len=*), intent(in) :: path
     integer, intent(in) :: step
+    integer, intent(out) :: saved
     type(error_t), allocatable, intent(out) :: error
     type(hdf5_file_t) :: file
     type(string_t), allocatable :: names(:)
     integer :: k, number, status
 
+    saved = -1
     call file%open_append(path, error)
     if (allocated(error)) return
     if (file%has('steps')) then
       call file%list('steps', names)
       do k = 1, size(names)
         read (names(k)%s, *, iostat=status) number
-        if (status == 0 .and. number > step) call file%remove('steps/'//names(k)%s)
+        if (status /= 0) cycle
+        if (number > step) call file%remove('steps/'//names(k)%s)
+        if (number == step) saved = step
       end do
     end if
     call file%close(error)
@@ -92,9 +98,11 @@ contains
       call file%write(place//'/connectivity', scene%groups(g)%connectivity - 1)
       call file%write_attribute(place, 'name', scene%groups(g)%name)
       call file%write_attribute(place, 'elem', scene%groups(g)%elem)
+      call file%write_attribute(place, 'npoint', scene%groups(g)%npoint)
     end do
     do g = 1, size(scene%dies)
       call file%write('dies/'//scene%dies(g)%name, scene%dies(g)%pieces)
+      call file%write_attribute('dies/'//scene%dies(g)%name, 'number', g)
     end do
     call file%close(error)
   end subroutine write_mesh
@@ -113,7 +121,7 @@ contains
     end do
   end subroutine solid_topology
 
-  !> Save the accepted instant.
+  !> Save the accepted instant, once.
   subroutine save_fields(scene, solution, results, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -125,6 +133,7 @@ contains
     character(len=6) :: number
     integer :: nnode, g
 
+    if (results%saved_step == solution%step) return
     nnode = size(scene%mesh%coordinates, 2)
     write (number, '(i6.6)') solution%step
     place = 'steps/'//number
@@ -150,6 +159,7 @@ contains
     call file%close(error)
     if (.not. allocated(error)) call results%xdmf%add(grid, error)
     if (.not. allocated(error)) call results%xdmf%write_file(results%stem//'.xdmf', error)
+    if (.not. allocated(error)) results%saved_step = solution%step
   end subroutine save_fields
 
   !> A vector at the nodes, with the third component ParaView asks for.
