@@ -10,7 +10,7 @@ module march
   use kinds, only: eps, wp
   use listing, only: list_cut, list_event, list_step, listing_t, show_progress
   use newton, only: outcome_t, solve_step
-  use results, only: open_results, results_t, save_fields
+  use results, only: open_results, results_t, save_failure, save_fields
   use scene, only: scene_t
   use solution, only: solution_t
   use step_strategy, only: after_failure, after_success, choose_step
@@ -65,7 +65,7 @@ contains
         solution%cutbacks = solution%cutbacks + 1
         call after_failure(scene, dt, solution%next_step, give_up)
         call list_cut(run%listing, scene, solution, dt, solution%next_step, outcome)
-        if (give_up) call stop_here(scene, solution, dt, outcome, error)
+        if (give_up) call stop_here(scene, solution, dt, outcome, run, error)
         cycle
       end if
 
@@ -145,22 +145,48 @@ contains
     end if
   end function is_save_time
 
-  !> The smallest step has failed: say why, where, and what to try.
-  subroutine stop_here(scene, solution, dt, outcome, error)
+  !> The smallest step has failed: say why, where, and what to try; leave a picture of the residual.
+  subroutine stop_here(scene, solution, dt, outcome, run, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: dt
     type(outcome_t), intent(in) :: outcome
+    type(run_t), intent(in) :: run
     type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: late
+    real(wp), allocatable :: residual(:, :)
     character(len=:), allocatable :: where_at
 
     where_at = ''
     if (outcome%group > 0) where_at = ', element '//to_text(outcome%element)//' of '//scene%groups(outcome%group)%name
+    if (allocated(outcome%residual)) then
+      call residual_at_nodes(run%equations, outcome%residual, residual)
+      where_at = where_at//', worst at node '//to_text(scene%mesh%labels(maxloc(sum(residual**2, 1), 1)))
+      call save_failure(scene, solution, run%stem, residual, late)
+    end if
     call fail(error, exit_no_convergence, 'no convergence: step '//to_text(solution%step + 1)//' from time ' &
               //to_text(solution%time)//', length '//to_text(dt)//where_at//': '//outcome%reason, &
-              'the last good state is in the checkpoint; look at the fields saved at this time; a limit load, a mesh too ' &
-              //'distorted or a step too small for STRAT are the usual causes')
+              'the last good state is in the checkpoint, the residual force in '//run%stem//'.failed.xdmf; a limit load, a ' &
+              //'mesh too distorted or a least step too large in STRAT are the usual causes')
+    if (allocated(late)) error%advice = error%advice//' (and '//late%message//')'
   end subroutine stop_here
+
+  !> Residual of the free unknowns of the nodes; where the motion is given it is a reaction, left out.
+  pure subroutine residual_at_nodes(equations, residual, at_nodes)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: residual(:)
+    real(wp), allocatable, intent(out) :: at_nodes(:, :)
+    integer :: k, c, d
+
+    allocate (at_nodes(2, size(equations%dofs%node, 2)), source=0.0_wp)
+    do k = 1, size(at_nodes, 2)
+      do c = 1, 2
+        d = equations%dofs%node(c, k)
+        if (d == 0) cycle
+        if (equations%dofs%equation(d) > 0) at_nodes(c, k) = residual(d)
+      end do
+    end do
+  end subroutine residual_at_nodes
 
   !> Leave files that tell how the run ended.
   subroutine finish(scene, solution, run, error)

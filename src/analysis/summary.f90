@@ -120,6 +120,7 @@ contains
       call json%add('on', scene%effects(k)%on)
       call json%add('why', scene%effects(k)%why)
       call json%add('adds', scene%effects(k)%adds)
+      if (len(scene%effects(k)%within) > 0) call json%add('within', scene%effects(k)%within)
       call json%add('calls', calls)
       call json%add('wall_s', seconds)
       call json%end_object()
@@ -127,7 +128,8 @@ contains
     call json%end_object()
   end subroutine add_effects
 
-  !> Calls and seconds in the ledger under the effect's name; an effect inside another's loop has none of its own.
+  !> Calls and seconds in the ledger under the effect's name. An effect within another's loop is called
+  !> whenever that is, and its seconds are among the other's.
   subroutine booked(equations, effect, calls, seconds)
     type(equations_t), intent(in) :: equations
     type(effect_t), intent(in) :: effect
@@ -137,7 +139,9 @@ contains
 
     calls = 0
     seconds = 0
+    if (.not. effect%on) return
     do t = 1, equations%timers%size()
+      if (equations%timers%name(t) == effect%within) calls = equations%timers%calls(t)
       if (equations%timers%name(t) /= effect%name) cycle
       calls = equations%timers%calls(t)
       seconds = equations%timers%seconds(t)

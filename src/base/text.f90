@@ -38,7 +38,7 @@ contains
     s = trim(buffer)
   end function long_to_text
 
-  !> `digits` significant digits (default 6), no leading or trailing blanks.
+  !> At most `digits` significant digits (default 6), no trailing zeros: `0.25`, `1.2e-5`.
   pure function real_to_text(value, digits) result(s)
     real(wp), intent(in) :: value
     integer, intent(in), optional :: digits
@@ -65,7 +65,10 @@ contains
       if (s(1:1) == '.') s = '0'//s
       if (s == '-0') s = '0'
     else
-      s = trim(adjustl(buffer))
+      s = trim(adjustl(buffer(:35)))
+      s = s(1:verify(s, '0', back=.true.))
+      if (s(len(s):) == '.') s = s(:len(s) - 1)
+      s = s//'e'//integer_to_text(e)
     end if
   end function real_to_text
 

@@ -26,10 +26,10 @@ contains
 
     allocate (scene%effects(8))
     call set(1, 'displacement', 'no body')
-    call set(2, 'large strain', 'KINEM '//scene%kinematics)
-    call set(3, 'plasticity', 'no LAW with a yield stress is used')
+    call set(2, 'large strain', 'KINEM '//scene%kinematics, 'displacement')
+    call set(3, 'plasticity', 'no LAW with a yield stress is used', 'displacement')
     call set(4, 'contact', 'no CNT2D card')
-    call set(5, 'friction', 'no contact law with friction is used')
+    call set(5, 'friction', 'no contact law with friction is used', 'contact')
     call set(6, 'pressure', 'no PRES2D card')
     call set(7, 'heat', 'no card asks for it')
     call set(8, 'phases', 'no card asks for it')
@@ -65,13 +65,16 @@ contains
 
   contains
 
-    subroutine set(k, name, why)
+    subroutine set(k, name, why, within)
       integer, intent(in) :: k
       character(len=*), intent(in) :: name, why
+      character(len=*), intent(in), optional :: within
 
       scene%effects(k)%name = name
       scene%effects(k)%why = why
       scene%effects(k)%adds = ''
+      scene%effects(k)%within = ''
+      if (present(within)) scene%effects(k)%within = within
     end subroutine set
 
     !> The first card that asks for an effect is the one named.

@@ -235,7 +235,10 @@ contains
     lead = verify(whole//part, '0')
     if (lead == 0) return
     power = 9999
-    if (len(scale) <= 5) read (scale, *, iostat=status) power
+    if (len(scale) <= 5) then
+      read (scale, *, iostat=status) power
+      if (status /= 0) power = 9999
+    end if
     power = power + len(whole) - lead
     if (abs(power) > 307) then
       call stop_at(p, first, 'the number '''//p%s(first:p%at - 1)//''' is out of the range of the machine')

@@ -11,6 +11,8 @@ module effects
     character(len=:), allocatable :: why
     !> What it adds: unknowns, state per point.
     character(len=:), allocatable :: adds
+    !> Effect whose loop does its work; empty when it has one of its own. Its seconds are counted there.
+    character(len=:), allocatable :: within
   end type effect_t
 
 contains

@@ -35,6 +35,8 @@ module newton
     real(wp) :: event = 1.0_wp
     !> Motion of every unknown (ndof).
     real(wp), allocatable :: du(:)
+    !> Residual force of every unknown where a failed step stopped (ndof).
+    real(wp), allocatable :: residual(:)
     !> Largest strain increment, worst residual of the linear solves.
     real(wp) :: strain = 0.0_wp, linear_residual = 0.0_wp
     !> Multipliers of contact were carried forward so many times.
@@ -120,7 +122,9 @@ contains
       outcome%converged = .false.
       outcome%reason = 'strain increment '//to_text(outcome%strain, 3)//' above '//to_text(scene%strategy%strain_bound, 3)
     end if
-    if (.not. outcome%converged) call restore(before, solution)
+    if (outcome%converged) return
+    outcome%residual = residual
+    call restore(before, solution)
   end subroutine solve_step
 
   !> Both norms are met. A motion that starts in equilibrium needs no correction.

@@ -251,11 +251,11 @@ contains
     type(hdf5_file_t), intent(inout) :: file
     character(len=*), intent(in) :: place
     real(wp), intent(inout) :: matrix(:, :)
-    real(wp), allocatable :: read(:, :)
+    real(wp), allocatable :: values(:, :)
 
-    call file%read(place, read)
-    if (all(shape(read) == shape(matrix))) then
-      matrix = read
+    call file%read(place, values)
+    if (all(shape(values) == shape(matrix))) then
+      matrix = values
     else
       call file%record_error(exit_input, place//': does not fit the deck''s mesh')
     end if

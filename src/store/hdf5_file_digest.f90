@@ -151,6 +151,7 @@ contains
     end do
     line = line//' '
     allocate (bytes(product(extent(:rank))*width), stat=flag)
+    if (flag > 0) flag = -flag
   end subroutine make_room
 
 end submodule hdf5_file_digest

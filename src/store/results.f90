@@ -15,7 +15,7 @@ module results
   use xdmf_writer, only: xdmf_field_t, xdmf_grid_t, xdmf_t
   implicit none
   private
-  public :: results_t, open_results, save_fields
+  public :: results_t, open_results, save_fields, save_failure
 
   type :: results_t
     !> Path of the run's files without endings, of the present generation's HDF5 file, and the XDMF.
@@ -122,11 +122,12 @@ contains
   end subroutine solid_topology
 
   !> Save the accepted instant, once.
-  subroutine save_fields(scene, solution, results, error)
+  subroutine save_fields(scene, solution, results, error, residual)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(results_t), intent(inout) :: results
     type(error_t), allocatable, intent(out) :: error
+    real(wp), intent(in), optional :: residual(:, :)  !! residual force of a step that failed (2, nnode)
     type(hdf5_file_t) :: file
     type(xdmf_grid_t) :: grid
     character(len=:), allocatable :: place
@@ -154,6 +155,7 @@ contains
     end do
     call put_vector(file, place, 'displacement', solution%displacement, grid)
     call put_vector(file, place, 'applied_force', solution%applied, grid)
+    if (present(residual)) call put_vector(file, place, 'residual_force', residual, grid)
     call put_nodal_fields(file, place, scene, solution, grid)
     call put_points(file, place, scene, solution)
     call file%close(error)
@@ -161,6 +163,19 @@ contains
     if (.not. allocated(error)) call results%xdmf%write_file(results%stem//'.xdmf', error)
     if (.not. allocated(error)) results%saved_step = solution%step
   end subroutine save_fields
+
+  !> A picture of the step that failed, in files of its own (NAME.failed.*): the last good state with the residual force.
+  subroutine save_failure(scene, solution, stem, residual, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    character(len=*), intent(in) :: stem
+    real(wp), intent(in) :: residual(:, :)
+    type(error_t), allocatable, intent(out) :: error
+    type(results_t) :: failed
+
+    call open_results(scene, solution, stem//'.failed', .false., failed, error)
+    if (.not. allocated(error)) call save_fields(scene, solution, failed, error, residual)
+  end subroutine save_failure
 
   !> A vector at the nodes, with the third component ParaView asks for.
   subroutine put_vector(file, place, name, vector, grid)
