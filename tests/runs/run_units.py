@@ -11,7 +11,7 @@ from support import DONE, Checks, history, run, said, write  # noqa: E402
 
 # One length and one stress unit, in mm and MPa; the time unit in s.
 UNITS = {"mm-N-MPa": (1.0, 1.0, 1.0), "m-N-Pa": (1.0e3, 1.0e-6, 1.0), "in-lbf-psi": (25.4, 4.4482216152605 / 25.4**2, 1.0),
-         "nm-TPa-hour": (1.0e-6, 1.0e6, 3600.0)}
+         "nm-TPa-hour": (1.0e-6, 1.0e6, 3600.0), "binary": (2.0**12, 2.0**-22, 2.0**6)}
 TOLERANCE = 1.0e-9
 
 # The billet with all that has a dimension: sticking by gluing, sliding friction with a bound and cohesion, given penalties.
@@ -101,7 +101,7 @@ def main():
     checks = Checks()
     for scene_name, scene, nx, ny in (("glued", GLUED, 6, 9), ("glued", GLUED, 12, 18), ("sliding", SLIDING, 6, 9)):
         runs = {}
-        for name in UNITS if nx == 6 else ("mm-N-MPa", "m-N-Pa"):
+        for name in UNITS if nx == 6 else ("mm-N-MPa", "m-N-Pa", "binary"):
             where = checks.path(f"{scene_name}-{nx}-{name}")
             deck = write(where + ".lag", scaled_deck(name, scene, nx, ny))
             result = run([deck, "--out", where, "--threads", "1"])
