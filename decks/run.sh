@@ -77,6 +77,11 @@ draw() {
   echo "no pictures: lagareport was not built; packages missing for ${python:-python3, which is missing too}:${lacking:- none, build anew}" >&2
 }
 
+# Is this file of the present run?
+fresh() {
+  [ -n "$(find "$1" -newer "$root/out/.started" 2>/dev/null)" ]
+}
+
 # Run one deck and show what came out.
 run_deck() {
   folder="$root/out/$1"
@@ -86,7 +91,7 @@ run_deck() {
   code=0
   "$build/bin/lagamine" "$file" --out "$folder" "$@" || code=$?
   # Results of an earlier run, or none, are not shown: with --check, or where the deck was refused.
-  [ -n "$(find "$folder/history.csv" -newer "$root/out/.started" 2>/dev/null)" ] || return "$code"
+  fresh "$folder/history.csv" || return "$code"
   echo "history.csv:"
   case "$file" in
     */upsetting.lag) billet_result "$folder/history.csv" ;;
@@ -94,9 +99,9 @@ run_deck() {
   esac
   draw "$folder"
   echo "results in $folder"
-  [ ! -f "$folder/report.html" ] || echo "  pictures   $folder/report.html"
+  ! fresh "$folder/report.html" || echo "  pictures   $folder/report.html"
   for file in "$folder"/*.xdmf; do
-    [ ! -f "$file" ] || echo "  ParaView   $file"
+    ! fresh "$file" || echo "  ParaView   $file"
   done
   return "$code"
 }
