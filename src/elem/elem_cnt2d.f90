@@ -305,7 +305,7 @@ contains
     w = [cos(angle)*v(1) - sin(angle)*v(2), sin(angle)*v(1) + cos(angle)*v(2)]
   end function turned
 
-  !> Uzawa: the pressure reached becomes the multiplier, p = multiplier + AKP d, so that the same
+  !> Uzawa: the pressure (or pull, of glue) reached becomes the multiplier, p = multiplier + AKP d, so that the same
   !> pressure needs no penetration any more.
   subroutine augment(scene, group, times, committed, trial, changed)
     type(scene_t), intent(in) :: scene
@@ -318,9 +318,9 @@ contains
 
     changed = .false.
     associate (values => scene%materials(group%material)%values)
-      if (times >= nint(values(at_augment))) return
+      if (times >= nint(values(at_augment)) .or. .not. values(1) > 0) return
       do e = 1, size(trial, 3)
-        changed = changed .or. any(trial(at_penetration, :, e) > values(1)*side_length(scene, group%connectivity(:, e)) &
+        changed = changed .or. any(abs(trial(at_penetration, :, e)) > values(1)*side_length(scene, group%connectivity(:, e)) &
                                    .and. nint(trial(at_status, :, e)) /= contact_open)
       end do
     end associate

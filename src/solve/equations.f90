@@ -191,6 +191,8 @@ contains
     real(wp) :: rhs(equations%dofs%neq), x(equations%dofs%neq)
     integer :: d, timer
 
+    correction = 0
+    if (equations%dofs%neq == 0) return
     do d = 1, equations%dofs%ndof
       if (equations%dofs%equation(d) > 0) rhs(equations%dofs%equation(d)) = residual(d)
     end do
@@ -203,7 +205,6 @@ contains
     call equations%timers%start(timer)
     call solve_linear(equations%solver, equations%pattern, rhs, x, error)
     call equations%timers%stop(timer)
-    correction = 0
     do d = 1, equations%dofs%ndof
       if (equations%dofs%equation(d) > 0) correction(d) = x(equations%dofs%equation(d))
     end do

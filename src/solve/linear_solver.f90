@@ -15,6 +15,8 @@ module linear_solver
   real(wp), parameter, public :: refine_above = 1.0e-14_wp
   real(wp), parameter, public :: linear_tolerance = 1.0e-10_wp
   integer, parameter :: max_refinements = 3
+  !> Forces |A| |x| this many times the right-hand side are round-off of a singular matrix.
+  real(wp), parameter :: singular_growth = 1.0e13_wp
   !> Threshold of partial pivoting, where it is used.
   real(wp), parameter :: pivot_threshold = 0.01_wp
 
@@ -35,8 +37,10 @@ module linear_solver
     logical :: started = .false.
     !> Entries of the factors and operations of a factorisation, estimated by the analysis.
     real(wp), public :: estimated_entries = 0.0_wp, estimated_flops = 0.0_wp
-    !> Relative residual of the last solve.
+    !> Backward error of the last solve.
     real(wp), public :: residual = 0.0_wp
+  contains
+    final :: release
   end type linear_solver_t
 
 contains
@@ -54,6 +58,10 @@ contains
     solver%mumps%sym = merge(2, 0, pattern%symmetric)
     solver%mumps%job = job_start
     call dmumps(solver%mumps)
+    if (solver%mumps%infog(1) < 0) then
+      call fail(error, exit_machine, 'MUMPS: start failed (INFOG(1) = '//to_text(solver%mumps%infog(1))//')')
+      return
+    end if
     solver%started = .true.
     associate (id => solver%mumps)
       id%icntl(1:3) = -1      ! no output
@@ -144,6 +152,7 @@ contains
     integer :: k
 
     x = 0
+    scale = 0
     residual = rhs
     do k = 0, max_refinements
       solver%mumps%rhs = residual
@@ -159,6 +168,9 @@ contains
       if (scale > 0) solver%residual = norm2(residual)/scale
       if (.not. solver%residual > refine_above) exit
     end do
+    if (scale > singular_growth*norm2(rhs)) then
+      call fail(error, exit_no_convergence, 'the matrix is singular to working precision: is every body held?')
+    end if
   end subroutine refine
 
   !> residual = rhs - A x, and the size of what was summed, |rhs| + |A| |x|: their ratio is the backward error

@@ -154,17 +154,17 @@ def tables(results, options):
     """The results in Markdown."""
     lines = [f"{time.strftime('%Y-%m-%d')}, {processor()}, one thread, "
              + (f"medians of {options.repeat} runs." if options.repeat > 1 else "one run each."), "",
-             "| mesh | scene | unknowns | steps | iterations | cutbacks | total s | s/iteration | kernel us | "
+             "| mesh | scene | unknowns | steps | iterations | cutbacks | total s | processor s | s/iteration | kernel us | "
              "30 % | 44 % | 60 % kN |",
-             "|---|---|---|---|---|---|---|---|---|---|---|---|"]
+             "|---|---|---|---|---|---|---|---|---|---|---|---|---|"]
     for (mesh, name), row in results.items():
         if not row:
-            lines.append(f"| {mesh} | {name} | did not finish |||||||||| ")
+            lines.append(f"| {mesh} | {name} | did not finish ||||||||||| ")
             continue
         kernel = f"{row['kernel_us']:.2f}" if "kernel_us" in row else ""
         forces = " | ".join(f"{row['forces'].get(moment, float('nan')):.1f}" for moment in MOMENTS)
         lines.append(f"| {mesh} | {name} | {row.get('unknowns', '')} | {row['steps']} | {row['iterations']} | {row['cutbacks']} | "
-                     f"{row['total']:.2f} | {row['per_iteration']:.4f} | {kernel} | {forces} |")
+                     f"{row['total']:.2f} | {row['cpu']:.2f} | {row['per_iteration']:.4f} | {kernel} | {forces} |")
     lines += ["", "| mesh | scene | " + " | ".join(task + " %" for task in share_names()) + " |", "|---|---" + "|---" * 6 + "|"]
     for (mesh, name), row in results.items():
         if row and "shares" in row:
@@ -199,6 +199,7 @@ def targets(results):
         judged = verdict(total, CCX_TARGET, at_most=False) if mesh == CCX_MESH else ""
         wanted = f"CalculiX / LAGAMINE, whole run{f' >= {CCX_TARGET:g}' if mesh == CCX_MESH else ''}"
         lines.append(f"| {wanted} | {mesh}: {total:.1f} | {judged} |")
+        lines.append(f"| the same, of processor time | {mesh}: {row['cpu'] / ours['cpu']:.1f} | |")
         lines.append(f"| CalculiX / LAGAMINE, an iteration | {mesh}: {iteration:.1f} | |")
     return lines
 

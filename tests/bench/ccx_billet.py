@@ -5,6 +5,8 @@ RADIUS, HEIGHT, TRAVEL = 10.0, 15.0, 9.0
 YOUNG, POISSON, YIELD, HARDENING, LARGEST_STRAIN = 200000.0, 0.3, 700.0, 300.0, 3.0
 # First step, length, least and largest step: those of the deck.
 STEPS = "0.01, 1., 1.E-5, 0.05"
+# CalculiX makes a wedge of 2 degrees of an axisymmetric body and tells the forces on that.
+WEDGES = 180
 
 
 def input_deck(nx, ny):
@@ -53,7 +55,7 @@ def read_answer(folder):
                     now = float(line.split()[-1])
                 elif now is not None and line.strip():
                     answer["times"].append(now)
-                    answer["forces"].append(abs(float(line.split()[1])))
+                    answer["forces"].append(WEDGES * abs(float(line.split()[1])))
                     now = None
     except OSError:
         pass

@@ -40,8 +40,8 @@ import time
 from collections import namedtuple
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-SOURCE = os.environ.get("LAGAMINE_SOURCE") or os.path.dirname(os.path.dirname(HERE))
-BIN = os.environ.get("LAGAMINE_BIN") or os.path.join(SOURCE, "build", "bin")
+SOURCE = os.path.abspath(os.environ.get("LAGAMINE_SOURCE") or os.path.dirname(os.path.dirname(HERE)))
+BIN = os.path.abspath(os.environ.get("LAGAMINE_BIN") or os.path.join(SOURCE, "build", "bin"))
 REQUIRED = ("deck", "options", "exit_code", "at", "quantity", "expected", "tolerance_pct", "source")
 OPTIONAL = ("kind", "long")
 MARK = "<!-- table -->"
