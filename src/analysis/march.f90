@@ -69,7 +69,7 @@ contains
         cycle
       end if
 
-      solution%next_step = after_success(scene, dt, solution%next_step, outcome%iterations)
+      solution%next_step = after_success(scene, dt, solution%next_step, outcome%first_iterations)
       call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
       if (allocated(error)) exit
       call list_step(run%listing, solution, outcome, run%totals)

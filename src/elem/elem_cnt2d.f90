@@ -1,15 +1,17 @@
 !> CNT2D: contact of a 3-node side of the part with a die (annex 3).
 !>
-!> Walking 1 -> 2 -> 3 the part is on the left. At an integration point e_T is the side's tangent,
-!> e_R the part's inner normal, and the traction on the part is p e_R - tau e_T. Penetration d is
-!> measured along e_R (die_search) and linearised exactly, dd = n.(dy - dx - d de_R)/(n.e_R).
+!> Walking 1 -> 2 -> 3 the part is on the left. At an integration point d is the penetration below
+!> the closest point of the die (die_search), n the die's inner normal and t its tangent there, in
+!> the sense of the walk. The traction on the part is -p n - tau t, per length of the side. The
+!> annex measures d and p along the part's own normal e_R; on a side that lies on the die they are
+!> the same, on one that is about to fold the die's normal is the one that is continuous.
 !>
 !> The slip of a step is the way of the part's point relative to the die, taken in the axes of the
-!> pilot, along e_T: a rigid motion of part and die together makes none. When contact begins inside
+!> pilot, along t: a rigid motion of part and die together makes none. When contact begins inside
 !> the step only the share d/(d - d_start) of the way counts.
 !>
-!> Forces are integrated consistently over the side. The reaction acts on the pilot: force and
-!> moment about it.
+!> Forces are integrated consistently over the side. The reaction acts on the pilot: force, and
+!> moment about it. Everything is linearised exactly, the curvature of the die included.
 module elem_cnt2d
   use die_search, only: box_distance, find_foot, foot_t
   use dies, only: die_t
@@ -43,8 +45,8 @@ module elem_cnt2d
 
   !> A point of the side in the present geometry, with derivatives along the local unknowns.
   type :: contact_point_t
-    real(wp) :: x(2), tangent(2), length, e_t(2), e_r(2), radius
-    real(wp) :: dx(2, ndof), dtangent(2, ndof), de_r(2, ndof), de_t(2, ndof), dradius(ndof)
+    real(wp) :: x(2), tangent(2), length, e_r(2), radius
+    real(wp) :: dx(2, ndof), dlength(ndof), dradius(ndof)
   end type contact_point_t
 
 contains
@@ -125,7 +127,7 @@ contains
     end do
   end subroutine compute
 
-  !> Share of the step after which a point that was open overlaps the die by `overlap_limit` of the side.
+  !> Share of the step after which a point that was open, its gap known, overlaps the die by `overlap_limit` of the side.
   pure function share_to_contact(committed, trial, side) result(share)
     real(wp), intent(in) :: committed(:), trial(:), side
     real(wp) :: share
@@ -133,6 +135,7 @@ contains
 
     share = 1
     if (nint(committed(at_status)) /= contact_open .or. nint(trial(at_status)) == contact_open) return
+    if (nint(committed(at_piece)) == 0) return
     if (trial(at_penetration) <= overlap_limit*side) return
     gap = max(-committed(at_penetration), 0.0_wp)
     share = (gap + overlap_limit*side)/(gap + trial(at_penetration))
@@ -164,36 +167,43 @@ contains
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: point
     type(foot_t) :: foot
-    real(wp) :: phi(3), dphi(3), normal(2), lever(2), way(2), turn(2), q(2), moment, share, slip
-    real(wp) :: dd(ndof), dlever(2, ndof), dway(2, ndof), dslip(ndof), dp(ndof), dtau(ndof), dq(2, ndof), dmoment(ndof)
-    real(wp) :: penalty(2), pressure, tau, law_tangent(2, 2), start(2)
+    real(wp) :: phi(3), dphi(3), n(2), t(2), lever(2), way(2), turn(2), q(2), moment, share, slip
+    real(wp), dimension(ndof) :: dd, along, dslip, dp, dtau, dmoment
+    real(wp), dimension(2, ndof) :: relative, dn, dt, dway, dlever, dq
+    real(wp) :: penalty(2), pressure, tau, law_tangent(2, 2)
     integer :: status, j, k
 
     call line3(xi, phi, dphi)
     call side_point(phi, dphi, axisym, x, du, point)
-    call find_foot(die, turned(point%x - pilot(1:2, 2), -pilot(3, 2)), turned(point%e_r, -pilot(3, 2)), side, foot)
+    lever = point%x - pilot(1:2, 2)
+    call find_foot(die, turned(lever, -pilot(3, 2)), turned(point%e_r, -pilot(3, 2)), side, foot)
     if (foot%piece == 0) return
     trial(at_penetration) = foot%d
     trial(at_piece) = foot%piece
-    normal = turned(foot%normal, pilot(3, 2))
+    n = turned(foot%normal, pilot(3, 2))
+    t = [-n(2), n(1)]
 
-    ! d along the unknowns: dy is the rigid motion of the die's point, dc + dtheta k x lever
-    lever = point%x + foot%d*point%e_r - pilot(1:2, 2)
-    dd = matmul(normal, -point%dx - foot%d*point%de_r)
-    dd(7:8) = dd(7:8) + normal
-    dd(9) = dd(9) + dot_product(normal, [-lever(2), lever(1)])
-    dd = dd/dot_product(normal, point%e_r)
+    ! motion of the point relative to the die, and what it does to depth and normal
+    dlever = point%dx
+    dlever(1, 7) = dlever(1, 7) - 1
+    dlever(2, 8) = dlever(2, 8) - 1
+    relative = dlever
+    relative(:, 9) = relative(:, 9) - [-lever(2), lever(1)]
+    dd = matmul(n, relative)
+    along = foot%turn*matmul(t, relative)
+    along(9) = along(9) + 1
+    do j = 1, ndof
+      dn(:, j) = along(j)*t
+      dt(:, j) = -along(j)*n
+    end do
 
     ! way relative to the die, in its axes, turned back into the present ones
-    start = matmul(x, phi) - pilot(1:2, 1)
-    turn = turned(start, pilot(3, 2) - pilot(3, 1))
-    way = point%x - pilot(1:2, 2) - turn
-    slip = dot_product(point%e_t, way)
-    dway = point%dx
-    dway(1, 7) = dway(1, 7) - 1
-    dway(2, 8) = dway(2, 8) - 1
+    turn = turned(matmul(x, phi) - pilot(1:2, 1), pilot(3, 2) - pilot(3, 1))
+    way = lever - turn
+    slip = dot_product(t, way)
+    dway = dlever
     dway(:, 9) = dway(:, 9) - [-turn(2), turn(1)]
-    dslip = matmul(point%e_t, dway) + matmul(way, point%de_t)
+    dslip = matmul(t, dway) + matmul(way, dt)
     if (nint(committed(at_status)) == contact_open .and. committed(at_penetration) < 0 .and. foot%d > 0) then
       share = foot%d/(foot%d - committed(at_penetration))
       dslip = share*dslip - slip*committed(at_penetration)/(foot%d - committed(at_penetration))**2*dd
@@ -211,8 +221,8 @@ contains
     trial(at_slip) = committed(at_slip) + slip
     if (status == contact_slip) trial(at_work) = committed(at_work) + tau*(slip - (tau - committed(at_tau))/penalty(2))
 
-    ! traction times length and radius; the part gets it, the pilot its opposite
-    q = (pressure*[-point%tangent(2), point%tangent(1)] - tau*point%tangent)*weight
+    ! traction times length, weight and radius; the part gets it, the pilot its opposite
+    q = -(pressure*n + tau*t)*point%length*weight
     moment = lever(1)*q(2) - lever(2)*q(1)
     force(1:3) = force(1:3) - phi*q(1)*point%radius
     force(4:6) = force(4:6) - phi*q(2)*point%radius
@@ -223,12 +233,9 @@ contains
     dp = law_tangent(1, 1)*dd + law_tangent(1, 2)*dslip
     dtau = law_tangent(2, 1)*dd + law_tangent(2, 2)*dslip
     do j = 1, ndof
-      dq(:, j) = weight*(dp(j)*[-point%tangent(2), point%tangent(1)] - dtau(j)*point%tangent &
-                         + pressure*[-point%dtangent(2, j), point%dtangent(1, j)] - tau*point%dtangent(:, j))
-      dlever(:, j) = point%dx(:, j) + dd(j)*point%e_r + foot%d*point%de_r(:, j)
+      dq(:, j) = -(dp(j)*n + dtau(j)*t + pressure*dn(:, j) + tau*dt(:, j))*point%length*weight &
+                 + q*point%dlength(j)/point%length
     end do
-    dlever(1, 7) = dlever(1, 7) - 1
-    dlever(2, 8) = dlever(2, 8) - 1
     dmoment = dlever(1, :)*q(2) - dlever(2, :)*q(1) + lever(1)*dq(2, :) - lever(2)*dq(1, :)
     do j = 1, ndof
       dq(:, j) = dq(:, j)*point%radius + q*point%dradius(j)
@@ -242,34 +249,27 @@ contains
     end do
   end subroutine contact_at
 
-  !> Position, tangent, normals and radius of a point of the side, and their derivatives.
+  !> Position, length, inner normal and radius of a point of the side, and their derivatives.
   pure subroutine side_point(phi, dphi, axisym, x, du, point)
     real(wp), intent(in) :: phi(3), dphi(3), x(2, 3), du(ndof)
     logical, intent(in) :: axisym
     type(contact_point_t), intent(out) :: point
-    real(wp) :: y(2, 3), turn
-    integer :: j
+    real(wp) :: y(2, 3)
 
     y(1, :) = x(1, :) + du(1:3)
     y(2, :) = x(2, :) + du(4:6)
     point%x = matmul(y, phi)
     point%tangent = matmul(y, dphi)
     point%length = norm2(point%tangent)
-    point%e_t = point%tangent/point%length
-    point%e_r = [-point%e_t(2), point%e_t(1)]
+    point%e_r = [-point%tangent(2), point%tangent(1)]/point%length
     point%radius = 1
     point%dx = 0
-    point%dtangent = 0
+    point%dlength = 0
     point%dradius = 0
     point%dx(1, 1:3) = phi
     point%dx(2, 4:6) = phi
-    point%dtangent(1, 1:3) = dphi
-    point%dtangent(2, 4:6) = dphi
-    do j = 1, ndof
-      turn = dot_product(point%e_r, point%dtangent(:, j))/point%length
-      point%de_t(:, j) = turn*point%e_r
-      point%de_r(:, j) = -turn*point%e_t
-    end do
+    point%dlength(1:3) = dphi*point%tangent(1)/point%length
+    point%dlength(4:6) = dphi*point%tangent(2)/point%length
     if (axisym) then
       point%radius = point%x(1)
       point%dradius(1:3) = phi

@@ -18,6 +18,8 @@ module element_loop
 
   !> Elements per block: their arrays stay in the first-level caches.
   integer, parameter :: block_size = 16
+  !> Fewer blocks, or nonzeros, are not worth waking threads for.
+  integer, parameter :: worth_threads = 8, worth_gathering = 50000
 
   type :: element_buffers_t
     !> Element forces and matrices of all groups, one after the other.
@@ -51,7 +53,7 @@ contains
         nelem = size(group%connectivity, 2)
         ndof = size(dofs%groups(g)%dof, 1)
         allocate (reports((nelem + block_size - 1)/block_size))
-        !$omp parallel do schedule(dynamic) private(first, last, f, m) if (size(reports) > 1)
+        !$omp parallel do schedule(dynamic) private(first, last, f, m) if (size(reports) >= worth_threads)
         do b = 1, size(reports)
           first = (b - 1)*block_size + 1
           last = min(b*block_size, nelem)
@@ -140,7 +142,7 @@ contains
     real(wp), intent(out) :: force(:), magnitude(:)
     integer :: d, k
 
-    !$omp parallel do private(k) schedule(static)
+    !$omp parallel do private(k) schedule(static) if (pattern%nnz > worth_gathering)
     do d = 1, size(force)
       force(d) = 0
       magnitude(d) = 0
@@ -159,7 +161,7 @@ contains
     real(wp), intent(out) :: values(:)
     integer :: n, k
 
-    !$omp parallel do private(k) schedule(static)
+    !$omp parallel do private(k) schedule(static) if (pattern%nnz > worth_gathering)
     do n = 1, pattern%nnz
       values(n) = 0
       do k = pattern%first(n), pattern%first(n + 1) - 1

@@ -29,7 +29,8 @@ module newton
     !> Why the step must be cut, when it has not converged; and the element at fault, when there is one.
     character(len=:), allocatable :: reason
     integer :: group = 0, element = 0
-    integer :: iterations = 0
+    !> Iterations in all, and those before the first augmentation: the difficulty of the step.
+    integer :: iterations = 0, first_iterations = 0
     type(iteration_t), allocatable :: history(:)
     !> Contact begins after this share of the step: it should be no longer.
     real(wp) :: event = 1.0_wp
@@ -87,6 +88,7 @@ contains
       outcome%iterations = size(outcome%history) - 1
       if (.not. any(abs(missing) > 0)) then
         if (has_converged(scene, outcome%history(first:))) then
+          if (outcome%augmentations == 0) outcome%first_iterations = outcome%iterations
           call augment(scene, equations, solution, outcome%augmentations, before, changed)
           if (.not. changed) exit
           outcome%augmentations = outcome%augmentations + 1
