@@ -74,7 +74,7 @@ draw() {
   for module in numpy h5py matplotlib; do
     "${python:-false}" -c "import $module" >/dev/null 2>&1 || lacking="$lacking python3-$module"
   done
-  echo "no pictures: lagareport was not built; packages missing for ${python:-python3, which is missing too}:${lacking:- none, build anew}" >&2
+  echo "no pictures: lagareport was not built; packages missing for ${python:-python3, itself missing}:${lacking:- none}" >&2
 }
 
 # Is this file of the present run?

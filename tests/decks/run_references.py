@@ -136,6 +136,8 @@ def judge(folder, row, run):
     found = expected = deviation = math.nan
     why = ""
     try:
+        if run.exit_code is None:
+            raise Unmet(run.message)
         if run.exit_code != int(row["exit_code"]):
             raise Unmet(f"exit code {run.exit_code}, wanted {row['exit_code']}: {run.message}")
         expected = evaluate(row["expected"], {})

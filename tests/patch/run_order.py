@@ -152,17 +152,21 @@ def study(checks, name, make, exact, npoint, axisym=False):
     return runs
 
 
-def stored(checks, runs, what, share):
+def stored(checks, runs, what, share, exact_at_nodes=False):
     """Energy of the whole ring by the program's own sum: work of the load, order 4, and the number of the books."""
     exact = np.pi*P*A*lame(A)[0]
     checks.small(abs(exact/ENERGY - 1), 1e-6, f"{what}: the closed form's energy is {ENERGY}")
     found = [share*run.history["elastic_energy"][-1] for run in runs]
     work = [share*run.history["external_work"][-1] for run in runs]
     fall = [abs(e/exact - 1) for e in found]
+    rate = np.log2(fall[-2]/fall[-1])
     print(f"{what}: stored energy {found[-1]:.8f}, exact {exact:.8f}, errors " + " ".join(f"{e:.2e}" for e in fall)
-          + f", order {np.log2(fall[-2]/fall[-1]):.2f}")
-    checks.that(np.log2(fall[-2]/fall[-1]) >= LEAST_STORED, f"{what}: order of the stored energy", fall)
-    checks.small(fall[-1], 1e-5, f"{what}: stored energy")
+          + ("" if exact_at_nodes else f", order {rate:.2f}"))
+    if exact_at_nodes:
+        checks.small(max(fall), 1e-10, f"{what}: stored energy on every mesh")
+    else:
+        checks.that(rate >= LEAST_STORED, f"{what}: order of the stored energy", fall)
+        checks.small(fall[-1], 1e-5, f"{what}: stored energy")
     checks.small(max(abs(e/w - 1) for e, w in zip(found, work)), 1e-10, f"{what}: stored energy is the work of the pressure")
 
 
@@ -175,11 +179,12 @@ def main():
             stored(checks, runs, f"ring, {npoint} points", 4)
             for run in runs:
                 # The cut holds what the pressure pushes with: p a, whatever the mesh.
-                for side in ("below", "left"):
-                    checks.small(abs(run.history[side][-1]/-(P*A) - 1), 1e-10, f"{run.name}: force on the cut {side}")
+                error = max(abs(run.history[side][-1]/-(P*A) - 1) for side in ("below", "left"))
+                checks.small(error, 1e-10, f"{run.name}: reaction of the cuts")
         runs = study(checks, "tube", tube_deck, tube, npoint, axisym=True)
         if runs:
-            stored(checks, runs, f"tube, {npoint} points", 1)
+            # Lame's solution is met at the nodes by quadratics with two points across, on any mesh: no order is left to measure.
+            stored(checks, runs, f"tube, {npoint} points", 1, exact_at_nodes=npoint == 4)
     checks.end()
 
 

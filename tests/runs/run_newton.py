@@ -3,13 +3,15 @@
 
 usage: run_newton.py [-v] [-k]       -v prints every check and the orders, -k keeps the results
 
-Every accepted step is one or more sequences of residuals (a new one begins when contact is augmented). The last three of a
-sequence, r1 > r2 > r3, have the order log(r3/r2)/log(r2/r1); it shows quadratic convergence from 1.6 on, since a step ends as
-soon as it has converged and the last fall is seldom the first within reach of round-off. A sequence that ends below 1e-9 counts
-as well, for what is round-off has no order. Sequences of fewer than three residuals are not judged; nor are those in which the
-prescribed motion was still to be spread (the first residual of a step is then no residual of Newton's method).
-Besides, each scene runs with FORCE 1E-11 and the fall of the residual below 1e-3 is judged in pairs: r(k+1) <= C r(k)^1.6, with
-C from the pairs themselves; a tangent that is only nearly right shows up here as a constant rate.
+Every accepted step is one or more sequences of residuals; a new one begins when contact is augmented.
+
+As the decks are, a step ends as soon as it has converged. The last three residuals r1 > r2 > r3 of a sequence have the order
+log(r3/r2)/log(r2/r1); 1.6 and more is taken for quadratic, and so is an end below 1e-9, since round-off has no order. Sequences
+of fewer than three falling residuals are not judged. r1 is often that of the predictor, from where the first correction changes
+the set of points that flow or touch; that order may be near 1 whatever the tangent is. So a share is asked for here, not all.
+
+With FORCE 1E-11 in the same scenes the fall can be followed down to round-off (near 1e-13): a sequence shows quadratic
+convergence when at most two more solutions lead from below 1e-5 to below 1e-11. A tangent wrong by 2 % takes four.
 """
 import math
 import re
@@ -19,6 +21,7 @@ sys.dont_write_bytecode = True
 from support import DONE, UPSETTING, Checks, add_cards, deck_text, run, said, write  # noqa: E402
 
 ORDER, ROUND_OFF = 1.6, 1.0e-9
+START, END, MOST = 1.0e-5, 1.0e-11, 2
 
 SLIDING = """TITLE  Block pressed down, then pushed sideways under Coulomb friction
 STATE  PLSTN
@@ -100,32 +103,38 @@ def judge(checks, name, deck, least_share, options=()):
 
 
 def tight(checks, name, text, least_share, options=()):
-    """With the residual driven down to round-off: how it falls, pair by pair."""
-    deck = write(checks.path(name + ".lag"), add_cards(text, "NORMS  FORCE 1.E-11   DISPL 1.E-9"))
+    """With the residual driven down to round-off: solutions from below 1e-5 to below 1e-11."""
+    deck = write(checks.path(name + ".lag"), add_cards(text, f"NORMS  FORCE {END:g}   DISPL 1.E-9"))
     out = checks.path(name)
     result = run([deck, "--out", out, "--threads", "1"] + list(options))
     if not checks.that(result.returncode == DONE, f"{name}: done", said(result)):
         return
     with open(f"{out}/{name}.log", encoding="utf-8") as file:
         found, _ = sequences(file.read())
-    # Pairs between 1e-3, where Newton's method has begun to see the end, and round-off.
-    falls = [math.log(b) / math.log(a) for one in found for a, b in zip(one, one[1:]) if 1e-3 > a > 1e-7 and 1 > b > 1e-15]
-    good = sum(fall >= 1.3 for fall in falls) / max(len(falls), 1)
-    worst = [math.log10(a / b) for one in found for a, b in zip(one, one[1:]) if 1e-3 > a > 1e-7 and b > 1e-15]
-    print(f"{name}: {len(falls)} falls from below 1e-3, median exponent {sorted(falls)[len(falls) // 2]:.2f}, "
-          f"median fall 10^{sorted(worst)[len(worst) // 2]:.1f}, least 10^{min(worst):.1f}")
-    checks.that(good >= least_share, f"{name}: exponent of the fall at least 1.3 in {least_share:.0%}", f"{good:.0%}")
+    solutions = [fall for fall in map(fall_length, found) if fall is not None]
+    good = sum(fall <= MOST for fall in solutions) / max(len(solutions), 1)
+    counts = ", ".join(f"{solutions.count(n)} in {n}" for n in sorted(set(solutions)))
+    print(f"{name}: from below {START:g} to below {END:g}: {counts} solutions ({good:.0%} quadratic)")
+    checks.that(len(solutions) >= 10, f"{name}: enough to judge", len(solutions))
+    checks.that(good >= least_share, f"{name}: quadratic in at least {least_share:.0%}", f"{good:.0%}")
+
+
+def fall_length(residuals):
+    """Solutions from the first residual below START to the first one below END; the predictor's own does not count."""
+    first = next((k for k, residual in enumerate(residuals) if k > 0 and residual < START), None)
+    last = next((k for k, residual in enumerate(residuals) if k > 0 and residual < END), None)
+    return None if first is None or last is None else last - first
 
 
 def main():
     checks = Checks()
-    # While the side folds, points come into contact within the last iterations of some steps: no order is to be had there.
     judge(checks, "upsetting", UPSETTING, 0.7)
-    judge(checks, "gluing", UPSETTING, 0.9, ["-p", "travel=4"])
-    slipping = judge(checks, "sliding", write(checks.path("sliding.lag"), SLIDING), 0.9)
+    judge(checks, "gluing", UPSETTING, 0.5, ["-p", "travel=4"])
+    slipping = judge(checks, "sliding", write(checks.path("sliding.lag"), SLIDING), 0.7)
     checks.that(slipping > 10, "sliding: it slides", f"{slipping} steps with slip")
-    tight(checks, "tight-upsetting", deck_text(UPSETTING), 0.7, ["-p", "travel=4"])
-    tight(checks, "tight-sliding", SLIDING, 0.9)
+    tight(checks, "tight-upsetting", deck_text(UPSETTING), 0.95)
+    tight(checks, "tight-gluing", deck_text(UPSETTING), 0.95, ["-p", "travel=4"])
+    tight(checks, "tight-sliding", SLIDING, 0.95)
     checks.end()
 
 
