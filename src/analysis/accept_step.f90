@@ -2,7 +2,7 @@
 module accept_step
   use elem_api, only: add_totals, totals_t
   use element_loop, only: group_geometry
-  use equations, only: equations_t
+  use equations, only: equations_t, external_forces
   use errors, only: error_t, exit_bug, fail
   use kinds, only: wp
   use newton, only: outcome_t
@@ -30,6 +30,7 @@ contains
     integer :: k, c, d
 
     call book_work(equations, outcome%du, solution)
+    call book_reactions(scene, equations, solution%time + dt, solution%reactions)
     do k = 1, size(equations%dofs%node, 2)
       do c = 1, 2
         d = equations%dofs%node(c, k)
@@ -104,6 +105,26 @@ contains
     end subroutine book
 
   end subroutine book_work
+
+  !> What supports and imposed motions bear: internal force less nodal forces; pressures are in it already.
+  subroutine book_reactions(scene, equations, time, reactions)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: time
+    real(wp), intent(out) :: reactions(:, :)
+    real(wp) :: external(equations%dofs%ndof)
+    integer :: k, c, d
+
+    call external_forces(scene, equations%dofs, time, external)
+    reactions = 0
+    do k = 1, size(reactions, 2)
+      do c = 1, 2
+        d = equations%dofs%node(c, k)
+        if (d == 0) cycle
+        if (equations%dofs%equation(d) == 0) reactions(c, k) = equations%force(d) - external(d)
+      end do
+    end do
+  end subroutine book_reactions
 
   !> Sums over all groups at the present displacement, from the trial state (equal to the committed one at rest).
   subroutine measure_scene(scene, equations, solution, totals)

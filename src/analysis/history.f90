@@ -132,7 +132,7 @@ contains
         if (probe%quantity <= 2) value = value + scene%mesh%coordinates(c, node)
       end associate
     case (probe_reaction)
-      value = sum(solution%applied(probe%quantity, probe%nodes))
+      value = sum(solution%reactions(probe%quantity, probe%nodes))
     case (probe_point)
       value = solution%groups(probe%group)%committed(probe%component, probe%point, probe%element)
     case (probe_maximum)

@@ -1,5 +1,6 @@
 !> The listing (`NAME.log`) and the line that shows progress on a terminal.
 module listing
+  use, intrinsic :: iso_fortran_env, only: error_unit
   use elem_api, only: totals_t
   use equations, only: equations_t
   use errors, only: error_t, exit_machine, fail
@@ -11,7 +12,8 @@ module listing
   use text, only: string_t, to_text
   implicit none
   private
-  public :: listing_t, open_listing, close_listing, list_lines, list_step, list_cut, list_event, show_progress, end_progress
+  public :: listing_t, open_listing, close_listing, show_progress, end_progress
+  public :: list_lines, list_step, list_cut, list_event, list_note
 
   type :: listing_t
     integer :: unit = -1
@@ -125,6 +127,15 @@ contains
     write (listing%unit, '(a)') 'event: contact begins, step '//to_text(solution%step + 1)//' shortened to '//to_text(dt)
   end subroutine list_event
 
+  !> Something the user should know: in the listing, and on the terminal.
+  subroutine list_note(listing, note)
+    type(listing_t), intent(in) :: listing
+    character(len=*), intent(in) :: note
+
+    write (listing%unit, '(a)') note
+    write (error_unit, '(a)') note
+  end subroutine list_note
+
   !> One line on the terminal: step, time, iterations, share done, time left.
   subroutine show_progress(listing, scene, solution, iterations)
     type(listing_t), intent(inout) :: listing
@@ -133,6 +144,7 @@ contains
     integer, intent(in) :: iterations
     real(wp) :: now, share, left
     character(len=120) :: line
+    integer :: ignored
 
     if (.not. listing%live) return
     now = wall_seconds()
@@ -143,8 +155,8 @@ contains
     line = 'step '//to_text(solution%step)//'  time '//to_text(solution%time, 4)//'  iterations '//to_text(iterations) &
            //'  '//to_text(100*share, 3)//' %  '//to_text(now - listing%started, 3)//' s, left ' &
            //to_text(min(left, 1.0e9_wp), 3)//' s'
-    write (*, '(a)', advance='no') achar(13)//line(:79)
-    flush (6)
+    write (*, '(a)', advance='no', iostat=ignored) achar(13)//line(:79)
+    flush (6, iostat=ignored)
   end subroutine show_progress
 
   !> Leave the progress line.

@@ -8,7 +8,7 @@ module march
   use exchange, only: write_checkpoint
   use history, only: open_history, write_row
   use kinds, only: eps, wp
-  use listing, only: list_cut, list_event, list_step, listing_t, show_progress
+  use listing, only: list_cut, list_event, list_note, list_step, listing_t, show_progress
   use newton, only: outcome_t, solve_step
   use results, only: open_results, results_t, save_failure, save_fields
   use scene, only: scene_t
@@ -34,6 +34,9 @@ module march
     character(len=:), allocatable :: stop_reason
   end type run_t
 
+  !> A step shortened to an event is shortened by something, so that the event is met in a few trials.
+  real(wp), parameter :: largest_event = 0.95_wp
+
 contains
 
   !> March from where the solution stands to the end of the scene, or to where it must stop.
@@ -52,7 +55,7 @@ contains
 
       call solve_step(scene, run%equations, solution, dt, outcome)
       do while (outcome%event < 1)
-        dt = max(outcome%event*dt, scene%strategy%least_step)
+        dt = max(min(outcome%event, largest_event)*dt, scene%strategy%least_step)
         call list_event(run%listing, solution, dt)
         call solve_step(scene, run%equations, solution, dt, outcome)
       end do
@@ -69,7 +72,7 @@ contains
         cycle
       end if
 
-      solution%next_step = after_success(scene, dt, solution%next_step, outcome%first_iterations)
+      solution%next_step = after_success(scene, dt, solution%next_step, outcome%first_iterations, outcome%strain)
       call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
       if (allocated(error)) exit
       call list_step(run%listing, solution, outcome, run%totals)
@@ -94,7 +97,9 @@ contains
     call open_history(scene, solution, join_path(run%folder, 'history.csv'), run%resume, run%table, error)
     if (allocated(error)) return
     call open_results(scene, solution, run%stem, run%resume, run%results, error)
-    if (allocated(error) .or. run%resume) return
+    if (allocated(error)) return
+    if (allocated(run%results%note)) call list_note(run%listing, run%results%note)
+    if (run%resume) return
     call save_fields(scene, solution, run%results, error)
   end subroutine start
 
@@ -155,7 +160,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: late
     real(wp), allocatable :: residual(:, :)
-    character(len=:), allocatable :: where_at
+    character(len=:), allocatable :: where_at, advice
 
     where_at = ''
     if (outcome%group > 0) where_at = ', element '//to_text(outcome%element)//' of '//scene%groups(outcome%group)%name
@@ -164,10 +169,12 @@ contains
       where_at = where_at//', worst at node '//to_text(scene%mesh%labels(maxloc(sum(residual**2, 1), 1)))
       call save_failure(scene, solution, run%stem, residual, late)
     end if
+    advice = 'the residual force is in '//run%stem//'.failed.xdmf; a limit load, a mesh too distorted or a least step too ' &
+             //'large in STRAT are the usual causes'
+    if (solution%step > 0) advice = 'the last good state is in '//run%stem//'.ckp.h5, '//advice
     call fail(error, exit_no_convergence, 'no convergence: step '//to_text(solution%step + 1)//' from time ' &
               //to_text(solution%time)//', length '//to_text(dt)//where_at//': '//outcome%reason, &
-              'the last good state is in the checkpoint, the residual force in '//run%stem//'.failed.xdmf; a limit load, a ' &
-              //'mesh too distorted or a least step too large in STRAT are the usual causes')
+              advice)
     if (allocated(late)) error%advice = error%advice//' (and '//late%message//')'
   end subroutine stop_here
 

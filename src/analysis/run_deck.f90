@@ -70,7 +70,8 @@ contains
     type(diagnostics_t), target :: diagnostics
 
     call read_deck(options%deck, options%overrides, deck, diagnostics)
-    call read_scene(deck, scene, diagnostics)
+    ! A deck that could not be opened has no other mistakes.
+    if (size(deck%cards) > 0 .or. diagnostics%count() == 0) call read_scene(deck, scene, diagnostics)
     call diagnostics%error(error)
     if (.not. allocated(error)) call fingerprint_text(deck, text)
   end subroutine read_input
@@ -104,7 +105,7 @@ contains
     type(error_t), allocatable :: late
     type(string_t), allocatable :: lines(:)
     real(wp) :: started
-    integer :: k
+    integer :: k, ignored
 
     started = wall_seconds()
     call open_listing(run%stem//'.log', run%resume, options%quiet, solution%time/scene%strategy%end_time, run%listing, error)
@@ -127,13 +128,13 @@ contains
     call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
     call list_lines(run%listing, lines)
     call close_listing(run%listing)
-    if (.not. options%quiet) then
-      do k = 1, size(lines)
-        write (*, '(a)') lines(k)%s
-      end do
-    end if
     call write_summary(join_path(run%folder, 'summary.json'), facts, scene, run%equations, solution, run%totals, late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
+    if (.not. options%quiet) then
+      do k = 1, size(lines)
+        write (*, '(a)', iostat=ignored) lines(k)%s
+      end do
+    end if
   end subroutine run_and_report
 
   !> --check: the scene in words.

@@ -74,6 +74,8 @@ contains
       call fail(error, exit_input, 'no deck given', 'lagamine --help shows how to call')
     else if (.not. allocated(options%out)) then
       options%out = stem_of(options%deck)
+    else if (len_trim(options%out) == 0) then
+      call fail(error, exit_input, '--out: expected the name of a folder, found nothing')
     end if
   end subroutine read_options
 

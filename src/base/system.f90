@@ -1,8 +1,8 @@
 !> What Fortran has no word for: directories, signals, the terminal, memory, the disk.
 !> Thin bindings to the C library of a POSIX system (errno is found as glibc and musl keep it).
 module system
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_funloc, c_funptr, c_int, c_long, c_null_char, &
-    c_ptr, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_funloc, c_funptr, c_int, c_intptr_t, &
+    c_long, c_null_char, c_null_funptr, c_ptr, c_size_t
   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
   use errors, only: error_t, exit_machine, fail
   use kinds, only: i8, wp
@@ -15,7 +15,9 @@ module system
   public :: set_environment, single_thread_blas
 
   !> The numbers POSIX gives to the two requests to stop.
-  integer(c_int), parameter :: signal_interrupt = 2, signal_terminate = 15
+  integer(c_int), parameter :: signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, signal_file_size = 25
+  !> What stands for a handler that does nothing (SIG_IGN).
+  integer(c_intptr_t), parameter :: signal_ignore = 1
 
   !> The last signal caught, 0 = none. The only mutable variable of a module in the system: a signal
   !> handler is called by the kernel between any two instructions, with the number as its only
@@ -305,10 +307,14 @@ contains
     if (directory(len(directory):) == '/') path = directory//name
   end function join_path
 
-  !> From now on SIGINT and SIGTERM no longer end the program: they are only written down.
+  !> From now on SIGINT and SIGTERM no longer end the program: they are only written down. A reader that
+  !> goes away (SIGPIPE) and a file that may not grow (SIGXFSZ) are told by the write that fails.
   subroutine catch_signals()
-    type(c_funptr) :: previous
+    type(c_funptr) :: previous, ignore
 
+    ignore = transfer(signal_ignore, c_null_funptr)
+    previous = c_signal(signal_pipe, ignore)
+    previous = c_signal(signal_file_size, ignore)
     previous = c_signal(signal_interrupt, c_funloc(record_signal))
     previous = c_signal(signal_terminate, c_funloc(record_signal))
   end subroutine catch_signals

@@ -31,10 +31,10 @@ module die_search
 
   !> A side that faces away by less than this cosine may still lie on the die: a side that folds.
   real(wp), parameter :: facing = 0.9_wp
-  !> Ends of pieces belong to both neighbours, within round-off of xi.
-  real(wp), parameter :: end_slack = 64*eps
-  !> Pieces are one smooth curve where their tangents turn by less than this sine.
-  real(wp), parameter :: smooth_turn = 1.0e-10_wp
+  !> Ends of pieces belong to both neighbours, within round-off of xi: coordinates may be 1e5 times a piece.
+  real(wp), parameter :: end_slack = 1.0e-10_wp
+  !> Pieces are one smooth curve where their tangents turn by less than this sine: `end_slack` covers the fan.
+  real(wp), parameter :: smooth_turn = 1.0e-12_wp
 
 contains
 

@@ -36,6 +36,8 @@ module elem_cnt2d
   !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle.
   integer, parameter :: ndof = 9
 
+  !> A radius below this share of the side is the axis.
+  real(wp), parameter :: no_surface = 1.0e-9_wp
   !> Tangential penalty over the normal one, where it is not given: an elastic slip of ten times the
   !> penetration, so that sticking and slipping points do not chatter; error of friction at PHI = 0.5
   !> about half a percent of a side, as in common use.
@@ -124,8 +126,28 @@ contains
         end if
         report%event = min(report%event, share_to_contact(committed(:, p, e), trial(:, p, e), side))
       end do
+      if (axisym) call show_on_axis(xi, x(1, :, e) + du(1:3, e), side, trial(:, :, e))
     end do
   end subroutine compute
+
+  !> Stresses shown at a point on the axis, where none act: on the line through its two neighbours.
+  pure subroutine show_on_axis(xi, x, side, trial)
+    real(wp), intent(in) :: xi(:), x(3), side
+    real(wp), intent(inout) :: trial(:, :)
+    real(wp) :: phi(3), dphi(3), share
+    integer :: p, step, n
+
+    n = size(xi)
+    if (n < 3) return
+    do p = 1, n, n - 1
+      call line3(xi(p), phi, dphi)
+      if (dot_product(phi, x) > no_surface*side) cycle
+      step = merge(1, -1, p == 1)
+      share = (xi(p) - xi(p + step))/(xi(p + 2*step) - xi(p + step))
+      trial([at_pressure, at_tau], p) = (1 - share)*trial([at_pressure, at_tau], p + step) &
+                                        + share*trial([at_pressure, at_tau], p + 2*step)
+    end do
+  end subroutine show_on_axis
 
   !> Share of the step after which a point that was open, its gap known, overlaps the die by `overlap_limit` of the side.
   pure function share_to_contact(committed, trial, side) result(share)
@@ -178,6 +200,8 @@ contains
     lever = point%x - pilot(1:2, 2)
     call find_foot(die, turned(lever, -pilot(3, 2)), turned(point%e_r, -pilot(3, 2)), side, foot)
     if (foot%piece == 0) return
+    ! a point on the axis has no surface: nothing acts there, and nothing is asked of it
+    if (axisym .and. point%radius <= no_surface*side) return
     trial(at_penetration) = foot%d
     trial(at_piece) = foot%piece
     n = turned(foot%normal, pilot(3, 2))

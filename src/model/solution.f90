@@ -40,6 +40,8 @@ module solution
     !> Forces from outside at the last accepted instant: reactions, nodal forces, pressures, on
     !> nodes (2, nnode) and on pilots (3, ndie).
     real(wp), allocatable :: applied(:, :), pilot_applied(:, :)
+    !> Reactions of supports and of imposed motions (2, nnode), without the loads that act on the same nodes.
+    real(wp), allocatable :: reactions(:, :)
   end type solution_t
 
 contains
@@ -52,7 +54,8 @@ contains
 
     nnode = size(scene%mesh%coordinates, 2)
     ndie = size(scene%dies)
-    allocate (solution%displacement(2, nnode), solution%last_increment(2, nnode), solution%applied(2, nnode), source=0.0_wp)
+    allocate (solution%displacement(2, nnode), solution%last_increment(2, nnode), solution%applied(2, nnode), &
+              solution%reactions(2, nnode), source=0.0_wp)
     allocate (solution%pilots(3, ndie), solution%last_pilot_increment(3, ndie), solution%pilot_applied(3, ndie), source=0.0_wp)
     do g = 1, ndie
       solution%pilots(:, g) = scene%dies(g)%pilot

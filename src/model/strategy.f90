@@ -19,7 +19,7 @@ module strategy
     !> Residual force over reference force, correction over the step's displacement.
     real(wp) :: force_norm = 1.0e-6_wp, displacement_norm = 1.0e-5_wp
     !> Largest strain increment of a step at any point (norm of the logarithmic strain).
-    real(wp) :: strain_bound = 0.25_wp
+    real(wp) :: strain_bound = 0.4_wp
     !> Fields are saved every so many steps, and at these times.
     integer :: save_every = 0
     real(wp), allocatable :: save_times(:)

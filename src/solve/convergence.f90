@@ -11,27 +11,41 @@ module convergence
 
 contains
 
-  !> Residual of the free unknowns over the largest of external force, reactions and element forces.
-  pure function relative_residual(equations, force_floor, external, residual) result(norm)
+  !> Residual of the free unknowns over the largest of external force, reactions and element forces; 0 when it is
+  !> round-off. Moments on pilots depend on where the pilot stands: they are no measure of the forces.
+  pure function relative_residual(equations, force_floor, external, residual, du) result(norm)
     type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: force_floor, external(:), residual(:)
+    real(wp), intent(in) :: force_floor, external(:), residual(:), du(:)
     real(wp) :: norm
-    real(wp) :: reference, reactions
+    real(wp) :: reference, round_off
 
     norm = free_norm(equations, residual)
-    reactions = sqrt(max(norm2(residual)**2 - norm**2, 0.0_wp))
-    reference = max(norm2(external), reactions, norm2(equations%magnitude), force_floor)
-    if (reference > 0) norm = norm/reference
+    reference = max(force_norm(equations, external), force_norm(equations, residual), force_norm(equations, equations%magnitude))
+    round_off = force_floor*max(1.0_wp, force_norm(equations, du)/equations%size)
+    if (norm <= round_off) then
+      norm = 0
+    else if (reference > 0) then
+      norm = norm/reference
+    end if
   end function relative_residual
 
-  !> Correction over the motion of the step.
+  !> Correction over the motion of the step, angles of pilots left out.
   pure function relative_motion(equations, correction, du) result(norm)
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: correction(:), du(:)
     real(wp) :: norm
 
-    norm = free_norm(equations, correction)/max(norm2(du), least_motion*equations%size)
+    norm = free_norm(equations, correction)/max(force_norm(equations, du), least_motion*equations%size)
   end function relative_motion
+
+  !> Euclidean norm over displacements and forces, without angles and moments.
+  pure function force_norm(equations, v) result(norm)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: v(:)
+    real(wp) :: norm
+
+    norm = sqrt(sum(v**2, mask=.not. equations%dofs%is_angle))
+  end function force_norm
 
   !> Euclidean norm over the free unknowns.
   pure function free_norm(equations, v) result(norm)

@@ -31,6 +31,8 @@ module dofs
     integer, allocatable :: node(:, :), pilot(:, :)
     !> Equation of each unknown, 0 when prescribed.
     integer, allocatable :: equation(:)
+    !> Unknowns that are angles (their forces are moments).
+    logical, allocatable :: is_angle(:)
     type(prescribed_t), allocatable :: prescribed(:)
     type(group_dofs_t), allocatable :: groups(:)
   end type dofs_t
@@ -63,6 +65,11 @@ contains
       do d = 1, 3
         call take_number(dofs%pilot(d, k))
       end do
+    end do
+
+    allocate (dofs%is_angle(dofs%ndof), source=.false.)
+    do k = 1, size(scene%dies)
+      if (dofs%pilot(3, k) > 0) dofs%is_angle(dofs%pilot(3, k)) = .true.
     end do
 
     call list_prescribed(scene, dofs)

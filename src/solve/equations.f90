@@ -5,7 +5,7 @@ module equations
   use elem_registry, only: list_elems
   use element_loop, only: element_buffers_t, gather_forces, gather_matrix, run_elements
   use errors, only: error_t
-  use kinds, only: wp
+  use kinds, only: eps, wp
   use kinematics_api, only: kinematics_t
   use kinematics_registry, only: list_kinematics
   use law_api, only: law_t, solid_law
@@ -39,8 +39,8 @@ module equations
     real(wp) :: size = 0.0_wp
   end type equations_t
 
-  !> Motions below this share of the mesh's size are round-off of coordinates, with a margin of 500.
-  real(wp), parameter :: round_off_motion = 1.0e-13_wp
+  !> Motions below this share of the mesh's size are round-off of coordinates: some eps.
+  real(wp), parameter :: round_off_motion = 16*eps
 
 contains
 

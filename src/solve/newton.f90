@@ -82,7 +82,7 @@ contains
     correction = 0
     do
       residual = external - equations%force
-      line%force_norm = relative_residual(equations, solution%force_floor, external, residual)
+      line%force_norm = relative_residual(equations, solution%force_floor, external, residual, outcome%du)
       line%displacement_norm = relative_motion(equations, correction, outcome%du)
       outcome%history = [outcome%history, line]
       outcome%iterations = size(outcome%history) - 1

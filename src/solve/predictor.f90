@@ -7,7 +7,7 @@ module predictor
   use dofs, only: prescribed_motion
   use elem_api, only: block_done, report_t
   use equations, only: equations_t, evaluate
-  use kinds, only: eps, wp
+  use kinds, only: wp
   use scene, only: scene_t
   use solution, only: solution_t
   implicit none
@@ -18,8 +18,8 @@ module predictor
   real(wp), parameter :: smooth_contact = 2.0e-3_wp
   !> Share of the proportional motion that shows which points load.
   real(wp), parameter :: onset = 0.02_wp
-  !> A missing motion below this share of the motion is round-off of the proportion.
-  real(wp), parameter :: round_off = 16*eps
+  !> A missing motion below this share of the motion is round-off: of times, and of their differences.
+  real(wp), parameter :: round_off = 1.0e-10_wp
 
 contains
 

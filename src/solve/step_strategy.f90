@@ -10,6 +10,8 @@ module step_strategy
 
   !> A failed step is tried again with this share of its length.
   real(wp), parameter :: cut = 0.5_wp
+  !> A step is proposed with this share of the strain bound, so that it need not be cut.
+  real(wp), parameter :: foresight = 0.8_wp
   !> A time is reached when it is this close, relative to the end of the scene.
   real(wp), parameter :: reached = 64*eps
 
@@ -50,11 +52,13 @@ contains
     end if
   end function next_time
 
-  !> Proposal after an accepted step. A step shortened to hit a time does not shorten the proposal.
-  pure function after_success(scene, dt, proposed, iterations) result(next)
+  !> Proposal after an accepted step: by its iterations, and no longer than its strain increment allows to
+  !> foresee. A step shortened to hit a time does not shorten the proposal.
+  pure function after_success(scene, dt, proposed, iterations, strain) result(next)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: dt, proposed
     integer, intent(in) :: iterations
+    real(wp), intent(in) :: strain   !! largest strain increment of the step
     real(wp) :: next
     real(wp) :: factor
 
@@ -63,6 +67,7 @@ contains
       factor = min(max(factor, s%dminmu), s%dmaxmu)
       next = dt*factor
       if (dt < proposed .and. factor >= 1) next = max(next, min(proposed, s%largest_step))
+      if (strain*next > foresight*s%strain_bound*dt) next = foresight*s%strain_bound/strain*dt
       next = min(max(next, s%least_step), s%largest_step)
     end associate
   end function after_success

@@ -10,7 +10,7 @@ module results
   use scene, only: scene_t
   use solution, only: solution_t
   use state_variables, only: component_names
-  use system, only: base_name, file_exists
+  use system, only: base_name, file_exists, rename_file
   use text, only: string_t, to_text
   use xdmf_writer, only: xdmf_field_t, xdmf_grid_t, xdmf_t
   implicit none
@@ -22,6 +22,8 @@ module results
     character(len=:), allocatable :: stem, path
     !> Step saved last, -1 before the first.
     integer :: saved_step = -1
+    !> What the user should know of the files; may be unallocated.
+    character(len=:), allocatable :: note
     type(xdmf_t) :: xdmf
   end type results_t
 
@@ -46,10 +48,27 @@ contains
     there = file_exists(results%path)
     if (resume .and. there) then
       call forget_later_steps(results%path, solution%step, results%saved_step, error)
+      if (allocated(error)) call begin_again(scene, results, error)
     else
       call write_mesh(results%path, scene, error)
     end if
   end subroutine open_results
+
+  !> A fields file that was damaged (a full disk, a kill in the middle of a save) does not keep a run from
+  !> going on: it is put aside under another name, and a new one begins.
+  subroutine begin_again(scene, results, error)
+    type(scene_t), intent(in) :: scene
+    type(results_t), intent(inout) :: results
+    type(error_t), allocatable, intent(inout) :: error
+    type(xdmf_t) :: empty
+
+    results%note = 'note: '//error%message//'; put aside as '//results%path//'.damaged, fields begin anew'
+    call rename_file(results%path, results%path//'.damaged', error)
+    if (allocated(error)) return
+    results%xdmf = empty
+    results%saved_step = -1
+    call write_mesh(results%path, scene, error)
+  end subroutine begin_again
 
   !> Steps saved after the checkpoint are made again: take them out. `saved` is the checkpoint's own step if it is there.
   subroutine forget_later_steps(path, step, saved, error)

@@ -6,9 +6,10 @@ usage: run_newton.py [-v] [-k]       -v prints every check and the orders, -k ke
 Every accepted step is one or more sequences of residuals; a new one begins when contact is augmented.
 
 As the decks are, a step ends as soon as it has converged. The last three residuals r1 > r2 > r3 of a sequence have the order
-log(r3/r2)/log(r2/r1); 1.6 and more is taken for quadratic, and so is an end below 1e-9, since round-off has no order. Sequences
-of fewer than three falling residuals are not judged. r1 is often that of the predictor, from where the first correction changes
-the set of points that flow or touch; that order may be near 1 whatever the tangent is. So a share is asked for here, not all.
+log(r3/r2)/log(r2/r1); 1.6 and more is taken for quadratic, and so is an end below 1e-9, since round-off has no order. The
+residual a sequence starts from (the predictor's, or an augmentation's) is not Newton's and does not count; sequences with fewer
+than three others are not judged. The first correction may still change the set of points that flow or touch, and then the
+order is near 1 whatever the tangent is: so a share is asked for here, not all.
 
 With FORCE 1E-11 in the same scenes the fall can be followed down to round-off (near 1e-13): a sequence shows quadratic
 convergence when at most two more solutions lead from below 1e-5 to below 1e-11. A tangent wrong by 2 % takes four.
@@ -71,8 +72,8 @@ def sequences(listing):
 
 
 def order(residuals):
-    """Order of the last three residuals; None when there are no three that fall."""
-    if len(residuals) < 3:
+    """Order of the last three residuals, the one a sequence starts from left out; None when there are no three that fall."""
+    if len(residuals) < 4:
         return None
     first, second, third = residuals[-3:]
     if not first > second > third > 0:
@@ -96,7 +97,7 @@ def judge(checks, name, deck, least_share, options=()):
     median = sorted(p for p, _ in judged)[len(judged) // 2] if judged else float("nan")
     print(f"{name}: {sum(good)} of {len(judged)} sequences quadratic ({share:.0%}), median order {median:.2f}, "
           f"{len(found)} sequences, {slipping} steps with slip")
-    checks.that(len(judged) >= 10, f"{name}: enough to judge", f"{len(judged)} sequences")
+    checks.that(len(judged) >= 5, f"{name}: enough to judge", f"{len(judged)} sequences")
     checks.that(share >= least_share, f"{name}: share of quadratic ends at least {least_share:.0%}", f"{share:.0%}")
     checks.that(median >= ORDER, f"{name}: median order at least {ORDER}", f"{median:.2f}")
     return slipping
@@ -128,9 +129,9 @@ def fall_length(residuals):
 
 def main():
     checks = Checks()
-    judge(checks, "upsetting", UPSETTING, 0.7)
-    judge(checks, "gluing", UPSETTING, 0.5, ["-p", "travel=4"])
-    slipping = judge(checks, "sliding", write(checks.path("sliding.lag"), SLIDING), 0.7)
+    judge(checks, "upsetting", UPSETTING, 0.9)
+    judge(checks, "gluing", UPSETTING, 0.9, ["-p", "travel=4"])
+    slipping = judge(checks, "sliding", write(checks.path("sliding.lag"), SLIDING), 0.9)
     checks.that(slipping > 10, "sliding: it slides", f"{slipping} steps with slip")
     tight(checks, "tight-upsetting", deck_text(UPSETTING), 0.95)
     tight(checks, "tight-gluing", deck_text(UPSETTING), 0.95, ["-p", "travel=4"])

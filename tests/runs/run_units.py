@@ -39,6 +39,7 @@ LIC    press
    0. 0.   {T:1} {L:-9}
 MOVE   upper Y press
 {more}STRAT  {T:0.01} {T:1e-5} {T:0.05}   5 3
+NORMS  FORCE 1.E-9   DISPL 1.E-8
 STOP   {T:1}
 END
 """
