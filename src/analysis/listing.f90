@@ -1,6 +1,6 @@
 !> The listing (`NAME.log`) and the line that shows progress on a terminal.
 module listing
-  use, intrinsic :: iso_fortran_env, only: error_unit
+  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
   use elem_api, only: totals_t
   use equations, only: equations_t
   use errors, only: error_t, exit_machine, fail
@@ -144,7 +144,7 @@ contains
     integer, intent(in) :: iterations
     real(wp) :: now, share, left
     character(len=120) :: line
-    integer :: ignored
+    integer :: status
 
     if (.not. listing%live) return
     now = wall_seconds()
@@ -155,8 +155,10 @@ contains
     line = 'step '//to_text(solution%step)//'  time '//to_text(solution%time, 4)//'  iterations '//to_text(iterations) &
            //'  '//to_text(100*share, 3)//' %  '//to_text(now - listing%started, 3)//' s, left ' &
            //to_text(min(left, 1.0e9_wp), 3)//' s'
-    write (*, '(a)', advance='no', iostat=ignored) achar(13)//line(:79)
-    flush (6, iostat=ignored)
+    write (*, '(a)', advance='no', iostat=status) achar(13)//line(:79)
+    if (status == 0) flush (output_unit, iostat=status)
+    ! nobody is there to see it
+    if (status /= 0) listing%live = .false.
   end subroutine show_progress
 
   !> Leave the progress line.

@@ -38,6 +38,7 @@ contains
     type(run_t) :: run
 
     code = exit_done
+    call catch_signals()
     call single_thread_blas()
     call set_threads(options%threads)
     call read_input(options, deck, scene, run%deck_text, error)
@@ -55,7 +56,6 @@ contains
     run%deck_path = options%deck
     run%folder = options%out
     run%stem = join_path(run%folder, stem(options%deck))
-    call catch_signals()
     call run_and_report(options, scene, solution, run, error)
     code = run%exit_code
   end subroutine run_options_on_deck
@@ -105,7 +105,7 @@ contains
     type(error_t), allocatable :: late
     type(string_t), allocatable :: lines(:)
     real(wp) :: started
-    integer :: k, ignored
+    integer :: k, status
 
     started = wall_seconds()
     call open_listing(run%stem//'.log', run%resume, options%quiet, solution%time/scene%strategy%end_time, run%listing, error)
@@ -132,7 +132,8 @@ contains
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
     if (.not. options%quiet) then
       do k = 1, size(lines)
-        write (*, '(a)', iostat=ignored) lines(k)%s
+        write (*, '(a)', iostat=status) lines(k)%s
+        if (status /= 0) exit  ! the reader has gone away
       end do
     end if
   end subroutine run_and_report

@@ -34,8 +34,9 @@ def stops(checks, draw, deck, name, options, whole, moments):
         for turn, row in enumerate(rows):
             if turn:
                 arguments = arguments + ["--resume", os.path.join(out, "billet.ckp.h5")]
-            # A stop before the signals are caught would be an ordinary death: wait for the first row at least.
-            code, _, stderr = stop_after(start(arguments), out, max(row, 1), number, draw.uniform(0, 0.01))
+            # A stop before the signals are caught would be an ordinary death: wait for a row of this very process.
+            row = max(row, rows_so_far(out) + 1 if turn else 1)
+            code, _, stderr = stop_after(start(arguments), out, row, number, draw.uniform(0, 0.01))
             checks.that(code == SIGNAL + number, f"{what}: exit code {SIGNAL + number}", f"{code} {stderr}")
             checks.that(stderr == "" or stderr.count("\n") <= 2, f"{what}: few words", stderr)
             if code != SIGNAL + number:
