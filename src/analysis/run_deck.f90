@@ -11,7 +11,7 @@ module run_deck
   use law_registry, only: law_names, list_laws
   use listing, only: close_listing, end_progress, list_lines, open_listing
   use march, only: march_to_end, run_t
-  use run_options, only: run_options_t, version_text
+  use run_options, only: run_options_t, stem_of, version_text
   use scene, only: scene_t
   use scene_reader, only: read_scene
   use scene_summary, only: scene_lines
@@ -55,7 +55,7 @@ contains
     if (allocated(error)) return
     run%deck_path = options%deck
     run%folder = options%out
-    run%stem = join_path(run%folder, stem(options%deck))
+    run%stem = join_path(run%folder, stem_of(options%deck))
     call run_and_report(options, scene, solution, run, error)
     code = run%exit_code
   end subroutine run_options_on_deck
@@ -179,16 +179,5 @@ contains
     if (nearest /= '') nearest = '; nearest: '''//nearest//''''
     call fail(error, exit_input, 'no law is called '''//name//''''//nearest)
   end subroutine print_law
-
-  !> Name of a file without folders and ending.
-  pure function stem(path) result(name)
-    character(len=*), intent(in) :: path
-    character(len=:), allocatable :: name
-    integer :: dot
-
-    name = path(index(path, '/', back=.true.) + 1:)
-    dot = index(name, '.', back=.true.)
-    if (dot > 1) name = name(:dot - 1)
-  end function stem
 
 end module run_deck

@@ -4,7 +4,7 @@ module run_options
   use text, only: nearest_word, string_t
   implicit none
   private
-  public :: run_options_t, read_options, usage_text, version_text
+  public :: run_options_t, read_options, stem_of, usage_text, version_text
 
   character(len=*), parameter :: version_text = '0.1.0'
 
