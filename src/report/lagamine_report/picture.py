@@ -1,6 +1,7 @@
 """A finished picture, as the page and --png want it."""
 import base64
 import io
+import re
 from dataclasses import dataclass
 
 from matplotlib import pyplot
@@ -8,6 +9,16 @@ from matplotlib.figure import Figure
 
 from .reader import Run, Step
 from .words import brief
+
+
+def numbered_clips(svg: bytes) -> bytes:
+    """The same drawing with its clip paths numbered in order: matplotlib names them after addresses in memory."""
+    names: dict[bytes, bytes] = {}
+    for name in re.findall(rb'<clipPath id="([^"]+)"', svg):
+        names.setdefault(name, b"clip%d" % len(names))
+    for name, number in names.items():
+        svg = svg.replace(b'"' + name + b'"', b'"' + number + b'"').replace(b"#" + name + b")", b"#" + number + b")")
+    return svg
 
 
 @dataclass
@@ -31,7 +42,7 @@ class Picture:
             return "data:image/png;base64," + base64.b64encode(self.png()).decode()
         buffer = io.BytesIO()
         self.figure.savefig(buffer, format="svg", bbox_inches="tight", pad_inches=0.08, metadata={"Date": None})
-        return "data:image/svg+xml;base64," + base64.b64encode(buffer.getvalue()).decode()
+        return "data:image/svg+xml;base64," + base64.b64encode(numbered_clips(buffer.getvalue())).decode()
 
     def close(self) -> None:
         pyplot.close(self.figure)
