@@ -43,7 +43,12 @@ contains
         if (d > 0) solution%last_pilot_increment(c, k) = outcome%du(d)
       end do
     end do
+    do c = 1, 3
+      d = equations%dofs%section(c)
+      if (d > 0) solution%last_section_increment(c) = outcome%du(d)
+    end do
     solution%displacement = solution%displacement + solution%last_increment
+    solution%section = solution%section + solution%last_section_increment
     solution%pilots = solution%pilots + solution%last_pilot_increment
     solution%time = solution%time + dt
     solution%last_step = dt
@@ -91,6 +96,9 @@ contains
       do c = 1, 3
         call book(equations%dofs%pilot(c, k), solution%pilot_applied(c, k))
       end do
+    end do
+    do c = 1, 3
+      call book(equations%dofs%section(c), solution%section_applied(c))
     end do
 
   contains
@@ -141,7 +149,8 @@ contains
         if (.not. associated(row%measure)) cycle
         law = scene%materials(group%material)%law_id
         call group_geometry(scene, group, row, solution%displacement, x)
-        call row%measure(scene, group, equations%laws(law), x, solution%groups(g)%trial, solution%groups(g)%committed, part)
+        call row%measure(scene, group, equations%laws(law), solution%section, x, solution%groups(g)%trial, &
+                         solution%groups(g)%committed, part)
         call add_totals(totals, part)
       end associate
     end do

@@ -7,7 +7,7 @@ module history
   use kinds, only: pi, wp
   use newton, only: outcome_t
   use probes, only: probe_maximum, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
-  use scene, only: axisymmetric, scene_t
+  use scene, only: axisymmetric, generalised_plane_strain, scene_t
   use solution, only: solution_t
   use text, only: string_t
   implicit none
@@ -47,7 +47,7 @@ contains
     type(string_t), allocatable, intent(out) :: columns(:)
     integer :: k, n
 
-    allocate (columns(14 + 6*size(scene%dies) + size(scene%probes)))
+    allocate (columns(14 + 6*size(scene%dies) + merge(6, 0, scene%plane_state == generalised_plane_strain) + size(scene%probes)))
     n = 0
     call add('time [time]')
     call add('step [-]')
@@ -71,6 +71,14 @@ contains
       call add('displacement_y_'//scene%dies(k)%name//' [length]')
       call add('rotation_'//scene%dies(k)%name//' [rad]')
     end do
+    if (scene%plane_state == generalised_plane_strain) then
+      call add('section_strain [-]')
+      call add('section_curvature_x [1/length]')
+      call add('section_curvature_y [1/length]')
+      call add('section_force [force]')
+      call add('section_moment_x [force*length]')
+      call add('section_moment_y [force*length]')
+    end if
     do k = 1, size(scene%probes)
       call add(scene%probes(k)%name//' ['//scene%probes(k)%unit//']')
     end do
@@ -110,6 +118,10 @@ contains
       call table%put(-factor*solution%pilot_applied(:, k))
       call table%put(solution%pilots(:, k) - scene%dies(k)%pilot)
     end do
+    if (scene%plane_state == generalised_plane_strain) then
+      call table%put((solution%section - scene%section)/scene%section(1))
+      call table%put(solution%section_applied)
+    end if
     do k = 1, size(scene%probes)
       call table%put(probe_value(scene, solution, scene%probes(k)))
     end do

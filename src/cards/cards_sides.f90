@@ -53,7 +53,7 @@ contains
         cycle
       end if
       deallocate (group%variables)
-      call draft%elems(group%elem_id)%variables(draft%laws(law), group%variables)
+      call draft%elems(group%elem_id)%variables(draft%laws(law), draft%scene%plane_state, group%variables)
       group%amplitude = modulus_behind(draft, group%connectivity)
       call append_group(draft, group, cursor%where())
     end do

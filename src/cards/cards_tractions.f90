@@ -7,8 +7,8 @@ module cards_tractions
   use kinds, only: wp
   use loads, only: nodal_force_t
   use quadrature, only: line_rule
-  use scene, only: axisymmetric
   use scene_draft, only: close_card, draft_t, words_of
+  use sections, only: thickness_at
   use shape_functions, only: line3
   use text, only: string_t
   implicit none
@@ -62,8 +62,7 @@ contains
       share = 0
       do p = 1, size(xi)
         call line3(xi(p), phi, dphi)
-        length = norm2(matmul(x, dphi))*weight(p)
-        if (draft%scene%plane_state == axisymmetric) length = length*dot_product(x(1, :), phi)
+        length = norm2(matmul(x, dphi))*weight(p)*thickness_at(draft%scene%section, matmul(x, phi))
         share = share + phi*length
       end do
       do k = 1, 3

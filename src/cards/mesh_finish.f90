@@ -102,7 +102,7 @@ contains
     law = draft%scene%materials(body%material)%law_id
     if (law == 0) return
     deallocate (group%variables)
-    call draft%elems(group%elem_id)%variables(draft%laws(law), group%variables)
+    call draft%elems(group%elem_id)%variables(draft%laws(law), draft%scene%plane_state, group%variables)
   end subroutine fill_group
 
   !> A side on the boundary is that of one element: its middle node tells.

@@ -6,6 +6,7 @@ module scene_reader
   use cards_loads, only: read_loads, read_multipliers
   use cards_mesh, only: is_body_elem, read_elements, read_nodes, read_side_sets
   use cards_probes, only: read_probes
+  use cards_section, only: read_section, read_state
   use cards_sides, only: read_contacts, read_pressures
   use cards_strategy, only: read_strategy
   use cards_tractions, only: read_tractions
@@ -16,7 +17,7 @@ module scene_reader
   use elem_registry, only: list_elems
   use mesh_finish, only: finish_mesh
   use mesh_parts, only: mesh_parts_t, start_parts
-  use scene, only: plane_state_names, scene_t
+  use scene, only: scene_t
   use scene_draft, only: close_card, draft_t, only_card, start_draft, words_of
   use scene_effects, only: list_effects
   use text, only: string_t
@@ -42,6 +43,7 @@ contains
 
     call read_head(deck, draft, diagnostics)
     call read_multipliers(deck, draft, diagnostics)
+    call read_section(deck, draft, diagnostics)
     call read_laws(deck, draft, diagnostics)
     call read_dies(deck, draft, diagnostics)
 
@@ -74,8 +76,8 @@ contains
     integer :: k
 
     call list_elems(elems)
-    call words_of('TITLE STATE KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D TRACT FIXED MOVE FORCE LIC STRAT NORMS STOP ' &
-                  //'SAVE CKPT PROBE', keywords)
+    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D TRACT FIXED MOVE FORCE LIC STRAT NORMS ' &
+                  //'STOP SAVE CKPT PROBE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle
@@ -101,17 +103,7 @@ contains
       call close_card(draft, cursor, deck%cards(k))
     end if
 
-    call only_card(deck, 'STATE', .true., diagnostics, k)
-    if (k > 0) then
-      allocate (names(size(plane_state_names)))
-      do i = 1, size(names)
-        names(i)%s = trim(plane_state_names(i))
-      end do
-      call cursor%open(deck%cards(k), diagnostics)
-      call cursor%name('a plane state', names, draft%scene%plane_state)
-      call close_card(draft, cursor, deck%cards(k))
-      deallocate (names)
-    end if
+    call read_state(deck, draft, diagnostics)
 
     draft%scene%kinematics = ''
     call only_card(deck, 'KINEM', .true., diagnostics, k)

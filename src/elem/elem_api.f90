@@ -2,19 +2,20 @@
 !>
 !> Objects stop at the loop's door: an element gets plain arrays for a block of elements and answers
 !> forces, matrices and the trial state. Local unknowns: x of all nodes, y of all nodes, then the
-!> pilot of the die faced (x, y, angle) where the element has one.
+!> pilot of the die faced (x, y, angle) where the element has one, then the section (sections) in
+!> generalised plane strain.
 module elem_api
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
   use materials, only: material_t
-  use scene, only: group_t, scene_t
+  use scene, only: generalised_plane_strain, group_t, scene_t
   use state_variables, only: state_variable_t
   implicit none
   private
   public :: elem_t, instant_t, report_t, totals_t, elem_compute_i, elem_variables_i, elem_measure_i, elem_augment_i
   public :: block_done, block_inverted, block_law_failed
-  public :: add_totals
+  public :: add_totals, group_temperature, section_motion
 
   !> Answers of a block.
   integer, parameter :: block_done = 0
@@ -27,8 +28,10 @@ module elem_api
     real(wp) :: time = 0.0_wp, dt = 0.0_wp
     !> Pilots at the start of the step (x, y, angle; ndie).
     real(wp), allocatable :: pilots(:, :)
-    !> Multipliers at the end of the step.
-    real(wp), allocatable :: multipliers(:)
+    !> Section at the start of the step (sections).
+    real(wp) :: section(3) = 0.0_wp
+    !> Multipliers at the start and at the end of the step.
+    real(wp), allocatable :: multipliers_before(:), multipliers(:)
     !> Matrices are wanted.
     logical :: tangent = .true.
   end type instant_t
@@ -82,10 +85,11 @@ module elem_api
   end type elem_t
 
   abstract interface
-    !> State of a point of this element with this law.
-    pure subroutine elem_variables_i(law, variables)
+    !> State of a point of this element with this law in a plane state (scene).
+    pure subroutine elem_variables_i(law, plane_state, variables)
       import :: law_t, state_variable_t
       type(law_t), intent(in) :: law
+      integer, intent(in) :: plane_state
       type(state_variable_t), allocatable, intent(out) :: variables(:)
     end subroutine elem_variables_i
 
@@ -119,19 +123,41 @@ module elem_api
       logical, intent(out) :: changed
     end subroutine elem_augment_i
 
-    !> Sums over a group at an accepted instant; x (2, nnode, nelem) is the geometry then.
-    subroutine elem_measure_i(scene, group, law, x, state, before, totals)
+    !> Sums over a group at an accepted instant; x (2, nnode, nelem) and the section are the geometry then.
+    subroutine elem_measure_i(scene, group, law, section, x, state, before, totals)
       import :: group_t, law_t, scene_t, totals_t, wp
       type(scene_t), intent(in) :: scene
       type(group_t), intent(in) :: group
       type(law_t), intent(in) :: law
-      real(wp), intent(in) :: x(:, :, :)
+      real(wp), intent(in) :: section(3), x(:, :, :)
       real(wp), intent(in) :: state(:, :, :), before(:, :, :)  !! at the accepted instant, and one step before
       type(totals_t), intent(out) :: totals
     end subroutine elem_measure_i
   end interface
 
 contains
+
+  !> Temperature of a body at the start and at the end of the step; 0 where the scene knows none.
+  pure function group_temperature(group, instant) result(temperature)
+    type(group_t), intent(in) :: group
+    type(instant_t), intent(in) :: instant
+    real(wp) :: temperature(2)
+
+    temperature = 0
+    if (group%temperature_multiplier == 0) return
+    temperature = group%temperature_amplitude*[instant%multipliers_before(group%temperature_multiplier), &
+                                               instant%multipliers(group%temperature_multiplier)]
+  end function group_temperature
+
+  !> Motion of the section in the step: the last three local unknowns in generalised plane strain, none otherwise.
+  pure function section_motion(scene, du) result(motion)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: du(:)   !! local unknowns of an element
+    real(wp) :: motion(3)
+
+    motion = 0
+    if (scene%plane_state == generalised_plane_strain) motion = du(size(du) - 2:)
+  end function section_motion
 
   !> Add what one group says to the totals of the scene.
   pure subroutine add_totals(sum, part)

@@ -15,13 +15,14 @@
 module elem_cnt2d
   use die_search, only: box_distance, find_foot, foot_t
   use dies, only: die_t
-  use elem_api, only: elem_t, instant_t, report_t, totals_t
+  use elem_api, only: elem_t, instant_t, report_t, section_motion, totals_t
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_law, contact_open, contact_slip, contact_stick, law_t
   use materials, only: material_t
   use quadrature, only: line_rule
   use scene, only: axisymmetric, group_t, scene_t
+  use sections, only: thickness_at
   use shape_functions, only: line3
   use state_variables, only: state_variable, state_variable_t, transfer_contact, transfer_recompute
   implicit none
@@ -33,8 +34,9 @@ module elem_cnt2d
                         at_augmentation = 6, at_work = 7, at_piece = 8
   !> Place of the largest number of augmentations among a contact law's values (contact_penalties).
   integer, parameter :: at_augment = 4
-  !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle.
-  integer, parameter :: ndof = 9
+  !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle, section; the last three are
+  !> there in generalised plane strain only.
+  integer, parameter :: ndof = 12
 
   !> A radius below this share of the side is the axis.
   real(wp), parameter :: no_surface = 1.0e-9_wp
@@ -47,8 +49,8 @@ module elem_cnt2d
 
   !> A point of the side in the present geometry, with derivatives along the local unknowns.
   type :: contact_point_t
-    real(wp) :: x(2), tangent(2), length, e_r(2), radius
-    real(wp) :: dx(2, ndof), dlength(ndof), dradius(ndof)
+    real(wp) :: x(2), tangent(2), length, e_r(2), thickness
+    real(wp) :: dx(2, ndof), dlength(ndof), dthickness(ndof)
   end type contact_point_t
 
 contains
@@ -70,8 +72,9 @@ contains
     row%augment => augment
   end function elem_cnt2d_row
 
-  pure subroutine variables(law, list)
+  pure subroutine variables(law, plane_state, list)
     type(law_t), intent(in) :: law
+    integer, intent(in) :: plane_state
     type(state_variable_t), allocatable, intent(out) :: list(:)
     integer :: k
 
@@ -102,30 +105,38 @@ contains
     real(wp), intent(inout) :: stiffness(:, :, :)
     type(report_t), intent(out) :: report
     real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: side, pilot(3, 2)
-    integer :: e, p
+    real(wp) :: side, pilot(3, 2), section(3), motion(ndof), f(ndof), k(ndof, ndof)
+    integer :: e, p, n
     logical :: axisym
 
+    n = size(du, 1)
+    motion = 0
     axisym = scene%plane_state == axisymmetric
     call line_rule(group%npoint, xi, weight)
     do e = 1, size(x, 3)
       force(:, e) = 0
       if (instant%tangent) stiffness(:, :, e) = 0
+      motion(:n) = du(:, e)
+      section = scene%section
+      if (scene%finite) section = instant%section + section_motion(scene, du(:, e))
       trial(:, :, e) = committed(:, :, e)
       trial([at_pressure, at_tau, at_status, at_penetration, at_piece, at_augmentation], :, e) = 0
       side = side_length(scene, group%connectivity(:, first + e - 1))
       pilot(:, 1) = instant%pilots(:, group%die)
-      pilot(:, 2) = pilot(:, 1) + du(7:9, e)
-      if (far(scene%dies(group%die), x(:, :, e), du(:, e), pilot(:, 2), side)) cycle
+      pilot(:, 2) = pilot(:, 1) + motion(7:9)
+      if (far(scene%dies(group%die), x(:, :, e), motion, pilot(:, 2), side)) cycle
+      f = 0
+      k = 0
       do p = 1, size(xi)
-        call contact_at(scene%dies(group%die), law, scene%materials(group%material), axisym, group%amplitude, side, &
-                        x(:, :, e), du(:, e), pilot, xi(p), weight(p), instant%tangent, &
-                        committed(:, p, e), trial(:, p, e), force(:, e), stiffness(:, :, e))
+        call contact_at(scene%dies(group%die), law, scene%materials(group%material), axisym, section, group%amplitude, side, &
+                        x(:, :, e), motion, pilot, xi(p), weight(p), instant%tangent, committed(:, p, e), trial(:, p, e), f, k)
         if (nint(committed(at_status, p, e)) /= contact_open) then
           report%jump = max(report%jump, abs(trial(at_penetration, p, e) - committed(at_penetration, p, e))/side)
         end if
         report%event = min(report%event, share_to_contact(committed(:, p, e), trial(:, p, e), side))
       end do
+      force(:, e) = f(:n)
+      if (instant%tangent) stiffness(:, :, e) = k(:n, :n)
       if (axisym) call show_on_axis(xi, x(1, :, e) + du(1:3, e), side, trial(:, :, e))
     end do
   end subroutine compute
@@ -178,13 +189,13 @@ contains
   end function far
 
   !> Contact at one integration point: state, forces, matrix.
-  pure subroutine contact_at(die, law, material, axisym, modulus, side, x, du, pilot, xi, weight, tangent_wanted, &
+  pure subroutine contact_at(die, law, material, axisym, section, modulus, side, x, du, pilot, xi, weight, tangent_wanted, &
                              committed, trial, force, stiffness)
     type(die_t), intent(in) :: die
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     logical, intent(in) :: axisym, tangent_wanted
-    real(wp), intent(in) :: modulus, side, x(2, 3), du(ndof), pilot(3, 2), xi, weight
+    real(wp), intent(in) :: section(3), modulus, side, x(2, 3), du(ndof), pilot(3, 2), xi, weight
     real(wp), intent(in) :: committed(:)
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: point
@@ -192,16 +203,16 @@ contains
     real(wp) :: phi(3), dphi(3), n(2), t(2), lever(2), way(2), turn(2), q(2), moment, share, slip
     real(wp), dimension(ndof) :: dd, along, dslip, dp, dtau, dmoment
     real(wp), dimension(2, ndof) :: relative, dn, dt, dway, dlever, dq
-    real(wp) :: penalty(2), pressure, tau, law_tangent(2, 2)
+    real(wp) :: penalty(2), pressure, tau, stress(2), law_tangent(3, 3)
     integer :: status, j, k
 
     call line3(xi, phi, dphi)
-    call side_point(phi, dphi, axisym, x, du, point)
+    call side_point(phi, dphi, section, x, du, point)
     lever = point%x - pilot(1:2, 2)
     call find_foot(die, turned(lever, -pilot(3, 2)), turned(point%e_r, -pilot(3, 2)), side, foot)
     if (foot%piece == 0) return
     ! a point on the axis has no surface: nothing acts there, and nothing is asked of it
-    if (axisym .and. point%radius <= no_surface*side) return
+    if (axisym .and. point%x(1) <= no_surface*side) return
     trial(at_penetration) = foot%d
     trial(at_piece) = foot%piece
     n = turned(foot%normal, pilot(3, 2))
@@ -235,8 +246,10 @@ contains
     end if
 
     penalty = penalties(material, modulus, side)
-    call law%slide(material, penalty, committed(at_augmentation), foot%d, slip, committed(at_tau), &
-                   pressure, tau, law_tangent, status)
+    ! nothing moves across the plane: the second tangential component stays at rest
+    call law%slide(material, penalty, committed(at_augmentation), foot%d, [slip, 0.0_wp], [committed(at_tau), 0.0_wp], &
+                   0.0_wp, pressure, stress, law_tangent, status)
+    tau = stress(1)
     trial(at_pressure) = pressure
     trial(at_tau) = tau
     trial(at_status) = status
@@ -245,13 +258,13 @@ contains
     trial(at_slip) = committed(at_slip) + slip
     if (status == contact_slip) trial(at_work) = committed(at_work) + tau*(slip - (tau - committed(at_tau))/penalty(2))
 
-    ! traction times length, weight and radius; the part gets it, the pilot its opposite
+    ! traction times length, weight and thickness (radius); the part gets it, the pilot its opposite
     q = -(pressure*n + tau*t)*point%length*weight
     moment = lever(1)*q(2) - lever(2)*q(1)
-    force(1:3) = force(1:3) - phi*q(1)*point%radius
-    force(4:6) = force(4:6) - phi*q(2)*point%radius
-    force(7:8) = force(7:8) + q*point%radius
-    force(9) = force(9) + moment*point%radius
+    force(1:3) = force(1:3) - phi*q(1)*point%thickness
+    force(4:6) = force(4:6) - phi*q(2)*point%thickness
+    force(7:8) = force(7:8) + q*point%thickness
+    force(9) = force(9) + moment*point%thickness
     if (.not. tangent_wanted) return
 
     dp = law_tangent(1, 1)*dd + law_tangent(1, 2)*dslip
@@ -262,8 +275,8 @@ contains
     end do
     dmoment = dlever(1, :)*q(2) - dlever(2, :)*q(1) + lever(1)*dq(2, :) - lever(2)*dq(1, :)
     do j = 1, ndof
-      dq(:, j) = dq(:, j)*point%radius + q*point%dradius(j)
-      dmoment(j) = dmoment(j)*point%radius + moment*point%dradius(j)
+      dq(:, j) = dq(:, j)*point%thickness + q*point%dthickness(j)
+      dmoment(j) = dmoment(j)*point%thickness + moment*point%dthickness(j)
       do k = 1, 3
         stiffness(k, j) = stiffness(k, j) - phi(k)*dq(1, j)
         stiffness(k + 3, j) = stiffness(k + 3, j) - phi(k)*dq(2, j)
@@ -273,10 +286,9 @@ contains
     end do
   end subroutine contact_at
 
-  !> Position, length, inner normal and radius of a point of the side, and their derivatives.
-  pure subroutine side_point(phi, dphi, axisym, x, du, point)
-    real(wp), intent(in) :: phi(3), dphi(3), x(2, 3), du(ndof)
-    logical, intent(in) :: axisym
+  !> Position, length, inner normal and thickness of a point of the side, and their derivatives.
+  pure subroutine side_point(phi, dphi, section, x, du, point)
+    real(wp), intent(in) :: phi(3), dphi(3), section(3), x(2, 3), du(ndof)
     type(contact_point_t), intent(out) :: point
     real(wp) :: y(2, 3)
 
@@ -286,18 +298,17 @@ contains
     point%tangent = matmul(y, dphi)
     point%length = norm2(point%tangent)
     point%e_r = [-point%tangent(2), point%tangent(1)]/point%length
-    point%radius = 1
+    point%thickness = thickness_at(section, point%x)
     point%dx = 0
     point%dlength = 0
-    point%dradius = 0
     point%dx(1, 1:3) = phi
     point%dx(2, 4:6) = phi
     point%dlength(1:3) = dphi*point%tangent(1)/point%length
     point%dlength(4:6) = dphi*point%tangent(2)/point%length
-    if (axisym) then
-      point%radius = point%x(1)
-      point%dradius(1:3) = phi
-    end if
+    point%dthickness(1:3) = section(2)*phi
+    point%dthickness(4:6) = section(3)*phi
+    point%dthickness(7:9) = 0
+    point%dthickness(10:12) = [1.0_wp, point%x]
   end subroutine side_point
 
   !> Normal and tangential penalty: as given, or such that a pressure of one hundredth of the
@@ -352,11 +363,11 @@ contains
   end subroutine augment
 
   !> Friction work, penetration found and allowed, number of points in each contact state.
-  subroutine measure(scene, group, law, x, state, before, totals)
+  subroutine measure(scene, group, law, section, x, state, before, totals)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(law_t), intent(in) :: law
-    real(wp), intent(in) :: x(:, :, :), state(:, :, :), before(:, :, :)
+    real(wp), intent(in) :: section(3), x(:, :, :), state(:, :, :), before(:, :, :)
     type(totals_t), intent(out) :: totals
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: phi(3), dphi(3), area, side
@@ -383,7 +394,7 @@ contains
           end if
           call line3(xi(p), phi, dphi)
           area = norm2(matmul(x(:, :, e), dphi))*weight(p)
-          if (scene%plane_state == axisymmetric) area = area*dot_product(phi, x(1, :, e))
+          area = area*thickness_at(section, matmul(x(:, :, e), phi))
           totals%friction_work = totals%friction_work + area*state(at_work, p, e)
           totals%least_dissipation = min(totals%least_dissipation, state(at_work, p, e) - before(at_work, p, e))
         end do

@@ -1,17 +1,22 @@
-!> PL8LS: 8-node quadrilateral, plane or axisymmetric, updated Lagrangian (annex 1, corrected).
+!> PL8LS: 8-node quadrilateral in all plane states, updated Lagrangian (annex 1, corrected).
 !>
-!> Internal force per radian, F_i = sum B_i^T sigma r |J| W, with the Cauchy stress in the present
-!> configuration. Tangent K = sum G^T M G r|J|W, where G takes nodal motions to
-!> h = d(du)/dx (xx, xy, yx, yy, zz) and M = A + geometric part. The geometric part is annex 1's
-!> matrix, d(F) at frozen stress, written once for all nodes: d(sigma J f^-T) = J (sigma tr h - sigma h^T).
+!> Internal force per unit of the section (per radian when axisymmetric), F_i = sum B_i^T sigma t |J| W,
+!> with the Cauchy stress in the present configuration and the thickness t of the section (sections).
+!> Tangent K = sum G^T M G t|J|W, where G takes the local unknowns to h = d(du)/dx (xx, xy, yx, yy, zz)
+!> and M = A + geometric part. The geometric part is annex 1's matrix, d(F) at frozen stress, written once
+!> for all unknowns: d(sigma J f^-T) = J (sigma tr h - sigma h^T). Across the plane h_zz = dt/t: in
+!> generalised plane strain dt = da1 + x da2 + y da3 + a2 dx + a3 dy, an axisymmetric scene being a = (0, 1, 0);
+!> in plane stress h_zz is condensed out of M by the row of sigma_zz = 0.
 module elem_pl8ls
-  use elem_api, only: block_inverted, block_law_failed, elem_t, instant_t, report_t, totals_t
+  use elem_api, only: block_inverted, block_law_failed, elem_t, group_temperature, instant_t, report_t, section_motion, totals_t
   use kinds, only: wp
   use kinematics_api, only: first_history, first_strain, kinematics_t, solid_variables
   use law_api, only: law_done, law_t, solid_law
+  use plane_stress_points, only: update_plane_stress
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
-  use scene, only: axisymmetric, group_t, scene_t
-  use state_variables, only: find_variable
+  use scene, only: generalised_plane_strain, group_t, plane_stress, scene_t
+  use sections, only: thickness_at
+  use state_variables, only: find_variable, state_variable, state_variable_t, transfer_scalar
   implicit none
   private
   public :: elem_pl8ls_row
@@ -26,10 +31,29 @@ contains
     row%nnode = 8
     row%law_kind = solid_law
     row%effect = 'displacement'
-    row%variables => solid_variables
+    row%variables => variables
     row%compute => compute
     row%measure => measure
   end function elem_pl8ls_row
+
+  !> State of the point of a solid; in plane stress also the stretch across the plane since the start, last.
+  pure subroutine variables(law, plane_state, list)
+    type(law_t), intent(in) :: law
+    integer, intent(in) :: plane_state
+    type(state_variable_t), allocatable, intent(out) :: list(:)
+    type(state_variable_t), allocatable :: others(:)
+    type(state_variable_t) :: stretch
+
+    call solid_variables(law, others)
+    if (plane_state /= plane_stress) then
+      call move_alloc(others, list)
+      return
+    end if
+    stretch = state_variable('stretch_zz', '-', transfer_scalar)
+    stretch%initial = 1
+    stretch%first = others(size(others))%first + others(size(others))%ncomp
+    allocate (list, source=[others, stretch])
+  end subroutine variables
 
   subroutine compute(scene, group, kinematics, law, instant, first, x, du, committed, trial, force, stiffness, report)
     type(scene_t), intent(in) :: scene
@@ -45,19 +69,21 @@ contains
     real(wp), intent(inout) :: stiffness(:, :, :)
     type(report_t), intent(out) :: report
     type(quad8_rule_t) :: rule
-    real(wp) :: nx(8, group%npoint, size(x, 3)), ny(8, group%npoint, size(x, 3)), nr(8, group%npoint, size(x, 3))
+    real(wp), dimension(8, group%npoint, size(x, 3)) :: nx, ny, zx
     real(wp) :: dv(group%npoint, size(x, 3)), f(5, group%npoint, size(x, 3)), tangent(4, 5, group%npoint, size(x, 3))
+    real(wp) :: temperature(2, group%npoint*size(x, 3)), section(3, 2)
     integer :: status(group%npoint, size(x, 3))
     real(wp) :: strain
-    logical :: valid, axisym
-    integer :: e, p, nb
+    logical :: valid
+    integer :: e, p, nb, nstate
 
     nb = size(x, 3)
-    axisym = scene%plane_state == axisymmetric
+    nstate = size(committed, 1)
     call quad8_rule(group%npoint, rule)
     do e = 1, nb
+      call sections_of_step(scene, kinematics%finite, instant, du(:, e), section)
       do p = 1, group%npoint
-        call motion(rule, p, axisym, kinematics%finite, x(:, :, e), du(:, e), nx(:, p, e), ny(:, p, e), nr(:, p, e), &
+        call motion(rule, p, section, kinematics%finite, x(:, :, e), du(:, e), nx(:, p, e), ny(:, p, e), zx(:, p, e), &
                     dv(p, e), f(:, p, e), strain, valid)
         report%strain = max(report%strain, strain)
         if (.not. valid) then
@@ -69,29 +95,56 @@ contains
       end do
     end do
 
-    call kinematics%update(law, scene%materials(group%material), instant%dt, group%npoint*nb, size(committed, 1), &
-                           f, committed, trial, tangent, status)
+    temperature = spread(group_temperature(group, instant), 2, size(temperature, 2))
+    if (scene%plane_state == plane_stress) then
+      call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%npoint*nb, nstate, temperature, &
+                               f, committed, trial, tangent, status)
+      trial(nstate, :, :) = committed(nstate, :, :)*f(5, :, :)
+      if (kinematics%finite) dv = dv*trial(nstate, :, :)
+    else
+      call kinematics%update(law, scene%materials(group%material), instant%dt, group%npoint*nb, nstate, temperature, &
+                             f, committed, trial, tangent, status)
+    end if
 
     do e = 1, nb
       if (any(status(:, e) /= law_done) .and. report%status == 0) then
         report%status = block_law_failed
         report%element = first + e - 1
       end if
-      call internal_force(nx(:, :, e), ny(:, :, e), nr(:, :, e), dv(:, e), trial(1:4, :, e), force(:, e))
-      if (instant%tangent) call tangent_matrix(kinematics%finite, nx(:, :, e), ny(:, :, e), nr(:, :, e), dv(:, e), &
-                                               trial(1:4, :, e), tangent(:, :, :, e), stiffness(:, :, e))
+      call internal_force(nx(:, :, e), ny(:, :, e), zx(:, :, e), dv(:, e), trial(1:4, :, e), force(1:16, e))
+      if (instant%tangent) call tangent_matrix(scene%plane_state == plane_stress, kinematics%finite, nx(:, :, e), ny(:, :, e), &
+                                               zx(:, :, e), dv(:, e), trial(1:4, :, e), tangent(:, :, :, e), &
+                                               stiffness(1:16, 1:16, e))
+      if (scene%plane_state /= generalised_plane_strain) cycle
+      call sections_of_step(scene, kinematics%finite, instant, du(:, e), section)
+      call add_section(kinematics%finite, instant%tangent, rule, section, x(:, :, e), du(:, e), nx(:, :, e), ny(:, :, e), &
+                       dv(:, e), trial(1:4, :, e), tangent(:, :, :, e), force(:, e), stiffness(:, :, e))
     end do
   end subroutine compute
 
+  !> Section (:, 1) the geometry is at, and its motion (:, 2) in the step.
+  pure subroutine sections_of_step(scene, finite, instant, du, section)
+    type(scene_t), intent(in) :: scene
+    logical, intent(in) :: finite
+    type(instant_t), intent(in) :: instant
+    real(wp), intent(in) :: du(:)
+    real(wp), intent(out) :: section(3, 2)
+
+    section(:, 2) = section_motion(scene, du)
+    section(:, 1) = scene%section
+    if (finite) section(:, 1) = instant%section + section(:, 2)
+  end subroutine sections_of_step
+
   !> Derivatives of the shape functions, volume, gradient f of the step at one point, and size of its strain increment.
-  pure subroutine motion(rule, p, axisym, finite, x, du, nx, ny, nr, dv, f, strain, valid)
+  !> `zx` = d h_zz / d(ux of the nodes). In plane stress f(5) comes later, and the volume is that of the thickness at the start.
+  pure subroutine motion(rule, p, section, finite, x, du, nx, ny, zx, dv, f, strain, valid)
     type(quad8_rule_t), intent(in) :: rule
     integer, intent(in) :: p
-    logical, intent(in) :: axisym, finite
-    real(wp), intent(in) :: x(2, 8), du(16)
-    real(wp), intent(out) :: nx(8), ny(8), nr(8), dv, f(5), strain
+    logical, intent(in) :: finite
+    real(wp), intent(in) :: section(3, 2), x(2, 8), du(:)
+    real(wp), intent(out) :: nx(8), ny(8), zx(8), dv, f(5), strain
     logical, intent(out) :: valid
-    real(wp) :: y(2, 8), g(4), detj, radius, det
+    real(wp) :: y(2, 8), here(2), g(4), detj, thickness, det
 
     y = x
     if (finite) then
@@ -99,18 +152,17 @@ contains
       y(2, :) = x(2, :) + du(9:16)
     end if
     call derivatives(rule%dphi(:, :, p), y, nx, ny, detj)
-    dv = detj*rule%weight(p)
     g = [dot_product(nx, du(1:8)), dot_product(ny, du(1:8)), dot_product(nx, du(9:16)), dot_product(ny, du(9:16))]
-    nr = 0
-    f(5) = 1
-    valid = detj > 0
-    if (axisym) then
-      radius = dot_product(rule%phi(:, p), y(1, :))
-      valid = valid .and. radius > 0
-      nr = rule%phi(:, p)/radius
-      dv = dv*radius
-      f(5) = 1 + dot_product(nr, du(1:8))
-      if (finite) f(5) = radius/dot_product(rule%phi(:, p), x(1, :))
+    here = matmul(y, rule%phi(:, p))
+    thickness = thickness_at(section(:, 1), here)
+    valid = detj > 0 .and. thickness > 0
+    dv = detj*rule%weight(p)*thickness
+    zx = section(2, 1)*rule%phi(:, p)/thickness
+    if (finite) then
+      f(5) = thickness/thickness_at(section(:, 1) - section(:, 2), matmul(x, rule%phi(:, p)))
+    else
+      f(5) = 1 + dot_product(zx, du(1:8)) + (section(3, 1)*dot_product(rule%phi(:, p), du(9:16)) &
+                                             + thickness_at(section(:, 2), here))/thickness
     end if
     strain = sqrt(g(1)**2 + g(4)**2 + 0.5_wp*(g(2) + g(3))**2 + (f(5) - 1)**2)
     if (finite) then
@@ -124,8 +176,8 @@ contains
   end subroutine motion
 
   !> F_i = sum B_i^T sigma dv.
-  pure subroutine internal_force(nx, ny, nr, dv, stress, force)
-    real(wp), intent(in) :: nx(:, :), ny(:, :), nr(:, :), dv(:), stress(:, :)
+  pure subroutine internal_force(nx, ny, zx, dv, stress, force)
+    real(wp), intent(in) :: nx(:, :), ny(:, :), zx(:, :), dv(:), stress(:, :)
     real(wp), intent(out) :: force(16)
     real(wp) :: s(4)
     integer :: p
@@ -133,15 +185,15 @@ contains
     force = 0
     do p = 1, size(dv)
       s = stress(:, p)*dv(p)
-      force(1:8) = force(1:8) + s(1)*nx(:, p) + s(3)*ny(:, p) + s(4)*nr(:, p)
+      force(1:8) = force(1:8) + s(1)*nx(:, p) + s(3)*ny(:, p) + s(4)*zx(:, p)
       force(9:16) = force(9:16) + s(3)*nx(:, p) + s(2)*ny(:, p)
     end do
   end subroutine internal_force
 
-  !> K = sum G^T M G dv. Rows of M: the factors of nx (in Fx), ny (Fx), nx (Fy), ny (Fy), nr (Fx).
-  pure subroutine tangent_matrix(finite, nx, ny, nr, dv, stress, tangent, stiffness)
-    logical, intent(in) :: finite
-    real(wp), intent(in) :: nx(:, :), ny(:, :), nr(:, :), dv(:), stress(:, :), tangent(:, :, :)
+  !> K = sum G^T M G dv without the section. Rows of M: the factors of nx (in Fx), ny (Fx), nx (Fy), ny (Fy), zx (Fx).
+  pure subroutine tangent_matrix(condense, finite, nx, ny, zx, dv, stress, tangent, stiffness)
+    logical, intent(in) :: condense, finite
+    real(wp), intent(in) :: nx(:, :), ny(:, :), zx(:, :), dv(:), stress(:, :), tangent(:, :, :)
     real(wp), intent(out) :: stiffness(16, 16)
     real(wp) :: m(5, 5), qx(5), qy(5)
     integer :: p, j
@@ -150,17 +202,61 @@ contains
     do p = 1, size(dv)
       m = tangent([1, 3, 3, 2, 4], :, p)
       if (finite) m = m + geometric(stress(:, p))
+      if (condense) then
+        do j = 1, 4
+          m(1:4, j) = m(1:4, j) - m(1:4, 5)*(tangent(4, j, p)/tangent(4, 5, p))
+        end do
+      end if
       m = m*dv(p)
       do j = 1, 8
-        qx = m(:, 1)*nx(j, p) + m(:, 2)*ny(j, p) + m(:, 5)*nr(j, p)
+        qx = m(:, 1)*nx(j, p) + m(:, 2)*ny(j, p) + m(:, 5)*zx(j, p)
         qy = m(:, 3)*nx(j, p) + m(:, 4)*ny(j, p)
-        stiffness(1:8, j) = stiffness(1:8, j) + qx(1)*nx(:, p) + qx(2)*ny(:, p) + qx(5)*nr(:, p)
+        stiffness(1:8, j) = stiffness(1:8, j) + qx(1)*nx(:, p) + qx(2)*ny(:, p) + qx(5)*zx(:, p)
         stiffness(9:16, j) = stiffness(9:16, j) + qx(3)*nx(:, p) + qx(4)*ny(:, p)
-        stiffness(1:8, j + 8) = stiffness(1:8, j + 8) + qy(1)*nx(:, p) + qy(2)*ny(:, p) + qy(5)*nr(:, p)
+        stiffness(1:8, j + 8) = stiffness(1:8, j + 8) + qy(1)*nx(:, p) + qy(2)*ny(:, p) + qy(5)*zx(:, p)
         stiffness(9:16, j + 8) = stiffness(9:16, j + 8) + qy(3)*nx(:, p) + qy(4)*ny(:, p)
       end do
     end do
   end subroutine tangent_matrix
+
+  !> What the unknowns of the section add to force and matrix in generalised plane strain, and the tilt of the section
+  !> (a3) to the nodal ones. With G (5, 19) complete, K = sum G^T M G dv replaces the matrix of the nodes; h_zz dt = dt
+  !> being bilinear in position and tilt, sigma_zz dA d(da2) dx and d(da3) dy come on top.
+  pure subroutine add_section(finite, wanted, rule, section, x, du, nx, ny, dv, stress, tangent, force, stiffness)
+    logical, intent(in) :: finite, wanted
+    type(quad8_rule_t), intent(in) :: rule
+    real(wp), intent(in) :: section(3, 2), x(2, 8), du(:), nx(:, :), ny(:, :), dv(:), stress(:, :), tangent(:, :, :)
+    real(wp), intent(inout) :: force(19), stiffness(19, 19)
+    real(wp) :: g(5, 19), m(5, 5), here(2), area
+    integer :: p
+
+    force(17:19) = 0
+    if (wanted) stiffness = 0
+    do p = 1, size(dv)
+      here = matmul(x, rule%phi(:, p))
+      if (finite) here = here + [dot_product(rule%phi(:, p), du(1:8)), dot_product(rule%phi(:, p), du(9:16))]
+      area = dv(p)/thickness_at(section(:, 1), here)
+      g = 0
+      g(1, 1:8) = nx(:, p)
+      g(2, 1:8) = ny(:, p)
+      g(3, 9:16) = nx(:, p)
+      g(4, 9:16) = ny(:, p)
+      g(5, :) = [section(2, 1)*rule%phi(:, p), section(3, 1)*rule%phi(:, p), 1.0_wp, here]*(area/dv(p))
+      force(9:16) = force(9:16) + stress(4, p)*dv(p)*g(5, 9:16)
+      force(17:19) = force(17:19) + stress(4, p)*dv(p)*g(5, 17:19)
+      if (.not. wanted) cycle
+      m = tangent([1, 3, 3, 2, 4], :, p)
+      if (finite) m = m + geometric(stress(:, p))
+      stiffness = stiffness + matmul(transpose(g), matmul(m*dv(p), g))
+      if (.not. finite) cycle
+      associate (pull => stress(4, p)*area*rule%phi(:, p))
+        stiffness(1:8, 18) = stiffness(1:8, 18) + pull
+        stiffness(18, 1:8) = stiffness(18, 1:8) + pull
+        stiffness(9:16, 19) = stiffness(9:16, 19) + pull
+        stiffness(19, 9:16) = stiffness(19, 9:16) + pull
+      end associate
+    end do
+  end subroutine add_section
 
   !> sigma tr h - sigma h^T as a matrix on h = (xx, xy, yx, yy, zz).
   pure function geometric(s) result(m)
@@ -175,11 +271,11 @@ contains
   end function geometric
 
   !> Volume and energies. Work densities are per stress-free volume, dv/J with J = exp(tr e).
-  subroutine measure(scene, group, law, x, state, before, totals)
+  subroutine measure(scene, group, law, section, x, state, before, totals)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(law_t), intent(in) :: law
-    real(wp), intent(in) :: x(:, :, :), state(:, :, :), before(:, :, :)
+    real(wp), intent(in) :: section(3), x(:, :, :), state(:, :, :), before(:, :, :)
     type(totals_t), intent(out) :: totals
     type(quad8_rule_t) :: rule
     real(wp) :: nx(8), ny(8), detj, dv, stress(4), strain(4)
@@ -191,8 +287,8 @@ contains
     do e = 1, size(x, 3)
       do p = 1, group%npoint
         call derivatives(rule%dphi(:, :, p), x(:, :, e), nx, ny, detj)
-        dv = detj*rule%weight(p)
-        if (scene%plane_state == axisymmetric) dv = dv*dot_product(rule%phi(:, p), x(1, :, e))
+        dv = detj*rule%weight(p)*thickness_at(section, matmul(x(:, :, e), rule%phi(:, p)))
+        if (scene%plane_state == plane_stress .and. scene%finite) dv = dv*state(size(state, 1), p, e)
         totals%volume = totals%volume + dv
         stress = state(1:4, p, e)
         strain = state(first_strain:first_history - 1, p, e)

@@ -1,14 +1,16 @@
 !> PRES2D: pressure on a 3-node side that follows the surface.
 !>
 !> Walking 1 -> 2 -> 3 the part is on the left; a positive pressure pushes into the part along its
-!> inner normal: F_i = integral phi_i p (-y', x') r dxi, linearised exactly (unsymmetric matrix).
+!> inner normal: F_i = integral phi_i p (-y', x') t dxi, linearised exactly (unsymmetric matrix). The
+!> thickness t of the section is the radius in an axisymmetric scene; in plane stress it is that of the start.
 module elem_pres2d
-  use elem_api, only: elem_t, instant_t, report_t
+  use elem_api, only: elem_t, instant_t, report_t, section_motion
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
   use quadrature, only: line_rule
-  use scene, only: axisymmetric, group_t, scene_t
+  use scene, only: generalised_plane_strain, group_t, scene_t
+  use sections, only: thickness_at
   use shape_functions, only: line3
   use state_variables, only: state_variable_t
   implicit none
@@ -29,8 +31,9 @@ contains
     row%compute => compute
   end function elem_pres2d_row
 
-  pure subroutine variables(law, list)
+  pure subroutine variables(law, plane_state, list)
     type(law_t), intent(in) :: law
+    integer, intent(in) :: plane_state
     type(state_variable_t), allocatable, intent(out) :: list(:)
 
     allocate (list(0))
@@ -50,37 +53,52 @@ contains
     real(wp), intent(inout) :: stiffness(:, :, :)
     type(report_t), intent(out) :: report  !! a load never fails
     real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: pressure, y(2, 3), phi(3), dphi(3), tangent(2), radius
+    real(wp) :: pressure, y(2, 3), phi(3), dphi(3), normal(2), section(3), pull
     integer :: e, p, j
-    logical :: axisym
 
-    axisym = scene%plane_state == axisymmetric
     call line_rule(group%npoint, xi, weight)
     pressure = group%amplitude*instant%multipliers(group%multiplier)
     do e = 1, size(x, 3)
       force(:, e) = 0
       if (instant%tangent) stiffness(:, :, e) = 0
       y = x(:, :, e)
-      if (kinematics%finite) y = y + transpose(reshape(du(1:6, e), [3, 2]))
+      section = scene%section
+      if (kinematics%finite) then
+        y = y + transpose(reshape(du(1:6, e), [3, 2]))
+        section = instant%section + section_motion(scene, du(:, e))
+      end if
       do p = 1, size(xi)
         call line3(xi(p), phi, dphi)
-        tangent = matmul(y, dphi)
-        radius = 1
-        if (axisym) radius = dot_product(y(1, :), phi)
-        associate (pw => pressure*weight(p))
-          force(1:3, e) = force(1:3, e) + phi*pw*tangent(2)*radius
-          force(4:6, e) = force(4:6, e) - phi*pw*tangent(1)*radius
-          if (.not. (instant%tangent .and. kinematics%finite)) cycle
-          do j = 1, 3
-            stiffness(1:3, j + 3, e) = stiffness(1:3, j + 3, e) + phi*pw*dphi(j)*radius
-            stiffness(4:6, j, e) = stiffness(4:6, j, e) - phi*pw*dphi(j)*radius
-            if (.not. axisym) cycle
-            stiffness(1:3, j, e) = stiffness(1:3, j, e) + phi*pw*tangent(2)*phi(j)
-            stiffness(4:6, j, e) = stiffness(4:6, j, e) - phi*pw*tangent(1)*phi(j)
-          end do
-        end associate
+        normal = matmul(y, dphi)
+        normal = [normal(2), -normal(1)]
+        pull = pressure*weight(p)*thickness_at(section, matmul(y, phi))
+        force(1:3, e) = force(1:3, e) + phi*pull*normal(1)
+        force(4:6, e) = force(4:6, e) + phi*pull*normal(2)
+        if (.not. (instant%tangent .and. kinematics%finite)) cycle
+        do j = 1, 3
+          stiffness(1:3, j + 3, e) = stiffness(1:3, j + 3, e) + phi*pull*dphi(j)
+          stiffness(4:6, j, e) = stiffness(4:6, j, e) - phi*pull*dphi(j)
+          call add_column(j, section(2)*phi(j))
+          call add_column(j + 3, section(3)*phi(j))
+        end do
+        if (scene%plane_state /= generalised_plane_strain) cycle
+        call add_column(7, 1.0_wp)
+        call add_column(8, dot_product(y(1, :), phi))
+        call add_column(9, dot_product(y(2, :), phi))
       end do
     end do
+
+  contains
+
+    !> What a change of thickness along a local unknown does to the forces.
+    subroutine add_column(column, thickening)
+      integer, intent(in) :: column
+      real(wp), intent(in) :: thickening
+
+      stiffness(1:3, column, e) = stiffness(1:3, column, e) + phi*pressure*weight(p)*normal(1)*thickening
+      stiffness(4:6, column, e) = stiffness(4:6, column, e) + phi*pressure*weight(p)*normal(2)*thickening
+    end subroutine add_column
+
   end subroutine compute
 
 end module elem_pres2d

@@ -24,12 +24,12 @@ contains
     row%update => update
   end function kinematics_log_row
 
-  pure subroutine update(law, material, dt, n, nstate, f, committed, trial, tangent, status)
+  pure subroutine update(law, material, dt, n, nstate, temperature, f, committed, trial, tangent, status)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt
     integer, intent(in) :: n, nstate
-    real(wp), intent(in) :: f(5, n), committed(nstate, n)
+    real(wp), intent(in) :: temperature(2, n), f(5, n), committed(nstate, n)
     real(wp), intent(out) :: trial(nstate, n), tangent(4, 5, n)
     integer, intent(out) :: status(n)
     real(wp) :: e(4, n), de(4, 5, n), tau(4, n), elastic(4, n), history(nstate - first_history + 1, n), law_tangent(4, 4, n)
@@ -40,7 +40,7 @@ contains
       call half_log(push_forward(f(:, i), exp_twice(committed(5:8, i))), e(:, i), de(:, :, i))
       e(3, i) = 2*e(3, i)
     end do
-    call law%update(material, dt, e, committed(first_history:, :), tau, elastic, history, law_tangent, status)
+    call law%update(material, dt, temperature, e, committed(first_history:, :), tau, elastic, history, law_tangent, status)
     do i = 1, n
       volume = exp(e(1, i) + e(2, i) + e(4, i))
       trial(1:4, i) = tau(:, i)/volume

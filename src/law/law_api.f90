@@ -78,11 +78,14 @@ module law_api
     !>
     !> `trial_strain` is the elastic strain if the step were elastic; on return `elastic_strain` is
     !> what is left of it after flow, `stress` follows from it, `history` is the trial history and
-    !> `tangent` = d stress / d trial_strain. Pure: called by several threads.
-    pure subroutine law_update_i(material, dt, trial_strain, committed, stress, elastic_strain, history, tangent, status)
+    !> `tangent` = d stress / d trial_strain. Rows of the history beyond the law's own are carried
+    !> along. Pure: called by several threads.
+    pure subroutine law_update_i(material, dt, temperature, trial_strain, committed, stress, elastic_strain, history, tangent, &
+                                 status)
       import :: material_t, wp
       type(material_t), intent(in) :: material
       real(wp), intent(in) :: dt                   !! length of the step [time]
+      real(wp), intent(in) :: temperature(:, :)    !! (2, n) at the start and at the end of the step [temperature]
       real(wp), intent(in) :: trial_strain(:, :)   !! (4, n) [-]
       real(wp), intent(in) :: committed(:, :)      !! (nhistory, n)
       real(wp), intent(out) :: stress(:, :)        !! (4, n) [stress]
@@ -93,17 +96,21 @@ module law_api
     end subroutine law_update_i
 
     !> Contact law at one point: pressure and friction from penetration and slip.
-    pure subroutine law_slide_i(material, penalty, augmentation, penetration, slip, tau_committed, &
+    !>
+    !> Vectors have two tangential components, in the plane and across it (annex 3, eq. 1); `tangent` is
+    !> d(pressure, tau)/d(penetration, slip).
+    pure subroutine law_slide_i(material, penalty, augmentation, penetration, slip, tau_committed, flow_stress, &
                                 pressure, tau, tangent, status)
       import :: material_t, wp
       type(material_t), intent(in) :: material
       real(wp), intent(in) :: penalty(2)      !! normal and tangential stiffness [stress/length]
       real(wp), intent(in) :: augmentation    !! multiplier carried from earlier augmentations [stress]
       real(wp), intent(in) :: penetration     !! d > 0 inside the die [length]
-      real(wp), intent(in) :: slip            !! relative slip of the step [length]
-      real(wp), intent(in) :: tau_committed   !! friction stress at the start of the step [stress]
-      real(wp), intent(out) :: pressure, tau  !! [stress]
-      real(wp), intent(out) :: tangent(2, 2)  !! d(pressure, tau)/d(penetration, slip)
+      real(wp), intent(in) :: slip(2)         !! relative slip of the step [length]
+      real(wp), intent(in) :: tau_committed(2) !! friction stress at the start of the step [stress]
+      real(wp), intent(in) :: flow_stress     !! of the body behind the side; 0 where its law has none [stress]
+      real(wp), intent(out) :: pressure, tau(2)  !! [stress]
+      real(wp), intent(out) :: tangent(3, 3)  !! [stress/length]
       integer, intent(out) :: status          !! contact_open, contact_stick or contact_slip
     end subroutine law_slide_i
   end interface

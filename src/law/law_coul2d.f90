@@ -32,12 +32,15 @@ contains
     row%slide => slide
   end function law_coul2d_row
 
-  pure subroutine slide(material, penalty, augmentation, penetration, slip, tau_committed, pressure, tau, tangent, status)
+  !> In slip, with the direction n = trial/|trial|: tau = limit n, and d tau = n PHI AKP dd + limit/|trial| AKTAU (1 - n n) ds,
+  !> the derivative of the discrete update: eq. (7), which is its limit for small steps.
+  pure subroutine slide(material, penalty, augmentation, penetration, slip, tau_committed, flow_stress, pressure, tau, tangent, &
+                        status)
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: penalty(2), augmentation, penetration, slip, tau_committed
-    real(wp), intent(out) :: pressure, tau, tangent(2, 2)
+    real(wp), intent(in) :: penalty(2), augmentation, penetration, slip(2), tau_committed(2), flow_stress
+    real(wp), intent(out) :: pressure, tau(2), tangent(3, 3)
     integer, intent(out) :: status
-    real(wp) :: limit, trial, phi, cohesion, tau_max
+    real(wp) :: limit, size_of_trial, trial(2), direction(2), phi, cohesion, tau_max
 
     tau = 0
     tangent = 0
@@ -52,15 +55,22 @@ contains
     tau_max = material%values(7)
     tangent(1, 1) = penalty(1)
     trial = tau_committed + penalty(2)*slip
+    size_of_trial = sqrt(dot_product(trial, trial))
     limit = min(phi*pressure + cohesion, tau_max)
-    if (abs(trial) <= limit) then
+    if (size_of_trial <= limit) then
       status = contact_stick
       tau = trial
       tangent(2, 2) = penalty(2)
+      tangent(3, 3) = penalty(2)
     else
       status = contact_slip
-      tau = sign(limit, trial)
-      if (limit < tau_max) tangent(2, 1) = sign(phi*penalty(1), trial)
+      direction = trial/size_of_trial
+      tau = limit*direction
+      if (limit < tau_max) tangent(2:3, 1) = phi*penalty(1)*direction
+      associate (share => limit/size_of_trial*penalty(2))
+        tangent(2, 2:3) = share*[direction(2)**2, -direction(1)*direction(2)]
+        tangent(3, 2:3) = share*[-direction(1)*direction(2), direction(1)**2]
+      end associate
     end if
   end subroutine slide
 

@@ -51,9 +51,9 @@ contains
     row%update => update
   end function law_epla_row
 
-  pure subroutine update(material, dt, trial_strain, committed, stress, elastic_strain, history, tangent, status)
+  pure subroutine update(material, dt, temperature, trial_strain, committed, stress, elastic_strain, history, tangent, status)
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: dt, trial_strain(:, :), committed(:, :)
+    real(wp), intent(in) :: dt, temperature(:, :), trial_strain(:, :), committed(:, :)
     real(wp), intent(out) :: stress(:, :), elastic_strain(:, :), history(:, :), tangent(:, :, :)
     integer, intent(out) :: status(:)
     real(wp) :: bulk, shear, hooke(4, 4), a(4)

@@ -28,17 +28,20 @@ contains
     row%slide => slide
   end function law_glue2d_row
 
-  pure subroutine slide(material, penalty, augmentation, penetration, slip, tau_committed, pressure, tau, tangent, status)
+  pure subroutine slide(material, penalty, augmentation, penetration, slip, tau_committed, flow_stress, pressure, tau, tangent, &
+                        status)
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: penalty(2), augmentation, penetration, slip, tau_committed
-    real(wp), intent(out) :: pressure, tau, tangent(2, 2)
+    real(wp), intent(in) :: penalty(2), augmentation, penetration, slip(2), tau_committed(2), flow_stress
+    real(wp), intent(out) :: pressure, tau(2), tangent(3, 3)
     integer, intent(out) :: status
 
     status = contact_stick
     pressure = augmentation + penalty(1)*penetration
     tau = tau_committed + penalty(2)*slip
-    tangent(:, 1) = [penalty(1), 0.0_wp]
-    tangent(:, 2) = [0.0_wp, penalty(2)]
+    tangent = 0
+    tangent(1, 1) = penalty(1)
+    tangent(2, 2) = penalty(2)
+    tangent(3, 3) = penalty(2)
   end subroutine slide
 
 end module law_glue2d

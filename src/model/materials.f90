@@ -3,18 +3,62 @@ module materials
   use kinds, only: wp
   implicit none
   private
-  public :: material_t
+  public :: material_t, values_at, bracket_temperature
 
   type :: material_t
     character(len=:), allocatable :: name
     !> Name of the LAW it is made of, and its place in the list of laws.
     character(len=:), allocatable :: law
     integer :: law_id = 0
-    !> Values of the law's parameters, in the order the law declares them.
+    !> Values of the law's parameters, in the order the law declares them; at the first temperature where several are given.
     real(wp), allocatable :: values(:)
-    !> Table of a curve, abscissa ascending (2, n); empty when the law's form has none.
+    !> Table of a curve, abscissa ascending (2, n), at the first temperature; empty when the law's form has none.
     real(wp), allocatable :: curve(:, :)
+    !> Temperatures at which the card is given, ascending; none for numbers that hold at any temperature.
+    real(wp), allocatable :: temperatures(:)
+    !> All values (nvalue, ntemperature) and curves (2, npoint, ntemperature); allocated with `temperatures`.
+    real(wp), allocatable :: values_by_temperature(:, :), curves(:, :, :)
     !> Where the deck defines it, for messages.
     character(len=:), allocatable :: where_defined
   end type material_t
+
+contains
+
+  !> Values at a temperature: linear between those of the card, constant outside.
+  pure subroutine values_at(material, temperature, values)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: temperature
+    real(wp), intent(out) :: values(:)   !! (nvalue)
+    integer :: k
+    real(wp) :: share
+
+    if (.not. allocated(material%temperatures)) then
+      values = material%values
+      return
+    end if
+    call bracket_temperature(material, temperature, k, share)
+    values = (1 - share)*material%values_by_temperature(:, k) &
+             + share*material%values_by_temperature(:, min(k + 1, size(material%temperatures)))
+  end subroutine values_at
+
+  !> Place k of the temperature of the card below, and the share of the next one.
+  pure subroutine bracket_temperature(material, temperature, k, share)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: temperature
+    integer, intent(out) :: k
+    real(wp), intent(out) :: share
+    integer :: n
+
+    n = size(material%temperatures)
+    share = 0
+    k = 1
+    if (temperature <= material%temperatures(1)) return
+    k = n
+    if (temperature >= material%temperatures(n)) return
+    do k = 1, n - 2
+      if (temperature < material%temperatures(k + 1)) exit
+    end do
+    share = (temperature - material%temperatures(k))/(material%temperatures(k + 1) - material%temperatures(k))
+  end subroutine bracket_temperature
+
 end module materials

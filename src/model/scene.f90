@@ -7,16 +7,20 @@ module scene
   use materials, only: material_t
   use mesh, only: mesh_t
   use probes, only: probe_t
+  use sections, only: section_drive_t
   use state_variables, only: state_variable_t
   use strategy, only: strategy_t
   implicit none
   private
-  public :: scene_t, group_t, plane_strain, axisymmetric, plane_state_names
+  public :: scene_t, group_t, plane_state_names
+  public :: plane_strain, axisymmetric, plane_stress, generalised_plane_strain
 
   !> Plane states.
   integer, parameter :: plane_strain = 1
   integer, parameter :: axisymmetric = 2
-  character(len=6), parameter :: plane_state_names(2) = ['PLSTN ', 'AXISYM']
+  integer, parameter :: plane_stress = 3
+  integer, parameter :: generalised_plane_strain = 4
+  character(len=6), parameter :: plane_state_names(4) = ['PLSTN ', 'AXISYM', 'PLSTS ', 'GPLSTN']
 
   !> Elements of one ELEM and one LAW with their state: the unit of the element loop.
   type :: group_t
@@ -34,6 +38,9 @@ module scene
     integer :: die = 0
     integer :: multiplier = 0
     real(wp) :: amplitude = 0.0_wp
+    !> Temperature given to the body: amplitude times multiplier; multiplier 0 where none is.
+    integer :: temperature_multiplier = 0
+    real(wp) :: temperature_amplitude = 0.0_wp
     !> Declared state of a point, with places in the state array.
     type(state_variable_t), allocatable :: variables(:)
   end type group_t
@@ -41,6 +48,9 @@ module scene
   type :: scene_t
     character(len=:), allocatable :: title
     integer :: plane_state = 0
+    !> Section (sections) at the start, and in generalised plane strain what drives its three components.
+    real(wp) :: section(3) = 0.0_wp
+    type(section_drive_t) :: section_drives(3)
     !> Member of the kinematics family, by name and place in its list.
     character(len=:), allocatable :: kinematics
     integer :: kinematics_id = 0

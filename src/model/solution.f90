@@ -25,6 +25,8 @@ module solution
     real(wp), allocatable :: pilots(:, :)
     !> Motion of all nodes and pilots in the last accepted step, for the predictor.
     real(wp), allocatable :: last_increment(:, :), last_pilot_increment(:, :)
+    !> Section, and its motion in the last accepted step (sections).
+    real(wp) :: section(3) = 0.0_wp, last_section_increment(3) = 0.0_wp
     type(group_state_t), allocatable :: groups(:)
     !> Totals since the start.
     integer :: iterations = 0, cutbacks = 0
@@ -40,6 +42,8 @@ module solution
     !> Forces from outside at the last accepted instant: reactions, nodal forces, pressures, on
     !> nodes (2, nnode) and on pilots (3, ndie).
     real(wp), allocatable :: applied(:, :), pilot_applied(:, :)
+    !> On the section: axial force, and moments of the axial stress about y and x.
+    real(wp) :: section_applied(3) = 0.0_wp
     !> Reactions of supports and of imposed motions (2, nnode), without the loads that act on the same nodes.
     real(wp), allocatable :: reactions(:, :)
   end type solution_t
@@ -60,6 +64,7 @@ contains
     do g = 1, ndie
       solution%pilots(:, g) = scene%dies(g)%pilot
     end do
+    solution%section = scene%section
     solution%next_step = scene%strategy%first_step
     allocate (solution%groups(size(scene%groups)))
     do g = 1, size(scene%groups)

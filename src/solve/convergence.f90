@@ -4,7 +4,7 @@ module convergence
   use kinds, only: wp
   implicit none
   private
-  public :: relative_residual, relative_motion, free_norm
+  public :: relative_residual, relative_motion, free_force
 
   !> Motions below this share of the mesh's size are round-off of coordinates.
   real(wp), parameter :: least_motion = 1.0e-10_wp
@@ -19,7 +19,7 @@ contains
     real(wp) :: norm
     real(wp) :: reference, round_off
 
-    norm = free_norm(equations, residual)
+    norm = free_force(equations, residual)
     reference = max(force_norm(equations, external), force_norm(equations, residual), force_norm(equations, equations%magnitude))
     round_off = force_floor*max(1.0_wp, force_norm(equations, du)/equations%size)
     if (norm <= round_off) then
@@ -35,7 +35,7 @@ contains
     real(wp), intent(in) :: correction(:), du(:)
     real(wp) :: norm
 
-    norm = free_norm(equations, correction)/max(force_norm(equations, du), least_motion*equations%size)
+    norm = free_norm(equations, correction, equations%size)/max(force_norm(equations, du), least_motion*equations%size)
   end function relative_motion
 
   !> Euclidean norm over displacements and forces, without angles and moments.
@@ -47,16 +47,25 @@ contains
     norm = sqrt(sum(v**2, mask=.not. equations%dofs%is_angle))
   end function force_norm
 
-  !> Euclidean norm over the free unknowns.
-  pure function free_norm(equations, v) result(norm)
+  !> Norm of forces on the free unknowns; moments count as forces at the distance of the mesh's size.
+  pure function free_force(equations, v) result(norm)
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: v(:)
+    real(wp) :: norm
+
+    norm = free_norm(equations, v, 1/equations%size)
+  end function free_force
+
+  !> Euclidean norm over the free unknowns, those that are angles times `lever`.
+  pure function free_norm(equations, v, lever) result(norm)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: v(:), lever
     real(wp) :: norm
     integer :: d
 
     norm = 0
     do d = 1, size(v)
-      if (equations%dofs%equation(d) > 0) norm = norm + v(d)**2
+      if (equations%dofs%equation(d) > 0) norm = norm + merge(lever*v(d), v(d), equations%dofs%is_angle(d))**2
     end do
     norm = sqrt(norm)
   end function free_norm

@@ -1,12 +1,14 @@
 !> Unknowns by the scene: numbered only where a card calls for them.
 !>
-!> An unknown is a displacement of a node or a motion of a die's pilot. Each is free (it has an
+!> An unknown is a displacement of a node, a motion of a die's pilot, or in generalised plane strain a
+!> motion of the section. Each is free (it has an
 !> equation) or prescribed (its motion is known: elimination, no penalty).
 module dofs
   use elem_api, only: elem_t
   use kinds, only: wp
   use loads, only: multiplier_at
-  use scene, only: scene_t
+  use scene, only: generalised_plane_strain, scene_t
+  use sections, only: section_forced, section_moved
   implicit none
   private
   public :: dofs_t, group_dofs_t, number_dofs, prescribed_motion
@@ -29,9 +31,11 @@ module dofs
     integer :: neq = 0
     !> Unknowns of the nodes (2, nnode) and of the pilots (3, ndie); 0 where there is none.
     integer, allocatable :: node(:, :), pilot(:, :)
+    !> Unknowns of the section, 0 where there are none.
+    integer :: section(3) = 0
     !> Equation of each unknown, 0 when prescribed.
     integer, allocatable :: equation(:)
-    !> Unknowns that are angles (their forces are moments).
+    !> Unknowns that are angles, and tilts of the section (their forces are moments).
     logical, allocatable :: is_angle(:)
     type(prescribed_t), allocatable :: prescribed(:)
     type(group_dofs_t), allocatable :: groups(:)
@@ -67,10 +71,18 @@ contains
       end do
     end do
 
+    if (scene%plane_state == generalised_plane_strain) then
+      do d = 1, 3
+        dofs%section(d) = 1
+        call take_number(dofs%section(d))
+      end do
+    end if
+
     allocate (dofs%is_angle(dofs%ndof), source=.false.)
     do k = 1, size(scene%dies)
       if (dofs%pilot(3, k) > 0) dofs%is_angle(dofs%pilot(3, k)) = .true.
     end do
+    if (dofs%section(1) > 0) dofs%is_angle(dofs%section(2:3)) = .true.
 
     call list_prescribed(scene, dofs)
     allocate (dofs%equation(dofs%ndof), source=1)
@@ -104,6 +116,13 @@ contains
     do k = 1, size(dofs%pilot, 2)
       if (dofs%pilot(1, k) > 0) by_dof(dofs%pilot(:, k))%dof = dofs%pilot(:, k)
     end do
+    do k = 1, 3
+      if (dofs%section(k) == 0 .or. scene%section_drives(k)%kind == section_forced) cycle
+      by_dof(dofs%section(k))%dof = dofs%section(k)
+      if (scene%section_drives(k)%kind /= section_moved) cycle
+      by_dof(dofs%section(k)) = prescribed_t(dofs%section(k), scene%section(1)*scene%section_drives(k)%amplitude, &
+                                             scene%section_drives(k)%multiplier)
+    end do
     do k = 1, size(scene%die_motions)
       associate (motion => scene%die_motions(k))
         if (dofs%pilot(1, motion%die) == 0) cycle
@@ -135,11 +154,13 @@ contains
         n = row%nnode
         ndof = 2*n
         if (row%pilot) ndof = ndof + 3
+        if (dofs%section(1) > 0) ndof = ndof + 3
         allocate (dofs%groups(g)%dof(ndof, size(group%connectivity, 2)))
         do e = 1, size(group%connectivity, 2)
           dofs%groups(g)%dof(:n, e) = dofs%node(1, group%connectivity(:, e))
           dofs%groups(g)%dof(n + 1:2*n, e) = dofs%node(2, group%connectivity(:, e))
-          if (row%pilot) dofs%groups(g)%dof(2*n + 1:, e) = dofs%pilot(:, group%die)
+          if (row%pilot) dofs%groups(g)%dof(2*n + 1:2*n + 3, e) = dofs%pilot(:, group%die)
+          if (dofs%section(1) > 0) dofs%groups(g)%dof(ndof - 2:, e) = dofs%section
         end do
       end associate
     end do

@@ -14,6 +14,7 @@ module equations
   use loads, only: multiplier_at
   use ordering, only: order_equations
   use scene, only: scene_t
+  use sections, only: section_forced
   use solution, only: solution_t
   use sparsity, only: build_pattern, pattern_t
   use timers, only: ledger_t
@@ -112,8 +113,10 @@ contains
     instant%dt = dt
     instant%tangent = tangent
     instant%pilots = solution%pilots
-    allocate (instant%multipliers(size(scene%multipliers)))
+    instant%section = solution%section
+    allocate (instant%multipliers(size(scene%multipliers)), instant%multipliers_before(size(scene%multipliers)))
     do k = 1, size(scene%multipliers)
+      instant%multipliers_before(k) = multiplier_at(scene%multipliers(k), solution%time)
       instant%multipliers(k) = multiplier_at(scene%multipliers(k), instant%time)
     end do
   end subroutine make_instant
@@ -165,7 +168,7 @@ contains
     force_floor = round_off_motion*equations%size*sqrt(sum)
   end subroutine set_floor
 
-  !> Nodal forces at a time (ndof).
+  !> Nodal forces, and loads of the section, at a time (ndof).
   pure subroutine external_forces(scene, dofs, time, force)
     type(scene_t), intent(in) :: scene
     type(dofs_t), intent(in) :: dofs
@@ -178,6 +181,13 @@ contains
       associate (load => scene%forces(k))
         d = dofs%node(load%component, load%node)
         force(d) = force(d) + load%amplitude*multiplier_at(scene%multipliers(load%multiplier), time)
+      end associate
+    end do
+    do k = 1, 3
+      if (dofs%section(k) == 0) cycle
+      associate (drive => scene%section_drives(k))
+        if (drive%kind /= section_forced .or. drive%multiplier == 0) cycle
+        force(dofs%section(k)) = drive%amplitude*multiplier_at(scene%multipliers(drive%multiplier), time)
       end associate
     end do
   end subroutine external_forces

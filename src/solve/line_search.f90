@@ -4,7 +4,7 @@
 !> or the whole residual falls. Otherwise the zero of the residual along the correction is sought by
 !> secants (M.A. Crisfield, Non-linear Finite Element Analysis, vol. 1, sec. 9.2).
 module line_search
-  use convergence, only: free_norm
+  use convergence, only: free_force
   use elem_api, only: block_done, report_t
   use equations, only: equations_t, evaluate
   use kinds, only: wp
@@ -51,7 +51,7 @@ contains
         s = trial
       end if
       if (abs(slope) <= search_above*abs(slope0) .or. any(abs(missing) > 0) .or. &
-          free_norm(equations, external - equations%force) < free_norm(equations, residual)) then
+          free_force(equations, external - equations%force) < free_force(equations, residual)) then
         s = trial
         return
       end if

@@ -73,6 +73,9 @@ contains
         if (equations%dofs%node(c, k) > 0) du(equations%dofs%node(c, k)) = ratio*solution%last_increment(c, k)
       end do
     end do
+    do c = 1, 3
+      if (equations%dofs%section(c) > 0) du(equations%dofs%section(c)) = ratio*solution%last_section_increment(c)
+    end do
     do k = 1, size(equations%dofs%pilot, 2)
       do c = 1, 3
         if (equations%dofs%pilot(c, k) > 0) du(equations%dofs%pilot(c, k)) = ratio*solution%last_pilot_increment(c, k)

@@ -17,7 +17,7 @@ module exchange
   public :: write_checkpoint, read_deck_of_checkpoint, read_checkpoint, schema_version
 
   !> Raised whenever a dataset changes its name, shape or meaning.
-  integer, parameter :: schema_version = 1
+  integer, parameter :: schema_version = 2
   character(len=*), parameter :: schema_name = 'lagamine checkpoint'
 
 contains
@@ -89,6 +89,9 @@ contains
     call file%write('progress/force_floor', solution%force_floor)
     call file%write('progress/worst', [solution%worst_linear_residual, solution%worst_penetration, &
                                       solution%worst_penetration_ratio, solution%least_dissipation])
+    call file%write('section/position', solution%section)
+    call file%write('section/last_increment', solution%last_section_increment)
+    call file%write('section/applied', solution%section_applied)
     call file%write('nodes/displacement', solution%displacement)
     call file%write_attribute('nodes/displacement', 'unit', 'length')
     call file%write('nodes/last_increment', solution%last_increment)
@@ -205,6 +208,9 @@ contains
     call read_matrix(file, 'nodes/displacement', solution%displacement)
     call read_matrix(file, 'nodes/last_increment', solution%last_increment)
     call read_matrix(file, 'nodes/applied', solution%applied)
+    call read_triple(file, 'section/position', solution%section)
+    call read_triple(file, 'section/last_increment', solution%last_section_increment)
+    call read_triple(file, 'section/applied', solution%section_applied)
     call read_dies(file, scene, solution)
     call read_states(file, scene, solution)
     call file%close(error)
@@ -214,18 +220,24 @@ contains
     type(hdf5_file_t), intent(inout) :: file
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
-    real(wp), allocatable :: v(:)
     integer :: k
 
     do k = 1, size(scene%dies)
-      call file%read('dies/'//scene%dies(k)%name//'/pilot', v)
-      if (size(v) == 3) solution%pilots(:, k) = v
-      call file%read('dies/'//scene%dies(k)%name//'/last_increment', v)
-      if (size(v) == 3) solution%last_pilot_increment(:, k) = v
-      call file%read('dies/'//scene%dies(k)%name//'/applied', v)
-      if (size(v) == 3) solution%pilot_applied(:, k) = v
+      call read_triple(file, 'dies/'//scene%dies(k)%name//'/pilot', solution%pilots(:, k))
+      call read_triple(file, 'dies/'//scene%dies(k)%name//'/last_increment', solution%last_pilot_increment(:, k))
+      call read_triple(file, 'dies/'//scene%dies(k)%name//'/applied', solution%pilot_applied(:, k))
     end do
   end subroutine read_dies
+
+  subroutine read_triple(file, place, triple)
+    type(hdf5_file_t), intent(inout) :: file
+    character(len=*), intent(in) :: place
+    real(wp), intent(inout) :: triple(3)
+    real(wp), allocatable :: values(:)
+
+    call file%read(place, values)
+    if (size(values) == 3) triple = values
+  end subroutine read_triple
 
   subroutine read_states(file, scene, solution)
     type(hdf5_file_t), intent(inout) :: file

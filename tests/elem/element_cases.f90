@@ -1,7 +1,7 @@
 !> Scenes of one element, built in code, for the tests of the ELEM family.
 module element_cases
   use dies, only: die_t, finish_die
-  use elem_api, only: elem_t, instant_t, report_t, totals_t
+  use elem_api, only: elem_t, instant_t, report_t, section_motion, totals_t
   use elem_registry, only: list_elems
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
@@ -9,7 +9,7 @@ module element_cases
   use law_api, only: law_t
   use law_cases, only: elastic_material, law_row, plastic_material
   use materials, only: material_t
-  use scene, only: scene_t
+  use scene, only: axisymmetric, scene_t
   use state_variables, only: total_components
   implicit none
   private
@@ -70,6 +70,8 @@ contains
     case%elem = elem_row(elem)
     case%kinematics = kinematics_row(kinematics)
     case%scene%plane_state = plane_state
+    case%scene%section = merge([0.0_wp, 1.0_wp, 0.0_wp], [1.0_wp, 0.0_wp, 0.0_wp], plane_state == axisymmetric)
+    case%instant%section = case%scene%section
     case%scene%finite = case%kinematics%finite
     case%scene%mesh%coordinates = x
     allocate (case%x(2, size(x, 2), 1), case%scene%groups(1), case%scene%dies(0), case%instant%pilots(3, 0))
@@ -85,13 +87,17 @@ contains
   subroutine add_law(case, material)
     type(case_t), intent(inout) :: case
     type(material_t), intent(in) :: material
+    integer :: k
 
     case%law = law_row(material%law)
     allocate (case%scene%materials(1), source=[material])
     associate (group => case%scene%groups(1))
       group%material = 1
-      call case%elem%variables(case%law, group%variables)
+      call case%elem%variables(case%law, case%scene%plane_state, group%variables)
       allocate (case%committed(total_components(group%variables), abs(group%npoint), 1), source=0.0_wp)
+      do k = 1, size(group%variables)
+        if (group%variables(k)%ncomp == 1) case%committed(group%variables(k)%first, :, :) = group%variables(k)%initial
+      end do
     end associate
   end subroutine add_law
 
@@ -173,7 +179,8 @@ contains
       case%x(1, :, 1) = case%x(1, :, 1) + du(:n)
       case%x(2, :, 1) = case%x(2, :, 1) + du(n + 1:2*n)
     end if
-    if (case%elem%pilot) case%instant%pilots(:, 1) = case%instant%pilots(:, 1) + du(2*n + 1:)
+    if (case%elem%pilot) case%instant%pilots(:, 1) = case%instant%pilots(:, 1) + du(2*n + 1:2*n + 3)
+    case%instant%section = case%instant%section + section_motion(case%scene, du)
   end subroutine accept
 
   !> d force / d du by differences of fourth order.
@@ -205,9 +212,11 @@ contains
     type(totals_t) :: totals
 
     if (present(before)) then
-      call case%elem%measure(case%scene, case%scene%groups(1), case%law, case%x, case%committed, before, totals)
+      call case%elem%measure(case%scene, case%scene%groups(1), case%law, case%scene%section, case%x, case%committed, before, &
+                             totals)
     else
-      call case%elem%measure(case%scene, case%scene%groups(1), case%law, case%x, case%committed, case%committed, totals)
+      call case%elem%measure(case%scene, case%scene%groups(1), case%law, case%scene%section, case%x, case%committed, &
+                             case%committed, totals)
     end if
   end function totals_of
 

@@ -54,12 +54,13 @@ contains
     real(wp), intent(in) :: f(5)
     real(wp), intent(out) :: state(nstate), tangent(4, 5)
     integer, intent(out) :: status
-    real(wp) :: block_f(5, 1), committed(nstate, 1), trial(nstate, 1), block_tangent(4, 5, 1)
+    real(wp) :: temperature(2, 1), block_f(5, 1), committed(nstate, 1), trial(nstate, 1), block_tangent(4, 5, 1)
     integer :: block_status(1)
 
     block_f(:, 1) = f
     committed(:, 1) = body%state
-    call body%kinematics%update(body%law, body%material, 1.0_wp, 1, nstate, block_f, committed, trial, block_tangent, &
+    temperature = 0
+    call body%kinematics%update(body%law, body%material, 1.0_wp, 1, nstate, temperature, block_f, committed, trial, block_tangent, &
                                 block_status)
     state = trial(:, 1)
     tangent = block_tangent(:, :, 1)

@@ -131,11 +131,12 @@ contains
     real(wp), intent(in) :: trial(4), committed(:)
     type(point_t), intent(out) :: point
     real(wp) :: strain(4, 1), before(size(committed), 1), stress(4, 1), elastic(4, 1), after(size(committed), 1), tangent(4, 4, 1)
+    real(wp), parameter :: temperature(2, 1) = 0.0_wp
     integer :: status(1)
 
     strain(:, 1) = trial
     before(:, 1) = committed
-    call row%update(material, 1.0_wp, strain, before, stress, elastic, after, tangent, status)
+    call row%update(material, 1.0_wp, temperature, strain, before, stress, elastic, after, tangent, status)
     point%stress = stress(:, 1)
     point%elastic = elastic(:, 1)
     point%history = after(:, 1)

@@ -35,6 +35,7 @@ contains
     block%divisions = [2, 1]
     call mesh_block(block, coordinates, connectivity, side_first, side_nodes)
     scene%plane_state = plane_strain
+    scene%section = [1.0_wp, 0.0_wp, 0.0_wp]
     scene%kinematics_id = 1
     scene%mesh%coordinates = reshape([coordinates, 9.0_wp, 9.0_wp], [2, 14])
     allocate (scene%materials(2))
