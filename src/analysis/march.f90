@@ -171,6 +171,7 @@ contains
     end if
     advice = 'the residual force is in '//run%stem//'.failed.xdmf; a limit load, a mesh too distorted or a least step too ' &
              //'large in STRAT are the usual causes'
+    if (size(scene%die_forces) > 0) advice = 'a die that is free and touches nothing needs a SPRNG card until it does; '//advice
     if (solution%step > 0) advice = 'the last good state is in '//run%stem//'.ckp.h5, '//advice
     call fail(error, exit_no_convergence, 'no convergence: step '//to_text(solution%step + 1)//' from time ' &
               //to_text(solution%time)//', length '//to_text(dt)//where_at//': '//outcome%reason, &

@@ -4,6 +4,7 @@ module scene_reader
   use cards_dies, only: read_dies
   use cards_laws, only: read_laws
   use cards_loads, only: read_loads, read_multipliers
+  use cards_pilots, only: read_pilots
   use cards_mesh, only: is_body_elem, read_elements, read_nodes, read_side_sets
   use cards_probes, only: read_probes
   use cards_section, only: read_section, read_state
@@ -60,6 +61,7 @@ contains
     call read_pressures(deck, draft, diagnostics)
     call read_loads(deck, draft, diagnostics)
     call read_tractions(deck, draft, diagnostics)
+    call read_pilots(deck, draft, diagnostics)
     call read_strategy(deck, draft, diagnostics)
     call read_probes(deck, draft, diagnostics)
     call refuse_unused_names(deck, draft, keywords, diagnostics)
@@ -76,8 +78,8 @@ contains
     integer :: k
 
     call list_elems(elems)
-    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D TRACT FIXED MOVE FORCE LIC STRAT NORMS ' &
-                  //'STOP SAVE CKPT PROBE', keywords)
+    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D TRACT FIXED MOVE FORCE FREE SPRNG LIC ' &
+                  //'STRAT NORMS STOP SAVE CKPT PROBE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle

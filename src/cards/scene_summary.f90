@@ -87,6 +87,14 @@ contains
           s = s//directions(motion%component)//' = '//to_text(motion%amplitude)//' x '//scene%multipliers(motion%multiplier)%name
         end associate
       end do
+      do i = 1, size(scene%die_forces)
+        associate (load => scene%die_forces(i))
+          if (load%die /= die) cycle
+          if (s /= '') s = s//', '
+          s = s//directions(load%component)//' free'
+          if (load%multiplier > 0) s = s//' under a force by '//scene%multipliers(load%multiplier)%name
+        end associate
+      end do
       if (s == '') s = 'at rest'
     end function motion_of
 

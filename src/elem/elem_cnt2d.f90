@@ -40,6 +40,8 @@ module elem_cnt2d
 
   !> A radius below this share of the side is the axis.
   real(wp), parameter :: no_surface = 1.0e-9_wp
+  !> Depth below this share of the side is round-off of coordinates: the point just touches.
+  real(wp), parameter :: touching = 1.0e-12_wp
   !> Tangential penalty over the normal one, where it is not given: an elastic slip of ten times the
   !> penetration, so that sticking and slipping points do not chatter; error of friction at PHI = 0.5
   !> about half a percent of a side, as in common use.
@@ -213,6 +215,7 @@ contains
     if (foot%piece == 0) return
     ! a point on the axis has no surface: nothing acts there, and nothing is asked of it
     if (axisym .and. point%x(1) <= no_surface*side) return
+    if (abs(foot%d) <= touching*side) foot%d = 0
     trial(at_penetration) = foot%d
     trial(at_piece) = foot%piece
     n = turned(foot%normal, pilot(3, 2))

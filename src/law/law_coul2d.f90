@@ -46,7 +46,8 @@ contains
     tangent = 0
     status = contact_open
     pressure = augmentation + penalty(1)*penetration
-    if (.not. pressure > 0) then
+    ! a point that just touches is closed: it has the stiffness of contact before it has a pressure
+    if (pressure < 0) then
       pressure = 0
       return
     end if

@@ -3,7 +3,7 @@ module scene
   use dies, only: die_t
   use effects, only: effect_t
   use kinds, only: wp
-  use loads, only: die_motion_t, fixation_t, multiplier_t, nodal_force_t
+  use loads, only: die_force_t, die_motion_t, fixation_t, multiplier_t, nodal_force_t
   use materials, only: material_t
   use mesh, only: mesh_t
   use probes, only: probe_t
@@ -34,8 +34,9 @@ module scene
     integer :: npoint = 0
     !> Nodes (nnode, nelem).
     integer, allocatable :: connectivity(:, :)
-    !> Die faced by contact elements, multiplier and amplitude of load elements; 0 where unused.
+    !> Die faced by contact elements, multiplier and amplitude of load elements, component of a spring; 0 where unused.
     integer :: die = 0
+    integer :: component = 0
     integer :: multiplier = 0
     real(wp) :: amplitude = 0.0_wp
     !> Temperature given to the body: amplitude times multiplier; multiplier 0 where none is.
@@ -63,6 +64,7 @@ module scene
     type(multiplier_t), allocatable :: multipliers(:)
     type(fixation_t), allocatable :: fixations(:)
     type(die_motion_t), allocatable :: die_motions(:)
+    type(die_force_t), allocatable :: die_forces(:)
     type(nodal_force_t), allocatable :: forces(:)
     type(probe_t), allocatable :: probes(:)
     type(strategy_t) :: strategy

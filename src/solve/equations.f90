@@ -168,7 +168,7 @@ contains
     force_floor = round_off_motion*equations%size*sqrt(sum)
   end subroutine set_floor
 
-  !> Nodal forces, and loads of the section, at a time (ndof).
+  !> Forces on nodes and pilots, and loads of the section, at a time (ndof).
   pure subroutine external_forces(scene, dofs, time, force)
     type(scene_t), intent(in) :: scene
     type(dofs_t), intent(in) :: dofs
@@ -181,6 +181,13 @@ contains
       associate (load => scene%forces(k))
         d = dofs%node(load%component, load%node)
         force(d) = force(d) + load%amplitude*multiplier_at(scene%multipliers(load%multiplier), time)
+      end associate
+    end do
+    do k = 1, size(scene%die_forces)
+      associate (load => scene%die_forces(k))
+        d = dofs%pilot(load%component, load%die)
+        if (d == 0 .or. load%multiplier == 0) cycle
+        force(d) = load%amplitude*multiplier_at(scene%multipliers(load%multiplier), time)
       end associate
     end do
     do k = 1, 3

@@ -4,7 +4,7 @@
 !> correction still to come (the last one times the last fall of the residual) is below
 !> `displacement_norm` of the motion of the step.
 module newton
-  use convergence, only: relative_motion, relative_residual
+  use convergence, only: pilots_in_equilibrium, relative_motion, relative_residual
   use elem_api, only: block_done, block_inverted, report_t
   use element_loop, only: add_prescribed
   use equations, only: equations_t, evaluate, external_forces, solve_correction
@@ -87,7 +87,8 @@ contains
       outcome%history = [outcome%history, line]
       outcome%iterations = size(outcome%history) - 1
       if (.not. any(abs(missing) > 0)) then
-        if (has_converged(scene, outcome%history(first:))) then
+        if (has_converged(scene, outcome%history(first:)) &
+            .and. pilots_in_equilibrium(equations, solution%force_floor, external, residual)) then
           if (outcome%augmentations == 0) outcome%first_iterations = outcome%iterations
           call augment(scene, equations, solution, outcome%augmentations, before, changed)
           if (.not. changed) exit
