@@ -10,7 +10,7 @@ module law_api
   use state_variables, only: state_variable_t
   implicit none
   private
-  public :: law_t, law_line_t, parameter_t, law_update_i, law_slide_i
+  public :: law_t, law_line_t, parameter_t, law_update_i, law_slide_i, law_flow_i
   public :: parameter, law_line, find_parameter
   public :: law_done, law_not_converged
   public :: contact_open, contact_stick, contact_slip
@@ -71,6 +71,8 @@ module law_api
     character(len=:), allocatable :: effects
     procedure(law_update_i), nopass, pointer :: update => null()
     procedure(law_slide_i), nopass, pointer :: slide => null()
+    !> Not associated for laws without flow.
+    procedure(law_flow_i), nopass, pointer :: flow_stress => null()
   end type law_t
 
   abstract interface
@@ -113,6 +115,15 @@ module law_api
       real(wp), intent(out) :: tangent(3, 3)  !! [stress/length]
       integer, intent(out) :: status          !! contact_open, contact_stick or contact_slip
     end subroutine law_slide_i
+
+    !> Von Mises stress at which a point flows as it is now: what bounds the friction on it.
+    pure function law_flow_i(material, temperature, history) result(flow)
+      import :: material_t, wp
+      type(material_t), intent(in) :: material
+      real(wp), intent(in) :: temperature
+      real(wp), intent(in) :: history(:)      !! of the law (nhistory)
+      real(wp) :: flow                        !! [stress]
+    end function law_flow_i
   end interface
 
 contains

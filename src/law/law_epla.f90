@@ -8,7 +8,7 @@ module law_epla
   use hardening, only: yield_stress
   use kinds, only: eps, wp
   use law_api, only: law_done, law_line, law_not_converged, law_t, parameter
-  use materials, only: material_t
+  use materials, only: material_t, values_at
   use state_variables, only: state_variable, transfer_scalar
   implicit none
   private
@@ -49,6 +49,7 @@ contains
                    state_variable('plastic_work', 'stress', transfer_scalar)]
     row%effects = 'plasticity'
     row%update => update
+    row%flow_stress => flow_stress
   end function law_epla_row
 
   pure subroutine update(material, dt, temperature, trial_strain, committed, stress, elastic_strain, history, tangent, status)
@@ -58,15 +59,11 @@ contains
     integer, intent(out) :: status(:)
     real(wp) :: bulk, shear, hooke(4, 4), a(4)
     real(wp) :: deviator(4), mean, q, sy, sy_start, slope, dp
-    integer :: n, form, first, last
+    integer :: n, form
 
     call moduli(material%values(1), material%values(2), bulk, shear)
     hooke = hooke_tangent(bulk, shear)
-    form = nint(material%values(place_form))
-    first = place_numbers(form)
-    last = min(first + 3, size(material%values))
-    a = 0
-    a(:last - first + 1) = material%values(first:last)
+    call numbers_of_form(material%values, form, a)
 
     do n = 1, size(trial_strain, 2)
       status(n) = law_done
@@ -90,6 +87,33 @@ contains
       tangent(:, :, n) = consistent_tangent(bulk, shear, deviator/(q*sqrt(2.0_wp/3)), dp, q, slope)
     end do
   end subroutine update
+
+  !> The form of hardening and its numbers.
+  pure subroutine numbers_of_form(values, form, a)
+    real(wp), intent(in) :: values(:)
+    integer, intent(out) :: form
+    real(wp), intent(out) :: a(4)
+    integer :: first, last
+
+    form = nint(values(place_form))
+    first = place_numbers(form)
+    last = min(first + 3, size(values))
+    a = 0
+    a(:last - first + 1) = values(first:last)
+  end subroutine numbers_of_form
+
+  !> Yield stress at the plastic strain reached.
+  pure function flow_stress(material, temperature, history) result(flow)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: temperature, history(:)
+    real(wp) :: flow
+    real(wp) :: a(4), values(size(material%values)), slope
+    integer :: form
+
+    call values_at(material, temperature, values)
+    call numbers_of_form(values, form, a)
+    call yield_stress(form, a, material%curve, history(1), flow, slope)
+  end function flow_stress
 
   !> Plastic strain increment `dp`, with the yield stress and slope reached.
   pure subroutine return_to_yield(form, a, curve, p, q, g3, dp, sy, slope, status)
