@@ -11,6 +11,7 @@ module cards_tractions
   use scene_draft, only: close_card, draft_t, words_of
   use shape_functions, only: line3
   use text, only: string_t
+  use vectors, only: length_of
   implicit none
   private
   public :: read_tractions
@@ -62,7 +63,7 @@ contains
       share = 0
       do p = 1, size(xi)
         call line3(xi(p), phi, dphi)
-        length = norm2(matmul(x, dphi))*weight(p)
+        length = length_of(matmul(x, dphi))*weight(p)
         if (draft%scene%plane_state == axisymmetric) length = length*dot_product(x(1, :), phi)
         share = share + phi*length
       end do

@@ -5,6 +5,7 @@ module linear_solver
   use kinds, only: wp
   use sparsity, only: pattern_t
   use text, only: to_text
+  use vectors, only: length_of
   implicit none
   private
   public :: linear_solver_t, analyse, factorise, solve_linear, release
@@ -165,10 +166,10 @@ contains
       x = x + solver%mumps%rhs
       call linear_residual(pattern, solver%mumps%a, rhs, x, residual, scale)
       solver%residual = 0
-      if (scale > 0) solver%residual = norm2(residual)/scale
+      if (scale > 0) solver%residual = length_of(residual)/scale
       if (.not. solver%residual > refine_above) exit
     end do
-    if (scale > singular_growth*norm2(rhs)) then
+    if (scale > singular_growth*length_of(rhs)) then
       call fail(error, exit_no_convergence, 'the matrix is singular to working precision: is every body held?')
     end if
   end subroutine refine
@@ -193,7 +194,7 @@ contains
       residual(j) = residual(j) - a(k)*x(i)
       magnitude(j) = magnitude(j) + abs(a(k)*x(i))
     end do
-    scale = norm2(magnitude)
+    scale = length_of(magnitude)
   end subroutine linear_residual
 
   !> Give back what MUMPS holds.
