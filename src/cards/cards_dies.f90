@@ -8,6 +8,7 @@ module cards_dies
   use kinds, only: pi, wp
   use scene_draft, only: close_card, draft_t, words_of
   use text, only: string_t, to_text
+  use vectors, only: length_of
   implicit none
   private
   public :: read_dies, arc_pieces
@@ -83,7 +84,7 @@ contains
     call read_xy(cursor, 'the first point', first)
     n = size(die%pieces, 3)
     if (n > 0 .and. .not. cursor%failed()) then
-      gap = norm2(first - die%pieces(:, 3, n))
+      gap = length_of(first - die%pieces(:, 3, n))
       size_of_die = max(maxval(abs(die%pieces)), maxval(abs(first)))
       if (gap > gap_tolerance*size_of_die) &
         call cursor%fail('the piece must begin where the last one ended, at '//to_text(die%pieces(1, 3, n), 10)//' ' &
@@ -95,7 +96,7 @@ contains
     call read_xy(cursor, 'the last point', last)
     if (form == 3) call cursor%real('the tolerance of the arc', tolerance, lower=0.0_wp, strict_lower=.true., unit='length')
     if (cursor%failed()) return
-    if (.not. norm2(last - first) > gap_tolerance*max(maxval(abs(first)), maxval(abs(last)))) then
+    if (.not. length_of(last - first) > gap_tolerance*max(maxval(abs(first)), maxval(abs(last)))) then
       call cursor%fail('the piece ends where it begins')
       return
     end if
@@ -132,11 +133,11 @@ contains
     a = middle - first
     b = last - first
     area = a(1)*b(2) - a(2)*b(1)
-    if (norm2(a) > 0) then
-      if (abs(area) > gap_tolerance*norm2(a)*norm2(b)) then
+    if (length_of(a) > 0) then
+      if (abs(area) > gap_tolerance*length_of(a)*length_of(b)) then
         centre = first + [b(2)*dot_product(a, a) - a(2)*dot_product(b, b), &
                           a(1)*dot_product(b, b) - b(1)*dot_product(a, a)]/(2*area)
-        radius = norm2(first - centre)
+        radius = length_of(first - centre)
         ! The way round that passes through the middle point.
         turn = angle_between(first - centre, last - centre)
         if (area > 0 .and. turn < 0) turn = turn + 2*pi

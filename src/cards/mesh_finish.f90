@@ -7,6 +7,7 @@ module mesh_finish
   use scene, only: axisymmetric, group_t
   use scene_draft, only: draft_t, find_elem
   use text, only: to_text
+  use vectors, only: length_of
   implicit none
   private
   public :: finish_mesh
@@ -50,7 +51,7 @@ contains
         call renumber(mesh%sides(k)%nodes, number)
       end do
       draft%mesh_size = 0
-      if (n > 0) draft%mesh_size = norm2(maxval(mesh%coordinates, 2) - minval(mesh%coordinates, 2))
+      if (n > 0) draft%mesh_size = length_of(maxval(mesh%coordinates, 2) - minval(mesh%coordinates, 2))
     end associate
     allocate (draft%scene%groups(size(parts%bodies)))
     do i = 1, size(parts%bodies)

@@ -12,6 +12,7 @@
 module die_search
   use dies, only: die_t
   use kinds, only: eps, wp
+  use vectors, only: length_of
   implicit none
   private
   public :: foot_t, find_foot, box_distance
@@ -161,7 +162,7 @@ contains
     y = 0.5_wp*xi*(xi - 1)*piece(:, 1) + (1 - xi*xi)*piece(:, 2) + 0.5_wp*xi*(xi + 1)*piece(:, 3)
     first = tangent_at(piece, xi)
     second = piece(:, 1) - 2*piece(:, 2) + piece(:, 3)
-    curvature = cross(first, second)/norm2(first)**3
+    curvature = cross(first, second)/length_of(first)**3
     foot%piece = 1
     foot%xi = xi
     foot%normal = right_of(first)
@@ -179,15 +180,15 @@ contains
 
     t1 = tangent_at(before, 1.0_wp)
     t2 = tangent_at(after, -1.0_wp)
-    turn = cross(t1, t2)/(norm2(t1)*norm2(t2))
+    turn = cross(t1, t2)/(length_of(t1)*length_of(t2))
     if (abs(turn) <= smooth_turn) return
     way = point - before(:, 3)
-    if (dot_product(way, t1) < 0 .or. dot_product(way, t2) > 0 .or. .not. norm2(way) > 0) return
+    if (dot_product(way, t1) < 0 .or. dot_product(way, t2) > 0 .or. .not. length_of(way) > 0) return
     ! a die that turns left (towards the part) has its fan inside, one that turns right outside
     side = sign(1.0_wp, turn)
     foot%piece = 1
     foot%xi = 1
-    foot%d = side*norm2(way)
+    foot%d = side*length_of(way)
     foot%normal = way/foot%d
     foot%turn = 1/foot%d
   end subroutine foot_at_vertex
@@ -204,7 +205,7 @@ contains
     real(wp), intent(in) :: v(2)
     real(wp) :: n(2)
 
-    n = [v(2), -v(1)]/norm2(v)
+    n = [v(2), -v(1)]/length_of(v)
   end function right_of
 
   pure function cross(a, b) result(c)
@@ -223,7 +224,7 @@ contains
 
     distance = huge(1.0_wp)
     do k = 1, size(die%boxes, 2)
-      distance = min(distance, norm2(max(die%boxes(1:2, k) - box(3:4), box(1:2) - die%boxes(3:4, k), 0.0_wp)))
+      distance = min(distance, length_of(max(die%boxes(1:2, k) - box(3:4), box(1:2) - die%boxes(3:4, k), 0.0_wp)))
     end do
   end function box_distance
 

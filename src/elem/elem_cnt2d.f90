@@ -25,6 +25,7 @@ module elem_cnt2d
   use sections, only: thickness_at
   use shape_functions, only: line3
   use state_variables, only: state_variable, state_variable_t, transfer_contact, transfer_recompute
+  use vectors, only: length_of
   implicit none
   private
   public :: elem_cnt2d_row
@@ -48,6 +49,8 @@ module elem_cnt2d
   real(wp), parameter :: tangential_share = 0.1_wp
   !> A point that comes into contact may overlap the die by this share of the side in the predictor of a step.
   real(wp), parameter :: overlap_limit = 0.01_wp
+  !> A step that is shortened for it aims at less, so that the next look does not hang on the last bit.
+  real(wp), parameter :: overlap_aim = 0.008_wp
 
   !> A point of the side in the present geometry, with derivatives along the local unknowns.
   type :: contact_point_t
@@ -162,7 +165,8 @@ contains
     end do
   end subroutine show_on_axis
 
-  !> Share of the step after which a point that was open, its gap known, overlaps the die by `overlap_limit` of the side.
+  !> Share of the step after which a point that was open, its gap known, overlaps the die by `overlap_aim` of the side;
+  !> one that overlaps by less than `overlap_limit` is left alone.
   pure function share_to_contact(committed, trial, side) result(share)
     real(wp), intent(in) :: committed(:), trial(:), side
     real(wp) :: share
@@ -173,7 +177,7 @@ contains
     if (nint(committed(at_piece)) == 0) return
     if (trial(at_penetration) <= overlap_limit*side) return
     gap = max(-committed(at_penetration), 0.0_wp)
-    share = (gap + overlap_limit*side)/(gap + trial(at_penetration))
+    share = (gap + overlap_aim*side)/(gap + trial(at_penetration))
   end function share_to_contact
 
   !> Side and die are further apart than the search would reach: the side sleeps.
@@ -299,7 +303,7 @@ contains
     y(2, :) = x(2, :) + du(4:6)
     point%x = matmul(y, phi)
     point%tangent = matmul(y, dphi)
-    point%length = norm2(point%tangent)
+    point%length = length_of(point%tangent)
     point%e_r = [-point%tangent(2), point%tangent(1)]/point%length
     point%thickness = thickness_at(section, point%x)
     point%dx = 0
@@ -333,7 +337,7 @@ contains
     integer, intent(in) :: nodes(3)
     real(wp) :: length
 
-    length = norm2(scene%mesh%coordinates(:, nodes(3)) - scene%mesh%coordinates(:, nodes(1)))
+    length = length_of(scene%mesh%coordinates(:, nodes(3)) - scene%mesh%coordinates(:, nodes(1)))
   end function side_length
 
   pure function turned(v, angle) result(w)
@@ -396,7 +400,7 @@ contains
             end if
           end if
           call line3(xi(p), phi, dphi)
-          area = norm2(matmul(x(:, :, e), dphi))*weight(p)
+          area = length_of(matmul(x(:, :, e), dphi))*weight(p)
           area = area*thickness_at(section, matmul(x(:, :, e), phi))
           totals%friction_work = totals%friction_work + area*state(at_work, p, e)
           totals%least_dissipation = min(totals%least_dissipation, state(at_work, p, e) - before(at_work, p, e))

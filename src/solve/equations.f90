@@ -18,6 +18,7 @@ module equations
   use solution, only: solution_t
   use sparsity, only: build_pattern, pattern_t
   use timers, only: ledger_t
+  use vectors, only: length_of
   implicit none
   private
   public :: equations_t, set_up, evaluate, solve_correction, external_forces
@@ -65,7 +66,7 @@ contains
     allocate (equations%force(equations%dofs%ndof), equations%magnitude(equations%dofs%ndof))
     allocate (equations%values(equations%pattern%nnz))
     allocate (equations%buffers%force(equations%pattern%force_length), equations%buffers%matrix(equations%pattern%matrix_length))
-    equations%size = norm2(maxval(scene%mesh%coordinates, 2) - minval(scene%mesh%coordinates, 2))
+    equations%size = length_of(maxval(scene%mesh%coordinates, 2) - minval(scene%mesh%coordinates, 2))
 
     allocate (equations%is_load(size(scene%groups)))
     do g = 1, size(scene%groups)

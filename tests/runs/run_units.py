@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 """No number of the solver has a unit: the billet in mm-N-MPa, in m-N-Pa, in inches and pounds, and in units of no one, takes the
-same steps and iterations and gives the same forces, to 1e-9.
+same steps and iterations up to 60 % and gives the same forces, to 1e-9.
 
 usage: run_units.py [-v] [-k]       -v prints every check, -k keeps the results
-The `binary` units are powers of two of mm, MPa and s: there even the round-off is the same, so that any difference is a number
-with a unit. In the others a difference may also be a decision that hangs on the last bit: an open or closed contact, a step. So the scenes
-stop before the side folds: from there on Newton's way through the contacts multiplies the last bit.
+The `binary` units are powers of two of mm, MPa and s: there even the round-off is the same, so the whole history must be, bit by bit.
+In the others the last bits differ; that they stay last bits while the side folds onto the die shows that no decision hangs on them.
 """
 import sys
 
@@ -40,7 +39,7 @@ LIC    press
    0. 0.   {T:1} {L:-9}
 MOVE   upper Y press
 {more}STRAT  {T:0.01} {T:1e-5} {T:0.05}   5 3
-STOP   {T:0.3}
+STOP   {T:1}
 END
 """
 GLUED = {"end": "billet 3 upper 2 stick", "rough": "PENETR 1.E-3   PHI 0.5   AUGMENT 10", "hardening": "LINEAR {S:700} {S:300}",
@@ -81,6 +80,8 @@ def compare(checks, what, one, two, name):
              "external_work": stress * length**3, "friction_work": stress * length**3}
     for column, unit in units.items():
         largest = max(abs(value) for value in one[column]) or 1.0
+        if name == "binary":
+            checks.that(one[column] == [b * unit for b in two[column]], f"{what}: {column}, every bit")
         # Over the largest value of the whole run: forces begin at zero.
         worst = max(abs(a - b * unit) for a, b in zip(one[column], two[column])) / largest
         checks.that(worst <= TOLERANCE, f"{what}: {column}", f"{worst:.1e} apart")
@@ -98,7 +99,7 @@ def first_other(one, two):
 
 def main():
     checks = Checks()
-    for scene_name, scene, nx, ny in (("glued", GLUED, 6, 9), ("glued", GLUED, 12, 18), ("sliding", SLIDING, 6, 9)):
+    for scene_name, scene, nx, ny in (("glued", GLUED, 6, 9), ("glued", GLUED, 7, 11), ("glued", GLUED, 12, 18), ("sliding", SLIDING, 6, 9)):
         runs = {}
         for name in UNITS if nx == 6 else ("mm-N-MPa", "m-N-Pa", "binary"):
             where = checks.path(f"{scene_name}-{nx}-{name}")
