@@ -13,7 +13,7 @@
 !> Forces are integrated consistently over the side. The reaction acts on the pilot: force, and
 !> moment about it. Everything is linearised exactly, the curvature of the die included.
 module elem_cnt2d
-  use die_search, only: box_distance, find_foot, foot_t
+  use die_search, only: box_distance, find_foot, follow_foot, foot_t
   use dies, only: die_t
   use elem_api, only: elem_t, instant_t, report_t, section_motion, totals_t
   use kinds, only: wp
@@ -32,7 +32,7 @@ module elem_cnt2d
 
   !> Places in the state of a point.
   integer, parameter :: at_pressure = 1, at_tau = 2, at_penetration = 3, at_status = 4, at_slip = 5, &
-                        at_augmentation = 6, at_work = 7, at_piece = 8
+                        at_augmentation = 6, at_work = 7, at_piece = 8, at_xi = 9
   !> Place of the largest number of augmentations among a contact law's values (contact_penalties).
   integer, parameter :: at_augment = 4
   !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle, section; the last three are
@@ -90,7 +90,8 @@ contains
             state_variable('slip', 'length', transfer_contact), &
             state_variable('augmentation', 'stress', transfer_contact), &
             state_variable('friction_work', 'stress*length', transfer_contact), &
-            state_variable('die_piece', '-', transfer_recompute), law%history]
+            state_variable('die_piece', '-', transfer_recompute), &
+            state_variable('die_xi', '-', transfer_recompute), law%history]
     do k = 1, size(list)
       list(k)%first = k
     end do
@@ -125,7 +126,7 @@ contains
       section = scene%section
       if (scene%finite) section = instant%section + section_motion(scene, du(:, e))
       trial(:, :, e) = committed(:, :, e)
-      trial([at_pressure, at_tau, at_status, at_penetration, at_piece, at_augmentation], :, e) = 0
+      trial([at_pressure, at_tau, at_status, at_penetration, at_piece, at_xi, at_augmentation], :, e) = 0
       side = side_length(scene, group%connectivity(:, first + e - 1))
       pilot(:, 1) = instant%pilots(:, group%die)
       pilot(:, 2) = pilot(:, 1) + motion(7:9)
@@ -215,13 +216,14 @@ contains
     call line3(xi, phi, dphi)
     call side_point(phi, dphi, section, x, du, point)
     lever = point%x - pilot(1:2, 2)
-    call find_foot(die, turned(lever, -pilot(3, 2)), turned(point%e_r, -pilot(3, 2)), side, foot)
+    call foot_of(die, turned(lever, -pilot(3, 2)), turned(point%e_r, -pilot(3, 2)), side, committed, foot)
     if (foot%piece == 0) return
     ! a point on the axis has no surface: nothing acts there, and nothing is asked of it
     if (axisym .and. point%x(1) <= no_surface*side) return
     if (abs(foot%d) <= touching*side) foot%d = 0
     trial(at_penetration) = foot%d
     trial(at_piece) = foot%piece
+    trial(at_xi) = foot%xi
     n = turned(foot%normal, pilot(3, 2))
     t = [-n(2), n(1)]
 
@@ -292,6 +294,21 @@ contains
       stiffness(9, j) = stiffness(9, j) + dmoment(j)
     end do
   end subroutine contact_at
+
+  !> Foot of a point: the closest, unless the one that continues the last accepted foot says that the point is inside.
+  pure subroutine foot_of(die, point, e_r, reach, committed, foot)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: point(2), e_r(2), reach, committed(:)
+    type(foot_t), intent(out) :: foot
+    type(foot_t) :: same
+    integer :: piece
+
+    call find_foot(die, point, e_r, reach, foot)
+    piece = nint(committed(at_piece))
+    if (piece == 0) return
+    call follow_foot(die, point, e_r, reach, piece, committed(at_xi), same)
+    if (same%piece > 0 .and. same%d > 0) foot = same
+  end subroutine foot_of
 
   !> Position, length, inner normal and thickness of a point of the side, and their derivatives.
   pure subroutine side_point(phi, dphi, section, x, du, point)

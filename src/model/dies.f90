@@ -6,6 +6,7 @@
 !> X of the die stands at `c + R(theta) X` when the pilot is at c and has turned by theta.
 module dies
   use kinds, only: wp
+  use vectors, only: length_of
   implicit none
   private
   public :: die_t, finish_die
@@ -16,6 +17,11 @@ module dies
     real(wp), allocatable :: pieces(:, :, :)
     !> Smallest boxes around the pieces: (xmin, ymin, xmax, ymax; npiece), in the pilot's axes.
     real(wp), allocatable :: boxes(:, :)
+    !> Boxes around runs of pieces: the inner nodes of a binary tree. Node 1 holds all, node i the nodes 2 i and 2 i + 1;
+    !> after the inner nodes come the pieces in their order, so that piece k is node size(tree, 2) + k.
+    real(wp), allocatable :: tree(:, :)
+    !> The last piece ends where the first one begins: they share a vertex.
+    logical :: closed = .false.
     !> Where the pilot stands at the start (x, y, angle).
     real(wp) :: pilot(3) = 0.0_wp
   end type die_t
@@ -41,6 +47,54 @@ contains
         die%boxes(3:4, k) = max(p(:, 1), p(:, 3), bezier)
       end associate
     end do
+    call grow_tree(die%boxes, die%tree)
+    associate (n => size(die%pieces, 3))
+      die%closed = n > 1 .and. .not. length_of(die%pieces(:, 3, n) - die%pieces(:, 1, 1)) > 0
+    end associate
   end subroutine finish_die
+
+  !> Inner nodes of the tree over the boxes, as many as make its lowest row full; those over no piece stay empty.
+  pure subroutine grow_tree(boxes, tree)
+    real(wp), intent(in) :: boxes(:, :)
+    real(wp), allocatable, intent(out) :: tree(:, :)
+    integer :: leaves, i
+
+    leaves = 1
+    do while (leaves < size(boxes, 2))
+      leaves = 2*leaves
+    end do
+    allocate (tree(4, leaves - 1))
+    do i = leaves - 1, 1, -1
+      tree(1:2, i) = min(low_of(2*i), low_of(2*i + 1))
+      tree(3:4, i) = max(high_of(2*i), high_of(2*i + 1))
+    end do
+
+  contains
+
+    pure function low_of(node) result(low)
+      integer, intent(in) :: node
+      real(wp) :: low(2)
+
+      low = huge(low)
+      if (node < leaves) then
+        low = tree(1:2, node)
+      else if (node - leaves < size(boxes, 2)) then
+        low = boxes(1:2, node - leaves + 1)
+      end if
+    end function low_of
+
+    pure function high_of(node) result(high)
+      integer, intent(in) :: node
+      real(wp) :: high(2)
+
+      high = -huge(high)
+      if (node < leaves) then
+        high = tree(3:4, node)
+      else if (node - leaves < size(boxes, 2)) then
+        high = boxes(3:4, node - leaves + 1)
+      end if
+    end function high_of
+
+  end subroutine grow_tree
 
 end module dies
