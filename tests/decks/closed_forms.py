@@ -7,7 +7,7 @@ Stresses are over the yield stress, friction is the constant fraction m of the s
 import math
 
 # Those that reference.csv may name.
-FORMS = ("ring_bore", "ring_pressure")
+FORMS = ("ring_bore", "ring_pressure", "extrusion_work", "extrusion_avitzur", "extrusion_parallel", "extrusion_container")
 
 
 def integral(function, begin, end, parts=200):
@@ -91,6 +91,66 @@ def ring_pressure(m, reduction, outer=6.0, inner=3.0, height=2.0):
     return ring_power(ring_neutral(ri, ro, h, m), ri, ro, h, m)
 
 
+# Rod pushed from the radius r0 of a container to r1; the pressure of the punch.
+
+def extrusion_work(r0, r1):
+    """Work of homogeneous deformation: a lower bound where the die has no friction."""
+    return 2*math.log(r0/r1)
+
+
+def extrusion_avitzur(m, r0, r1, angle, land):
+    """Upper bound of a cone, and of its land: flow towards the apex between two spheres.
+
+    B. Avitzur, Metal Forming: Processes and Analysis (1968), ch. 6-8; `angle` is half that of the cone.
+    """
+    strain = avitzur_f(angle)*2*math.log(r0/r1)
+    shear = angle/math.sin(angle)**2 - 1/math.tan(angle)
+    friction = m*(math.log(r0/r1)/math.tan(angle) + land/r1)
+    return strain + 2/math.sqrt(3)*(shear + friction)
+
+
+def avitzur_f(angle):
+    """Strain work of the flow towards the apex over that of homogeneous deformation."""
+    k = math.sqrt(11/12)
+    root = math.sqrt(1 - (k*math.sin(angle))**2)
+    return (1 - math.cos(angle)*root + math.log((1 + k)/(k*math.cos(angle) + root))/math.sqrt(132))/math.sin(angle)**2
+
+
+def extrusion_parallel(m, r0, r1, angle, fillet, land):
+    """Upper bound of a die of two fillets and, between them, a cone of this angle to the axis, and of its land.
+
+    Plane sections stay plane: v_z = r0^2/R^2, v_r = v_z R' r/R. No velocity jumps, since the profile R(z) is smooth. With
+    e = r0^2 R'/R^3 and g = de/dz the strain rates are e, e, -2 e and the shear g r.
+    """
+    sag, rise = fillet*(1 - math.cos(angle)), fillet*math.sin(angle)
+    cone = (r0 - r1 - 2*sag)/math.tan(angle)
+
+    def power(radius, slope, bend):
+        e = r0**2*slope/radius**3
+        g = r0**2*(bend/radius**3 - 3*slope**2/radius**4)
+        a, b = 4*e*e, g*g/3*radius**2
+        # 2/R^2 times the integral of r sqrt(4 e^2 + r^2 g^2/3) over r, free of cancellation for small g
+        whole, part = math.sqrt(a + b), math.sqrt(a)
+        strain = 2/3*(a + b + whole*part + a)/(whole + part)
+        return strain*radius**2 + 2/math.sqrt(3)*m*r0**2/radius*(1 + slope**2)
+
+    def exit_arc(t):
+        return power(r1 + fillet*(1 - math.cos(t)), math.tan(t), 1/(fillet*math.cos(t)**3))*fillet*math.cos(t)
+
+    def entry_arc(t):
+        return power(r0 - fillet*(1 - math.cos(t)), math.tan(t), -1/(fillet*math.cos(t)**3))*fillet*math.cos(t)
+
+    def straight(z):
+        return power(r1 + sag + z*math.tan(angle), math.tan(angle), 0.0)
+    total = integral(exit_arc, 0.0, angle) + integral(entry_arc, 0.0, angle) + integral(straight, 0.0, cone)
+    return total/r0**2 + 2/math.sqrt(3)*m*land/r1
+
+
+def extrusion_container(m, r0, length):
+    """Friction on this length of the container."""
+    return 2/math.sqrt(3)*m*length/r0
+
+
 def wrong():
     """What does not hold among these functions, a line each."""
     lines = []
@@ -108,4 +168,10 @@ def wrong():
     near("neutral radius within the bore", ring_neutral(3.0, 6.0, 4.0, 0.05)/36, form, 1e-9)
     near("ring without friction", ring_bore(0.0, 0.5), math.sqrt(2), 1e-5)
     near("pressure without friction", ring_pressure(0.0, 0.3), 1.0, 1e-9)
+    for angle in (0.01, 0.3, 1.2):
+        near(f"Avitzur's f({angle})", avitzur_f(angle), 2/math.sin(angle)**2
+             *integral(lambda t: math.sqrt(1 - 11/12*math.sin(t)**2)*math.sin(t), 0.0, angle), 1e-6)
+    # a slender die without friction needs no more than the work of homogeneous deformation, with it the slab's too
+    near("slender die", extrusion_parallel(0.0, 10.0, 9.0, 0.001, 20.0, 0.0), extrusion_work(10.0, 9.0), 1e-3)
+    near("slender die, cone", extrusion_avitzur(0.2, 10.0, 9.0, 0.01, 3.0), extrusion_parallel(0.2, 10.0, 9.0, 0.01, 20.0, 3.0), 0.02)
     return lines

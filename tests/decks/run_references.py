@@ -23,7 +23,7 @@ Columns of reference.csv, in any order:
   kind           `value` (also if empty), `below`: found < expected, `above`: found > expected; this column may be missing
   long           `yes`: only with --all; this column may be missing
   source         where the number comes from
-Expressions know + - * / **, brackets, pi, sqrt and log, and in `expected` the functions of closed_forms.py. What cannot be
+Expressions know + - * / **, brackets, pi, sqrt, log and cos, and in `expected` the functions of closed_forms.py. What cannot be
 computed, NaN among it, fails.
 """
 import argparse
@@ -56,7 +56,7 @@ END_SLACK = 1e-9                # share by which the last step may miss the plac
 
 OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
              ast.Pow: operator.pow, ast.USub: operator.neg, ast.UAdd: operator.pos}
-FUNCTIONS = {"sqrt": math.sqrt, "log": math.log}
+FUNCTIONS = {"sqrt": math.sqrt, "log": math.log, "cos": math.cos}
 FORMS = {name: getattr(closed_forms, name) for name in closed_forms.FORMS}
 CONSTANTS = {"pi": math.pi}
 
