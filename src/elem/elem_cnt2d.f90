@@ -10,6 +10,8 @@
 !> pilot, along t: a rigid motion of part and die together makes none. When contact begins inside
 !> the step only the share d/(d - d_start) of the way counts.
 !>
+!> The work of friction is kept per present area: it thins out where the side stretches.
+!>
 !> Forces are integrated consistently over the side. The reaction acts on the pilot: force, and
 !> moment about it. Everything is linearised exactly, the curvature of the die included.
 module elem_cnt2d
@@ -127,6 +129,7 @@ contains
       if (scene%finite) section = instant%section + section_motion(scene, du(:, e))
       trial(:, :, e) = committed(:, :, e)
       trial([at_pressure, at_tau, at_status, at_penetration, at_piece, at_xi, at_augmentation], :, e) = 0
+      trial(at_work, :, e) = committed(at_work, :, e)*thinning(xi, section, section_motion(scene, du(:, e)), x(:, :, e), motion)
       side = side_length(scene, group%connectivity(:, first + e - 1))
       pilot(:, 1) = instant%pilots(:, group%die)
       pilot(:, 2) = pilot(:, 1) + motion(7:9)
@@ -265,7 +268,7 @@ contains
     if (status == contact_open) return
     trial(at_augmentation) = committed(at_augmentation)
     trial(at_slip) = committed(at_slip) + slip
-    if (status == contact_slip) trial(at_work) = committed(at_work) + tau*(slip - (tau - committed(at_tau))/penalty(2))
+    trial(at_work) = trial(at_work) + dissipated(committed, trial, penalty(2))
 
     ! traction times length, weight and thickness (radius); the part gets it, the pilot its opposite
     q = -(pressure*n + tau*t)*point%length*weight
@@ -294,6 +297,34 @@ contains
       stiffness(9, j) = stiffness(9, j) + dmoment(j)
     end do
   end subroutine contact_at
+
+  !> Work that friction took in a step, per present area: the way slipped is that not stored in the tangential penalty.
+  pure function dissipated(before, after, penalty) result(work)
+    real(wp), intent(in) :: before(:), after(:), penalty
+    real(wp) :: work
+
+    work = 0
+    if (nint(after(at_status)) /= contact_slip) return
+    work = after(at_tau)*(after(at_slip) - before(at_slip) - (after(at_tau) - before(at_tau))/penalty)
+  end function dissipated
+
+  !> Area before the step over the present one, at the points of a side.
+  pure function thinning(xi, section, thickening, x, du) result(share)
+    real(wp), intent(in) :: xi(:), section(3), thickening(3), x(2, 3), du(ndof)
+    real(wp) :: share(size(xi))
+    real(wp) :: y(2, 3), phi(3), dphi(3), thickness
+    integer :: p
+
+    y(1, :) = x(1, :) + du(1:3)
+    y(2, :) = x(2, :) + du(4:6)
+    do p = 1, size(xi)
+      call line3(xi(p), phi, dphi)
+      share(p) = length_of(matmul(x, dphi))/length_of(matmul(y, dphi))
+      thickness = thickness_at(section, matmul(y, phi))
+      ! on the axis there is no area, before or after
+      if (thickness > 0) share(p) = share(p)*thickness_at(section - thickening, matmul(x, phi))/thickness
+    end do
+  end function thinning
 
   !> Foot of a point: the closest, unless the one that continues the last accepted foot says that the point is inside.
   pure subroutine foot_of(die, point, e_r, reach, committed, foot)
@@ -394,13 +425,14 @@ contains
     real(wp), intent(in) :: section(3), x(:, :, :), state(:, :, :), before(:, :, :)
     type(totals_t), intent(out) :: totals
     real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: phi(3), dphi(3), area, side
+    real(wp) :: phi(3), dphi(3), area, side, penalty(2)
     integer :: e, p
 
     call line_rule(group%npoint, xi, weight)
     associate (values => scene%materials(group%material)%values)
       do e = 1, size(x, 3)
         side = side_length(scene, group%connectivity(:, e))
+        penalty = penalties(scene%materials(group%material), group%amplitude, side)
         do p = 1, size(xi)
           select case (nint(state(at_status, p, e)))
           case (contact_stick)
@@ -420,7 +452,7 @@ contains
           area = length_of(matmul(x(:, :, e), dphi))*weight(p)
           area = area*thickness_at(section, matmul(x(:, :, e), phi))
           totals%friction_work = totals%friction_work + area*state(at_work, p, e)
-          totals%least_dissipation = min(totals%least_dissipation, state(at_work, p, e) - before(at_work, p, e))
+          totals%least_dissipation = min(totals%least_dissipation, dissipated(before(:, p, e), state(:, p, e), penalty(2)))
         end do
       end do
     end associate

@@ -14,7 +14,8 @@ Columns of reference.csv, in any order:
   options        options of `lagamine`, or nothing
   exit_code      what the run must end with, for each of its rows
   at             `end` (the last row of history.csv), or `expression=expression`: where the left side, linear between the
-                 steps, first has the value of the right side
+                 steps, first has the value of the right side; `expression=expression to expression`: the change of the
+                 quantity between two such places
   quantity       expression of columns of history.csv (named without their unit), also linear between the steps;
                  or `summary:a.b`, the number b of a in summary.json, at the end
   expected       expression of numbers
@@ -22,12 +23,14 @@ Columns of reference.csv, in any order:
   kind           `value` (also if empty), `below`: found < expected, `above`: found > expected; this column may be missing
   long           `yes`: only with --all; this column may be missing
   source         where the number comes from
-Expressions know + - * / **, brackets, pi, sqrt and log. What cannot be computed, NaN among it, fails.
+Expressions know + - * / **, brackets, pi, sqrt, log and cos, and in `expected` the functions of closed_forms.py. What cannot be
+computed, NaN among it, fails.
 """
 import argparse
 import ast
 import csv
 import glob
+import io
 import json
 import math
 import operator
@@ -38,6 +41,8 @@ import sys
 import tempfile
 import time
 from collections import namedtuple
+
+import closed_forms
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.abspath(os.environ.get("LAGAMINE_SOURCE") or os.path.dirname(os.path.dirname(HERE)))
@@ -51,7 +56,8 @@ END_SLACK = 1e-9                # share by which the last step may miss the plac
 
 OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
              ast.Pow: operator.pow, ast.USub: operator.neg, ast.UAdd: operator.pos}
-FUNCTIONS = {"sqrt": math.sqrt, "log": math.log}
+FUNCTIONS = {"sqrt": math.sqrt, "log": math.log, "cos": math.cos}
+FORMS = {name: getattr(closed_forms, name) for name in closed_forms.FORMS}
 CONSTANTS = {"pi": math.pi}
 
 # What a run left: its exit code (None: stopped by us), table by column, summary, first line of its errors, seconds.
@@ -82,12 +88,18 @@ def evaluate(text, names):
         if (isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in FUNCTIONS
                 and len(node.args) == 1 and not node.keywords):
             return FUNCTIONS[node.func.id](value(node.args[0]))
+        if (isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in FORMS and not names):
+            if any(word.arg is None for word in node.keywords):
+                raise Unmet(f"cannot read '{text}'")
+            return FORMS[node.func.id](*map(value, node.args), **{word.arg: value(word.value) for word in node.keywords})
         raise Unmet(f"cannot read '{text}'")
 
     try:
         result = value(ast.parse(text.strip(), mode="eval").body)
     except SyntaxError:
         raise Unmet(f"cannot read '{text}'") from None
+    except TypeError as error:
+        raise Unmet(str(error)) from None
     except (ArithmeticError, ValueError):
         return math.nan
     return result if isinstance(result, float) else math.nan     # a root of a negative number is complex
@@ -126,8 +138,17 @@ def measure(row, run):
         return float(value)
     if not run.history:
         raise Unmet("no rows in history.csv")
-    before, after, share = place(row["at"], run.history)
-    first, second = evaluate(row["quantity"], before), evaluate(row["quantity"], after)
+    begin, to, end = row["at"].partition(" to ")
+    if not to:
+        return value_at(begin, row["quantity"], run.history)
+    left, _, _ = begin.partition("=")
+    return value_at(f"{left}={end}", row["quantity"], run.history) - value_at(begin, row["quantity"], run.history)
+
+
+def value_at(at, quantity, rows):
+    """A quantity at a place, linear between the steps."""
+    before, after, share = place(at, rows)
+    first, second = evaluate(quantity, before), evaluate(quantity, after)
     return first + share*(second - first)
 
 
@@ -313,6 +334,9 @@ FAKE_CASES = [
     (dict(at="x=1.5", expected="25"), ""),
     (dict(at="2*x/3=4/3", expected="5*6"), ""),
     (dict(at="x=3.0000000001"), ""),
+    (dict(at="x=1.5 to 5/2", expected="10"), ""),
+    (dict(expected="40*ring_pressure(0, 0.1)"), ""),
+    (dict(expected="40*ring_pressure(0, 0.1, height=3)"), ""),
     (dict(quantity="y/(2*pi*x)+sqrt(log(1))", expected="40/(6*pi)"), ""),
     (dict(kind="below", expected="40.001", tolerance_pct=""), ""),
     (dict(kind="above", expected="39.999", tolerance_pct=""), ""),
@@ -348,6 +372,15 @@ FAKE_CASES = [
     (dict(at="void=1"), "not reached"),
     (dict(at="z=1"), "no column 'z'"),
     (dict(at="start"), "at is"),
+    (dict(at="x=1.5 to 2.5"), "deviates"),
+    (dict(at="x=1.5 to 3.5"), "not reached"),
+    (dict(at="end to 2"), "no column 'end'"),
+    (dict(expected="40*ring_pressure(0.5, 0.1)"), "deviates"),
+    (dict(expected="ring_pressure()"), "missing"),
+    (dict(expected="ring_pressure(0, 0.1, depth=1)"), "depth"),
+    (dict(expected="ring_pressure(0, 0.1, **{})"), "cannot read"),
+    (dict(expected="wrong()"), "cannot read"),
+    (dict(quantity="ring_pressure(x, 0.1)"), "cannot read"),
     (dict(quantity="summary:checks.best"), "no 'best'"),
     (dict(quantity="summary:status"), "is no number"),
     (dict(quantity="summary:checks.worst", at="x=1.5"), "of the end"),
@@ -388,8 +421,9 @@ def selftest():
                 file.write(text)
             return check_decks(top, program, [], False, lambda line: None)
 
-        lines = [",".join(FAKE_ROW)] + [",".join(dict(FAKE_ROW, **changes).values()) for changes, _ in FAKE_CASES]
-        verdicts, faults = check("\n".join(lines) + "\n")
+        text = io.StringIO()
+        csv.writer(text).writerows([FAKE_ROW, *(dict(FAKE_ROW, **changes).values() for changes, _ in FAKE_CASES)])
+        verdicts, faults = check(text.getvalue())
         wrong += faults
         if len(verdicts) != len(FAKE_CASES):
             wrong.append(f"{len(verdicts)} verdicts on {len(FAKE_CASES)} rows")
@@ -403,9 +437,10 @@ def selftest():
         os.unlink(os.path.join(folder, "reference.csv"))
         if not check_decks(top, program, [], False, print)[1] or not check_decks(top, program, ["none"], False, print)[1]:
             wrong.append("no references at all, or a folder that is not there, passes")
+    wrong += closed_forms.wrong()
     for line in wrong:
         print("selftest:", line)
-    print(f"selftest: {len(FAKE_CASES) + len(FAKE_FILES) + 1} cases, {len(wrong)} wrong")
+    print(f"selftest: {len(FAKE_CASES) + len(FAKE_FILES) + 1} cases and the closed forms, {len(wrong)} wrong")
     return not wrong
 
 
