@@ -1,5 +1,6 @@
 !> What happens when a step is accepted: the trial state becomes the state, and every check is made.
 module accept_step
+  use contact_flow, only: update_flow_stress
   use elem_api, only: add_totals, totals_t
   use element_loop, only: group_geometry
   use equations, only: equations_t, external_forces
@@ -64,6 +65,7 @@ contains
     do k = 1, size(solution%groups)
       solution%groups(k)%committed = solution%groups(k)%trial
     end do
+    call update_flow_stress(scene, equations%laws, equations%bodies, solution)
   end subroutine accept
 
   !> External work by the trapezoidal rule: forces from outside on nodes and pilots times their motion.

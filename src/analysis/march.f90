@@ -2,6 +2,7 @@
 module march
   use accept_step, only: accept, measure_scene
   use csv_writer, only: csv_t
+  use contact_flow, only: update_flow_stress
   use elem_api, only: totals_t
   use equations, only: equations_t, set_up
   use errors, only: error_t, exit_done, exit_no_convergence, exit_signal, fail
@@ -92,6 +93,7 @@ contains
 
     call set_up(scene, run%equations, error)
     if (allocated(error)) return
+    call update_flow_stress(scene, run%equations%laws, run%equations%bodies, solution)
     call measure_scene(scene, run%equations, solution, run%totals)
     if (.not. solution%initial_volume > 0) solution%initial_volume = run%totals%volume
     call open_history(scene, solution, join_path(run%folder, 'history.csv'), run%resume, run%table, error)

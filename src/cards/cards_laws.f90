@@ -228,6 +228,10 @@ contains
       if (.not. (material%values(find_parameter(law, 'PENETR')) > 0 .or. material%values(find_parameter(law, 'AKP')) > 0)) &
         call cursor%fail('PENETR and AKP are both zero: one of them must be above 0')
     end if
+    if (find_parameter(law, 'PHI') > 0 .and. find_parameter(law, 'M') > 0) then
+      if (.not. min(material%values(find_parameter(law, 'PHI')), material%values(find_parameter(law, 'M'))) < huge(1.0_wp)) &
+        call cursor%fail('neither PHI nor M is given: one of them says what friction there is (PHI 0. for none)')
+    end if
     k = find_parameter(law, 'AUGMENT')
     if (k == 0) return
     if (abs(material%values(k) - anint(material%values(k))) > 0) call cursor%fail('AUGMENT must be a whole number')

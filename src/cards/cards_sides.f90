@@ -45,6 +45,7 @@ contains
       call read_rule(cursor, group%npoint)
       call read_material(cursor, draft, contact_law, group%material)
       if (.not. cursor%failed()) call refuse_second_contact(cursor, draft, group, diagnostics)
+      if (.not. cursor%failed()) call refuse_bodies_without_flow(cursor, draft, group)
       call close_card(draft, cursor, deck%cards(i))
       law = 0
       if (.not. cursor%failed()) law = draft%scene%materials(group%material)%law_id
@@ -156,6 +157,31 @@ contains
         call cursor%fail('one of these sides faces this die already, see '//diagnostics%place(draft%group_where(g)))
     end do
   end subroutine refuse_second_contact
+
+  !> Friction by the factor M is a share of the flow stress behind the side: the body's law must have one.
+  subroutine refuse_bodies_without_flow(cursor, draft, group)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(group_t), intent(in) :: group
+    integer :: s, place
+
+    associate (material => draft%scene%materials(group%material))
+      if (material%law_id == 0) return
+      place = find_parameter(draft%laws(material%law_id), 'M')
+      if (place == 0) return
+      if (place > size(material%values)) return
+      if (.not. material%values(place) < huge(1.0_wp)) return
+    end associate
+    do s = 1, size(group%connectivity, 2)
+      associate (material => draft%scene%materials(draft%owner(group%connectivity(2, s))))
+        if (material%law_id == 0) cycle
+        if (associated(draft%laws(material%law_id)%flow_stress)) cycle
+        call cursor%fail('its friction M is a share of the flow stress, and LAW '''//material%name//''' ('//material%law &
+                         //') of the body has none')
+        return
+      end associate
+    end do
+  end subroutine refuse_bodies_without_flow
 
   !> Largest Young's modulus of the bodies that the sides belong to.
   pure function modulus_behind(draft, sides) result(modulus)

@@ -213,7 +213,7 @@ contains
     real(wp) :: phi(3), dphi(3), n(2), t(2), lever(2), way(2), turn(2), q(2), moment, share, slip
     real(wp), dimension(ndof) :: dd, along, dslip, dp, dtau, dmoment
     real(wp), dimension(2, ndof) :: relative, dn, dt, dway, dlever, dq
-    real(wp) :: penalty(2), pressure, tau, stress(2), law_tangent(3, 3)
+    real(wp) :: penalty(2), pressure, tau, stress(2), flow_stress, law_tangent(3, 3)
     integer :: status, j, k
 
     call line3(xi, phi, dphi)
@@ -258,9 +258,11 @@ contains
     end if
 
     penalty = penalties(material, modulus, side)
+    flow_stress = 0
+    if (size(law%history) > 0) flow_stress = committed(size(committed))
     ! nothing moves across the plane: the second tangential component stays at rest
     call law%slide(material, penalty, committed(at_augmentation), foot%d, [slip, 0.0_wp], [committed(at_tau), 0.0_wp], &
-                   0.0_wp, pressure, stress, law_tangent, status)
+                   flow_stress, pressure, stress, law_tangent, status)
     tau = stress(1)
     trial(at_pressure) = pressure
     trial(at_tau) = tau

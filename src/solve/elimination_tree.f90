@@ -156,7 +156,7 @@ contains
     allocate (rank(n), next(0:n))
     next(0) = n
     do j = n, 1, -1
-      rank(j) = next(up(j))
+      rank (j) = next(up(j))
       next(up(j)) = rank(j) - weight(j)
       next(j) = rank(j) - 1
     end do

@@ -1,5 +1,6 @@
 !> The discrete equations of a scene: unknowns, pattern, element loop, linear solver.
 module equations
+  use contact_flow, only: bodies_t, find_bodies
   use dofs, only: dofs_t, number_dofs
   use elem_api, only: block_done, elem_t, instant_t, report_t
   use elem_registry, only: list_elems
@@ -37,6 +38,8 @@ module equations
     real(wp), allocatable :: values(:)
     !> Groups that are loads: their forces come from outside.
     logical, allocatable :: is_load(:)
+    !> Bodies behind the sides of contacts.
+    type(bodies_t), allocatable :: bodies(:)
     !> Diagonal of the box around the mesh [length].
     real(wp) :: size = 0.0_wp
   end type equations_t
@@ -68,6 +71,7 @@ contains
     allocate (equations%buffers%force(equations%pattern%force_length), equations%buffers%matrix(equations%pattern%matrix_length))
     equations%size = length_of(maxval(scene%mesh%coordinates, 2) - minval(scene%mesh%coordinates, 2))
 
+    call find_bodies(scene, equations%elems, equations%laws, equations%bodies)
     allocate (equations%is_load(size(scene%groups)))
     do g = 1, size(scene%groups)
       equations%is_load(g) = equations%elems(scene%groups(g)%elem_id)%law_kind == 0

@@ -87,7 +87,7 @@ contains
 
     material%name = 'rough'
     material%law = 'COUL2D'
-    allocate (material%values, source=[0.0_wp, akp, aktau, 0.0_wp, phi, 0.0_wp, huge(1.0_wp)])
+    allocate (material%values, source=[0.0_wp, akp, aktau, 0.0_wp, phi, 0.0_wp, huge(1.0_wp), huge(1.0_wp)])
     if (present(cohesion)) material%values(6) = cohesion
     if (present(tau_max)) material%values(7) = tau_max
     allocate (material%curve(2, 0))
