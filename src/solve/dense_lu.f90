@@ -1,6 +1,6 @@
 !> Elimination of the pivots of one dense front, without pivoting: A = [P U; . C], P = L\U in its place, U := L^-1 U, C := C - L U.
 !>
-!> Columns are cut into strips of fixed width; what threads do is a matter of whole strips, so results do not depend on their number.
+!> Columns are cut into strips of fixed width, and a thread does whole strips: results do not depend on the number of threads.
 module dense_lu
   use blas, only: dgemm, dtrsm
   use kinds, only: wp
@@ -14,22 +14,24 @@ module dense_lu
 contains
 
   !> One thread. `regular` becomes false when a pivot is zero or no number.
-  subroutine eliminate(p, n, pivot, row, border, regular)
+  subroutine eliminate(p, n, pivot, row, border, keep, regular)
     integer, intent(in) :: p, n                              !! pivots, order
     real(wp), intent(inout) :: pivot(n, p), row(p, n - p)    !! pivot columns, rest of the pivot rows
     real(wp), intent(inout) :: border(n - p, n - p)
+    real(wp), intent(in) :: keep                             !! 1, or 0 where `border` holds nothing yet
     logical, intent(inout) :: regular
 
     call split_columns(n, p, pivot, n, regular)
     if (n == p .or. .not. regular) return
     call dtrsm('L', 'L', 'N', 'U', p, n - p, 1.0_wp, pivot, n, row, p)
-    call dgemm('N', 'N', n - p, n - p, p, -1.0_wp, pivot(p + 1, 1), n, row, p, 1.0_wp, border, n - p)
+    call dgemm('N', 'N', n - p, n - p, p, -1.0_wp, pivot(p + 1, 1), n, row, p, keep, border, n - p)
   end subroutine eliminate
 
   !> The same by all threads of the team, called by one of them.
-  subroutine eliminate_shared(p, n, pivot, row, border, regular)
+  subroutine eliminate_shared(p, n, pivot, row, border, keep, regular)
     integer, intent(in) :: p, n
     real(wp), intent(inout) :: pivot(n, p), row(p, n - p), border(n - p, n - p)
+    real(wp), intent(in) :: keep
     logical, intent(inout) :: regular
     integer :: k, w, j, v
 
@@ -50,7 +52,7 @@ contains
       !$omp task default(shared) firstprivate(j) private(v)
       v = min(strip, n - p - j + 1)
       call dtrsm('L', 'L', 'N', 'U', p, v, 1.0_wp, pivot, n, row(1, j), p)
-      call dgemm('N', 'N', n - p, v, p, -1.0_wp, pivot(p + 1, 1), n, row(1, j), p, 1.0_wp, border(1, j), n - p)
+      call dgemm('N', 'N', n - p, v, p, -1.0_wp, pivot(p + 1, 1), n, row(1, j), p, keep, border(1, j), n - p)
       !$omp end task
     end do
     !$omp taskwait
@@ -86,7 +88,7 @@ contains
         regular = .false.
         return
       end if
-      a(k + 1:m, k) = a(k + 1:m, k)/a(k, k)
+      a(k + 1:m, k) = a(k + 1:m, k)*(1/a(k, k))
       do j = k + 1, n
         a(k + 1:m, j) = a(k + 1:m, j) - a(k + 1:m, k)*a(k, j)
       end do

@@ -12,7 +12,7 @@ module elimination_tree
 
   !> Share of stored zeros up to which fronts with so many pivots are merged.
   integer, parameter :: merge_pivots(3) = [8, 24, 64]
-  real(wp), parameter :: merge_zeros(4) = [0.6_wp, 0.25_wp, 0.12_wp, 0.05_wp]
+  real(wp), parameter :: merge_zeros(4) = [0.4_wp, 0.2_wp, 0.1_wp, 0.02_wp]
 
 contains
 
@@ -22,14 +22,14 @@ contains
     type(pattern_t), intent(in) :: pattern
     integer, intent(in) :: position(:)
     integer, allocatable, intent(out) :: place(:), first(:), order(:), parent(:)
-    integer, allocatable :: start(:), lower(:), up(:), rank(:), count(:)
+    integer, allocatable :: start(:), lower(:), up(:), renumbered(:), count(:)
     integer, allocatable :: column_first(:), pivots(:), into(:), new(:)
     integer :: j, s, n, nsuper, nfront
 
     call list_neighbours(pattern, position, .false., start, lower)
     call grow_tree(start, lower, up)
-    call postorder(up, rank)
-    place = rank(position)
+    call postorder(up, renumbered)
+    place = renumbered(position)
     call list_neighbours(pattern, place, .false., start, lower)
     call grow_tree(start, lower, up)
     call count_columns(start, lower, up, count)
@@ -140,10 +140,10 @@ contains
     end do
   end subroutine grow_tree
 
-  !> rank(j): place of column j when every subtree is numbered without gaps.
-  pure subroutine postorder(up, rank)
+  !> renumbered(j): place of column j when every subtree is numbered without gaps.
+  pure subroutine postorder(up, renumbered)
     integer, intent(in) :: up(:)
-    integer, allocatable, intent(out) :: rank(:)
+    integer, allocatable, intent(out) :: renumbered(:)
     integer, allocatable :: weight(:), next(:)
     integer :: j, n
 
@@ -153,12 +153,12 @@ contains
       if (up(j) > 0) weight(up(j)) = weight(up(j)) + weight(j)
     end do
     ! a subtree ends where its root stands: roots are placed from the last one down
-    allocate (rank(n), next(0:n))
+    allocate (renumbered(n), next(0:n))
     next(0) = n
     do j = n, 1, -1
-      rank (j) = next(up(j))
-      next(up(j)) = rank(j) - weight(j)
-      next(j) = rank(j) - 1
+      renumbered(j) = next(up(j))
+      next(up(j)) = renumbered(j) - weight(j)
+      next(j) = renumbered(j) - 1
     end do
   end subroutine postorder
 

@@ -2,7 +2,7 @@
 !> and refined. Factors are made without pivoting, by all threads; a matrix for which these prove too poor, and those
 !> after it, get MUMPS with pivoting.
 module linear_solver
-  use errors, only: error_t, exit_machine, exit_no_convergence, fail
+  use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
   use multifrontal, only: decompose, multifrontal_t, plan, substitute
   use mumps_solver, only: mumps_analyse, mumps_factorise, mumps_release, mumps_solve, mumps_t
@@ -19,12 +19,15 @@ module linear_solver
   integer, parameter :: max_refinements = 3
   !> Forces |A| |x| this many times the right-hand side are round-off of a singular matrix.
   real(wp), parameter :: singular_growth = 1.0e13_wp
+  !> Fewer nonzeros are not worth waking threads for.
+  integer, parameter :: worth_threads = 50000
 
   type :: linear_solver_t
     private
     type(multifrontal_t) :: fronts
     type(mumps_t) :: mumps
-    integer, allocatable :: position(:)
+    !> Order of elimination asked for; where every row of the matrix begins; its nonzeros.
+    integer, allocatable :: position(:), row_start(:)
     real(wp), allocatable :: values(:)
     !> The factors at hand are sound; the solver has turned to pivoting.
     logical :: regular = .false., pivoting = .false.
@@ -42,18 +45,31 @@ contains
     type(pattern_t), intent(in) :: pattern
     integer, intent(in) :: position(:)
     type(error_t), allocatable, intent(out) :: error
-    integer :: status
 
     call release(solver)
     solver%position = position
     allocate (solver%values(pattern%nnz))
-    call plan(solver%fronts, pattern, position, status)
+    call start_rows(pattern, solver%row_start)
+    call plan(solver%fronts, pattern, position, error)
     solver%estimated_entries = real(solver%fronts%layout%factor_length, wp)
     solver%estimated_flops = solver%fronts%layout%flops
-    if (status /= 0) call fail(error, exit_machine, 'not enough memory for the factors of the matrix ('// &
-                               to_text(nint(8*solver%estimated_entries/2.0_wp**20))//' MB)', &
-                               'use a coarser mesh or a machine with more memory')
   end subroutine analyse
+
+  !> Nonzeros are sorted by row: where every row begins (neq + 1).
+  pure subroutine start_rows(pattern, row_start)
+    type(pattern_t), intent(in) :: pattern
+    integer, allocatable, intent(out) :: row_start(:)
+    integer :: k
+
+    allocate (row_start(pattern%neq + 1), source=0)
+    do k = 1, pattern%nnz
+      row_start(pattern%row(k) + 1) = row_start(pattern%row(k) + 1) + 1
+    end do
+    row_start(1) = 1
+    do k = 1, pattern%neq
+      row_start(k + 1) = row_start(k + 1) + row_start(k)
+    end do
+  end subroutine start_rows
 
   !> Factorise the matrix with these nonzeros. A singular matrix answers exit_no_convergence: the step is cut.
   subroutine factorise(solver, values, error)
@@ -116,7 +132,7 @@ contains
         call substitute(solver%fronts, correction)
       end if
       x = x + correction
-      call linear_residual(pattern, solver%values, rhs, x, residual, scale)
+      call linear_residual(pattern, solver%row_start, solver%values, rhs, x, residual, scale)
       solver%residual = 0
       if (scale > 0) solver%residual = length_of(residual)/scale
       if (.not. solver%residual > refine_above) exit
@@ -128,24 +144,34 @@ contains
 
   !> residual = rhs - A x, and the size of what was summed, |rhs| + |A| |x|: their ratio is the backward error
   !> (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405-409), which a stiff constraint does not spoil.
-  pure subroutine linear_residual(pattern, a, rhs, x, residual, scale)
+  subroutine linear_residual(pattern, row_start, a, rhs, x, residual, scale)
     type(pattern_t), intent(in) :: pattern
+    integer, intent(in) :: row_start(:)   !! nonzeros of row i: row_start(i) ... row_start(i+1)-1
     real(wp), intent(in) :: a(:), rhs(:), x(:)
     real(wp), intent(out) :: residual(:), scale
     real(wp) :: magnitude(size(rhs))
     integer :: k, i, j
 
-    residual = rhs
-    magnitude = abs(rhs)
-    do k = 1, pattern%nnz
-      i = pattern%row(k)
-      j = pattern%column(k)
-      residual(i) = residual(i) - a(k)*x(j)
-      magnitude(i) = magnitude(i) + abs(a(k)*x(j))
-      if (.not. pattern%symmetric .or. i == j) cycle
-      residual(j) = residual(j) - a(k)*x(i)
-      magnitude(j) = magnitude(j) + abs(a(k)*x(i))
+    !$omp parallel do private(k) schedule(static) if (pattern%nnz > worth_threads)
+    do i = 1, pattern%neq
+      residual(i) = rhs(i)
+      magnitude(i) = abs(rhs(i))
+      do k = row_start(i), row_start(i + 1) - 1
+        residual(i) = residual(i) - a(k)*x(pattern%column(k))
+        magnitude(i) = magnitude(i) + abs(a(k)*x(pattern%column(k)))
+      end do
     end do
+    !$omp end parallel do
+    if (pattern%symmetric) then
+      ! the upper triangle, of which the lower one is the mirror
+      do k = 1, pattern%nnz
+        i = pattern%row(k)
+        j = pattern%column(k)
+        if (i == j) cycle
+        residual(j) = residual(j) - a(k)*x(i)
+        magnitude(j) = magnitude(j) + abs(a(k)*x(i))
+      end do
+    end if
     scale = length_of(magnitude)
   end subroutine linear_residual
 
@@ -154,7 +180,7 @@ contains
     type(linear_solver_t), intent(inout) :: solver
 
     call mumps_release(solver%mumps)
-    if (allocated(solver%position)) deallocate (solver%position, solver%values)
+    if (allocated(solver%position)) deallocate (solver%position, solver%row_start, solver%values)
     solver%fronts = multifrontal_t()
     solver%regular = .false.
     solver%pivoting = .false.

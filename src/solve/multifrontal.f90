@@ -6,9 +6,11 @@
 module multifrontal
   use blas, only: dgemv, dtrsv, keep_blas_to_one_thread
   use dense_lu, only: eliminate, eliminate_shared
+  use errors, only: error_t, exit_machine, fail
   use front_layout, only: layout_t, lay_out_fronts
   use kinds, only: wp
   use sparsity, only: pattern_t
+  use text, only: to_text
   implicit none
   private
   public :: multifrontal_t, plan, decompose, substitute
@@ -21,21 +23,28 @@ module multifrontal
 
 contains
 
-  !> Find fronts and their places. `status` is not zero when memory is short.
-  subroutine plan(solver, pattern, position, status)
+  !> Find fronts and their places.
+  subroutine plan(solver, pattern, position, error)
     type(multifrontal_t), intent(inout) :: solver
     type(pattern_t), intent(in) :: pattern
     integer, intent(in) :: position(:)   !! order of elimination (neq)
-    integer, intent(out) :: status
+    type(error_t), allocatable, intent(out) :: error
+    integer :: status
 
     call keep_blas_to_one_thread()
-    if (allocated(solver%factors)) deallocate (solver%factors, solver%borders, solver%sent)
+    if (allocated(solver%factors)) deallocate (solver%factors)
+    if (allocated(solver%borders)) deallocate (solver%borders)
+    if (allocated(solver%sent)) deallocate (solver%sent)
     call lay_out_fronts(pattern, position, solver%layout)
-    associate (layout => solver%layout)
-      ! one more than is used: where the empty border of a last front begins
-      allocate (solver%factors(layout%factor_length + 1), solver%borders(layout%border_length + 1), &
-                solver%sent(size(layout%index)), stat=status)
-    end associate
+    allocate (solver%sent(size(solver%layout%index)))
+    ! one more than is used: where the empty border of a last front begins
+    allocate (solver%factors(solver%layout%factor_length + 1), stat=status)
+    if (status == 0) allocate (solver%borders(solver%layout%border_length + 1), stat=status)
+    if (status /= 0) then
+      call fail(error, exit_machine, 'not enough memory for the factors of the matrix ('// &
+                to_text(nint(8*real(solver%layout%factor_length + solver%layout%border_length, wp)/2.0_wp**20))//' MB)', &
+                'use a coarser mesh or a machine with more memory')
+    end if
   end subroutine plan
 
   !> Factorise; `regular` is false when a pivot is zero or no number.
@@ -85,6 +94,7 @@ contains
     integer, intent(in) :: f
     real(wp), intent(inout) :: factors(layout%factor_length + 1), borders(layout%border_length + 1)
     logical, intent(inout) :: sound(:)
+    real(wp) :: keep
     integer :: k, c, p, n
 
     p = layout%first(f + 1) - layout%first(f)
@@ -93,7 +103,9 @@ contains
     associate (pivot => layout%factor_start(f), row => layout%factor_start(f) + int(p, kind(layout%factor_start))*n, &
                border => layout%border_start(f))
       factors(pivot:pivot + int(p, kind(pivot))*(2*n - p) - 1) = 0
-      borders(border:border + int(n - p, kind(border))**2 - 1) = 0
+      ! a front without children gets its border from the elimination alone
+      keep = merge(1, 0, layout%child_first(f + 1) > layout%child_first(f))
+      if (keep > 0) borders(border:border + int(n - p, kind(border))**2 - 1) = 0
       do k = layout%entry(f), layout%entry(f + 1) - 1
         factors(pivot + layout%target(k) - 1) = factors(pivot + layout%target(k) - 1) + values(layout%source(k))
       end do
@@ -106,9 +118,9 @@ contains
       end do
       if (.not. sound(f)) return
       if (layout%shared(f)) then
-        call eliminate_shared(p, n, factors(pivot), factors(row), borders(border), sound(f))
+        call eliminate_shared(p, n, factors(pivot), factors(row), borders(border), keep, sound(f))
       else
-        call eliminate(p, n, factors(pivot), factors(row), borders(border), sound(f))
+        call eliminate(p, n, factors(pivot), factors(row), borders(border), keep, sound(f))
       end if
     end associate
   end subroutine decompose_front
