@@ -76,7 +76,8 @@ contains
     case default
       allocate (material%curve(2, 0))
     end select
-    allocate (material%values, source=[young, poisson, real(min(k, 4), wp), linear, voce, swift, real(size(material%curve, 2), wp)])
+    allocate (material%values, source=[young, poisson, real(min(k, 4), wp), linear, voce, swift, &
+                                     real(size(material%curve, 2), wp), spread(0.0_wp, 1, 4)])
   end function plastic_material
 
   !> COUL2D with given penalties.
