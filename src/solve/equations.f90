@@ -100,7 +100,9 @@ contains
     do g = 1, size(scene%groups)
       associate (row => equations%elems(scene%groups(g)%elem_id), m => scene%groups(g)%material)
         symmetric = symmetric .and. (row%symmetric .or. .not. (row%follows .or. scene%finite))
-        if (m > 0) symmetric = symmetric .and. equations%laws(scene%materials(m)%law_id)%symmetric
+        if (m == 0) cycle
+        symmetric = symmetric .and. equations%laws(scene%materials(m)%law_id)%symmetric
+        if (row%law_kind == solid_law) symmetric = symmetric .and. equations%kinematics%symmetric
       end associate
     end do
   end function is_symmetric
