@@ -24,7 +24,8 @@ contains
     do k = 1, size(scene%groups)
       associate (group => scene%groups(k))
         call put('group      '//padded(group%name, 24)//padded(to_text(size(group%connectivity, 2))//' '//group%elem, 14) &
-                 //to_text(abs(group%npoint))//trim(merge(' Lobatto', '        ', group%npoint < 0))//' points'//driven_by(k))
+                 //to_text(abs(group%npoint))//trim(merge(' Lobatto', '        ', group%npoint < 0))//' points' &
+                 //trim(merge(', mean dilatation', '                 ', group%mean_dilatation))//driven_by(k))
       end associate
     end do
     do k = 1, size(scene%materials)
