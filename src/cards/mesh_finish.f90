@@ -98,6 +98,7 @@ contains
     group%elem_id = find_elem(draft%elems, body%elem)
     group%material = body%material
     group%npoint = body%npoint
+    group%mean_dilatation = body%mean_dilatation
     group%connectivity = body%connectivity
     allocate (group%variables(0))
     if (body%material == 0) return

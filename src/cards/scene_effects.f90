@@ -5,7 +5,7 @@ module scene_effects
   use effects, only: effect_t
   use elem_api, only: elem_t
   use law_api, only: find_parameter, law_t
-  use scene, only: scene_t
+  use scene, only: generalised_plane_strain, scene_t
   use scene_draft, only: head_location
   use state_variables, only: total_components
   use text, only: to_text
@@ -40,7 +40,8 @@ contains
         select case (elems(group%elem_id)%effect)
         case ('displacement')
           call switch_on(1, .true., group%elem, group%name, &
-                         to_text(2*size(scene%mesh%labels))//' unknowns, 8 state per point (stress, elastic strain)')
+                         to_text(2*size(scene%mesh%labels) + merge(3, 0, scene%plane_state == generalised_plane_strain)) &
+                         //' unknowns, 8 state per point (stress, elastic strain)')
         case ('contact')
           call switch_on(4, .true., group%elem, before_slash(group%name), &
                          '3 unknowns per die (its pilot), '//to_text(total_components(group%variables))//' state per point')

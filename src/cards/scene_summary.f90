@@ -1,6 +1,7 @@
 !> What a scene holds, in lines for people: printed by `--check` and at the start of a run.
 module scene_summary
-  use scene, only: plane_state_names, scene_t
+  use scene, only: axisymmetric, generalised_plane_strain, plane_state_names, scene_t
+  use sections, only: section_drive_t, section_forced, section_moved, section_names
   use text, only: string_t, to_text
   implicit none
   private
@@ -17,13 +18,14 @@ contains
 
     allocate (lines(0))
     call put('scene      '//scene%title)
-    call put('           '//trim(plane_state_names(scene%plane_state))//', kinematics '//scene%kinematics//', until time ' &
-             //to_text(scene%strategy%end_time))
+    call put('           '//trim(plane_state_names(scene%plane_state))//thickness()//', kinematics '//scene%kinematics &
+             //', until time '//to_text(scene%strategy%end_time))
     call put('nodes      '//to_text(size(scene%mesh%labels)))
     do k = 1, size(scene%groups)
       associate (group => scene%groups(k))
         call put('group      '//padded(group%name, 24)//padded(to_text(size(group%connectivity, 2))//' '//group%elem, 14) &
-                 //to_text(abs(group%npoint))//trim(merge(' Lobatto', '        ', group%npoint < 0))//' points'//driven_by(k))
+                 //to_text(abs(group%npoint))//trim(merge(' Lobatto', '        ', group%npoint < 0))//' points' &
+                 //trim(merge(', mean dilatation', '                 ', group%mean_dilatation))//driven_by(k))
       end associate
     end do
     do k = 1, size(scene%materials)
@@ -31,6 +33,9 @@ contains
     end do
     do k = 1, size(scene%dies)
       call put('die        '//padded(scene%dies(k)%name, 24)//to_text(size(scene%dies(k)%pieces, 3))//' pieces, '//motion_of(k))
+    end do
+    do k = 1, merge(3, 0, scene%plane_state == generalised_plane_strain)
+      call put('section    '//padded(trim(section_names(k)), 24)//drive_text(scene%section_drives(k)))
     end do
     do k = 1, size(scene%fixations)
       call put('load       '//padded(scene%fixations(k)%label, 24)//to_text(size(scene%fixations(k)%nodes))//' nodes')
@@ -62,6 +67,27 @@ contains
       line%s = s
       lines = [lines, line]
     end subroutine put
+
+    !> The thickness where it has been given another value than 1.
+    pure function thickness() result(s)
+      character(len=:), allocatable :: s
+
+      s = ''
+      if (scene%plane_state == axisymmetric .or. .not. abs(scene%section(1) - 1) > 0) return
+      s = ' of thickness '//to_text(scene%section(1))
+    end function thickness
+
+    pure function drive_text(drive) result(s)
+      type(section_drive_t), intent(in) :: drive
+      character(len=:), allocatable :: s
+
+      s = 'held'
+      if (drive%kind == section_forced) s = 'free'
+      if (drive%multiplier == 0) return
+      s = to_text(drive%amplitude)//' x '//scene%multipliers(drive%multiplier)%name
+      if (drive%kind == section_moved) s = 'moved by '//s
+      if (drive%kind == section_forced) s = 'loaded by '//s
+    end function drive_text
 
     !> Law of a group of elements, or the multiplier of its load.
     pure function driven_by(g) result(s)

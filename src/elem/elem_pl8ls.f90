@@ -6,12 +6,13 @@
 !> and M = A + geometric part. The geometric part is annex 1's matrix, d(F) at frozen stress, written once
 !> for all unknowns: d(sigma J f^-T) = J (sigma tr h - sigma h^T). Across the plane h_zz = dt/t: in
 !> generalised plane strain dt = da1 + x da2 + y da3 + a2 dx + a3 dy, an axisymmetric scene being a = (0, 1, 0);
-!> in plane stress h_zz is condensed out of M by the row of sigma_zz = 0.
+!> in plane stress h_zz is condensed out of M by the row of sigma_zz = 0. A group may ask for the mean dilatation.
 module elem_pl8ls
   use elem_api, only: block_inverted, block_law_failed, elem_t, group_temperature, instant_t, report_t, section_motion, totals_t
   use kinds, only: wp
   use kinematics_api, only: first_history, first_strain, kinematics_t, solid_variables
   use law_api, only: law_done, law_t, solid_law
+  use mean_dilatation, only: add_mean_matrix, share_dilatation, share_pressure
   use plane_stress_points, only: update_plane_stress
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
   use scene, only: generalised_plane_strain, group_t, plane_stress, scene_t
@@ -93,6 +94,7 @@ contains
           return
         end if
       end do
+      if (group%mean_dilatation) call share_dilatation(kinematics%finite, dv(:, e), f(:, :, e))
     end do
 
     temperature = spread(group_temperature(group, instant), 2, size(temperature, 2))
@@ -110,6 +112,14 @@ contains
       if (any(status(:, e) /= law_done) .and. report%status == 0) then
         report%status = block_law_failed
         report%element = first + e - 1
+      end if
+      if (group%mean_dilatation) then
+        call sections_of_step(scene, kinematics%finite, instant, du(:, e), section)
+        call mean_element(kinematics%finite, instant%tangent, rule, section, &
+                          first_volumes(scene, rule, group%connectivity(:, first + e - 1)), x(:, :, e), du(:, e), &
+                          nx(:, :, e), ny(:, :, e), dv(:, e), trial(1:4, :, e), tangent(:, :, :, e), force(:, e), &
+                          stiffness(:, :, e))
+        cycle
       end if
       call internal_force(nx(:, :, e), ny(:, :, e), zx(:, :, e), dv(:, e), trial(1:4, :, e), force(1:16, e))
       if (instant%tangent) call tangent_matrix(scene%plane_state == plane_stress, kinematics%finite, nx(:, :, e), ny(:, :, e), &
@@ -227,21 +237,13 @@ contains
     type(quad8_rule_t), intent(in) :: rule
     real(wp), intent(in) :: section(3, 2), x(2, 8), du(:), nx(:, :), ny(:, :), dv(:), stress(:, :), tangent(:, :, :)
     real(wp), intent(inout) :: force(19), stiffness(19, 19)
-    real(wp) :: g(5, 19), m(5, 5), here(2), area
+    real(wp) :: g(5, 19), m(5, 5)
     integer :: p
 
     force(17:19) = 0
     if (wanted) stiffness = 0
     do p = 1, size(dv)
-      here = matmul(x, rule%phi(:, p))
-      if (finite) here = here + [dot_product(rule%phi(:, p), du(1:8)), dot_product(rule%phi(:, p), du(9:16))]
-      area = dv(p)/thickness_at(section(:, 1), here)
-      g = 0
-      g(1, 1:8) = nx(:, p)
-      g(2, 1:8) = ny(:, p)
-      g(3, 9:16) = nx(:, p)
-      g(4, 9:16) = ny(:, p)
-      g(5, :) = [section(2, 1)*rule%phi(:, p), section(3, 1)*rule%phi(:, p), 1.0_wp, here]*(area/dv(p))
+      g = local_gradient(rule, p, section(:, 1), finite, x, du, nx(:, p), ny(:, p))
       force(9:16) = force(9:16) + stress(4, p)*dv(p)*g(5, 9:16)
       force(17:19) = force(17:19) + stress(4, p)*dv(p)*g(5, 17:19)
       if (.not. wanted) cycle
@@ -249,14 +251,82 @@ contains
       if (finite) m = m + geometric(stress(:, p))
       stiffness = stiffness + matmul(transpose(g), matmul(m*dv(p), g))
       if (.not. finite) cycle
-      associate (pull => stress(4, p)*area*rule%phi(:, p))
-        stiffness(1:8, 18) = stiffness(1:8, 18) + pull
-        stiffness(18, 1:8) = stiffness(18, 1:8) + pull
-        stiffness(9:16, 19) = stiffness(9:16, 19) + pull
-        stiffness(19, 9:16) = stiffness(19, 9:16) + pull
-      end associate
+      call add_tilt(stress(4, p)*dv(p)*g(5, 17)*rule%phi(:, p), stiffness)
     end do
   end subroutine add_section
+
+  !> h = G u at one point, with the unknowns of the section last: they count in generalised plane strain only.
+  pure function local_gradient(rule, p, section, finite, x, du, nx, ny) result(g)
+    type(quad8_rule_t), intent(in) :: rule
+    integer, intent(in) :: p
+    real(wp), intent(in) :: section(3), x(2, 8), du(:), nx(8), ny(8)
+    logical, intent(in) :: finite
+    real(wp) :: g(5, 19)
+    real(wp) :: here(2)
+
+    here = matmul(x, rule%phi(:, p))
+    if (finite) here = here + [dot_product(rule%phi(:, p), du(1:8)), dot_product(rule%phi(:, p), du(9:16))]
+    g = 0
+    g(1, 1:8) = nx
+    g(2, 1:8) = ny
+    g(3, 9:16) = nx
+    g(4, 9:16) = ny
+    g(5, :) = [section(2)*rule%phi(:, p), section(3)*rule%phi(:, p), 1.0_wp, here]/thickness_at(section, here)
+  end function local_gradient
+
+  !> The second derivative of the thickness along a position (`pull` at the nodes) and a tilt of the section.
+  pure subroutine add_tilt(pull, stiffness)
+    real(wp), intent(in) :: pull(8)
+    real(wp), intent(inout) :: stiffness(19, 19)
+
+    stiffness(1:8, 18) = stiffness(1:8, 18) + pull
+    stiffness(18, 1:8) = stiffness(18, 1:8) + pull
+    stiffness(9:16, 19) = stiffness(9:16, 19) + pull
+    stiffness(19, 9:16) = stiffness(19, 9:16) + pull
+  end subroutine add_tilt
+
+  !> Volumes of the points of an element on the first geometry of the mesh.
+  pure function first_volumes(scene, rule, nodes) result(dv)
+    type(scene_t), intent(in) :: scene
+    type(quad8_rule_t), intent(in) :: rule
+    integer, intent(in) :: nodes(8)
+    real(wp) :: dv(rule%npoint)
+    real(wp) :: x(2, 8), nx(8), ny(8), detj
+    integer :: p
+
+    x = scene%mesh%coordinates(:, nodes)
+    do p = 1, rule%npoint
+      call derivatives(rule%dphi(:, :, p), x, nx, ny, detj)
+      dv(p) = detj*rule%weight(p)*thickness_at(scene%section, matmul(x, rule%phi(:, p)))
+    end do
+  end function first_volumes
+
+  !> Forces and matrix of an element with mean dilatation.
+  pure subroutine mean_element(finite, wanted, rule, section, first_dv, x, du, nx, ny, dv, stress, tangent, force, stiffness)
+    logical, intent(in) :: finite, wanted
+    type(quad8_rule_t), intent(in) :: rule
+    real(wp), intent(in) :: section(3, 2), first_dv(:), x(2, 8), du(:), nx(:, :), ny(:, :), dv(:), stress(:, :), tangent(:, :, :)
+    real(wp), intent(out) :: force(:)
+    real(wp), intent(inout) :: stiffness(:, :)
+    real(wp) :: g(5, 19, size(dv)), geometry(5, 5, size(dv)), m(size(dv)), shared(4, size(dv))
+    integer :: p, n
+
+    n = size(force)
+    call share_pressure(finite, first_dv, dv, stress, m, shared)
+    force = 0
+    do p = 1, size(dv)
+      g(:, :, p) = local_gradient(rule, p, section(:, 1), finite, x, du, nx(:, p), ny(:, p))
+      geometry(:, :, p) = geometric(shared(:, p))
+      force = force + matmul(shared([1, 3, 3, 2, 4], p)*dv(p), g(:, :n, p))
+    end do
+    if (.not. wanted) return
+    stiffness = 0
+    call add_mean_matrix(finite, g(:, :n, :), dv, m, stress, shared, tangent, geometry, stiffness)
+    if (n < 19 .or. .not. finite) return
+    do p = 1, size(dv)
+      call add_tilt(shared(4, p)*dv(p)*g(5, 17, p)*rule%phi(:, p), stiffness)
+    end do
+  end subroutine mean_element
 
   !> sigma tr h - sigma h^T as a matrix on h = (xx, xy, yx, yy, zz).
   pure function geometric(s) result(m)
@@ -279,7 +349,7 @@ contains
     real(wp), intent(in) :: section(3), x(:, :, :), state(:, :, :), before(:, :, :)
     type(totals_t), intent(out) :: totals
     type(quad8_rule_t) :: rule
-    real(wp) :: nx(8), ny(8), detj, dv, stress(4), strain(4)
+    real(wp) :: nx(8), ny(8), detj, dv, volume(group%npoint), m(group%npoint), shared(4, group%npoint), stress(4), strain(4)
     integer :: e, p, k, kept
 
     call quad8_rule(group%npoint, rule)
@@ -290,9 +360,16 @@ contains
     do e = 1, size(x, 3)
       do p = 1, group%npoint
         call derivatives(rule%dphi(:, :, p), x(:, :, e), nx, ny, detj)
-        dv = detj*rule%weight(p)*thickness_at(section, matmul(x(:, :, e), rule%phi(:, p)))
-        if (scene%plane_state == plane_stress .and. scene%finite) dv = dv*state(size(state, 1), p, e)
-        totals%volume = totals%volume + dv
+        volume(p) = detj*rule%weight(p)*thickness_at(section, matmul(x(:, :, e), rule%phi(:, p)))
+        if (scene%plane_state == plane_stress .and. scene%finite) volume(p) = volume(p)*state(size(state, 1), p, e)
+      end do
+      totals%volume = totals%volume + sum(volume)
+      if (group%mean_dilatation) then
+        call share_pressure(scene%finite, first_volumes(scene, rule, group%connectivity(:, e)), volume, state(1:4, :, e), m, shared)
+        volume = m
+      end if
+      do p = 1, group%npoint
+        dv = volume(p)
         stress = state(1:4, p, e)
         strain = state(first_strain:first_history - 1, p, e)
         totals%elastic_energy = totals%elastic_energy &

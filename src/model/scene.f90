@@ -32,6 +32,8 @@ module scene
     integer :: material = 0
     !> Integration points of an element (negative: Lobatto).
     integer :: npoint = 0
+    !> The points of a solid element share one change of volume.
+    logical :: mean_dilatation = .false.
     !> Nodes (nnode, nelem).
     integer, allocatable :: connectivity(:, :)
     !> Die faced by contact elements, multiplier and amplitude of load elements, component of a spring; 0 where unused.
