@@ -15,6 +15,9 @@
 !> Forces are integrated consistently over the side. The reaction acts on the pilot: force, and
 !> moment about it. Everything is linearised exactly, the curvature of the die included.
 module elem_cnt2d
+  use contact_point, only: act, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_tau, at_work, at_xi, &
+                           contact_point_t, dissipated, meeting_t, most_unknowns, no_surface, penalties, share_to_contact, &
+                           show_on_axis, side_length, side_point, thinning, touching
   use die_search, only: box_distance, find_foot, follow_foot, foot_t
   use dies, only: die_t
   use elem_api, only: elem_t, instant_t, report_t, section_motion, totals_t
@@ -32,33 +35,11 @@ module elem_cnt2d
   private
   public :: elem_cnt2d_row
 
-  !> Places in the state of a point.
-  integer, parameter :: at_pressure = 1, at_tau = 2, at_penetration = 3, at_status = 4, at_slip = 5, &
-                        at_augmentation = 6, at_work = 7, at_piece = 8, at_xi = 9
   !> Place of the largest number of augmentations among a contact law's values (contact_penalties).
   integer, parameter :: at_augment = 4
   !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle, section; the last three are
   !> there in generalised plane strain only.
   integer, parameter :: ndof = 12
-
-  !> A radius below this share of the side is the axis.
-  real(wp), parameter :: no_surface = 1.0e-9_wp
-  !> Depth below this share of the side is round-off of coordinates: the point just touches.
-  real(wp), parameter :: touching = 1.0e-12_wp
-  !> Tangential penalty over the normal one, where it is not given: an elastic slip of ten times the
-  !> penetration, so that sticking and slipping points do not chatter; error of friction at PHI = 0.5
-  !> about half a percent of a side, as in common use.
-  real(wp), parameter :: tangential_share = 0.1_wp
-  !> A point that comes into contact may overlap the die by this share of the side in the predictor of a step.
-  real(wp), parameter :: overlap_limit = 0.01_wp
-  !> A step that is shortened for it aims at less, so that the next look does not hang on the last bit.
-  real(wp), parameter :: overlap_aim = 0.008_wp
-
-  !> A point of the side in the present geometry, with derivatives along the local unknowns.
-  type :: contact_point_t
-    real(wp) :: x(2), tangent(2), length, e_r(2), thickness
-    real(wp) :: dx(2, ndof), dlength(ndof), dthickness(ndof)
-  end type contact_point_t
 
 contains
 
@@ -129,7 +110,8 @@ contains
       if (scene%finite) section = instant%section + section_motion(scene, du(:, e))
       trial(:, :, e) = committed(:, :, e)
       trial([at_pressure, at_tau, at_status, at_penetration, at_piece, at_xi, at_augmentation], :, e) = 0
-      trial(at_work, :, e) = committed(at_work, :, e)*thinning(xi, section, section_motion(scene, du(:, e)), x(:, :, e), motion)
+      trial(at_work, :, e) = committed(at_work, :, e)*thinning(xi, section, section_motion(scene, du(:, e)), x(:, :, e), &
+                                                                motion(1:6))
       side = side_length(scene, group%connectivity(:, first + e - 1))
       pilot(:, 1) = instant%pilots(:, group%die)
       pilot(:, 2) = pilot(:, 1) + motion(7:9)
@@ -149,40 +131,6 @@ contains
       if (axisym) call show_on_axis(xi, x(1, :, e) + du(1:3, e), side, trial(:, :, e))
     end do
   end subroutine compute
-
-  !> Stresses shown at a point on the axis, where none act: on the line through its two neighbours.
-  pure subroutine show_on_axis(xi, x, side, trial)
-    real(wp), intent(in) :: xi(:), x(3), side
-    real(wp), intent(inout) :: trial(:, :)
-    real(wp) :: phi(3), dphi(3), share
-    integer :: p, step, n
-
-    n = size(xi)
-    if (n < 3) return
-    do p = 1, n, n - 1
-      call line3(xi(p), phi, dphi)
-      if (dot_product(phi, x) > no_surface*side) cycle
-      step = merge(1, -1, p == 1)
-      share = (xi(p) - xi(p + step))/(xi(p + 2*step) - xi(p + step))
-      trial([at_pressure, at_tau], p) = (1 - share)*trial([at_pressure, at_tau], p + step) &
-                                        + share*trial([at_pressure, at_tau], p + 2*step)
-    end do
-  end subroutine show_on_axis
-
-  !> Share of the step after which a point that was open, its gap known, overlaps the die by `overlap_aim` of the side;
-  !> one that overlaps by less than `overlap_limit` is left alone.
-  pure function share_to_contact(committed, trial, side) result(share)
-    real(wp), intent(in) :: committed(:), trial(:), side
-    real(wp) :: share
-    real(wp) :: gap
-
-    share = 1
-    if (nint(committed(at_status)) /= contact_open .or. nint(trial(at_status)) == contact_open) return
-    if (nint(committed(at_piece)) == 0) return
-    if (trial(at_penetration) <= overlap_limit*side) return
-    gap = max(-committed(at_penetration), 0.0_wp)
-    share = (gap + overlap_aim*side)/(gap + trial(at_penetration))
-  end function share_to_contact
 
   !> Side and die are further apart than the search would reach: the side sleeps.
   pure function far(die, x, du, pilot, reach) result(asleep)
@@ -209,15 +157,15 @@ contains
     real(wp), intent(in) :: committed(:)
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: point
+    type(meeting_t) :: meeting
     type(foot_t) :: foot
-    real(wp) :: phi(3), dphi(3), n(2), t(2), lever(2), way(2), turn(2), q(2), moment, share, slip
-    real(wp), dimension(ndof) :: dd, along, dslip, dp, dtau, dmoment
-    real(wp), dimension(2, ndof) :: relative, dn, dt, dway, dlever, dq
-    real(wp) :: penalty(2), pressure, tau, stress(2), flow_stress, law_tangent(3, 3)
-    integer :: status, j, k
+    real(wp) :: phi(3), dphi(3), n(2), t(2), lever(2), way(2), turn(2), q(2), moment
+    real(wp), dimension(2, ndof) :: relative, dt, dway, dlever
+    real(wp) :: dmoment(ndof), dq(2, most_unknowns)
+    integer :: j, k
 
     call line3(xi, phi, dphi)
-    call side_point(phi, dphi, section, x, du, point)
+    call side_point(phi, dphi, section, x, du(1:6), ndof, point)
     lever = point%x - pilot(1:2, 2)
     call foot_of(die, turned(lever, -pilot(3, 2)), turned(point%e_r, -pilot(3, 2)), side, committed, foot)
     if (foot%piece == 0) return
@@ -231,66 +179,42 @@ contains
     t = [-n(2), n(1)]
 
     ! motion of the point relative to the die, and what it does to depth and normal
-    dlever = point%dx
+    dlever = point%dx(:, :ndof)
     dlever(1, 7) = dlever(1, 7) - 1
     dlever(2, 8) = dlever(2, 8) - 1
     relative = dlever
     relative(:, 9) = relative(:, 9) - [-lever(2), lever(1)]
-    dd = matmul(n, relative)
-    along = foot%turn*matmul(t, relative)
-    along(9) = along(9) + 1
+    meeting%d = foot%d
+    meeting%normal = n
+    meeting%dd = 0
+    meeting%dd(:ndof) = matmul(n, relative)
+    meeting%turn = 0
+    meeting%turn(:ndof) = foot%turn*matmul(t, relative)
+    meeting%turn(9) = meeting%turn(9) + 1
     do j = 1, ndof
-      dn(:, j) = along(j)*t
-      dt(:, j) = -along(j)*n
+      dt(:, j) = -meeting%turn(j)*n
     end do
 
     ! way relative to the die, in its axes, turned back into the present ones
     turn = turned(matmul(x, phi) - pilot(1:2, 1), pilot(3, 2) - pilot(3, 1))
     way = lever - turn
-    slip = dot_product(t, way)
     dway = dlever
     dway(:, 9) = dway(:, 9) - [-turn(2), turn(1)]
-    dslip = matmul(t, dway) + matmul(way, dt)
-    if (nint(committed(at_status)) == contact_open .and. committed(at_penetration) < 0 .and. foot%d > 0) then
-      share = foot%d/(foot%d - committed(at_penetration))
-      dslip = share*dslip - slip*committed(at_penetration)/(foot%d - committed(at_penetration))**2*dd
-      slip = share*slip
-    end if
+    meeting%slip = dot_product(t, way)
+    meeting%dslip = 0
+    meeting%dslip(:ndof) = matmul(t, dway) + matmul(way, dt)
 
-    penalty = penalties(material, modulus, side)
-    flow_stress = 0
-    if (size(law%history) > 0) flow_stress = committed(size(committed))
-    ! nothing moves across the plane: the second tangential component stays at rest
-    call law%slide(material, penalty, committed(at_augmentation), foot%d, [slip, 0.0_wp], [committed(at_tau), 0.0_wp], &
-                   flow_stress, pressure, stress, law_tangent, status)
-    tau = stress(1)
-    trial(at_pressure) = pressure
-    trial(at_tau) = tau
-    trial(at_status) = status
-    if (status == contact_open) return
-    trial(at_augmentation) = committed(at_augmentation)
-    trial(at_slip) = committed(at_slip) + slip
-    trial(at_work) = trial(at_work) + dissipated(committed, trial, penalty(2))
-
-    ! traction times length, weight and thickness (radius); the part gets it, the pilot its opposite
-    q = -(pressure*n + tau*t)*point%length*weight
+    call act(law, material, penalties(material, modulus, side), point, meeting, weight, tangent_wanted, committed, trial, q, dq)
+    if (nint(trial(at_status)) == contact_open) return
     moment = lever(1)*q(2) - lever(2)*q(1)
-    force(1:3) = force(1:3) - phi*q(1)*point%thickness
-    force(4:6) = force(4:6) - phi*q(2)*point%thickness
-    force(7:8) = force(7:8) + q*point%thickness
-    force(9) = force(9) + moment*point%thickness
+    force(1:3) = force(1:3) - phi*q(1)
+    force(4:6) = force(4:6) - phi*q(2)
+    force(7:8) = force(7:8) + q
+    force(9) = force(9) + moment
     if (.not. tangent_wanted) return
 
-    dp = law_tangent(1, 1)*dd + law_tangent(1, 2)*dslip
-    dtau = law_tangent(2, 1)*dd + law_tangent(2, 2)*dslip
+    dmoment = dlever(1, :)*q(2) - dlever(2, :)*q(1) + lever(1)*dq(2, :ndof) - lever(2)*dq(1, :ndof)
     do j = 1, ndof
-      dq(:, j) = -(dp(j)*n + dtau(j)*t + pressure*dn(:, j) + tau*dt(:, j))*point%length*weight &
-                 + q*point%dlength(j)/point%length
-    end do
-    dmoment = dlever(1, :)*q(2) - dlever(2, :)*q(1) + lever(1)*dq(2, :) - lever(2)*dq(1, :)
-    do j = 1, ndof
-      dq(:, j) = dq(:, j)*point%thickness + q*point%dthickness(j)
-      dmoment(j) = dmoment(j)*point%thickness + moment*point%dthickness(j)
       do k = 1, 3
         stiffness(k, j) = stiffness(k, j) - phi(k)*dq(1, j)
         stiffness(k + 3, j) = stiffness(k + 3, j) - phi(k)*dq(2, j)
@@ -299,34 +223,6 @@ contains
       stiffness(9, j) = stiffness(9, j) + dmoment(j)
     end do
   end subroutine contact_at
-
-  !> Work that friction took in a step, per present area: the way slipped is that not stored in the tangential penalty.
-  pure function dissipated(before, after, penalty) result(work)
-    real(wp), intent(in) :: before(:), after(:), penalty
-    real(wp) :: work
-
-    work = 0
-    if (nint(after(at_status)) /= contact_slip) return
-    work = after(at_tau)*(after(at_slip) - before(at_slip) - (after(at_tau) - before(at_tau))/penalty)
-  end function dissipated
-
-  !> Area before the step over the present one, at the points of a side.
-  pure function thinning(xi, section, thickening, x, du) result(share)
-    real(wp), intent(in) :: xi(:), section(3), thickening(3), x(2, 3), du(ndof)
-    real(wp) :: share(size(xi))
-    real(wp) :: y(2, 3), phi(3), dphi(3), thickness
-    integer :: p
-
-    y(1, :) = x(1, :) + du(1:3)
-    y(2, :) = x(2, :) + du(4:6)
-    do p = 1, size(xi)
-      call line3(xi(p), phi, dphi)
-      share(p) = length_of(matmul(x, dphi))/length_of(matmul(y, dphi))
-      thickness = thickness_at(section, matmul(y, phi))
-      ! on the axis there is no area, before or after
-      if (thickness > 0) share(p) = share(p)*thickness_at(section - thickening, matmul(x, phi))/thickness
-    end do
-  end function thinning
 
   !> Foot of a point: the closest, unless the one that continues the last accepted foot says that the point is inside.
   pure subroutine foot_of(die, point, e_r, reach, committed, foot)
@@ -342,53 +238,6 @@ contains
     call follow_foot(die, point, e_r, reach, piece, committed(at_xi), same)
     if (same%piece > 0 .and. same%d > 0) foot = same
   end subroutine foot_of
-
-  !> Position, length, inner normal and thickness of a point of the side, and their derivatives.
-  pure subroutine side_point(phi, dphi, section, x, du, point)
-    real(wp), intent(in) :: phi(3), dphi(3), section(3), x(2, 3), du(ndof)
-    type(contact_point_t), intent(out) :: point
-    real(wp) :: y(2, 3)
-
-    y(1, :) = x(1, :) + du(1:3)
-    y(2, :) = x(2, :) + du(4:6)
-    point%x = matmul(y, phi)
-    point%tangent = matmul(y, dphi)
-    point%length = length_of(point%tangent)
-    point%e_r = [-point%tangent(2), point%tangent(1)]/point%length
-    point%thickness = thickness_at(section, point%x)
-    point%dx = 0
-    point%dlength = 0
-    point%dx(1, 1:3) = phi
-    point%dx(2, 4:6) = phi
-    point%dlength(1:3) = dphi*point%tangent(1)/point%length
-    point%dlength(4:6) = dphi*point%tangent(2)/point%length
-    point%dthickness(1:3) = section(2)*phi
-    point%dthickness(4:6) = section(3)*phi
-    point%dthickness(7:9) = 0
-    point%dthickness(10:12) = [1.0_wp, point%x]
-  end subroutine side_point
-
-  !> Normal and tangential penalty: as given, or such that a pressure of one hundredth of the
-  !> body's modulus makes the allowed penetration.
-  pure function penalties(material, modulus, side) result(penalty)
-    type(material_t), intent(in) :: material
-    real(wp), intent(in) :: modulus, side
-    real(wp) :: penalty(2)
-
-    penalty(1) = material%values(2)
-    if (.not. penalty(1) > 0) penalty(1) = 0.01_wp*modulus/(material%values(1)*side)
-    penalty(2) = material%values(3)
-    if (.not. penalty(2) > 0) penalty(2) = tangential_share*penalty(1)
-  end function penalties
-
-  !> Chord of a side in the mesh as it began.
-  pure function side_length(scene, nodes) result(length)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: nodes(3)
-    real(wp) :: length
-
-    length = length_of(scene%mesh%coordinates(:, nodes(3)) - scene%mesh%coordinates(:, nodes(1)))
-  end function side_length
 
   pure function turned(v, angle) result(w)
     real(wp), intent(in) :: v(2), angle

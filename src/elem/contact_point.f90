@@ -1,0 +1,227 @@
+!> A point of a side in contact: where it is, and the force between it and what it meets, with all derivatives.
+!>
+!> Local unknowns are those of the side (x of its nodes, y of them), then those of what it meets (the
+!> pilot of a rigid die, or the nodes of another body's side), then the section; the last three are
+!> there in generalised plane strain only, and always the last. What is met enters by its motion
+!> alone: depth, slip, and the turn of the normal.
+module contact_point
+  use kinds, only: wp
+  use law_api, only: contact_open, contact_slip, law_t
+  use materials, only: material_t
+  use scene, only: scene_t
+  use sections, only: thickness_at
+  use shape_functions, only: line3
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: contact_point_t, meeting_t, side_point, act, penalties, share_to_contact, show_on_axis, side_length
+  public :: dissipated, thinning
+  public :: at_pressure, at_tau, at_penetration, at_status, at_slip, at_augmentation, at_work, at_piece, at_xi
+  public :: most_unknowns, no_surface, touching
+
+  !> Places in the state of a point.
+  integer, parameter :: at_pressure = 1, at_tau = 2, at_penetration = 3, at_status = 4, at_slip = 5, &
+                        at_augmentation = 6, at_work = 7, at_piece = 8, at_xi = 9
+  !> Six of a side, six of what it meets, three of the section.
+  integer, parameter :: most_unknowns = 15
+
+  !> A radius below this share of the side is the axis.
+  real(wp), parameter :: no_surface = 1.0e-9_wp
+  !> Depth below this share of the side is round-off of coordinates: the point just touches.
+  real(wp), parameter :: touching = 1.0e-12_wp
+  !> Tangential penalty over the normal one, where it is not given: an elastic slip of ten times the
+  !> penetration, so that sticking and slipping points do not chatter; error of friction at PHI = 0.5
+  !> about half a percent of a side, as in common use.
+  real(wp), parameter :: tangential_share = 0.1_wp
+  !> A point that comes into contact may overlap the die by this share of the side in the predictor of a step.
+  real(wp), parameter :: overlap_limit = 0.01_wp
+  !> A step that is shortened for it aims at less, so that the next look does not hang on the last bit.
+  real(wp), parameter :: overlap_aim = 0.008_wp
+
+  !> A point of the side in the present geometry, with derivatives along the local unknowns.
+  type :: contact_point_t
+    real(wp) :: x(2), tangent(2), length, e_r(2), thickness
+    real(wp), dimension(most_unknowns) :: dlength, dthickness
+    real(wp) :: dx(2, most_unknowns)
+  end type contact_point_t
+
+  !> How the point meets the die: depth and slip of the step [length], inner normal of the die, and the
+  !> derivatives of all three; the normal n turns by `turn`, dn = turn t with the tangent t.
+  type :: meeting_t
+    real(wp) :: d, slip, normal(2)
+    real(wp), dimension(most_unknowns) :: dd, dslip, turn
+  end type meeting_t
+
+contains
+
+  !> Position, length, inner normal and thickness of a point of the side, and their derivatives.
+  pure subroutine side_point(phi, dphi, section, x, du, nunknown, point)
+    real(wp), intent(in) :: phi(3), dphi(3)
+    real(wp), intent(in) :: section(3)   !! at the end of the step (sections)
+    real(wp), intent(in) :: x(2, 3)      !! nodes at the start of the step [length]
+    real(wp), intent(in) :: du(6)        !! their motion, x then y
+    integer, intent(in) :: nunknown      !! local unknowns, the section's three among them
+    type(contact_point_t), intent(out) :: point
+    real(wp) :: y(2, 3)
+
+    y(1, :) = x(1, :) + du(1:3)
+    y(2, :) = x(2, :) + du(4:6)
+    point%x = matmul(y, phi)
+    point%tangent = matmul(y, dphi)
+    point%length = length_of(point%tangent)
+    point%e_r = [-point%tangent(2), point%tangent(1)]/point%length
+    point%thickness = thickness_at(section, point%x)
+    point%dx = 0
+    point%dlength = 0
+    point%dthickness = 0
+    point%dx(1, 1:3) = phi
+    point%dx(2, 4:6) = phi
+    point%dlength(1:3) = dphi*point%tangent(1)/point%length
+    point%dlength(4:6) = dphi*point%tangent(2)/point%length
+    point%dthickness(1:3) = section(2)*phi
+    point%dthickness(4:6) = section(3)*phi
+    point%dthickness(nunknown - 2:nunknown) = [1.0_wp, point%x]
+  end subroutine side_point
+
+  !> Force on what is met, the opposite of that on the side: traction p n + tau t times length, weight and
+  !> thickness. The state of the point goes on from committed to trial.
+  !>
+  !> When contact begins inside the step only the share d/(d - d_start) of the way counts as slip.
+  pure subroutine act(law, material, penalty, point, meeting, weight, tangent_wanted, committed, trial, q, dq)
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: penalty(2)
+    type(contact_point_t), intent(in) :: point
+    type(meeting_t), intent(in) :: meeting
+    real(wp), intent(in) :: weight
+    logical, intent(in) :: tangent_wanted
+    real(wp), intent(in) :: committed(:)
+    real(wp), intent(inout) :: trial(:)
+    real(wp), intent(out) :: q(2)                    !! [force, per radian when axisymmetric]
+    real(wp), intent(out) :: dq(2, most_unknowns)    !! set where the tangent is wanted and there is contact
+    real(wp) :: dslip(most_unknowns), t(2), slip, share, flow_stress, pressure, stress(2), law_tangent(3, 3), area
+    real(wp) :: traction(2), dp, dtau
+    integer :: status, j
+
+    q = 0
+    slip = meeting%slip
+    dslip = meeting%dslip
+    if (nint(committed(at_status)) == contact_open .and. committed(at_penetration) < 0 .and. meeting%d > 0) then
+      share = meeting%d/(meeting%d - committed(at_penetration))
+      dslip = share*dslip - slip*committed(at_penetration)/(meeting%d - committed(at_penetration))**2*meeting%dd
+      slip = share*slip
+    end if
+
+    flow_stress = 0
+    if (size(law%history) > 0) flow_stress = committed(size(committed))
+    ! nothing moves across the plane: the second tangential component stays at rest
+    call law%slide(material, penalty, committed(at_augmentation), meeting%d, [slip, 0.0_wp], [committed(at_tau), 0.0_wp], &
+                   flow_stress, pressure, stress, law_tangent, status)
+    trial(at_pressure) = pressure
+    trial(at_tau) = stress(1)
+    trial(at_status) = status
+    if (status == contact_open) return
+    trial(at_augmentation) = committed(at_augmentation)
+    trial(at_slip) = committed(at_slip) + slip
+    trial(at_work) = trial(at_work) + dissipated(committed, trial, penalty(2))
+
+    t = [-meeting%normal(2), meeting%normal(1)]
+    area = point%length*weight*point%thickness
+    traction = -(pressure*meeting%normal + stress(1)*t)
+    q = traction*area
+    if (.not. tangent_wanted) return
+    do j = 1, most_unknowns
+      dp = law_tangent(1, 1)*meeting%dd(j) + law_tangent(1, 2)*dslip(j)
+      dtau = law_tangent(2, 1)*meeting%dd(j) + law_tangent(2, 2)*dslip(j)
+      dq(:, j) = -(dp*meeting%normal + dtau*t + meeting%turn(j)*(pressure*t - stress(1)*meeting%normal))*area &
+                 + traction*weight*(point%dlength(j)*point%thickness + point%length*point%dthickness(j))
+    end do
+  end subroutine act
+
+  !> Work that friction took in a step, per present area: the way slipped is that not stored in the tangential penalty.
+  pure function dissipated(before, after, penalty) result(work)
+    real(wp), intent(in) :: before(:), after(:), penalty
+    real(wp) :: work
+
+    work = 0
+    if (nint(after(at_status)) /= contact_slip) return
+    work = after(at_tau)*(after(at_slip) - before(at_slip) - (after(at_tau) - before(at_tau))/penalty)
+  end function dissipated
+
+  !> Area before the step over the present one, at the points of a side.
+  pure function thinning(xi, section, thickening, x, du) result(share)
+    real(wp), intent(in) :: xi(:)
+    real(wp), intent(in) :: section(3), thickening(3)   !! at the end of the step, and its change in it
+    real(wp), intent(in) :: x(2, 3), du(6)              !! nodes at the start of the step, and their motion, x then y
+    real(wp) :: share(size(xi))
+    real(wp) :: y(2, 3), phi(3), dphi(3), thickness
+    integer :: p
+
+    y(1, :) = x(1, :) + du(1:3)
+    y(2, :) = x(2, :) + du(4:6)
+    do p = 1, size(xi)
+      call line3(xi(p), phi, dphi)
+      share(p) = length_of(matmul(x, dphi))/length_of(matmul(y, dphi))
+      thickness = thickness_at(section, matmul(y, phi))
+      ! on the axis there is no area, before or after
+      if (thickness > 0) share(p) = share(p)*thickness_at(section - thickening, matmul(x, phi))/thickness
+    end do
+  end function thinning
+
+  !> Normal and tangential penalty: as given, or such that a pressure of one hundredth of the
+  !> body's modulus makes the allowed penetration.
+  pure function penalties(material, modulus, side) result(penalty)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: modulus, side
+    real(wp) :: penalty(2)
+
+    penalty(1) = material%values(2)
+    if (.not. penalty(1) > 0) penalty(1) = 0.01_wp*modulus/(material%values(1)*side)
+    penalty(2) = material%values(3)
+    if (.not. penalty(2) > 0) penalty(2) = tangential_share*penalty(1)
+  end function penalties
+
+  !> Share of the step after which a point that was open, its gap known, overlaps the die by `overlap_aim` of the side;
+  !> one that overlaps by less than `overlap_limit` is left alone.
+  pure function share_to_contact(committed, trial, side) result(share)
+    real(wp), intent(in) :: committed(:), trial(:), side
+    real(wp) :: share
+    real(wp) :: gap
+
+    share = 1
+    if (nint(committed(at_status)) /= contact_open .or. nint(trial(at_status)) == contact_open) return
+    if (nint(committed(at_piece)) == 0) return
+    if (trial(at_penetration) <= overlap_limit*side) return
+    gap = max(-committed(at_penetration), 0.0_wp)
+    share = (gap + overlap_aim*side)/(gap + trial(at_penetration))
+  end function share_to_contact
+
+  !> Stresses shown at a point on the axis, where none act: on the line through its two neighbours.
+  pure subroutine show_on_axis(xi, x, side, trial)
+    real(wp), intent(in) :: xi(:), x(3), side
+    real(wp), intent(inout) :: trial(:, :)
+    real(wp) :: phi(3), dphi(3), share
+    integer :: p, step, n
+
+    n = size(xi)
+    if (n < 3) return
+    do p = 1, n, n - 1
+      call line3(xi(p), phi, dphi)
+      if (dot_product(phi, x) > no_surface*side) cycle
+      step = merge(1, -1, p == 1)
+      share = (xi(p) - xi(p + step))/(xi(p + 2*step) - xi(p + step))
+      trial([at_pressure, at_tau], p) = (1 - share)*trial([at_pressure, at_tau], p + step) &
+                                        + share*trial([at_pressure, at_tau], p + 2*step)
+    end do
+  end subroutine show_on_axis
+
+  !> Chord of a side in the mesh as it began.
+  pure function side_length(scene, nodes) result(length)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: nodes(3)
+    real(wp) :: length
+
+    length = length_of(scene%mesh%coordinates(:, nodes(3)) - scene%mesh%coordinates(:, nodes(1)))
+  end function side_length
+
+end module contact_point
