@@ -11,7 +11,7 @@ module law_api
   implicit none
   private
   public :: law_t, law_line_t, parameter_t, law_update_i, law_slide_i, law_flow_i
-  public :: parameter, law_line, find_parameter, law_of_material
+  public :: parameter, law_line, find_parameter, law_of_material, asks_for
   public :: law_done, law_not_converged
   public :: contact_open, contact_stick, contact_slip
   public :: solid_law, contact_law
@@ -194,6 +194,15 @@ contains
     end do
     k = 0
   end function find_parameter
+
+  !> A law asks for an effect.
+  pure function asks_for(law, effect) result(yes)
+    type(law_t), intent(in) :: law
+    character(len=*), intent(in) :: effect
+    logical :: yes
+
+    yes = index(' '//law%effects//' ', ' '//effect//' ') > 0
+  end function asks_for
 
   !> A law as a material uses it: without the history that its points do not need.
   pure function law_of_material(law, material) result(own)
