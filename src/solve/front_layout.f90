@@ -36,8 +36,8 @@ module front_layout
 
   !> Subtrees with less than this share of all operations are done by one thread.
   real(wp), parameter :: subtree_share = 1.0_wp/32
-  !> With fewer operations than this in all, so is the whole tree.
-  real(wp), parameter :: worth_sharing = 1.0e7_wp
+  !> Fewer operations than these are not worth waking a thread for.
+  real(wp), parameter :: worth_sharing = 4.0e6_wp
 
 contains
 
