@@ -6,7 +6,7 @@ module cards_sides
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
   use kinds, only: wp
-  use law_api, only: contact_law, find_parameter
+  use law_api, only: contact_law, find_parameter, law_of_material
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, find_elem
   use text, only: to_text
@@ -53,7 +53,8 @@ contains
         cycle
       end if
       deallocate (group%variables)
-      call draft%elems(group%elem_id)%variables(draft%laws(law), draft%scene%plane_state, group%variables)
+      call draft%elems(group%elem_id)%variables(law_of_material(draft%laws(law), draft%scene%materials(group%material)), &
+                                                       draft%scene%plane_state, group%variables)
       group%amplitude = modulus_behind(draft, group%connectivity)
       call append_group(draft, group, cursor%where())
     end do

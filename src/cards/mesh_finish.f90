@@ -3,6 +3,7 @@ module mesh_finish
   use block_mesh, only: least_jacobian, polygon_area
   use diagnostics, only: diagnostics_t, location_t
   use kinds, only: wp
+  use law_api, only: law_of_material
   use mesh_parts, only: body_t, mesh_parts_t, root_of
   use scene, only: axisymmetric, group_t
   use scene_draft, only: draft_t, find_elem
@@ -102,7 +103,8 @@ contains
     law = draft%scene%materials(body%material)%law_id
     if (law == 0) return
     deallocate (group%variables)
-    call draft%elems(group%elem_id)%variables(draft%laws(law), draft%scene%plane_state, group%variables)
+    call draft%elems(group%elem_id)%variables(law_of_material(draft%laws(law), draft%scene%materials(group%material)), &
+                                                     draft%scene%plane_state, group%variables)
   end subroutine fill_group
 
   !> A side on the boundary is that of one element: its middle node tells.

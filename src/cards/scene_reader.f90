@@ -10,6 +10,7 @@ module scene_reader
   use cards_section, only: read_section, read_state
   use cards_sides, only: read_contacts, read_pressures
   use cards_strategy, only: read_strategy
+  use cards_temperature, only: read_temperatures_of_bodies
   use cards_tractions, only: read_tractions
   use deck_reader, only: deck_t, refuse_unknown
   use diagnostics, only: diagnostics_t, location_t
@@ -58,6 +59,7 @@ contains
     call finish_mesh(draft, parts, diagnostics)
     if (size(parts%bodies) == 0) call refuse_empty(deck, diagnostics)
 
+    call read_temperatures_of_bodies(deck, draft, diagnostics)
     call read_contacts(deck, draft, diagnostics)
     call read_pressures(deck, draft, diagnostics)
     call read_loads(deck, draft, diagnostics)
@@ -78,8 +80,8 @@ contains
     integer :: k
 
     call list_elems(elems)
-    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D TRACT FIXED MOVE FORCE LIC STRAT NORMS ' &
-                  //'STOP SAVE CKPT PROBE', keywords)
+    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D TRACT TEMPE FIXED MOVE FORCE LIC STRAT ' &
+                  //'NORMS STOP SAVE CKPT PROBE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle

@@ -63,7 +63,7 @@ contains
       lines = [lines, line]
     end subroutine put
 
-    !> Law of a group of elements, or the multiplier of its load.
+    !> Law and temperature of a group of elements, or the multiplier of its load.
     pure function driven_by(g) result(s)
       integer, intent(in) :: g
       character(len=:), allocatable :: s
@@ -72,6 +72,9 @@ contains
       if (scene%groups(g)%material > 0) s = ', law '//scene%materials(scene%groups(g)%material)%name
       if (scene%groups(g)%multiplier > 0) s = ', '//to_text(scene%groups(g)%amplitude)//' x ' &
                                               //scene%multipliers(scene%groups(g)%multiplier)%name
+      if (scene%groups(g)%temperature_multiplier > 0) &
+        s = s//', temperature '//to_text(scene%groups(g)%temperature_amplitude)//' x ' &
+            //scene%multipliers(scene%groups(g)%temperature_multiplier)%name
     end function driven_by
 
     pure function motion_of(die) result(s)

@@ -270,7 +270,8 @@ contains
     m(:, 5) = [s(1), s(3), s(3), s(2), 0.0_wp]
   end function geometric
 
-  !> Volume and energies. Work densities are per stress-free volume, dv/J with J = exp(tr e).
+  !> Volume and energies. Work densities are per stress-free volume, dv/J with J = exp(tr e). A law's `plastic_work` is what
+  !> is dissipated, its `stored_work` what is kept beside the elastic energy and counted with it.
   subroutine measure(scene, group, law, section, x, state, before, totals)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -279,11 +280,13 @@ contains
     type(totals_t), intent(out) :: totals
     type(quad8_rule_t) :: rule
     real(wp) :: nx(8), ny(8), detj, dv, stress(4), strain(4)
-    integer :: e, p, k
+    integer :: e, p, k, kept
 
     call quad8_rule(group%npoint, rule)
     k = find_variable(law%history, 'plastic_work')
     if (k > 0) k = group%variables(find_variable(group%variables, 'plastic_work'))%first
+    kept = find_variable(group%variables, 'stored_work')
+    if (kept > 0) kept = group%variables(kept)%first
     do e = 1, size(x, 3)
       do p = 1, group%npoint
         call derivatives(rule%dphi(:, :, p), x(:, :, e), nx, ny, detj)
@@ -297,6 +300,7 @@ contains
         if (k == 0) cycle
         if (scene%finite) dv = dv*exp(-strain(1) - strain(2) - strain(4))
         totals%plastic_work = totals%plastic_work + state(k, p, e)*dv
+        if (kept > 0) totals%elastic_energy = totals%elastic_energy + state(kept, p, e)*dv
         totals%least_dissipation = min(totals%least_dissipation, state(k, p, e) - before(k, p, e))
       end do
     end do
