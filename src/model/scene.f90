@@ -32,7 +32,7 @@ module scene
     integer :: material = 0
     !> Integration points of an element (negative: Lobatto).
     integer :: npoint = 0
-    !> The points of a solid element share one change of volume.
+    !> The points of a solid element share few values of the change of volume (mean_dilatation).
     logical :: mean_dilatation = .false.
     !> Nodes (nnode, nelem).
     integer, allocatable :: connectivity(:, :)
