@@ -24,15 +24,16 @@ contains
     type(scene_t), intent(inout) :: scene
     integer :: g, k
 
-    allocate (scene%effects(8))
+    allocate (scene%effects(9))
     call set(1, 'displacement', 'no body')
     call set(2, 'large strain', 'KINEM '//scene%kinematics, 'displacement')
     call set(3, 'plasticity', 'no LAW with a yield stress is used', 'displacement')
     call set(4, 'contact', 'no CNT2D card')
     call set(5, 'friction', 'no contact law with friction is used', 'contact')
     call set(6, 'pressure', 'no PRES2D card')
-    call set(7, 'heat', 'no card asks for it')
-    call set(8, 'phases', 'no card asks for it')
+    call set(7, 'body force', 'no BFORC or CENTR card')
+    call set(8, 'heat', 'no card asks for it')
+    call set(9, 'phases', 'no card asks for it')
 
     call switch_on(2, scene%finite, 'KINEM', scene%kinematics, 'geometry that follows, geometric matrix')
     do g = 1, size(scene%groups)
@@ -45,6 +46,8 @@ contains
         case ('contact')
           call switch_on(4, .true., group%elem, before_slash(group%name), &
                          '3 unknowns per die (its pilot), '//to_text(total_components(group%variables))//' state per point')
+        case ('body force')
+          call switch_on(7, .true., group%elem, before_slash(group%name), 'forces and matrix of the loaded elements')
         case ('pressure')
           call switch_on(6, .true., group%elem, before_slash(group%name), 'forces and matrix of the loaded sides')
         end select
