@@ -8,7 +8,7 @@ module summary
   use history, only: circumference
   use json_writer, only: json_t
   use kinds, only: i8, wp
-  use scene, only: scene_t
+  use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use system, only: cpu_seconds, peak_memory_mb
   use text, only: string_t, to_text
@@ -168,7 +168,7 @@ contains
 
     n = 0
     do g = 1, size(scene%groups)
-      if (size(scene%groups(g)%connectivity, 1) == 8) n = n + size(scene%groups(g)%connectivity, 2)
+      if (is_solid(scene%groups(g))) n = n + size(scene%groups(g)%connectivity, 2)
     end do
   end function solid_elements
 

@@ -3,7 +3,7 @@ module unknowns_summary
   use equations, only: equations_t, set_up
   use errors, only: error_t
   use kinds, only: wp
-  use scene, only: scene_t
+  use scene, only: is_solid, scene_t
   use text, only: string_t, to_text
   implicit none
   private
@@ -28,7 +28,7 @@ contains
     if (allocated(error)) return
     nelem = 0
     do g = 1, size(scene%groups)
-      if (size(scene%groups(g)%connectivity, 1) == 8) nelem = nelem + size(scene%groups(g)%connectivity, 2)
+      if (is_solid(scene%groups(g))) nelem = nelem + size(scene%groups(g)%connectivity, 2)
     end do
     bytes = 8.0_wp*(real(equations%pattern%matrix_length, wp) + equations%pattern%nnz) &
             + 4.0_wp*(size(equations%pattern%entry) + 3.0_wp*equations%pattern%nnz) &

@@ -12,7 +12,7 @@ module cards_sides
   use text, only: to_text
   implicit none
   private
-  public :: read_contacts, read_pressures
+  public :: read_contacts, read_pressures, start_group, append_group
 
   !> Points of a side: Gauss, or Lobatto (negative).
   integer, parameter :: rules(4) = [2, 3, 4, -3]
@@ -98,6 +98,7 @@ contains
     end do
   end subroutine read_pressures
 
+  !> A group of load elements without state.
   subroutine start_group(elem, draft, group)
     character(len=*), intent(in) :: elem
     type(draft_t), intent(in) :: draft
@@ -109,6 +110,7 @@ contains
     allocate (group%variables(0))
   end subroutine start_group
 
+  !> Add a group to the scene, and the place of its card.
   subroutine append_group(draft, group, where)
     type(draft_t), intent(inout) :: draft
     type(group_t), intent(in) :: group

@@ -25,16 +25,17 @@ contains
     type(scene_t), intent(inout) :: scene
     integer :: g, k
 
-    allocate (scene%effects(9))
+    allocate (scene%effects(10))
     call set(1, 'displacement', 'no body')
     call set(2, 'large strain', 'KINEM '//scene%kinematics, 'displacement')
     call set(3, 'plasticity', 'no LAW with a yield stress is used', 'displacement')
     call set(4, 'contact', 'no CNT2D card')
     call set(5, 'friction', 'no contact law with friction is used', 'contact')
     call set(6, 'pressure', 'no PRES2D card')
-    call set(7, 'heat', 'no card asks for it')
-    call set(8, 'phases', 'no card asks for it')
-    call set(9, 'temperature', 'no TEMPE card', 'displacement')
+    call set(7, 'body force', 'no BFORC or CENTR card')
+    call set(8, 'heat', 'no card asks for it')
+    call set(9, 'phases', 'no card asks for it')
+    call set(10, 'temperature', 'no TEMPE card', 'displacement')
 
     call switch_on(2, scene%finite, 'KINEM', scene%kinematics, 'geometry that follows, geometric matrix')
     do g = 1, size(scene%groups)
@@ -47,11 +48,13 @@ contains
         case ('contact')
           call switch_on(4, .true., group%elem, before_slash(group%name), &
                          '3 unknowns per die (its pilot), '//to_text(total_components(group%variables))//' state per point')
+        case ('body force')
+          call switch_on(7, .true., group%elem, before_slash(group%name), 'forces and matrix of the loaded elements')
         case ('pressure')
           call switch_on(6, .true., group%elem, before_slash(group%name), 'forces and matrix of the loaded sides')
         end select
         if (group%temperature_multiplier > 0) &
-          call switch_on(9, .true., 'TEMPE', group%name, 'numbers of laws at the temperature given')
+          call switch_on(10, .true., 'TEMPE', group%name, 'numbers of laws at the temperature given')
         if (group%material == 0) cycle
         associate (material => scene%materials(group%material))
           if (asks_for(laws(material%law_id), 'plasticity')) &

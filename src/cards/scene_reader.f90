@@ -1,6 +1,7 @@
 !> From the cards of a deck to a scene. Cards may come in any order; all mistakes are told in one go.
 module scene_reader
   use cards_blocks, only: join_blocks, read_blocks
+  use cards_body_forces, only: read_body_forces
   use cards_dies, only: read_dies
   use cards_head, only: read_kinematics, read_title
   use cards_laws, only: read_laws
@@ -63,6 +64,7 @@ contains
     call read_temperatures_of_bodies(deck, draft, diagnostics)
     call read_contacts(deck, draft, diagnostics)
     call read_pressures(deck, draft, diagnostics)
+    call read_body_forces(deck, draft, diagnostics)
     call read_loads(deck, draft, diagnostics)
     call read_tractions(deck, draft, diagnostics)
     call read_pilots(deck, draft, diagnostics)
@@ -82,8 +84,8 @@ contains
     integer :: k
 
     call list_elems(elems)
-    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D TRACT TEMPE FIXED MOVE FORCE FREE ' &
-                  //'SPRNG LIC STRAT NORMS STOP SAVE CKPT PROBE', keywords)
+    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE FIXED MOVE ' &
+                  //'FORCE FREE SPRNG LIC STRAT NORMS STOP SAVE CKPT PROBE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle

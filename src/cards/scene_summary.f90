@@ -98,6 +98,7 @@ contains
       if (scene%groups(g)%material > 0) s = ', law '//scene%materials(scene%groups(g)%material)%name
       if (scene%groups(g)%multiplier > 0) s = ', '//to_text(scene%groups(g)%amplitude)//' x ' &
                                               //scene%multipliers(scene%groups(g)%multiplier)%name
+      if (scene%groups(g)%elem == 'CENTR') s = s//'^2'
       if (scene%groups(g)%temperature_multiplier > 0) &
         s = s//', temperature '//to_text(scene%groups(g)%temperature_amplitude)//' x ' &
             //scene%multipliers(scene%groups(g)%temperature_multiplier)%name

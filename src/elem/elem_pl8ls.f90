@@ -6,13 +6,13 @@
 !> and M = A + geometric part. The geometric part is annex 1's matrix, d(F) at frozen stress, written once
 !> for all unknowns: d(sigma J f^-T) = J (sigma tr h - sigma h^T). Across the plane h_zz = dt/t: in
 !> generalised plane strain dt = da1 + x da2 + y da3 + a2 dx + a3 dy, an axisymmetric scene being a = (0, 1, 0);
-!> in plane stress h_zz is condensed out of M by the row of sigma_zz = 0. A group may ask for the mean dilatation.
+!> in plane stress h_zz is condensed out of M by the row of sigma_zz = 0. A group may ask for the mean dilatation (mean_dilatation).
 module elem_pl8ls
   use elem_api, only: block_inverted, block_law_failed, elem_t, group_temperature, instant_t, report_t, section_motion, totals_t
   use kinds, only: wp
   use kinematics_api, only: first_history, first_strain, kinematics_t, solid_variables
   use law_api, only: law_done, law_t, solid_law
-  use mean_dilatation, only: add_mean_matrix, share_dilatation, share_pressure
+  use mean_dilatation, only: add_mean_matrix, dilatation_t, find_fields, share_dilatation, share_pressure
   use plane_stress_points, only: update_plane_stress
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
   use scene, only: generalised_plane_strain, group_t, plane_stress, scene_t
@@ -70,6 +70,7 @@ contains
     real(wp), intent(inout) :: stiffness(:, :, :)
     type(report_t), intent(out) :: report
     type(quad8_rule_t) :: rule
+    type(dilatation_t) :: own
     real(wp), dimension(8, group%npoint, size(x, 3)) :: nx, ny, zx
     real(wp) :: dv(group%npoint, size(x, 3)), f(5, group%npoint, size(x, 3)), tangent(4, 5, group%npoint, size(x, 3))
     real(wp) :: temperature(2, group%npoint*size(x, 3)), section(3, 2)
@@ -94,7 +95,15 @@ contains
           return
         end if
       end do
-      if (group%mean_dilatation) call share_dilatation(kinematics%finite, dv(:, e), f(:, :, e))
+      if (.not. group%mean_dilatation) cycle
+      call first_element(scene, rule, group%connectivity(:, first + e - 1), own)
+      call share_dilatation(kinematics%finite, own, dv(:, e), f(:, :, e), valid)
+      if (.not. valid) then
+        report%status = block_inverted
+        report%element = first + e - 1
+        force = 0
+        return
+      end if
     end do
 
     temperature = spread(group_temperature(group, instant), 2, size(temperature, 2))
@@ -115,10 +124,9 @@ contains
       end if
       if (group%mean_dilatation) then
         call sections_of_step(scene, kinematics%finite, instant, du(:, e), section)
-        call mean_element(kinematics%finite, instant%tangent, rule, section, &
-                          first_volumes(scene, rule, group%connectivity(:, first + e - 1)), x(:, :, e), du(:, e), &
-                          nx(:, :, e), ny(:, :, e), dv(:, e), trial(1:4, :, e), tangent(:, :, :, e), force(:, e), &
-                          stiffness(:, :, e))
+        call first_element(scene, rule, group%connectivity(:, first + e - 1), own)
+        call mean_element(kinematics%finite, instant%tangent, rule, section, own, x(:, :, e), du(:, e), nx(:, :, e), &
+                          ny(:, :, e), dv(:, e), trial(1:4, :, e), tangent(:, :, :, e), force(:, e), stiffness(:, :, e))
         cycle
       end if
       call internal_force(nx(:, :, e), ny(:, :, e), zx(:, :, e), dv(:, e), trial(1:4, :, e), force(1:16, e))
@@ -285,34 +293,37 @@ contains
     stiffness(19, 9:16) = stiffness(19, 9:16) + pull
   end subroutine add_tilt
 
-  !> Volumes of the points of an element on the first geometry of the mesh.
-  pure function first_volumes(scene, rule, nodes) result(dv)
+  !> What the mean dilatation of an element wants to know of the first geometry of the mesh.
+  pure subroutine first_element(scene, rule, nodes, own)
     type(scene_t), intent(in) :: scene
     type(quad8_rule_t), intent(in) :: rule
     integer, intent(in) :: nodes(8)
-    real(wp) :: dv(rule%npoint)
-    real(wp) :: x(2, 8), nx(8), ny(8), detj
+    type(dilatation_t), intent(out) :: own
+    real(wp) :: x(2, 8), here(2, rule%npoint), dv(rule%npoint), nx(8), ny(8), detj
     integer :: p
 
     x = scene%mesh%coordinates(:, nodes)
     do p = 1, rule%npoint
       call derivatives(rule%dphi(:, :, p), x, nx, ny, detj)
-      dv(p) = detj*rule%weight(p)*thickness_at(scene%section, matmul(x, rule%phi(:, p)))
+      here(:, p) = matmul(x, rule%phi(:, p))
+      dv(p) = detj*rule%weight(p)*thickness_at(scene%section, here(:, p))
     end do
-  end function first_volumes
+    call find_fields(dv, here, own)
+  end subroutine first_element
 
   !> Forces and matrix of an element with mean dilatation.
-  pure subroutine mean_element(finite, wanted, rule, section, first_dv, x, du, nx, ny, dv, stress, tangent, force, stiffness)
+  pure subroutine mean_element(finite, wanted, rule, section, own, x, du, nx, ny, dv, stress, tangent, force, stiffness)
     logical, intent(in) :: finite, wanted
     type(quad8_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: section(3, 2), first_dv(:), x(2, 8), du(:), nx(:, :), ny(:, :), dv(:), stress(:, :), tangent(:, :, :)
+    type(dilatation_t), intent(in) :: own
+    real(wp), intent(in) :: section(3, 2), x(2, 8), du(:), nx(:, :), ny(:, :), dv(:), stress(:, :), tangent(:, :, :)
     real(wp), intent(out) :: force(:)
     real(wp), intent(inout) :: stiffness(:, :)
     real(wp) :: g(5, 19, size(dv)), geometry(5, 5, size(dv)), m(size(dv)), shared(4, size(dv))
     integer :: p, n
 
     n = size(force)
-    call share_pressure(finite, first_dv, dv, stress, m, shared)
+    call share_pressure(own, dv, stress, m, shared)
     force = 0
     do p = 1, size(dv)
       g(:, :, p) = local_gradient(rule, p, section(:, 1), finite, x, du, nx(:, p), ny(:, p))
@@ -321,7 +332,7 @@ contains
     end do
     if (.not. wanted) return
     stiffness = 0
-    call add_mean_matrix(finite, g(:, :n, :), dv, m, stress, shared, tangent, geometry, stiffness)
+    call add_mean_matrix(finite, own, g(:, :n, :), dv, m, stress, shared, tangent, geometry, stiffness)
     if (n < 19 .or. .not. finite) return
     do p = 1, size(dv)
       call add_tilt(shared(4, p)*dv(p)*g(5, 17, p)*rule%phi(:, p), stiffness)
@@ -349,6 +360,7 @@ contains
     real(wp), intent(in) :: section(3), x(:, :, :), state(:, :, :), before(:, :, :)
     type(totals_t), intent(out) :: totals
     type(quad8_rule_t) :: rule
+    type(dilatation_t) :: own
     real(wp) :: nx(8), ny(8), detj, dv, volume(group%npoint), m(group%npoint), shared(4, group%npoint), stress(4), strain(4)
     integer :: e, p, k, kept
 
@@ -365,7 +377,8 @@ contains
       end do
       totals%volume = totals%volume + sum(volume)
       if (group%mean_dilatation) then
-        call share_pressure(scene%finite, first_volumes(scene, rule, group%connectivity(:, e)), volume, state(1:4, :, e), m, shared)
+        call first_element(scene, rule, group%connectivity(:, e), own)
+        call share_pressure(own, volume, state(1:4, :, e), m, shared)
         volume = m
       end if
       do p = 1, group%npoint

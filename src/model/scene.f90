@@ -12,7 +12,7 @@ module scene
   use strategy, only: strategy_t
   implicit none
   private
-  public :: scene_t, group_t, plane_state_names
+  public :: scene_t, group_t, plane_state_names, is_solid
   public :: plane_strain, axisymmetric, plane_stress, generalised_plane_strain
 
   !> Plane states.
@@ -32,7 +32,7 @@ module scene
     integer :: material = 0
     !> Integration points of an element (negative: Lobatto).
     integer :: npoint = 0
-    !> The points of a solid element share one change of volume.
+    !> The points of a solid element share few values of the change of volume (mean_dilatation).
     logical :: mean_dilatation = .false.
     !> Nodes (nnode, nelem).
     integer, allocatable :: connectivity(:, :)
@@ -41,6 +41,8 @@ module scene
     integer :: component = 0
     integer :: multiplier = 0
     real(wp) :: amplitude = 0.0_wp
+    !> Direction of a force on the volume: 1 = x, 2 = y; 0 where unused.
+    integer :: direction = 0
     !> Temperature given to the body: amplitude times multiplier; multiplier 0 where none is.
     integer :: temperature_multiplier = 0
     real(wp) :: temperature_amplitude = 0.0_wp
@@ -74,4 +76,15 @@ module scene
     !> Mesh generation, 1 for the deck's own mesh.
     integer :: generation = 1
   end type scene_t
+
+contains
+
+  !> Elements of matter: loads on the volume of a body have its nodes and no material.
+  pure function is_solid(group) result(yes)
+    type(group_t), intent(in) :: group
+    logical :: yes
+
+    yes = size(group%connectivity, 1) == 8 .and. group%material > 0
+  end function is_solid
+
 end module scene

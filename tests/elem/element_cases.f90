@@ -13,7 +13,7 @@ module element_cases
   use state_variables, only: total_components
   implicit none
   private
-  public :: case_t, solid_case, contact_case, pressure_case, evaluate, accept, difference_matrix, totals_of
+  public :: case_t, solid_case, contact_case, pressure_case, body_force_case, evaluate, accept, difference_matrix, totals_of
   public :: die_of, segment, shape_of_test, elem_row, kinematics_row
   public :: step_of_differences, tolerance_of_differences
 
@@ -144,6 +144,20 @@ contains
     case%scene%groups(1)%amplitude = pressure
     allocate (case%scene%materials(0), case%committed(0, abs(npoint), 1))
   end function pressure_case
+
+  !> BFORC along a direction, or CENTR.
+  function body_force_case(elem, plane_state, kinematics, x, amplitude, direction) result(case)
+    character(len=*), intent(in) :: elem, kinematics
+    integer, intent(in) :: plane_state, direction
+    real(wp), intent(in) :: x(2, 8), amplitude
+    type(case_t) :: case
+
+    call begin_case(elem, kinematics, plane_state, 9, x, case)
+    case%scene%groups(1)%multiplier = 1
+    case%scene%groups(1)%amplitude = amplitude
+    case%scene%groups(1)%direction = direction
+    allocate (case%scene%materials(0), case%committed(0, 9, 1))
+  end function body_force_case
 
   !> Force, matrix and trial state at the motion du of the step.
   subroutine evaluate(case, du, force, stiffness, trial, report)
