@@ -42,8 +42,8 @@ contains
           call switch_on(1, .true., group%elem, group%name, &
                          to_text(2*size(scene%mesh%labels))//' unknowns, 8 state per point (stress, elastic strain)')
         case ('contact')
-          call switch_on(4, .true., group%elem, before_slash(group%name), &
-                         '3 unknowns per die (its pilot), '//to_text(total_components(group%variables))//' state per point')
+          call switch_on(4, .true., 'CNT2D', before_slash(group%name), unknowns_of(elems(group%elem_id)%pilot) &
+                         //', '//to_text(total_components(group%variables))//' state per point')
         case ('pressure')
           call switch_on(6, .true., group%elem, before_slash(group%name), 'forces and matrix of the loaded sides')
         end select
@@ -106,6 +106,14 @@ contains
         return
       end do
     end function card_text
+
+    pure function unknowns_of(pilot) result(s)
+      logical, intent(in) :: pilot
+      character(len=:), allocatable :: s
+
+      s = 'pairs of sides in the matrix'
+      if (pilot) s = '3 unknowns per die (its pilot)'
+    end function unknowns_of
 
     pure function asks(law, effect) result(yes)
       type(law_t), intent(in) :: law

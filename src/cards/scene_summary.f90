@@ -1,5 +1,6 @@
 !> What a scene holds, in lines for people: printed by `--check` and at the start of a run.
 module scene_summary
+  use dies, only: is_deformable
   use scene, only: plane_state_names, scene_t
   use text, only: string_t, to_text
   implicit none
@@ -80,6 +81,10 @@ contains
       integer :: i
 
       s = ''
+      if (is_deformable(scene%dies(die))) then
+        s = 'sides of bodies'
+        return
+      end if
       do i = 1, size(scene%die_motions)
         associate (motion => scene%die_motions(i))
           if (motion%die /= die) cycle

@@ -1,16 +1,18 @@
 !> Members of the ELEM family: a new element is one file and one line here.
 submodule(elem_registry) elem_members
   use elem_cnt2d, only: elem_cnt2d_row
+  use elem_cntdf, only: elem_cntdf_row
   use elem_pl8ls, only: elem_pl8ls_row
   use elem_pres2d, only: elem_pres2d_row
   implicit none
 contains
 
   module procedure list_elems
-    allocate (elems(3))
+    allocate (elems(4))
     elems(1) = elem_pl8ls_row()
     elems(2) = elem_cnt2d_row()
-    elems(3) = elem_pres2d_row()
+    elems(3) = elem_cntdf_row()
+    elems(4) = elem_pres2d_row()
   end procedure list_elems
 
 end submodule elem_members

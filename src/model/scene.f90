@@ -36,6 +36,8 @@ module scene
     integer, allocatable :: connectivity(:, :)
     !> Die faced by contact elements, multiplier and amplitude of load elements; 0 where unused.
     integer :: die = 0
+    !> Place among the groups that face a deformable die, 0 for others.
+    integer :: pairs = 0
     integer :: multiplier = 0
     real(wp) :: amplitude = 0.0_wp
     !> Temperature given to the body: amplitude times multiplier; multiplier 0 where none is.
