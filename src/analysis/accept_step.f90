@@ -1,6 +1,7 @@
 !> What happens when a step is accepted: the trial state becomes the state, and every check is made.
 module accept_step
   use contact_flow, only: update_flow_stress
+  use dies, only: is_deformable
   use elem_api, only: add_totals, totals_t
   use element_loop, only: group_geometry
   use equations, only: equations_t, external_forces
@@ -16,6 +17,8 @@ module accept_step
 
   !> Dissipated work may fall by this share of the largest work density: round-off of a sum.
   real(wp), parameter :: dissipation_slack = 1.0e-12_wp
+  !> Action and reaction of two bodies may differ by this share of the forces at their nodes: round-off of a sum.
+  real(wp), parameter :: reaction_slack = 1.0e-10_wp
 
 contains
 
@@ -57,6 +60,8 @@ contains
     solution%iterations = solution%iterations + outcome%iterations
     solution%worst_linear_residual = max(solution%worst_linear_residual, outcome%linear_residual)
 
+    call book_deformable_dies(scene, equations, solution, error)
+    if (allocated(error)) return
     call measure_scene(scene, equations, solution, totals)
     solution%worst_penetration = max(solution%worst_penetration, totals%max_penetration)
     solution%worst_penetration_ratio = max(solution%worst_penetration_ratio, totals%penetration_ratio)
@@ -115,6 +120,45 @@ contains
     end subroutine book
 
   end subroutine book_work
+
+  !> What deformable dies bear: the force of all contacts on them, and its moment about the origin, with the sign of a reaction.
+  !> What a die gets the sides that face it give.
+  subroutine book_deformable_dies(scene, equations, solution, error)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(inout) :: solution
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: sum(2), magnitude, x(2), force(2)
+    integer :: g, e, i, m, n
+
+    do g = 1, size(scene%dies)
+      if (is_deformable(scene%dies(g))) solution%pilot_applied(:, g) = 0
+    end do
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%pairs == 0) cycle
+      sum = 0
+      magnitude = 0
+      associate (nodes => equations%dofs%groups(g)%nodes, applied => solution%pilot_applied(:, scene%groups(g)%die))
+        n = size(nodes, 1)
+        do e = 1, size(nodes, 2)
+          m = equations%pattern%force_start(g) + (e - 1)*size(equations%dofs%groups(g)%dof, 1)
+          do i = 1, n
+            force = equations%buffers%force([m + i, m + n + i])
+            sum = sum + force
+            magnitude = magnitude + norm2(force)
+            if (i <= size(scene%groups(g)%connectivity, 1)) cycle
+            x = scene%mesh%coordinates(:, nodes(i, e)) + solution%displacement(:, nodes(i, e))
+            applied = applied + [force, x(1)*force(2) - x(2)*force(1)]
+          end do
+        end do
+      end associate
+      if (norm2(sum) > reaction_slack*magnitude) then
+        call fail(error, exit_bug, 'step '//to_text(solution%step)//': forces of contact '//scene%groups(g)%name &
+                  //' on its two bodies differ by '//to_text(norm2(sum)/magnitude, 3)//' of their size')
+        return
+      end if
+    end do
+  end subroutine book_deformable_dies
 
   !> What supports and imposed motions bear: internal force less nodal forces; pressures are in it already.
   subroutine book_reactions(scene, equations, time, reactions)

@@ -2,6 +2,7 @@
 !> when the scene is axisymmetric.
 module history
   use csv_writer, only: csv_t
+  use dies, only: is_deformable
   use elem_api, only: totals_t
   use errors, only: error_t
   use kinds, only: pi, wp
@@ -47,7 +48,8 @@ contains
     type(string_t), allocatable, intent(out) :: columns(:)
     integer :: k, n
 
-    allocate (columns(14 + 6*size(scene%dies) + merge(6, 0, scene%plane_state == generalised_plane_strain) + size(scene%probes)))
+    allocate (columns(14 + 6*size(scene%dies) - 3*count(is_deformable(scene%dies)) &
+                      + merge(6, 0, scene%plane_state == generalised_plane_strain) + size(scene%probes)))
     n = 0
     call add('time [time]')
     call add('step [-]')
@@ -67,6 +69,7 @@ contains
       call add('force_x_'//scene%dies(k)%name//' [force]')
       call add('force_y_'//scene%dies(k)%name//' [force]')
       call add('moment_'//scene%dies(k)%name//' [force*length]')
+      if (is_deformable(scene%dies(k))) cycle
       call add('displacement_x_'//scene%dies(k)%name//' [length]')
       call add('displacement_y_'//scene%dies(k)%name//' [length]')
       call add('rotation_'//scene%dies(k)%name//' [rad]')
@@ -116,7 +119,7 @@ contains
     call table%put([totals%stick, totals%slip])
     do k = 1, size(scene%dies)
       call table%put(-factor*solution%pilot_applied(:, k))
-      call table%put(solution%pilots(:, k) - scene%dies(k)%pilot)
+      if (.not. is_deformable(scene%dies(k))) call table%put(solution%pilots(:, k) - scene%dies(k)%pilot)
     end do
     if (scene%plane_state == generalised_plane_strain) then
       call table%put((solution%section - scene%section)/scene%section(1))

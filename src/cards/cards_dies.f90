@@ -1,4 +1,5 @@
-!> DIE cards: segments, parabolas and arcs, end to end, and fillets between them.
+!> DIE cards: segments, parabolas and arcs, end to end, and fillets between them. Those of sides of bodies are read when there
+!> is a mesh.
 module cards_dies
   use card_points, only: read_xy
   use deck_cursor, only: cursor_t
@@ -54,6 +55,12 @@ contains
       n = n + 1
       call cursor%open(deck%cards(i), diagnostics)
       call draft%places%define(cursor, 'the name of the die', 'DIE', n, diagnostics, die%name)
+      if (cursor%peek_word() == 'SIDES') then
+        ! its sides are looked up when there is a mesh (cards_side_dies)
+        dies(n)%name = die%name
+        allocate (dies(n)%nodes(3, 0))
+        cycle
+      end if
       call read_pilot(cursor, die%pilot)
       if (allocated(die%pieces)) deallocate (die%pieces)
       allocate (die%pieces(2, 3, 0))
@@ -82,7 +89,7 @@ contains
     pilot = 0
     if (.not. cursor%more()) return
     call words_of('PILOT', words)
-    call cursor%name('PILOT or the end of the line', words, k)
+    call cursor%name('PILOT, SIDES or the end of the line', words, k)
     call read_xy(cursor, 'the pilot', pilot(1:2))
   end subroutine read_pilot
 

@@ -4,6 +4,7 @@ module cards_loads
   use cards_pilots, only: acts_on_die
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
+  use dies, only: is_deformable
   use diagnostics, only: diagnostics_t, location_t
   use kinds, only: wp
   use loads, only: die_motion_t, fixation_t, multiplier_t, nodal_force_t
@@ -131,6 +132,10 @@ contains
     call read_place(cursor, draft, .true., place)
     call cursor%name('a direction', directions, direction)
     if (direction == 3 .and. place%die == 0) call cursor%fail('only a DIE can turn (A); '''//place%label//''' is none')
+    if (place%die > 0) then
+      if (is_deformable(draft%scene%dies(place%die))) call cursor%fail('the DIE '''//place%label &
+                                                                       //''' is made of sides: it moves with their bodies')
+    end if
     call draft%multipliers%find(cursor, 'the name of a LIC', k)
     amplitude = 1
     if (cursor%more()) call cursor%real('the amplitude', amplitude)

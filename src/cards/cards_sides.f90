@@ -5,14 +5,16 @@ module cards_sides
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
+  use dies, only: is_deformable
   use kinds, only: wp
   use law_api, only: contact_law, find_parameter, law_of_material
+  use bodies, only: in_one_body
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, find_elem
   use text, only: to_text
   implicit none
   private
-  public :: read_contacts, read_pressures, start_group, append_group
+  public :: read_contacts, read_pressures, refuse_inner_sides, start_group, append_group
 
   !> Points of a side: Gauss, or Lobatto (negative).
   integer, parameter :: rules(4) = [2, 3, 4, -3]
@@ -42,6 +44,7 @@ contains
         group%die = draft%places%item(k)
         group%name = label//'/'//draft%places%words(k)%s
       end if
+      if (.not. cursor%failed() .and. draft%mesh_sound) call face_sides(cursor, draft, group)
       call read_rule(cursor, group%npoint)
       call read_material(cursor, draft, contact_law, group%material)
       if (.not. cursor%failed()) call refuse_second_contact(cursor, draft, group, diagnostics)
@@ -60,6 +63,22 @@ contains
       call append_group(draft, group, cursor%where())
     end do
   end subroutine read_contacts
+
+  !> A die made of sides: another ELEM, and another body.
+  subroutine face_sides(cursor, draft, group)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(group_t), intent(inout) :: group
+
+    associate (die => draft%scene%dies(group%die))
+      if (.not. is_deformable(die)) return
+      group%elem = 'CNTDF'
+      group%elem_id = find_elem(draft%elems, group%elem)
+      group%pairs = maxval([0, draft%scene%groups%pairs]) + 1
+      if (in_one_body(draft%scene, die%nodes, group%connectivity)) &
+        call cursor%fail('a body cannot face itself: these sides and the DIE '''//die%name//''' belong to one')
+    end associate
+  end subroutine face_sides
 
   !> All PRES2D cards: `place npoint amplitude lic`, a group each.
   subroutine read_pressures(deck, draft, diagnostics)

@@ -46,8 +46,8 @@ contains
                          to_text(2*size(scene%mesh%labels) + merge(3, 0, scene%plane_state == generalised_plane_strain)) &
                          //' unknowns, 8 state per point (stress, elastic strain)')
         case ('contact')
-          call switch_on(4, .true., group%elem, before_slash(group%name), &
-                         '3 unknowns per die (its pilot), '//to_text(total_components(group%variables))//' state per point')
+          call switch_on(4, .true., 'CNT2D', before_slash(group%name), unknowns_of(elems(group%elem_id)%pilot) &
+                         //', '//to_text(total_components(group%variables))//' state per point')
         case ('body force')
           call switch_on(7, .true., group%elem, before_slash(group%name), 'forces and matrix of the loaded elements')
         case ('pressure')
@@ -114,6 +114,14 @@ contains
         return
       end do
     end function card_text
+
+    pure function unknowns_of(pilot) result(s)
+      logical, intent(in) :: pilot
+      character(len=:), allocatable :: s
+
+      s = 'pairs of sides in the matrix'
+      if (pilot) s = '3 unknowns per die (its pilot)'
+    end function unknowns_of
 
     !> Components of the history that a material needs.
     pure function state_of_law(law, material) result(n)

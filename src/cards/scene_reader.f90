@@ -10,6 +10,7 @@ module scene_reader
   use cards_mesh, only: is_body_elem, read_elements, read_nodes, read_side_sets
   use cards_probes, only: read_probes
   use cards_section, only: read_section, read_state
+  use cards_side_dies, only: read_side_dies
   use cards_sides, only: read_contacts, read_pressures
   use cards_strategy, only: read_strategy
   use cards_temperature, only: read_temperatures_of_bodies
@@ -62,6 +63,7 @@ contains
     if (size(parts%bodies) == 0) call refuse_empty(deck, diagnostics)
 
     call read_temperatures_of_bodies(deck, draft, diagnostics)
+    call read_side_dies(deck, draft, diagnostics)
     call read_contacts(deck, draft, diagnostics)
     call read_pressures(deck, draft, diagnostics)
     call read_body_forces(deck, draft, diagnostics)

@@ -1,5 +1,6 @@
 !> What a scene holds, in lines for people: printed by `--check` and at the start of a run.
 module scene_summary
+  use dies, only: is_deformable
   use scene, only: axisymmetric, generalised_plane_strain, plane_state_names, scene_t
   use sections, only: section_drive_t, section_forced, section_moved, section_names
   use text, only: string_t, to_text
@@ -110,6 +111,10 @@ contains
       integer :: i
 
       s = ''
+      if (is_deformable(scene%dies(die))) then
+        s = 'sides of bodies'
+        return
+      end if
       do i = 1, size(scene%die_motions)
         associate (motion => scene%die_motions(i))
           if (motion%die /= die) cycle

@@ -5,10 +5,12 @@
 !> pilot of the die faced (x, y, angle) where the element has one, then the section (sections) in
 !> generalised plane strain.
 module elem_api
+  use dies, only: die_t
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
   use materials, only: material_t
+  use pairs, only: pairs_t
   use scene, only: generalised_plane_strain, group_t, scene_t
   use state_variables, only: state_variable_t
   implicit none
@@ -28,6 +30,9 @@ module elem_api
     real(wp) :: time = 0.0_wp, dt = 0.0_wp
     !> Pilots at the start of the step (x, y, angle; ndie).
     real(wp), allocatable :: pilots(:, :)
+    !> Dies at the end of the step where they are deformable, and pairs; not allocated where none is.
+    type(die_t), allocatable :: dies(:)
+    type(pairs_t), allocatable :: pairs(:)
     !> Section at the start of the step (sections).
     real(wp) :: section(3) = 0.0_wp
     !> Multipliers at the start and at the end of the step.
@@ -45,6 +50,8 @@ module elem_api
     real(wp) :: strain = 0.0_wp
     !> Share of the step after which contact begins somewhere, with little overlap; 1 when it need not be shortened.
     real(wp) :: event = 1.0_wp
+    !> A point meets a piece of a deformable die that it is not paired with: its contact is missing.
+    logical :: unpaired = .false.
     !> Largest change of penetration at a point already in contact, over the side.
     real(wp) :: jump = 0.0_wp
   end type report_t

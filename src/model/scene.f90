@@ -39,6 +39,8 @@ module scene
     !> Die faced by contact elements, multiplier and amplitude of load elements, component of a spring; 0 where unused.
     integer :: die = 0
     integer :: component = 0
+    !> Place among the groups that face a deformable die, 0 for others.
+    integer :: pairs = 0
     integer :: multiplier = 0
     real(wp) :: amplitude = 0.0_wp
     !> Direction of a force on the volume: 1 = x, 2 = y; 0 where unused.

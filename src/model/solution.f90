@@ -1,6 +1,7 @@
 !> The state of a run at an accepted instant, and the trial state of the step under way.
 module solution
   use kinds, only: wp
+  use pairs, only: pairs_t, start_pairs
   use scene, only: scene_t
   use state_variables, only: total_components
   implicit none
@@ -28,6 +29,8 @@ module solution
     !> Section, and its motion in the last accepted step (sections).
     real(wp) :: section(3) = 0.0_wp, last_section_increment(3) = 0.0_wp
     type(group_state_t), allocatable :: groups(:)
+    !> Pairs the equations are set up for, of the groups that face deformable dies.
+    type(pairs_t), allocatable :: pairs(:)
     !> Totals since the start.
     integer :: iterations = 0, cutbacks = 0
     !> Work done on the scene from outside, per radian when axisymmetric.
@@ -66,6 +69,7 @@ contains
     end do
     solution%section = scene%section
     solution%next_step = scene%strategy%first_step
+    call start_pairs(scene, solution%pairs)
     allocate (solution%groups(size(scene%groups)))
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g), state => solution%groups(g))

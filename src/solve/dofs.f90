@@ -7,15 +7,16 @@ module dofs
   use elem_api, only: elem_t
   use kinds, only: wp
   use loads, only: multiplier_at
+  use pairs, only: nodes_per_point, paired_nodes, pairs_t, start_pairs
   use scene, only: generalised_plane_strain, scene_t
   use sections, only: section_forced, section_moved
   implicit none
   private
-  public :: dofs_t, group_dofs_t, number_dofs, prescribed_motion
+  public :: dofs_t, group_dofs_t, number_dofs, number_pairs, prescribed_motion
 
   type :: group_dofs_t
-    !> Unknowns of each element, in the local order of the ELEM family (ndof, nelem).
-    integer, allocatable :: dof(:, :)
+    !> Nodes and unknowns of each element, in the local order of the ELEM family (nnode, nelem), (ndof, nelem).
+    integer, allocatable :: nodes(:, :), dof(:, :)
   end type group_dofs_t
 
   !> An unknown whose motion is amplitude times multiplier; multiplier 0 holds it.
@@ -150,25 +151,62 @@ contains
     type(scene_t), intent(in) :: scene
     type(elem_t), intent(in) :: elems(:)
     type(dofs_t), intent(inout) :: dofs
-    integer :: g, e, n, ndof
+    type(pairs_t), allocatable :: pairs(:)
+    integer :: g
 
     allocate (dofs%groups(size(scene%groups)))
+    call start_pairs(scene, pairs)
     do g = 1, size(scene%groups)
-      associate (group => scene%groups(g), row => elems(scene%groups(g)%elem_id))
-        n = row%nnode
-        ndof = 2*n
-        if (row%pilot) ndof = ndof + 3
-        if (dofs%section(1) > 0) ndof = ndof + 3
-        allocate (dofs%groups(g)%dof(ndof, size(group%connectivity, 2)))
-        do e = 1, size(group%connectivity, 2)
-          dofs%groups(g)%dof(:n, e) = dofs%node(1, group%connectivity(:, e))
-          dofs%groups(g)%dof(n + 1:2*n, e) = dofs%node(2, group%connectivity(:, e))
-          if (row%pilot) dofs%groups(g)%dof(2*n + 1:2*n + 3, e) = dofs%pilot(:, group%die)
-          if (dofs%section(1) > 0) dofs%groups(g)%dof(ndof - 2:, e) = dofs%section
-        end do
+      if (scene%groups(g)%pairs == 0) dofs%groups(g)%nodes = scene%groups(g)%connectivity
+      if (scene%groups(g)%pairs == 0) call number_elements(elems(scene%groups(g)%elem_id)%pilot, scene%groups(g)%die, dofs, g)
+    end do
+    call number_pairs(scene, pairs, dofs)
+  end subroutine list_elements
+
+  !> Unknowns of the elements that face deformable dies, with the pairs of now.
+  subroutine number_pairs(scene, pairs, dofs)
+    type(scene_t), intent(in) :: scene
+    type(pairs_t), intent(in) :: pairs(:)
+    type(dofs_t), intent(inout) :: dofs
+    integer :: g, e
+
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%pairs == 0) cycle
+        associate (middle => pairs(group%pairs)%piece)
+          if (.not. allocated(dofs%groups(g)%nodes)) then
+            allocate (dofs%groups(g)%nodes(size(group%connectivity, 1) + nodes_per_point*size(middle, 1), size(middle, 2)))
+          end if
+          do e = 1, size(middle, 2)
+            dofs%groups(g)%nodes(:, e) = paired_nodes(scene%dies(group%die), group%connectivity(:, e), middle(:, e))
+          end do
+        end associate
+        call number_elements(.false., group%die, dofs, g)
       end associate
     end do
-  end subroutine list_elements
+  end subroutine number_pairs
+
+  !> Unknowns of the elements of a group from their nodes.
+  subroutine number_elements(pilot, die, dofs, g)
+    logical, intent(in) :: pilot
+    integer, intent(in) :: die, g
+    type(dofs_t), intent(inout) :: dofs
+    integer :: e, n, ndof
+
+    n = size(dofs%groups(g)%nodes, 1)
+    ndof = 2*n
+    if (pilot) ndof = ndof + 3
+    if (dofs%section(1) > 0) ndof = ndof + 3
+    if (.not. allocated(dofs%groups(g)%dof)) allocate (dofs%groups(g)%dof(ndof, size(dofs%groups(g)%nodes, 2)))
+    associate (dof => dofs%groups(g)%dof, nodes => dofs%groups(g)%nodes)
+      do e = 1, size(nodes, 2)
+        dof(:n, e) = dofs%node(1, nodes(:, e))
+        dof(n + 1:2*n, e) = dofs%node(2, nodes(:, e))
+        if (pilot) dof(2*n + 1:2*n + 3, e) = dofs%pilot(:, die)
+        if (dofs%section(1) > 0) dof(ndof - 2:, e) = dofs%section
+      end do
+    end associate
+  end subroutine number_elements
 
   !> Motion of the prescribed unknowns from time t0 (or from rest) to t1, in the order of the list.
   pure subroutine prescribed_motion(scene, dofs, from_rest, t0, t1, motion)

@@ -59,8 +59,8 @@ contains
           last = min(b*block_size, nelem)
           f = pattern%force_start(g) + (first - 1)*ndof
           m = pattern%matrix_start(g) + (first - 1)*ndof*ndof
-          call run_block(scene, group, row, kinematics, laws, instant, dofs%groups(g)%dof(:, first:last), first, &
-                         last - first + 1, ndof, du, solution%displacement, state%committed(:, :, first:last), &
+          call run_block(scene, group, row, kinematics, laws, instant, dofs%groups(g)%nodes(:, first:last), &
+                         dofs%groups(g)%dof(:, first:last), first, du, solution%displacement, state%committed(:, :, first:last), &
                          state%trial(:, :, first:last), buffers%force(f + 1), buffers%matrix(m + 1), reports(b))
         end do
         !$omp end parallel do
@@ -68,6 +68,7 @@ contains
           report%strain = max(report%strain, reports(b)%strain)
           report%jump = max(report%jump, reports(b)%jump)
           report%event = min(report%event, reports(b)%event)
+          report%unpaired = report%unpaired .or. reports(b)%unpaired
           if (report%status /= block_done .or. reports(b)%status == block_done) cycle
           report%status = reports(b)%status
           report%element = reports(b)%element
@@ -81,7 +82,7 @@ contains
   end subroutine run_elements
 
   !> One block: gather its geometry and motion, then call the element.
-  subroutine run_block(scene, group, row, kinematics, laws, instant, dof, first, nb, ndof, du, displacement, &
+  subroutine run_block(scene, group, row, kinematics, laws, instant, nodes, dof, first, du, displacement, &
                        committed, trial, force, matrix, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -89,19 +90,19 @@ contains
     type(kinematics_t), intent(in) :: kinematics
     type(law_t), intent(in) :: laws(:)
     type(instant_t), intent(in) :: instant
-    integer, intent(in) :: first, nb, ndof, dof(ndof, nb)
+    integer, intent(in) :: nodes(:, :), dof(:, :), first
     real(wp), intent(in) :: du(:), displacement(:, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
-    real(wp), intent(inout) :: force(ndof, nb), matrix(ndof, ndof, nb)
+    real(wp), intent(inout) :: force(size(dof, 1), size(dof, 2)), matrix(size(dof, 1), size(dof, 1), size(dof, 2))
     type(report_t), intent(out) :: report
-    real(wp) :: x(2, row%nnode, nb), motion(ndof, nb)
+    real(wp) :: x(2, size(nodes, 1), size(nodes, 2)), motion(size(dof, 1), size(dof, 2))
     integer :: e, law
 
     law = 1
     if (group%material > 0) law = scene%materials(group%material)%law_id
-    call gather_geometry(scene, row, kinematics%finite, group%connectivity(:, first:first + nb - 1), displacement, x)
-    do e = 1, nb
+    call gather_geometry(scene, row, kinematics%finite, nodes, displacement, x)
+    do e = 1, size(dof, 2)
       motion(:, e) = du(dof(:, e))
     end do
     call row%compute(scene, group, kinematics, laws(law), instant, first, x, motion, committed, trial, force, matrix, report)
@@ -178,7 +179,7 @@ contains
     type(element_buffers_t), intent(in) :: buffers
     real(wp), intent(in) :: motion(:)
     real(wp), intent(inout) :: force(:)
-    integer :: g, e, j, m, ndof
+    integer :: g, e, i, j, m, ndof
 
     do g = 1, size(dofs%groups)
       associate (dof => dofs%groups(g)%dof)
@@ -187,7 +188,10 @@ contains
           do j = 1, ndof
             if (.not. abs(motion(dof(j, e))) > 0) cycle
             m = pattern%matrix_start(g) + ((e - 1)*ndof + j - 1)*ndof
-            force(dof(:, e)) = force(dof(:, e)) + buffers%matrix(m + 1:m + ndof)*motion(dof(j, e))
+            ! one by one: an unknown may stand several times in an element
+            do i = 1, ndof
+              force(dof(i, e)) = force(dof(i, e)) + buffers%matrix(m + i)*motion(dof(j, e))
+            end do
           end do
         end do
       end associate

@@ -4,11 +4,13 @@
 !> names, units and transfer kinds of its variables, taken from the laws and elements that declare
 !> them: who reads it needs to know no law.
 module exchange
+  use dies, only: is_deformable
   use errors, only: error_t, exit_input, fail
   use hash, only: sha256
   use hdf5_atomic, only: commit_atomic, create_atomic, open_verified
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
+  use pairs, only: pairs_t
   use scene, only: scene_t
   use solution, only: solution_t
   use text, only: string_t, to_text
@@ -67,6 +69,7 @@ contains
     call file%group('dies')
     do k = 1, size(scene%dies)
       call file%write('dies/'//scene%dies(k)%name//'/pieces', scene%dies(k)%pieces)
+      if (is_deformable(scene%dies(k))) call file%write('dies/'//scene%dies(k)%name//'/nodes', scene%dies(k)%nodes)
       call file%write('dies/'//scene%dies(k)%name//'/start', scene%dies(k)%pilot)
       call file%write('dies/'//scene%dies(k)%name//'/pilot', solution%pilots(:, k))
       call file%write('dies/'//scene%dies(k)%name//'/last_increment', solution%last_pilot_increment(:, k))
@@ -115,6 +118,7 @@ contains
         call file%write(place//'/connectivity', group%connectivity)
         if (group%die > 0) call file%write(place//'/die', scene%dies(group%die)%name)
         if (group%material > 0) call file%write(place//'/material', scene%materials(group%material)%name)
+        if (group%pairs > 0) call file%write(place//'/pairs', solution%pairs(group%pairs)%piece)
         if (size(group%variables) == 0) cycle
         allocate (names(size(group%variables)), units(size(group%variables)), kinds(size(group%variables)))
         do v = 1, size(group%variables)
@@ -248,6 +252,7 @@ contains
 
     do g = 1, size(scene%groups)
       if (size(scene%groups(g)%variables) == 0) cycle
+      if (scene%groups(g)%pairs > 0) call read_pairs(file, group_place(g)//'/pairs', solution%pairs(scene%groups(g)%pairs))
       call file%read(group_place(g)//'/state', state)
       if (all(shape(state) == shape(solution%groups(g)%committed))) then
         solution%groups(g)%committed = state
@@ -257,6 +262,21 @@ contains
       end if
     end do
   end subroutine read_states
+
+  !> Pairs decide the order in which the matrix is eliminated: a run that goes on needs them, to the last bit.
+  subroutine read_pairs(file, place, pairs)
+    type(hdf5_file_t), intent(inout) :: file
+    character(len=*), intent(in) :: place
+    type(pairs_t), intent(inout) :: pairs
+    integer, allocatable :: piece(:, :)
+
+    call file%read(place, piece)
+    if (all(shape(piece) == shape(pairs%piece))) then
+      pairs%piece = piece
+    else
+      call file%record_error(exit_input, place//': does not fit the deck''s contact')
+    end if
+  end subroutine read_pairs
 
   !> Read an array that must have the shape of the one it replaces.
   subroutine read_matrix(file, place, matrix)

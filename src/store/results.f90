@@ -3,6 +3,7 @@
 !> `NAME.gNN.h5`: mesh/ (coordinates, topology from 0, groups), dies/, steps/NNNNNN/ with the
 !> coordinates reached, nodal fields (node/NAME) and the raw state of the points (points/GROUP).
 module results
+  use dies, only: is_deformable
   use errors, only: error_t
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
@@ -102,7 +103,7 @@ contains
     type(hdf5_file_t) :: file
     integer, allocatable :: topology(:, :)
     character(len=:), allocatable :: place
-    integer :: g
+    integer :: g, n
 
     call file%create(path, error)
     if (allocated(error)) return
@@ -119,9 +120,13 @@ contains
       call file%write_attribute(place, 'elem', scene%groups(g)%elem)
       call file%write_attribute(place, 'npoint', scene%groups(g)%npoint)
     end do
+    ! deformable dies are drawn with their bodies
+    n = 0
     do g = 1, size(scene%dies)
+      if (is_deformable(scene%dies(g))) cycle
+      n = n + 1
       call file%write('dies/'//scene%dies(g)%name, scene%dies(g)%pieces)
-      call file%write_attribute('dies/'//scene%dies(g)%name, 'number', g)
+      call file%write_attribute('dies/'//scene%dies(g)%name, 'number', n)
     end do
     call file%close(error)
   end subroutine write_mesh
@@ -151,6 +156,7 @@ contains
     type(xdmf_grid_t) :: grid
     character(len=:), allocatable :: place
     character(len=6) :: number
+    integer, allocatable :: rigid(:)
     integer :: nnode, g
 
     if (results%saved_step == solution%step) return
@@ -162,7 +168,8 @@ contains
     call file%write(place//'/coordinates', scene%mesh%coordinates + solution%displacement)
     call file%write_attribute(place, 'time', solution%time)
     call file%write_attribute(place, 'step', solution%step)
-    if (size(scene%dies) > 0) call file%write(place//'/pilots', solution%pilots)
+    rigid = pack([(g, g=1, size(scene%dies))],.not. is_deformable(scene%dies))
+    if (size(rigid) > 0) call file%write(place//'/pilots', solution%pilots(:, rigid))
     grid%time = solution%time
     grid%file = base_name(results%path)
     grid%geometry = place//'/coordinates'

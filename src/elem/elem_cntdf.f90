@@ -1,0 +1,235 @@
+!> CNTDF: contact of a 3-node side of a body with a die made of sides of other bodies.
+!>
+!> Depth, normal, law and state are those of CNT2D: the die is the chain of the other sides where they
+!> now are, Y(xi) = sum_k psi_k(xi) Y_k. The foot xi of a point X makes (X - Y).Y' = 0; with its unit
+!> tangent t, the inner normal n, the curvature kappa and w = -n.dY'/|Y'|, the turn of the tangent at
+!> fixed xi, the depth d = (X - Y).n and the normal change by
+!>
+!>     dd = n.(dX - dY),   dn = t (kappa t.(dX - dY) + w)/(1 + kappa d),   dY at fixed xi.
+!>
+!> The foot itself moves by dxi = (t.(dX - dY) - d w)/(|Y'| (1 + kappa d)).
+!>
+!> The slip of a step is the way of the point relative to the material point at its foot, in axes that
+!> turn with the tangent there: with X0, Y0(xi), t0(xi) at the start of the step it is t0.(Y0 - X0),
+!> since t.(X - Y) = 0 at its end. A rigid motion of both bodies makes none. At a vertex between two
+!> sides the axes turn with the end of the first.
+!>
+!> The point gets the traction, the nodes of the foot's side psi_k of its opposite: what one body gains
+!> the other loses, point by point. Each point is coupled with a few pieces only (pairs): a foot on
+!> another one is told, and the pairs are renewed before anything is made of it.
+module elem_cntdf
+  use contact_point, only: act, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_tau, contact_point_t, &
+                           meeting_t, most_unknowns, no_surface, penalties, share_to_contact, show_on_axis, side_length, side_point
+  use die_search, only: box_distance, find_foot, foot_t
+  use elem_api, only: elem_t, instant_t, report_t, section_motion
+  use elem_cnt2d, only: elem_cnt2d_row
+  use kinds, only: eps, wp
+  use kinematics_api, only: kinematics_t
+  use law_api, only: contact_open, law_t
+  use pairs, only: nodes_per_point, place_in_reach
+  use quadrature, only: line_rule
+  use scene, only: axisymmetric, generalised_plane_strain, group_t, scene_t
+  use shape_functions, only: line3
+  implicit none
+  private
+  public :: elem_cntdf_row
+
+  !> At a vertex the normal turns about the foot: turn d = 1 to some round-off.
+  real(wp), parameter :: at_vertex = 64*eps
+
+contains
+
+  !> As CNT2D, but for the die.
+  function elem_cntdf_row() result(row)
+    type(elem_t) :: row
+
+    row = elem_cnt2d_row()
+    row%name = 'CNTDF'
+    row%purpose = 'contact of a side with sides of another body'
+    row%pilot = .false.
+    row%compute => compute
+  end function elem_cntdf_row
+
+  subroutine compute(scene, group, kinematics, law, instant, first, x, du, committed, trial, force, stiffness, report)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(kinematics_t), intent(in) :: kinematics
+    type(law_t), intent(in) :: law
+    type(instant_t), intent(in) :: instant
+    integer, intent(in) :: first
+    real(wp), intent(in) :: x(:, :, :), du(:, :)
+    real(wp), intent(in), contiguous :: committed(:, :, :)
+    real(wp), intent(inout), contiguous :: trial(:, :, :)
+    real(wp), intent(out) :: force(:, :)
+    real(wp), intent(inout) :: stiffness(:, :, :)
+    type(report_t), intent(out) :: report
+    type(contact_point_t) :: point
+    type(meeting_t) :: meeting
+    type(foot_t) :: foot
+    real(wp), allocatable :: xi(:), weight(:)
+    real(wp) :: side, section(3), phi(3), dphi(3), psi(3), dpsi(3), q(2), dq(2, most_unknowns), dxi(most_unknowns)
+    integer :: e, p, n, j, k, at, nnode, place(most_unknowns)
+    logical :: axisym
+
+    axisym = scene%plane_state == axisymmetric
+    nnode = size(x, 2)
+    n = merge(most_unknowns, most_unknowns - 3, scene%plane_state == generalised_plane_strain)
+    call line_rule(group%npoint, xi, weight)
+    associate (die => instant%dies(group%die), middle => instant%pairs(group%pairs)%piece(:, first:first + size(x, 3) - 1))
+      do e = 1, size(x, 3)
+        force(:, e) = 0
+        if (instant%tangent) stiffness(:, :, e) = 0
+        trial(:, :, e) = committed(:, :, e)
+        trial([at_pressure, at_tau, at_status, at_penetration, at_piece, at_augmentation], :, e) = 0
+        side = side_length(scene, group%connectivity(:, first + e - 1))
+        section = scene%section
+        if (scene%finite) section = instant%section + section_motion(scene, du(:, e))
+        place(1:6) = [1, 2, 3, nnode + 1, nnode + 2, nnode + 3]
+        place(13:15) = [2*nnode + 1, 2*nnode + 2, 2*nnode + 3]
+        if (box_distance(die, box_of(x(:, 1:3, e), du(place(1:6), e))) > side) cycle
+        do p = 1, size(xi)
+          call line3(xi(p), phi, dphi)
+          call side_point(phi, dphi, section, x(:, 1:3, e), du(place(1:6), e), most_unknowns, point)
+          call find_foot(die, point%x, point%e_r, side, foot)
+          if (foot%piece == 0) cycle
+          ! a point on the axis has no surface: nothing acts there, and nothing is asked of it
+          if (axisym .and. point%x(1) <= no_surface*side) cycle
+          trial(at_penetration, p, e) = foot%d
+          trial(at_piece, p, e) = foot%piece
+          k = place_in_reach(die, middle(p, e), foot%piece)
+          if (k == 0) then
+            report%unpaired = .true.
+            cycle
+          end if
+          at = 3 + nodes_per_point*(p - 1) + 3*(k - 1)
+          place(7:12) = [at + 1, at + 2, at + 3, nnode + at + 1, nnode + at + 2, nnode + at + 3]
+          call line3(foot%xi, psi, dpsi)
+          call meet(foot, matmul(x(:, 1:3, e), phi), x(:, at + 1:at + 3, e), du(place(7:12), e), point, meeting, dxi)
+          call act(law, scene%materials(group%material), penalties(scene%materials(group%material), group%amplitude, side), &
+                   point, meeting, weight(p), instant%tangent, committed(:, p, e), trial(:, p, e), q, dq)
+          if (nint(committed(at_status, p, e)) /= contact_open) then
+            report%jump = max(report%jump, abs(trial(at_penetration, p, e) - committed(at_penetration, p, e))/side)
+          end if
+          report%event = min(report%event, share_to_contact(committed(:, p, e), trial(:, p, e), side))
+          if (nint(trial(at_status, p, e)) == contact_open) cycle
+          call spread_force([-phi, psi], q, place, force(:, e))
+          if (.not. instant%tangent) cycle
+          call spread_matrix([-phi, psi], dq(:, :n), place(:n), stiffness(:, :, e))
+          ! the foot moves along its side
+          do j = 1, n
+            call spread_force([0.0_wp, 0.0_wp, 0.0_wp, dpsi*dxi(j)], q, place, stiffness(:, place(j), e))
+          end do
+        end do
+        if (axisym) call show_on_axis(xi, x(1, 1:3, e) + du(1:3, e), side, trial(:, :, e))
+      end do
+    end associate
+  end subroutine compute
+
+  !> Smallest box around the nodes of a side (xmin, ymin, xmax, ymax).
+  pure function box_of(x, du) result(box)
+    real(wp), intent(in) :: x(2, 3), du(6)
+    real(wp) :: box(4)
+
+    box = [minval(x(1, :) + du(1:3)), minval(x(2, :) + du(4:6)), maxval(x(1, :) + du(1:3)), maxval(x(2, :) + du(4:6))]
+  end function box_of
+
+  !> Depth, slip and turn of the normal where a point meets a side, with their derivatives, and the motion of the foot along
+  !> the side. Unknowns 7 to 12 are those of the side met.
+  pure subroutine meet(foot, start, x, du, point, meeting, dxi)
+    type(foot_t), intent(in) :: foot
+    real(wp), intent(in) :: start(2)   !! the point at the start of the step [length]
+    real(wp), intent(in) :: x(2, 3)    !! the side met, at the start of the step [length]
+    real(wp), intent(in) :: du(6)      !! motion of its nodes, x then y
+    type(contact_point_t), intent(in) :: point
+    type(meeting_t), intent(out) :: meeting
+    real(wp), intent(out) :: dxi(most_unknowns)
+    real(wp) :: psi(3), dpsi(3), y(2, 3), t(2), n(2), first0(2), first(2), axis0(2), axis(2), t0(2), n0(2), gap0(2)
+    real(wp) :: relative(2, most_unknowns), tangential(most_unknowns), turn_of_axes(most_unknowns), still, bend0
+
+    call line3(foot%xi, psi, dpsi)
+    y(1, :) = x(1, :) + du(1:3)
+    y(2, :) = x(2, :) + du(4:6)
+    first0 = matmul(x, dpsi)
+    first = matmul(y, dpsi)
+    axis0 = first0/norm2(first0)
+    axis = first/norm2(first)
+    n = foot%normal
+    t = [-n(2), n(1)]
+    meeting%d = foot%d
+    meeting%normal = n
+
+    relative = point%dx
+    relative(1, 7:9) = -psi
+    relative(2, 10:12) = -psi
+    meeting%dd = matmul(n, relative)
+    tangential = matmul(t, relative)
+    turn_of_axes = 0
+    turn_of_axes(7:9) = -axis(2)*dpsi/norm2(first)
+    turn_of_axes(10:12) = axis(1)*dpsi/norm2(first)
+    ! 1/(1 + kappa d), 0 at a vertex
+    still = 1 - foot%turn*foot%d
+    if (abs(still) <= at_vertex) still = 0
+    meeting%turn = foot%turn*tangential + still*turn_of_axes
+
+    dxi = still*(tangential - foot%d*turn_of_axes)/norm2(first)
+
+    ! the tangent of the fan at a vertex, in axes that turn with the side
+    t0 = dot_product(axis, t)*axis0 + cross(axis, t)*[-axis0(2), axis0(1)]
+    n0 = [t0(2), -t0(1)]
+    gap0 = start - matmul(x, psi)
+    meeting%slip = -dot_product(t0, gap0)
+    if (abs(still) > 0) then
+      bend0 = cross(first0, x(:, 1) - 2*x(:, 2) + x(:, 3))/norm2(first0)**3
+      meeting%dslip = norm2(first0)*(1 + bend0*dot_product(n0, gap0))*dxi
+    else
+      meeting%dslip = dot_product(n0, gap0)*(meeting%turn - turn_of_axes)
+    end if
+  end subroutine meet
+
+  !> The force q on the side met, and its opposite on the point's side.
+  pure subroutine spread_force(share, q, place, force)
+    real(wp), intent(in) :: share(6)   !! of the nodes of the point's side (negative), and of the side met
+    real(wp), intent(in) :: q(2)
+    integer, intent(in) :: place(:)
+    real(wp), intent(inout) :: force(:)
+    integer :: i
+
+    do i = 1, 6
+      force(place(row(i, 1))) = force(place(row(i, 1))) + share(i)*q(1)
+      force(place(row(i, 2))) = force(place(row(i, 2))) + share(i)*q(2)
+    end do
+  end subroutine spread_force
+
+  pure subroutine spread_matrix(share, dq, place, stiffness)
+    real(wp), intent(in) :: share(6), dq(:, :)
+    integer, intent(in) :: place(:)
+    real(wp), intent(inout) :: stiffness(:, :)
+    integer :: i, j, c
+
+    do j = 1, size(place)
+      do c = 1, 2
+        do i = 1, 6
+          associate (entry => stiffness(place(row(i, c)), place(j)))
+            entry = entry + share(i)*dq(c, j)
+          end associate
+        end do
+      end do
+    end do
+  end subroutine spread_matrix
+
+  !> Local unknown of component c of node i: side nodes 1 to 3, nodes of the side met 4 to 6.
+  pure function row(i, c)
+    integer, intent(in) :: i, c
+    integer :: row
+
+    row = merge(i, i + 3, i <= 3) + 3*(c - 1)
+  end function row
+
+  pure function cross(a, b) result(c)
+    real(wp), intent(in) :: a(2), b(2)
+    real(wp) :: c
+
+    c = a(1)*b(2) - a(2)*b(1)
+  end function cross
+
+end module elem_cntdf

@@ -1,0 +1,63 @@
+!> What hangs together: nodes that elements join belong to one body.
+module bodies
+  use scene, only: scene_t
+  implicit none
+  private
+  public :: in_one_body
+
+contains
+
+  !> Some side of one list belongs to the same body as some side of the other.
+  pure function in_one_body(scene, one, other) result(same)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: one(:, :), other(:, :)   !! (3, n)
+    logical :: same
+    integer :: parent(size(scene%mesh%coordinates, 2))
+    logical :: of_one(size(parent))
+    integer :: g, e, i, k
+
+    parent = [(k, k=1, size(parent))]
+    do g = 1, size(scene%groups)
+      associate (nodes => scene%groups(g)%connectivity)
+        if (scene%groups(g)%die > 0) cycle
+        do e = 1, size(nodes, 2)
+          do i = 2, size(nodes, 1)
+            call join(nodes(1, e), nodes(i, e), parent)
+          end do
+        end do
+      end associate
+    end do
+    of_one = .false.
+    do k = 1, size(one, 2)
+      of_one(root(parent, one(1, k))) = .true.
+    end do
+    same = .false.
+    do k = 1, size(other, 2)
+      same = same .or. of_one(root(parent, other(1, k)))
+    end do
+  end function in_one_body
+
+  !> The higher root hangs on the lower one.
+  pure subroutine join(a, b, parent)
+    integer, intent(in) :: a, b
+    integer, intent(inout) :: parent(:)
+    integer :: low, high
+
+    low = min(root(parent, a), root(parent, b))
+    high = max(root(parent, a), root(parent, b))
+    parent(high) = low
+    parent(a) = low
+    parent(b) = low
+  end subroutine join
+
+  pure function root(parent, k) result(r)
+    integer, intent(in) :: parent(:), k
+    integer :: r
+
+    r = k
+    do while (parent(r) /= r)
+      r = parent(r)
+    end do
+  end function root
+
+end module bodies
