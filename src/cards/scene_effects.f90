@@ -53,7 +53,7 @@ contains
             call switch_on(3, .true., 'LAW', material%name, &
                            to_text(total_components(laws(material%law_id)%history))//' state per point')
           if (asks(laws(material%law_id), 'friction')) then
-            scene%effects(5)%why = 'PHI and PBOUE of every contact law are 0'
+            if (.not. scene%effects(5)%on) scene%effects(5)%why = 'PHI and PBOUE of every contact law are 0'
             call switch_on(5, rubs(laws(material%law_id), g), 'LAW', material%name, 'unsymmetric matrix, friction work')
           end if
         end associate
