@@ -71,7 +71,7 @@ contains
     type(cursor_t), intent(inout) :: cursor
     type(law_t), intent(in) :: law
     type(material_t), intent(inout) :: material
-    type(material_t) :: part
+    type(material_t) :: first, part
     character(len=:), allocatable :: word
     real(wp), allocatable :: temperatures(:), values(:), curves(:)
     real(wp) :: temperature
@@ -93,18 +93,20 @@ contains
       allocate (part%values(0), part%curve(2, 0))
       call read_lines(cursor, law, part)
       call check_numbers(cursor, law, part)
-      if (n > 0) call check_alike(cursor, law, material, part)
+      if (n > 0) call check_alike(cursor, law, first, part)
       if (cursor%failed()) return
-      if (n == 0) then
-        material%values = part%values
-        material%curve = part%curve
-      end if
+      if (n == 0) first = part
       temperatures = [temperatures, temperature]
       values = [values, part%values]
       curves = [curves, part%curve]
     end do
     n = size(temperatures)
-    if (n == 1) call cursor%fail('the numbers are given at one temperature only: leave out TEMP, or give a second one')
+    if (n == 1) then
+      call cursor%fail('the numbers are given at one temperature only: leave out TEMP, or give a second one')
+      return
+    end if
+    material%values = first%values
+    material%curve = first%curve
     allocate (material%temperatures, source=temperatures)
     allocate (material%values_by_temperature, source=reshape(values, [size(material%values), n]))
     allocate (material%curves, source=reshape(curves, [2, size(material%curve, 2), n]))
