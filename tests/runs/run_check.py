@@ -11,7 +11,7 @@ import sys
 sys.dont_write_bytecode = True
 from support import DONE, LAGAMINE, SOURCE, UPSETTING, Checks, mesh, run, said, summary, write  # noqa: E402
 
-EFFECTS = ("displacement", "large strain", "plasticity", "contact", "friction", "pressure", "heat", "phases")
+EFFECTS = ("displacement", "large strain", "plasticity", "contact", "friction", "pressure", "heat", "phases", "temperature")
 OPTIONS = ("--out", "--check", "--resume", "-p", "--threads", "--quiet", "--law", "--point", "--help", "--version")
 
 # One effect each, and nothing else.
