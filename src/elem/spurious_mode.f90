@@ -13,7 +13,7 @@ module spurious_mode
   private
   public :: has_spurious_mode, find_spurious_mode, spurious_limit
 
-  !> A share above this is told. The mode has 1; smooth motions have less than 0.05, sharp corners that a body folds over up to 0.71.
+  !> A share above this is told. The mode has 1; smooth motions have less than 0.05, corners that a body folds over up to 0.71.
   real(wp), parameter :: spurious_limit = 0.9_wp
   !> Points of the elements that have the mode.
   integer, parameter :: reduced_rule = 4
