@@ -10,6 +10,7 @@ module accept_step
   use newton, only: outcome_t
   use scene, only: scene_t
   use solution, only: solution_t
+  use spurious_mode, only: find_spurious_mode, has_spurious_mode
   use text, only: to_text
   implicit none
   private
@@ -66,6 +67,7 @@ contains
     solution%worst_penetration = max(solution%worst_penetration, totals%max_penetration)
     solution%worst_penetration_ratio = max(solution%worst_penetration_ratio, totals%penetration_ratio)
     solution%least_dissipation = min(solution%least_dissipation, totals%least_dissipation)
+    call book_spurious_mode(scene, equations, solution)
     call check(solution, totals, error)
     do k = 1, size(solution%groups)
       solution%groups(k)%committed = solution%groups(k)%trial
@@ -201,6 +203,28 @@ contains
       end associate
     end do
   end subroutine measure_scene
+
+  !> The motion of the step that the points of an element did not see: the worst of all steps is kept.
+  subroutine book_spurious_mode(scene, equations, solution)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), allocatable :: x(:, :, :)
+    real(wp) :: share
+    integer :: g, element
+
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (.not. has_spurious_mode(group)) cycle
+        call group_geometry(scene, group, equations%elems(group%elem_id), solution%displacement, x)
+        call find_spurious_mode(scene, group, x, solution%last_increment, share, element)
+        if (.not. share > solution%worst_spurious) cycle
+        solution%worst_spurious = share
+        solution%spurious_group = g
+        solution%spurious_element = element
+      end associate
+    end do
+  end subroutine book_spurious_mode
 
   !> Invariants of an accepted step.
   subroutine check(solution, totals, error)

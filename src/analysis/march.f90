@@ -14,6 +14,7 @@ module march
   use results, only: open_results, results_t, save_failure, save_fields
   use scene, only: scene_t
   use solution, only: solution_t
+  use spurious_mode, only: has_spurious_mode, spurious_limit
   use step_strategy, only: after_failure, after_success, choose_step
   use system, only: caught_signal, join_path
   use text, only: to_text
@@ -31,6 +32,8 @@ module march
     type(csv_t) :: table
     type(results_t) :: results
     type(totals_t) :: totals
+    !> The note on a spurious mode has been given.
+    logical :: spurious_told = .false.
     integer :: exit_code = exit_done
     character(len=:), allocatable :: stop_reason
   end type run_t
@@ -77,6 +80,7 @@ contains
       call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
       if (allocated(error)) exit
       call list_step(run%listing, solution, outcome, run%totals)
+      call tell_spurious_mode(scene, solution, run)
       call show_progress(run%listing, scene, solution, outcome%iterations)
       call record(scene, solution, outcome, run, error)
       if (caught_signal() /= 0) exit
@@ -104,6 +108,19 @@ contains
     if (run%resume) return
     call save_fields(scene, solution, run%results, error)
   end subroutine start
+
+  !> A note, once, when an element has moved in a way that its points do not see.
+  subroutine tell_spurious_mode(scene, solution, run)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(inout) :: run
+
+    if (run%spurious_told .or. .not. solution%worst_spurious > spurious_limit) return
+    run%spurious_told = .true.
+    call list_note(run%listing, 'note: step '//to_text(solution%step)//': element '//to_text(solution%spurious_element)//' of ' &
+                   //scene%groups(solution%spurious_group)%name//' moves in the way that 4 integration points do not see ('// &
+                   to_text(100*solution%worst_spurious, 3)//' % of its strain); PL8LS with 9 points and MEAN has no such motion')
+  end subroutine tell_spurious_mode
 
   !> History after every step; fields and checkpoint when they are due.
   subroutine record(scene, solution, outcome, run, error)
@@ -174,6 +191,8 @@ contains
     advice = 'the residual force is in '//run%stem//'.failed.xdmf; a limit load, a mesh too distorted or a least step too ' &
              //'large in STRAT are the usual causes'
     if (size(scene%die_forces) > 0) advice = 'a die that is free and touches nothing needs a SPRNG card until it does; '//advice
+    if (index(outcome%reason, 'singular') > 0 .and. any(has_spurious_mode(scene%groups))) advice = advice//'; a body of few ' &
+      //'elements with 4 integration points has a motion that nothing resists, 9 points with MEAN have none'
     if (solution%step > 0) advice = 'the last good state is in '//run%stem//'.ckp.h5, '//advice
     call fail(error, exit_no_convergence, 'no convergence: step '//to_text(solution%step + 1)//' from time ' &
               //to_text(solution%time)//', length '//to_text(dt)//where_at//': '//outcome%reason, &

@@ -79,6 +79,7 @@ contains
     call json%add('worst_linear_residual', solution%worst_linear_residual)
     call json%add('least_dissipation', solution%least_dissipation)
     call json%add('energy_imbalance', energy_imbalance(solution, totals))
+    call json%add('spurious_mode', solution%worst_spurious)
     call json%end_object()
     call json%begin_object('energy')
     call json%add('external_work', circumference(scene)*solution%external_work)

@@ -92,6 +92,8 @@ contains
     call file%write('progress/force_floor', solution%force_floor)
     call file%write('progress/worst', [solution%worst_linear_residual, solution%worst_penetration, &
                                       solution%worst_penetration_ratio, solution%least_dissipation])
+    call file%write('progress/spurious_mode', [solution%worst_spurious, real(solution%spurious_group, wp), &
+                                              real(solution%spurious_element, wp)])
     call file%write('section/position', solution%section)
     call file%write('section/last_increment', solution%last_section_increment)
     call file%write('section/applied', solution%section_applied)
@@ -190,6 +192,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(hdf5_file_t) :: file
     real(wp), allocatable :: worst(:)
+    real(wp) :: spurious(3)
 
     call open_checkpoint(path, file, error)
     if (allocated(error)) return
@@ -212,6 +215,11 @@ contains
     call read_matrix(file, 'nodes/displacement', solution%displacement)
     call read_matrix(file, 'nodes/last_increment', solution%last_increment)
     call read_matrix(file, 'nodes/applied', solution%applied)
+    spurious = 0
+    call read_triple(file, 'progress/spurious_mode', spurious)
+    solution%worst_spurious = spurious(1)
+    solution%spurious_group = nint(spurious(2))
+    solution%spurious_element = nint(spurious(3))
     call read_triple(file, 'section/position', solution%section)
     call read_triple(file, 'section/last_increment', solution%last_section_increment)
     call read_triple(file, 'section/applied', solution%section_applied)
