@@ -14,7 +14,7 @@ module march
   use results, only: open_results, results_t, save_failure, save_fields
   use scene, only: scene_t
   use solution, only: solution_t
-  use spurious_mode, only: has_spurious_mode, spurious_limit
+  use spurious_mode, only: may_stand_alone, spurious_limit
   use step_strategy, only: after_failure, after_success, choose_step
   use system, only: caught_signal, join_path
   use text, only: to_text
@@ -191,7 +191,7 @@ contains
     advice = 'the residual force is in '//run%stem//'.failed.xdmf; a limit load, a mesh too distorted or a least step too ' &
              //'large in STRAT are the usual causes'
     if (size(scene%die_forces) > 0) advice = 'a die that is free and touches nothing needs a SPRNG card until it does; '//advice
-    if (index(outcome%reason, 'singular') > 0 .and. any(has_spurious_mode(scene%groups))) advice = advice//'; a body of few ' &
+    if (index(outcome%reason, 'singular') > 0 .and. any(may_stand_alone(scene%groups))) advice = advice//'; a body of few ' &
       //'elements with 4 integration points has a motion that nothing resists, 9 points with MEAN have none'
     if (solution%step > 0) advice = 'the last good state is in '//run%stem//'.ckp.h5, '//advice
     call fail(error, exit_no_convergence, 'no convergence: step '//to_text(solution%step + 1)//' from time ' &

@@ -11,12 +11,14 @@ module spurious_mode
   use scene, only: axisymmetric, group_t, is_solid, scene_t
   implicit none
   private
-  public :: has_spurious_mode, find_spurious_mode, spurious_limit
+  public :: has_spurious_mode, may_stand_alone, find_spurious_mode, spurious_limit
 
   !> A share above this is told. The mode has 1; smooth motions have less than 0.05, corners that a body folds over up to 0.71.
   real(wp), parameter :: spurious_limit = 0.9_wp
   !> Points of the elements that have the mode.
   integer, parameter :: reduced_rule = 4
+  !> A body of more elements has neighbours enough to stop the mode.
+  integer, parameter :: few_elements = 16
 
 contains
 
@@ -27,6 +29,14 @@ contains
 
     yes = is_solid(group) .and. group%npoint == reduced_rule
   end function has_spurious_mode
+
+  !> Whether the mode of a group may go unresisted.
+  elemental function may_stand_alone(group) result(yes)
+    type(group_t), intent(in) :: group
+    logical :: yes
+
+    yes = has_spurious_mode(group) .and. size(group%connectivity, 2) <= few_elements
+  end function may_stand_alone
 
   !> Largest share among the elements of a group, and where.
   pure subroutine find_spurious_mode(scene, group, x, motion, share, element)
