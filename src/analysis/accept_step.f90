@@ -1,5 +1,6 @@
 !> What happens when a step is accepted: the trial state becomes the state, and every check is made.
 module accept_step
+  use contact_contour, only: sample_depth
   use elem_api, only: add_totals, totals_t
   use element_loop, only: group_geometry
   use equations, only: equations_t, external_forces
@@ -55,6 +56,7 @@ contains
     solution%worst_penetration = max(solution%worst_penetration, totals%max_penetration)
     solution%worst_penetration_ratio = max(solution%worst_penetration_ratio, totals%penetration_ratio)
     solution%least_dissipation = min(solution%least_dissipation, totals%least_dissipation)
+    call sample_contacts(scene, solution)
     call check(solution, totals, error)
     do k = 1, size(solution%groups)
       solution%groups(k)%committed = solution%groups(k)%trial
@@ -146,6 +148,26 @@ contains
       end associate
     end do
   end subroutine measure_scene
+
+  !> Depth of the part in the dies all along its sides, between integration points too.
+  subroutine sample_contacts(scene, solution)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    real(wp) :: depth, ratio, allowed
+    integer :: g
+
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%die == 0) cycle
+        ! every contact law begins with it (contact_penalties)
+        allowed = scene%materials(group%material)%values(1)
+        call sample_depth(group, scene%dies(group%die), solution%pilots(:, group%die), scene%mesh%coordinates, &
+                          scene%mesh%coordinates + solution%displacement, allowed, depth, ratio)
+      end associate
+      solution%worst_sample = max(solution%worst_sample, depth)
+      solution%worst_sample_ratio = max(solution%worst_sample_ratio, ratio)
+    end do
+  end subroutine sample_contacts
 
   !> Invariants of an accepted step.
   subroutine check(solution, totals, error)

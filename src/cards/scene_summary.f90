@@ -23,7 +23,7 @@ contains
     do k = 1, size(scene%groups)
       associate (group => scene%groups(k))
         call put('group      '//padded(group%name, 24)//padded(to_text(size(group%connectivity, 2))//' '//group%elem, 14) &
-                 //to_text(abs(group%npoint))//trim(merge(' Lobatto', '        ', group%npoint < 0))//' points'//driven_by(k))
+                 //to_text(abs(group%npoint))//rule_of(group%npoint)//' points'//driven_by(k))
       end associate
     end do
     do k = 1, size(scene%materials)
@@ -73,6 +73,16 @@ contains
       if (scene%groups(g)%multiplier > 0) s = ', '//to_text(scene%groups(g)%amplitude)//' x ' &
                                               //scene%multipliers(scene%groups(g)%multiplier)%name
     end function driven_by
+
+    !> Kind of an integration rule along a side, where it is not Gauss's.
+    pure function rule_of(npoint) result(s)
+      integer, intent(in) :: npoint
+      character(len=:), allocatable :: s
+
+      s = ''
+      if (npoint == -3) s = ' Lobatto'
+      if (npoint < -3) s = ' equidistant'
+    end function rule_of
 
     pure function motion_of(die) result(s)
       integer, intent(in) :: die

@@ -10,6 +10,10 @@
 !> pilot, along t: a rigid motion of part and die together makes none. When contact begins inside
 !> the step only the share d/(d - d_start) of the way counts.
 !>
+!> A corner of the die between two integration points is one more point of contact of the side
+!> (side_corners), with the length of the stretch between them as its weight. It acts on what is deeper
+!> than half the allowed penetration, where one is given.
+!>
 !> Forces are integrated consistently over the side. The reaction acts on the pilot: force, and
 !> moment about it. Everything is linearised exactly, the curvature of the die included.
 module elem_cnt2d
@@ -23,6 +27,7 @@ module elem_cnt2d
   use quadrature, only: line_rule
   use scene, only: axisymmetric, group_t, scene_t
   use shape_functions, only: line3
+  use side_corners, only: corner_t, deepest_corner, foot_at_corner
   use state_variables, only: state_variable, state_variable_t, transfer_contact, transfer_recompute
   implicit none
   private
@@ -31,6 +36,8 @@ module elem_cnt2d
   !> Places in the state of a point.
   integer, parameter :: at_pressure = 1, at_tau = 2, at_penetration = 3, at_status = 4, at_slip = 5, &
                         at_augmentation = 6, at_work = 7, at_piece = 8, at_xi = 9
+  !> After them the same of a corner of the die between this point and the one before, and its place on the side.
+  integer, parameter :: npoint_state = 9, at_place = 2*npoint_state + 1
   !> Place of the largest number of augmentations among a contact law's values (contact_penalties).
   integer, parameter :: at_augment = 4
   !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle.
@@ -44,6 +51,14 @@ module elem_cnt2d
   real(wp), parameter :: tangential_share = 0.1_wp
   !> A point that comes into contact may overlap the die by this share of the side in the predictor of a step.
   real(wp), parameter :: overlap_limit = 0.01_wp
+
+  !> A corner acts on what is deeper than this share of the allowed penetration: a side that lies on the die by a corner
+  !> has its points for that.
+  real(wp), parameter :: corner_share = 0.5_wp
+
+  !> Augmentation takes away the depth of points, not the bend of the side between them: points that are deep by less than
+  !> this share of the allowed penetration have no more to give.
+  real(wp), parameter :: worth_augmenting = 0.5_wp
 
   !> A point of the side in the present geometry, with derivatives along the local unknowns.
   type :: contact_point_t
@@ -73,17 +88,23 @@ contains
   pure subroutine variables(law, list)
     type(law_t), intent(in) :: law
     type(state_variable_t), allocatable, intent(out) :: list(:)
+    type(state_variable_t), allocatable :: own(:)
     integer :: k
 
-    list = [state_variable('pressure', 'stress', transfer_contact), &
-            state_variable('friction', 'stress', transfer_contact), &
-            state_variable('penetration', 'length', transfer_recompute), &
-            state_variable('contact_status', '-', transfer_recompute), &
-            state_variable('slip', 'length', transfer_contact), &
-            state_variable('augmentation', 'stress', transfer_contact), &
-            state_variable('friction_work', 'stress*length', transfer_contact), &
-            state_variable('die_piece', '-', transfer_recompute), &
-            state_variable('die_xi', '-', transfer_recompute), law%history]
+    allocate (own, source=[state_variable('pressure', 'stress', transfer_contact), &
+           state_variable('friction', 'stress', transfer_contact), &
+           state_variable('penetration', 'length', transfer_recompute), &
+           state_variable('contact_status', '-', transfer_recompute), &
+           state_variable('slip', 'length', transfer_contact), &
+           state_variable('augmentation', 'stress', transfer_contact), &
+           state_variable('friction_work', 'stress*length', transfer_contact), &
+           state_variable('die_piece', '-', transfer_recompute), &
+           state_variable('die_xi', '-', transfer_recompute)])
+    allocate (list, source=[own, own, state_variable('corner_place', '-', transfer_recompute), law%history])
+    do k = 1, npoint_state
+      list(npoint_state + k)%name = 'corner_'//own(k)%name
+      list(npoint_state + k)%transfer = transfer_recompute
+    end do
     do k = 1, size(list)
       list(k)%first = k
     end do
@@ -113,23 +134,81 @@ contains
       force(:, e) = 0
       if (instant%tangent) stiffness(:, :, e) = 0
       trial(:, :, e) = committed(:, :, e)
-      trial([at_pressure, at_tau, at_status, at_penetration, at_piece, at_xi, at_augmentation], :, e) = 0
+      call rest(trial(:npoint_state, :, e))
+      call rest(trial(npoint_state + 1:2*npoint_state, :, e))
       side = side_length(scene, group%connectivity(:, first + e - 1))
       pilot(:, 1) = instant%pilots(:, group%die)
       pilot(:, 2) = pilot(:, 1) + du(7:9, e)
       if (far(scene%dies(group%die), x(:, :, e), du(:, e), pilot(:, 2), side)) cycle
       do p = 1, size(xi)
         call contact_at(scene%dies(group%die), law, scene%materials(group%material), axisym, group%amplitude, side, &
-                        x(:, :, e), du(:, e), pilot, xi(p), weight(p), instant%tangent, &
-                        committed(:, p, e), trial(:, p, e), force(:, e), stiffness(:, :, e))
+                        x(:, :, e), du(:, e), pilot, xi(p), weight(p), instant%tangent, 0.0_wp, &
+                        committed(:npoint_state, p, e), trial(:npoint_state, p, e), force(:, e), stiffness(:, :, e))
         if (nint(committed(at_status, p, e)) /= contact_open) then
           report%jump = max(report%jump, abs(trial(at_penetration, p, e) - committed(at_penetration, p, e))/side)
         end if
         report%event = min(report%event, share_to_contact(committed(:, p, e), trial(:, p, e), side))
       end do
+      call contact_of_corners(scene%dies(group%die), law, scene%materials(group%material), axisym, group%amplitude, side, &
+                              x(:, :, e), du(:, e), pilot, xi, instant%tangent, &
+                              committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e), report)
       if (axisym) call show_on_axis(xi, x(1, :, e) + du(1:3, e), side, trial(:, :, e))
     end do
   end subroutine compute
+
+  !> A point without contact: what it has slipped and worn stays.
+  pure subroutine rest(state)
+    real(wp), intent(inout) :: state(:, :)
+
+    state([at_pressure, at_tau, at_status, at_penetration, at_piece, at_xi, at_augmentation], :) = 0
+  end subroutine rest
+
+  !> Contact of the corners of the die between integration points.
+  pure subroutine contact_of_corners(die, law, material, axisym, modulus, side, x, du, pilot, xi, tangent_wanted, &
+                                     committed, trial, force, stiffness, report)
+    type(die_t), intent(in) :: die
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    logical, intent(in) :: axisym, tangent_wanted
+    real(wp), intent(in) :: modulus, side, x(2, 3), du(ndof), pilot(3, 2), xi(:), committed(:, :)
+    real(wp), intent(inout) :: trial(:, :), force(ndof), stiffness(ndof, ndof)
+    type(report_t), intent(inout) :: report
+    type(corner_t) :: corner
+    real(wp) :: nodes(2, 3), from, to
+    integer :: p, k
+
+    if (size(die%corners, 2) == 0 .or. .not. material%values(1) > 0) return
+    do k = 1, 3
+      nodes(:, k) = turned([x(1, k) + du(k), x(2, k) + du(k + 3)] - pilot(1:2, 2), -pilot(3, 2))
+    end do
+    do p = 1, size(xi)
+      call stretch_before(xi, p, from, to)
+      if (.not. to > from) cycle
+      call deepest_corner(die, nodes, from, to, side, corner)
+      if (.not. corner%found) cycle
+      trial(at_place, p) = corner%place
+      associate (before => committed(npoint_state + 1:2*npoint_state, p), now => trial(npoint_state + 1:2*npoint_state, p))
+        call contact_at(die, law, material, axisym, modulus, side, x, du, pilot, corner%place, to - from, tangent_wanted, &
+                        corner_share*material%values(1)*side, before, now, force, stiffness, corner)
+        if (nint(before(at_status)) /= contact_open) then
+          report%jump = max(report%jump, abs(now(at_penetration) - before(at_penetration))/side)
+        end if
+        report%event = min(report%event, share_to_contact(before, now, side))
+      end associate
+    end do
+  end subroutine contact_of_corners
+
+  !> The stretch of the side between a point and the one before; the last one goes on to the end of the side.
+  pure subroutine stretch_before(xi, p, from, to)
+    real(wp), intent(in) :: xi(:)
+    integer, intent(in) :: p
+    real(wp), intent(out) :: from, to
+
+    from = -1
+    if (p > 1) from = xi(p - 1)
+    to = xi(p)
+    if (p == size(xi)) to = 1
+  end subroutine stretch_before
 
   !> Stresses shown at a point on the axis, where none act: on the line through its two neighbours.
   pure subroutine show_on_axis(xi, x, side, trial)
@@ -180,18 +259,20 @@ contains
 
   !> Contact at one integration point: state, forces, matrix.
   pure subroutine contact_at(die, law, material, axisym, modulus, side, x, du, pilot, xi, weight, tangent_wanted, &
-                             committed, trial, force, stiffness)
+                             allowed, committed, trial, force, stiffness, corner)
     type(die_t), intent(in) :: die
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     logical, intent(in) :: axisym, tangent_wanted
     real(wp), intent(in) :: modulus, side, x(2, 3), du(ndof), pilot(3, 2), xi, weight
     real(wp), intent(in) :: committed(:)
+    real(wp), intent(in) :: allowed          !! depth that needs no pressure [length]
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
+    type(corner_t), intent(in), optional :: corner   !! the point is where a corner of the die is
     type(contact_point_t) :: point
     type(foot_t) :: foot
-    real(wp) :: phi(3), dphi(3), n(2), t(2), lever(2), way(2), turn(2), q(2), moment, share, slip
-    real(wp), dimension(ndof) :: dd, along, dslip, dp, dtau, dmoment
+    real(wp) :: phi(3), dphi(3), n(2), t(2), lever(2), way(2), turn(2), q(2), moment, share, slip, depth, depth_before
+    real(wp), dimension(ndof) :: dd, along, dslip, dp, dtau, dmoment, dxi, spin
     real(wp), dimension(2, ndof) :: relative, dn, dt, dway, dlever, dq
     real(wp) :: penalty(2), pressure, tau, law_tangent(2, 2)
     integer :: status, j, k
@@ -199,8 +280,14 @@ contains
     call line3(xi, phi, dphi)
     call side_point(phi, dphi, axisym, x, du, point)
     lever = point%x - pilot(1:2, 2)
-    call foot_of(die, turned(lever, -pilot(3, 2)), turned(point%e_r, -pilot(3, 2)), side, committed, foot)
-    if (foot%piece == 0) return
+    dxi = 0
+    if (present(corner)) then
+      foot = foot_at_corner(corner)
+      call move_with_corner(dphi, x, du, pilot, corner, point, dxi, spin)
+    else
+      call foot_of(die, turned(lever, -pilot(3, 2)), turned(point%e_r, -pilot(3, 2)), side, committed, foot)
+      if (foot%piece == 0) return
+    end if
     ! a point on the axis has no surface: nothing acts there, and nothing is asked of it
     if (axisym .and. point%radius <= no_surface*side) return
     trial(at_penetration) = foot%d
@@ -218,6 +305,7 @@ contains
     dd = matmul(n, relative)
     along = foot%turn*matmul(t, relative)
     along(9) = along(9) + 1
+    if (present(corner)) along = spin
     do j = 1, ndof
       dn(:, j) = along(j)*t
       dt(:, j) = -along(j)*n
@@ -229,15 +317,20 @@ contains
     slip = dot_product(t, way)
     dway = dlever
     dway(:, 9) = dway(:, 9) - [-turn(2), turn(1)]
+    if (present(corner)) dway = dway - outer(turned(matmul(x, dphi), pilot(3, 2) - pilot(3, 1)), dxi)
     dslip = matmul(t, dway) + matmul(way, dt)
-    if (nint(committed(at_status)) == contact_open .and. committed(at_penetration) < 0 .and. foot%d > 0) then
-      share = foot%d/(foot%d - committed(at_penetration))
-      dslip = share*dslip - slip*committed(at_penetration)/(foot%d - committed(at_penetration))**2*dd
+    depth = foot%d - allowed
+    depth_before = committed(at_penetration) - allowed
+    if (nint(committed(at_status)) == contact_open .and. depth_before < 0 .and. depth > 0) then
+      share = depth/(depth - depth_before)
+      dslip = share*dslip - slip*depth_before/(depth - depth_before)**2*dd
       slip = share*slip
     end if
 
     penalty = penalties(material, modulus, side)
-    call law%slide(material, penalty, committed(at_augmentation), foot%d, slip, committed(at_tau), &
+    ! no corner pulls, whatever the law
+    if (present(corner) .and. .not. committed(at_augmentation) + penalty(1)*depth > 0) return
+    call law%slide(material, penalty, committed(at_augmentation), depth, slip, committed(at_tau), &
                    pressure, tau, law_tangent, status)
     trial(at_pressure) = pressure
     trial(at_tau) = tau
@@ -267,13 +360,54 @@ contains
       dq(:, j) = dq(:, j)*point%radius + q*point%dradius(j)
       dmoment(j) = dmoment(j)*point%radius + moment*point%dradius(j)
       do k = 1, 3
-        stiffness(k, j) = stiffness(k, j) - phi(k)*dq(1, j)
-        stiffness(k + 3, j) = stiffness(k + 3, j) - phi(k)*dq(2, j)
+        stiffness(k, j) = stiffness(k, j) - phi(k)*dq(1, j) - dphi(k)*dxi(j)*q(1)*point%radius
+        stiffness(k + 3, j) = stiffness(k + 3, j) - phi(k)*dq(2, j) - dphi(k)*dxi(j)*q(2)*point%radius
       end do
       stiffness(7:8, j) = stiffness(7:8, j) + dq(:, j)
       stiffness(9, j) = stiffness(9, j) + dmoment(j)
     end do
   end subroutine contact_at
+
+  !> The place of a corner on the side moves with nodes and pilot, and the point with it: from (V - y).y' = 0,
+  !> ((V - y).y'' - y'.y') dxi = -(dV - dy).y' - (V - y).dy'. `spin` is the angle by which the normal turns.
+  pure subroutine move_with_corner(dphi, x, du, pilot, corner, point, dxi, spin)
+    real(wp), intent(in) :: dphi(3), x(2, 3), du(ndof), pilot(3, 2)
+    type(corner_t), intent(in) :: corner
+    type(contact_point_t), intent(inout) :: point
+    real(wp), intent(out) :: dxi(ndof), spin(ndof)
+    real(wp) :: arm(2), way(2), bend(2), dv(2, ndof), dtangent(2, ndof)
+    real(wp), parameter :: second(3) = [1.0_wp, -2.0_wp, 1.0_wp]
+    integer :: j
+
+    arm = turned(corner%vertex, pilot(3, 2))
+    way = pilot(1:2, 2) + arm - point%x
+    bend = matmul(x, second) + [dot_product(second, du(1:3)), dot_product(second, du(4:6))]
+    dv = 0
+    dv(1, 7) = 1
+    dv(2, 8) = 1
+    dv(:, 9) = [-arm(2), arm(1)]
+    dtangent = 0
+    dtangent(1, 1:3) = dphi
+    dtangent(2, 4:6) = dphi
+    dxi = (matmul(point%tangent, dv - point%dx) + matmul(way, dtangent))/(point%length**2 - dot_product(way, bend))
+    point%dx = point%dx + outer(point%tangent, dxi)
+    point%dlength = point%dlength + dot_product(point%tangent, bend)/point%length*dxi
+    ! the radius is 1, and stays so, in plane strain
+    if (any(abs(point%dradius) > 0)) point%dradius = point%dradius + point%tangent(1)*dxi
+    spin = 0
+    spin(9) = 1
+    if (.not. corner%own) return
+    do j = 1, ndof
+      spin(j) = dot_product(point%e_r, dtangent(:, j) + bend*dxi(j))/point%length
+    end do
+  end subroutine move_with_corner
+
+  pure function outer(a, b) result(c)
+    real(wp), intent(in) :: a(2), b(ndof)
+    real(wp) :: c(2, ndof)
+
+    c = spread(a, 2, ndof)*spread(b, 1, 2)
+  end function outer
 
   !> Foot of a point: the closest, unless the one that continues the last accepted foot says that the point is inside.
   pure subroutine foot_of(die, point, e_r, reach, committed, foot)
@@ -347,7 +481,7 @@ contains
   end function turned
 
   !> Uzawa: the pressure (or pull, of glue) reached becomes the multiplier, p = multiplier + AKP d, so that the same
-  !> pressure needs no penetration any more.
+  !> pressure needs no penetration any more. The side is judged at its points and between them.
   subroutine augment(scene, group, times, committed, trial, changed)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -355,18 +489,47 @@ contains
     real(wp), intent(inout) :: committed(:, :, :)
     real(wp), intent(in) :: trial(:, :, :)
     logical, intent(out) :: changed
-    integer :: e
+    real(wp) :: allowed
+    integer :: e, k
 
     changed = .false.
     associate (values => scene%materials(group%material)%values)
       if (times >= nint(values(at_augment)) .or. .not. values(1) > 0) return
       do e = 1, size(trial, 3)
-        changed = changed .or. any(abs(trial(at_penetration, :, e)) > values(1)*side_length(scene, group%connectivity(:, e)) &
-                                   .and. nint(trial(at_status, :, e)) /= contact_open)
+        allowed = values(1)*side_length(scene, group%connectivity(:, e))
+        do k = 0, npoint_state, npoint_state
+          changed = changed .or. any(abs(trial(k + at_penetration, :, e)) > allowed &
+                                     .and. nint(trial(k + at_status, :, e)) /= contact_open)
+        end do
+        changed = changed .or. any(peaks(trial(:, :, e), group%npoint, worth_augmenting*allowed) > allowed)
       end do
     end associate
-    if (changed) committed(at_augmentation, :, :) = trial(at_pressure, :, :)
+    if (.not. changed) return
+    do k = 0, npoint_state, npoint_state
+      committed(k + at_augmentation, :, :) = trial(k + at_pressure, :, :)
+    end do
   end subroutine augment
+
+  !> Depth of the side at its points in contact or beside them: the top of the parabola through three points at equal
+  !> distances, when it lies between them; zero elsewhere.
+  pure function peaks(state, npoint, least) result(depth)
+    real(wp), intent(in) :: state(:, :)
+    integer, intent(in) :: npoint
+    real(wp), intent(in) :: least   !! depth of a point that is judged [length]
+    real(wp) :: depth(size(state, 2))
+    real(wp) :: slope, bend
+    integer :: p
+
+    depth = 0
+    if (npoint > 0) return
+    do p = 2, size(state, 2) - 1
+      if (nint(state(at_status, p)) == contact_open .or. .not. state(at_penetration, p) > least) cycle
+      if (any(nint(state(at_piece, p - 1:p + 1)) == 0)) cycle
+      slope = 0.5_wp*(state(at_penetration, p + 1) - state(at_penetration, p - 1))
+      bend = state(at_penetration, p + 1) - 2*state(at_penetration, p) + state(at_penetration, p - 1)
+      if (abs(slope) < -bend) depth(p) = state(at_penetration, p) - 0.5_wp*slope**2/bend
+    end do
+  end function peaks
 
   !> Friction work, penetration found and allowed, number of points in each contact state.
   subroutine measure(scene, group, law, x, state, before, totals)
@@ -376,36 +539,47 @@ contains
     real(wp), intent(in) :: x(:, :, :), state(:, :, :), before(:, :, :)
     type(totals_t), intent(out) :: totals
     real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: phi(3), dphi(3), area, side
+    real(wp) :: side, from, to
     integer :: e, p
 
     call line_rule(group%npoint, xi, weight)
-    associate (values => scene%materials(group%material)%values)
-      do e = 1, size(x, 3)
-        side = side_length(scene, group%connectivity(:, e))
-        do p = 1, size(xi)
-          select case (nint(state(at_status, p, e)))
-          case (contact_stick)
-            totals%stick = totals%stick + 1
-          case (contact_slip)
-            totals%slip = totals%slip + 1
-          case default
-            totals%open = totals%open + 1
-          end select
-          if (nint(state(at_status, p, e)) /= contact_open) then
-            totals%max_penetration = max(totals%max_penetration, state(at_penetration, p, e))
-            if (values(1) > 0) then
-              totals%penetration_ratio = max(totals%penetration_ratio, state(at_penetration, p, e)/(values(1)*side))
-            end if
-          end if
-          call line3(xi(p), phi, dphi)
-          area = norm2(matmul(x(:, :, e), dphi))*weight(p)
-          if (scene%plane_state == axisymmetric) area = area*dot_product(phi, x(1, :, e))
-          totals%friction_work = totals%friction_work + area*state(at_work, p, e)
-          totals%least_dissipation = min(totals%least_dissipation, state(at_work, p, e) - before(at_work, p, e))
-        end do
+    do e = 1, size(x, 3)
+      side = side_length(scene, group%connectivity(:, e))
+      do p = 1, size(xi)
+        select case (nint(state(at_status, p, e)))
+        case (contact_stick)
+          totals%stick = totals%stick + 1
+        case (contact_slip)
+          totals%slip = totals%slip + 1
+        case default
+          totals%open = totals%open + 1
+        end select
+        call add_point(state(:npoint_state, p, e), before(:npoint_state, p, e), xi(p), weight(p))
+        call stretch_before(xi, p, from, to)
+        call add_point(state(npoint_state + 1:2*npoint_state, p, e), before(npoint_state + 1:2*npoint_state, p, e), &
+                       state(at_place, p, e), to - from)
       end do
-    end associate
+    end do
+
+  contains
+
+    !> Penetration and friction of a point of side e.
+    subroutine add_point(now, old, place, share)
+      real(wp), intent(in) :: now(:), old(:), place, share
+      real(wp) :: phi(3), dphi(3), area, allowed
+
+      allowed = scene%materials(group%material)%values(1)*side
+      if (nint(now(at_status)) /= contact_open) then
+        totals%max_penetration = max(totals%max_penetration, now(at_penetration))
+        if (allowed > 0) totals%penetration_ratio = max(totals%penetration_ratio, now(at_penetration)/allowed)
+      end if
+      call line3(place, phi, dphi)
+      area = norm2(matmul(x(:, :, e), dphi))*share
+      if (scene%plane_state == axisymmetric) area = area*dot_product(phi, x(1, :, e))
+      totals%friction_work = totals%friction_work + area*now(at_work)
+      totals%least_dissipation = min(totals%least_dissipation, now(at_work) - old(at_work))
+    end subroutine add_point
+
   end subroutine measure
 
 end module elem_cnt2d

@@ -26,7 +26,7 @@ module scene
     integer :: elem_id = 0
     !> Material (place in the scene's list); 0 for elements without a law.
     integer :: material = 0
-    !> Integration points of an element (negative: Lobatto).
+    !> Integration points of an element (negative: at equal distances).
     integer :: npoint = 0
     !> Nodes (nnode, nelem).
     integer, allocatable :: connectivity(:, :)
