@@ -40,7 +40,7 @@ def depth(pieces, point):
         if k in (0, len(pieces)) and not closed:
             found = numpy.nan
             continue
-        before, after = (b - 0 * a)[k - 1] + 2 * a[k - 1], b[k % len(pieces)] - 2 * a[k % len(pieces)]
+        before, after = b[k - 1] + 2 * a[k - 1], b[k % len(pieces)] - 2 * a[k % len(pieces)]
         found = distance * numpy.sign(cross(before, after))
     return found
 
@@ -62,7 +62,9 @@ def sampled(path, number=20):
                 name = name.decode() if isinstance(name, bytes) else name
                 number_of_die = next(k for k, (die, _) in dies.items() if name.endswith("/" + die))
                 pieces, pilot = dies[number_of_die][1], place["pilots"][number_of_die - 1]
+                names = [word.decode() if isinstance(word, bytes) else word for word in place[f"points/{g}/components"][()]]
                 state = place[f"points/{g}/state"][()]
+                pressures = state[:, :, [k for k, word in enumerate(names) if word in ("pressure", "corner_pressure")]]
                 turn = numpy.array([[numpy.cos(pilot[2]), -numpy.sin(pilot[2])], [numpy.sin(pilot[2]), numpy.cos(pilot[2])]])
                 worst = share = 0.0
                 where = None
@@ -75,5 +77,5 @@ def sampled(path, number=20):
                             worst, where = d, (nodes.tolist(), round(float(value), 3))
                         share = max(share, d / side) if d == d else share
                 rows.append({"step": int(step), "time": float(place.attrs["time"]), "group": name, "depth": worst, "share": share,
-                             "where": where, "least_pressure": float(state[:, :, 0].min()), "most_pressure": float(state[:, :, 0].max())})
+                             "where": where, "least_pressure": float(pressures.min()), "most_pressure": float(pressures.max())})
     return rows
