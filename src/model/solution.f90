@@ -40,6 +40,8 @@ module solution
     !> What the scene has borne so far, worst of all accepted steps.
     real(wp) :: worst_linear_residual = 0.0_wp, worst_penetration = 0.0_wp, worst_penetration_ratio = 0.0_wp
     real(wp) :: least_dissipation = 0.0_wp
+    !> Largest depth of a side in a die anywhere along it, and over what the side allows.
+    real(wp) :: worst_sample = 0.0_wp, worst_sample_ratio = 0.0_wp
     !> Forces below this are round-off (set at the first evaluation of a mesh).
     real(wp) :: force_floor = 0.0_wp
     !> Forces from outside at the last accepted instant: reactions, nodal forces, pressures, on
