@@ -1,8 +1,11 @@
 !> The march in time: the page that reads like the method.
 module march
   use accept_step, only: accept, measure_scene
-  use csv_writer, only: csv_t
+  use contact_contour, only: find_contact_ends
+  use contact_ends, only: contact_end_t
   use contact_flow, only: update_flow_stress
+  use csv_writer, only: csv_t
+  use dies, only: present_die
   use elem_api, only: totals_t
   use equations, only: equations_t, set_up
   use errors, only: error_t, exit_done, exit_no_convergence, exit_signal, fail
@@ -15,6 +18,7 @@ module march
   use scene, only: scene_t
   use solution, only: solution_t
   use spurious_mode, only: may_stand_alone, spurious_limit
+  use state_variables, only: find_variable
   use step_strategy, only: after_failure, after_success, choose_step
   use system, only: caught_signal, join_path
   use text, only: to_text
@@ -138,9 +142,33 @@ contains
     if (fields_due) call save_fields(scene, solution, run%results, error)
     if (allocated(error)) return
     if (fields_due .or. is_due(solution%step, scene%strategy%checkpoint_every) .or. caught_signal() /= 0) then
-      call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, error)
+      call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, ends_now(scene, solution), &
+                            error)
     end if
   end subroutine record
+
+  !> Where contact begins and ends in all contact groups.
+  function ends_now(scene, solution) result(ends)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(contact_end_t), allocatable :: ends(:)
+    real(wp), allocatable :: x(:, :)
+    integer :: g, status, penetration
+
+    allocate (ends(0))
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%die == 0 .or. group%material == 0) cycle
+        status = group%variables(find_variable(group%variables, 'contact_status'))%first
+        penetration = group%variables(find_variable(group%variables, 'penetration'))%first
+        x = scene%mesh%coordinates + solution%displacement
+        call find_contact_ends(group, g, present_die(scene%dies(group%die), x), solution%pilots(:, group%die), &
+                               scene%mesh%coordinates, x, &
+                               nint(solution%groups(g)%committed(status, :, :)), &
+                               solution%groups(g)%committed(penetration, :, :), ends)
+      end associate
+    end do
+  end function ends_now
 
   pure function is_due(step, every) result(due)
     integer, intent(in) :: step, every
@@ -233,7 +261,8 @@ contains
       if (error%code == exit_no_convergence .and. solution%step > 0) then
         call save_fields(scene, solution, run%results, late)
         if (.not. allocated(late)) then
-          call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, late)
+          call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, ends_now(scene, solution), &
+                            late)
         end if
       end if
     else if (caught_signal() /= 0 .and. .not. at_end(scene, solution)) then

@@ -43,6 +43,8 @@ module solution
     !> Largest share of a motion that the points of an element did not see (spurious_mode), and the element.
     real(wp) :: worst_spurious = 0.0_wp
     integer :: spurious_group = 0, spurious_element = 0
+    !> Largest depth of a side in a die anywhere along it, and over what the side allows.
+    real(wp) :: worst_sample = 0.0_wp, worst_sample_ratio = 0.0_wp
     !> Forces below this are round-off (set at the first evaluation of a mesh).
     real(wp) :: force_floor = 0.0_wp
     !> Forces from outside at the last accepted instant: reactions, nodal forces, pressures, on
