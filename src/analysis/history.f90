@@ -143,8 +143,11 @@ contains
     select case (probe%kind)
     case (probe_node)
       associate (node => probe%nodes(1), c => 2 - mod(probe%quantity, 2))
-        value = solution%displacement(c, node)
-        if (probe%quantity <= 2) value = value + scene%mesh%coordinates(c, node)
+        if (probe%quantity <= 2) then
+          value = solution%displacement(c, node) + scene%mesh%coordinates(c, node) + probe%offset(c)
+        else
+          value = solution%displacement(c, node) + (scene%mesh%coordinates(c, node) - scene%mesh%origin(c, node))
+        end if
       end associate
     case (probe_reaction)
       value = sum(solution%reactions(probe%quantity, probe%nodes))

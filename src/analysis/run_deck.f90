@@ -4,7 +4,7 @@ module run_deck
   use diagnostics, only: diagnostics_t
   use equations, only: equations_t
   use errors, only: error_t, exit_done, exit_input, exit_machine, fail
-  use exchange, only: read_checkpoint, read_deck_of_checkpoint
+  use exchange, only: read_checkpoint, read_deck_of_checkpoint, read_remesh
   use kinds, only: wp
   use law_api, only: law_t
   use law_manual, only: law_card
@@ -12,6 +12,7 @@ module run_deck
   use listing, only: close_listing, end_progress, list_lines, open_listing
   use march, only: march_to_end, run_t
   use run_options, only: run_options_t, stem_of, version_text
+  use remesh, only: remesh_t
   use scene, only: scene_t
   use scene_reader, only: read_scene
   use scene_summary, only: scene_lines
@@ -49,7 +50,7 @@ contains
     end if
     call start_solution(scene, solution)
     run%resume = allocated(options%resume)
-    if (run%resume) call take_up(options%resume, run%deck_text, scene, solution, error)
+    if (run%resume) call read_checkpoint(options%resume, scene, solution, error)
     if (allocated(error)) return
     call make_directory(options%out, error)
     if (allocated(error)) return
@@ -68,19 +69,27 @@ contains
     character(len=:), allocatable, intent(out) :: text
     type(error_t), allocatable, intent(out) :: error
     type(diagnostics_t), target :: diagnostics
+    type(remesh_t), allocatable :: remesh
+    type(error_t), allocatable :: unfit
+    logical :: sound
 
     call read_deck(options%deck, options%overrides, deck, diagnostics)
+    sound = diagnostics%count() == 0
+    if (sound .and. allocated(options%resume)) then
+      call fingerprint_text(deck, text)
+      call read_mesh_of(options%resume, text, remesh, unfit)
+    end if
     ! A deck that could not be opened has no other mistakes.
-    if (size(deck%cards) > 0 .or. diagnostics%count() == 0) call read_scene(deck, scene, diagnostics)
+    if (sound .or. size(deck%cards) > 0) call read_scene(deck, scene, diagnostics, remesh)
     call diagnostics%error(error)
+    if (.not. allocated(error) .and. allocated(unfit)) call move_alloc(unfit, error)
     if (.not. allocated(error)) call fingerprint_text(deck, text)
   end subroutine read_input
 
-  !> Take up the state of a checkpoint, which must come from the same deck.
-  subroutine take_up(path, text, scene, solution, error)
+  !> The mesh of a checkpoint, which must come from the same deck; not allocated when it is the deck's own.
+  subroutine read_mesh_of(path, text, remesh, error)
     character(len=*), intent(in) :: path, text
-    type(scene_t), intent(in) :: scene
-    type(solution_t), intent(inout) :: solution
+    type(remesh_t), allocatable, intent(out) :: remesh
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: old_path, old_text
 
@@ -91,8 +100,11 @@ contains
                 'resume with the same deck and the same -p options')
       return
     end if
-    call read_checkpoint(path, scene, solution, error)
-  end subroutine take_up
+    allocate (remesh)
+    call read_remesh(path, remesh, error)
+    if (allocated(error)) return
+    if (remesh%generation == 1) deallocate (remesh)
+  end subroutine read_mesh_of
 
   !> March, then write summary and listing whatever happened.
   subroutine run_and_report(options, scene, solution, run, error)

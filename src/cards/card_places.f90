@@ -155,11 +155,11 @@ contains
 
     call read_xy(cursor, 'the point', x)
     if (cursor%failed() .or. .not. draft%mesh_sound) return
-    call nearest_node(draft%scene%mesh%coordinates, x, node, distance)
+    call nearest_node(draft%scene%mesh%origin, x, node, distance)
     if (node == 0) return
     place%nodes = [node]
     place%label = 'point '//to_text(x(1))//' '//to_text(x(2))
-    if (distance > point_tolerance*draft%mesh_size) &
+    if (distance > point_tolerance*draft%mesh_size .and. draft%scene%generation == 1) &
       call cursor%fail('there is no node at this point; the nearest is '//node_text(draft, node)//', '//to_text(distance)//' away')
   end subroutine read_point
 

@@ -74,8 +74,9 @@ contains
     probe%unit = 'length'
     call read_point(cursor, draft, x)
     if (cursor%failed() .or. .not. draft%mesh_sound) return
-    call nearest_node(draft%scene%mesh%coordinates, x, node, distance)
+    call nearest_node(draft%scene%mesh%origin, x, node, distance)
     probe%nodes = [node]
+    if (draft%scene%generation > 1) probe%offset = x - draft%scene%mesh%origin(:, node)
   end subroutine read_node_probe
 
   !> `X|Y place`: the sum of the reactions there, over the full circumference.
@@ -121,7 +122,7 @@ contains
       associate (group => draft%scene%groups(g))
         k = find_component(group, component)
         if (k == 0) cycle
-        call nearest_point(draft%scene%mesh%coordinates, group, x, e, p, distance)
+        call nearest_point(draft%scene%mesh%origin, group, x, e, p, distance)
         if (.not. distance < nearest) cycle
         nearest = distance
         probe%group = g
@@ -218,8 +219,8 @@ contains
 
     call read_xy(cursor, 'the point', x)
     if (cursor%failed() .or. .not. draft%mesh_sound) return
-    low = minval(draft%scene%mesh%coordinates, 2) - outside_tolerance*draft%mesh_size
-    high = maxval(draft%scene%mesh%coordinates, 2) + outside_tolerance*draft%mesh_size
+    low = minval(draft%scene%mesh%origin, 2) - outside_tolerance*draft%mesh_size
+    high = maxval(draft%scene%mesh%origin, 2) + outside_tolerance*draft%mesh_size
     if (any(x < low .or. x > high)) &
       call cursor%fail('the point '//to_text(x(1))//' '//to_text(x(2))//' lies outside of the mesh')
   end subroutine read_point

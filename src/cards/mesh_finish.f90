@@ -39,6 +39,7 @@ contains
     end do
     associate (mesh => draft%scene%mesh)
       mesh%coordinates = parts%coordinates(:, kept(:n))
+      if (.not. allocated(mesh%origin)) mesh%origin = mesh%coordinates
       mesh%labels = parts%labels(kept(:n))
       allocate (mesh%node_sets(0))
       next_label = 0

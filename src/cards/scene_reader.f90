@@ -21,6 +21,8 @@ module scene_reader
   use elem_registry, only: list_elems
   use mesh_finish, only: finish_mesh
   use mesh_parts, only: mesh_parts_t, start_parts
+  use remesh, only: remesh_t
+  use remeshed_parts, only: order_as_remeshed, replace_parts
   use scene, only: scene_t
   use scene_draft, only: draft_t, start_draft, words_of
   use scene_effects, only: list_effects
@@ -31,11 +33,13 @@ module scene_reader
 
 contains
 
-  !> Fill `scene` from the cards. It is only of use when `diagnostics` has no mistakes afterwards.
-  subroutine read_scene(deck, scene, diagnostics)
+  !> Fill `scene` from the cards. It is only of use when `diagnostics` has no mistakes afterwards. `remesh` replaces the mesh
+  !> the cards make.
+  subroutine read_scene(deck, scene, diagnostics, remesh)
     type(deck_t), intent(inout), target :: deck
     type(scene_t), intent(out) :: scene
     type(diagnostics_t), intent(inout), target :: diagnostics
+    type(remesh_t), intent(in), optional :: remesh
     type(draft_t) :: draft
     type(mesh_parts_t) :: parts
     type(string_t), allocatable :: keywords(:)
@@ -59,6 +63,7 @@ contains
     call read_blocks(deck, draft, parts, diagnostics)
     call read_side_sets(deck, draft, parts, diagnostics)
     call join_blocks(deck, draft, parts, diagnostics)
+    if (present(remesh)) call replace_parts(remesh, draft, parts)
     call finish_mesh(draft, parts, diagnostics)
     if (size(parts%bodies) == 0) call refuse_empty(deck, diagnostics)
 
@@ -74,6 +79,7 @@ contains
     call read_probes(deck, draft, diagnostics)
     call refuse_unused_names(deck, draft, keywords, diagnostics)
 
+    if (present(remesh)) call order_as_remeshed(remesh, draft%scene%groups)
     if (diagnostics%count() == 0) call list_effects(deck, draft%laws, draft%elems, diagnostics, draft%scene)
     scene = draft%scene
   end subroutine read_scene

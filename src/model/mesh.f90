@@ -21,6 +21,8 @@ module mesh
   type :: mesh_t
     !> Coordinates (2, nnode) at the start of this mesh [length].
     real(wp), allocatable :: coordinates(:, :)
+    !> Where the matter of each node was when the deck's own mesh began (2, nnode) [length]: cards name places there.
+    real(wp), allocatable :: origin(:, :)
     !> Number the user knows the node by (nnode).
     integer, allocatable :: labels(:)
     type(side_set_t), allocatable :: sides(:)

@@ -20,6 +20,8 @@ module probes
     integer :: quantity = 0
     !> Nodes asked for (one for the node kind).
     integer, allocatable :: nodes(:)
+    !> From the node to the place asked for, which a node of the deck's own mesh stands for (0) [length].
+    real(wp) :: offset(2) = 0.0_wp
     !> Group, element and point, and component of the state, for the kinds that read the state.
     integer :: group = 0, element = 0, point = 0, component = 0
     !> Factor, for instance 2 pi for forces of axisymmetric scenes.

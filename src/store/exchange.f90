@@ -12,15 +12,16 @@ module exchange
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use pairs, only: pairs_t
+  use remesh, only: remesh_t
   use scene, only: scene_t
   use solution, only: solution_t
   use text, only: string_t, to_text
   implicit none
   private
-  public :: write_checkpoint, read_deck_of_checkpoint, read_checkpoint, schema_version
+  public :: write_checkpoint, read_deck_of_checkpoint, read_remesh, read_checkpoint, schema_version
 
   !> Raised whenever a dataset changes its name, shape or meaning.
-  integer, parameter :: schema_version = 2
+  integer, parameter :: schema_version = 3
   character(len=*), parameter :: schema_name = 'lagamine checkpoint'
 
 contains
@@ -57,10 +58,15 @@ contains
     call file%write('mesh/generation', scene%generation)
     call file%write('mesh/coordinates', scene%mesh%coordinates)
     call file%write_attribute('mesh/coordinates', 'unit', 'length')
+    call file%write('mesh/origin', scene%mesh%origin)
+    call file%write_attribute('mesh/origin', 'unit', 'length')
     call file%write('mesh/labels', scene%mesh%labels)
+    call file%write('mesh/nset', size(scene%mesh%sides))
     do k = 1, size(scene%mesh%sides)
-      call file%write('mesh/sides/'//scene%mesh%sides(k)%name, scene%mesh%sides(k)%nodes)
+      call file%write(set_place(k)//'/name', scene%mesh%sides(k)%name)
+      call file%write(set_place(k)//'/nodes', scene%mesh%sides(k)%nodes)
     end do
+    call file%write('mesh/ngroup', size(scene%groups))
   end subroutine write_mesh
 
   subroutine write_dies(file, scene, solution)
@@ -161,6 +167,45 @@ contains
 
     place = 'groups/'//to_text(g)
   end function group_place
+
+  pure function set_place(k) result(place)
+    integer, intent(in) :: k
+    character(len=:), allocatable :: place
+
+    place = 'mesh/sides/'//to_text(k)
+  end function set_place
+
+  !> The mesh of a checkpoint, when it is not the deck's own: then only `generation` is read, and it is 1.
+  subroutine read_remesh(path, remesh, error)
+    character(len=*), intent(in) :: path
+    type(remesh_t), intent(out) :: remesh
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+    integer :: k, n
+
+    call open_checkpoint(path, file, error)
+    if (allocated(error)) return
+    call file%read('mesh/generation', remesh%generation)
+    if (remesh%generation > 1) then
+      call file%read('mesh/coordinates', remesh%coordinates)
+      call file%read('mesh/origin', remesh%origin)
+      n = 0
+      call file%read('mesh/nset', n)
+      allocate (remesh%sides(n))
+      do k = 1, n
+        call file%read(set_place(k)//'/name', remesh%sides(k)%name)
+        call file%read(set_place(k)//'/nodes', remesh%sides(k)%nodes)
+      end do
+      n = 0
+      call file%read('mesh/ngroup', n)
+      allocate (remesh%groups(n))
+      do k = 1, n
+        call file%read(group_place(k)//'/name', remesh%groups(k)%name)
+        call file%read(group_place(k)//'/connectivity', remesh%groups(k)%connectivity)
+      end do
+    end if
+    call file%close(error)
+  end subroutine read_remesh
 
   !> The deck a checkpoint was made from, after schema and digest were found right.
   subroutine read_deck_of_checkpoint(path, deck_path, deck_text, error)

@@ -1,0 +1,25 @@
+!> A mesh in place of the deck's own: what a remesh hands to the cards.
+module remesh
+  use kinds, only: wp
+  use mesh, only: side_set_t
+  implicit none
+  private
+  public :: remesh_t, elements_t
+
+  !> Elements of a group of the deck.
+  type :: elements_t
+    character(len=:), allocatable :: name
+    !> Nodes (nnode, nelem).
+    integer, allocatable :: connectivity(:, :)
+  end type elements_t
+
+  type :: remesh_t
+    !> 1 for the deck's own mesh; nothing else is filled then.
+    integer :: generation = 1
+    !> Where the nodes are at the start of this mesh, and where their matter was at the start of the first (2, nnode) [length].
+    real(wp), allocatable :: coordinates(:, :), origin(:, :)
+    !> All groups and all sets of sides of the scene, in its order.
+    type(elements_t), allocatable :: groups(:)
+    type(side_set_t), allocatable :: sides(:)
+  end type remesh_t
+end module remesh
