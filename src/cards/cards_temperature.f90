@@ -9,7 +9,7 @@ module cards_temperature
   use scene_draft, only: close_card, draft_t
   implicit none
   private
-  public :: read_temperatures_of_bodies
+  public :: read_temperatures_of_bodies, knows_temperature
 
 contains
 
@@ -77,7 +77,6 @@ contains
   subroutine refuse_bodies_without(draft, diagnostics)
     type(draft_t), intent(in) :: draft
     type(diagnostics_t), intent(inout) :: diagnostics
-    character(len=:), allocatable :: why
     integer :: g, k
 
     do g = 1, size(draft%scene%groups)
@@ -86,17 +85,28 @@ contains
         associate (material => draft%scene%materials(group%material))
           if (material%law_id == 0) cycle
           if (.not. knows_temperature(draft%laws(material%law_id), material)) cycle
-          why = ' asks for the temperature'
-          if (allocated(material%temperatures)) why = ' is given at several temperatures'
           do k = 1, size(draft%places%words)
-            if (draft%places%words(k)%s == group%name) call diagnostics%add(draft%places%location(k), draft%places%keywords(k)%s, &
-                                                    'LAW '//material%name//why//': body '//group%name//' needs a TEMPE card')
+            if (draft%places%words(k)%s /= group%name) cycle
+            call diagnostics%add(draft%places%location(k), draft%places%keywords(k)%s, 'LAW '//material%name//reason(material) &
+                                 //': body '//group%name//' needs a TEMPE card')
           end do
         end associate
       end associate
     end do
   end subroutine refuse_bodies_without
 
+  pure function reason(material) result(s)
+    type(material_t), intent(in) :: material
+    character(len=:), allocatable :: s
+
+    if (allocated(material%temperatures)) then
+      s = ' is given at several temperatures'
+    else
+      s = ' asks for the temperature'
+    end if
+  end function reason
+
+  !> What a material answers depends on the temperature.
   pure function knows_temperature(law, material) result(yes)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material

@@ -104,7 +104,7 @@ contains
       call values_at(material, temperature(2, n), values)
       call return_point(gsell_jonas(values, temperature(2, n)), material%curve, material%curve, dt, trial_strain(:, n), &
                         committed(:, n), stress(:, n), elastic_strain(:, n), history(:, n), tangent(:, :, n), status(n))
-      if (.not. temperature(2, n) + values(place_absolute) > 0) status(n) = law_not_converged
+      if (.not. temperature(2, n) + values(place_absolute) > 0) status(n) = law_not_converged   ! below absolute zero
     end do
   end subroutine update_gsell
 
@@ -147,10 +147,13 @@ contains
   pure function gsell_jonas(values, temperature) result(flow)
     real(wp), intent(in) :: values(:), temperature
     type(flow_t) :: flow
+    real(wp) :: absolute
 
     call moduli(values(1), values(2), flow%bulk, flow%shear)
+    absolute = temperature + values(place_absolute)
+    if (.not. absolute > 0) absolute = huge(absolute)   ! the caller refuses it
     flow%form = hardening_gsell
-    flow%below = [values(3)*exp(values(7)/(temperature + values(place_absolute))), values(4), values(5), 0.0_wp]
+    flow%below = [values(3)*exp(values(7)/absolute), values(4), values(5), 0.0_wp]
     flow%rate_form = rate_power
     flow%rate(1) = values(6)
     flow%rate_row = row_of_rate
