@@ -54,7 +54,9 @@ contains
       slope = 0
       if (p > 0) slope = sy*(a(2)/p - a(3))
     case (hardening_gsell)
-      rise = 2*exp(-0.5_wp*a(2)*p)*sinh(0.5_wp*a(2)*p)    ! 1 - exp(-w p) without loss of digits
+      ! 1 - exp(-w p): without loss of digits near 0, without overflow far out
+      rise = tanh(0.5_wp*a(2)*p)
+      rise = 2*rise/(1 + rise)
       sy = a(1)*rise*exp(a(3)*p*p)
       slope = a(1)*exp(a(3)*p*p)*(a(2)*exp(-a(2)*p) + 2*a(3)*p*rise)
     case default

@@ -2,12 +2,14 @@
 
 Functions of numbers; those of FORMS are called by name in the column `expected` of reference.csv. `wrong()` holds them against one
 another: every formula against a quadrature of what it is the integral of, or against its limits.
-Stresses are over the yield stress, friction is the constant fraction m of the shear yield stress of von Mises, sy/sqrt(3).
+Stresses are over the yield stress, but of polymers in MPa; friction is the constant fraction m of the shear yield stress of von
+Mises, sy/sqrt(3).
 """
 import math
 
 # Those that reference.csv may name.
-FORMS = ("ring_bore", "ring_pressure", "extrusion_work", "extrusion_avitzur", "extrusion_parallel", "extrusion_container")
+FORMS = ("ring_bore", "ring_pressure", "extrusion_work", "extrusion_avitzur", "extrusion_parallel", "extrusion_container",
+         "disc_stress", "disc_radius", "disc_friction", "tube_pressure", "squeeze_scott", "squeeze_bound")
 
 
 def integral(function, begin, end, parts=200):
@@ -151,6 +153,99 @@ def extrusion_container(m, r0, length):
     return 2/math.sqrt(3)*m*length/r0
 
 
+# Disc of a polymer between flat dies; the parameters are those of the decks, the law that of C. G'Sell, J.J. Jonas,
+# J. Mater. Sci. 14 (1979) 583-591.
+
+def gsell(p, rate, temperature, m=0.1, k=0.004, w=30.0, h=0.3, a=2500.0):
+    """Flow stress at a strain, a rate and a temperature in degrees Celsius."""
+    return k*math.exp(a/(temperature + 273.15))*(1 - math.exp(-w*p))*math.exp(h*p*p)*rate**m
+
+
+def disc_stress(travel, speed, temperature, half=5.0, modulus=500.0, rounds=4):
+    """Axial stress of a disc of this half height that stays a cylinder, its dies moving at a constant speed.
+
+    Strain and rate are e = ln(H/h) and e' = v/h = v/H exp(e), less the elastic ones, s/E and ds/de e'/E: found from the stress
+    of the round before; the first takes the polymer as rigid. Each round shrinks what is left by about ds/de/E.
+    """
+    def stress(e, rounds):
+        rate = speed/half*math.exp(e)
+        if rounds == 0:
+            return gsell(e, rate, temperature)
+        near, step = stress(e, rounds - 1), 1e-3*e
+        slope = (stress(e + step, rounds - 1) - stress(e - step, rounds - 1))/(2*step)
+        return gsell(e - near/modulus, rate*(1 - slope/modulus), temperature)
+    return stress(math.log(half/(half - travel)), rounds)
+
+
+def disc_radius(travel, stress=0.0, half=5.0, radius=20.0, modulus=500.0, poisson=0.45):
+    """Radius of this disc: its volume falls by the elastic strain of the axial stress alone."""
+    return radius*math.sqrt(half/(half - travel)*math.exp((2*poisson - 1)*stress/modulus))
+
+
+def disc_friction(m, travel, half=5.0, radius=20.0):
+    """Mean pressure over the stress without friction, if the disc stays a cylinder: slab, and upper bound.
+
+    B. Avitzur, Metal Forming: Processes and Analysis (1968), ch. 5. Strain and rate are the same everywhere.
+    """
+    return 1 + m/(3*math.sqrt(3))*disc_radius(travel, 0.0, half, radius)/(half - travel)
+
+
+def tube_pressure(travel, speed, temperature, inner=10.0, outer=15.0):
+    """Pressure in a rigid-viscoplastic tube without strain along its axis, its bore moving out at a constant speed.
+
+    Volume: r^2 = R^2 + a^2 - A^2, r r' = a a'. Hoop and radial strain are +-ln(r/R), so that the equivalent one is 2/sqrt(3) ln(r/R),
+    and the stresses differ by 2/sqrt(3) s; equilibrium gives the integral of this over r, here by the place R at the start.
+    """
+    bore = inner + travel
+    share = 2/math.sqrt(3)
+
+    def layer(start):
+        square = start**2 + bore**2 - inner**2
+        return share*gsell(share*0.5*math.log(square/start**2), share*bore*speed/square, temperature)*start/square
+    return integral(layer, inner, outer)
+
+
+# Thin disc of a power law, s = c rate^n, that sticks to its dies; force on a die. b is half the gap, v the speed of a die, each of
+# volume R^2 b. In shear tau = c/3^((n+1)/2) gamma'^n.
+
+def squeeze_scott(n, travel, speed, temperature, radius=40.0, half=1.0):
+    """Theory of lubrication: J.R. Scott, Trans. Inst. Rubber Ind. 7 (1931) 169-186.
+
+    Flux between plates Q = 2 b^2 n/(2n+1) (b G/c')^(1/n) = r v (volume), where G = -dp/dr and tau = c' gamma'^n; the force is
+    pi times the integral of r^2 G.
+    """
+    b = half - travel
+    r = radius*math.sqrt(half/b)
+    c = gsell(1.0, 1.0, temperature, w=1000.0, h=0.0)/3**((n + 1)/2)
+    return math.pi*c/(n + 3)*((2*n + 1)*speed/(2*n*b*b))**n*r**(n + 3)/b
+
+
+def squeeze_bound(n, travel, speed, temperature, radius=40.0, half=1.0):
+    """Upper bound: the power of v_r = v r/(2 b) g(z/b), v_z to match, with g(s) = (q+1)/q (1 - s^q), for the best q.
+
+    In Scott's theory q = 1 + 1/n; here the stretching counts as well as the shear. Why a bound: the stress is the derivative of a
+    potential, c rate^(n+1)/(n+1), which is convex, so that by virtual power its integral is least for the true flow among all that
+    the dies allow; and the power is n+1 times this integral.
+    """
+    b = half - travel
+    edge = radius*math.sqrt(half/b)
+    c = gsell(1.0, 1.0, temperature, w=1000.0, h=0.0)
+
+    def power(q):
+        def layer(s):
+            stretch = speed/b*(q + 1)/q*(1 - s**q)
+            shear = speed/(2*b*b)*(q + 1)*s**(q - 1)/math.sqrt(3)
+            # integral of (stretch^2 + (shear r)^2)^((n+1)/2) 2 r dr
+            begin, end = stretch**2, stretch**2 + (shear*edge)**2
+            k = (n + 3)/2
+            if end - begin < 1e-6*begin:
+                return begin**(k - 1)*edge**2
+            return (end**k - begin**k)/(k*shear**2)
+        return math.pi*c*b*integral(layer, 0.0, 1.0)/speed
+    q = least(power, 0.5, 3 + 2/n)
+    return power(q)
+
+
 def wrong():
     """What does not hold among these functions, a line each."""
     lines = []
@@ -174,4 +269,35 @@ def wrong():
     # a slender die without friction needs no more than the work of homogeneous deformation, with it the slab's too
     near("slender die", extrusion_parallel(0.0, 10.0, 9.0, 0.001, 20.0, 0.0), extrusion_work(10.0, 9.0), 1e-3)
     near("slender die, cone", extrusion_avitzur(0.2, 10.0, 9.0, 0.01, 3.0), extrusion_parallel(0.2, 10.0, 9.0, 0.01, 20.0, 3.0), 0.02)
+    # disc: the stress is that of the formula at its plastic strain and rate, and that of a rigid disc where E is large
+    for travel in (1.0, 2.0, 3.0):
+        e, s = math.log(5/(5 - travel)), disc_stress(travel, 2.0, 140.0)
+        rise = (disc_stress(travel + 1e-4, 2.0, 140.0) - disc_stress(travel - 1e-4, 2.0, 140.0))/2e-4
+        near(f"disc, travel {travel}", s, gsell(e - s/500, 2*(1/(5 - travel) - rise/500), 140.0), 1e-6)
+        near(f"rigid disc, travel {travel}", disc_stress(travel, 2.0, 140.0, modulus=1e9),
+             gsell(e, 2/(5 - travel), 140.0), 1e-6)
+    # a thin tube is pulled around: p a = t s 2/sqrt(3)
+    e = 2/math.sqrt(3)*math.log(1.5)
+    near("thin tube", tube_pressure(5.0, 1.0, 150.0, 10.0, 10.001)*15/(0.001/1.5),
+         2/math.sqrt(3)*gsell(e, 2/math.sqrt(3)/15, 150.0), 1e-3)
+    # the work of the pressure is that of the stress: over the volume R dR, from 0 to the travel
+    def work(start):
+        def rate(u):
+            square = start**2 + (10 + u)**2 - 100
+            dp = 2/math.sqrt(3)*(10 + u)/square
+            return gsell(1/math.sqrt(3)*math.log(square/start**2), dp, 150.0)*dp
+        return integral(rate, 0.0, 5.0)*start
+    near("work of a tube", integral(lambda u: tube_pressure(u, 1.0, 150.0)*(10 + u), 0.0, 5.0), integral(work, 10.0, 15.0), 1e-6)
+    # tau = m s/sqrt(3) on the face: s + 2 tau (R - r)/(2 h), its mean
+    radius = disc_radius(2.0)
+    mean = integral(lambda r: (1 + 0.3/math.sqrt(3)*(radius - r)/3.0)*2*r, 0.0, radius)/radius**2
+    near("slab", disc_friction(0.3, 2.0), mean, 1e-9)
+    # J. Stefan, Sitzungsber. Akad. Wiss. Wien 69 (1874) 713-735: force of a Newtonian film, 3 pi mu R^4 V/(2 h^3)
+    viscosity = gsell(1.0, 1.0, 150.0, w=1000.0, h=0.0)/3
+    near("Newtonian film", squeeze_scott(1.0, 0.0, 0.3, 150.0)/(3*math.pi*viscosity*40**4*0.6/(2*2**3)), 1.0, 1e-9)
+    for n in (0.1, 0.3, 1.0):
+        disc = n, 0.0, 0.02, 150.0
+        near(f"very thin disc, n = {n}", squeeze_bound(*disc, radius=4e4)/squeeze_scott(*disc, radius=4e4), 1.0, 1e-3)
+        if squeeze_bound(*disc) < squeeze_scott(*disc):
+            lines.append(f"n = {n}: stretching takes no power")
     return lines
