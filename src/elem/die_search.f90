@@ -14,7 +14,7 @@ module die_search
   use kinds, only: eps, wp
   implicit none
   private
-  public :: foot_t, find_foot, box_distance
+  public :: foot_t, find_foot, find_foot_on, box_distance
 
   !> Foot of a point on a die, in the pilot's axes.
   type :: foot_t
@@ -63,6 +63,35 @@ contains
       call take(candidate, k, e_r, best, foot)
     end do
   end subroutine find_foot
+
+  !> Foot of a point on one piece, or up to `beyond` outside its ends; sought from the end of the piece nearest to `from`.
+  pure subroutine find_foot_on(die, piece, point, from, beyond, foot)
+    type(die_t), intent(in) :: die
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: point(2)   !! in the pilot's axes [length]
+    real(wp), intent(in) :: from, beyond   !! parent coordinates
+    type(foot_t), intent(out) :: foot
+    real(wp) :: xi, step, way(2), first(2), second(2), y(2)
+    integer :: iteration
+    integer, parameter :: max_iterations = 20   ! quadratic convergence from close by takes four or five
+
+    xi = min(max(from, -1.0_wp), 1.0_wp)
+    associate (x => die%pieces(:, :, piece))
+      second = x(:, 1) - 2*x(:, 2) + x(:, 3)
+      do iteration = 1, max_iterations
+        first = tangent_at(x, xi)
+        y = 0.5_wp*xi*(xi - 1)*x(:, 1) + (1 - xi*xi)*x(:, 2) + 0.5_wp*xi*(xi + 1)*x(:, 3)
+        way = y - point
+        step = -dot_product(way, first)/(dot_product(first, first) + dot_product(way, second))
+        xi = xi + step
+        if (.not. abs(xi) <= 1 + beyond) return
+        if (abs(step) <= 4*eps) exit
+      end do
+      if (iteration > max_iterations .and. abs(step) > end_slack) return
+      call foot_inside(x, point, xi, foot)
+    end associate
+    if (foot%piece > 0) foot%piece = piece
+  end subroutine find_foot_on
 
   !> The nearer of two feet that face the part.
   pure subroutine take(candidate, piece, e_r, best, foot)

@@ -20,13 +20,14 @@
 module elem_cntdf
   use contact_point, only: act, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_tau, contact_point_t, &
                            meeting_t, most_unknowns, no_surface, penalties, share_to_contact, show_on_axis, side_length, side_point
-  use die_search, only: box_distance, find_foot, foot_t
+  use die_search, only: box_distance, find_foot, find_foot_on, foot_t
+  use dies, only: die_t
   use elem_api, only: elem_t, instant_t, report_t, section_motion
   use elem_cnt2d, only: elem_cnt2d_row
   use kinds, only: eps, wp
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_open, law_t
-  use pairs, only: nodes_per_point, place_in_reach
+  use pairs, only: nodes_per_point, pieces_in_reach, place_in_reach
   use quadrature, only: line_rule
   use scene, only: axisymmetric, generalised_plane_strain, group_t, scene_t
   use shape_functions, only: line3
@@ -36,6 +37,10 @@ module elem_cntdf
 
   !> At a vertex the normal turns about the foot: turn d = 1 to some round-off.
   real(wp), parameter :: at_vertex = 64*eps
+  !> A side reaches this far beyond its ends (parent coordinate) for a point that was on it.
+  real(wp), parameter :: beyond = 0.05_wp
+  !> Cosine of the largest turn at a vertex that is taken for one of a smooth chain, about 10 degrees.
+  real(wp), parameter :: nearly_smooth = 0.985_wp
 
 contains
 
@@ -90,7 +95,7 @@ contains
         do p = 1, size(xi)
           call line3(xi(p), phi, dphi)
           call side_point(phi, dphi, section, x(:, 1:3, e), du(place(1:6), e), most_unknowns, point)
-          call find_foot(die, point%x, point%e_r, side, foot)
+          call find_lasting_foot(die, point, side, committed(at_piece, p, e), middle(p, e), foot)
           if (foot%piece == 0) cycle
           ! a point on the axis has no surface: nothing acts there, and nothing is asked of it
           if (axisym .and. point%x(1) <= no_surface*side) cycle
@@ -132,6 +137,38 @@ contains
 
     box = [minval(x(1, :) + du(1:3)), minval(x(2, :) + du(4:6)), maxval(x(1, :) + du(1:3)), maxval(x(2, :) + du(4:6))]
   end function box_of
+
+  !> Closest foot of a point; but a point inside stays on the side it was on last, and a little beyond its ends.
+  !>
+  !> Sides of a bent mesh make slight corners, and the normal jumps there within a motion smaller than any iteration's: points
+  !> at a corner would change sides for ever. Likewise points at the open end of the chain, where two bodies are flush. True
+  !> corners are left to the search.
+  pure subroutine find_lasting_foot(die, point, reach, last, middle, foot)
+    type(die_t), intent(in) :: die
+    type(contact_point_t), intent(in) :: point
+    real(wp), intent(in) :: reach
+    real(wp), intent(in) :: last     !! piece at the start of the step, 0 where there was none
+    integer, intent(in) :: middle    !! middle piece of the point's pairs, 0 for none
+    type(foot_t), intent(out) :: foot
+    type(foot_t) :: same
+    real(wp) :: from
+    integer :: piece
+
+    call find_foot(die, point%x, point%e_r, reach, foot)
+    piece = nint(last)
+    if (piece == 0) piece = middle
+    if (piece == 0 .or. foot%d < 0) return
+    from = foot%xi
+    if (foot%piece /= piece) from = merge(1.0_wp, -1.0_wp, place_in_reach(die, piece, foot%piece) == pieces_in_reach)
+    if (foot%piece == 0) from = merge(1.0_wp, -1.0_wp, piece == size(die%nodes, 2))
+    call find_foot_on(die, piece, point%x, from, beyond, same)
+    if (same%piece == 0 .or. .not. (same%d > 0 .and. same%d < reach)) return
+    if (foot%piece == 0) then
+      if (dot_product(same%normal, point%e_r) < 0) foot = same
+    else if (dot_product(same%normal, foot%normal) > nearly_smooth) then
+      foot = same
+    end if
+  end subroutine find_lasting_foot
 
   !> Depth, slip and turn of the normal where a point meets a side, with their derivatives, and the motion of the foot along
   !> the side. Unknowns 7 to 12 are those of the side met.
