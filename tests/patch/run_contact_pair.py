@@ -5,8 +5,7 @@ usage: run_contact_pair.py [-v] [-k]
 
 Two blocks, one on the other, E = 1e6, nu = 0, under a pressure of 1e4: stresses are uniform, exactly where the sides of both blocks are
 the same. On unlike sides the forces of the points of one are shared among the nodes of the other by its shape functions, which is
-exact for the sum and the moment but not for each node: with the finer block facing the coarser one at Lobatto's points the pressure
-stays within 1 %.
+exact for the sum but not for each node: with nine points on a side the pressure stays within 1 % whichever block faces the other.
 """
 import sys
 
@@ -49,7 +48,7 @@ def like_meshes(checks):
     """The same sides above and below: exact."""
     for state in ("PLSTN", "AXISYM"):
         for kinem in ("SMALL", "LOG"):
-            for rule in (2, 3, 4, -3):
+            for rule in (2, 3, 4, -3, -9):
                 run = Run(checks, f"like-{state}-{kinem}-{rule}", stacked(state, kinem, 4, 4, rule))
                 if not run.ok:
                     continue
@@ -63,9 +62,9 @@ def like_meshes(checks):
 
 def unlike_meshes(checks):
     """Sides that meet anywhere."""
-    for low, top in ((3, 5), (4, 7), (3, 10), (2, 5)):
+    for low, top in ((3, 5), (4, 7), (2, 5), (3, 10), (5, 3), (7, 4)):
         for state in ("PLSTN", "AXISYM"):
-            run = Run(checks, f"unlike-{low}-{top}-{state}", stacked(state, "LOG", low, top, -3))
+            run = Run(checks, f"unlike-{low}-{top}-{state}", stacked(state, "LOG", low, top, -9))
             if not run.ok:
                 continue
             pressure = run.state("top.1/lower", "pressure")
