@@ -37,10 +37,10 @@ module elem_cntdf
 
   !> At a vertex the normal turns about the foot: turn d = 1 to some round-off.
   real(wp), parameter :: at_vertex = 64*eps
-  !> A side reaches this far beyond its ends (parent coordinate) for a point that was on it.
-  real(wp), parameter :: beyond = 0.05_wp
-  !> Cosine of the largest turn at a vertex that is taken for one of a smooth chain, about 10 degrees.
-  real(wp), parameter :: nearly_smooth = 0.985_wp
+  !> A side reaches this far beyond its ends (parent coordinate) for a point that was on it; beyond the open end of the chain less.
+  real(wp), parameter :: beyond = 0.2_wp, beyond_all = 0.05_wp
+  !> Cosine of the largest turn at a vertex that is taken for one of a smooth chain, about 6 degrees.
+  real(wp), parameter :: nearly_smooth = 0.995_wp
 
 contains
 
@@ -73,7 +73,7 @@ contains
     type(foot_t) :: foot
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: side, section(3), phi(3), dphi(3), psi(3), dpsi(3), q(2), dq(2, most_unknowns), dxi(most_unknowns)
-    integer :: e, p, n, j, k, at, nnode, place(most_unknowns)
+    integer :: e, p, n, j, k, at, nnode, nearest, place(most_unknowns)
     logical :: axisym
 
     axisym = scene%plane_state == axisymmetric
@@ -95,12 +95,12 @@ contains
         do p = 1, size(xi)
           call line3(xi(p), phi, dphi)
           call side_point(phi, dphi, section, x(:, 1:3, e), du(place(1:6), e), most_unknowns, point)
-          call find_lasting_foot(die, point, side, committed(at_piece, p, e), middle(p, e), foot)
+          call find_lasting_foot(die, point, side, committed(at_piece, p, e), middle(p, e), foot, nearest)
           if (foot%piece == 0) cycle
           ! a point on the axis has no surface: nothing acts there, and nothing is asked of it
           if (axisym .and. point%x(1) <= no_surface*side) cycle
           trial(at_penetration, p, e) = foot%d
-          trial(at_piece, p, e) = foot%piece
+          trial(at_piece, p, e) = nearest
           k = place_in_reach(die, middle(p, e), foot%piece)
           if (k == 0) then
             report%unpaired = .true.
@@ -138,36 +138,40 @@ contains
     box = [minval(x(1, :) + du(1:3)), minval(x(2, :) + du(4:6)), maxval(x(1, :) + du(1:3)), maxval(x(2, :) + du(4:6))]
   end function box_of
 
-  !> Closest foot of a point; but a point inside stays on the side it was on last, and a little beyond its ends.
+  !> Closest foot of a point; but for the length of a step a point inside stays on the side it began with, beyond its ends too.
   !>
   !> Sides of a bent mesh make slight corners, and the normal jumps there within a motion smaller than any iteration's: points
   !> at a corner would change sides for ever. Likewise points at the open end of the chain, where two bodies are flush. True
   !> corners are left to the search.
-  pure subroutine find_lasting_foot(die, point, reach, last, middle, foot)
+  pure subroutine find_lasting_foot(die, point, reach, last, middle, foot, nearest)
     type(die_t), intent(in) :: die
     type(contact_point_t), intent(in) :: point
     real(wp), intent(in) :: reach
     real(wp), intent(in) :: last     !! piece at the start of the step, 0 where there was none
     integer, intent(in) :: middle    !! middle piece of the point's pairs, 0 for none
     type(foot_t), intent(out) :: foot
+    integer, intent(out) :: nearest  !! piece for the next step to begin with
     type(foot_t) :: same
     real(wp) :: from
     integer :: piece
 
     call find_foot(die, point%x, point%e_r, reach, foot)
+    nearest = foot%piece
     piece = nint(last)
     if (piece == 0) piece = middle
     if (piece == 0 .or. foot%d < 0) return
     from = foot%xi
     if (foot%piece /= piece) from = merge(1.0_wp, -1.0_wp, place_in_reach(die, piece, foot%piece) == pieces_in_reach)
     if (foot%piece == 0) from = merge(1.0_wp, -1.0_wp, piece == size(die%nodes, 2))
-    call find_foot_on(die, piece, point%x, from, beyond, same)
+    call find_foot_on(die, piece, point%x, from, merge(beyond_all, beyond, foot%piece == 0), same)
     if (same%piece == 0 .or. .not. (same%d > 0 .and. same%d < reach)) return
     if (foot%piece == 0) then
-      if (dot_product(same%normal, point%e_r) < 0) foot = same
-    else if (dot_product(same%normal, foot%normal) > nearly_smooth) then
-      foot = same
+      if (.not. dot_product(same%normal, point%e_r) < 0) return
+      nearest = piece
+    else
+      if (place_in_reach(die, foot%piece, piece) == 0 .or. dot_product(same%normal, foot%normal) < nearly_smooth) return
     end if
+    foot = same
   end subroutine find_lasting_foot
 
   !> Depth, slip and turn of the normal where a point meets a side, with their derivatives, and the motion of the foot along
