@@ -2,6 +2,7 @@
 program lagamine
   use, intrinsic :: iso_fortran_env, only: error_unit
   use errors, only: error_t, exit_done
+  use point_run, only: run_point
   use run_deck, only: print_law, run_options_on_deck
   use run_options, only: read_options, run_options_t, usage_text, version_text
   use system, only: program_stop
@@ -20,6 +21,8 @@ program lagamine
     write (*, '(a)') 'lagamine '//version_text
   else if (allocated(options%law)) then
     call print_law(options%law, error)
+  else if (options%point) then
+    call run_point(options, error)
   else
     call run_options_on_deck(options, code, error)
   end if

@@ -16,7 +16,7 @@ module run_options
     !> Law whose card is asked for.
     character(len=:), allocatable :: law
     type(string_t), allocatable :: overrides(:)
-    logical :: check = .false., quiet = .false., help = .false., version = .false.
+    logical :: check = .false., point = .false., quiet = .false., help = .false., version = .false.
     integer :: threads = 0   !! 0: as OpenMP finds
   end type run_options_t
 
@@ -41,6 +41,8 @@ contains
         options%version = .true.
       case ('--check')
         options%check = .true.
+      case ('--point')
+        options%point = .true.
       case ('--quiet')
         options%quiet = .true.
       case ('--out')
@@ -70,7 +72,9 @@ contains
       end select
     end do
     if (allocated(error) .or. options%help .or. options%version .or. allocated(options%law)) return
-    if (.not. allocated(options%deck)) then
+    if (options%point .and. allocated(options%resume)) then
+      call fail(error, exit_input, '--resume: a path of a point (--point) has no checkpoint to go on from')
+    else if (.not. allocated(options%deck)) then
       call fail(error, exit_input, 'no deck given', 'lagamine --help shows how to call')
     else if (.not. allocated(options%out)) then
       options%out = stem_of(options%deck)
@@ -107,11 +111,11 @@ contains
   subroutine refuse(word, error)
     character(len=*), intent(in) :: word
     type(error_t), allocatable, intent(out) :: error
-    type(string_t) :: known(9)
+    type(string_t) :: known(10)
     character(len=:), allocatable :: nearest
 
     known = [string_t('--help'), string_t('--version'), string_t('--check'), string_t('--quiet'), string_t('--out'), &
-             string_t('--resume'), string_t('--law'), string_t('-p'), string_t('--threads')]
+             string_t('--resume'), string_t('--law'), string_t('--point'), string_t('-p'), string_t('--threads')]
     nearest = nearest_word(word, known)
     if (nearest /= '') nearest = '; nearest: '''//nearest//''''
     call fail(error, exit_input, 'unknown option '''//word//''''//nearest, 'lagamine --help shows how to call')
@@ -135,12 +139,14 @@ contains
 
     text = 'lagamine: metal forming and heat treatment in two dimensions'//nl//nl// &
            'lagamine DECK [--out DIR] [--check] [--resume CHECKPOINT] [-p NAME=VALUE]... [--threads N] [--quiet]'//nl// &
+           'lagamine --point DECK [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --law NAME | --help | --version'//nl//nl// &
            '  --out DIR       folder of the results (default: the deck''s name)'//nl// &
            '  --check         read the deck, print the scene, run nothing'//nl// &
            '  --resume FILE   go on from a checkpoint of the same deck'//nl// &
            '  -p NAME=VALUE   set a parameter of the deck'//nl// &
            '  --threads N     threads of the element loop; results are the same bits for any number'//nl// &
+           '  --point         one material point along the deck''s PATH; its answer comes into DIR/NAME.point.csv'//nl// &
            '  --quiet         print errors only'//nl// &
            '  --law NAME      print the card of a law: parameters, units, state, source'//nl//nl// &
            'Exit codes: 0 done, 2 input refused, 3 no convergence at the smallest step, 4 remesh due,'//nl// &

@@ -3,7 +3,7 @@ module unknowns_summary
   use equations, only: equations_t, set_up
   use errors, only: error_t
   use kinds, only: wp
-  use scene, only: scene_t
+  use scene, only: is_solid, scene_t
   use text, only: string_t, to_text
   implicit none
   private
@@ -12,7 +12,7 @@ module unknowns_summary
   !> Measured on one core of a 2020s server, Release: seconds per element for forces, matrices and
   !> their gathering (tests/bench); floating-point operations per second in the factorisation.
   real(wp), parameter :: seconds_per_element = 4.0e-6_wp
-  real(wp), parameter :: flops_per_second = 5.0e9_wp
+  real(wp), parameter :: flops_per_second = 1.0e10_wp
 
 contains
 
@@ -28,7 +28,7 @@ contains
     if (allocated(error)) return
     nelem = 0
     do g = 1, size(scene%groups)
-      if (size(scene%groups(g)%connectivity, 1) == 8) nelem = nelem + size(scene%groups(g)%connectivity, 2)
+      if (is_solid(scene%groups(g))) nelem = nelem + size(scene%groups(g)%connectivity, 2)
     end do
     bytes = 8.0_wp*(real(equations%pattern%matrix_length, wp) + equations%pattern%nnz) &
             + 4.0_wp*(size(equations%pattern%entry) + 3.0_wp*equations%pattern%nnz) &

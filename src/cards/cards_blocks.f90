@@ -11,6 +11,7 @@ module cards_blocks
   use mesh_parts, only: body_t, merge_nodes, mesh_parts_t
   use scene_draft, only: close_card, draft_t, head_location, words_of
   use text, only: string_t, to_text
+  use vectors, only: length_of
   implicit none
   private
   public :: read_blocks, join_blocks
@@ -75,7 +76,7 @@ contains
     if (cursor%failed()) return
     extent = maxval(abs(block%corners))
     do k = 1, 4
-      if (norm2(block%corners(:, k) - block%corners(:, mod(k, 4) + 1)) > least_side*extent) cycle
+      if (length_of(block%corners(:, k) - block%corners(:, mod(k, 4) + 1)) > least_side*extent) cycle
       call cursor%fail('corners '//to_text(k)//' and '//to_text(mod(k, 4) + 1)//' are the same point')
     end do
     if (.not. polygon_area(block%corners) > 0) &
@@ -132,9 +133,9 @@ contains
     a = first - point
     b = last - point
     if (form == side_arc) then
-      if (abs(norm2(a) - norm2(b)) > radius_tolerance*max(norm2(a), norm2(b))) then
-        call cursor%fail('both ends of an arc must be equally far from its centre: they are at '//to_text(norm2(a), 10) &
-                         //' and '//to_text(norm2(b), 10))
+      if (abs(length_of(a) - length_of(b)) > radius_tolerance*max(length_of(a), length_of(b))) then
+        call cursor%fail('both ends of an arc must be equally far from its centre: they are at '//to_text(length_of(a), 10) &
+                         //' and '//to_text(length_of(b), 10))
       else if (pi - abs(atan2(a(1)*b(2) - a(2)*b(1), dot_product(a, b))) < half_turn_tolerance) then
         call cursor%fail('an arc of a side must be shorter than half a circle')
       end if
@@ -234,9 +235,9 @@ contains
     length = 0
     worst = 0
     do k = 1, n
-      length = length + norm2(parts%coordinates(:, a(3, k)) - parts%coordinates(:, a(1, k)))
+      length = length + length_of(parts%coordinates(:, a(3, k)) - parts%coordinates(:, a(1, k)))
       do i = 1, 3
-        distance = norm2(parts%coordinates(:, a(i, k)) - parts%coordinates(:, b(4 - i, n + 1 - k)))
+        distance = length_of(parts%coordinates(:, a(i, k)) - parts%coordinates(:, b(4 - i, n + 1 - k)))
         worst = max(worst, distance)
       end do
     end do

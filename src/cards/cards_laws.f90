@@ -1,10 +1,11 @@
-!> LAW cards: numbers of a material, in the lines its law declares.
+!> LAW cards: numbers of a material, in the lines its law declares, once or at several temperatures.
 module cards_laws
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
   use kinds, only: wp
-  use law_api, only: find_parameter, law_line_t, law_t, line_choice, line_pairs, parameter_t, solid_law
+  use law_api, only: law_line_t, law_t, line_choice, line_pairs, parameter_t, solid_law
+  use law_checks, only: check_alike, check_numbers
   use law_registry, only: law_names
   use materials, only: material_t
   use scene_draft, only: close_card, draft_t
@@ -42,8 +43,12 @@ contains
         material%law = ''
         if (material%law_id > 0) then
           material%law = draft%laws(material%law_id)%name
-          call read_lines(cursor, draft%laws(material%law_id), material)
-          call check_numbers(cursor, draft%laws(material%law_id), material)
+          if (cursor%peek_row() == 'TEMP') then
+            call read_temperatures(cursor, draft%laws(material%law_id), material)
+          else
+            call read_lines(cursor, draft%laws(material%law_id), material)
+            call check_numbers(cursor, draft%laws(material%law_id), material)
+          end if
         end if
       end associate
       call close_card(draft, cursor, deck%cards(i))
@@ -60,6 +65,52 @@ contains
       if (deck%cards(i)%keyword == keyword) n = n + 1
     end do
   end function count_cards
+
+  !> `TEMP value` and all lines of the law, at ascending temperatures.
+  subroutine read_temperatures(cursor, law, material)
+    type(cursor_t), intent(inout) :: cursor
+    type(law_t), intent(in) :: law
+    type(material_t), intent(inout) :: material
+    type(material_t) :: first, part
+    character(len=:), allocatable :: word
+    real(wp), allocatable :: temperatures(:), values(:), curves(:)
+    real(wp) :: temperature
+    integer :: n
+
+    allocate (temperatures(0), values(0), curves(0))
+    do while (cursor%peek_row() == 'TEMP')
+      call cursor%next_row('TEMP and a temperature')
+      call cursor%word('TEMP', word)
+      if (law%kind /= solid_law) call cursor%fail('a law for contact has no temperatures')
+      n = size(temperatures)
+      if (n == 0) then
+        call cursor%real('the temperature of the numbers that follow', temperature)
+      else
+        call cursor%real('the temperature of the numbers that follow', temperature, lower=temperatures(n), strict_lower=.true.)
+      end if
+      call cursor%end_row()
+      if (allocated(part%values)) deallocate (part%values, part%curve)
+      allocate (part%values(0), part%curve(2, 0))
+      call read_lines(cursor, law, part)
+      call check_numbers(cursor, law, part)
+      if (n > 0) call check_alike(cursor, law, first, part)
+      if (cursor%failed()) return
+      if (n == 0) first = part
+      temperatures = [temperatures, temperature]
+      values = [values, part%values]
+      curves = [curves, part%curve]
+    end do
+    n = size(temperatures)
+    if (n == 1) then
+      call cursor%fail('the numbers are given at one temperature only: leave out TEMP, or give a second one')
+      return
+    end if
+    material%values = first%values
+    material%curve = first%curve
+    allocate (material%temperatures, source=temperatures)
+    allocate (material%values_by_temperature, source=reshape(values, [size(material%values), n]))
+    allocate (material%curves, source=reshape(curves, [2, size(material%curve, 2), n]))
+  end subroutine read_temperatures
 
   !> All lines of a law, laid out as `find_parameter` tells.
   subroutine read_lines(cursor, law, material)
@@ -169,6 +220,8 @@ contains
     values = parameters%default
     given = .false.
     do while (cursor%more_rows())
+      if (cursor%peek_row() == 'TEMP') exit
+      if (cursor%peek_row() == '' .and. all(parameters%optional)) exit
       call cursor%next_row('pairs of a name and a number')
       do while (cursor%more())
         call cursor%name('the name of a number', names, k)
@@ -208,30 +261,6 @@ contains
 
     call cursor%real(described(parameter), value, lower=parameter%lower, upper=parameter%upper, strict_lower=parameter%strict)
   end subroutine read_number
-
-  !> What a law asks for beyond the range of each number.
-  subroutine check_numbers(cursor, law, material)
-    type(cursor_t), intent(inout) :: cursor
-    type(law_t), intent(in) :: law
-    type(material_t), intent(in) :: material
-    integer :: k
-
-    if (cursor%failed()) return
-    if (law%name == 'EPLA' .and. size(material%curve, 2) > 0) then
-      if (abs(material%curve(1, 1)) > 0) then
-        call cursor%fail('the first plastic strain of the table must be 0, found '//to_text(material%curve(1, 1)))
-      else if (any(.not. material%curve(2, :) > 0)) then
-        call cursor%fail('all yield stresses of the table must be above 0, found '//to_text(minval(material%curve(2, :))))
-      end if
-    end if
-    if (find_parameter(law, 'PENETR') > 0 .and. find_parameter(law, 'AKP') > 0) then
-      if (.not. (material%values(find_parameter(law, 'PENETR')) > 0 .or. material%values(find_parameter(law, 'AKP')) > 0)) &
-        call cursor%fail('PENETR and AKP are both zero: one of them must be above 0')
-    end if
-    k = find_parameter(law, 'AUGMENT')
-    if (k == 0) return
-    if (abs(material%values(k) - anint(material%values(k))) > 0) call cursor%fail('AUGMENT must be a whole number')
-  end subroutine check_numbers
 
   !> Read the name of a LAW of a kind (solid or contact): place of the material, 0 after a mistake.
   subroutine read_material(cursor, draft, kind, material)

@@ -1,6 +1,7 @@
-!> LIC, FIXED, MOVE and FORCE: multipliers in time, and what they drive.
+!> LIC, FIXED, MOVE and FORCE (on nodes): multipliers in time, and what they drive.
 module cards_loads
   use card_places, only: node_text, place_t, read_place
+  use cards_pilots, only: acts_on_die
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use dies, only: is_deformable
@@ -82,6 +83,7 @@ contains
     end do
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword /= 'FORCE') cycle
+      if (acts_on_die(deck, i)) cycle
       call cursor%open(deck%cards(i), diagnostics)
       call read_force(cursor, draft, prescribed, fixation_where, diagnostics)
       call close_card(draft, cursor, deck%cards(i))
@@ -208,19 +210,13 @@ contains
     integer, intent(in) :: prescribed(:, :)
     type(location_t), intent(in) :: given(:)
     type(diagnostics_t), intent(in), target :: diagnostics
-    type(string_t), allocatable :: directions(:), forms(:)
+    type(string_t), allocatable :: directions(:)
     type(place_t) :: place
     type(nodal_force_t) :: force
     integer :: k
 
     call words_of('X Y', directions)
-    if (cursor%peek_word() == 'NODE' .or. cursor%peek_word() == 'POINT') then
-      call read_place(cursor, draft, .false., place)
-    else
-      call words_of('NODE POINT', forms)
-      call cursor%name('NODE and a label or POINT and x y', forms, k)
-      return
-    end if
+    call read_place(cursor, draft, .false., place)
     call cursor%name('a direction', directions, force%component)
     if (size(place%nodes) > 0 .and. .not. cursor%failed()) then
       force%node = place%nodes(1)

@@ -10,7 +10,8 @@ module cards_mesh
   use law_api, only: solid_law
   use mesh, only: side_set_t
   use mesh_parts, only: body_t, find_label, mesh_parts_t, sort_labels
-  use scene_draft, only: close_card, draft_t
+  use scene, only: plane_stress
+  use scene_draft, only: close_card, draft_t, words_of
   use shape_functions, only: quad8_side
   use text, only: string_t, to_text
   implicit none
@@ -110,7 +111,7 @@ contains
     call refuse_same_labels(parts, diagnostics)
   end subroutine read_elements
 
-  !> `name [element] npoint law`, as on the cards of elements and on BLOCK.
+  !> `name [element] npoint law [MEAN]`, as on the cards of elements and on BLOCK.
   subroutine read_body_head(cursor, draft, diagnostics, keyword, item, body)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
@@ -118,7 +119,7 @@ contains
     character(len=*), intent(in) :: keyword
     integer, intent(in) :: item      !! what the name stands for: 0, or the first set of sides of a block
     type(body_t), intent(inout) :: body
-    type(string_t), allocatable :: known(:)
+    type(string_t), allocatable :: known(:), options(:)
     integer :: k, n
 
     body%is_block = keyword == 'BLOCK'
@@ -140,6 +141,16 @@ contains
       body%npoint = rules(1)
     end if
     call read_material(cursor, draft, solid_law, body%material)
+    body%mean_dilatation = .false.
+    if (cursor%more()) then
+      call words_of('MEAN', options)
+      call cursor%name('MEAN', options, k)
+      body%mean_dilatation = k > 0
+      if (body%mean_dilatation .and. body%npoint /= rules(2)) &
+        call cursor%fail('the mean dilatation wants 9 integration points: with 4 nothing locks')
+      if (body%mean_dilatation .and. draft%scene%plane_state == plane_stress) &
+        call cursor%fail('nothing locks in plane stress: the mean dilatation is for the other states')
+    end if
     call cursor%end_row()
   end subroutine read_body_head
 

@@ -14,6 +14,7 @@ module cards_probes
   use shape_functions, only: line3, quad8
   use state_variables, only: component_names, state_variable_t
   use text, only: string_t, to_text
+  use vectors, only: length_of
   implicit none
   private
   public :: read_probes
@@ -252,7 +253,7 @@ contains
     distance = huge(distance)
     do e = 1, size(group%connectivity, 2)
       do p = 1, size(phi, 2)
-        d = norm2(matmul(coordinates(:, group%connectivity(:, e)), phi(:, p)) - x)
+        d = length_of(matmul(coordinates(:, group%connectivity(:, e)), phi(:, p)) - x)
         if (.not. d < distance) cycle
         distance = d
         element = e

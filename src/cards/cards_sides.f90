@@ -7,14 +7,14 @@ module cards_sides
   use diagnostics, only: diagnostics_t, location_t
   use dies, only: is_deformable
   use kinds, only: wp
-  use law_api, only: contact_law, find_parameter
+  use law_api, only: contact_law, find_parameter, law_of_material
   use bodies, only: in_one_body
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, find_elem
   use text, only: to_text
   implicit none
   private
-  public :: read_contacts, read_pressures, refuse_inner_sides
+  public :: read_contacts, read_pressures, refuse_inner_sides, start_group, append_group
 
   !> Points of a side: Gauss, or at equal distances with the ends (negative).
   integer, parameter :: rules(7) = [2, 3, 4, -3, -5, -9, -17]
@@ -48,6 +48,7 @@ contains
       call read_rule(cursor, group%npoint)
       call read_material(cursor, draft, contact_law, group%material)
       if (.not. cursor%failed()) call refuse_second_contact(cursor, draft, group, diagnostics)
+      if (.not. cursor%failed()) call refuse_bodies_without_flow(cursor, draft, group)
       call close_card(draft, cursor, deck%cards(i))
       law = 0
       if (.not. cursor%failed()) law = draft%scene%materials(group%material)%law_id
@@ -56,7 +57,8 @@ contains
         cycle
       end if
       deallocate (group%variables)
-      call draft%elems(group%elem_id)%variables(draft%laws(law), draft%scene%plane_state, group%variables)
+      call draft%elems(group%elem_id)%variables(law_of_material(draft%laws(law), draft%scene%materials(group%material)), &
+                                                       draft%scene%plane_state, group%variables)
       group%amplitude = modulus_behind(draft, group%connectivity)
       call append_group(draft, group, cursor%where())
     end do
@@ -115,6 +117,7 @@ contains
     end do
   end subroutine read_pressures
 
+  !> A group of load elements without state.
   subroutine start_group(elem, draft, group)
     character(len=*), intent(in) :: elem
     type(draft_t), intent(in) :: draft
@@ -126,6 +129,7 @@ contains
     allocate (group%variables(0))
   end subroutine start_group
 
+  !> Add a group to the scene, and the place of its card.
   subroutine append_group(draft, group, where)
     type(draft_t), intent(inout) :: draft
     type(group_t), intent(in) :: group
@@ -176,6 +180,31 @@ contains
         call cursor%fail('one of these sides faces this die already, see '//diagnostics%place(draft%group_where(g)))
     end do
   end subroutine refuse_second_contact
+
+  !> Friction by the factor M is a share of the flow stress behind the side: the body's law must have one.
+  subroutine refuse_bodies_without_flow(cursor, draft, group)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(group_t), intent(in) :: group
+    integer :: s, place
+
+    associate (material => draft%scene%materials(group%material))
+      if (material%law_id == 0) return
+      place = find_parameter(draft%laws(material%law_id), 'M')
+      if (place == 0) return
+      if (place > size(material%values)) return
+      if (.not. material%values(place) < huge(1.0_wp)) return
+    end associate
+    do s = 1, size(group%connectivity, 2)
+      associate (material => draft%scene%materials(draft%owner(group%connectivity(2, s))))
+        if (material%law_id == 0) cycle
+        if (associated(draft%laws(material%law_id)%flow_stress)) cycle
+        call cursor%fail('its friction M is a share of the flow stress, and LAW '''//material%name//''' ('//material%law &
+                         //') of the body has none')
+        return
+      end associate
+    end do
+  end subroutine refuse_bodies_without_flow
 
   !> Largest Young's modulus of the bodies that the sides belong to.
   pure function modulus_behind(draft, sides) result(modulus)

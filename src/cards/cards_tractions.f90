@@ -11,6 +11,7 @@ module cards_tractions
   use sections, only: thickness_at
   use shape_functions, only: line3
   use text, only: string_t
+  use vectors, only: length_of
   implicit none
   private
   public :: read_tractions
@@ -62,7 +63,7 @@ contains
       share = 0
       do p = 1, size(xi)
         call line3(xi(p), phi, dphi)
-        length = norm2(matmul(x, dphi))*weight(p)*thickness_at(draft%scene%section, matmul(x, phi))
+        length = length_of(matmul(x, dphi))*weight(p)*thickness_at(draft%scene%section, matmul(x, phi))
         share = share + phi*length
       end do
       do k = 1, 3

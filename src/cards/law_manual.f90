@@ -1,7 +1,7 @@
 !> A law in words, for `lagamine --law NAME`: its card, its numbers, its state, where it comes from.
 module law_manual
   use kinds, only: wp
-  use law_api, only: contact_law, law_line_t, law_t, line_choice, line_pairs, parameter_t
+  use law_api, only: contact_law, find_parameter, law_line_t, law_t, line_choice, line_pairs, parameter_t
   use text, only: string_t, to_text
   implicit none
   private
@@ -31,14 +31,33 @@ contains
         call put(lines, parameter_line(law%lines(i)%parameters(k)))
       end do
     end do
+    if (law%kind /= contact_law) call put(lines, '  all rows again for each temperature, after a row TEMP value; or once, without')
     call put(lines, '')
     if (size(law%history) == 0) call put(lines, 'state of a point beside that of the element: none')
     if (size(law%history) > 0) call put(lines, 'state of a point beside that of the element:')
     do i = 1, size(law%history)
       call put(lines, '  '//padded(law%history(i)%name, 18)//padded('['//law%history(i)%unit//']', 18) &
-               //to_text(law%history(i)%ncomp)//' component(s), carried over as '//law%history(i)%transfer)
+               //to_text(law%history(i)%ncomp)//' component(s), carried over as '//law%history(i)%transfer &
+               //only_with(law, law%history(i)%needs))
     end do
   end subroutine law_card
+
+  !> The number of the card without which a part of the history is not there.
+  pure function only_with(law, place) result(s)
+    type(law_t), intent(in) :: law
+    integer, intent(in) :: place
+    character(len=:), allocatable :: s
+    integer :: i, k
+
+    s = ''
+    if (place == 0) return
+    do i = 1, size(law%lines)
+      do k = 1, size(law%lines(i)%parameters)
+        if (find_parameter(law, law%lines(i)%parameters(k)%name, law%lines(i)%word) == place) &
+          s = ', only with '//law%lines(i)%parameters(k)%name
+      end do
+    end do
+  end function only_with
 
   !> What a row of the card looks like.
   pure function card_line(line) result(s)

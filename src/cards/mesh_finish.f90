@@ -3,10 +3,12 @@ module mesh_finish
   use block_mesh, only: least_jacobian, polygon_area
   use diagnostics, only: diagnostics_t, location_t
   use kinds, only: wp
+  use law_api, only: law_of_material
   use mesh_parts, only: body_t, mesh_parts_t, root_of
   use scene, only: axisymmetric, group_t
   use scene_draft, only: draft_t, find_elem
   use text, only: to_text
+  use vectors, only: length_of
   implicit none
   private
   public :: finish_mesh
@@ -50,7 +52,7 @@ contains
         call renumber(mesh%sides(k)%nodes, number)
       end do
       draft%mesh_size = 0
-      if (n > 0) draft%mesh_size = norm2(maxval(mesh%coordinates, 2) - minval(mesh%coordinates, 2))
+      if (n > 0) draft%mesh_size = length_of(maxval(mesh%coordinates, 2) - minval(mesh%coordinates, 2))
     end associate
     allocate (draft%scene%groups(size(parts%bodies)))
     do i = 1, size(parts%bodies)
@@ -96,13 +98,15 @@ contains
     group%elem_id = find_elem(draft%elems, body%elem)
     group%material = body%material
     group%npoint = body%npoint
+    group%mean_dilatation = body%mean_dilatation
     group%connectivity = body%connectivity
     allocate (group%variables(0))
     if (body%material == 0) return
     law = draft%scene%materials(body%material)%law_id
     if (law == 0) return
     deallocate (group%variables)
-    call draft%elems(group%elem_id)%variables(draft%laws(law), draft%scene%plane_state, group%variables)
+    call draft%elems(group%elem_id)%variables(law_of_material(draft%laws(law), draft%scene%materials(group%material)), &
+                                                     draft%scene%plane_state, group%variables)
   end subroutine fill_group
 
   !> A side on the boundary is that of one element: its middle node tells.

@@ -11,6 +11,7 @@ module mesh_parts
     character(len=:), allocatable :: name
     character(len=:), allocatable :: elem
     integer :: npoint = 4
+    logical :: mean_dilatation = .false.
     integer :: material = 0
     !> Nodes (8, nelem), and where each element or their block stands in the deck.
     integer, allocatable :: connectivity(:, :)

@@ -4,8 +4,9 @@ module scene_effects
   use diagnostics, only: diagnostics_t
   use effects, only: effect_t
   use elem_api, only: elem_t
-  use law_api, only: find_parameter, law_t
-  use scene, only: scene_t
+  use law_api, only: asks_for, find_parameter, law_of_material, law_t
+  use materials, only: material_t
+  use scene, only: generalised_plane_strain, scene_t
   use scene_draft, only: head_location
   use state_variables, only: total_components
   use text, only: to_text
@@ -24,15 +25,17 @@ contains
     type(scene_t), intent(inout) :: scene
     integer :: g, k
 
-    allocate (scene%effects(8))
+    allocate (scene%effects(10))
     call set(1, 'displacement', 'no body')
     call set(2, 'large strain', 'KINEM '//scene%kinematics, 'displacement')
     call set(3, 'plasticity', 'no LAW with a yield stress is used', 'displacement')
     call set(4, 'contact', 'no CNT2D card')
     call set(5, 'friction', 'no contact law with friction is used', 'contact')
     call set(6, 'pressure', 'no PRES2D card')
-    call set(7, 'heat', 'no card asks for it')
-    call set(8, 'phases', 'no card asks for it')
+    call set(7, 'body force', 'no BFORC or CENTR card')
+    call set(8, 'heat', 'no card asks for it')
+    call set(9, 'phases', 'no card asks for it')
+    call set(10, 'temperature', 'no TEMPE card', 'displacement')
 
     call switch_on(2, scene%finite, 'KINEM', scene%kinematics, 'geometry that follows, geometric matrix')
     do g = 1, size(scene%groups)
@@ -40,20 +43,25 @@ contains
         select case (elems(group%elem_id)%effect)
         case ('displacement')
           call switch_on(1, .true., group%elem, group%name, &
-                         to_text(2*size(scene%mesh%labels))//' unknowns, 8 state per point (stress, elastic strain)')
+                         to_text(2*size(scene%mesh%labels) + merge(3, 0, scene%plane_state == generalised_plane_strain)) &
+                         //' unknowns, 8 state per point (stress, elastic strain)')
         case ('contact')
           call switch_on(4, .true., 'CNT2D', before_slash(group%name), unknowns_of(elems(group%elem_id)%pilot) &
                          //', '//to_text(total_components(group%variables))//' state per point')
+        case ('body force')
+          call switch_on(7, .true., group%elem, before_slash(group%name), 'forces and matrix of the loaded elements')
         case ('pressure')
           call switch_on(6, .true., group%elem, before_slash(group%name), 'forces and matrix of the loaded sides')
         end select
+        if (group%temperature_multiplier > 0) &
+          call switch_on(10, .true., 'TEMPE', group%name, 'numbers of laws at the temperature given')
         if (group%material == 0) cycle
         associate (material => scene%materials(group%material))
-          if (asks(laws(material%law_id), 'plasticity')) &
+          if (asks_for(laws(material%law_id), 'plasticity')) &
             call switch_on(3, .true., 'LAW', material%name, &
-                           to_text(total_components(laws(material%law_id)%history))//' state per point')
-          if (asks(laws(material%law_id), 'friction')) then
-            scene%effects(5)%why = 'PHI and PBOUE of every contact law are 0'
+                           to_text(state_of_law(laws(material%law_id), material))//' state per point')
+          if (asks_for(laws(material%law_id), 'friction')) then
+            if (.not. scene%effects(5)%on) scene%effects(5)%why = 'PHI and PBOUE of every contact law are 0'
             call switch_on(5, rubs(laws(material%law_id), g), 'LAW', material%name, 'unsymmetric matrix, friction work')
           end if
         end associate
@@ -115,13 +123,16 @@ contains
       if (pilot) s = '3 unknowns per die (its pilot)'
     end function unknowns_of
 
-    pure function asks(law, effect) result(yes)
+    !> Components of the history that a material needs.
+    pure function state_of_law(law, material) result(n)
       type(law_t), intent(in) :: law
-      character(len=*), intent(in) :: effect
-      logical :: yes
+      type(material_t), intent(in) :: material
+      integer :: n
+      type(law_t) :: own
 
-      yes = index(' '//law%effects//' ', ' '//effect//' ') > 0
-    end function asks
+      own = law_of_material(law, material)
+      n = total_components(own%history)
+    end function state_of_law
 
     !> Coulomb's law without coefficient and cohesion has no friction; another law always has it.
     pure function rubs(law, g) result(yes)

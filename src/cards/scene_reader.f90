@@ -1,17 +1,20 @@
 !> From the cards of a deck to a scene. Cards may come in any order; all mistakes are told in one go.
 module scene_reader
   use cards_blocks, only: join_blocks, read_blocks
+  use cards_body_forces, only: read_body_forces
   use cards_dies, only: read_dies
+  use cards_head, only: read_kinematics, read_title
   use cards_laws, only: read_laws
   use cards_loads, only: read_loads, read_multipliers
+  use cards_pilots, only: read_pilots
   use cards_mesh, only: is_body_elem, read_elements, read_nodes, read_side_sets
   use cards_probes, only: read_probes
   use cards_section, only: read_section, read_state
   use cards_side_dies, only: read_side_dies
   use cards_sides, only: read_contacts, read_pressures
   use cards_strategy, only: read_strategy
+  use cards_temperature, only: read_temperatures_of_bodies
   use cards_tractions, only: read_tractions
-  use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t, refuse_unknown
   use diagnostics, only: diagnostics_t, location_t
   use elem_api, only: elem_t
@@ -19,7 +22,7 @@ module scene_reader
   use mesh_finish, only: finish_mesh
   use mesh_parts, only: mesh_parts_t, start_parts
   use scene, only: scene_t
-  use scene_draft, only: close_card, draft_t, only_card, start_draft, words_of
+  use scene_draft, only: draft_t, start_draft, words_of
   use scene_effects, only: list_effects
   use text, only: string_t
   implicit none
@@ -42,7 +45,9 @@ contains
     call known_cards(keywords)
     call refuse_unknown(deck, keywords, diagnostics)
 
-    call read_head(deck, draft, diagnostics)
+    call read_title(deck, draft, diagnostics)
+    call read_state(deck, draft, diagnostics)
+    call read_kinematics(deck, draft, diagnostics)
     call read_multipliers(deck, draft, diagnostics)
     call read_section(deck, draft, diagnostics)
     call read_laws(deck, draft, diagnostics)
@@ -57,11 +62,14 @@ contains
     call finish_mesh(draft, parts, diagnostics)
     if (size(parts%bodies) == 0) call refuse_empty(deck, diagnostics)
 
+    call read_temperatures_of_bodies(deck, draft, diagnostics)
     call read_side_dies(deck, draft, diagnostics)
     call read_contacts(deck, draft, diagnostics)
     call read_pressures(deck, draft, diagnostics)
+    call read_body_forces(deck, draft, diagnostics)
     call read_loads(deck, draft, diagnostics)
     call read_tractions(deck, draft, diagnostics)
+    call read_pilots(deck, draft, diagnostics)
     call read_strategy(deck, draft, diagnostics)
     call read_probes(deck, draft, diagnostics)
     call refuse_unused_names(deck, draft, keywords, diagnostics)
@@ -78,8 +86,8 @@ contains
     integer :: k
 
     call list_elems(elems)
-    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D TRACT FIXED MOVE FORCE LIC STRAT NORMS ' &
-                  //'STOP SAVE CKPT PROBE', keywords)
+    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE FIXED MOVE ' &
+                  //'FORCE FREE SPRNG LIC STRAT NORMS STOP SAVE CKPT PROBE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle
@@ -87,43 +95,6 @@ contains
       keywords = [keywords, more]
     end do
   end subroutine known_cards
-
-  !> TITLE, STATE and KINEM.
-  subroutine read_head(deck, draft, diagnostics)
-    type(deck_t), intent(inout), target :: deck
-    type(draft_t), intent(inout) :: draft
-    type(diagnostics_t), intent(inout), target :: diagnostics
-    type(cursor_t) :: cursor
-    type(string_t), allocatable :: names(:)
-    integer :: k, i
-
-    draft%scene%title = ''
-    call only_card(deck, 'TITLE', .true., diagnostics, k)
-    if (k > 0) then
-      call cursor%open(deck%cards(k), diagnostics)
-      call cursor%text('a title', draft%scene%title)
-      call close_card(draft, cursor, deck%cards(k))
-    end if
-
-    call read_state(deck, draft, diagnostics)
-
-    draft%scene%kinematics = ''
-    call only_card(deck, 'KINEM', .true., diagnostics, k)
-    if (k > 0) then
-      allocate (names(size(draft%kinematics)))
-      do i = 1, size(names)
-        names(i)%s = draft%kinematics(i)%name
-      end do
-      call cursor%open(deck%cards(k), diagnostics)
-      call cursor%name('the name of kinematics', names, i)
-      if (i > 0) then
-        draft%scene%kinematics = names(i)%s
-        draft%scene%kinematics_id = i
-        draft%scene%finite = draft%kinematics(i)%finite
-      end if
-      call close_card(draft, cursor, deck%cards(k))
-    end if
-  end subroutine read_head
 
   subroutine refuse_empty(deck, diagnostics)
     type(deck_t), intent(in) :: deck

@@ -1,7 +1,8 @@
 !> What a scene holds, in lines for people: printed by `--check` and at the start of a run.
 module scene_summary
   use dies, only: is_deformable
-  use scene, only: plane_state_names, scene_t
+  use scene, only: axisymmetric, generalised_plane_strain, plane_state_names, scene_t
+  use sections, only: section_drive_t, section_forced, section_moved, section_names
   use text, only: string_t, to_text
   implicit none
   private
@@ -18,13 +19,14 @@ contains
 
     allocate (lines(0))
     call put('scene      '//scene%title)
-    call put('           '//trim(plane_state_names(scene%plane_state))//', kinematics '//scene%kinematics//', until time ' &
-             //to_text(scene%strategy%end_time))
+    call put('           '//trim(plane_state_names(scene%plane_state))//thickness()//', kinematics '//scene%kinematics &
+             //', until time '//to_text(scene%strategy%end_time))
     call put('nodes      '//to_text(size(scene%mesh%labels)))
     do k = 1, size(scene%groups)
       associate (group => scene%groups(k))
         call put('group      '//padded(group%name, 24)//padded(to_text(size(group%connectivity, 2))//' '//group%elem, 14) &
-                 //to_text(abs(group%npoint))//trim(merge(' Lobatto', '        ', group%npoint < 0))//' points'//driven_by(k))
+                 //to_text(abs(group%npoint))//rule_of(group%npoint)//' points' &
+                 //trim(merge(', mean dilatation', '                 ', group%mean_dilatation))//driven_by(k))
       end associate
     end do
     do k = 1, size(scene%materials)
@@ -32,6 +34,9 @@ contains
     end do
     do k = 1, size(scene%dies)
       call put('die        '//padded(scene%dies(k)%name, 24)//to_text(size(scene%dies(k)%pieces, 3))//' pieces, '//motion_of(k))
+    end do
+    do k = 1, merge(3, 0, scene%plane_state == generalised_plane_strain)
+      call put('section    '//padded(trim(section_names(k)), 24)//drive_text(scene%section_drives(k)))
     end do
     do k = 1, size(scene%fixations)
       call put('load       '//padded(scene%fixations(k)%label, 24)//to_text(size(scene%fixations(k)%nodes))//' nodes')
@@ -64,7 +69,28 @@ contains
       lines = [lines, line]
     end subroutine put
 
-    !> Law of a group of elements, or the multiplier of its load.
+    !> The thickness where it has been given another value than 1.
+    pure function thickness() result(s)
+      character(len=:), allocatable :: s
+
+      s = ''
+      if (scene%plane_state == axisymmetric .or. .not. abs(scene%section(1) - 1) > 0) return
+      s = ' of thickness '//to_text(scene%section(1))
+    end function thickness
+
+    pure function drive_text(drive) result(s)
+      type(section_drive_t), intent(in) :: drive
+      character(len=:), allocatable :: s
+
+      s = 'held'
+      if (drive%kind == section_forced) s = 'free'
+      if (drive%multiplier == 0) return
+      s = to_text(drive%amplitude)//' x '//scene%multipliers(drive%multiplier)%name
+      if (drive%kind == section_moved) s = 'moved by '//s
+      if (drive%kind == section_forced) s = 'loaded by '//s
+    end function drive_text
+
+    !> Law and temperature of a group of elements, or the multiplier of its load.
     pure function driven_by(g) result(s)
       integer, intent(in) :: g
       character(len=:), allocatable :: s
@@ -73,7 +99,21 @@ contains
       if (scene%groups(g)%material > 0) s = ', law '//scene%materials(scene%groups(g)%material)%name
       if (scene%groups(g)%multiplier > 0) s = ', '//to_text(scene%groups(g)%amplitude)//' x ' &
                                               //scene%multipliers(scene%groups(g)%multiplier)%name
+      if (scene%groups(g)%elem == 'CENTR') s = s//'^2'
+      if (scene%groups(g)%temperature_multiplier > 0) &
+        s = s//', temperature '//to_text(scene%groups(g)%temperature_amplitude)//' x ' &
+            //scene%multipliers(scene%groups(g)%temperature_multiplier)%name
     end function driven_by
+
+    !> Kind of an integration rule along a side, where it is not Gauss's.
+    pure function rule_of(npoint) result(s)
+      integer, intent(in) :: npoint
+      character(len=:), allocatable :: s
+
+      s = ''
+      if (npoint == -3) s = ' Lobatto'
+      if (npoint < -3) s = ' equidistant'
+    end function rule_of
 
     pure function motion_of(die) result(s)
       integer, intent(in) :: die
@@ -90,6 +130,14 @@ contains
           if (motion%die /= die) cycle
           if (s /= '') s = s//', '
           s = s//directions(motion%component)//' = '//to_text(motion%amplitude)//' x '//scene%multipliers(motion%multiplier)%name
+        end associate
+      end do
+      do i = 1, size(scene%die_forces)
+        associate (load => scene%die_forces(i))
+          if (load%die /= die) cycle
+          if (s /= '') s = s//', '
+          s = s//directions(load%component)//' free'
+          if (load%multiplier > 0) s = s//' under a force by '//scene%multipliers(load%multiplier)%name
         end associate
       end do
       if (s == '') s = 'at rest'

@@ -42,6 +42,7 @@ module deck_cursor
     procedure :: next_is_number
     procedure :: end_row
     procedure :: more_rows
+    procedure :: peek_row
     procedure :: next_row
     procedure :: end_card
     procedure :: fail => fail_here
@@ -249,6 +250,19 @@ contains
     yes = .false.
     if (.not. self%silent) yes = self%row < size(self%card%rows)
   end function more_rows
+
+  !> The first field of the next data row in capital letters; empty when there is none or it is a number.
+  pure function peek_row(self) result(word)
+    class(cursor_t), intent(in) :: self
+    character(len=:), allocatable :: word
+
+    word = ''
+    if (.not. self%more_rows()) return
+    associate (fields => self%card%rows(self%row + 1)%fields)
+      if (size(fields) == 0) return
+      if (.not. fields(1)%numeric) word = upper_case(fields(1)%text)
+    end associate
+  end function peek_row
 
   !> Go to the next data row, which must be there; the row before must be read to its end.
   subroutine next_row(self, what)

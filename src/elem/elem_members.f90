@@ -1,18 +1,23 @@
 !> Members of the ELEM family: a new element is one file and one line here.
 submodule(elem_registry) elem_members
+  use elem_body_forces, only: elem_bforc_row, elem_centr_row
   use elem_cnt2d, only: elem_cnt2d_row
   use elem_cntdf, only: elem_cntdf_row
   use elem_pl8ls, only: elem_pl8ls_row
   use elem_pres2d, only: elem_pres2d_row
+  use elem_spring, only: elem_spring_row
   implicit none
 contains
 
   module procedure list_elems
-    allocate (elems(4))
+    allocate (elems(7))
     elems(1) = elem_pl8ls_row()
     elems(2) = elem_cnt2d_row()
     elems(3) = elem_cntdf_row()
     elems(4) = elem_pres2d_row()
+    elems(5) = elem_bforc_row()
+    elems(6) = elem_centr_row()
+    elems(7) = elem_spring_row()
   end procedure list_elems
 
 end submodule elem_members

@@ -6,16 +6,18 @@
 !> and M = A + geometric part. The geometric part is annex 1's matrix, d(F) at frozen stress, written once
 !> for all unknowns: d(sigma J f^-T) = J (sigma tr h - sigma h^T). Across the plane h_zz = dt/t: in
 !> generalised plane strain dt = da1 + x da2 + y da3 + a2 dx + a3 dy, an axisymmetric scene being a = (0, 1, 0);
-!> in plane stress h_zz is condensed out of M by the row of sigma_zz = 0.
+!> in plane stress h_zz is condensed out of M by the row of sigma_zz = 0. A group may ask for the mean dilatation (mean_dilatation).
 module elem_pl8ls
   use elem_api, only: block_inverted, block_law_failed, elem_t, group_temperature, instant_t, report_t, section_motion, totals_t
   use kinds, only: wp
   use kinematics_api, only: first_history, first_strain, kinematics_t, solid_variables
   use law_api, only: law_done, law_t, solid_law
+  use mean_dilatation, only: dilatation_t, share_dilatation, share_pressure
   use plane_stress_points, only: update_plane_stress
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
   use scene, only: generalised_plane_strain, group_t, plane_stress, scene_t
   use sections, only: thickness_at
+  use solid_terms, only: add_section, first_element, geometric, mean_element
   use state_variables, only: find_variable, state_variable, state_variable_t, transfer_scalar
   implicit none
   private
@@ -69,6 +71,7 @@ contains
     real(wp), intent(inout) :: stiffness(:, :, :)
     type(report_t), intent(out) :: report
     type(quad8_rule_t) :: rule
+    type(dilatation_t) :: own
     real(wp), dimension(8, group%npoint, size(x, 3)) :: nx, ny, zx
     real(wp) :: dv(group%npoint, size(x, 3)), f(5, group%npoint, size(x, 3)), tangent(4, 5, group%npoint, size(x, 3))
     real(wp) :: temperature(2, group%npoint*size(x, 3)), section(3, 2)
@@ -93,6 +96,15 @@ contains
           return
         end if
       end do
+      if (.not. group%mean_dilatation) cycle
+      call first_element(scene, rule, group%connectivity(:, first + e - 1), own)
+      call share_dilatation(kinematics%finite, own, dv(:, e), f(:, :, e), valid)
+      if (.not. valid) then
+        report%status = block_inverted
+        report%element = first + e - 1
+        force = 0
+        return
+      end if
     end do
 
     temperature = spread(group_temperature(group, instant), 2, size(temperature, 2))
@@ -110,6 +122,13 @@ contains
       if (any(status(:, e) /= law_done) .and. report%status == 0) then
         report%status = block_law_failed
         report%element = first + e - 1
+      end if
+      if (group%mean_dilatation) then
+        call sections_of_step(scene, kinematics%finite, instant, du(:, e), section)
+        call first_element(scene, rule, group%connectivity(:, first + e - 1), own)
+        call mean_element(kinematics%finite, instant%tangent, rule, section, own, x(:, :, e), du(:, e), nx(:, :, e), &
+                          ny(:, :, e), dv(:, e), trial(1:4, :, e), tangent(:, :, :, e), force(:, e), stiffness(:, :, e))
+        cycle
       end if
       call internal_force(nx(:, :, e), ny(:, :, e), zx(:, :, e), dv(:, e), trial(1:4, :, e), force(1:16, e))
       if (instant%tangent) call tangent_matrix(scene%plane_state == plane_stress, kinematics%finite, nx(:, :, e), ny(:, :, e), &
@@ -219,58 +238,8 @@ contains
     end do
   end subroutine tangent_matrix
 
-  !> What the unknowns of the section add to force and matrix in generalised plane strain, and the tilt of the section
-  !> (a3) to the nodal ones. With G (5, 19) complete, K = sum G^T M G dv replaces the matrix of the nodes; h_zz dt = dt
-  !> being bilinear in position and tilt, sigma_zz dA d(da2) dx and d(da3) dy come on top.
-  pure subroutine add_section(finite, wanted, rule, section, x, du, nx, ny, dv, stress, tangent, force, stiffness)
-    logical, intent(in) :: finite, wanted
-    type(quad8_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: section(3, 2), x(2, 8), du(:), nx(:, :), ny(:, :), dv(:), stress(:, :), tangent(:, :, :)
-    real(wp), intent(inout) :: force(19), stiffness(19, 19)
-    real(wp) :: g(5, 19), m(5, 5), here(2), area
-    integer :: p
-
-    force(17:19) = 0
-    if (wanted) stiffness = 0
-    do p = 1, size(dv)
-      here = matmul(x, rule%phi(:, p))
-      if (finite) here = here + [dot_product(rule%phi(:, p), du(1:8)), dot_product(rule%phi(:, p), du(9:16))]
-      area = dv(p)/thickness_at(section(:, 1), here)
-      g = 0
-      g(1, 1:8) = nx(:, p)
-      g(2, 1:8) = ny(:, p)
-      g(3, 9:16) = nx(:, p)
-      g(4, 9:16) = ny(:, p)
-      g(5, :) = [section(2, 1)*rule%phi(:, p), section(3, 1)*rule%phi(:, p), 1.0_wp, here]*(area/dv(p))
-      force(9:16) = force(9:16) + stress(4, p)*dv(p)*g(5, 9:16)
-      force(17:19) = force(17:19) + stress(4, p)*dv(p)*g(5, 17:19)
-      if (.not. wanted) cycle
-      m = tangent([1, 3, 3, 2, 4], :, p)
-      if (finite) m = m + geometric(stress(:, p))
-      stiffness = stiffness + matmul(transpose(g), matmul(m*dv(p), g))
-      if (.not. finite) cycle
-      associate (pull => stress(4, p)*area*rule%phi(:, p))
-        stiffness(1:8, 18) = stiffness(1:8, 18) + pull
-        stiffness(18, 1:8) = stiffness(18, 1:8) + pull
-        stiffness(9:16, 19) = stiffness(9:16, 19) + pull
-        stiffness(19, 9:16) = stiffness(19, 9:16) + pull
-      end associate
-    end do
-  end subroutine add_section
-
-  !> sigma tr h - sigma h^T as a matrix on h = (xx, xy, yx, yy, zz).
-  pure function geometric(s) result(m)
-    real(wp), intent(in) :: s(4)
-    real(wp) :: m(5, 5)
-
-    m(:, 1) = [0.0_wp, s(3), 0.0_wp, s(2), s(4)]
-    m(:, 2) = [-s(3), 0.0_wp, -s(2), 0.0_wp, 0.0_wp]
-    m(:, 3) = [0.0_wp, -s(1), 0.0_wp, -s(3), 0.0_wp]
-    m(:, 4) = [s(1), 0.0_wp, s(3), 0.0_wp, s(4)]
-    m(:, 5) = [s(1), s(3), s(3), s(2), 0.0_wp]
-  end function geometric
-
-  !> Volume and energies. Work densities are per stress-free volume, dv/J with J = exp(tr e).
+  !> Volume and energies. Work densities are per stress-free volume, dv/J with J = exp(tr e). A law's `plastic_work` is what
+  !> is dissipated, its `stored_work` what is kept beside the elastic energy and counted with it.
   subroutine measure(scene, group, law, section, x, state, before, totals)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -278,18 +247,29 @@ contains
     real(wp), intent(in) :: section(3), x(:, :, :), state(:, :, :), before(:, :, :)
     type(totals_t), intent(out) :: totals
     type(quad8_rule_t) :: rule
-    real(wp) :: nx(8), ny(8), detj, dv, stress(4), strain(4)
-    integer :: e, p, k
+    type(dilatation_t) :: own
+    real(wp) :: nx(8), ny(8), detj, dv, volume(group%npoint), m(group%npoint), shared(4, group%npoint), stress(4), strain(4)
+    integer :: e, p, k, kept
 
     call quad8_rule(group%npoint, rule)
     k = find_variable(law%history, 'plastic_work')
     if (k > 0) k = group%variables(find_variable(group%variables, 'plastic_work'))%first
+    kept = find_variable(group%variables, 'stored_work')
+    if (kept > 0) kept = group%variables(kept)%first
     do e = 1, size(x, 3)
       do p = 1, group%npoint
         call derivatives(rule%dphi(:, :, p), x(:, :, e), nx, ny, detj)
-        dv = detj*rule%weight(p)*thickness_at(section, matmul(x(:, :, e), rule%phi(:, p)))
-        if (scene%plane_state == plane_stress .and. scene%finite) dv = dv*state(size(state, 1), p, e)
-        totals%volume = totals%volume + dv
+        volume(p) = detj*rule%weight(p)*thickness_at(section, matmul(x(:, :, e), rule%phi(:, p)))
+        if (scene%plane_state == plane_stress .and. scene%finite) volume(p) = volume(p)*state(size(state, 1), p, e)
+      end do
+      totals%volume = totals%volume + sum(volume)
+      if (group%mean_dilatation) then
+        call first_element(scene, rule, group%connectivity(:, e), own)
+        call share_pressure(own, volume, state(1:4, :, e), m, shared)
+        volume = m
+      end if
+      do p = 1, group%npoint
+        dv = volume(p)
         stress = state(1:4, p, e)
         strain = state(first_strain:first_history - 1, p, e)
         totals%elastic_energy = totals%elastic_energy &
@@ -297,6 +277,7 @@ contains
         if (k == 0) cycle
         if (scene%finite) dv = dv*exp(-strain(1) - strain(2) - strain(4))
         totals%plastic_work = totals%plastic_work + state(k, p, e)*dv
+        if (kept > 0) totals%elastic_energy = totals%elastic_energy + state(kept, p, e)*dv
         totals%least_dissipation = min(totals%least_dissipation, state(k, p, e) - before(k, p, e))
       end do
     end do

@@ -21,6 +21,8 @@ module kinematics_api
     character(len=:), allocatable :: name, purpose
     !> The geometry follows the displacements, and the geometric matrix is on.
     logical :: finite = .true.
+    !> With a law of symmetric tangent the matrix of a solid is symmetric.
+    logical :: symmetric = .true.
     procedure(kinematics_update_i), nopass, pointer :: update => null()
   end type kinematics_t
 

@@ -1,7 +1,8 @@
 !> LOG: logarithmic elastic strain, e = ln(b)/2, trial b = f exp(2 e) f^T, stress = tau/J.
 !>
 !> The small-strain law acts between e and the Kirchhoff stress tau; a rigid rotation changes nothing.
-!> J is the elastic volume ratio exp(tr e). Source: A. Cuitino, M. Ortiz, Eng. Comput. 9 (1992) 437-451;
+!> J is the elastic volume ratio exp(tr e), without thermal strain. Where the history holds tensors, the law is called in
+!> the frame that turns with the step (step_frame). Source: A. Cuitino, M. Ortiz, Eng. Comput. 9 (1992) 437-451;
 !> J.C. Simo, CMAME 99 (1992) 61-112.
 module kinematics_log
   use kinds, only: wp
@@ -9,6 +10,7 @@ module kinematics_log
   use law_api, only: law_t
   use materials, only: material_t
   use plane_tensors, only: exp_twice, half_log
+  use step_frame, only: frame_of_step, frame_t, has_tensors, turn_answer, turn_history, turned
   implicit none
   private
   public :: kinematics_log_row
@@ -33,23 +35,42 @@ contains
     real(wp), intent(out) :: trial(nstate, n), tangent(4, 5, n)
     integer, intent(out) :: status(n)
     real(wp) :: e(4, n), de(4, 5, n), tau(4, n), elastic(4, n), history(nstate - first_history + 1, n), law_tangent(4, 4, n)
-    real(wp) :: volume
+    type(frame_t) :: frame(n)
+    real(wp) :: fixed(4, n), volume
+    logical :: turning
     integer :: i, j
 
     do i = 1, n
       call half_log(push_forward(f(:, i), exp_twice(committed(5:8, i))), e(:, i), de(:, :, i))
       e(3, i) = 2*e(3, i)
     end do
+    turning = has_tensors(law, material)
+    if (turning) then
+      fixed = e
+      do i = 1, n
+        frame(i) = frame_of_step(f(:, i))
+        e(:, i) = turned(frame(i), e(:, i), back=.true., shear=2.0_wp)
+      end do
+    end if
     call law%update(material, dt, temperature, e, committed(first_history:, :), tau, elastic, history, law_tangent, status)
     do i = 1, n
-      volume = exp(e(1, i) + e(2, i) + e(4, i))
+      if (turning) then
+        call turn_history(law, material, frame(i), history(:, i))
+        call turn_answer(frame(i), fixed(:, i), de(:, 1:4, i), law_tangent(:, :, i), tau(:, i), elastic(:, i), tangent(:, 1:4, i))
+        law_tangent(:, 4, i) = turned(frame(i), law_tangent(:, 4, i))
+      end if
+      volume = exp(elastic(1, i) + elastic(2, i) + elastic(4, i))
       trial(1:4, i) = tau(:, i)/volume
       trial(5:8, i) = elastic(:, i)*[1.0_wp, 1.0_wp, 0.5_wp, 1.0_wp]
       trial(first_history:, i) = history(:, i)
-      do j = 1, 4
-        tangent(:, j, i) = (law_tangent(:, 1, i)*de(1, j, i) + law_tangent(:, 2, i)*de(2, j, i) &
-                            + law_tangent(:, 3, i)*de(3, j, i))/volume
-      end do
+      if (turning) then
+        tangent(:, 1:4, i) = tangent(:, 1:4, i)/volume
+      else
+        do j = 1, 4
+          tangent(:, j, i) = (law_tangent(:, 1, i)*de(1, j, i) + law_tangent(:, 2, i)*de(2, j, i) &
+                              + law_tangent(:, 3, i)*de(3, j, i))/volume
+        end do
+      end if
       tangent(:, 5, i) = law_tangent(:, 4, i)/volume - trial(1:4, i)
       tangent(:, 1, i) = tangent(:, 1, i) - trial(1:4, i)
       tangent(:, 4, i) = tangent(:, 4, i) - trial(1:4, i)

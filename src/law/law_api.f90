@@ -6,12 +6,12 @@
 !> for associated laws. A block of points is treated in one call.
 module law_api
   use kinds, only: wp
-  use materials, only: material_t
+  use materials, only: has_number, material_t
   use state_variables, only: state_variable_t
   implicit none
   private
-  public :: law_t, law_line_t, parameter_t, law_update_i, law_slide_i
-  public :: parameter, law_line, find_parameter
+  public :: law_t, law_line_t, parameter_t, law_update_i, law_slide_i, law_flow_i
+  public :: parameter, law_line, find_parameter, law_of_material, asks_for
   public :: law_done, law_not_converged
   public :: contact_open, contact_stick, contact_slip
   public :: solid_law, contact_law
@@ -63,7 +63,7 @@ module law_api
     integer :: kind = solid_law
     character(len=:), allocatable :: purpose, source
     type(law_line_t), allocatable :: lines(:)
-    !> History of a point beside stress and elastic strain.
+    !> History of a point beside stress and elastic strain. What a material does not need comes last and is left out.
     type(state_variable_t), allocatable :: history(:)
     !> Its tangent is symmetric.
     logical :: symmetric = .true.
@@ -71,6 +71,8 @@ module law_api
     character(len=:), allocatable :: effects
     procedure(law_update_i), nopass, pointer :: update => null()
     procedure(law_slide_i), nopass, pointer :: slide => null()
+    !> Not associated for laws without flow.
+    procedure(law_flow_i), nopass, pointer :: flow_stress => null()
   end type law_t
 
   abstract interface
@@ -113,6 +115,15 @@ module law_api
       real(wp), intent(out) :: tangent(3, 3)  !! [stress/length]
       integer, intent(out) :: status          !! contact_open, contact_stick or contact_slip
     end subroutine law_slide_i
+
+    !> Von Mises stress at which a point flows as it is now: what bounds the friction on it.
+    pure function law_flow_i(material, temperature, history) result(flow)
+      import :: material_t, wp
+      type(material_t), intent(in) :: material
+      real(wp), intent(in) :: temperature
+      real(wp), intent(in) :: history(:)      !! of the law (nhistory)
+      real(wp) :: flow                        !! [stress]
+    end function law_flow_i
   end interface
 
 contains
@@ -183,5 +194,31 @@ contains
     end do
     k = 0
   end function find_parameter
+
+  !> A law asks for an effect.
+  pure function asks_for(law, effect) result(yes)
+    type(law_t), intent(in) :: law
+    character(len=*), intent(in) :: effect
+    logical :: yes
+
+    yes = index(' '//law%effects//' ', ' '//effect//' ') > 0
+  end function asks_for
+
+  !> A law as a material uses it: without the history that its points do not need.
+  pure function law_of_material(law, material) result(own)
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    type(law_t) :: own
+    logical :: there(size(law%history))
+    integer :: k
+
+    do k = 1, size(law%history)
+      there(k) = law%history(k)%needs == 0
+      if (.not. there(k)) there(k) = has_number(material, law%history(k)%needs)
+    end do
+    own = law
+    deallocate (own%history)
+    allocate (own%history, source=pack(law%history, there))
+  end function law_of_material
 
 end module law_api

@@ -1,12 +1,14 @@
 !> COUL2D (94): unilateral contact with Coulomb friction by penalties (annex 3, eqs. 2-7).
 !>
-!> p = augmentation + AKP d where positive; stick dtau = AKTAU ds; slip |tau| = min(PHI p + PBOUE, TAUMAX),
+!> p = augmentation + AKP d where positive; stick dtau = AKTAU ds; slip |tau| = min(PHI p + PBOUE, TAUMAX,
+!> M flow_stress/sqrt3), each limit where it is given (M: constant-factor law, Tresca's friction);
 !> non-associated: no opening by slip. The slip tangent dtau = PHI AKP sign(tau) dd is unsymmetric.
 module law_coul2d
   use contact_penalties, only: penalty_parameters
   use kinds, only: wp
   use law_api, only: contact_law, contact_open, contact_slip, contact_stick, law_line, law_t, parameter
   use materials, only: material_t
+  use state_variables, only: state_variable, transfer_recompute
   implicit none
   private
   public :: law_coul2d_row
@@ -22,11 +24,13 @@ contains
     row%purpose = 'contact with Coulomb friction'
     row%source = 'Charlier; seed, annex 3'
     allocate (row%lines, source=[law_line([penalty_parameters(), &
-                                           parameter('PHI', '-', 'friction coefficient', lower=0.0_wp), &
+                                           parameter('PHI', '-', 'friction coefficient', lower=0.0_wp, default=huge(1.0_wp)), &
                                            parameter('PBOUE', 'stress', 'cohesion', lower=0.0_wp, default=0.0_wp), &
                                            parameter('TAUMAX', 'stress', 'largest friction stress', &
-                                                     above=0.0_wp, default=huge(1.0_wp))], pairs=.true.)])
-    allocate (row%history(0))
+                                                     above=0.0_wp, default=huge(1.0_wp)), &
+                                           parameter('M', '-', 'friction factor: largest friction over the shear flow stress', &
+                                                     lower=0.0_wp, upper=1.0_wp, default=huge(1.0_wp))], pairs=.true.)])
+    allocate (row%history, source=[state_variable('flow_stress', 'stress', transfer_recompute)])
     row%symmetric = .false.
     row%effects = 'contact friction'
     row%slide => slide
@@ -41,22 +45,28 @@ contains
     real(wp), intent(out) :: pressure, tau(2), tangent(3, 3)
     integer, intent(out) :: status
     real(wp) :: limit, size_of_trial, trial(2), direction(2), phi, cohesion, tau_max
+    logical :: by_pressure
 
     tau = 0
     tangent = 0
     status = contact_open
     pressure = augmentation + penalty(1)*penetration
-    if (.not. pressure > 0) then
+    ! a point that just touches is closed: it has the stiffness of contact before it has a pressure
+    if (pressure < 0) then
       pressure = 0
       return
     end if
     phi = material%values(5)
     cohesion = material%values(6)
     tau_max = material%values(7)
+    if (material%values(8) < huge(1.0_wp)) tau_max = min(tau_max, material%values(8)*flow_stress/sqrt(3.0_wp))
     tangent(1, 1) = penalty(1)
     trial = tau_committed + penalty(2)*slip
     size_of_trial = sqrt(dot_product(trial, trial))
-    limit = min(phi*pressure + cohesion, tau_max)
+    limit = tau_max
+    by_pressure = .false.
+    if (phi < huge(1.0_wp)) by_pressure = phi*pressure + cohesion < tau_max
+    if (by_pressure) limit = phi*pressure + cohesion
     if (size_of_trial <= limit) then
       status = contact_stick
       tau = trial
@@ -66,7 +76,7 @@ contains
       status = contact_slip
       direction = trial/size_of_trial
       tau = limit*direction
-      if (limit < tau_max) tangent(2:3, 1) = phi*penalty(1)*direction
+      if (by_pressure) tangent(2:3, 1) = phi*penalty(1)*direction
       associate (share => limit/size_of_trial*penalty(2))
         tangent(2, 2:3) = share*[direction(2)**2, -direction(1)*direction(2)]
         tangent(3, 2:3) = share*[-direction(1)*direction(2), direction(1)**2]

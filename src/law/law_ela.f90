@@ -1,12 +1,20 @@
-!> ELA (1): isotropic linear elasticity, stress = K tr(eps) 1 + 2 G dev(eps).
+!> ELA (1): isotropic linear elasticity, stress = K tr(eps) 1 + 2 G dev(eps), and
+!> ELATH (200): the same with thermal expansion; both with numbers by temperature.
+!>
+!> Thermal strain of a step is the integral of ALPHA over its temperatures, exact for an ALPHA linear between those of the
+!> card: ALPHA is the tangent coefficient d(strain)/d(temperature), as LAGAMINE's. E and NU of the end of the step act on
+!> the whole elastic strain, so that a closed cycle of strain and temperature leaves no stress.
 module law_ela
   use elasticity, only: hooke_stress, hooke_tangent, moduli
   use kinds, only: wp
-  use law_api, only: law_done, law_line, law_t, parameter
-  use materials, only: material_t
+  use law_api, only: law_done, law_line, law_t, parameter, parameter_t
+  use materials, only: integral_over_temperature, material_t, values_at
   implicit none
   private
-  public :: law_ela_row
+  public :: law_ela_row, law_elath_row
+
+  !> Place of ALPHA in a material's values.
+  integer, parameter :: place_alpha = 3
 
 contains
 
@@ -17,26 +25,60 @@ contains
     row%number = 1
     row%purpose = 'isotropic linear elasticity'
     row%source = 'Hooke'
-    allocate (row%lines, source=[law_line([parameter('E', 'stress', 'Young''s modulus', above=0.0_wp), &
-                           parameter('NU', '-', 'Poisson''s ratio', lower=0.0_wp, upper=0.499999_wp)])])
+    allocate (row%lines, source=[law_line(elastic_parameters())])
     allocate (row%history(0))
     row%effects = ''
     row%update => update
   end function law_ela_row
+
+  function law_elath_row() result(row)
+    type(law_t) :: row
+
+    row%name = 'ELATH'
+    row%number = 200
+    row%purpose = 'isotropic linear elasticity with thermal expansion'
+    row%source = 'Hooke, Duhamel, Neumann'
+    allocate (row%lines, source=[law_line([elastic_parameters(), &
+                                           parameter('ALPHA', '1/temperature', 'tangent coefficient of expansion', &
+                                                     lower=0.0_wp)])])
+    allocate (row%history(0))
+    row%effects = 'temperature'
+    row%update => update
+  end function law_elath_row
+
+  !> E and NU.
+  function elastic_parameters() result(list)
+    type(parameter_t), allocatable :: list(:)
+
+    allocate (list(2))
+    list(1) = parameter('E', 'stress', 'Young''s modulus', above=0.0_wp)
+    list(2) = parameter('NU', '-', 'Poisson''s ratio', lower=0.0_wp, upper=0.499999_wp)
+  end function elastic_parameters
 
   pure subroutine update(material, dt, temperature, trial_strain, committed, stress, elastic_strain, history, tangent, status)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt, temperature(:, :), trial_strain(:, :), committed(:, :)
     real(wp), intent(out) :: stress(:, :), elastic_strain(:, :), history(:, :), tangent(:, :, :)
     integer, intent(out) :: status(:)
-    real(wp) :: bulk, shear, hooke(4, 4)
+    real(wp) :: bulk, shear, hooke(4, 4), values(size(material%values)), expansion
+    logical :: by_temperature
     integer :: n
 
+    by_temperature = allocated(material%temperatures)
     call moduli(material%values(1), material%values(2), bulk, shear)
     hooke = hooke_tangent(bulk, shear)
     do n = 1, size(trial_strain, 2)
-      stress(:, n) = hooke_stress(bulk, shear, trial_strain(:, n))
+      if (by_temperature) then
+        call values_at(material, temperature(2, n), values)
+        call moduli(values(1), values(2), bulk, shear)
+        hooke = hooke_tangent(bulk, shear)
+      end if
       elastic_strain(:, n) = trial_strain(:, n)
+      if (size(material%values) >= place_alpha) then
+        expansion = integral_over_temperature(material, place_alpha, temperature(1, n), temperature(2, n))
+        elastic_strain([1, 2, 4], n) = trial_strain([1, 2, 4], n) - expansion
+      end if
+      stress(:, n) = hooke_stress(bulk, shear, elastic_strain(:, n))
       history(:, n) = committed(:, n)
       tangent(:, :, n) = hooke
       status(n) = law_done

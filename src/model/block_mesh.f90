@@ -9,6 +9,7 @@ module block_mesh
   use kinds, only: wp
   use shape_functions, only: quad8, quad8_corner, quad8_side
   use quadrature, only: square_rule
+  use vectors, only: length_of
   implicit none
   private
   public :: block_t, mesh_block, grading, least_jacobian, polygon_area
@@ -139,8 +140,8 @@ contains
         a = first - point
         b = last - point
         turn = u*atan2(a(1)*b(2) - a(2)*b(1), dot_product(a, b))
-        radius = (1 - u)*norm2(a) + u*norm2(b)
-        direction = a/norm2(a)
+        radius = (1 - u)*length_of(a) + u*length_of(b)
+        direction = a/length_of(a)
         x = point + radius*[cos(turn)*direction(1) - sin(turn)*direction(2), sin(turn)*direction(1) + cos(turn)*direction(2)]
       else if (block%form(k) == side_parabola) then
         x = (1 - u)*(1 - 2*u)*first + 4*u*(1 - u)*point + u*(2*u - 1)*last

@@ -3,7 +3,7 @@ module loads
   use kinds, only: wp
   implicit none
   private
-  public :: multiplier_t, fixation_t, die_motion_t, nodal_force_t, multiplier_at
+  public :: multiplier_t, fixation_t, die_motion_t, die_force_t, nodal_force_t, multiplier_at
 
   !> Piecewise linear in time, constant outside its points.
   type :: multiplier_t
@@ -29,6 +29,15 @@ module loads
     real(wp) :: amplitude = 1.0_wp
     integer :: multiplier = 0
   end type die_motion_t
+
+  !> A component of a die's pilot that is free, with the force (moment) on it: amplitude times multiplier, per radian
+  !> when axisymmetric; multiplier 0 for none.
+  type :: die_force_t
+    integer :: die = 0
+    integer :: component = 0
+    real(wp) :: amplitude = 0.0_wp
+    integer :: multiplier = 0
+  end type die_force_t
 
   !> Force on one node (per radian when axisymmetric): amplitude times multiplier.
   type :: nodal_force_t

@@ -3,7 +3,7 @@ module materials
   use kinds, only: wp
   implicit none
   private
-  public :: material_t, values_at, bracket_temperature
+  public :: material_t, values_at, bracket_temperature, integral_over_temperature, has_number
 
   type :: material_t
     character(len=:), allocatable :: name
@@ -60,5 +60,45 @@ contains
     end do
     share = (temperature - material%temperatures(k))/(material%temperatures(k + 1) - material%temperatures(k))
   end subroutine bracket_temperature
+
+  !> Integral of one value from a temperature to another: exact for what `values_at` gives.
+  pure function integral_over_temperature(material, place, from, to) result(integral)
+    type(material_t), intent(in) :: material
+    integer, intent(in) :: place              !! of the value
+    real(wp), intent(in) :: from, to
+    real(wp) :: integral
+    real(wp) :: low, high, a, b
+    integer :: k, n
+
+    if (.not. allocated(material%temperatures)) then
+      integral = material%values(place)*(to - from)
+      return
+    end if
+    low = min(from, to)
+    high = max(from, to)
+    n = size(material%temperatures)
+    associate (t => material%temperatures, v => material%values_by_temperature(place, :))
+      integral = max(0.0_wp, min(high, t(1)) - low)*v(1) + max(0.0_wp, high - max(low, t(n)))*v(n)
+      do k = 1, n - 1
+        a = max(low, t(k))
+        b = min(high, t(k + 1))
+        if (b > a) integral = integral &
+                              + (b - a)*(v(k) + (v(k + 1) - v(k))*((0.5_wp*(a + b) - t(k))/(t(k + 1) - t(k))))
+      end do
+    end associate
+    if (to < from) integral = -integral
+  end function integral_over_temperature
+
+  !> A value is not zero, at some temperature.
+  pure function has_number(material, place) result(yes)
+    type(material_t), intent(in) :: material
+    integer, intent(in) :: place
+    logical :: yes
+
+    yes = .false.
+    if (place > size(material%values)) return   ! a card with mistakes
+    yes = abs(material%values(place)) > 0
+    if (.not. yes .and. allocated(material%temperatures)) yes = any(abs(material%values_by_temperature(place, :)) > 0)
+  end function has_number
 
 end module materials

@@ -1,6 +1,7 @@
 !> Nodes and the named sets of nodes and sides that cards refer to.
 module mesh
   use kinds, only: wp
+  use vectors, only: length_of
   implicit none
   private
   public :: mesh_t, node_set_t, side_set_t, find_side_set, nodes_of_sides, nearest_node
@@ -72,7 +73,7 @@ contains
     node = 0
     distance = huge(1.0_wp)
     do i = 1, size(coordinates, 2)
-      d = norm2(coordinates(:, i) - point)
+      d = length_of(coordinates(:, i) - point)
       if (d < distance) then
         distance = d
         node = i

@@ -3,7 +3,7 @@ module scene
   use dies, only: die_t
   use effects, only: effect_t
   use kinds, only: wp
-  use loads, only: die_motion_t, fixation_t, multiplier_t, nodal_force_t
+  use loads, only: die_force_t, die_motion_t, fixation_t, multiplier_t, nodal_force_t
   use materials, only: material_t
   use mesh, only: mesh_t
   use probes, only: probe_t
@@ -12,7 +12,7 @@ module scene
   use strategy, only: strategy_t
   implicit none
   private
-  public :: scene_t, group_t, plane_state_names
+  public :: scene_t, group_t, plane_state_names, is_solid
   public :: plane_strain, axisymmetric, plane_stress, generalised_plane_strain
 
   !> Plane states.
@@ -30,16 +30,21 @@ module scene
     integer :: elem_id = 0
     !> Material (place in the scene's list); 0 for elements without a law.
     integer :: material = 0
-    !> Integration points of an element (negative: Lobatto).
+    !> Integration points of an element (negative: at equal distances).
     integer :: npoint = 0
+    !> The points of a solid element share few values of the change of volume (mean_dilatation).
+    logical :: mean_dilatation = .false.
     !> Nodes (nnode, nelem).
     integer, allocatable :: connectivity(:, :)
-    !> Die faced by contact elements, multiplier and amplitude of load elements; 0 where unused.
+    !> Die faced by contact elements, multiplier and amplitude of load elements, component of a spring; 0 where unused.
     integer :: die = 0
+    integer :: component = 0
     !> Place among the groups that face a deformable die, 0 for others.
     integer :: pairs = 0
     integer :: multiplier = 0
     real(wp) :: amplitude = 0.0_wp
+    !> Direction of a force on the volume: 1 = x, 2 = y; 0 where unused.
+    integer :: direction = 0
     !> Temperature given to the body: amplitude times multiplier; multiplier 0 where none is.
     integer :: temperature_multiplier = 0
     real(wp) :: temperature_amplitude = 0.0_wp
@@ -65,6 +70,7 @@ module scene
     type(multiplier_t), allocatable :: multipliers(:)
     type(fixation_t), allocatable :: fixations(:)
     type(die_motion_t), allocatable :: die_motions(:)
+    type(die_force_t), allocatable :: die_forces(:)
     type(nodal_force_t), allocatable :: forces(:)
     type(probe_t), allocatable :: probes(:)
     type(strategy_t) :: strategy
@@ -72,4 +78,15 @@ module scene
     !> Mesh generation, 1 for the deck's own mesh.
     integer :: generation = 1
   end type scene_t
+
+contains
+
+  !> Elements of matter: loads on the volume of a body have its nodes and no material.
+  pure function is_solid(group) result(yes)
+    type(group_t), intent(in) :: group
+    logical :: yes
+
+    yes = size(group%connectivity, 1) == 8 .and. group%material > 0
+  end function is_solid
+
 end module scene

@@ -25,20 +25,23 @@ module state_variables
     integer :: first = 0
     !> Value at the start of a scene.
     real(wp) :: initial = 0.0_wp
+    !> Place of the number of a material without which this part of a law's history is not there; 0: always there.
+    integer :: needs = 0
   end type state_variable_t
 
 contains
 
   !> A declaration in one line.
-  pure function state_variable(name, unit, transfer, ncomp) result(variable)
+  pure function state_variable(name, unit, transfer, ncomp, needs) result(variable)
     character(len=*), intent(in) :: name, unit, transfer
-    integer, intent(in), optional :: ncomp
+    integer, intent(in), optional :: ncomp, needs
     type(state_variable_t) :: variable
 
     variable%name = name
     variable%unit = unit
     variable%transfer = transfer
     if (present(ncomp)) variable%ncomp = ncomp
+    if (present(needs)) variable%needs = needs
   end function state_variable
 
   !> Components of all variables together.

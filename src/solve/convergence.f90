@@ -4,12 +4,35 @@ module convergence
   use kinds, only: wp
   implicit none
   private
-  public :: relative_residual, relative_motion, free_force
+  public :: relative_residual, relative_motion, free_force, pilots_in_equilibrium
 
   !> Motions below this share of the mesh's size are round-off of coordinates.
   real(wp), parameter :: least_motion = 1.0e-10_wp
 
+  !> A free pilot is in equilibrium when its residual is below this share of the forces that act on it.
+  real(wp), parameter :: pilot_tolerance = 1.0e-8_wp
+
 contains
+
+  !> The few unknowns that carry the force of a whole die are held to a norm of their own.
+  pure function pilots_in_equilibrium(equations, force_floor, external, residual) result(in_equilibrium)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: force_floor, external(:), residual(:)
+    logical :: in_equilibrium
+    integer :: k, c, d
+
+    in_equilibrium = .true.
+    do k = 1, size(equations%dofs%pilot, 2)
+      do c = 1, 3
+        d = equations%dofs%pilot(c, k)
+        if (d == 0) cycle
+        if (equations%dofs%equation(d) == 0) cycle
+        in_equilibrium = in_equilibrium .and. abs(residual(d)) &
+                         <= max(pilot_tolerance*max(abs(external(d)), equations%magnitude(d)), &
+                                force_floor*merge(equations%size, 1.0_wp, equations%dofs%is_angle(d)))
+      end do
+    end do
+  end function pilots_in_equilibrium
 
   !> Residual of the free unknowns over the largest of external force, reactions and element forces; 0 when it is
   !> round-off. Moments on pilots depend on where the pilot stands: they are no measure of the forces.

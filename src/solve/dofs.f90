@@ -117,6 +117,10 @@ contains
     do k = 1, size(dofs%pilot, 2)
       if (dofs%pilot(1, k) > 0) by_dof(dofs%pilot(:, k))%dof = dofs%pilot(:, k)
     end do
+    do k = 1, size(scene%die_forces)
+      d = dofs%pilot(scene%die_forces(k)%component, scene%die_forces(k)%die)
+      if (d > 0) by_dof(d)%dof = 0
+    end do
     do k = 1, 3
       if (dofs%section(k) == 0 .or. scene%section_drives(k)%kind == section_forced) cycle
       by_dof(dofs%section(k))%dof = dofs%section(k)

@@ -1,5 +1,6 @@
 !> The discrete equations of a scene: unknowns, pattern, element loop, linear solver.
 module equations
+  use contact_flow, only: bodies_t, find_bodies
   use contact_point, only: at_piece
   use dies, only: is_deformable, place_on_nodes
   use dofs, only: dofs_t, number_dofs, number_pairs
@@ -21,6 +22,7 @@ module equations
   use solution, only: solution_t
   use sparsity, only: build_pattern, pattern_t
   use timers, only: ledger_t
+  use vectors, only: length_of
   implicit none
   private
   public :: equations_t, set_up, evaluate, solve_correction, external_forces
@@ -46,6 +48,8 @@ module equations
     logical :: analysed = .false.
     !> Groups that are loads: their forces come from outside.
     logical, allocatable :: is_load(:)
+    !> Bodies behind the sides of contacts.
+    type(bodies_t), allocatable :: bodies(:)
     !> Diagonal of the box around the mesh [length].
     real(wp) :: size = 0.0_wp
   end type equations_t
@@ -75,8 +79,9 @@ contains
     allocate (equations%values(equations%pattern%nnz))
     call start_pairs(scene, equations%pairs)
     allocate (equations%buffers%force(equations%pattern%force_length), equations%buffers%matrix(equations%pattern%matrix_length))
-    equations%size = norm2(maxval(scene%mesh%coordinates, 2) - minval(scene%mesh%coordinates, 2))
+    equations%size = length_of(maxval(scene%mesh%coordinates, 2) - minval(scene%mesh%coordinates, 2))
 
+    call find_bodies(scene, equations%elems, equations%laws, equations%bodies)
     allocate (equations%is_load(size(scene%groups)))
     do g = 1, size(scene%groups)
       equations%is_load(g) = equations%elems(scene%groups(g)%elem_id)%law_kind == 0
@@ -183,7 +188,9 @@ contains
     do g = 1, size(scene%groups)
       associate (row => equations%elems(scene%groups(g)%elem_id), m => scene%groups(g)%material)
         symmetric = symmetric .and. (row%symmetric .or. .not. (row%follows .or. scene%finite))
-        if (m > 0) symmetric = symmetric .and. equations%laws(scene%materials(m)%law_id)%symmetric
+        if (m == 0) cycle
+        symmetric = symmetric .and. equations%laws(scene%materials(m)%law_id)%symmetric
+        if (row%law_kind == solid_law) symmetric = symmetric .and. equations%kinematics%symmetric
       end associate
     end do
   end function is_symmetric
@@ -276,7 +283,7 @@ contains
     force_floor = round_off_motion*equations%size*sqrt(sum)
   end subroutine set_floor
 
-  !> Nodal forces, and loads of the section, at a time (ndof).
+  !> Forces on nodes and pilots, and loads of the section, at a time (ndof).
   pure subroutine external_forces(scene, dofs, time, force)
     type(scene_t), intent(in) :: scene
     type(dofs_t), intent(in) :: dofs
@@ -289,6 +296,13 @@ contains
       associate (load => scene%forces(k))
         d = dofs%node(load%component, load%node)
         force(d) = force(d) + load%amplitude*multiplier_at(scene%multipliers(load%multiplier), time)
+      end associate
+    end do
+    do k = 1, size(scene%die_forces)
+      associate (load => scene%die_forces(k))
+        d = dofs%pilot(load%component, load%die)
+        if (d == 0 .or. load%multiplier == 0) cycle
+        force(d) = load%amplitude*multiplier_at(scene%multipliers(load%multiplier), time)
       end associate
     end do
     do k = 1, 3

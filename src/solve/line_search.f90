@@ -2,7 +2,14 @@
 !>
 !> The whole is taken when the residual along the correction falls to `search_above` of what it was,
 !> or the whole residual falls. Otherwise the zero of the residual along the correction is sought by
-!> secants (M.A. Crisfield, Non-linear Finite Element Analysis, vol. 1, sec. 9.2).
+!> regula falsi in the bracket found (M.A. Crisfield, Non-linear Finite Element Analysis, vol. 1, sec. 9.2). Where
+!> contact begins along the way, that zero is at a corner: any short way makes the residual a little
+!> smaller, in proportion, and leaves the contact open. So a share is taken only for a real fall.
+!>
+!> Where points are about to turn from loading to unloading, or the other way, every short search
+!> stays on this side of the turn, with the same matrix: it would go on so for ever. Hence the
+!> caller may ask for the whole correction, whatever the residual (the watchdog of R.M. Chamberlain
+!> et al., Math. Programming Study 16 (1982) 1-17): beyond the turn the matrix is the right one.
 module line_search
   use convergence, only: free_force
   use elem_api, only: block_done, report_t
@@ -12,58 +19,84 @@ module line_search
   use solution, only: solution_t
   implicit none
   private
-  public :: search_along
+  public :: search_along, short_share
 
+  !> A search that ends below this share of the correction is short.
+  real(wp), parameter :: short_share = 0.2_wp
   real(wp), parameter :: search_above = 0.8_wp
-  integer, parameter :: max_searches = 4
+  !> A share of the correction is taken when the whole residual falls to this part of what it was.
+  real(wp), parameter :: real_fall = 0.5_wp
+  integer, parameter :: max_searches = 6
 
 contains
 
   !> Move `du` along the correction by the share `s` and evaluate there. s = 0: every share tried
-  !> fails, and `report` says why. A prescribed motion still missing is taken whole, without search.
-  subroutine search_along(scene, equations, solution, dt, external, residual, missing, correction, du, s, report)
+  !> fails, and `report` says why. A prescribed motion still missing, or `whole`, is taken without search.
+  subroutine search_along(scene, equations, solution, dt, external, residual, missing, correction, whole, du, s, report)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt
     real(wp), intent(in) :: external(:), residual(:), missing(:), correction(:)
+    logical, intent(in) :: whole
     real(wp), intent(inout) :: du(:)
     real(wp), intent(out) :: s
     type(report_t), intent(out) :: report
-    real(wp) :: start(size(du)), trial, slope0, slope, best
+    real(wp) :: start(size(du)), trial, slope0, slope, best, norm, norm0, near(2), far(2)
     integer :: k
 
     start = du
     trial = 1
     slope0 = dot_product(correction, residual)
+    norm0 = free_force(equations, residual)
+    near = [0.0_wp, slope0]
+    far = 0
     best = huge(best)
     s = 0
     do k = 1, max_searches
       du = start + trial*correction + missing
       call evaluate(scene, equations, solution, dt, du, .true., report)
       if (report%status /= block_done) then
-        trial = 0.5_wp*trial
+        trial = 0.5_wp*(near(1) + trial)
+        far = 0
         cycle
       end if
       slope = dot_product(correction, external - equations%force)
+      norm = free_force(equations, external - equations%force)
       if (abs(slope) < best) then
         best = abs(slope)
         s = trial
       end if
-      if (abs(slope) <= search_above*abs(slope0) .or. any(abs(missing) > 0) .or. &
-          free_force(equations, external - equations%force) < free_force(equations, residual)) then
+      if (whole .or. abs(slope) <= search_above*abs(slope0) .or. any(abs(missing) > 0) .or. norm < real_fall*norm0 .or. &
+          (k == 1 .and. norm < norm0)) then
         s = trial
         return
       end if
-      if (slope0*slope < 0) then
-        trial = trial*min(0.9_wp, max(0.1_wp, slope0/(slope0 - slope)))
-      else
-        trial = 0.5_wp*trial
-      end if
+      call narrow(trial, slope, near, far)
     end do
     if (s <= 0) return
     du = start + s*correction + missing
     call evaluate(scene, equations, solution, dt, du, .true., report)
   end subroutine search_along
+
+  !> The next share to try, after `trial` gave `slope`: `near` and `far` (share, slope) are the ends of the bracket of the zero;
+  !> `far` is 0 while there is none.
+  pure subroutine narrow(trial, slope, near, far)
+    real(wp), intent(inout) :: trial, near(2), far(2)
+    real(wp), intent(in) :: slope
+
+    if (near(2)*slope < 0) then
+      ! the same end again: the other one weighs half (Illinois)
+      if (far(1) > 0) near(2) = 0.5_wp*near(2)
+      far = [trial, slope]
+    else if (far(1) > 0) then
+      far(2) = 0.5_wp*far(2)
+      near = [trial, slope]
+    else
+      trial = 0.5_wp*trial
+      return
+    end if
+    trial = near(1) + (far(1) - near(1))*min(0.9_wp, max(0.1_wp, near(2)/(near(2) - far(2))))
+  end subroutine narrow
 
 end module line_search

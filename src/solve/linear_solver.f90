@@ -1,15 +1,17 @@
-!> Direct solution of the linear system by sequential MUMPS: analysis once per mesh, numerical
-!> factorisation per matrix, residual of every solve checked and refined.
+!> Direct solution of the linear system: analysis once per mesh, factorisation per matrix, residual of every solve checked
+!> and refined. Factors are made without pivoting, by all threads; a matrix for which these prove too poor, and those
+!> after it in the step, get MUMPS with pivoting.
 module linear_solver
-  use errors, only: error_t, exit_machine, exit_no_convergence, fail
+  use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
+  use multifrontal, only: decompose, multifrontal_t, plan, substitute
+  use mumps_solver, only: mumps_analyse, mumps_factorise, mumps_release, mumps_solve, mumps_t
   use sparsity, only: pattern_t
   use text, only: to_text
+  use vectors, only: length_of
   implicit none
   private
-  public :: linear_solver_t, analyse, factorise, solve_linear, release
-
-  include 'dmumps_struc.h'
+  public :: linear_solver_t, analyse, factorise, solve_linear, release, try_without_pivoting
 
   !> Backward error of a solve that is refined; and what is accepted at last.
   real(wp), parameter, public :: refine_above = 1.0e-14_wp
@@ -17,35 +19,27 @@ module linear_solver
   integer, parameter :: max_refinements = 3
   !> Forces |A| |x| this many times the right-hand side are round-off of a singular matrix.
   real(wp), parameter :: singular_growth = 1.0e13_wp
-  !> Threshold of partial pivoting, where it is used.
-  real(wp), parameter :: pivot_threshold = 0.01_wp
-
-  !> MUMPS' own numbers.
-  integer, parameter :: job_start = -1, job_end = -2, job_analyse = 1, job_factorise = 2, job_solve = 3
-  integer, parameter :: info_workspace = -9, info_workspace_integer = -8, info_singular = -10, info_memory = -13
-
-  interface
-    subroutine dmumps(id)
-      import :: dmumps_struc
-      type(dmumps_struc), intent(inout) :: id
-    end subroutine dmumps
-  end interface
+  !> Fewer nonzeros are not worth waking threads for.
+  integer, parameter :: worth_threads = 50000
 
   type :: linear_solver_t
     private
-    type(dmumps_struc) :: mumps
-    logical :: started = .false.
-    !> Entries of the factors and operations of a factorisation, estimated by the analysis.
+    type(multifrontal_t) :: fronts
+    type(mumps_t) :: mumps
+    !> Order of elimination asked for; where every row of the matrix begins; its nonzeros.
+    integer, allocatable :: position(:), row_start(:)
+    real(wp), allocatable :: values(:)
+    !> The factors at hand are sound; the solver has turned to pivoting.
+    logical :: regular = .false., pivoting = .false.
+    !> Entries of the factors and operations of a factorisation.
     real(wp), public :: estimated_entries = 0.0_wp, estimated_flops = 0.0_wp
     !> Backward error of the last solve.
     real(wp), public :: residual = 0.0_wp
-  contains
-    final :: release
   end type linear_solver_t
 
 contains
 
-  !> Give MUMPS the pattern and the order of elimination.
+  !> Plan the factorisation for a pattern and an order of elimination.
   subroutine analyse(solver, pattern, position, error)
     type(linear_solver_t), intent(inout) :: solver
     type(pattern_t), intent(in) :: pattern
@@ -53,73 +47,53 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     call release(solver)
-    solver%mumps%comm = 0
-    solver%mumps%par = 1
-    solver%mumps%sym = merge(2, 0, pattern%symmetric)
-    solver%mumps%job = job_start
-    call dmumps(solver%mumps)
-    if (solver%mumps%infog(1) < 0) then
-      call fail(error, exit_machine, 'MUMPS: start failed (INFOG(1) = '//to_text(solver%mumps%infog(1))//')')
-      return
-    end if
-    solver%started = .true.
-    associate (id => solver%mumps)
-      id%icntl(1:3) = -1      ! no output
-      id%icntl(4) = 0
-      id%icntl(8) = 0         ! no scaling: unknowns are displacements throughout
-      id%cntl(1) = 0          ! no pivoting, until a residual asks for it
-      id%icntl(6) = 0         ! no column permutation: the pattern is symmetric and diagonals are large
-      id%icntl(7) = 1         ! order given
-      id%icntl(14) = 30       ! extra workspace, percent
-      id%n = pattern%neq
-      id%nz = pattern%nnz
-      allocate (id%irn(pattern%nnz), id%jcn(pattern%nnz), id%a(pattern%nnz), id%perm_in(pattern%neq), id%rhs(pattern%neq))
-      id%irn = pattern%row
-      id%jcn = pattern%column
-      id%perm_in = position
-      id%job = job_analyse
-      call dmumps(solver%mumps)
-      if (id%infog(1) < 0) call fail(error, exit_machine, &
-                                     'MUMPS: analysis failed (INFOG(1) = '//to_text(id%infog(1))//', ' &
-                                     //to_text(id%infog(2))//')')
-      ! a negative count is in millions
-      solver%estimated_entries = merge(real(id%infog(20), wp), -1.0e6_wp*id%infog(20), id%infog(20) >= 0)
-      solver%estimated_flops = id%rinfog(1)
-    end associate
+    solver%position = position
+    allocate (solver%values(pattern%nnz))
+    call start_rows(pattern, solver%row_start)
+    call plan(solver%fronts, pattern, position, error)
+    solver%estimated_entries = real(solver%fronts%layout%factor_length, wp)
+    solver%estimated_flops = solver%fronts%layout%flops
   end subroutine analyse
+
+  !> Nonzeros are sorted by row: where every row begins (neq + 1).
+  pure subroutine start_rows(pattern, row_start)
+    type(pattern_t), intent(in) :: pattern
+    integer, allocatable, intent(out) :: row_start(:)
+    integer :: k
+
+    allocate (row_start(pattern%neq + 1), source=0)
+    do k = 1, pattern%nnz
+      row_start(pattern%row(k) + 1) = row_start(pattern%row(k) + 1) + 1
+    end do
+    row_start(1) = 1
+    do k = 1, pattern%neq
+      row_start(k + 1) = row_start(k + 1) + row_start(k)
+    end do
+  end subroutine start_rows
+
+  !> At the start of a step: what earlier steps needed does not count, or a run taken up again would go another way.
+  pure subroutine try_without_pivoting(solver)
+    type(linear_solver_t), intent(inout) :: solver
+
+    solver%pivoting = .false.
+  end subroutine try_without_pivoting
 
   !> Factorise the matrix with these nonzeros. A singular matrix answers exit_no_convergence: the step is cut.
   subroutine factorise(solver, values, error)
     type(linear_solver_t), intent(inout) :: solver
     real(wp), intent(in) :: values(:)
     type(error_t), allocatable, intent(out) :: error
-    integer :: attempt
 
-    associate (id => solver%mumps)
-      do attempt = 1, 2
-        id%a = values
-        id%job = job_factorise
-        call dmumps(solver%mumps)
-        if (id%infog(1) /= info_workspace .and. id%infog(1) /= info_workspace_integer) exit
-        id%icntl(14) = 4*id%icntl(14)
-      end do
-      select case (id%infog(1))
-      case (0:)
-        return
-      case (info_singular)
-        call fail(error, exit_no_convergence, 'the matrix is singular')
-      case (info_memory, info_workspace, info_workspace_integer)
-        call fail(error, exit_machine, 'not enough memory for the factors of the matrix ('//to_text(id%infog(16))// &
-                  ' MB estimated)', 'use a coarser mesh or a machine with more memory')
-      case default
-        call fail(error, exit_machine, 'MUMPS: factorisation failed (INFOG(1) = '//to_text(id%infog(1))//', ' &
-                  //to_text(id%infog(2))//')')
-      end select
-    end associate
+    solver%values = values
+    if (solver%pivoting) then
+      call mumps_factorise(solver%mumps, solver%values, error)
+    else
+      call decompose(solver%fronts, solver%values, solver%regular)
+    end if
   end subroutine factorise
 
   !> Solve for one right-hand side with the present factors, refining while the residual asks for it.
-  !> Factors made without pivoting that prove too poor are made again with it, once and for all.
+  !> Factors made without pivoting that prove too poor are made again with it, for the rest of the step.
   subroutine solve_linear(solver, pattern, rhs, x, error)
     type(linear_solver_t), intent(inout) :: solver
     type(pattern_t), intent(in) :: pattern
@@ -127,11 +101,13 @@ contains
     real(wp), intent(out) :: x(:)
     type(error_t), allocatable, intent(out) :: error
 
-    call refine(solver, pattern, rhs, x, error)
+    x = 0
+    if (solver%regular .or. solver%pivoting) call refine(solver, pattern, rhs, x, error)
     if (allocated(error)) return
-    if (.not. solver%residual <= linear_tolerance .and. .not. solver%mumps%cntl(1) > 0) then
-      solver%mumps%cntl(1) = pivot_threshold
-      call factorise(solver, solver%mumps%a, error)
+    if (.not. solver%pivoting .and. .not. (solver%regular .and. solver%residual <= linear_tolerance)) then
+      solver%pivoting = .true.
+      if (.not. solver%mumps%started) call mumps_analyse(solver%mumps, pattern, solver%position, error)
+      if (.not. allocated(error)) call mumps_factorise(solver%mumps, solver%values, error)
       if (.not. allocated(error)) call refine(solver, pattern, rhs, x, error)
     end if
     if (allocated(error)) return
@@ -148,66 +124,73 @@ contains
     real(wp), intent(in) :: rhs(:)
     real(wp), intent(out) :: x(:)
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: residual(size(rhs)), scale
+    real(wp) :: residual(size(rhs)), correction(size(rhs)), scale
     integer :: k
 
     x = 0
     scale = 0
     residual = rhs
     do k = 0, max_refinements
-      solver%mumps%rhs = residual
-      solver%mumps%job = job_solve
-      call dmumps(solver%mumps)
-      if (solver%mumps%infog(1) < 0) then
-        call fail(error, exit_machine, 'MUMPS: solution failed (INFOG(1) = '//to_text(solver%mumps%infog(1))//')')
-        return
+      correction = residual
+      if (solver%pivoting) then
+        call mumps_solve(solver%mumps, correction, error)
+        if (allocated(error)) return
+      else
+        call substitute(solver%fronts, correction)
       end if
-      x = x + solver%mumps%rhs
-      call linear_residual(pattern, solver%mumps%a, rhs, x, residual, scale)
+      x = x + correction
+      call linear_residual(pattern, solver%row_start, solver%values, rhs, x, residual, scale)
       solver%residual = 0
-      if (scale > 0) solver%residual = norm2(residual)/scale
+      if (scale > 0) solver%residual = length_of(residual)/scale
       if (.not. solver%residual > refine_above) exit
     end do
-    if (scale > singular_growth*norm2(rhs)) then
+    if (scale > singular_growth*length_of(rhs)) then
       call fail(error, exit_no_convergence, 'the matrix is singular to working precision: is every body held?')
     end if
   end subroutine refine
 
   !> residual = rhs - A x, and the size of what was summed, |rhs| + |A| |x|: their ratio is the backward error
   !> (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405-409), which a stiff constraint does not spoil.
-  pure subroutine linear_residual(pattern, a, rhs, x, residual, scale)
+  subroutine linear_residual(pattern, row_start, a, rhs, x, residual, scale)
     type(pattern_t), intent(in) :: pattern
+    integer, intent(in) :: row_start(:)   !! nonzeros of row i: row_start(i) ... row_start(i+1)-1
     real(wp), intent(in) :: a(:), rhs(:), x(:)
     real(wp), intent(out) :: residual(:), scale
     real(wp) :: magnitude(size(rhs))
     integer :: k, i, j
 
-    residual = rhs
-    magnitude = abs(rhs)
-    do k = 1, pattern%nnz
-      i = pattern%row(k)
-      j = pattern%column(k)
-      residual(i) = residual(i) - a(k)*x(j)
-      magnitude(i) = magnitude(i) + abs(a(k)*x(j))
-      if (.not. pattern%symmetric .or. i == j) cycle
-      residual(j) = residual(j) - a(k)*x(i)
-      magnitude(j) = magnitude(j) + abs(a(k)*x(i))
+    !$omp parallel do private(k) schedule(static) if (pattern%nnz > worth_threads)
+    do i = 1, pattern%neq
+      residual(i) = rhs(i)
+      magnitude(i) = abs(rhs(i))
+      do k = row_start(i), row_start(i + 1) - 1
+        residual(i) = residual(i) - a(k)*x(pattern%column(k))
+        magnitude(i) = magnitude(i) + abs(a(k)*x(pattern%column(k)))
+      end do
     end do
-    scale = norm2(magnitude)
+    !$omp end parallel do
+    if (pattern%symmetric) then
+      ! the upper triangle, of which the lower one is the mirror
+      do k = 1, pattern%nnz
+        i = pattern%row(k)
+        j = pattern%column(k)
+        if (i == j) cycle
+        residual(j) = residual(j) - a(k)*x(i)
+        magnitude(j) = magnitude(j) + abs(a(k)*x(i))
+      end do
+    end if
+    scale = length_of(magnitude)
   end subroutine linear_residual
 
-  !> Give back what MUMPS holds.
+  !> Give back what is held.
   subroutine release(solver)
     type(linear_solver_t), intent(inout) :: solver
 
-    if (.not. solver%started) return
-    associate (id => solver%mumps)
-      deallocate (id%irn, id%jcn, id%a, id%perm_in, id%rhs)
-      nullify (id%irn, id%jcn, id%a, id%perm_in, id%rhs)
-      id%job = job_end
-    end associate
-    call dmumps(solver%mumps)
-    solver%started = .false.
+    call mumps_release(solver%mumps)
+    if (allocated(solver%position)) deallocate (solver%position, solver%row_start, solver%values)
+    solver%fronts = multifrontal_t()
+    solver%regular = .false.
+    solver%pivoting = .false.
   end subroutine release
 
 end module linear_solver

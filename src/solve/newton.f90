@@ -4,13 +4,14 @@
 !> correction still to come (the last one times the last fall of the residual) is below
 !> `displacement_norm` of the motion of the step.
 module newton
-  use convergence, only: relative_motion, relative_residual
+  use convergence, only: pilots_in_equilibrium, relative_motion, relative_residual
   use elem_api, only: block_done, block_inverted, report_t
   use element_loop, only: add_prescribed
   use equations, only: equations_t, evaluate, external_forces, solve_correction
   use errors, only: error_t, exit_no_convergence
   use kinds, only: wp
-  use line_search, only: search_along
+  use linear_solver, only: try_without_pivoting
+  use line_search, only: search_along, short_share
   use predictor, only: predict
   use scene, only: scene_t
   use solution, only: group_state_t, solution_t
@@ -51,6 +52,8 @@ module newton
   integer, parameter :: patience = 6
   !> The residual stagnates when the best of the last `patience` - 1 iterations is above this share of the best before.
   real(wp), parameter :: stagnant = 0.3_wp
+  !> After so many short searches one after the other the whole correction is taken.
+  integer, parameter :: short_searches = 2
 
 contains
 
@@ -69,6 +72,7 @@ contains
     integer :: first
 
     allocate (outcome%history(0), outcome%du(equations%dofs%ndof))
+    call try_without_pivoting(equations%solver)
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     call predict(scene, equations, solution, dt, outcome%du, missing, report)
     if (report%status /= block_done) then
@@ -87,7 +91,8 @@ contains
       outcome%history = [outcome%history, line]
       outcome%iterations = size(outcome%history) - 1
       if (.not. any(abs(missing) > 0)) then
-        if (has_converged(scene, outcome%history(first:))) then
+        if (has_converged(scene, outcome%history(first:)) &
+            .and. pilots_in_equilibrium(equations, solution%force_floor, external, residual)) then
           if (outcome%augmentations == 0) outcome%first_iterations = outcome%iterations
           call augment(scene, equations, solution, outcome%augmentations, before, changed)
           if (.not. changed) exit
@@ -108,8 +113,8 @@ contains
         exit
       end if
       outcome%linear_residual = max(outcome%linear_residual, equations%solver%residual)
-      call search_along(scene, equations, solution, dt, external, residual, missing, correction, outcome%du, &
-                        line%line_search, report)
+      call search_along(scene, equations, solution, dt, external, residual, missing, correction, &
+                        caught(outcome%history(first:)), outcome%du, line%line_search, report)
       if (line%line_search <= 0) then
         call blame(report, outcome)
         exit
@@ -144,6 +149,15 @@ contains
     if (history(n - 1)%force_norm > 0) to_come = to_come*min(1.0_wp, history(n)%force_norm/history(n - 1)%force_norm)
     converged = to_come <= scene%strategy%displacement_norm
   end function has_converged
+
+  !> The last searches were all short: they do not get past a turn of loading to unloading.
+  pure function caught(history)
+    type(iteration_t), intent(in) :: history(:)
+    logical :: caught
+
+    caught = size(history) > short_searches
+    if (caught) caught = all(history(size(history) - short_searches + 1:)%line_search < short_share)
+  end function caught
 
   !> Is there a reason to give up?
   pure subroutine judge(scene, history, reason)

@@ -8,7 +8,7 @@ module results
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use nodal_average, only: add_to_nodes
-  use scene, only: scene_t
+  use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use state_variables, only: component_names
   use system, only: base_name, file_exists, rename_file
@@ -139,7 +139,7 @@ contains
 
     allocate (topology(8, 0))
     do g = 1, size(scene%groups)
-      if (size(scene%groups(g)%connectivity, 1) /= 8) cycle
+      if (.not. is_solid(scene%groups(g))) cycle
       topology = reshape([topology, scene%groups(g)%connectivity - 1], [8, size(topology, 2) + &
                                                                         size(scene%groups(g)%connectivity, 2)])
     end do
@@ -177,7 +177,7 @@ contains
     grid%topology = 'mesh/topology'
     allocate (grid%fields(0))
     do g = 1, size(scene%groups)
-      if (size(scene%groups(g)%connectivity, 1) == 8) grid%nelement = grid%nelement + size(scene%groups(g)%connectivity, 2)
+      if (is_solid(scene%groups(g))) grid%nelement = grid%nelement + size(scene%groups(g)%connectivity, 2)
     end do
     call put_vector(file, place, 'displacement', solution%displacement, grid)
     call put_vector(file, place, 'applied_force', solution%applied, grid)
@@ -230,7 +230,7 @@ contains
     allocate (done(0))
     call put_field('mises', 0)
     do g = 1, size(scene%groups)
-      if (size(scene%groups(g)%connectivity, 1) /= 8) cycle
+      if (.not. is_solid(scene%groups(g))) cycle
       call component_names(scene%groups(g)%variables, names)
       do c = 1, size(names)
         if (any_is(done, names(c)%s)) cycle
@@ -251,7 +251,7 @@ contains
       at = 0
       count_at = 0
       do h = 1, size(scene%groups)
-        if (size(scene%groups(h)%connectivity, 1) /= 8) cycle
+        if (.not. is_solid(scene%groups(h))) cycle
         associate (state => solution%groups(h)%committed, nodes => scene%groups(h)%connectivity)
           if (kind == 0) then
             call add_to_nodes(nodes, mises(state(1:4, :, :)), at, count_at)

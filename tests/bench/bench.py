@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What upsetting costs: element kernel, iteration and whole run, on one thread; and the same billet in CalculiX.
+"""What upsetting costs: element kernel, iteration and whole run, on one thread and on two; and the same billet in CalculiX.
 
 Called by run.sh, which explains the options. Standard library only.
 """
@@ -29,10 +29,16 @@ BEGIN, END = "<!-- bench: written by run.sh --write -->", "<!-- bench: end -->"
 KERNEL_TARGET_US = 15.0
 ITERATION_MESH, ITERATION_TARGET_S = "48x72", 0.20
 CCX_MESH, CCX_TARGET = "24x36", 10.0
+# Two threads against one: timers of summary.json, and how many times faster they should be.
+THREADS_MESH = "48x72"
+THREADS_TARGETS = {"displacement": 1.8, "factorisation": None, "assembly": None, "solution": None, "whole run": 1.5}
 # Reduction of height at which forces are compared, as shares of the die's travel.
 MOMENTS = {"30 %": 0.5, "44 %": 22 / 30, "60 %": 1.0}
 TASKS = ("factorisation", "displacement", "assembly", "solution", "contact")
 FOLDING, PLAIN, CCX = "folding", "no side contact", "CAX8R"
+# The cost of the search: dies of the same shape in pieces few and many, and what contact may take of the run with many.
+DOMED = {"die of 2 parabolas": 2, "die of 2000 parabolas": 2000}
+DOMED_MESH, MANY, CONTACT_TARGET = "24x36", "die of 2000 parabolas", 0.05
 
 
 def deck_without_side_contact():
@@ -43,6 +49,19 @@ def deck_without_side_contact():
         text, count = re.subn(r"(?m)^" + card + r".*\n(?: .*\n)*", "", text)
         if count != 1:
             sys.exit(f"bench: {DECK} has {count} cards '{card.strip()}', one was expected")
+    return text
+
+
+def deck_with_domed_die(pieces):
+    """The deck with the die y = 15 + 2e-4 x^2 in so many equal parabolas: any part of a parabola is one."""
+    with open(DECK, encoding="utf-8") as deck:
+        text = deck.read()
+    places = [30 - 31 * k / (2 * pieces) for k in range(2 * pieces + 1)]
+    points = [f"{x:.15g} {15 + 2e-4 * x * x:.15g}" for x in places]
+    rows = "".join(f"   PARAB {points[k]} {points[k + 1]} {points[k + 2]}\n" for k in range(0, 2 * pieces, 2))
+    text, count = re.subn(r"(?m)^   SEGM .*\n", lambda _: rows, text)
+    if count != 1:
+        sys.exit(f"bench: {DECK} has {count} rows SEGM, one was expected")
     return text
 
 
@@ -57,12 +76,12 @@ def at_moments(times, forces):
     return found
 
 
-def run_lagamine(deck, mesh, folder):
+def run_lagamine(deck, mesh, folder, threads=1):
     """One run of the solver: a row of numbers."""
     nx, ny = mesh.split("x")
     out = os.path.join(folder, "out")
     shutil.rmtree(out, ignore_errors=True)
-    command = [os.path.join(os.environ["LAGAMINE_BIN"], "lagamine"), deck, "--threads", "1", "--quiet", "--out", out,
+    command = [os.path.join(os.environ["LAGAMINE_BIN"], "lagamine"), deck, "--threads", str(threads), "--quiet", "--out", out,
                "-p", f"nx={nx}", "-p", f"ny={ny}"]
     started = time.monotonic()
     result = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
@@ -83,6 +102,7 @@ def run_lagamine(deck, mesh, folder):
     row = {"total": total, "cpu": summary["cpu_s"], "steps": summary["steps"], "iterations": solves,
            "cutbacks": summary["cutbacks"], "unknowns": summary["dofs"], "kernel_us": 1e6 * kernel, "per_iteration": total / solves,
            "evaluations": summary["effects"]["displacement"]["calls"], "forces": at_moments(times, forces)}
+    row["seconds"] = dict({task: seconds.get(task, 0.0) for task in TASKS}, **{"whole run": total})
     row["shares"] = {task: seconds.get(task, 0.0) / total for task in TASKS}
     row["shares"]["other"] = 1 - sum(row["shares"].values())
     return row
@@ -133,6 +153,12 @@ def measure(options, folder):
         jobs = {FOLDING: lambda mesh=mesh: run_lagamine(DECK, mesh, folder), PLAIN: lambda mesh=mesh: run_lagamine(plain, mesh, folder)}
         if mesh in options.ccx_meshes:
             jobs[CCX] = lambda mesh=mesh: run_ccx(mesh, folder)
+        if mesh == DOMED_MESH:
+            for name, pieces in DOMED.items():
+                path = os.path.join(folder, f"domed{pieces}.lag")
+                with open(path, "w", encoding="utf-8") as file:
+                    file.write(deck_with_domed_die(pieces))
+                jobs[name] = lambda path=path, mesh=mesh: run_lagamine(path, mesh, folder)
         rows = {name: [] for name in jobs}
         for repetition in range(options.repeat):
             for name in list(jobs)[::1 if repetition % 2 == 0 else -1]:
@@ -142,6 +168,38 @@ def measure(options, folder):
         for name, measured in rows.items():
             results[mesh, name] = median_of(measured)
     return results
+
+
+def measure_threads(options, folder):
+    """Both numbers of threads in turns: the least seconds of every task, and whether the history is the same."""
+    least, histories = {1: {}, 2: {}}, set()
+    for repetition in range(options.threads_repeat):
+        for threads in (1, 2) if repetition % 2 == 0 else (2, 1):
+            row = run_lagamine(DECK, THREADS_MESH, folder, threads)
+            if not row:
+                return None
+            print(f"bench: {THREADS_MESH} {threads} threads: {row['total']:.2f} s", file=sys.stderr, flush=True)
+            for task in THREADS_TARGETS:
+                least[threads][task] = min(least[threads].get(task, float("inf")), row["seconds"][task])
+            with open(os.path.join(folder, "out", "history.csv"), "rb") as file:
+                histories.add(file.read())
+    return {"seconds": least, "same": len(histories) == 1}
+
+
+def threads_table(measured, repeat):
+    """Two threads against one, in Markdown."""
+    names = {"displacement": "element loop"}
+    lines = ["", f"Two threads against one, {THREADS_MESH}, `{FOLDING}`, "
+             + (f"least of {repeat} runs each" if repeat > 1 else "one run each")
+             + (f"; histories {'are the same' if measured['same'] else '**differ**'}." if measured else "."), ""]
+    if not measured:
+        return lines + ["A run did not finish."]
+    lines += ["| task | one thread s | two threads s | ratio | wanted | |", "|---|---|---|---|---|---|"]
+    for task, target in THREADS_TARGETS.items():
+        one, two = (measured["seconds"][threads][task] for threads in (1, 2))
+        wanted = f">= {target:g} | {verdict(one / two, target, at_most=False)}" if target else " |"
+        lines.append(f"| {names.get(task, task)} | {one:.2f} | {two:.2f} | {one / two:.2f} | {wanted} |")
+    return lines
 
 
 def verdict(value, target, at_most=True):
@@ -191,6 +249,11 @@ def targets(results):
         if row and mesh == ITERATION_MESH and "kernel_us" in row:
             lines.append(f"| iteration of {mesh} <= {ITERATION_TARGET_S:.2f} s | {name}: {row['per_iteration']:.3f} s | "
                          f"{verdict(row['per_iteration'], ITERATION_TARGET_S)} |")
+    for (mesh, name), row in results.items():
+        if row and name == MANY:
+            share = row["shares"]["contact"]
+            lines.append(f"| contact <= {100 * CONTACT_TARGET:g} % of the run | {mesh}, {name}: {100 * share:.2f} % | "
+                         f"{verdict(share, CONTACT_TARGET)} |")
     for (mesh, name), row in results.items():
         ours = results.get((mesh, PLAIN))
         if name != CCX or not row or not ours:
@@ -245,6 +308,7 @@ def main():
     parser.add_argument("--ccx-meshes", default="12x18 24x36", help="meshes for CalculiX (48x72 takes minutes)")
     parser.add_argument("--install-ccx", action="store_true", help="install calculix-ccx first, and run it")
     parser.add_argument("--repeat", type=int, default=1, help="runs of each, of which medians are taken")
+    parser.add_argument("--threads-repeat", type=int, default=1, help=f"runs of {THREADS_MESH} with one and with two threads (0: none)")
     parser.add_argument("--write", action="store_true", help="put the tables into tests/bench/README.md")
     parser.add_argument("--out", default=os.path.join(ROOT, "out", "bench"), help="folder of bench.md and bench.csv")
     options = parser.parse_args()
@@ -258,17 +322,23 @@ def main():
         wanted = False
     options.ccx_meshes = options.ccx_meshes.split() if wanted else []
     options.repeat = max(options.repeat, 1)
+    if options.threads_repeat > 0 and (os.cpu_count() or 1) < 2:
+        print("bench: this machine has one processor: without the table of two threads", file=sys.stderr)
+        options.threads_repeat = 0
     os.makedirs(options.out, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="lagamine-bench-") as folder:
         results = measure(options, folder)
+        two = measure_threads(options, folder) if options.threads_repeat > 0 else None
     text = tables(results, options)
+    if options.threads_repeat > 0:
+        text += "\n".join(threads_table(two, options.threads_repeat)) + "\n"
     print(text, end="")
     with open(os.path.join(options.out, "bench.md"), "w", encoding="utf-8") as file:
         file.write(text)
     write_csv(os.path.join(options.out, "bench.csv"), results)
     if options.write:
         put_into_readme(text)
-    return 0 if all(results.values()) else 1
+    return 0 if all(results.values()) and (two and two["same"] or options.threads_repeat <= 0) else 1
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 #!/bin/sh
 # What the solver costs, and CalculiX on the same problem. Measured, not judged: no part of ctest.
-#   sh tests/bench/run.sh [--meshes "12x18 24x36 48x72"] [--repeat N] [--write]
+#   sh tests/bench/run.sh [--meshes "12x18 24x36 48x72"] [--repeat N] [--threads-repeat N] [--write]
 #                         [--ccx] [--ccx-meshes "12x18 24x36"] [--install-ccx]
 # --write        put the table into tests/bench/README.md
 # --ccx          run CalculiX too, where it is installed; --install-ccx installs it first

@@ -4,7 +4,8 @@
 usage: run_manual.py [-v]
 A block fenced with ```lag is a whole deck when it has an END card. Otherwise it is put into the manual's skeleton, the block
 fenced with ```lag skeleton, in place of its line `! your cards here`; a card of the example that may be given only once takes
-the place of the skeleton's. A block fenced with ```lag file NAME is a file for the examples after it.
+the place of the skeleton's. A block fenced with ```lag file NAME is a file for the examples after it; one fenced with ```lag point
+is a whole deck for `lagamine --point`.
 A card with a heading (### `KEYWORD`) must be used in the first example after it.
 LAGAMINE_BIN is the folder of `lagamine` (default: build/bin of this project).
 """
@@ -77,7 +78,8 @@ def main():
             deck = whole_deck(example, skeletons[0])
             with open(os.path.join(folder, "deck.lag"), "w") as file:
                 file.write("\n".join(deck) + "\n")
-            run = subprocess.run([os.path.join(BIN, "lagamine"), "deck.lag", "--check"], cwd=folder, text=True, timeout=60,
+            point = ["--point"] if example["kind"][1:2] == ["point"] else []
+            run = subprocess.run([os.path.join(BIN, "lagamine"), "deck.lag", "--check"] + point, cwd=folder, text=True, timeout=60,
                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
             passed += run.returncode == 0
             failed += run.returncode != 0

@@ -13,8 +13,9 @@ Columns of reference.csv, in any order:
   deck           NAME.lag beside the file, without .lag
   options        options of `lagamine`, or nothing
   exit_code      what the run must end with, for each of its rows
-  at             `end` (the last row of history.csv), or `expression=expression`: where the left side, linear between the
-                 steps, first has the value of the right side
+  at             `end` (the last row of history.csv), `max` or `min` (the row where the quantity is largest or least), or
+                 `expression=expression`: where the left side, linear between the steps, first has the value of the right side;
+                 `expression=expression to expression`: the change of the quantity between two such places
   quantity       expression of columns of history.csv (named without their unit), also linear between the steps;
                  or `summary:a.b`, the number b of a in summary.json, at the end
   expected       expression of numbers
@@ -22,12 +23,15 @@ Columns of reference.csv, in any order:
   kind           `value` (also if empty), `below`: found < expected, `above`: found > expected; this column may be missing
   long           `yes`: only with --all; this column may be missing
   source         where the number comes from
-Expressions know + - * / **, brackets, pi, sqrt and log. What cannot be computed, NaN among it, fails.
+Expressions know + - * / **, brackets, pi, sqrt log exp sin cos tan, and largest(f, a, b): the largest value of f, an
+expression of t with a single maximum, for t from a to b; in `expected` also the functions of closed_forms.py. What cannot
+be computed, NaN among it, fails.
 """
 import argparse
 import ast
 import csv
 import glob
+import io
 import json
 import math
 import operator
@@ -38,6 +42,8 @@ import sys
 import tempfile
 import time
 from collections import namedtuple
+
+import closed_forms
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.abspath(os.environ.get("LAGAMINE_SOURCE") or os.path.dirname(os.path.dirname(HERE)))
@@ -51,8 +57,10 @@ END_SLACK = 1e-9                # share by which the last step may miss the plac
 
 OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
              ast.Pow: operator.pow, ast.USub: operator.neg, ast.UAdd: operator.pos}
-FUNCTIONS = {"sqrt": math.sqrt, "log": math.log}
+FUNCTIONS = {name: getattr(math, name) for name in ("sqrt", "log", "exp", "sin", "cos", "tan")}
+FORMS = {name: getattr(closed_forms, name) for name in closed_forms.FORMS}
 CONSTANTS = {"pi": math.pi}
+EXTREMES = {"max": max, "min": min}
 
 # What a run left: its exit code (None: stopped by us), table by column, summary, first line of its errors, seconds.
 Run = namedtuple("Run", "exit_code history summary message seconds")
@@ -64,30 +72,52 @@ class Unmet(Exception):
     """A row that cannot be judged, and why."""
 
 
+def largest(function, low, high):
+    """Largest value of a function that rises, then falls: thirds are cut off until nothing is left."""
+    while True:
+        left, right = (2*low + high)/3, (low + 2*high)/3
+        if not low < left < right < high:
+            return function(left)
+        if function(left) < function(right):
+            low = left
+        else:
+            high = right
+
+
 def evaluate(text, names):
-    """Value of an expression. No names but those given, `pi`, and no calls but those of FUNCTIONS."""
-    def value(node):
+    """Value of an expression. No names but those given, `pi`, and no calls but those of FUNCTIONS and `largest`."""
+    def value(node, names=names):
         if isinstance(node, ast.Constant) and type(node.value) in (int, float):
             return float(node.value)
         if isinstance(node, ast.BinOp) and type(node.op) in OPERATORS:
-            return OPERATORS[type(node.op)](value(node.left), value(node.right))
+            return OPERATORS[type(node.op)](value(node.left, names), value(node.right, names))
         if isinstance(node, ast.UnaryOp) and type(node.op) in OPERATORS:
-            return OPERATORS[type(node.op)](value(node.operand))
+            return OPERATORS[type(node.op)](value(node.operand, names))
         if isinstance(node, ast.Name):
             if node.id in names:
                 return names[node.id]
             if node.id in CONSTANTS:
                 return CONSTANTS[node.id]
             raise Unmet(f"no column '{node.id}'" if names else f"'{node.id}' is no number")
-        if (isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in FUNCTIONS
-                and len(node.args) == 1 and not node.keywords):
-            return FUNCTIONS[node.func.id](value(node.args[0]))
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in FORMS and not names:
+            if any(word.arg is None for word in node.keywords):
+                raise Unmet(f"cannot read '{text}'")
+            return FORMS[node.func.id](*(value(one, names) for one in node.args),
+                                       **{word.arg: value(word.value, names) for word in node.keywords})
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
+            if node.func.id in FUNCTIONS and len(node.args) == 1:
+                return FUNCTIONS[node.func.id](value(node.args[0], names))
+            if node.func.id == "largest" and len(node.args) == 3:
+                return largest(lambda t: value(node.args[0], dict(names, t=t)), value(node.args[1], names),
+                               value(node.args[2], names))
         raise Unmet(f"cannot read '{text}'")
 
     try:
         result = value(ast.parse(text.strip(), mode="eval").body)
     except SyntaxError:
         raise Unmet(f"cannot read '{text}'") from None
+    except TypeError as error:
+        raise Unmet(str(error)) from None
     except (ArithmeticError, ValueError):
         return math.nan
     return result if isinstance(result, float) else math.nan     # a root of a negative number is complex
@@ -99,7 +129,7 @@ def place(at, rows):
         return rows[-1], rows[-1], 0.0
     left, equals, right = at.partition("=")
     if not equals:
-        raise Unmet(f"at is `end` or `expression=expression`, not '{at}'")
+        raise Unmet(f"at is `end`, `max`, `min` or `expression=expression`, not '{at}'")
     wanted = evaluate(right, {})
     along = [evaluate(left, row) for row in rows]
     for k in range(len(rows) - 1):
@@ -126,8 +156,20 @@ def measure(row, run):
         return float(value)
     if not run.history:
         raise Unmet("no rows in history.csv")
-    before, after, share = place(row["at"], run.history)
-    first, second = evaluate(row["quantity"], before), evaluate(row["quantity"], after)
+    if row["at"] in EXTREMES:
+        values = [evaluate(row["quantity"], line) for line in run.history]
+        return EXTREMES[row["at"]](values) if all(map(math.isfinite, values)) else math.nan
+    begin, to, end = row["at"].partition(" to ")
+    if not to:
+        return value_at(begin, row["quantity"], run.history)
+    left, _, _ = begin.partition("=")
+    return value_at(f"{left}={end}", row["quantity"], run.history) - value_at(begin, row["quantity"], run.history)
+
+
+def value_at(at, quantity, rows):
+    """A quantity at a place, linear between the steps."""
+    before, after, share = place(at, rows)
+    first, second = evaluate(quantity, before), evaluate(quantity, after)
     return first + share*(second - first)
 
 
@@ -313,7 +355,16 @@ FAKE_CASES = [
     (dict(at="x=1.5", expected="25"), ""),
     (dict(at="2*x/3=4/3", expected="5*6"), ""),
     (dict(at="x=3.0000000001"), ""),
+    (dict(at="x=1.5 to 5/2", expected="10"), ""),
+    (dict(expected="40*ring_pressure(0, 0.1)"), ""),
+    (dict(expected="40*ring_pressure(0, 0.1, height=3)"), ""),
     (dict(quantity="y/(2*pi*x)+sqrt(log(1))", expected="40/(6*pi)"), ""),
+    (dict(at="max"), ""),
+    (dict(at="max", quantity="-y", expected="-20"), ""),
+    (dict(at="min", expected="20"), ""),
+    (dict(expected="40*exp(0)*(cos(pi)**2 + sin(pi))/tan(pi/4)"), ""),
+    (dict(expected="largest(40-(t-1)**2, -1, 7)", tolerance_pct="1e-9"), ""),
+    (dict(expected="largest(10*t, 0, 4)", tolerance_pct="1e-9"), ""),
     (dict(kind="below", expected="40.001", tolerance_pct=""), ""),
     (dict(kind="above", expected="39.999", tolerance_pct=""), ""),
     (dict(quantity="summary:checks.worst", expected="0.5"), ""),
@@ -324,6 +375,13 @@ FAKE_CASES = [
     (dict(expected="-40"), "deviates"),
     (dict(expected="nan"), "no number"),
     (dict(expected="y"), "'y' is no number"),
+    (dict(at="min"), "deviates"),
+    (dict(at="max", quantity="void"), "finite"),
+    (dict(at="max", quantity="z"), "no column 'z'"),
+    (dict(expected="largest(40, 0)"), "cannot read"),
+    (dict(expected="largest(log(t), -2, -1)"), "finite"),
+    (dict(expected="largest(x, 0, 1)"), "'x'"),
+    (dict(expected="t"), "'t' is no number"),
     (dict(expected="1/0"), "finite"),
     (dict(expected="4e"), "cannot read"),
     (dict(tolerance_pct=""), "tolerance"),
@@ -348,6 +406,15 @@ FAKE_CASES = [
     (dict(at="void=1"), "not reached"),
     (dict(at="z=1"), "no column 'z'"),
     (dict(at="start"), "at is"),
+    (dict(at="x=1.5 to 2.5"), "deviates"),
+    (dict(at="x=1.5 to 3.5"), "not reached"),
+    (dict(at="end to 2"), "no column 'end'"),
+    (dict(expected="40*ring_pressure(0.5, 0.1)"), "deviates"),
+    (dict(expected="ring_pressure()"), "missing"),
+    (dict(expected="ring_pressure(0, 0.1, depth=1)"), "depth"),
+    (dict(expected="ring_pressure(0, 0.1, **{})"), "cannot read"),
+    (dict(expected="wrong()"), "cannot read"),
+    (dict(quantity="ring_pressure(x, 0.1)"), "cannot read"),
     (dict(quantity="summary:checks.best"), "no 'best'"),
     (dict(quantity="summary:status"), "is no number"),
     (dict(quantity="summary:checks.worst", at="x=1.5"), "of the end"),
@@ -388,8 +455,9 @@ def selftest():
                 file.write(text)
             return check_decks(top, program, [], False, lambda line: None)
 
-        lines = [",".join(FAKE_ROW)] + [",".join(dict(FAKE_ROW, **changes).values()) for changes, _ in FAKE_CASES]
-        verdicts, faults = check("\n".join(lines) + "\n")
+        text = io.StringIO()
+        csv.writer(text).writerows([FAKE_ROW, *(dict(FAKE_ROW, **changes).values() for changes, _ in FAKE_CASES)])
+        verdicts, faults = check(text.getvalue())
         wrong += faults
         if len(verdicts) != len(FAKE_CASES):
             wrong.append(f"{len(verdicts)} verdicts on {len(FAKE_CASES)} rows")
@@ -403,9 +471,10 @@ def selftest():
         os.unlink(os.path.join(folder, "reference.csv"))
         if not check_decks(top, program, [], False, print)[1] or not check_decks(top, program, ["none"], False, print)[1]:
             wrong.append("no references at all, or a folder that is not there, passes")
+    wrong += closed_forms.wrong()
     for line in wrong:
         print("selftest:", line)
-    print(f"selftest: {len(FAKE_CASES) + len(FAKE_FILES) + 1} cases, {len(wrong)} wrong")
+    print(f"selftest: {len(FAKE_CASES) + len(FAKE_FILES) + 1} cases and the closed forms, {len(wrong)} wrong")
     return not wrong
 
 

@@ -5,6 +5,7 @@ module contact_cases
   use kinds, only: wp
   use law_cases, only: contact_material
   use materials, only: material_t
+  use scene, only: generalised_plane_strain
   implicit none
   private
   public :: at_pressure, at_tau, at_penetration, at_status, at_slip, at_augmentation, at_work, at_piece
@@ -56,7 +57,8 @@ contains
     type(contact_set_t), intent(in) :: set
     type(case_t), intent(out) :: case
     type(die_t) :: die
-    real(wp) :: x(2, 3), y(2), way(9)
+    real(wp) :: x(2, 3), y(2)
+    real(wp), allocatable :: way(:)
     real(wp), parameter :: along(3) = [1.05_wp, 1.5_wp, 1.95_wp]
     integer :: k
 
@@ -68,7 +70,7 @@ contains
     y = placed([0.0_wp, set%bulge], set%pilot) - set%pilot(1:2)
     x(:, 2) = x(:, 2) + y
     case = contact_case(set%plane_state, contact_material(akp, aktau, set%phi), set%npoint, x, die, set%pilot)
-    way = 0
+    allocate (way(merge(12, 9, set%plane_state == generalised_plane_strain)), source=0.0_wp)
     way(1:6) = [spread(cos(set%pilot(3))*set%way, 1, 3), spread(sin(set%pilot(3))*set%way, 1, 3)]
     call accept(case, way)
     case%committed(at_augmentation, :, :) = set%augmentation

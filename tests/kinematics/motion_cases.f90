@@ -1,6 +1,6 @@
 !> One point under a history of motions, for the tests of kinematics.
 module motion_cases
-  use kinds, only: wp
+  use kinds, only: pi, wp
   use kinematics_api, only: first_history, kinematics_t
   use kinematics_registry, only: list_kinematics
   use law_api, only: law_t
@@ -10,6 +10,7 @@ module motion_cases
   implicit none
   private
   public :: nstate, body_t, new_body, move, turned, times, rotation, random_motion, identity, differences_of
+  public :: full_turn, closed_cycle
 
   !> Stress, elastic strain, and a history of two (ELA carries it along).
   integer, parameter :: nstate = first_history + 1
@@ -129,5 +130,51 @@ contains
     call sample%draw(-turn, turn, angle)
     f = times(rotation(angle), identity + f)
   end subroutine random_motion
+
+  !> A stressed point makes a full turn in n steps: largest change of stress, elastic strain or history over its size.
+  subroutine full_turn(kinematics, hardening, n, drift)
+    character(len=*), intent(in) :: kinematics
+    integer, intent(in) :: hardening, n
+    real(wp), intent(out) :: drift
+    type(body_t) :: body
+    real(wp) :: start(nstate), state(nstate), tangent(4, 5)
+    integer :: i, status
+
+    body = new_body(kinematics, hardening)
+    call move(body, [1.05_wp, 0.04_wp, -0.02_wp, 0.93_wp, 1.03_wp], start, tangent, status)
+    body%state = start
+    do i = 1, n
+      call move(body, rotation(2*pi/n), state, tangent, status)
+      body%state = state
+    end do
+    drift = max(norm2(state(1:4) - start(1:4))/norm2(start(1:4)), norm2(state(5:8) - start(5:8))/norm2(start(5:8)), &
+                norm2(state(9:) - start(9:))/max(norm2(start(9:)), norm2(start(5:8))))
+  end subroutine full_turn
+
+  !> An elastic point is sheared by gamma, stretched to 1 + gamma, sheared back and pressed back, each in n steps: stress left.
+  subroutine closed_cycle(kinematics, gamma, n, left)
+    character(len=*), intent(in) :: kinematics
+    real(wp), intent(in) :: gamma
+    integer, intent(in) :: n
+    real(wp), intent(out) :: left(4)
+    type(body_t) :: body
+    real(wp) :: state(nstate), tangent(4, 5), motions(5, 4), stretch
+    integer :: leg, i, status
+
+    body = new_body(kinematics, 0)
+    stretch = (1 + gamma)**(1.0_wp/n)
+    motions(:, 1) = [1.0_wp, gamma/n, 0.0_wp, 1.0_wp, 1.0_wp]
+    motions(:, 2) = [1.0_wp, 0.0_wp, 0.0_wp, stretch, 1.0_wp]
+    ! the same shear of the material, on a body stretched along y
+    motions(:, 3) = [1.0_wp, -gamma/(1 + gamma)/n, 0.0_wp, 1.0_wp, 1.0_wp]
+    motions(:, 4) = [1.0_wp, 0.0_wp, 0.0_wp, 1/stretch, 1.0_wp]
+    do leg = 1, 4
+      do i = 1, n
+        call move(body, motions(:, leg), state, tangent, status)
+        body%state = state
+      end do
+    end do
+    left = body%state(1:4)
+  end subroutine closed_cycle
 
 end module motion_cases

@@ -8,6 +8,7 @@ module law_cases
   implicit none
   private
   public :: law_row, elastic_material, plastic_material, plastic_names, contact_material, set_value
+  public :: material_of, at_temperatures
   public :: point_t, update_point, tangent_by_differences, von_mises, closed_form_yield
   public :: young, poisson, shear_modulus, step_of_differences, tolerance_of_differences
 
@@ -76,8 +77,33 @@ contains
     case default
       allocate (material%curve(2, 0))
     end select
-    allocate (material%values, source=[young, poisson, real(min(k, 4), wp), linear, voce, swift, real(size(material%curve, 2), wp)])
+    allocate (material%values, source=[young, poisson, real(min(k, 4), wp), linear, voce, swift, &
+                                     real(size(material%curve, 2), wp), spread(0.0_wp, 1, 4)])
   end function plastic_material
+
+  !> A material of any law, by its values.
+  function material_of(law, values) result(material)
+    character(len=*), intent(in) :: law
+    real(wp), intent(in) :: values(:)
+    type(material_t) :: material
+
+    material%name = 'any'
+    material%law = law
+    allocate (material%values, source=values)
+    allocate (material%curve(2, 0))
+  end function material_of
+
+  !> One material from its numbers at two temperatures.
+  function at_temperatures(first, t1, second, t2) result(material)
+    type(material_t), intent(in) :: first, second
+    real(wp), intent(in) :: t1, t2
+    type(material_t) :: material
+
+    material = first
+    allocate (material%temperatures, source=[t1, t2])
+    allocate (material%values_by_temperature, source=reshape([first%values, second%values], [size(first%values), 2]))
+    allocate (material%curves, source=reshape([first%curve, second%curve], [2, size(first%curve, 2), 2]))
+  end function at_temperatures
 
   !> COUL2D with given penalties.
   function contact_material(akp, aktau, phi, cohesion, tau_max) result(material)
@@ -87,7 +113,7 @@ contains
 
     material%name = 'rough'
     material%law = 'COUL2D'
-    allocate (material%values, source=[0.0_wp, akp, aktau, 0.0_wp, phi, 0.0_wp, huge(1.0_wp)])
+    allocate (material%values, source=[0.0_wp, akp, aktau, 0.0_wp, phi, 0.0_wp, huge(1.0_wp), huge(1.0_wp)])
     if (present(cohesion)) material%values(6) = cohesion
     if (present(tau_max)) material%values(7) = tau_max
     allocate (material%curve(2, 0))
@@ -125,18 +151,23 @@ contains
   end function closed_form_yield
 
   !> Call a solid law for one point.
-  subroutine update_point(row, material, trial, committed, point)
+  subroutine update_point(row, material, trial, committed, point, dt, temperature)
     type(law_t), intent(in) :: row
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: trial(4), committed(:)
     type(point_t), intent(out) :: point
+    real(wp), intent(in), optional :: dt, temperature(2)
     real(wp) :: strain(4, 1), before(size(committed), 1), stress(4, 1), elastic(4, 1), after(size(committed), 1), tangent(4, 4, 1)
-    real(wp), parameter :: temperature(2, 1) = 0.0_wp
+    real(wp) :: step, degrees(2, 1)
     integer :: status(1)
 
+    step = 1
+    if (present(dt)) step = dt
+    degrees = 0
+    if (present(temperature)) degrees(:, 1) = temperature
     strain(:, 1) = trial
     before(:, 1) = committed
-    call row%update(material, 1.0_wp, temperature, strain, before, stress, elastic, after, tangent, status)
+    call row%update(material, step, degrees, strain, before, stress, elastic, after, tangent, status)
     point%stress = stress(:, 1)
     point%elastic = elastic(:, 1)
     point%history = after(:, 1)
@@ -145,11 +176,12 @@ contains
   end subroutine update_point
 
   !> d stress / d trial strain by central differences.
-  subroutine tangent_by_differences(row, material, trial, committed, tangent)
+  subroutine tangent_by_differences(row, material, trial, committed, tangent, dt, temperature)
     type(law_t), intent(in) :: row
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: trial(4), committed(:)
     real(wp), intent(out) :: tangent(4, 4)
+    real(wp), intent(in), optional :: dt, temperature(2)
     type(point_t) :: plus, minus
     real(wp) :: forward(4), backward(4)
     integer :: j
@@ -159,8 +191,8 @@ contains
       forward(j) = forward(j) + step_of_differences
       backward = trial
       backward(j) = backward(j) - step_of_differences
-      call update_point(row, material, forward, committed, plus)
-      call update_point(row, material, backward, committed, minus)
+      call update_point(row, material, forward, committed, plus, dt, temperature)
+      call update_point(row, material, backward, committed, minus, dt, temperature)
       tangent(:, j) = (plus%stress - minus%stress)/(forward(j) - backward(j))
     end do
   end subroutine tangent_by_differences

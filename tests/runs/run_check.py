@@ -11,8 +11,9 @@ import sys
 sys.dont_write_bytecode = True
 from support import DONE, LAGAMINE, SOURCE, UPSETTING, Checks, mesh, run, said, summary, write  # noqa: E402
 
-EFFECTS = ("displacement", "large strain", "plasticity", "contact", "friction", "pressure", "heat", "phases")
-OPTIONS = ("--out", "--check", "--resume", "-p", "--threads", "--quiet", "--law", "--help", "--version")
+EFFECTS = ("displacement", "large strain", "plasticity", "contact", "friction", "pressure", "body force", "heat", "phases",
+           "temperature")
+OPTIONS = ("--out", "--check", "--resume", "-p", "--threads", "--quiet", "--law", "--point", "--help", "--version")
 
 # One effect each, and nothing else.
 LEAN = """TITLE  Two elastic elements

@@ -15,8 +15,10 @@ def main():
     with_h5py()
     checks = Checks()
     os.environ["OMP_WAIT_POLICY"] = "passive"
-    # The deck as it is, and a mesh of an odd number of elements with more threads than divide it.
-    for name, options, numbers in (("12x18", [], (1, 2)), ("7x11", mesh(7, 11), (1, 2, 3, 8))):
+    # The deck as it is; a mesh of an odd number of elements with more threads than divide it; the first steps of one so large that
+    # the linear solver shares its fronts out, too.
+    for name, options, numbers in (("12x18", [], (1, 2)), ("7x11", mesh(7, 11), (1, 2, 3, 8)),
+                                   ("30x45", mesh(30, 45) + ["-p", "travel=0.5"], (1, 2, 3))):
         for threads in numbers:
             out = checks.path(name, str(threads))
             result = run([UPSETTING, "--threads", str(threads), "--out", out] + options)

@@ -67,7 +67,7 @@ contains
     call finish_die(scene%dies(1))
     call finish_die(scene%dies(2))
 
-    allocate (scene%multipliers(1), scene%fixations(2), scene%die_motions(2), scene%forces(1), scene%probes(0))
+    allocate (scene%multipliers(1), scene%fixations(2), scene%die_motions(2), scene%die_forces(0), scene%forces(1), scene%probes(0))
     scene%multipliers(1)%name = 'press'
     scene%multipliers(1)%time = [0.0_wp, 1.0_wp, 2.0_wp]
     scene%multipliers(1)%value = [0.0_wp, -0.1_wp, -0.3_wp]

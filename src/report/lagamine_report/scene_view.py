@@ -87,7 +87,7 @@ class SceneView:
     def mesh(self, axes: Axes, generation: Generation, x: np.ndarray, fill: bool = True, **look) -> None:
         """All sides as curves, bodies in pale colours."""
         if fill:
-            bodies = [group for group in generation.groups if group.connectivity.shape[1] == 8]
+            bodies = [group for group in generation.groups if group.connectivity.shape[1] == 8 and group.elem not in ("BFORC", "CENTR")]
             for k, group in enumerate(bodies):
                 around = group.connectivity[:, [0, 4, 1, 5, 2, 6, 3, 7]]
                 curved = np.concatenate([side_curves(x, around[:, [i, i + 1, (i + 2) % 8]])[:, :-1] for i in (0, 2, 4, 6)], axis=1)

@@ -1,0 +1,98 @@
+!> BFORC and CENTR: forces on the volume of bodies, a group of load elements each.
+module cards_body_forces
+  use cards_sides, only: append_group, start_group
+  use deck_cursor, only: cursor_t
+  use deck_reader, only: deck_t
+  use diagnostics, only: diagnostics_t
+  use kinds, only: wp
+  use scene, only: group_t
+  use scene_draft, only: close_card, draft_t, words_of
+  use text, only: string_t
+  implicit none
+  private
+  public :: read_body_forces
+
+  !> Gauss points of an element: b dv is of the fifth degree along a side.
+  integer, parameter :: npoint = 9
+
+contains
+
+  !> All cards `BFORC body X|Y amplitude lic` and `CENTR body density omega lic`.
+  subroutine read_body_forces(deck, draft, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    type(group_t) :: group
+    type(string_t), allocatable :: directions(:)
+    real(wp) :: omega
+    integer :: i, k
+
+    call words_of('X Y', directions)
+    do i = 1, size(deck%cards)
+      associate (keyword => deck%cards(i)%keyword)
+        if (keyword /= 'BFORC' .and. keyword /= 'CENTR') cycle
+        call cursor%open(deck%cards(i), diagnostics)
+        call start_group(keyword, draft, group)
+        group%npoint = npoint
+        call read_body(cursor, draft, group)
+        if (keyword == 'BFORC') then
+          call cursor%name('a direction', directions, group%direction)
+          call cursor%real('the amplitude of the force per volume', group%amplitude, unit='force/length^3')
+          if (group%direction > 0) group%name = group%name//'.'//directions(group%direction)%s
+        else
+          call cursor%real('the density', group%amplitude, lower=0.0_wp, strict_lower=.true., unit='mass/length^3')
+          call cursor%real('the angular velocity', omega, unit='1/time')
+          group%amplitude = group%amplitude*omega**2
+        end if
+      end associate
+      call draft%multipliers%find(cursor, 'the name of a LIC', k)
+      if (k > 0) then
+        group%multiplier = draft%multipliers%item(k)
+        group%name = group%name//'/'//draft%multipliers%words(k)%s
+      end if
+      if (.not. cursor%failed()) call refuse_second(cursor, draft, group, diagnostics)
+      call close_card(draft, cursor, deck%cards(i))
+      if (cursor%failed()) then
+        draft%groups_sound = .false.
+      else
+        call append_group(draft, group, cursor%where())
+      end if
+    end do
+  end subroutine read_body_forces
+
+  !> The body whose elements bear the load.
+  subroutine read_body(cursor, draft, group)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+    type(group_t), intent(inout) :: group
+    integer :: k, g
+
+    allocate (group%connectivity(8, 0))
+    call draft%places%find(cursor, 'the name of a body', k)
+    if (k == 0) return
+    group%name = draft%places%words(k)%s
+    if (any(draft%places%keywords(k)%s == ['SIDES', 'DIE  '])) then
+      call cursor%fail(''''//group%name//''' is a '//draft%places%keywords(k)%s//', expected a body')
+    else if (draft%mesh_sound) then
+      do g = 1, size(draft%scene%groups)
+        if (draft%scene%groups(g)%name == group%name) group%connectivity = draft%scene%groups(g)%connectivity
+      end do
+    end if
+  end subroutine read_body
+
+  !> A load of one kind on one body by one multiplier is given once.
+  subroutine refuse_second(cursor, draft, group, diagnostics)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(group_t), intent(in) :: group
+    type(diagnostics_t), intent(in), target :: diagnostics
+    integer :: g
+
+    do g = 1, size(draft%scene%groups)
+      if (draft%scene%groups(g)%name == group%name .and. draft%scene%groups(g)%elem == group%elem) &
+        call cursor%fail('this load is already given at '//diagnostics%place(draft%group_where(g)))
+    end do
+  end subroutine refuse_second
+
+end module cards_body_forces

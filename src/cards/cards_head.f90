@@ -1,0 +1,54 @@
+!> TITLE and KINEM.
+module cards_head
+  use deck_cursor, only: cursor_t
+  use deck_reader, only: deck_t
+  use diagnostics, only: diagnostics_t
+  use scene_draft, only: close_card, draft_t, only_card
+  use text, only: string_t
+  implicit none
+  private
+  public :: read_title, read_kinematics
+
+contains
+
+  subroutine read_title(deck, draft, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    integer :: k
+
+    draft%scene%title = ''
+    call only_card(deck, 'TITLE', .true., diagnostics, k)
+    if (k == 0) return
+    call cursor%open(deck%cards(k), diagnostics)
+    call cursor%text('a title', draft%scene%title)
+    call close_card(draft, cursor, deck%cards(k))
+  end subroutine read_title
+
+  subroutine read_kinematics(deck, draft, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    type(string_t), allocatable :: names(:)
+    integer :: k, i
+
+    draft%scene%kinematics = ''
+    call only_card(deck, 'KINEM', .true., diagnostics, k)
+    if (k == 0) return
+    allocate (names(size(draft%kinematics)))
+    do i = 1, size(names)
+      names(i)%s = draft%kinematics(i)%name
+    end do
+    call cursor%open(deck%cards(k), diagnostics)
+    call cursor%name('the name of kinematics', names, i)
+    if (i > 0) then
+      draft%scene%kinematics = names(i)%s
+      draft%scene%kinematics_id = i
+      draft%scene%finite = draft%kinematics(i)%finite
+    end if
+    call close_card(draft, cursor, deck%cards(k))
+  end subroutine read_kinematics
+
+end module cards_head

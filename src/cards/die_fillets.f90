@@ -1,0 +1,163 @@
+!> Corners of a die rounded by arcs of circle.
+!>
+!> The arc touches both arms in tangent: its centre is where the arms' offsets by the radius meet, on
+!> the side to which the chain turns. With l the unit vector at the left of the chain, k its signed
+!> curvature and s = 1 for a turn to the left, -1 to the right,
+!> Y1(xi1) + s r l1 = Y2(xi2) + s r l2, where d(Y + s r l)/dxi = (1 - s r k) Y': two equations for two
+!> places, by Newton's method from the corner. Parts of parabolas are parabolas, so the arms stay exact.
+module die_fillets
+  use die_arcs, only: angle_between, arc_pieces
+  use kinds, only: wp
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: round_corner
+
+  !> Arms go on smoothly, or fold back, when the sine of the turn is below this.
+  real(wp), parameter :: least_turn = 1.0e-6_wp
+  !> Places are found to this share of a piece; what is left of an arm is longer than this share of the radius.
+  real(wp), parameter :: place_tolerance = 1.0e-13_wp, least_rest = 1.0e-9_wp
+  !> Newton's method takes one iteration on segments, a few more on parabolas; an arm is walked piece by piece.
+  integer, parameter :: max_iterations = 50
+
+contains
+
+  !> Put an arc in place of the corner between the last piece of an arm and the first one of the next.
+  pure subroutine round_corner(before, after, radius, tolerance, rounded, rest, message)
+    real(wp), intent(in) :: before(:, :, :), after(:, :, :)   !! (2, 3, npiece) in the order of the chain [length]
+    real(wp), intent(in) :: radius, tolerance                 !! > 0 [length]
+    real(wp), allocatable, intent(out) :: rounded(:, :, :)    !! what takes the place of both
+    integer, intent(out) :: rest                              !! pieces of the next arm that are left, the last ones
+    character(len=:), allocatable, intent(out) :: message     !! empty when all is well
+    real(wp), allocatable :: arc(:, :, :)
+    real(wp) :: turn, sense, place(2), first(2), last(2), centre(2), half
+    integer :: i, j
+
+    message = ''
+    rest = size(after, 3)
+    i = size(before, 3)
+    j = 1
+    turn = angle_between(tangent_at(before(:, :, i), 1.0_wp), tangent_at(after(:, :, j), -1.0_wp))
+    sense = sign(1.0_wp, turn)
+    if (abs(sin(turn)) <= least_turn) then
+      message = 'the pieces before and after a fillet meet in a corner; these go on smoothly'
+      if (cos(turn) < 0) message = 'the pieces before and after a fillet meet in a corner; these fold back on one another'
+      return
+    end if
+    call touch(before, after, sense*radius, turn, i, j, place)
+    if (i == 0) then
+      message = 'the radius of the fillet is too large: its arc does not touch both neighbours within their length'
+      return
+    end if
+    first = at(before(:, :, i), place(1))
+    last = at(after(:, :, j), place(2))
+    centre = first + sense*radius*left_of(tangent_at(before(:, :, i), place(1)))
+    half = 0.5_wp*angle_between(tangent_at(before(:, :, i), place(1)), tangent_at(after(:, :, j), place(2)))
+    call arc_pieces(first, centre + turned(first - centre, half), last, tolerance, arc, message)
+    if (message /= '') return
+    rest = size(after, 3) - j + 1
+    allocate (rounded(2, 3, i + size(arc, 3) + rest))
+    rounded(:, :, :i) = before(:, :, :i)
+    rounded(:, :, i) = part(before(:, :, i), -1.0_wp, place(1))
+    rounded(:, :, i + 1:i + size(arc, 3)) = arc
+    rounded(:, :, i + size(arc, 3) + 1:) = after(:, :, j:)
+    rounded(:, :, i + size(arc, 3) + 1) = part(after(:, :, j), place(2), 1.0_wp)
+    rounded(:, 3, i) = first
+    rounded(:, 1, i + size(arc, 3) + 1) = last
+  end subroutine round_corner
+
+  !> Pieces i and j and the places on them where a circle touches; i = 0 when there is none.
+  pure subroutine touch(before, after, offset, turn, i, j, place)
+    real(wp), intent(in) :: before(:, :, :), after(:, :, :)
+    real(wp), intent(in) :: offset         !! radius, its sign that of the turn
+    real(wp), intent(in) :: turn           !! angle of the corner
+    integer, intent(inout) :: i, j
+    real(wp), intent(out) :: place(2)
+    real(wp) :: along(2, 2), gap(2), change(2), back, det, rest(2)
+    integer :: iteration
+
+    ! where the arms are straight the circle touches them so far from the corner
+    back = abs(offset*tan(0.5_wp*turn))
+    place = [1 - back/length_of(tangent_at(before(:, :, i), 1.0_wp)), -1 + back/length_of(tangent_at(after(:, :, j), -1.0_wp))]
+    do iteration = 1, max_iterations + size(before, 3) + size(after, 3)
+      ! a place before the start of its piece belongs to the piece before, and so on
+      if (place(1) < -1 .and. i > 1) then
+        i = i - 1
+        place(1) = 1
+      end if
+      if (place(2) > 1 .and. j < size(after, 3)) then
+        j = j + 1
+        place(2) = -1
+      end if
+      place = max(-3.0_wp, min(3.0_wp, place))
+      along(:, 1) = (1 - offset*curvature(before(:, :, i), place(1)))*tangent_at(before(:, :, i), place(1))
+      along(:, 2) = -(1 - offset*curvature(after(:, :, j), place(2)))*tangent_at(after(:, :, j), place(2))
+      gap = at(after(:, :, j), place(2)) + offset*left_of(tangent_at(after(:, :, j), place(2))) &
+            - at(before(:, :, i), place(1)) - offset*left_of(tangent_at(before(:, :, i), place(1)))
+      det = along(1, 1)*along(2, 2) - along(1, 2)*along(2, 1)
+      if (.not. abs(det) > 0) exit
+      change = [gap(1)*along(2, 2) - gap(2)*along(1, 2), along(1, 1)*gap(2) - along(2, 1)*gap(1)]/det
+      place = place + change
+      if (all(abs(change) <= place_tolerance)) then
+        rest = [length_of(at(before(:, :, i), place(1)) - before(:, 1, i)), &
+                length_of(after(:, 3, j) - at(after(:, :, j), place(2)))]
+        if (any(abs(place) > 1) .or. any(rest < least_rest*abs(offset))) exit
+        ! a circle larger than the bend it lies in touches it from the wrong side
+        if (offset*curvature(before(:, :, i), place(1)) >= 1 .or. offset*curvature(after(:, :, j), place(2)) >= 1) exit
+        return
+      end if
+    end do
+    i = 0
+  end subroutine touch
+
+  !> The part of a parabola between two of its places, exactly.
+  pure function part(piece, from, to) result(cut)
+    real(wp), intent(in) :: piece(2, 3), from, to
+    real(wp) :: cut(2, 3)
+
+    cut(:, 1) = at(piece, from)
+    cut(:, 2) = at(piece, 0.5_wp*(from + to))
+    cut(:, 3) = at(piece, to)
+    if (from <= -1) cut(:, 1) = piece(:, 1)
+    if (to >= 1) cut(:, 3) = piece(:, 3)
+  end function part
+
+  pure function at(piece, xi) result(y)
+    real(wp), intent(in) :: piece(2, 3), xi
+    real(wp) :: y(2)
+
+    y = 0.5_wp*xi*(xi - 1)*piece(:, 1) + (1 - xi*xi)*piece(:, 2) + 0.5_wp*xi*(xi + 1)*piece(:, 3)
+  end function at
+
+  pure function tangent_at(piece, xi) result(tangent)
+    real(wp), intent(in) :: piece(2, 3), xi
+    real(wp) :: tangent(2)
+
+    tangent = (xi - 0.5_wp)*piece(:, 1) - 2*xi*piece(:, 2) + (xi + 0.5_wp)*piece(:, 3)
+  end function tangent_at
+
+  pure function curvature(piece, xi) result(k)
+    real(wp), intent(in) :: piece(2, 3), xi
+    real(wp) :: k
+    real(wp) :: first(2), second(2)
+
+    first = tangent_at(piece, xi)
+    second = piece(:, 1) - 2*piece(:, 2) + piece(:, 3)
+    k = (first(1)*second(2) - first(2)*second(1))/length_of(first)**3
+  end function curvature
+
+  pure function left_of(v) result(n)
+    real(wp), intent(in) :: v(2)
+    real(wp) :: n(2)
+
+    n = [-v(2), v(1)]/length_of(v)
+  end function left_of
+
+  pure function turned(v, angle) result(w)
+    real(wp), intent(in) :: v(2), angle
+    real(wp) :: w(2)
+
+    w = [cos(angle)*v(1) - sin(angle)*v(2), sin(angle)*v(1) + cos(angle)*v(2)]
+  end function turned
+
+end module die_fillets

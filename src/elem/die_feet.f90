@@ -1,0 +1,202 @@
+!> Feet of a point on the pieces of a die and at the vertices between them: where its distance has a minimum.
+!>
+!> With n the die's inner normal at the foot Y, d = (X - Y).n is the penetration, negative for a gap.
+!> At a vertex the chain may turn away from a point and leave it in the fan of the vertex: then Y is
+!> the vertex and n points along X - Y.
+module die_feet
+  use kinds, only: eps, wp
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: foot_t, projections, foot_inside, foot_at_vertex, tangent_at, climb, end_slack
+
+  !> Foot of a point on a die, in the pilot's axes.
+  type :: foot_t
+    !> Piece met, 0 when none is; its parent coordinate.
+    integer :: piece = 0
+    real(wp) :: xi = 0.0_wp
+    !> Penetration, negative for a gap [length].
+    real(wp) :: d = 0.0_wp
+    !> Inner normal of the die there.
+    real(wp) :: normal(2) = 0.0_wp
+    !> Turn of the normal as the point moves along the tangent: dn = turn (t.dX) t [1/length].
+    real(wp) :: turn = 0.0_wp
+  end type foot_t
+
+  !> Ends of pieces belong to both neighbours, within round-off of xi: coordinates may be 1e5 times a piece.
+  real(wp), parameter :: end_slack = 1.0e-10_wp
+  !> Pieces are one smooth curve where their tangents turn by less than this sine: `end_slack` covers the fan.
+  real(wp), parameter :: smooth_turn = 1.0e-12_wp
+
+contains
+
+  !> Parent coordinates in [-1, 1], or up to `beyond` outside, where (Y(xi) - point).Y'(xi) = 0, a cubic.
+  pure subroutine projections(piece, point, n, xi, beyond)
+    real(wp), intent(in) :: piece(2, 3), point(2)
+    integer, intent(out) :: n
+    real(wp), intent(out) :: xi(3)
+    real(wp), intent(in), optional :: beyond
+    real(wp) :: a(2), b(2), d(2), c(0:3), knots(4), delta, q, limit
+    integer :: i
+
+    a = 0.5_wp*(piece(:, 1) + piece(:, 3)) - piece(:, 2)
+    b = 0.5_wp*(piece(:, 3) - piece(:, 1))
+    d = piece(:, 2) - point
+    c = [dot_product(d, b), dot_product(b, b) + 2*dot_product(d, a), 3*dot_product(a, b), 2*dot_product(a, a)]
+    limit = 1 + end_slack
+    if (present(beyond)) limit = limit + beyond
+    n = 0
+    if (c(3) <= 16*eps*dot_product(b, b)) then
+      ! a segment, to round-off
+      if (abs(c(0)) > limit*dot_product(b, b)) return
+      n = 1
+      xi(1) = -c(0)/dot_product(b, b)
+      return
+    end if
+    ! the cubic is monotone between its extremes: a root in each such interval with a change of sign
+    knots = [-limit, -limit, limit, limit]
+    delta = c(2)**2 - 3*c(3)*c(1)
+    if (delta > 0) then
+      q = -(c(2) + sign(sqrt(delta), c(2)))
+      knots(2) = min(q/(3*c(3)), c(1)/q)
+      knots(3) = max(q/(3*c(3)), c(1)/q)
+      knots(2:3) = min(max(knots(2:3), knots(1)), knots(4))
+    end if
+    do i = 1, 3
+      if (.not. knots(i + 1) > knots(i)) cycle
+      if (cubic(knots(i))*cubic(knots(i + 1)) > 0) cycle
+      n = n + 1
+      xi(n) = root_between(knots(i), knots(i + 1))
+    end do
+
+  contains
+
+    pure function cubic(x) result(value)
+      real(wp), intent(in) :: x
+      real(wp) :: value
+
+      value = c(0) + x*(c(1) + x*(c(2) + x*c(3)))
+    end function cubic
+
+    !> Newton's method kept in the bracket.
+    pure function root_between(left, right) result(x)
+      real(wp), intent(in) :: left, right
+      real(wp) :: x
+      real(wp) :: low, high, value, derivative
+      integer :: iteration
+      integer, parameter :: max_iterations = 80   ! bisection alone reaches round-off in 54
+
+      low = left
+      high = right
+      x = 0.5_wp*(low + high)
+      do iteration = 1, max_iterations
+        value = cubic(x)
+        if (value*cubic(low) > 0) then
+          low = x
+        else
+          high = x
+        end if
+        if (high - low <= 2*eps) return
+        derivative = c(1) + x*(2*c(2) + 3*c(3)*x)
+        if (abs(value) <= 2*eps*abs(derivative)) return
+        if (abs(derivative) > 0) x = x - value/derivative
+        if (.not. (x > low .and. x < high)) x = 0.5_wp*(low + high)
+      end do
+    end function root_between
+
+  end subroutine projections
+
+  !> Foot on a piece.
+  pure subroutine foot_inside(piece, point, xi, foot)
+    real(wp), intent(in) :: piece(2, 3), point(2), xi
+    type(foot_t), intent(out) :: foot
+    real(wp) :: y(2), first(2), second(2), curvature
+
+    y = 0.5_wp*xi*(xi - 1)*piece(:, 1) + (1 - xi*xi)*piece(:, 2) + 0.5_wp*xi*(xi + 1)*piece(:, 3)
+    first = tangent_at(piece, xi)
+    second = piece(:, 1) - 2*piece(:, 2) + piece(:, 3)
+    curvature = cross(first, second)/length_of(first)**3
+    foot%piece = 1
+    foot%xi = xi
+    foot%normal = right_of(first)
+    foot%d = dot_product(point - y, foot%normal)
+    ! the closest point is a minimum of the distance: not beyond the centre of curvature
+    if (1 + curvature*foot%d <= 0) foot%piece = 0
+    if (foot%piece > 0) foot%turn = curvature/(1 + curvature*foot%d)
+  end subroutine foot_inside
+
+  !> Foot at the vertex between two pieces, when the point lies in its fan.
+  pure subroutine foot_at_vertex(before, after, point, foot)
+    real(wp), intent(in) :: before(2, 3), after(2, 3), point(2)
+    type(foot_t), intent(out) :: foot
+    real(wp) :: t1(2), t2(2), way(2), side
+
+    t1 = tangent_at(before, 1.0_wp)
+    t2 = tangent_at(after, -1.0_wp)
+    way = point - before(:, 3)
+    if (dot_product(way, t1) < 0 .or. dot_product(way, t2) > 0 .or. .not. length_of(way) > 0) return
+    side = sense_of_turn(before, after)
+    if (.not. abs(side) > 0) return
+    ! a die that turns left (towards the part) has its fan inside, one that turns right outside
+    foot%piece = 1
+    foot%xi = 1
+    foot%d = side*length_of(way)
+    foot%normal = way/foot%d
+    foot%turn = 1/foot%d
+  end subroutine foot_at_vertex
+
+  !> The chain turns left (1) or right (-1) at the vertex between two pieces, or goes on smoothly (0).
+  !> Where it turns back on itself its arms tell: a slot lies between them when the second is at the left of the
+  !> first, else a rib; arms on one line are a rib without thickness.
+  pure function sense_of_turn(before, after) result(sense)
+    real(wp), intent(in) :: before(2, 3), after(2, 3)
+    real(wp) :: sense
+    real(wp) :: t1(2), t2(2), turn
+
+    t1 = tangent_at(before, 1.0_wp)
+    t2 = tangent_at(after, -1.0_wp)
+    turn = cross(t1, t2)/(length_of(t1)*length_of(t2))
+    sense = 0
+    if (abs(turn) > smooth_turn) then
+      sense = sign(1.0_wp, turn)
+    else if (dot_product(t1, t2) < 0) then
+      t1 = before(:, 3) - before(:, 2)
+      t2 = after(:, 2) - after(:, 1)
+      turn = cross(t1, t2)/(length_of(t1)*length_of(t2))
+      sense = -1
+      if (turn > smooth_turn) sense = 1
+    end if
+  end function sense_of_turn
+
+  !> Half the derivative of the squared distance along a piece: above zero, the point is nearer to where one comes from.
+  pure function climb(piece, point, xi) result(slope)
+    real(wp), intent(in) :: piece(2, 3), point(2), xi
+    real(wp) :: slope
+
+    slope = dot_product(0.5_wp*xi*(xi - 1)*piece(:, 1) + (1 - xi*xi)*piece(:, 2) + 0.5_wp*xi*(xi + 1)*piece(:, 3) - point, &
+                        tangent_at(piece, xi))
+  end function climb
+
+  pure function tangent_at(piece, xi) result(tangent)
+    real(wp), intent(in) :: piece(2, 3), xi
+    real(wp) :: tangent(2)
+
+    tangent = (xi - 0.5_wp)*piece(:, 1) - 2*xi*piece(:, 2) + (xi + 0.5_wp)*piece(:, 3)
+  end function tangent_at
+
+  !> Unit vector to the right of a direction: the die's inner normal.
+  pure function right_of(v) result(n)
+    real(wp), intent(in) :: v(2)
+    real(wp) :: n(2)
+
+    n = [v(2), -v(1)]/length_of(v)
+  end function right_of
+
+  pure function cross(a, b) result(c)
+    real(wp), intent(in) :: a(2), b(2)
+    real(wp) :: c
+
+    c = a(1)*b(2) - a(2)*b(1)
+  end function cross
+
+end module die_feet

@@ -1,0 +1,260 @@
+!> Multifrontal factorisation A = L U without pivoting, by all threads (I.S. Duff, J.K. Reid, ACM Trans. Math. Softw. 9 (1983)
+!> 302-325).
+!>
+!> Subtrees are tasks. A front sums its nonzeros and the borders of its children in a fixed order and writes only what
+!> is its own, so the bits are the same for any number of threads.
+module multifrontal
+  use blas, only: dgemv, dtrsv, keep_blas_to_one_thread
+  use dense_lu, only: eliminate, eliminate_shared
+  use errors, only: error_t, exit_machine, fail
+  use front_layout, only: layout_t, lay_out_fronts
+  use kinds, only: wp
+  use sparsity, only: pattern_t
+  use text, only: to_text
+  implicit none
+  private
+  public :: multifrontal_t, plan, decompose, substitute
+
+  type :: multifrontal_t
+    type(layout_t) :: layout
+    !> Factors of all fronts; matrices of their borders; what borders send on in a solve.
+    real(wp), allocatable :: factors(:), borders(:), sent(:)
+  end type multifrontal_t
+
+contains
+
+  !> Find fronts and their places.
+  subroutine plan(solver, pattern, position, error)
+    type(multifrontal_t), intent(inout) :: solver
+    type(pattern_t), intent(in) :: pattern
+    integer, intent(in) :: position(:)   !! order of elimination (neq)
+    type(error_t), allocatable, intent(out) :: error
+    integer :: status
+
+    call keep_blas_to_one_thread()
+    if (allocated(solver%factors)) deallocate (solver%factors)
+    if (allocated(solver%borders)) deallocate (solver%borders)
+    if (allocated(solver%sent)) deallocate (solver%sent)
+    call lay_out_fronts(pattern, position, solver%layout)
+    allocate (solver%sent(size(solver%layout%index)))
+    ! one more than is used: where the empty border of a last front begins
+    allocate (solver%factors(solver%layout%factor_length + 1), stat=status)
+    if (status == 0) allocate (solver%borders(solver%layout%border_length + 1), stat=status)
+    if (status /= 0) then
+      call fail(error, exit_machine, 'not enough memory for the factors of the matrix ('// &
+                to_text(nint(8*real(solver%layout%factor_length + solver%layout%border_length, wp)/2.0_wp**20))//' MB)', &
+                'use a coarser mesh or a machine with more memory')
+    end if
+  end subroutine plan
+
+  !> Factorise; `regular` is false when a pivot is zero or no number.
+  subroutine decompose(solver, values, regular)
+    type(multifrontal_t), intent(inout) :: solver
+    real(wp), intent(in) :: values(:)
+    logical, intent(out) :: regular
+    logical :: sound(solver%layout%nfront)
+
+    !$omp parallel if (any(solver%layout%shared)) default(shared)
+    !$omp single
+    call decompose_below(solver%layout, values, 0, solver%factors, solver%borders, sound)
+    !$omp end single
+    !$omp end parallel
+    regular = all(sound)
+  end subroutine decompose
+
+  !> Children of front f, then the front itself.
+  recursive subroutine decompose_below(layout, values, f, factors, borders, sound)
+    type(layout_t), intent(in) :: layout
+    real(wp), intent(in) :: values(:)
+    integer, intent(in) :: f
+    real(wp), intent(inout) :: factors(layout%factor_length + 1), borders(layout%border_length + 1)
+    logical, intent(inout) :: sound(:)
+    integer :: k, c, s
+
+    do k = layout%child_first(f), layout%child_first(f + 1) - 1
+      !$omp task default(shared) firstprivate(k) private(c, s)
+      c = layout%child(k)
+      if (layout%shared(c)) then
+        call decompose_below(layout, values, c, factors, borders, sound)
+      else
+        do s = layout%subtree(c), c
+          call decompose_front(layout, values, s, factors, borders, sound)
+        end do
+      end if
+      !$omp end task
+    end do
+    !$omp taskwait
+    if (f > 0) call decompose_front(layout, values, f, factors, borders, sound)
+  end subroutine decompose_below
+
+  !> Assemble a front and eliminate its pivots.
+  subroutine decompose_front(layout, values, f, factors, borders, sound)
+    type(layout_t), intent(in) :: layout
+    real(wp), intent(in) :: values(:)
+    integer, intent(in) :: f
+    real(wp), intent(inout) :: factors(layout%factor_length + 1), borders(layout%border_length + 1)
+    logical, intent(inout) :: sound(:)
+    real(wp) :: keep
+    integer :: k, c, p, n
+
+    p = layout%first(f + 1) - layout%first(f)
+    n = layout%order(f)
+    sound(f) = .true.
+    associate (pivot => layout%factor_start(f), row => layout%factor_start(f) + int(p, kind(layout%factor_start))*n, &
+               border => layout%border_start(f))
+      factors(pivot:pivot + int(p, kind(pivot))*(2*n - p) - 1) = 0
+      ! a front without children gets its border from the elimination alone
+      keep = merge(1, 0, layout%child_first(f + 1) > layout%child_first(f))
+      if (keep > 0) borders(border:border + int(n - p, kind(border))**2 - 1) = 0
+      do k = layout%entry(f), layout%entry(f + 1) - 1
+        factors(pivot + layout%target(k) - 1) = factors(pivot + layout%target(k) - 1) + values(layout%source(k))
+      end do
+      do k = layout%child_first(f), layout%child_first(f + 1) - 1
+        c = layout%child(k)
+        sound(f) = sound(f) .and. sound(c)
+        if (layout%border(c + 1) == layout%border(c)) cycle
+        call add_border(layout%border(c + 1) - layout%border(c), layout%to_parent(layout%border(c)), &
+                        borders(layout%border_start(c)), p, n, factors(pivot), factors(row), borders(border))
+      end do
+      if (.not. sound(f)) return
+      if (layout%shared(f)) then
+        call eliminate_shared(p, n, factors(pivot), factors(row), borders(border), keep, sound(f))
+      else
+        call eliminate(p, n, factors(pivot), factors(row), borders(border), keep, sound(f))
+      end if
+    end associate
+  end subroutine decompose_front
+
+  !> Add the border of a child to a front, whose rows `to` it goes to.
+  pure subroutine add_border(m, to, child, p, n, pivot, row, border)
+    integer, intent(in) :: m, to(m), p, n
+    real(wp), intent(in) :: child(m, m)
+    real(wp), intent(inout) :: pivot(n, p), row(p, n - p), border(n - p, n - p)
+    integer :: i, j, inside
+
+    inside = count(to <= p)
+    do j = 1, inside
+      do i = 1, m
+        pivot(to(i), to(j)) = pivot(to(i), to(j)) + child(i, j)
+      end do
+    end do
+    do j = inside + 1, m
+      do i = 1, inside
+        row(to(i), to(j) - p) = row(to(i), to(j) - p) + child(i, j)
+      end do
+      do i = inside + 1, m
+        border(to(i) - p, to(j) - p) = border(to(i) - p, to(j) - p) + child(i, j)
+      end do
+    end do
+  end subroutine add_border
+
+  !> x := A^-1 x.
+  subroutine substitute(solver, x)
+    type(multifrontal_t), intent(inout) :: solver
+    real(wp), intent(inout) :: x(:)   !! (neq)
+    real(wp) :: y(size(x))
+
+    y(solver%layout%place) = x
+    !$omp parallel if (any(solver%layout%shared)) default(shared)
+    !$omp single
+    call forward_below(solver%layout, 0, solver%factors, y, solver%sent)
+    call backward_below(solver%layout, 0, solver%factors, y)
+    !$omp end single
+    !$omp end parallel
+    x = y(solver%layout%place)
+  end subroutine substitute
+
+  !> Forward substitution: children of front f, then the front itself.
+  recursive subroutine forward_below(layout, f, factors, y, sent)
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: f
+    real(wp), intent(in) :: factors(layout%factor_length + 1)
+    real(wp), intent(inout) :: y(:), sent(:)
+    integer :: k, c, s
+
+    do k = layout%child_first(f), layout%child_first(f + 1) - 1
+      !$omp task default(shared) firstprivate(k) private(c, s)
+      c = layout%child(k)
+      if (layout%shared(c)) then
+        call forward_below(layout, c, factors, y, sent)
+      else
+        do s = layout%subtree(c), c
+          call forward(layout, s, factors, y, sent)
+        end do
+      end if
+      !$omp end task
+    end do
+    !$omp taskwait
+    if (f > 0) call forward(layout, f, factors, y, sent)
+  end subroutine forward_below
+
+  subroutine forward(layout, f, factors, y, sent)
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: f
+    real(wp), intent(in) :: factors(layout%factor_length + 1)
+    real(wp), intent(inout) :: y(:), sent(:)
+    real(wp) :: z(layout%max_order)
+    integer :: k, c, i, p, n
+
+    p = layout%first(f + 1) - layout%first(f)
+    n = layout%order(f)
+    z(:p) = y(layout%first(f):layout%first(f + 1) - 1)
+    z(p + 1:n) = 0
+    do k = layout%child_first(f), layout%child_first(f + 1) - 1
+      c = layout%child(k)
+      do i = layout%border(c), layout%border(c + 1) - 1
+        z(layout%to_parent(i)) = z(layout%to_parent(i)) + sent(i)
+      end do
+    end do
+    associate (pivot => layout%factor_start(f))
+      call dtrsv('L', 'N', 'U', p, factors(pivot), n, z, 1)
+      if (n > p) call dgemv('N', n - p, p, -1.0_wp, factors(pivot + p), n, z, 1, 1.0_wp, z(p + 1), 1)
+    end associate
+    y(layout%first(f):layout%first(f + 1) - 1) = z(:p)
+    sent(layout%border(f):layout%border(f + 1) - 1) = z(p + 1:n)
+  end subroutine forward
+
+  !> Backward substitution: front f, then its children.
+  recursive subroutine backward_below(layout, f, factors, y)
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: f
+    real(wp), intent(in) :: factors(layout%factor_length + 1)
+    real(wp), intent(inout) :: y(:)
+    integer :: k, c, s
+
+    if (f > 0) call backward(layout, f, factors, y)
+    do k = layout%child_first(f), layout%child_first(f + 1) - 1
+      !$omp task default(shared) firstprivate(k) private(c, s)
+      c = layout%child(k)
+      if (layout%shared(c)) then
+        call backward_below(layout, c, factors, y)
+      else
+        do s = c, layout%subtree(c), -1
+          call backward(layout, s, factors, y)
+        end do
+      end if
+      !$omp end task
+    end do
+    !$omp taskwait
+  end subroutine backward_below
+
+  subroutine backward(layout, f, factors, y)
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: f
+    real(wp), intent(in) :: factors(layout%factor_length + 1)
+    real(wp), intent(inout) :: y(:)
+    real(wp) :: z(layout%max_order)
+    integer :: p, n
+
+    p = layout%first(f + 1) - layout%first(f)
+    n = layout%order(f)
+    z(:p) = y(layout%first(f):layout%first(f + 1) - 1)
+    z(p + 1:n) = y(layout%index(layout%border(f):layout%border(f + 1) - 1))
+    associate (pivot => layout%factor_start(f), row => layout%factor_start(f) + int(p, kind(layout%factor_start))*n)
+      if (n > p) call dgemv('N', p, n - p, -1.0_wp, factors(row), p, z(p + 1), 1, 1.0_wp, z, 1)
+      call dtrsv('U', 'N', 'N', p, factors(pivot), n, z, 1)
+    end associate
+    y(layout%first(f):layout%first(f + 1) - 1) = z(:p)
+  end subroutine backward
+
+end module multifrontal

@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+"""Dies that are free: forces, moments and springs on pilots, and friction by the factor m, against closed forms.
+
+usage: run_pilots.py [-v] [-k]       -v prints every check, -k keeps the results
+"""
+import math
+import sys
+
+sys.dont_write_bytecode = True
+from support import DONE, Checks, history, run, said, write  # noqa: E402
+
+# A block under a die that is wider than it; the die's pilot stands over the middle of the block.
+BLOCK = """TITLE  {title}
+STATE  {state}
+KINEM  {kinematics}
+BLOCK  block PL8LS 4 stuff
+   0. 0.   10. 0.   10. 5.   0. 5.
+   8 1.   4 1.
+LAW    stuff {law}
+LAW    skin COUL2D
+   {skin}
+DIE    press PILOT {pilot}
+   SEGM  40. 5.   -20. 5.
+CNT2D  block 3 press -3 skin
+{fixed}
+LIC    load
+   0. 0.   1. 1.
+{cards}
+STRAT  0.1 1.E-4 0.1   5 3
+END
+"""
+ELASTIC = "ELA\n   1000. 0."
+PLASTIC = "EPLA\n   1000. 0.3\n   LINEAR 10. 50."
+SMOOTH = "PENETR 1.E-3 PHI 0."
+
+
+def run_deck(checks, name, **parts):
+    """Run a deck; the columns of its history."""
+    text = BLOCK.format(**{"state": "PLSTN", "kinematics": "SMALL", "law": ELASTIC, "skin": SMOOTH, "pilot": "5. 5.",
+                           "fixed": "FIXED  block 1 Y\nFIXED  block 4 X", "title": name, **parts})
+    deck = checks.path(name + ".lag")
+    write(deck, text)
+    result = run([deck, "--out", checks.path(name)])
+    checks.that(result.returncode == DONE, f"{name}: runs to its end", said(result))
+    return history(checks.path(name))
+
+
+def close(checks, what, found, wanted, tolerance):
+    scale = abs(wanted) or 1.0
+    checks.that(abs(found - wanted) <= tolerance * scale, f"{what}: {found:.12g} for {wanted:.12g}", f"within {tolerance}")
+
+
+def compression(checks):
+    """Uniform compression: w F/(E A) h in the block, and p/AKP in the penalty, AKP = E/100/(PENETR side)."""
+    force, young, side = 20.0, 1000.0, 10.0 / 8
+    rows = run_deck(checks, "compression", cards=f"FORCE  press Y -{force} load")
+    pressure = force / 10
+    sunk = pressure / young * 5 + pressure * 1e-3 * side / (0.01 * young)
+    close(checks, "depth under a force", -rows["displacement_y_press"][-1], sunk, 1e-7)
+    for step, time in enumerate(rows["time"]):
+        close(checks, f"force on the die, step {step + 1}", rows["force_y_press"][step], force * time, 1e-8)
+
+    rows = run_deck(checks, "axisymmetric", state="AXISYM", cards=f"FORCE  press Y -{force} load", pilot="0. 5.")
+    pressure = force / (math.pi * 100)
+    sunk = pressure / young * 5 + pressure * 1e-3 * side / (0.01 * young)
+    close(checks, "depth under a total force, axisymmetric", -rows["displacement_y_press"][-1], sunk, 1e-7)
+    close(checks, "total force on the die", rows["force_y_press"][-1], force, 1e-8)
+
+
+def springs(checks):
+    """Half of the way goes into the spring when it is as stiff as block and penalty together."""
+    force, young, side = 20.0, 1000.0, 10.0 / 8
+    stiffness = 1 / (5 / (young * 10) + 1e-3 * side / (0.01 * young * 10))
+    rows = run_deck(checks, "spring", cards=f"FORCE  press Y -{force} load\nSPRNG  press Y {stiffness!r}")
+    close(checks, "depth with a spring", -rows["displacement_y_press"][-1], force / (2 * stiffness), 1e-7)
+    close(checks, "force that is left for the block", rows["force_y_press"][-1], force / 2, 1e-7)
+
+
+def balance(checks):
+    """A die free to turn, pressed off the middle of a plastic block: no moment about its pilot, the given force."""
+    rows = run_deck(checks, "balance", kinematics="LOG", law=PLASTIC, skin="PENETR 1.E-3 PHI 0.2", pilot="6. 5.",
+                    fixed="FIXED  block 1 XY", cards="FORCE  press Y -130. load\nFREE   press A")
+    for step, time in enumerate(rows["time"]):
+        close(checks, f"force, step {step + 1}", rows["force_y_press"][step], 130 * time, 1e-8)
+        checks.that(abs(rows["moment_press"][step]) <= 1e-8 * 130 * time * 10, f"no moment, step {step + 1}", rows["moment_press"][step])
+    checks.that(rows["rotation_press"][-1] < -1e-2, "the die has turned", rows["rotation_press"][-1])
+
+    rows = run_deck(checks, "moment", pilot="5. 5.", cards="FORCE  press Y -20. load\nFORCE  press A -5. load")
+    close(checks, "moment that is given", rows["moment_press"][-1], 5.0, 1e-8)
+    rows = run_deck(checks, "shared", pilot="5. 5.", cards="FORCE  press Y -20. load\nFORCE  press A -5. load\nSPRNG  press A 1.E4")
+    checks.that(rows["rotation_press"][-1] < -1e-4, "the die turns against its spring", rows["rotation_press"][-1])
+    # the history tells what acts on the pilot from outside: force given, spring and all
+    close(checks, "moment the spring leaves", rows["moment_press"][-1], 5.0 + 1e4 * rows["rotation_press"][-1], 1e-8)
+
+
+def friction_factor(checks):
+    """A die slides over a block that has not hardened: friction m sigma_y/sqrt(3) on the face, whatever the pressure."""
+    for m in (0.3, 1.0):
+        rows = run_deck(checks, f"factor_{m}", law="EPLA\n   1000. 0.3\n   LINEAR 10. 0.", skin=f"PENETR 1.E-3 M {m} AKTAU 1.E4",
+                        fixed="FIXED  block 1 XY\nFIXED  block 2 X\nFIXED  block 4 X\nFIXED  block 3 X",
+                        cards="MOVE   press Y load -0.02\nMOVE   press X load 0.5")
+        close(checks, f"friction by the factor {m}", -rows["force_x_press"][-1], m * 10 / math.sqrt(3) * 10, 1e-9)
+
+
+def lost(checks):
+    """A free die that touches nothing cannot be solved for: the run says what to do."""
+    deck = checks.path("lost.lag")
+    write(deck, BLOCK.format(title="lost", state="PLSTN", kinematics="SMALL", law=ELASTIC, skin=SMOOTH, pilot="5. 6.",
+                             fixed="FIXED  block 1 Y\nFIXED  block 4 X", cards="FORCE  press Y -1. load").replace(
+                                 "SEGM  40. 5.   -20. 5.", "SEGM  40. 6.   -20. 6."))
+    result = run([deck, "--out", checks.path("lost")])
+    checks.that(result.returncode == 3 and "SPRNG" in result.stderr, "a die that touches nothing is told of", said(result))
+
+
+def main():
+    checks = Checks()
+    for part in (compression, springs, balance, friction_factor, lost):
+        part(checks)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
