@@ -130,12 +130,12 @@ contains
 
     call words_of('X Y A', directions)
     call read_place(cursor, draft, .true., place)
-    call cursor%name('a direction', directions, direction)
-    if (direction == 3 .and. place%die == 0) call cursor%fail('only a DIE can turn (A); '''//place%label//''' is none')
     if (place%die > 0) then
       if (is_deformable(draft%scene%dies(place%die))) call cursor%fail('the DIE '''//place%label &
                                                                        //''' is made of sides: it moves with their bodies')
     end if
+    call cursor%name('a direction', directions, direction)
+    if (direction == 3 .and. place%die == 0) call cursor%fail('only a DIE can turn (A); '''//place%label//''' is none')
     call draft%multipliers%find(cursor, 'the name of a LIC', k)
     amplitude = 1
     if (cursor%more()) call cursor%real('the amplitude', amplitude)

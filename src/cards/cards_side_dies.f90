@@ -14,7 +14,7 @@ module cards_side_dies
 
 contains
 
-  !> The rest of the cards `DIE name SIDES place`, now that there are sides; their dies have been numbered with the others.
+  !> The rest of the cards `DIE name SIDES place ...`, now that there are sides; their dies have been numbered with the others.
   subroutine read_side_dies(deck, draft, diagnostics)
     type(deck_t), intent(inout), target :: deck
     type(draft_t), intent(inout) :: draft
@@ -22,7 +22,7 @@ contains
     type(cursor_t) :: cursor
     type(string_t), allocatable :: words(:)
     character(len=:), allocatable :: name, label
-    integer, allocatable :: sides(:, :)
+    integer, allocatable :: sides(:, :), more(:, :)
     integer :: i, k, n
 
     n = 0
@@ -34,8 +34,14 @@ contains
       call cursor%word('the name of the die', name)
       call words_of('SIDES', words)
       call cursor%name('SIDES', words, k)
-      call read_sides(cursor, draft, huge(k), label, sides)
-      call refuse_inner_sides(cursor, draft, sides)
+      if (allocated(sides)) deallocate (sides)
+      allocate (sides(3, 0))
+      do
+        call read_sides(cursor, draft, huge(k), label, more)
+        call refuse_inner_sides(cursor, draft, more)
+        sides = reshape([sides, more], [3, size(sides, 2) + size(more, 2)])
+        if (cursor%failed() .or. .not. cursor%more()) exit
+      end do
       associate (die => draft%scene%dies(n))
         call chain_of_sides(sides, die%nodes)
         if (size(die%nodes, 2) < size(sides, 2)) then

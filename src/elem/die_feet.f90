@@ -30,28 +30,31 @@ module die_feet
 
 contains
 
-  !> Parent coordinates in [-1, 1] where (Y(xi) - point).Y'(xi) = 0, a cubic.
-  pure subroutine projections(piece, point, n, xi)
+  !> Parent coordinates in [-1, 1], or up to `beyond` outside, where (Y(xi) - point).Y'(xi) = 0, a cubic.
+  pure subroutine projections(piece, point, n, xi, beyond)
     real(wp), intent(in) :: piece(2, 3), point(2)
     integer, intent(out) :: n
     real(wp), intent(out) :: xi(3)
-    real(wp) :: a(2), b(2), d(2), c(0:3), knots(4), delta, q
+    real(wp), intent(in), optional :: beyond
+    real(wp) :: a(2), b(2), d(2), c(0:3), knots(4), delta, q, limit
     integer :: i
 
     a = 0.5_wp*(piece(:, 1) + piece(:, 3)) - piece(:, 2)
     b = 0.5_wp*(piece(:, 3) - piece(:, 1))
     d = piece(:, 2) - point
     c = [dot_product(d, b), dot_product(b, b) + 2*dot_product(d, a), 3*dot_product(a, b), 2*dot_product(a, a)]
+    limit = 1 + end_slack
+    if (present(beyond)) limit = limit + beyond
     n = 0
     if (c(3) <= 16*eps*dot_product(b, b)) then
       ! a segment, to round-off
-      if (abs(c(0)) > (1 + end_slack)*dot_product(b, b)) return
+      if (abs(c(0)) > limit*dot_product(b, b)) return
       n = 1
       xi(1) = -c(0)/dot_product(b, b)
       return
     end if
     ! the cubic is monotone between its extremes: a root in each such interval with a change of sign
-    knots = [-1 - end_slack, -1 - end_slack, 1 + end_slack, 1 + end_slack]
+    knots = [-limit, -limit, limit, limit]
     delta = c(2)**2 - 3*c(3)*c(1)
     if (delta > 0) then
       q = -(c(2) + sign(sqrt(delta), c(2)))

@@ -21,7 +21,7 @@ module die_search
   use kinds, only: eps, wp
   implicit none
   private
-  public :: foot_t, find_foot, follow_foot, box_distance
+  public :: foot_t, find_foot, find_foot_on, follow_foot, box_distance
 
   !> A side that faces away by less than this cosine may still lie on the die: a side that folds.
   real(wp), parameter :: facing = 0.9_wp
@@ -197,6 +197,22 @@ contains
     foot = found
     foot%piece = k
   end subroutine follow_foot
+
+  !> Foot of a point on one piece, or up to `beyond` outside its ends; of several the one nearest to `from`.
+  pure subroutine find_foot_on(die, piece, point, from, beyond, foot)
+    type(die_t), intent(in) :: die
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: point(2)       !! in the pilot's axes [length]
+    real(wp), intent(in) :: from, beyond   !! parent coordinates
+    type(foot_t), intent(out) :: foot
+    real(wp) :: roots(3)
+    integer :: n
+
+    call projections(die%pieces(:, :, piece), point, n, roots, beyond)
+    if (n == 0) return
+    call foot_inside(die%pieces(:, :, piece), point, roots(minloc(abs(roots(:n) - from), 1)), foot)
+    if (foot%piece > 0) foot%piece = piece
+  end subroutine find_foot_on
 
   !> Box of a node of the tree; nothing is near one that holds no piece.
   pure function box_of(die, node) result(box)

@@ -18,16 +18,17 @@
 !> the other loses, point by point. Each point is coupled with a few pieces only (pairs): a foot on
 !> another one is told, and the pairs are renewed before anything is made of it.
 module elem_cntdf
-  use contact_point, only: act, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_tau, at_work, &
-                           contact_point_t, flow_stress_of, meeting_t, most_unknowns, no_surface, penalties, point_variables, &
-                           share_to_contact, show_on_axis, side_length, side_point, thinning
-  use die_search, only: box_distance, find_foot, foot_t
+  use contact_point, only: act, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, flow_stress_of, meeting_t, &
+                           most_unknowns, no_surface, npoint_state, penalties, point_variables, rest, share_to_contact, &
+                           show_on_axis, side_length, side_point, thinning
+  use die_search, only: box_distance, find_foot, find_foot_on, foot_t
+  use dies, only: die_t
   use elem_api, only: elem_t, instant_t, report_t, section_motion
   use elem_cnt2d, only: elem_cnt2d_row
   use kinds, only: eps, wp
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_open, law_t
-  use pairs, only: nodes_per_point, place_in_reach
+  use pairs, only: nodes_per_point, pieces_in_reach, place_in_reach
   use quadrature, only: line_rule
   use scene, only: axisymmetric, generalised_plane_strain, group_t, scene_t
   use shape_functions, only: line3
@@ -39,6 +40,10 @@ module elem_cntdf
 
   !> At a vertex the normal turns about the foot: turn d = 1 to some round-off.
   real(wp), parameter :: at_vertex = 64*eps
+  !> A side reaches this far beyond its ends (parent coordinate) for a point that was on it; beyond the open end of the chain less.
+  real(wp), parameter :: beyond = 0.2_wp, beyond_all = 0.05_wp
+  !> Cosine of the largest turn at a vertex that is taken for one of a smooth chain, about 6 degrees.
+  real(wp), parameter :: nearly_smooth = 0.995_wp
 
 contains
 
@@ -82,7 +87,7 @@ contains
     type(report_t), intent(out) :: report
     type(contact_point_t) :: point
     type(meeting_t) :: meeting
-    type(foot_t) :: foot
+    type(foot_t) :: foot, nearest
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: side, section(3), phi(3), dphi(3), psi(3), dpsi(3), q(2), dq(2, most_unknowns), dxi(most_unknowns)
     integer :: e, p, n, j, k, at, nnode, place(most_unknowns)
@@ -97,7 +102,7 @@ contains
         force(:, e) = 0
         if (instant%tangent) stiffness(:, :, e) = 0
         trial(:, :, e) = committed(:, :, e)
-        trial([at_pressure, at_tau, at_status, at_penetration, at_piece, at_augmentation], :, e) = 0
+        call rest(trial(:npoint_state, :, e))
         side = side_length(scene, group%connectivity(:, first + e - 1))
         section = scene%section
         if (scene%finite) section = instant%section + section_motion(scene, du(:, e))
@@ -109,12 +114,12 @@ contains
         do p = 1, size(xi)
           call line3(xi(p), phi, dphi)
           call side_point(phi, dphi, section, x(:, 1:3, e), du(place(1:6), e), most_unknowns, point)
-          call find_foot(die, point%x, point%e_r, side, foot)
+          call find_lasting_foot(die, point, side, committed(at_piece, p, e), middle(p, e), foot, nearest)
           if (foot%piece == 0) cycle
           ! a point on the axis has no surface: nothing acts there, and nothing is asked of it
           if (axisym .and. point%x(1) <= no_surface*side) cycle
           trial(at_penetration, p, e) = foot%d
-          trial(at_piece, p, e) = foot%piece
+          trial([at_piece, at_xi], p, e) = [real(nearest%piece, wp), nearest%xi]
           k = place_in_reach(die, middle(p, e), foot%piece)
           if (k == 0) then
             report%unpaired = .true.
@@ -152,6 +157,41 @@ contains
 
     box = [minval(x(1, :) + du(1:3)), minval(x(2, :) + du(4:6)), maxval(x(1, :) + du(1:3)), maxval(x(2, :) + du(4:6))]
   end function box_of
+
+  !> Closest foot of a point; but for the length of a step a point inside stays on the side it began with, beyond its ends too.
+  !>
+  !> Sides of a bent mesh make slight corners, and the normal jumps there within a motion smaller than any iteration's: points
+  !> at a corner would change sides for ever. Likewise points at the open end of the chain, where two bodies are flush. True
+  !> corners are left to the search.
+  pure subroutine find_lasting_foot(die, point, reach, last, middle, foot, nearest)
+    type(die_t), intent(in) :: die
+    type(contact_point_t), intent(in) :: point
+    real(wp), intent(in) :: reach
+    real(wp), intent(in) :: last     !! piece at the start of the step, 0 where there was none
+    integer, intent(in) :: middle    !! middle piece of the point's pairs, 0 for none
+    type(foot_t), intent(out) :: foot, nearest   !! the foot, and where the next step begins
+    type(foot_t) :: same
+    real(wp) :: from
+    integer :: piece
+
+    call find_foot(die, point%x, point%e_r, reach, foot)
+    nearest = foot
+    piece = nint(last)
+    if (piece == 0) piece = middle
+    if (piece == 0 .or. foot%d < 0) return
+    from = foot%xi
+    if (foot%piece /= piece) from = merge(1.0_wp, -1.0_wp, place_in_reach(die, piece, foot%piece) == pieces_in_reach)
+    if (foot%piece == 0) from = merge(1.0_wp, -1.0_wp, piece == size(die%nodes, 2))
+    call find_foot_on(die, piece, point%x, from, merge(beyond_all, beyond, foot%piece == 0), same)
+    if (same%piece == 0 .or. .not. (same%d > 0 .and. same%d < reach)) return
+    if (foot%piece == 0) then
+      if (.not. dot_product(same%normal, point%e_r) < 0) return
+      nearest = same
+    else
+      if (place_in_reach(die, foot%piece, piece) == 0 .or. dot_product(same%normal, foot%normal) < nearly_smooth) return
+    end if
+    foot = same
+  end subroutine find_lasting_foot
 
   !> Depth, slip and turn of the normal where a point meets a side, with their derivatives, and the motion of the foot along
   !> the side. Unknowns 7 to 12 are those of the side met.

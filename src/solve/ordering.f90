@@ -26,7 +26,7 @@ contains
 
   !> position(neq): place of each equation in the order of elimination. Equations of no node come last.
   subroutine order_equations(connectivity, dofs, position, error)
-    integer, intent(in) :: connectivity(:, :)   !! nodes of the solid elements (nnode, nelem)
+    integer, intent(in) :: connectivity(:, :)   !! nodes of the solid elements, and of links between bodies (nnode, nelem)
     type(dofs_t), intent(in) :: dofs
     integer, allocatable, intent(out) :: position(:)
     type(error_t), allocatable, intent(out) :: error
@@ -72,7 +72,7 @@ contains
 
   end subroutine order_equations
 
-  !> Neighbours of every node (zero-based compressed lists): nodes that share an element.
+  !> Neighbours of every node (zero-based compressed lists): nodes that share an element, or a link of contact.
   subroutine node_graph(connectivity, nnode, xadj, adjncy)
     integer, intent(in) :: connectivity(:, :), nnode
     integer(c_int), allocatable, intent(out) :: xadj(:), adjncy(:)
@@ -81,7 +81,10 @@ contains
 
     allocate (first(nnode + 2), source=0)
     do e = 1, size(connectivity, 2)
-      first(connectivity(:, e) + 2) = first(connectivity(:, e) + 2) + 1
+      ! one by one: a node may stand several times in a link
+      do i = 1, size(connectivity, 1)
+        first(connectivity(i, e) + 2) = first(connectivity(i, e) + 2) + 1
+      end do
     end do
     first(1:2) = 1
     do k = 2, nnode + 1

@@ -1,5 +1,6 @@
 !> A side of one body against a chain of sides of another, for the tests of CNTDF. Nodes 1 to 3 are the
-!> side's; motions, forces and matrices are those of all nodes, x then y of each.
+!> side's; motions are those of all nodes, forces and matrices too, x then y of each, and in generalised
+!> plane strain of the section at last.
 module pair_cases
   use contact_point, only: at_piece
   use dies, only: place_on_nodes
@@ -11,7 +12,7 @@ module pair_cases
   use law_cases, only: law_row
   use materials, only: material_t
   use pairs, only: paired_nodes, start_pairs
-  use scene, only: axisymmetric, scene_t
+  use scene, only: axisymmetric, generalised_plane_strain, scene_t
   use state_variables, only: total_components
   implicit none
   private
@@ -25,6 +26,9 @@ module pair_cases
     type(instant_t) :: instant
     !> Places of the nodes at the start of the step (2, nnode) [length].
     real(wp), allocatable :: x(:, :), committed(:, :, :)
+    !> Unknowns of the section, and their motion in the step.
+    integer :: nsection = 0
+    real(wp) :: thickening(3) = 0.0_wp
   end type pair_case_t
 
 contains
@@ -45,6 +49,11 @@ contains
     associate (scene => case%scene)
       scene%plane_state = plane_state
       scene%section = merge([0.0_wp, 1.0_wp, 0.0_wp], [1.0_wp, 0.0_wp, 0.0_wp], plane_state == axisymmetric)
+      if (plane_state == generalised_plane_strain) then
+        case%nsection = 3
+        case%thickening = [0.01_wp, 0.002_wp, -0.003_wp]
+        scene%section = [1.3_wp, 0.05_wp, -0.02_wp]
+      end if
       case%instant%section = scene%section
       scene%mesh%coordinates = x
       allocate (scene%materials(1), source=[material])
@@ -78,9 +87,9 @@ contains
     allocate (trial(size(case%committed, 1), size(case%committed, 2), 1))
     do
       nodes = paired_nodes(case%scene%dies(1), [1, 2, 3], case%instant%pairs(1)%piece(:, 1))
-      dof = [2*nodes - 1, 2*nodes]
+      dof = [2*nodes - 1, 2*nodes, (size(du) + i, i=1, case%nsection)]
       x = reshape(case%x(:, nodes), [2, size(nodes), 1])
-      motion = reshape([du(1, nodes), du(2, nodes)], [size(dof), 1])
+      motion = reshape([du(1, nodes), du(2, nodes), case%thickening(:case%nsection)], [size(dof), 1])
       if (allocated(f)) deallocate (f, k)
       allocate (f(size(dof), 1), k(size(dof), size(dof), 1), source=0.0_wp)
       call case%elem%compute(case%scene, case%scene%groups(1), case%kinematics, case%law, case%instant, 1, x, motion, &
@@ -102,13 +111,14 @@ contains
   subroutine accept_pair(case, du)
     type(pair_case_t), intent(inout) :: case
     real(wp), intent(in) :: du(:, :)
-    real(wp) :: force(size(du)), stiffness(size(du), size(du))
+    real(wp) :: force(size(du) + case%nsection), stiffness(size(du) + case%nsection, size(du) + case%nsection)
     real(wp), allocatable :: trial(:, :, :)
     type(report_t) :: report
 
     call evaluate_pair(case, du, force, stiffness, trial, report)
     case%committed = trial
     case%x = case%x + du
+    case%instant%section = case%instant%section + case%thickening
   end subroutine accept_pair
 
   !> d force / d du by differences of fourth order.
@@ -116,21 +126,25 @@ contains
     type(pair_case_t), intent(inout) :: case
     real(wp), intent(in) :: du(:, :)
     real(wp), intent(out) :: matrix(:, :)
-    real(wp) :: force(size(du), -2:2), unused(size(du), size(du)), moved(size(du))
+    real(wp), dimension(size(matrix, 1)) :: moved, start
+    real(wp) :: force(size(moved), -2:2), unused(size(moved), size(moved))
     real(wp), allocatable :: trial(:, :, :)
     type(report_t) :: report
     integer :: j, k
 
-    do j = 1, size(du)
+    start = [du, case%thickening(:case%nsection)]
+    do j = 1, size(moved)
       force = 0
       do k = -2, 2
         if (k == 0) cycle
-        moved = reshape(du, [size(du)])
+        moved = start
         moved(j) = moved(j) + k*step_of_differences
-        call evaluate_pair(case, reshape(moved, shape(du)), force(:, k), unused, trial, report)
+        case%thickening(:case%nsection) = moved(size(du) + 1:)
+        call evaluate_pair(case, reshape(moved(:size(du)), shape(du)), force(:, k), unused, trial, report)
       end do
       matrix(:, j) = (8*(force(:, 1) - force(:, -1)) - (force(:, 2) - force(:, -2)))/(12*step_of_differences)
     end do
+    case%thickening(:case%nsection) = start(size(du) + 1:)
   end subroutine pair_differences
 
   !> Motion that turns places by an angle about a point of the plane and shifts them.
