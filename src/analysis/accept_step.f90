@@ -16,7 +16,7 @@ module accept_step
   use vectors, only: length_of
   implicit none
   private
-  public :: accept, measure_scene
+  public :: accept, accept_balance, measure_scene
 
   !> Dissipated work may fall by this share of the largest work density: round-off of a sum.
   real(wp), parameter :: dissipation_slack = 1.0e-12_wp
@@ -34,29 +34,10 @@ contains
     type(solution_t), intent(inout) :: solution
     type(totals_t), intent(out) :: totals
     type(error_t), allocatable, intent(out) :: error
-    integer :: k, c, d
 
     call book_work(equations, outcome%du, solution)
     call book_reactions(scene, equations, solution%time + dt, solution%reactions)
-    do k = 1, size(equations%dofs%node, 2)
-      do c = 1, 2
-        d = equations%dofs%node(c, k)
-        if (d > 0) solution%last_increment(c, k) = outcome%du(d)
-      end do
-    end do
-    do k = 1, size(equations%dofs%pilot, 2)
-      do c = 1, 3
-        d = equations%dofs%pilot(c, k)
-        if (d > 0) solution%last_pilot_increment(c, k) = outcome%du(d)
-      end do
-    end do
-    do c = 1, 3
-      d = equations%dofs%section(c)
-      if (d > 0) solution%last_section_increment(c) = outcome%du(d)
-    end do
-    solution%displacement = solution%displacement + solution%last_increment
-    solution%section = solution%section + solution%last_section_increment
-    solution%pilots = solution%pilots + solution%last_pilot_increment
+    call take_motion(equations, outcome%du, solution)
     solution%time = solution%time + dt
     solution%last_step = dt
     solution%step = solution%step + 1
@@ -72,11 +53,75 @@ contains
     call book_spurious_mode(scene, equations, solution)
     call sample_contacts(scene, solution)
     call check(solution, totals, error)
+    call commit(scene, equations, solution)
+  end subroutine accept
+
+  !> Commit an equilibrium restored at fixed time on a new mesh: no work is booked, no step counted, and the motion of the step
+  !> before stays the one to go on with.
+  subroutine accept_balance(scene, equations, outcome, solution, totals)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(outcome_t), intent(in) :: outcome
+    type(solution_t), intent(inout) :: solution
+    type(totals_t), intent(out) :: totals
+    real(wp) :: work, increment(2, size(solution%last_increment, 2)), pilots(3, size(solution%pilots, 2)), section(3)
+
+    work = solution%external_work
+    call book_work(equations, outcome%du, solution)
+    solution%external_work = work
+    call book_reactions(scene, equations, solution%time, solution%reactions)
+    increment = solution%last_increment
+    pilots = solution%last_pilot_increment
+    section = solution%last_section_increment
+    call take_motion(equations, outcome%du, solution)
+    solution%last_increment = increment
+    solution%last_pilot_increment = pilots
+    solution%last_section_increment = section
+    solution%iterations = solution%iterations + outcome%iterations
+    call measure_scene(scene, equations, solution, totals)
+    call commit(scene, equations, solution)
+  end subroutine accept_balance
+
+  !> Move nodes, pilots and section.
+  pure subroutine take_motion(equations, du, solution)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: du(:)
+    type(solution_t), intent(inout) :: solution
+    integer :: k, c, d
+
+    do k = 1, size(equations%dofs%node, 2)
+      do c = 1, 2
+        d = equations%dofs%node(c, k)
+        if (d > 0) solution%last_increment(c, k) = du(d)
+      end do
+    end do
+    do k = 1, size(equations%dofs%pilot, 2)
+      do c = 1, 3
+        d = equations%dofs%pilot(c, k)
+        if (d > 0) solution%last_pilot_increment(c, k) = du(d)
+      end do
+    end do
+    do c = 1, 3
+      d = equations%dofs%section(c)
+      if (d > 0) solution%last_section_increment(c) = du(d)
+    end do
+    solution%displacement = solution%displacement + solution%last_increment
+    solution%section = solution%section + solution%last_section_increment
+    solution%pilots = solution%pilots + solution%last_pilot_increment
+  end subroutine take_motion
+
+  !> The trial state becomes the state.
+  subroutine commit(scene, equations, solution)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(inout) :: solution
+    integer :: k
+
     do k = 1, size(solution%groups)
       solution%groups(k)%committed = solution%groups(k)%trial
     end do
     call update_flow_stress(scene, equations%laws, equations%bodies, solution)
-  end subroutine accept
+  end subroutine commit
 
   !> External work by the trapezoidal rule: forces from outside on nodes and pilots times their motion.
   !> What acts from outside on an unknown is the internal force there, without the elements that are loads.

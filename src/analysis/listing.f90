@@ -1,11 +1,13 @@
 !> The listing (`NAME.log`) and the line that shows progress on a terminal.
 module listing
   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+  use dies, only: is_deformable
   use elem_api, only: totals_t
   use equations, only: equations_t
   use errors, only: error_t, exit_machine, fail
   use kinds, only: wp
   use newton, only: outcome_t
+  use restore_balance, only: balance_t
   use scene, only: scene_t
   use solution, only: solution_t
   use system, only: is_terminal, wall_seconds
@@ -13,7 +15,7 @@ module listing
   implicit none
   private
   public :: listing_t, open_listing, close_listing, show_progress, end_progress
-  public :: list_lines, list_step, list_cut, list_event, list_note
+  public :: list_lines, list_balance, list_step, list_cut, list_event, list_note
 
   type :: listing_t
     integer :: unit = -1
@@ -100,6 +102,29 @@ contains
       end associate
     end do
   end subroutine list_iterations
+
+  !> Equilibrium restored on a new mesh: what it took, and what it changed.
+  subroutine list_balance(listing, scene, solution, balance, outcome)
+    type(listing_t), intent(in) :: listing
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(balance_t), intent(in) :: balance
+    type(outcome_t), intent(in) :: outcome
+    integer :: k
+
+    write (listing%unit, '(a)') 'mesh '//to_text(scene%generation)//'  after step '//to_text(solution%step)//'  time ' &
+      //to_text(solution%time)//'  first residual '//to_text(balance%first_residual, 3)//'  iterations ' &
+      //to_text(balance%iterations)//' in '//to_text(balance%parts)//' part'//trim(merge('s', ' ', balance%parts > 1)) &
+      //'  motion/size '//to_text(balance%motion, 3)
+    call list_iterations(listing, outcome)
+    do k = 1, size(scene%dies)
+      if (is_deformable(scene%dies(k))) cycle
+      write (listing%unit, '(a)') '  force on '//scene%dies(k)%name//' '//to_text(balance%pilot_before(1, k), 6)//' ' &
+        //to_text(balance%pilot_before(2, k), 6)//' before, '//to_text(balance%pilot_after(1, k), 6)//' ' &
+        //to_text(balance%pilot_after(2, k), 6)//' after'
+    end do
+    flush (listing%unit)
+  end subroutine list_balance
 
   !> A step that was cut: why, where, and what comes next.
   subroutine list_cut(listing, scene, solution, dt, next, outcome)

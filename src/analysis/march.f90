@@ -12,8 +12,9 @@ module march
   use exchange, only: write_checkpoint
   use history, only: open_history, write_row
   use kinds, only: eps, wp
-  use listing, only: list_cut, list_event, list_note, list_step, listing_t, show_progress
+  use listing, only: list_balance, list_cut, list_event, list_note, list_step, listing_t, show_progress
   use newton, only: outcome_t, solve_step
+  use restore_balance, only: balance_t, refuse_remesh, restore_equilibrium
   use results, only: open_results, results_t, save_failure, save_fields
   use scene, only: scene_t
   use solution, only: solution_t
@@ -36,6 +37,8 @@ module march
     type(csv_t) :: table
     type(results_t) :: results
     type(totals_t) :: totals
+    !> How the run got into equilibrium on a new mesh; not allocated where it did not have to.
+    type(balance_t), allocatable :: balance
     !> The note on a spurious mode has been given.
     logical :: spurious_told = .false.
     integer :: exit_code = exit_done
@@ -58,6 +61,7 @@ contains
     logical :: give_up
 
     call start(scene, solution, run, error)
+    if (solution%unbalanced .and. .not. allocated(error)) call begin_on_new_mesh(scene, solution, run, error)
     do while (.not. allocated(error) .and. solution%time < scene%strategy%end_time*(1 - 64*eps))
       dt = choose_step(scene, solution%time, solution%next_step)
 
@@ -112,6 +116,30 @@ contains
     if (run%resume) return
     call save_fields(scene, solution, run%results, error)
   end subroutine start
+
+  !> Equilibrium on a new mesh, judged; what is there then is what later steps stand on.
+  subroutine begin_on_new_mesh(scene, solution, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+    type(outcome_t) :: outcome
+
+    allocate (run%balance)
+    run%balance%before = run%totals
+    call restore_equilibrium(scene, run%equations, solution, run%balance, outcome)
+    if (allocated(outcome%error)) then
+      call move_alloc(outcome%error, error)
+      return
+    end if
+    run%totals = run%balance%after
+    call list_balance(run%listing, scene, solution, run%balance, outcome)
+    call refuse_remesh(scene, solution, run%balance, error)
+    if (allocated(error)) return
+    call save_fields(scene, solution, run%results, error)
+    if (allocated(error)) return
+    call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, ends_now(scene, solution), error)
+  end subroutine begin_on_new_mesh
 
   !> A note, once, when an element has moved in a way that its points do not see.
   subroutine tell_spurious_mode(scene, solution, run)

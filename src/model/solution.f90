@@ -31,6 +31,8 @@ module solution
     type(group_state_t), allocatable :: groups(:)
     !> Pairs the equations are set up for, of the groups that face deformable dies.
     type(pairs_t), allocatable :: pairs(:)
+    !> The state comes from another mesh (or from none): equilibrium has yet to be found.
+    logical :: unbalanced = .false.
     !> Totals since the start.
     integer :: iterations = 0, cutbacks = 0
     !> Work done on the scene from outside, per radian when axisymmetric.

@@ -58,12 +58,13 @@ module newton
 contains
 
   !> Seek equilibrium at the end of a step of length dt. A step that fails leaves no trace in the committed state.
-  subroutine solve_step(scene, equations, solution, dt, outcome)
+  subroutine solve_step(scene, equations, solution, dt, outcome, left)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt
     type(outcome_t), intent(out) :: outcome
+    real(wp), intent(in), optional :: left(:)   !! part of the residual to be left, per unknown (0)
     real(wp), dimension(equations%dofs%ndof) :: external, missing, residual, correction
     type(group_state_t) :: before(size(scene%groups))
     type(iteration_t) :: line
@@ -74,6 +75,7 @@ contains
     allocate (outcome%history(0), outcome%du(equations%dofs%ndof))
     call try_without_pivoting(equations%solver)
     call external_forces(scene, equations%dofs, solution%time + dt, external)
+    if (present(left)) external = external - left
     call predict(scene, equations, solution, dt, outcome%du, missing, report)
     if (report%status /= block_done) then
       call blame(report, outcome)

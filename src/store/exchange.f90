@@ -5,20 +5,23 @@
 !> them: who reads it needs to know no law.
 module exchange
   use contact_ends, only: contact_end_t
-  use dies, only: is_deformable
+  use dies, only: die_t, finish_die, is_deformable
   use errors, only: error_t, exit_input, fail
   use hash, only: sha256
   use hdf5_atomic, only: commit_atomic, create_atomic, open_verified
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
+  use materials, only: material_t
   use pairs, only: pairs_t
   use remesh, only: remesh_t
+  use remeshing, only: remeshing_t
   use scene, only: scene_t
+  use state_variables, only: state_variable
   use solution, only: solution_t
   use text, only: string_t, to_text
   implicit none
   private
-  public :: write_checkpoint, read_deck_of_checkpoint, read_remesh, read_checkpoint, schema_version
+  public :: write_checkpoint, read_deck_of_checkpoint, read_remesh, read_checkpoint, read_bare_scene, schema_version
 
   !> Raised whenever a dataset changes its name, shape or meaning.
   integer, parameter :: schema_version = 3
@@ -56,6 +59,7 @@ contains
     integer :: k
 
     call file%write('mesh/generation', scene%generation)
+    call file%write('mesh/plane_state', scene%plane_state)
     call file%write('mesh/coordinates', scene%mesh%coordinates)
     call file%write_attribute('mesh/coordinates', 'unit', 'length')
     call file%write('mesh/origin', scene%mesh%origin)
@@ -67,7 +71,50 @@ contains
       call file%write(set_place(k)//'/nodes', scene%mesh%sides(k)%nodes)
     end do
     call file%write('mesh/ngroup', size(scene%groups))
+    call write_remeshing(file, scene%remeshing)
   end subroutine write_mesh
+
+  !> What the deck asks of the remesher.
+  subroutine write_remeshing(file, remeshing)
+    type(hdf5_file_t), intent(inout) :: file
+    type(remeshing_t), intent(in) :: remeshing
+
+    call file%write('remeshing/wanted', merge(1, 0, remeshing%wanted))
+    call file%write('remeshing/transfer', [remeshing%transfer, remeshing%neighbours])
+    call file%write('remeshing/exponent', remeshing%exponent)
+    call file%write('remeshing/size', [remeshing%smallest, remeshing%largest])
+    call file%write('remeshing/strain_error', remeshing%strain_error)
+    call file%write('remeshing/count', [remeshing%most_elements, remeshing%across_contact])
+  end subroutine write_remeshing
+
+  subroutine read_remeshing(file, remeshing)
+    type(hdf5_file_t), intent(inout) :: file
+    type(remeshing_t), intent(out) :: remeshing
+    integer, allocatable :: numbers(:)
+    real(wp), allocatable :: sizes(:)
+    integer :: wanted
+
+    wanted = 0
+    call file%read('remeshing/wanted', wanted)
+    remeshing%wanted = wanted == 1
+    call file%read('remeshing/transfer', numbers)
+    if (size(numbers) == 2) then
+      remeshing%transfer = numbers(1)
+      remeshing%neighbours = numbers(2)
+    end if
+    call file%read('remeshing/exponent', remeshing%exponent)
+    call file%read('remeshing/size', sizes)
+    if (size(sizes) == 2) then
+      remeshing%smallest = sizes(1)
+      remeshing%largest = sizes(2)
+    end if
+    call file%read('remeshing/strain_error', remeshing%strain_error)
+    call file%read('remeshing/count', numbers)
+    if (size(numbers) == 2) then
+      remeshing%most_elements = numbers(1)
+      remeshing%across_contact = numbers(2)
+    end if
+  end subroutine read_remeshing
 
   subroutine write_dies(file, scene, solution)
     type(hdf5_file_t), intent(inout) :: file
@@ -75,6 +122,7 @@ contains
     type(solution_t), intent(in) :: solution
     integer :: k
 
+    call file%write('dies_in_order', [(string_t(scene%dies(k)%name), k=1, size(scene%dies))])
     call file%group('dies')
     do k = 1, size(scene%dies)
       call file%write('dies/'//scene%dies(k)%name//'/pieces', scene%dies(k)%pieces)
@@ -92,6 +140,7 @@ contains
 
     call file%write('progress/time', solution%time)
     call file%write('progress/step', solution%step)
+    call file%write('progress/unbalanced', merge(1, 0, solution%unbalanced))
     call file%write('progress/last_step', solution%last_step)
     call file%write('progress/next_step', solution%next_step)
     call file%write('progress/iterations', solution%iterations)
@@ -128,8 +177,14 @@ contains
         call file%write(place//'/elem', group%elem)
         call file%write(place//'/npoint', group%npoint)
         call file%write(place//'/connectivity', group%connectivity)
-        if (group%die > 0) call file%write(place//'/die', scene%dies(group%die)%name)
-        if (group%material > 0) call file%write(place//'/material', scene%materials(group%material)%name)
+        if (group%die > 0) then
+          call file%write(place//'/die', scene%dies(group%die)%name)
+          call file%write(place//'/die_number', group%die)
+        end if
+        if (group%material > 0) then
+          call file%write(place//'/material', scene%materials(group%material)%name)
+          call file%write(place//'/material_number', group%material)
+        end if
         if (group%pairs > 0) call file%write(place//'/pairs', solution%pairs(group%pairs)%piece)
         if (size(group%variables) == 0) cycle
         allocate (names(size(group%variables)), units(size(group%variables)), kinds(size(group%variables)))
@@ -142,6 +197,7 @@ contains
         call file%write(place//'/unit', units)
         call file%write(place//'/transfer', kinds)
         call file%write(place//'/components', group%variables%ncomp)
+        call file%write(place//'/initial', group%variables%initial)
         call file%write(place//'/state', solution%groups(g)%committed)
         deallocate (names, units, kinds)
       end associate
@@ -255,11 +311,15 @@ contains
     type(hdf5_file_t) :: file
     real(wp), allocatable :: worst(:)
     real(wp) :: spurious(3)
+    integer :: unbalanced
 
     call open_checkpoint(path, file, error)
     if (allocated(error)) return
     call file%read('progress/time', solution%time)
     call file%read('progress/step', solution%step)
+    unbalanced = 0
+    call file%read('progress/unbalanced', unbalanced)
+    solution%unbalanced = unbalanced == 1
     call file%read('progress/last_step', solution%last_step)
     call file%read('progress/next_step', solution%next_step)
     call file%read('progress/iterations', solution%iterations)
@@ -291,6 +351,106 @@ contains
     call read_states(file, scene, solution)
     call file%close(error)
   end subroutine read_checkpoint
+
+  !> What a checkpoint tells of its scene without the deck: mesh, groups with the variables of their state, dies, remeshing. For
+  !> who knows no law; enough to read the state with `read_checkpoint` and to write it with `write_checkpoint`.
+  subroutine read_bare_scene(path, scene, error)
+    character(len=*), intent(in) :: path
+    type(scene_t), intent(out) :: scene
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+    type(string_t), allocatable :: names(:)
+    integer :: k, n
+
+    call open_checkpoint(path, file, error)
+    if (allocated(error)) return
+    scene%title = ''
+    call file%read('mesh/plane_state', scene%plane_state)
+    call file%read('mesh/generation', scene%generation)
+    call file%read('mesh/coordinates', scene%mesh%coordinates)
+    call file%read('mesh/origin', scene%mesh%origin)
+    call file%read('mesh/labels', scene%mesh%labels)
+    allocate (scene%mesh%node_sets(0))
+    n = 0
+    call file%read('mesh/nset', n)
+    allocate (scene%mesh%sides(n))
+    do k = 1, n
+      call file%read(set_place(k)//'/name', scene%mesh%sides(k)%name)
+      call file%read(set_place(k)//'/nodes', scene%mesh%sides(k)%nodes)
+    end do
+    call read_remeshing(file, scene%remeshing)
+    call file%read('dies_in_order', names)
+    allocate (scene%dies(size(names)))
+    do k = 1, size(names)
+      scene%dies(k)%name = names(k)%s
+      call read_die(file, scene%dies(k))
+    end do
+    n = 0
+    call file%read('mesh/ngroup', n)
+    allocate (scene%groups(n))
+    do k = 1, n
+      call read_bare_group(file, k, scene)
+    end do
+    call file%close(error)
+  end subroutine read_bare_scene
+
+  subroutine read_die(file, die)
+    type(hdf5_file_t), intent(inout) :: file
+    type(die_t), intent(inout) :: die
+
+    call file%read('dies/'//die%name//'/pieces', die%pieces)
+    if (file%has('dies/'//die%name//'/nodes')) call file%read('dies/'//die%name//'/nodes', die%nodes)
+    call finish_die(die)   ! the pieces are in the pilot's axes already
+    call read_triple(file, 'dies/'//die%name//'/start', die%pilot)
+  end subroutine read_die
+
+  subroutine read_bare_group(file, k, scene)
+    type(hdf5_file_t), intent(inout) :: file
+    integer, intent(in) :: k
+    type(scene_t), intent(inout) :: scene
+    type(string_t), allocatable :: names(:), units(:), kinds(:)
+    type(material_t), allocatable :: more(:)
+    integer, allocatable :: components(:)
+    real(wp), allocatable :: initial(:)
+    integer :: v
+
+    if (.not. allocated(scene%materials)) allocate (scene%materials(0))
+    associate (group => scene%groups(k), place => group_place(k))
+      call file%read(place//'/name', group%name)
+      call file%read(place//'/elem', group%elem)
+      call file%read(place//'/npoint', group%npoint)
+      call file%read(place//'/connectivity', group%connectivity)
+      if (file%has(place//'/die_number')) call file%read(place//'/die_number', group%die)
+      allocate (group%variables(0))
+      if (file%has(place//'/material_number')) then
+        call file%read(place//'/material_number', group%material)
+        if (group%material > size(scene%materials)) then
+          allocate (more(group%material))
+          more(:size(scene%materials)) = scene%materials
+          call move_alloc(more, scene%materials)
+        end if
+        call file%read(place//'/material', scene%materials(group%material)%name)
+      end if
+      if (.not. file%has(place//'/variables')) return
+      call file%read(place//'/variables', names)
+      call file%read(place//'/unit', units)
+      call file%read(place//'/transfer', kinds)
+      call file%read(place//'/components', components)
+      call file%read(place//'/initial', initial)
+      if (size(units) /= size(names) .or. size(kinds) /= size(names) .or. size(components) /= size(names) &
+          .or. size(initial) /= size(names)) then
+        call file%record_error(exit_input, place//'/variables: names, units and kinds do not fit')
+        return
+      end if
+      deallocate (group%variables)
+      allocate (group%variables(size(names)))
+      do v = 1, size(names)
+        group%variables(v) = state_variable(names(v)%s, units(v)%s, kinds(v)%s, components(v))
+        group%variables(v)%first = sum(components(:v - 1)) + 1
+        group%variables(v)%initial = initial(v)
+      end do
+    end associate
+  end subroutine read_bare_group
 
   subroutine read_dies(file, scene, solution)
     type(hdf5_file_t), intent(inout) :: file

@@ -1,0 +1,25 @@
+!> How a scene is remeshed: what REMSH cards ask of the remesher, and of the restart on a new mesh.
+module remeshing
+  use kinds, only: wp
+  implicit none
+  private
+  public :: remeshing_t
+
+  type :: remeshing_t
+    !> A REMSH card is there.
+    logical :: wanted = .false.
+    !> State transfer: number of the method, exponent of 1/R^N, points of moving least squares.
+    integer :: transfer = 2
+    real(wp) :: exponent = 2.0_wp
+    integer :: neighbours = 20
+    !> Sizes of elements, smallest and largest; 0: from the mesh before [length].
+    real(wp) :: smallest = 0.0_wp, largest = 0.0_wp
+    !> Error of the strains an element is made for, elements at most (0: no limit), elements across a contact zone.
+    real(wp) :: strain_error = 0.05_wp
+    integer :: most_elements = 0
+    integer :: across_contact = 8
+    !> Limits of the restart: iterations, and change of the force of a die (share of the largest).
+    integer :: most_iterations = 40
+    real(wp) :: force_change = 0.1_wp
+  end type remeshing_t
+end module remeshing
