@@ -10,12 +10,12 @@ module contour_chain
   implicit none
   private
   public :: chain_t, place_t, chain_of_loop, close_chain, point_on, turn_at, arc_at, place_at_arc, closest_place, list_nodes
-  public :: chain_length, largest_gap, joint_after, size_of_chain
-  public :: kind_mid, kind_end, kind_corner, kind_entry, kind_exit
+  public :: chain_length, largest_gap, joint_after, joint_point, size_of_chain
+  public :: kind_mid, kind_end, kind_corner, kind_entry, kind_exit, kind_joint
 
   !> What a node of the contour is: middle or end of a parabola, an end where the tangent turns, a place where contact
-  !> begins or ends.
-  integer, parameter :: kind_mid = 1, kind_end = 2, kind_corner = 3, kind_entry = 4, kind_exit = 5
+  !> begins or ends, or one where the contour goes on smoothly in another set of sides.
+  integer, parameter :: kind_mid = 1, kind_end = 2, kind_corner = 3, kind_entry = 4, kind_exit = 5, kind_joint = 6
 
   type :: chain_t
     type(stretch_t), allocatable :: stretches(:)
@@ -45,12 +45,13 @@ contains
     do k = 1, size(chain%stretches)
       chain%stretches(k)%points = coordinates(:, loop%sides(:, k))
       chain%stretches(k)%middle = loop%sides(2, k)
+      chain%stretches(k)%side = k
     end do
     chain%kinds = kind_end
     call close_chain(corner_turn, chain)
   end function chain_of_loop
 
-  !> Corners among the plain ends, and arc lengths.
+  !> Corners among the ends and joints, and arc lengths.
   pure subroutine close_chain(corner_turn, chain)
     real(wp), intent(in) :: corner_turn   !! [radian]
     type(chain_t), intent(inout) :: chain
@@ -60,12 +61,32 @@ contains
     allocate (chain%arc(0:size(chain%stretches)))
     chain%arc(0) = 0
     do k = 1, size(chain%stretches)
-      if (chain%kinds(k) == kind_end .and. abs(turn_at(chain, k)) > corner_turn) chain%kinds(k) = kind_corner
+      if (any(chain%kinds(k) == [kind_end, kind_joint]) .and. abs(turn_at(chain, k)) > corner_turn) &
+        chain%kinds(k) = kind_corner
       associate (s => chain%stretches(k))
         chain%arc(k) = chain%arc(k - 1) + length_between(s, s%range(1), s%range(2))
       end associate
     end do
   end subroutine close_chain
+
+  !> Where stretch k begins [length]: a node of the part where one of the two stretches that meet is a whole side's end.
+  pure function joint_point(chain, k) result(point)
+    type(chain_t), intent(in) :: chain
+    integer, intent(in) :: k
+    real(wp) :: point(2)
+    integer :: last
+
+    last = merge(size(chain%stretches), k - 1, k == 1)
+    associate (before => chain%stretches(last), after => chain%stretches(k))
+      if (before%middle > 0 .and. .not. before%range(2) < 1) then
+        point = before%points(:, 3)
+      else if (after%middle > 0 .and. .not. after%range(1) > -1) then
+        point = after%points(:, 1)
+      else
+        point = point_at(after, after%range(1))
+      end if
+    end associate
+  end function joint_point
 
   !> Number of the stretch after another.
   pure function joint_after(chain, k) result(next)

@@ -114,9 +114,10 @@ contains
   !> Move free sides along their normals by one distance so that the loop gains a volume. A node moves when all sides of the
   !> loop it belongs to may; where two sides meet at an angle it moves so that both do. The secant's rule finds the distance:
   !> the volume is a polynomial in it, of degree 2 in the plane and 3 around an axis.
-  pure subroutine shift_sides(loop, may_move, axisymmetric, gain, coordinates, shift, restored)
+  pure subroutine shift_sides(loop, may_move, held, axisymmetric, gain, coordinates, shift, restored)
     type(loop_t), intent(in) :: loop
     logical, intent(in) :: may_move(:)                !! for each side of the loop
+    logical, intent(in) :: held(:)                    !! for each node: it stays whatever its sides do
     logical, intent(in) :: axisymmetric
     real(wp), intent(in) :: gain                      !! wanted, as `volume_of_loop`
     real(wp), intent(inout) :: coordinates(:, :)      !! (2, nnode) [length]
@@ -129,7 +130,7 @@ contains
 
     shift = 0
     before = coordinates
-    call normals_of_nodes(loop, coordinates, may_move, ways, surface)
+    call normals_of_nodes(loop, coordinates, may_move, held, ways, surface)
     start = volume_of_loop(loop, coordinates, axisymmetric)
     last_shift = 0
     last_excess = -gain
@@ -153,10 +154,10 @@ contains
   end subroutine shift_sides
 
   !> Where nodes go when all free sides move by one, and the length of these sides [length].
-  pure subroutine normals_of_nodes(loop, coordinates, may_move, ways, surface)
+  pure subroutine normals_of_nodes(loop, coordinates, may_move, held, ways, surface)
     type(loop_t), intent(in) :: loop
     real(wp), intent(in) :: coordinates(:, :)
-    logical, intent(in) :: may_move(:)
+    logical, intent(in) :: may_move(:), held(:)
     real(wp), intent(out) :: ways(:, :), surface
     type(stretch_t) :: side, next
     real(wp) :: one(2), other(2)
@@ -176,6 +177,9 @@ contains
       other = outward(next, -1.0_wp)
       ! at a corner both sides move by one: the sum of the normals over one plus the cosine between them
       if (1 + dot_product(one, other) > sharpest) ways(:, loop%sides(3, k)) = (one + other)/(1 + dot_product(one, other))
+    end do
+    do k = 1, size(held)
+      if (held(k)) ways(:, k) = 0
     end do
   end subroutine normals_of_nodes
 

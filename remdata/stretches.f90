@@ -22,8 +22,10 @@ module stretches
     real(wp) :: depth(2) = 0.0_wp
     !> Middle node of the part's side, 0 on a die.
     integer :: middle = 0
-    !> Die and piece of it, 0 on the part.
-    integer :: die = 0, piece = 0
+    !> Side of the loop: the one it is a part of, or the first one it stands for.
+    integer :: side = 0
+    !> Die and piece of it, 0 on the part; contact group and run of contact (contact_runs), 0 on free sides.
+    integer :: die = 0, piece = 0, group = 0, run = 0
   end type stretch_t
 
   !> Gauss's rule on halves and on the whole agree to this share when a length is taken for exact.
