@@ -12,7 +12,7 @@ module stretches
   implicit none
   private
   public :: stretch_t, point_at, tangent_at, depth_at, cut, straight, length_between, xi_at_length, turning_places, closest_xi
-  public :: cross
+  public :: cross, second_of
 
   type :: stretch_t
     !> Points of the parabola (2, 3) [length].
