@@ -99,15 +99,18 @@ contains
     end do
   end function may_touch
 
-  !> The crossing of two stretches, if there is one besides a joint that they share.
+  !> The first crossing of two stretches, if there is one besides a joint that they share.
   pure subroutine find_crossing(chain, other, lap, crossed)
     type(chain_t), intent(in) :: chain, other
     type(lap_t), intent(inout) :: lap
     logical, intent(out) :: crossed
     real(wp) :: p(2, 0:nchord), q(2, 0:nchord), xi(2)
+    logical :: follow
     integer :: i, k
 
     crossed = .false.
+    follow = lap%chains(1) == lap%chains(2) .and. (joint_after(chain, lap%stretches(1)) == lap%stretches(2) .or. &
+                                                   joint_after(chain, lap%stretches(2)) == lap%stretches(1))
     associate (one => chain%stretches(lap%stretches(1)), two => other%stretches(lap%stretches(2)))
       p = chord_points(one)
       q = chord_points(two)
@@ -119,25 +122,33 @@ contains
           call settle(one, two, xi, crossed)
           if (.not. crossed) cycle
           lap%point = point_at(one, xi(1))
-          ! a node that two stretches share, of one loop or of two that touch there
-          crossed = .not. (is_joint(one, lap%point) .and. is_joint(two, lap%point))
-          crossed = crossed .and. .not. (is_end_of_contact(chain, lap%stretches(1), lap%point) &
-                                         .or. is_end_of_contact(other, lap%stretches(2), lap%point))
+          crossed = .not. (is_shared(one, two, follow, lap%point) .or. is_end_of_contact(chain, lap%stretches(1), lap%point) &
+                           .or. is_end_of_contact(other, lap%stretches(2), lap%point))
           if (crossed) return
         end do
       end do
     end associate
   end subroutine find_crossing
 
-  !> The point is an end of a stretch.
-  pure function is_joint(stretch, point) result(yes)
-    type(stretch_t), intent(in) :: stretch
+  !> The point is the joint of two stretches that follow each other, or a node that two loops have in common.
+  pure function is_shared(one, two, follow, point) result(shared)
+    type(stretch_t), intent(in) :: one, two
+    logical, intent(in) :: follow
     real(wp), intent(in) :: point(2)
-    logical :: yes
+    logical :: shared
+    real(wp) :: p(2), q(2)
+    integer :: i, k
 
-    yes = min(length_of(point_at(stretch, stretch%range(1)) - point), length_of(point_at(stretch, stretch%range(2)) - point)) &
-          <= touching*extent(stretch)
-  end function is_joint
+    shared = .false.
+    do i = 1, 2
+      do k = 1, 2
+        p = point_at(one, one%range(i))
+        q = point_at(two, two%range(k))
+        if (.not. follow .and. any(abs(p - q) > 0)) cycle
+        shared = shared .or. max(length_of(p - point), length_of(q - point)) <= touching*min(extent(one), extent(two))
+      end do
+    end do
+  end function is_shared
 
   !> The point is where contact begins or ends on a stretch.
   pure function is_end_of_contact(chain, k, point) result(yes)

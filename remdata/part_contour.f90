@@ -93,7 +93,7 @@ contains
     type(loop_t), allocatable :: loops(:)
     integer, allocatable :: connectivity(:, :)
     real(wp) :: x(2, size(scene%mesh%coordinates, 2))
-    logical :: closed(size(scene%groups))
+    logical :: closed(size(scene%groups)), held(size(x, 2))
     integer :: status, node, k
 
     x = scene%mesh%coordinates + solution%displacement
@@ -106,11 +106,12 @@ contains
       return
     end if
     call find_closed(scene, solution, closed)
+    held = held_nodes(scene) .or. in_two_places(loops, size(x, 2))
     do k = 1, size(loops)
       contours(k)%loop = loops(k)
       call find_tags(scene, loops(k), x, contours(k)%tags)
       call place_contacts(scene, solution, x, ends, closed, options, contours(k), report%backward_runs)
-      call correct(scene, x, options, contours(k))
+      call correct(scene, x, held, options, contours(k))
       call list_limits(k, contours(k), report%limits)
       if (largest_gap(contours(k)%chain) > closed_within*size_of_chain(contours(k)%chain)) &
         call fail(error, exit_bug, 'contour '//to_text(k)//' is not closed')
@@ -121,6 +122,23 @@ contains
     report%volume_error = maxval([0.0_wp, abs(contours%volume_after - contours%volume_before)/abs(contours%volume_before)])
     call refuse_laps(contours, report%laps, error)
   end subroutine build_contours
+
+  !> Nodes that loops pass more than once: where two of them touch they must not come apart.
+  pure function in_two_places(loops, nnode) result(twice)
+    type(loop_t), intent(in) :: loops(:)
+    integer, intent(in) :: nnode
+    logical :: twice(nnode), once(nnode)
+    integer :: k, i
+
+    once = .false.
+    twice = .false.
+    do k = 1, size(loops)
+      do i = 1, size(loops(k)%sides, 2)
+        twice(loops(k)%sides(1, i)) = once(loops(k)%sides(1, i))
+        once(loops(k)%sides(1, i)) = .true.
+      end do
+    end do
+  end function in_two_places
 
   !> Elements of all bodies in one list.
   pure subroutine gather_solids(scene, connectivity)
@@ -195,9 +213,10 @@ contains
   end subroutine place_contacts
 
   !> The chain, and the shift of the free sides that keeps the volume.
-  pure subroutine correct(scene, x, options, contour)
+  pure subroutine correct(scene, x, held, options, contour)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: x(:, :)
+    logical, intent(in) :: held(:)   !! nodes that stay where they are
     type(contour_options_t), intent(in) :: options
     type(contour_t), intent(inout) :: contour
     real(wp) :: moved(2, size(x, 2))
@@ -219,7 +238,7 @@ contains
         end do
       end associate
     end do
-    call shift_sides(contour%loop, may_move, held_nodes(scene), round, contour%volume_before - contour%volume_after, moved, &
+    call shift_sides(contour%loop, may_move, held, round, contour%volume_before - contour%volume_after, moved, &
                      contour%shift, contour%restored)
     call assemble_chain(contour%loop, contour%tags, moved, options%corner_turn, contour%contacts, contour%chain)
     contour%volume_after = volume_inside(contour%chain, round)
