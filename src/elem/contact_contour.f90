@@ -1,10 +1,11 @@
 !> Contact along the contour of a contact group: where it begins and ends, and how deep the part is in the die.
 !>
 !> Between a point in contact and an open one of the same side, or of two sides that share a node,
-!> contact ends where the depth of the side is zero (contact_scan). It also ends where the contour does.
+!> contact ends where the depth of the side is zero (contact_scan): on the one side or on the other, as the node they share is
+!> in the die or not. It also ends where the contour does.
 module contact_contour
   use contact_ends, only: contact_end_t
-  use contact_scan, only: deepest_sample, in_pilot_axes, is_near, locate_end
+  use contact_scan, only: deepest_sample, in_pilot_axes, is_near, lies_inside, locate_end
   use die_search, only: foot_t
   use dies, only: die_t
   use kinds, only: wp
@@ -54,11 +55,16 @@ contains
       after = neighbour(group, e, 1)
       if (after == 0) then
         if (closed(n, e)) call add(side, 1.0_wp, 1.0_wp, [1.0_wp, 1.0_wp], .false.)
-      else if (closed(n, e) .and. .not. closed(1, after)) then
-        call add(side, xi(n), 1.0_wp, [penetration(n, e), min(penetration(n, e), 0.0_wp)], .false.)
-      else if (closed(1, after) .and. .not. closed(n, e)) then
+      else if (closed(n, e) .neqv. closed(1, after)) then
         next = side_of(group, after, pilot, first, x)
-        call add(next, xi(1), -1.0_wp, [penetration(1, after), min(penetration(1, after), 0.0_wp)], .true.)
+        if (closed(n, e) .neqv. lies_inside(die, side%nodes, 1.0_wp, side%reach)) then
+          ! the zero is on the closed point's own side
+          if (closed(n, e)) call add(side, xi(n), 1.0_wp, [penetration(n, e), min(penetration(n, e), 0.0_wp)], .false.)
+          if (closed(1, after)) call add(side, 1.0_wp, xi(n), [0.0_wp, penetration(n, e)], .true.)
+        else
+          if (closed(n, e)) call add(next, -1.0_wp, xi(1), [0.0_wp, penetration(1, after)], .false.)
+          if (closed(1, after)) call add(next, xi(1), -1.0_wp, [penetration(1, after), min(penetration(1, after), 0.0_wp)], .true.)
+        end if
       end if
     end do
 

@@ -9,7 +9,7 @@ module contact_scan
   use vectors, only: length_of
   implicit none
   private
-  public :: in_pilot_axes, is_near, deepest_sample, locate_end
+  public :: in_pilot_axes, is_near, deepest_sample, lies_inside, locate_end
 
   !> Places a side is sampled at.
   integer, parameter :: nsample = 20
@@ -91,6 +91,19 @@ contains
     call foot_of_place(die, side, place, reach, trial)
     if (trial%piece > 0) foot = trial
   end subroutine locate_end
+
+  !> A place of a side is in the die.
+  pure function lies_inside(die, side, place, reach) result(inside)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: side(2, 3)   !! nodes in the pilot's axes [length]
+    real(wp), intent(in) :: place
+    real(wp), intent(in) :: reach        !! [length]
+    logical :: inside
+    type(foot_t) :: foot
+
+    call foot_of_place(die, side, place, reach, foot)
+    inside = is_inside(foot)
+  end function lies_inside
 
   pure function is_inside(foot) result(inside)
     type(foot_t), intent(in) :: foot

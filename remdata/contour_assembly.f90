@@ -1,0 +1,224 @@
+!> The corrected contour of a loop: its own parabolas where it is free, the die's at the depth of contact where it is not.
+!>
+!> The stretches of part and die follow each other from one beginning or end of contact to the next. No order of nodes in a
+!> list is asked (annex 2, fig. 4): each stretch brings its curve and the range of xi that counts.
+module contour_assembly
+  use boundary_sides, only: loop_t
+  use contact_knots, only: section_t
+  use contact_runs, only: along, run_t, spot_t
+  use contact_stretches, only: follow_die
+  use contour_chain, only: chain_t, close_chain, kind_end, kind_entry, kind_exit, kind_joint
+  use dies, only: die_t
+  use kinds, only: wp
+  use side_tags, only: same_tags, side_tags_t
+  use stretches, only: point_at, straight, stretch_t
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: contact_t, assemble_chain
+
+  !> A run of contact with its die in its present place, and where it stands in the chain.
+  type :: contact_t
+    type(run_t) :: run
+    type(section_t), allocatable :: sections(:)
+    type(die_t) :: die
+    integer :: number = 0               !! of the die in the scene
+    real(wp) :: pilot(3) = 0.0_wp
+    !> Stretch it begins with, and the one that comes after it.
+    integer :: first = 0, next = 0
+    !> Contact begins there, and ends; else another run goes on.
+    logical :: begins = .true., ends = .true.
+  end type contact_t
+
+  !> The chain while it grows.
+  type :: draft_t
+    type(stretch_t), allocatable :: stretches(:)
+    integer, allocatable :: kinds(:)
+    integer :: n = 0
+    !> Widest gap that is none [length].
+    real(wp) :: closed_gap = 0.0_wp
+    !> Kind of the joint before the next stretch.
+    integer :: pending = kind_end
+  end type draft_t
+
+  !> What is left of a side in half sides, when it is nothing.
+  real(wp), parameter :: nothing = 1.0e-10_wp
+  !> Gaps wider than this share of the contour are closed by a straight stretch.
+  real(wp), parameter :: closed_gap = 1.0e-10_wp
+
+contains
+
+  pure subroutine assemble_chain(loop, tags, x, corner_turn, contacts, chain)
+    type(loop_t), intent(in) :: loop
+    type(side_tags_t), intent(in) :: tags
+    real(wp), intent(in) :: x(:, :)                    !! nodes now (2, nnode) [length]
+    real(wp), intent(in) :: corner_turn                !! [radian]
+    type(contact_t), intent(inout) :: contacts(:)      !! in their order along the loop; where they stand is found here
+    type(chain_t), intent(out) :: chain
+    type(draft_t) :: draft
+    type(spot_t) :: here
+    integer :: nside, k
+
+    nside = size(loop%sides, 2)
+    here = spot_t(1, -1.0_wp)
+    do k = 1, size(contacts)
+      if (contacts(k)%run%to%side > nside) here = spot_t(contacts(k)%run%to%side - nside, contacts(k)%run%to%xi)
+    end do
+    draft%closed_gap = closed_gap*maxval(maxval(x(:, loop%sides(1, :)), 2) - minval(x(:, loop%sides(1, :)), 2))
+    call mark_neighbours(nside, contacts)
+    do k = 1, size(contacts)
+      call add_sides(loop, tags, x, here, contacts(k)%run%from, draft)
+      if (contacts(k)%begins) then
+        draft%pending = kind_entry
+      else
+        draft%pending = kind_joint
+      end if
+      contacts(k)%first = draft%n + 1
+      call add_contact(contacts(k), k, draft)
+      contacts(k)%next = draft%n + 1
+      here = contacts(k)%run%to
+      if (contacts(k)%ends) draft%pending = kind_exit
+    end do
+    if (size(contacts) == 0) then
+      call add_sides(loop, tags, x, here, spot_t(nside, 1.0_wp), draft)
+    else
+      call add_sides(loop, tags, x, here, first_spot(contacts, nside), draft)
+    end if
+    call finish_chain(draft, corner_turn, chain)
+    do k = 1, size(contacts)
+      if (contacts(k)%next > size(chain%stretches)) contacts(k)%next = 1
+    end do
+  end subroutine assemble_chain
+
+  !> Where the walk that starts behind a run across the start of the loop, or at the start, comes to its end.
+  pure function first_spot(contacts, nside) result(spot)
+    type(contact_t), intent(in) :: contacts(:)
+    integer, intent(in) :: nside
+    type(spot_t) :: spot
+
+    spot = spot_t(nside, 1.0_wp)
+    if (contacts(size(contacts))%run%to%side > nside) spot = contacts(size(contacts))%run%to
+  end function first_spot
+
+  !> A run that begins where another one ends goes on with it.
+  pure subroutine mark_neighbours(nside, contacts)
+    integer, intent(in) :: nside
+    type(contact_t), intent(inout) :: contacts(:)
+    integer :: i, k
+
+    do i = 1, size(contacts)
+      do k = 1, size(contacts)
+        if (abs(modulo(along(contacts(i)%run%to) - along(contacts(k)%run%from) + 0.5_wp, real(nside, wp)) - 0.5_wp) > nothing) cycle
+        contacts(i)%ends = .false.
+        contacts(k)%begins = .false.
+      end do
+    end do
+  end subroutine mark_neighbours
+
+  !> Sides and parts of sides of the part between two places.
+  pure subroutine add_sides(loop, tags, x, from, to, draft)
+    type(loop_t), intent(in) :: loop
+    type(side_tags_t), intent(in) :: tags
+    real(wp), intent(in) :: x(:, :)
+    type(spot_t), intent(in) :: from, to
+    type(draft_t), intent(inout) :: draft
+    type(stretch_t) :: one
+    integer :: k, nside, before
+
+    nside = size(loop%sides, 2)
+    do k = from%side, to%side
+      one = stretch_t()
+      one%side = modulo(k - 1, nside) + 1
+      if (k == from%side) one%range(1) = from%xi
+      if (k == to%side) one%range(2) = to%xi
+      if (one%range(2) - one%range(1) <= nothing) cycle
+      before = modulo(one%side - 2, nside) + 1
+      if (draft%pending == kind_end .and. .not. (one%range(1) > -1 .or. same_tags(tags, before, one%side))) &
+        draft%pending = kind_joint
+      one%points = x(:, loop%sides(:, one%side))
+      one%middle = loop%sides(2, one%side)
+      call add(one, draft)
+    end do
+  end subroutine add_sides
+
+  !> The die at the depths of a run's knots.
+  pure subroutine add_contact(contact, number, draft)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: number
+    type(draft_t), intent(inout) :: draft
+    type(stretch_t), allocatable :: list(:)
+    integer :: i, k
+
+    do i = 1, size(contact%sections)
+      call follow_die(contact%die, contact%pilot, contact%number, contact%sections(i)%knots, list)
+      if (i > 1) draft%pending = kind_joint
+      do k = 1, size(list)
+        list(k)%side = contact%sections(i)%side
+        list(k)%group = contact%run%group
+        list(k)%run = number
+        call add(list(k), draft)
+      end do
+    end do
+  end subroutine add_contact
+
+  !> Add a stretch, and a straight one before it where the contour would not be closed.
+  pure subroutine add(one, draft)
+    type(stretch_t), intent(in) :: one
+    type(draft_t), intent(inout) :: draft
+
+    if (draft%n > 0) call close_gap(draft%stretches(draft%n), one, draft)
+    call append(one, draft)
+  end subroutine add
+
+  pure subroutine close_gap(before, after, draft)
+    type(stretch_t), intent(in) :: before, after
+    type(draft_t), intent(inout) :: draft
+    type(stretch_t) :: bridge
+
+    bridge = straight(point_at(before, before%range(2)), point_at(after, after%range(1)))
+    if (length_of(bridge%points(:, 3) - bridge%points(:, 1)) <= draft%closed_gap) return
+    bridge%side = after%side
+    bridge%die = after%die
+    bridge%piece = after%piece
+    bridge%group = after%group
+    bridge%run = after%run
+    call append(bridge, draft)
+  end subroutine close_gap
+
+  pure subroutine append(one, draft)
+    type(stretch_t), intent(in) :: one
+    type(draft_t), intent(inout) :: draft
+    type(stretch_t), allocatable :: stretches(:)
+    integer, allocatable :: kinds(:)
+    integer, parameter :: first_size = 64
+
+    if (.not. allocated(draft%stretches)) allocate (draft%stretches(first_size), draft%kinds(first_size))
+    if (draft%n == size(draft%stretches)) then
+      allocate (stretches(2*draft%n), kinds(2*draft%n))
+      stretches(:draft%n) = draft%stretches
+      kinds(:draft%n) = draft%kinds
+      call move_alloc(stretches, draft%stretches)
+      call move_alloc(kinds, draft%kinds)
+    end if
+    draft%n = draft%n + 1
+    draft%stretches(draft%n) = one
+    draft%kinds(draft%n) = draft%pending
+    draft%pending = kind_end
+  end subroutine append
+
+  !> Close the chain. What waits for a stretch at the end of the walk belongs to the first one.
+  pure subroutine finish_chain(draft, corner_turn, chain)
+    type(draft_t), intent(inout) :: draft
+    real(wp), intent(in) :: corner_turn
+    type(chain_t), intent(out) :: chain
+    integer :: pending
+
+    pending = draft%pending
+    call close_gap(draft%stretches(draft%n), draft%stretches(1), draft)
+    allocate (chain%stretches, source=draft%stretches(:draft%n))
+    allocate (chain%kinds, source=draft%kinds(:draft%n))
+    if (pending /= kind_end) chain%kinds(1) = pending
+    call close_chain(corner_turn, chain)
+  end subroutine finish_chain
+
+end module contour_assembly

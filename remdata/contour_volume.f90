@@ -1,0 +1,197 @@
+!> Volume inside closed chains by Green's formula, and the shift of free sides that restores it.
+!>
+!> Plane: A = 1/2 of the integral of x dy - y dx [area]; axisymmetric: V = 1/2 of the integral of r**2 dy, per radian
+!> [volume]. On a parabola the integrands are of degree 3 and 5 in xi, for which Gauss's four points are exact (degree 7); at
+!> a depth the range is halved until the sum no longer changes. Loops around holes count negative.
+module contour_volume
+  use boundary_sides, only: loop_t
+  use contour_chain, only: chain_t
+  use kinds, only: eps, wp
+  use quadrature, only: line_rule
+  use stretches, only: point_at, stretch_t, tangent_at
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: volume_inside, volume_of_loop, shift_sides
+
+  !> Gauss's rule on halves and on the whole agree to this share of a stretch times its arm.
+  real(wp), parameter :: accuracy = 16*eps
+  integer, parameter :: most_halvings = 12
+  !> Corners sharper than 30 degrees stay: 1 + cos(150 degrees).
+  real(wp), parameter :: sharpest = 0.134_wp
+
+contains
+
+  !> Volume inside a chain.
+  pure function volume_inside(chain, axisymmetric) result(volume)
+    type(chain_t), intent(in) :: chain
+    logical, intent(in) :: axisymmetric
+    real(wp) :: volume
+    real(wp) :: origin(2)
+    integer :: k
+
+    origin = point_at(chain%stretches(1), chain%stretches(1)%range(1))
+    volume = 0
+    do k = 1, size(chain%stretches)
+      volume = volume + below(chain%stretches(k), axisymmetric, origin)
+    end do
+  end function volume_inside
+
+  !> Volume inside a loop of sides without contact.
+  pure function volume_of_loop(loop, coordinates, axisymmetric) result(volume)
+    type(loop_t), intent(in) :: loop
+    real(wp), intent(in) :: coordinates(:, :)   !! (2, nnode) [length]
+    logical, intent(in) :: axisymmetric
+    real(wp) :: volume
+    type(stretch_t) :: side
+    integer :: k
+
+    volume = 0
+    do k = 1, size(loop%sides, 2)
+      side%points = coordinates(:, loop%sides(:, k))
+      volume = volume + below(side, axisymmetric, coordinates(:, loop%sides(1, 1)))
+    end do
+  end function volume_of_loop
+
+  !> What a stretch adds; areas are taken about `origin` to keep their digits.
+  pure function below(stretch, axisymmetric, origin) result(part)
+    type(stretch_t), intent(in) :: stretch
+    logical, intent(in) :: axisymmetric
+    real(wp), intent(in) :: origin(2)
+    real(wp) :: part
+    real(wp), allocatable :: x(:), w(:)
+    real(wp) :: unit, t(2)
+
+    call line_rule(4, x, w)
+    t = tangent_at(stretch, stretch%range(1))
+    unit = length_of(t)*(stretch%range(2) - stretch%range(1))
+    if (axisymmetric) then
+      unit = unit*maxval(stretch%points(1, :)**2)
+    else
+      unit = unit*max(length_of(stretch%points(:, 1) - origin), length_of(stretch%points(:, 3) - origin))
+    end if
+    part = by_rule(stretch%range(1), stretch%range(2))
+    if (any(abs(stretch%depth) > 0)) part = measured(stretch%range(1), stretch%range(2), part, most_halvings)
+
+  contains
+
+    pure recursive function measured(a, b, whole, halvings) result(sum)
+      real(wp), intent(in) :: a, b, whole
+      integer, intent(in) :: halvings
+      real(wp) :: sum
+      real(wp) :: middle, left, right
+
+      middle = 0.5_wp*(a + b)
+      left = by_rule(a, middle)
+      right = by_rule(middle, b)
+      sum = left + right
+      if (abs(sum - whole) <= accuracy*unit .or. halvings == 0) return
+      sum = measured(a, middle, left, halvings - 1) + measured(middle, b, right, halvings - 1)
+    end function measured
+
+    pure function by_rule(a, b) result(sum)
+      real(wp), intent(in) :: a, b
+      real(wp) :: sum
+      real(wp) :: xi, p(2), t(2)
+      integer :: i
+
+      sum = 0
+      do i = 1, size(x)
+        xi = 0.5_wp*(a + b) + 0.5_wp*(b - a)*x(i)
+        p = point_at(stretch, xi)
+        t = tangent_at(stretch, xi)
+        if (axisymmetric) then
+          sum = sum + 0.25_wp*(b - a)*w(i)*p(1)**2*t(2)
+        else
+          p = p - origin
+          sum = sum + 0.25_wp*(b - a)*w(i)*(p(1)*t(2) - p(2)*t(1))
+        end if
+      end do
+    end function by_rule
+
+  end function below
+
+  !> Move free sides along their normals by one distance so that the loop gains a volume. A node moves when all sides of the
+  !> loop it belongs to may; where two sides meet at an angle it moves so that both do. The secant's rule finds the distance:
+  !> the volume is a polynomial in it, of degree 2 in the plane and 3 around an axis.
+  pure subroutine shift_sides(loop, may_move, held, axisymmetric, gain, coordinates, shift, restored)
+    type(loop_t), intent(in) :: loop
+    logical, intent(in) :: may_move(:)                !! for each side of the loop
+    logical, intent(in) :: held(:)                    !! for each node: it stays whatever its sides do
+    logical, intent(in) :: axisymmetric
+    real(wp), intent(in) :: gain                      !! wanted, as `volume_of_loop`
+    real(wp), intent(inout) :: coordinates(:, :)      !! (2, nnode) [length]
+    real(wp), intent(out) :: shift                    !! outwards [length]
+    logical, intent(out) :: restored                  !! the loop gained what was wanted; else nothing has moved
+    real(wp) :: before(2, size(coordinates, 2)), ways(2, size(coordinates, 2))
+    real(wp) :: start, excess, last_excess, last_shift, step, surface
+    integer :: iteration
+    integer, parameter :: most_iterations = 30
+
+    shift = 0
+    before = coordinates
+    call normals_of_nodes(loop, coordinates, may_move, held, ways, surface)
+    start = volume_of_loop(loop, coordinates, axisymmetric)
+    last_shift = 0
+    last_excess = -gain
+    restored = .not. abs(gain) > 0
+    if (restored .or. .not. surface > 0) return
+    ! the first guess moves a plane surface; around an axis the volume of a thin layer is measured with it
+    step = merge(sign(eps**0.5_wp*surface, gain), gain/surface, axisymmetric)
+    do iteration = 1, most_iterations
+      shift = last_shift + step
+      coordinates = before + shift*ways
+      excess = volume_of_loop(loop, coordinates, axisymmetric) - start - gain
+      restored = abs(excess) <= 64*eps*abs(start)
+      if (restored .or. .not. abs(excess - last_excess) > 0) exit
+      step = -excess*(shift - last_shift)/(excess - last_excess)
+      last_shift = shift
+      last_excess = excess
+    end do
+    if (restored) return
+    coordinates = before
+    shift = 0
+  end subroutine shift_sides
+
+  !> Where nodes go when all free sides move by one, and the length of these sides [length].
+  pure subroutine normals_of_nodes(loop, coordinates, may_move, held, ways, surface)
+    type(loop_t), intent(in) :: loop
+    real(wp), intent(in) :: coordinates(:, :)
+    logical, intent(in) :: may_move(:), held(:)
+    real(wp), intent(out) :: ways(:, :), surface
+    type(stretch_t) :: side, next
+    real(wp) :: one(2), other(2)
+    integer :: k, after
+
+    ways = 0
+    surface = 0
+    do k = 1, size(loop%sides, 2)
+      if (.not. may_move(k)) cycle
+      side%points = coordinates(:, loop%sides(:, k))
+      surface = surface + length_of(side%points(:, 3) - side%points(:, 1))
+      ways(:, loop%sides(2, k)) = outward(side, 0.0_wp)
+      after = mod(k, size(loop%sides, 2)) + 1
+      if (.not. may_move(after)) cycle
+      next%points = coordinates(:, loop%sides(:, after))
+      one = outward(side, 1.0_wp)
+      other = outward(next, -1.0_wp)
+      ! at a corner both sides move by one: the sum of the normals over one plus the cosine between them
+      if (1 + dot_product(one, other) > sharpest) ways(:, loop%sides(3, k)) = (one + other)/(1 + dot_product(one, other))
+    end do
+    do k = 1, size(held)
+      if (held(k)) ways(:, k) = 0
+    end do
+  end subroutine normals_of_nodes
+
+  !> Unit normal away from the part, at the right of the walk.
+  pure function outward(side, xi) result(n)
+    type(stretch_t), intent(in) :: side
+    real(wp), intent(in) :: xi
+    real(wp) :: n(2)
+    real(wp) :: t(2)
+
+    t = tangent_at(side, xi)
+    n = [t(2), -t(1)]/length_of(t)
+  end function outward
+
+end module contour_volume

@@ -1,0 +1,96 @@
+!> What the deck says of each side of a loop: the sets it is in, the elements and supports on it, whether it may move.
+!>
+!> A side is known by its middle node. A new mesh makes the same sets, contact elements, pressures and supports again on the
+!> stretches that stand for a side (`stretch_t%side`).
+module side_tags
+  use boundary_sides, only: loop_t
+  use dies, only: is_deformable
+  use kinds, only: wp
+  use scene, only: axisymmetric, scene_t
+  implicit none
+  private
+  public :: side_tags_t, find_tags, same_tags, held_nodes
+
+  !> Numbers are those of the scene's lists.
+  type :: side_tags_t
+    logical, allocatable :: on_set(:, :)        !! of sides (nset, nside)
+    logical, allocatable :: on_group(:, :)      !! elements of 3 nodes (ngroup, nside)
+    logical, allocatable :: on_fixation(:, :)   !! (nfixation, nside)
+    logical, allocatable :: on_die(:, :)        !! deformable dies that the side is a piece of (ndie, nside)
+    logical, allocatable :: on_axis(:)          !! (nside)
+  end type side_tags_t
+
+  !> A radius below this share of the largest one is the axis.
+  real(wp), parameter :: no_radius = 1.0e-9_wp
+
+contains
+
+  pure subroutine find_tags(scene, loop, x, tags)
+    type(scene_t), intent(in) :: scene
+    type(loop_t), intent(in) :: loop
+    real(wp), intent(in) :: x(:, :)   !! nodes now (2, nnode) [length]
+    type(side_tags_t), intent(out) :: tags
+    integer :: side_at(size(x, 2)), n, k
+
+    n = size(loop%sides, 2)
+    side_at = 0
+    side_at(loop%sides(2, :)) = [(k, k=1, n)]
+    allocate (tags%on_set(size(scene%mesh%sides), n), tags%on_group(size(scene%groups), n), &
+              tags%on_fixation(size(scene%fixations), n), tags%on_die(size(scene%dies), n), source=.false.)
+    allocate (tags%on_axis(n), source=.false.)
+    do k = 1, size(scene%mesh%sides)
+      call mark(scene%mesh%sides(k)%nodes(2, :), tags%on_set(k, :))
+    end do
+    do k = 1, size(scene%groups)
+      if (size(scene%groups(k)%connectivity, 1) == 3) call mark(scene%groups(k)%connectivity(2, :), tags%on_group(k, :))
+    end do
+    do k = 1, size(scene%fixations)
+      call mark(scene%fixations(k)%nodes, tags%on_fixation(k, :))
+    end do
+    do k = 1, size(scene%dies)
+      if (is_deformable(scene%dies(k))) call mark(scene%dies(k)%nodes(2, :), tags%on_die(k, :))
+    end do
+    if (scene%plane_state /= axisymmetric) return
+    do k = 1, n
+      tags%on_axis(k) = all(abs(x(1, loop%sides(:, k))) <= no_radius*maxval(abs(x(1, loop%sides(2, :)))))
+    end do
+
+  contains
+
+    pure subroutine mark(middles, on)
+      integer, intent(in) :: middles(:)
+      logical, intent(inout) :: on(:)
+      integer :: i
+
+      do i = 1, size(middles)
+        if (side_at(middles(i)) > 0) on(side_at(middles(i))) = .true.
+      end do
+    end subroutine mark
+
+  end subroutine find_tags
+
+  !> Two sides are of the same sets, elements, supports and dies.
+  pure function same_tags(tags, one, other) result(same)
+    type(side_tags_t), intent(in) :: tags
+    integer, intent(in) :: one, other
+    logical :: same
+
+    same = all(tags%on_set(:, one) .eqv. tags%on_set(:, other)) .and. &
+           all(tags%on_group(:, one) .eqv. tags%on_group(:, other)) .and. &
+           all(tags%on_fixation(:, one) .eqv. tags%on_fixation(:, other)) .and. &
+           all(tags%on_die(:, one) .eqv. tags%on_die(:, other)) .and. (tags%on_axis(one) .eqv. tags%on_axis(other))
+  end function same_tags
+
+  !> Nodes that supports and imposed motions hold.
+  pure function held_nodes(scene) result(held)
+    type(scene_t), intent(in) :: scene
+    logical :: held(size(scene%mesh%coordinates, 2))
+    integer :: k
+
+    held = .false.
+    do k = 1, size(scene%fixations)
+      held(scene%fixations(k)%nodes) = .true.
+    end do
+  end function held_nodes
+
+end module side_tags
