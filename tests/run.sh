@@ -1,11 +1,18 @@
 #!/bin/sh
 # Set up, build, and run the tests: all of them, or those whose label or name is given.
-#   sh tests/run.sh [LABEL-or-NAME...]
+#   sh tests/run.sh [-v] [LABEL-or-NAME...]
+# -v shows what tests print when they pass: `sh tests/run.sh -v tangents` is the table of all laws.
 # A label is a folder of tests/; a name may be a part of a test's name (`ctest -N` in build/ lists them).
 # Ends with 0 only if every test passed and at least one ran; 2 if something is missing or unknown.
 set -u
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd) || exit 2
 . "$root/src/cmake/setup.sh"
+
+show=--output-on-failure
+if [ "${1:-}" = -v ]; then
+  show=--verbose
+  shift
+fi
 
 setup_packages
 configure_and_build || exit 1
@@ -21,7 +28,7 @@ names() {
 }
 
 if [ $# -eq 0 ]; then
-  exec ctest --output-on-failure --no-tests=error -j "$jobs"
+  exec ctest $show --no-tests=error -j "$jobs"
 fi
 
 chosen=''
@@ -37,4 +44,4 @@ for word in "$@"; do
     chosen="$chosen${chosen:+|}$(printf '%s' "$name" | sed 's/[.+]/[&]/g')"
   done
 done
-exec ctest --output-on-failure --no-tests=error -j "$jobs" -R "^($chosen)\$"
+exec ctest $show --no-tests=error -j "$jobs" -R "^($chosen)\$"

@@ -1,7 +1,8 @@
 !> What happens when a step is accepted: the trial state becomes the state, and every check is made.
 module accept_step
+  use contact_contour, only: sample_depth
   use contact_flow, only: update_flow_stress
-  use dies, only: is_deformable
+  use dies, only: is_deformable, present_die
   use elem_api, only: add_totals, totals_t
   use element_loop, only: group_geometry
   use equations, only: equations_t, external_forces
@@ -10,7 +11,9 @@ module accept_step
   use newton, only: outcome_t
   use scene, only: scene_t
   use solution, only: solution_t
+  use spurious_mode, only: find_spurious_mode, has_spurious_mode
   use text, only: to_text
+  use vectors, only: length_of
   implicit none
   private
   public :: accept, measure_scene
@@ -66,6 +69,8 @@ contains
     solution%worst_penetration = max(solution%worst_penetration, totals%max_penetration)
     solution%worst_penetration_ratio = max(solution%worst_penetration_ratio, totals%penetration_ratio)
     solution%least_dissipation = min(solution%least_dissipation, totals%least_dissipation)
+    call book_spurious_mode(scene, equations, solution)
+    call sample_contacts(scene, solution)
     call check(solution, totals, error)
     do k = 1, size(solution%groups)
       solution%groups(k)%committed = solution%groups(k)%trial
@@ -145,16 +150,16 @@ contains
           do i = 1, n
             force = equations%buffers%force([m + i, m + n + i])
             sum = sum + force
-            magnitude = magnitude + norm2(force)
+            magnitude = magnitude + length_of(force)
             if (i <= size(scene%groups(g)%connectivity, 1)) cycle
             x = scene%mesh%coordinates(:, nodes(i, e)) + solution%displacement(:, nodes(i, e))
             applied = applied + [force, x(1)*force(2) - x(2)*force(1)]
           end do
         end do
       end associate
-      if (norm2(sum) > reaction_slack*magnitude) then
+      if (length_of(sum) > reaction_slack*magnitude) then
         call fail(error, exit_bug, 'step '//to_text(solution%step)//': forces of contact '//scene%groups(g)%name &
-                  //' on its two bodies differ by '//to_text(norm2(sum)/magnitude, 3)//' of their size')
+                  //' on its two bodies differ by '//to_text(length_of(sum)/magnitude, 3)//' of their size')
         return
       end if
     end do
@@ -201,6 +206,50 @@ contains
       end associate
     end do
   end subroutine measure_scene
+
+  !> The motion of the step that the points of an element did not see: the worst of all steps is kept.
+  subroutine book_spurious_mode(scene, equations, solution)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), allocatable :: x(:, :, :)
+    real(wp) :: share
+    integer :: g, element
+
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (.not. has_spurious_mode(group)) cycle
+        call group_geometry(scene, group, equations%elems(group%elem_id), solution%displacement, x)
+        call find_spurious_mode(scene, group, x, solution%last_increment, share, element)
+        if (.not. share > solution%worst_spurious) cycle
+        solution%worst_spurious = share
+        solution%spurious_group = g
+        solution%spurious_element = element
+      end associate
+    end do
+  end subroutine book_spurious_mode
+
+  !> Depth of the part in the dies all along its sides, between integration points too.
+  subroutine sample_contacts(scene, solution)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    real(wp), allocatable :: x(:, :)
+    real(wp) :: depth, ratio, allowed
+    integer :: g
+
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%die == 0 .or. group%material == 0) cycle
+        ! every contact law begins with it (contact_penalties)
+        allowed = scene%materials(group%material)%values(1)
+        x = scene%mesh%coordinates + solution%displacement
+        call sample_depth(group, present_die(scene%dies(group%die), x), solution%pilots(:, group%die), scene%mesh%coordinates, &
+                          x, allowed, depth, ratio)
+      end associate
+      solution%worst_sample = max(solution%worst_sample, depth)
+      solution%worst_sample_ratio = max(solution%worst_sample_ratio, ratio)
+    end do
+  end subroutine sample_contacts
 
   !> Invariants of an accepted step.
   subroutine check(solution, totals, error)

@@ -1,8 +1,11 @@
 !> The march in time: the page that reads like the method.
 module march
   use accept_step, only: accept, measure_scene
-  use csv_writer, only: csv_t
+  use contact_contour, only: find_contact_ends
+  use contact_ends, only: contact_end_t
   use contact_flow, only: update_flow_stress
+  use csv_writer, only: csv_t
+  use dies, only: present_die
   use elem_api, only: totals_t
   use equations, only: equations_t, set_up
   use errors, only: error_t, exit_done, exit_no_convergence, exit_signal, fail
@@ -14,6 +17,8 @@ module march
   use results, only: open_results, results_t, save_failure, save_fields
   use scene, only: scene_t
   use solution, only: solution_t
+  use spurious_mode, only: may_stand_alone, spurious_limit
+  use state_variables, only: find_variable
   use step_strategy, only: after_failure, after_success, choose_step
   use system, only: caught_signal, join_path
   use text, only: to_text
@@ -31,6 +36,8 @@ module march
     type(csv_t) :: table
     type(results_t) :: results
     type(totals_t) :: totals
+    !> The note on a spurious mode has been given.
+    logical :: spurious_told = .false.
     integer :: exit_code = exit_done
     character(len=:), allocatable :: stop_reason
   end type run_t
@@ -77,6 +84,7 @@ contains
       call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
       if (allocated(error)) exit
       call list_step(run%listing, solution, outcome, run%totals)
+      call tell_spurious_mode(scene, solution, run)
       call show_progress(run%listing, scene, solution, outcome%iterations)
       call record(scene, solution, outcome, run, error)
       if (caught_signal() /= 0) exit
@@ -105,6 +113,19 @@ contains
     call save_fields(scene, solution, run%results, error)
   end subroutine start
 
+  !> A note, once, when an element has moved in a way that its points do not see.
+  subroutine tell_spurious_mode(scene, solution, run)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(inout) :: run
+
+    if (run%spurious_told .or. .not. solution%worst_spurious > spurious_limit) return
+    run%spurious_told = .true.
+    call list_note(run%listing, 'note: step '//to_text(solution%step)//': element '//to_text(solution%spurious_element)//' of ' &
+                   //scene%groups(solution%spurious_group)%name//' moves in the way that 4 integration points do not see ('// &
+                   to_text(100*solution%worst_spurious, 3)//' % of its strain); PL8LS with 9 points and MEAN has no such motion')
+  end subroutine tell_spurious_mode
+
   !> History after every step; fields and checkpoint when they are due.
   subroutine record(scene, solution, outcome, run, error)
     type(scene_t), intent(in) :: scene
@@ -121,9 +142,33 @@ contains
     if (fields_due) call save_fields(scene, solution, run%results, error)
     if (allocated(error)) return
     if (fields_due .or. is_due(solution%step, scene%strategy%checkpoint_every) .or. caught_signal() /= 0) then
-      call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, error)
+      call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, ends_now(scene, solution), &
+                            error)
     end if
   end subroutine record
+
+  !> Where contact begins and ends in all contact groups.
+  function ends_now(scene, solution) result(ends)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(contact_end_t), allocatable :: ends(:)
+    real(wp), allocatable :: x(:, :)
+    integer :: g, status, penetration
+
+    allocate (ends(0))
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%die == 0 .or. group%material == 0) cycle
+        status = group%variables(find_variable(group%variables, 'contact_status'))%first
+        penetration = group%variables(find_variable(group%variables, 'penetration'))%first
+        x = scene%mesh%coordinates + solution%displacement
+        call find_contact_ends(group, g, present_die(scene%dies(group%die), x), solution%pilots(:, group%die), &
+                               scene%mesh%coordinates, x, &
+                               nint(solution%groups(g)%committed(status, :, :)), &
+                               solution%groups(g)%committed(penetration, :, :), ends)
+      end associate
+    end do
+  end function ends_now
 
   pure function is_due(step, every) result(due)
     integer, intent(in) :: step, every
@@ -174,6 +219,8 @@ contains
     advice = 'the residual force is in '//run%stem//'.failed.xdmf; a limit load, a mesh too distorted or a least step too ' &
              //'large in STRAT are the usual causes'
     if (size(scene%die_forces) > 0) advice = 'a die that is free and touches nothing needs a SPRNG card until it does; '//advice
+    if (index(outcome%reason, 'singular') > 0 .and. any(may_stand_alone(scene%groups))) advice = advice//'; a body of few ' &
+      //'elements with 4 integration points has a motion that nothing resists, 9 points with MEAN have none'
     if (solution%step > 0) advice = 'the last good state is in '//run%stem//'.ckp.h5, '//advice
     call fail(error, exit_no_convergence, 'no convergence: step '//to_text(solution%step + 1)//' from time ' &
               //to_text(solution%time)//', length '//to_text(dt)//where_at//': '//outcome%reason, &
@@ -214,7 +261,8 @@ contains
       if (error%code == exit_no_convergence .and. solution%step > 0) then
         call save_fields(scene, solution, run%results, late)
         if (.not. allocated(late)) then
-          call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, late)
+          call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, ends_now(scene, solution), &
+                            late)
         end if
       end if
     else if (caught_signal() /= 0 .and. .not. at_end(scene, solution)) then

@@ -7,7 +7,7 @@ module point_run
   use kinds, only: wp
   use kinematics_api, only: kinematics_t, solid_variables
   use kinematics_registry, only: list_kinematics
-  use law_api, only: law_done, law_t
+  use law_api, only: law_done, law_of_material, law_t
   use law_registry, only: list_laws
   use point_paths, only: point_path_t, ramp_t
   use point_reader, only: read_point
@@ -93,7 +93,7 @@ contains
     call list_laws(laws)
     call list_kinematics(kinematics)
     point%material = path%material
-    point%law = laws(path%material%law_id)
+    point%law = law_of_material(laws(path%material%law_id), point%material)
     point%kinematics = kinematics(path%kinematics_id)
     call solid_variables(point%law, variables)
     allocate (point%state(total_components(variables)), source=0.0_wp)

@@ -76,9 +76,12 @@ contains
     call json%add('volume_drift', totals%volume/solution%initial_volume - 1)
     call json%add('max_penetration', solution%worst_penetration)
     call json%add('max_penetration_over_allowed', solution%worst_penetration_ratio)
+    call json%add('max_penetration_sampled', solution%worst_sample)
+    call json%add('max_penetration_sampled_over_allowed', solution%worst_sample_ratio)
     call json%add('worst_linear_residual', solution%worst_linear_residual)
     call json%add('least_dissipation', solution%least_dissipation)
     call json%add('energy_imbalance', energy_imbalance(solution, totals))
+    call json%add('spurious_mode', solution%worst_spurious)
     call json%end_object()
     call json%begin_object('energy')
     call json%add('external_work', circumference(scene)*solution%external_work)
@@ -194,6 +197,11 @@ contains
                  //to_text(solution%worst_penetration_ratio, 3)//' of the allowed'
     if (solution%worst_penetration_ratio > 1 + augmentation_slack) then
       lines(5)%s = lines(5)%s//' WARNING: above it; ask for AUGMENT, or a larger PENETR'
+    end if
+    lines(5)%s = lines(5)%s//'; between points too '//to_text(solution%worst_sample, 3)//', ' &
+                 //to_text(solution%worst_sample_ratio, 3)
+    if (solution%worst_sample_ratio > max(1.0_wp, solution%worst_penetration_ratio) + augmentation_slack) then
+      lines(5)%s = lines(5)%s//': more points on a side (CNT2D) see it'
     end if
     if (size(scene%dies) == 0) lines(5)%s = '  no contact'
     lines(6)%s = '  '//to_text(equations%dofs%neq)//' equations, '//to_text(solid_elements(scene))//' elements, ' &

@@ -8,11 +8,13 @@ module quadrature
 
 contains
 
-  !> Gauss points (n = 1 ... 4), or Lobatto points (n = -3), with weights whose sum is 2.
+  !> Gauss points (n = 1 ... 4), Lobatto points (n = -3), or Simpson's rule on 2, 4, 8 equal parts
+  !> (n = -5, -9, -17); weights sum to 2.
   pure subroutine line_rule(n, xi, weight)
     integer, intent(in) :: n
     real(wp), allocatable, intent(out) :: xi(:), weight(:)
     real(wp) :: a, b, wa, wb
+    integer :: i
 
     select case (n)
     case (1)
@@ -36,6 +38,13 @@ contains
     case (-3)
       xi = [-1.0_wp, 0.0_wp, 1.0_wp]
       weight = [1.0_wp, 4.0_wp, 1.0_wp]/3
+    case (-5, -9, -17)
+      allocate (xi(-n), weight(-n))
+      do i = 1, -n
+        xi(i) = -1 + 2*real(i - 1, wp)/(-n - 1)
+        weight(i) = merge(8, 4, mod(i, 2) == 0)/(3*real(-n - 1, wp))
+      end do
+      weight([1, -n]) = 0.5_wp*weight([1, -n])
     case default
       allocate (xi(0), weight(0))
     end select

@@ -16,8 +16,8 @@ module cards_sides
   private
   public :: read_contacts, read_pressures, refuse_inner_sides, start_group, append_group
 
-  !> Points of a side: Gauss, or Lobatto (negative).
-  integer, parameter :: rules(4) = [2, 3, 4, -3]
+  !> Points of a side: Gauss, or at equal distances with the ends (negative).
+  integer, parameter :: rules(7) = [2, 3, 4, -3, -5, -9, -17]
 
 contains
 
@@ -143,8 +143,9 @@ contains
     type(cursor_t), intent(inout) :: cursor
     integer, intent(out) :: npoint
 
-    call cursor%integer('the number of integration points, 2, 3, 4 or -3', npoint)
-    if (all(rules /= npoint)) call cursor%fail('expected 2, 3 or 4 Gauss points or -3 for Lobatto''s, found '//to_text(npoint))
+    call cursor%integer('the number of integration points, 2, 3, 4, -3, -5, -9 or -17', npoint)
+    if (all(rules /= npoint)) call cursor%fail('expected 2, 3 or 4 Gauss points, or -3, -5, -9 or -17 for points at equal ' &
+                                               //'distances, found '//to_text(npoint))
   end subroutine read_rule
 
   !> Nothing from outside can act on a side between two elements.

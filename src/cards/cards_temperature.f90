@@ -9,7 +9,7 @@ module cards_temperature
   use scene_draft, only: close_card, draft_t
   implicit none
   private
-  public :: read_temperatures_of_bodies
+  public :: read_temperatures_of_bodies, knows_temperature
 
 contains
 
@@ -106,6 +106,7 @@ contains
     end if
   end function reason
 
+  !> What a material answers depends on the temperature.
   pure function knows_temperature(law, material) result(yes)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material

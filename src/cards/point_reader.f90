@@ -2,6 +2,7 @@
 module point_reader
   use cards_head, only: read_kinematics, read_title
   use cards_laws, only: read_laws, read_material
+  use cards_temperature, only: knows_temperature
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t, refuse_unknown
   use diagnostics, only: diagnostics_t
@@ -64,7 +65,10 @@ contains
       call cursor%real('the temperature at the start', path%temperature)
       path%has_temperature = .true.
     end if
-    if (material > 0) path%material = draft%scene%materials(material)
+    if (material > 0) then
+      path%material = draft%scene%materials(material)
+      call check_temperature(cursor, draft, path)
+    end if
     ramp%temperature = path%temperature
     do
       call cursor%next_row('time, number of steps, then E or S and a value for each of xx, yy, xy, zz')
@@ -75,6 +79,21 @@ contains
       if (.not. cursor%more_rows()) exit
     end do
   end subroutine read_path
+
+  !> A temperature is told where the law wants one, and nowhere else.
+  subroutine check_temperature(cursor, draft, path)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(point_path_t), intent(in) :: path
+
+    if (path%material%law_id == 0 .or. size(path%material%values) == 0) return
+    if (knows_temperature(draft%laws(path%material%law_id), path%material) .eqv. path%has_temperature) return
+    if (path%has_temperature) then
+      call cursor%fail('LAW '//path%material%name//' does not depend on the temperature')
+    else
+      call cursor%fail('LAW '//path%material%name//' depends on the temperature: expected T and the one at the start')
+    end if
+  end subroutine check_temperature
 
   !> `time steps  E|S xx  E|S yy  E|S xy  E|S zz  [T temperature]`; `ramp` comes with the time and temperature before it.
   subroutine read_ramp(cursor, path, ramp)
@@ -101,8 +120,8 @@ contains
       end if
     end do
     if (.not. cursor%more()) return
-    if (.not. path%has_temperature) call cursor%fail('a temperature on a row wants one at the start, on the line of PATH: T value')
     call cursor%name('T and a temperature, or the end of the line', more, k)
+    if (.not. path%has_temperature) call cursor%fail('a temperature on a row wants one at the start, on the line of PATH: T value')
     call cursor%real('the temperature at this time', ramp%temperature)
   end subroutine read_ramp
 

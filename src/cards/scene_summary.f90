@@ -25,7 +25,7 @@ contains
     do k = 1, size(scene%groups)
       associate (group => scene%groups(k))
         call put('group      '//padded(group%name, 24)//padded(to_text(size(group%connectivity, 2))//' '//group%elem, 14) &
-                 //to_text(abs(group%npoint))//trim(merge(' Lobatto', '        ', group%npoint < 0))//' points' &
+                 //to_text(abs(group%npoint))//rule_of(group%npoint)//' points' &
                  //trim(merge(', mean dilatation', '                 ', group%mean_dilatation))//driven_by(k))
       end associate
     end do
@@ -104,6 +104,16 @@ contains
         s = s//', temperature '//to_text(scene%groups(g)%temperature_amplitude)//' x ' &
             //scene%multipliers(scene%groups(g)%temperature_multiplier)%name
     end function driven_by
+
+    !> Kind of an integration rule along a side, where it is not Gauss's.
+    pure function rule_of(npoint) result(s)
+      integer, intent(in) :: npoint
+      character(len=:), allocatable :: s
+
+      s = ''
+      if (npoint == -3) s = ' Lobatto'
+      if (npoint < -3) s = ' equidistant'
+    end function rule_of
 
     pure function motion_of(die) result(s)
       integer, intent(in) :: die

@@ -11,17 +11,19 @@ module contact_point
   use scene, only: scene_t
   use sections, only: thickness_at
   use shape_functions, only: line3
+  use state_variables, only: state_variable, state_variable_t, transfer_contact, transfer_recompute
   use vectors, only: length_of
   implicit none
   private
   public :: contact_point_t, meeting_t, side_point, act, penalties, share_to_contact, show_on_axis, side_length
-  public :: dissipated, thinning
-  public :: at_pressure, at_tau, at_penetration, at_status, at_slip, at_augmentation, at_work, at_piece, at_xi
+  public :: area_at, dissipated, flow_stress_of, point_variables, rest, thinning
+  public :: at_pressure, at_tau, at_penetration, at_status, at_slip, at_augmentation, at_work, at_piece, at_xi, &
+            npoint_state
   public :: most_unknowns, no_surface, touching
 
   !> Places in the state of a point.
   integer, parameter :: at_pressure = 1, at_tau = 2, at_penetration = 3, at_status = 4, at_slip = 5, &
-                        at_augmentation = 6, at_work = 7, at_piece = 8, at_xi = 9
+                        at_augmentation = 6, at_work = 7, at_piece = 8, at_xi = 9, npoint_state = 9
   !> Six of a side, six of what it meets, three of the section.
   integer, parameter :: most_unknowns = 15
 
@@ -49,10 +51,44 @@ module contact_point
   !> derivatives of all three; the normal n turns by `turn`, dn = turn t with the tangent t.
   type :: meeting_t
     real(wp) :: d, slip, normal(2)
+    !> Depth that needs no pressure [length].
+    real(wp) :: allowed = 0.0_wp
     real(wp), dimension(most_unknowns) :: dd, dslip, turn
   end type meeting_t
 
 contains
+
+  !> State of a point.
+  pure function point_variables() result(list)
+    type(state_variable_t), allocatable :: list(:)
+
+    allocate (list, source=[state_variable('pressure', 'stress', transfer_contact), &
+                            state_variable('friction', 'stress', transfer_contact), &
+                            state_variable('penetration', 'length', transfer_recompute), &
+                            state_variable('contact_status', '-', transfer_recompute), &
+                            state_variable('slip', 'length', transfer_contact), &
+                            state_variable('augmentation', 'stress', transfer_contact), &
+                            state_variable('friction_work', 'stress*length', transfer_contact), &
+                            state_variable('die_piece', '-', transfer_recompute), &
+                            state_variable('die_xi', '-', transfer_recompute)])
+  end function point_variables
+
+  !> Points without contact: what they have slipped and worn stays.
+  pure subroutine rest(state)
+    real(wp), intent(inout) :: state(:, :)
+
+    state([at_pressure, at_tau, at_status, at_penetration, at_piece, at_xi, at_augmentation], :) = 0
+  end subroutine rest
+
+  !> Flow stress of the body behind a point, the last of its state where its law asks for it; else 0.
+  pure function flow_stress_of(law, state) result(flow_stress)
+    type(law_t), intent(in) :: law
+    real(wp), intent(in) :: state(:)
+    real(wp) :: flow_stress
+
+    flow_stress = 0
+    if (size(law%history) > 0) flow_stress = state(size(state))
+  end function flow_stress_of
 
   !> Position, length, inner normal and thickness of a point of the side, and their derivatives.
   pure subroutine side_point(phi, dphi, section, x, du, nunknown, point)
@@ -87,10 +123,11 @@ contains
   !> thickness. The state of the point goes on from committed to trial.
   !>
   !> When contact begins inside the step only the share d/(d - d_start) of the way counts as slip.
-  pure subroutine act(law, material, penalty, point, meeting, weight, tangent_wanted, committed, trial, q, dq)
+  pure subroutine act(law, material, penalty, flow_stress, point, meeting, weight, tangent_wanted, committed, trial, q, dq)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: penalty(2)
+    real(wp), intent(in) :: flow_stress              !! of the body behind the side [stress]
     type(contact_point_t), intent(in) :: point
     type(meeting_t), intent(in) :: meeting
     real(wp), intent(in) :: weight
@@ -99,23 +136,23 @@ contains
     real(wp), intent(inout) :: trial(:)
     real(wp), intent(out) :: q(2)                    !! [force, per radian when axisymmetric]
     real(wp), intent(out) :: dq(2, most_unknowns)    !! set where the tangent is wanted and there is contact
-    real(wp) :: dslip(most_unknowns), t(2), slip, share, flow_stress, pressure, stress(2), law_tangent(3, 3), area
+    real(wp) :: dslip(most_unknowns), t(2), slip, depth, gap, share, pressure, stress(2), law_tangent(3, 3), area
     real(wp) :: traction(2), dp, dtau
     integer :: status, j
 
     q = 0
     slip = meeting%slip
     dslip = meeting%dslip
-    if (nint(committed(at_status)) == contact_open .and. committed(at_penetration) < 0 .and. meeting%d > 0) then
-      share = meeting%d/(meeting%d - committed(at_penetration))
-      dslip = share*dslip - slip*committed(at_penetration)/(meeting%d - committed(at_penetration))**2*meeting%dd
+    depth = meeting%d - meeting%allowed
+    gap = meeting%allowed - committed(at_penetration)
+    if (nint(committed(at_status)) == contact_open .and. gap > 0 .and. depth > 0) then
+      share = depth/(depth + gap)
+      dslip = share*dslip + slip*gap/(depth + gap)**2*meeting%dd
       slip = share*slip
     end if
 
-    flow_stress = 0
-    if (size(law%history) > 0) flow_stress = committed(size(committed))
     ! nothing moves across the plane: the second tangential component stays at rest
-    call law%slide(material, penalty, committed(at_augmentation), meeting%d, [slip, 0.0_wp], [committed(at_tau), 0.0_wp], &
+    call law%slide(material, penalty, committed(at_augmentation), depth, [slip, 0.0_wp], [committed(at_tau), 0.0_wp], &
                    flow_stress, pressure, stress, law_tangent, status)
     trial(at_pressure) = pressure
     trial(at_tau) = stress(1)
@@ -148,25 +185,34 @@ contains
     work = after(at_tau)*(after(at_slip) - before(at_slip) - (after(at_tau) - before(at_tau))/penalty)
   end function dissipated
 
-  !> Area before the step over the present one, at the points of a side.
-  pure function thinning(xi, section, thickening, x, du) result(share)
-    real(wp), intent(in) :: xi(:)
+  !> Area before the step over the present one, at points of a side.
+  pure function thinning(from, to, section, thickening, x, du) result(share)
+    real(wp), intent(in) :: from(:), to(:)              !! places on the side, before the step and now
     real(wp), intent(in) :: section(3), thickening(3)   !! at the end of the step, and its change in it
     real(wp), intent(in) :: x(2, 3), du(6)              !! nodes at the start of the step, and their motion, x then y
-    real(wp) :: share(size(xi))
-    real(wp) :: y(2, 3), phi(3), dphi(3), thickness
+    real(wp) :: share(size(to))
+    real(wp) :: y(2, 3), area
     integer :: p
 
     y(1, :) = x(1, :) + du(1:3)
     y(2, :) = x(2, :) + du(4:6)
-    do p = 1, size(xi)
-      call line3(xi(p), phi, dphi)
-      share(p) = length_of(matmul(x, dphi))/length_of(matmul(y, dphi))
-      thickness = thickness_at(section, matmul(y, phi))
+    do p = 1, size(to)
+      area = area_at(to(p), section, y)
       ! on the axis there is no area, before or after
-      if (thickness > 0) share(p) = share(p)*thickness_at(section - thickening, matmul(x, phi))/thickness
+      share(p) = 1
+      if (area > 0) share(p) = area_at(from(p), section - thickening, x)/area
     end do
   end function thinning
+
+  !> Area of a side per unit of xi at a place on it: length times thickness.
+  pure function area_at(xi, section, x) result(area)
+    real(wp), intent(in) :: xi, section(3), x(2, 3)
+    real(wp) :: area
+    real(wp) :: phi(3), dphi(3)
+
+    call line3(xi, phi, dphi)
+    area = length_of(matmul(x, dphi))*thickness_at(section, matmul(x, phi))
+  end function area_at
 
   !> Normal and tangential penalty: as given, or such that a pressure of one hundredth of the
   !> body's modulus makes the allowed penetration.

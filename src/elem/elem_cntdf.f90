@@ -18,8 +18,9 @@
 !> the other loses, point by point. Each point is coupled with a few pieces only (pairs): a foot on
 !> another one is told, and the pairs are renewed before anything is made of it.
 module elem_cntdf
-  use contact_point, only: act, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_tau, contact_point_t, &
-                           meeting_t, most_unknowns, no_surface, penalties, share_to_contact, show_on_axis, side_length, side_point
+  use contact_point, only: act, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_tau, at_work, &
+                           contact_point_t, flow_stress_of, meeting_t, most_unknowns, no_surface, penalties, point_variables, &
+                           share_to_contact, show_on_axis, side_length, side_point, thinning
   use die_search, only: box_distance, find_foot, foot_t
   use elem_api, only: elem_t, instant_t, report_t, section_motion
   use elem_cnt2d, only: elem_cnt2d_row
@@ -30,6 +31,8 @@ module elem_cntdf
   use quadrature, only: line_rule
   use scene, only: axisymmetric, generalised_plane_strain, group_t, scene_t
   use shape_functions, only: line3
+  use state_variables, only: state_variable_t
+  use vectors, only: length_of
   implicit none
   private
   public :: elem_cntdf_row
@@ -47,8 +50,22 @@ contains
     row%name = 'CNTDF'
     row%purpose = 'contact of a side with sides of another body'
     row%pilot = .false.
+    row%variables => variables
     row%compute => compute
   end function elem_cntdf_row
+
+  !> That of a point, and the law's: corners of other bodies are asked for at integration points only.
+  pure subroutine variables(law, plane_state, list)
+    type(law_t), intent(in) :: law
+    integer, intent(in) :: plane_state
+    type(state_variable_t), allocatable, intent(out) :: list(:)
+    integer :: k
+
+    allocate (list, source=[point_variables(), law%history])
+    do k = 1, size(list)
+      list(k)%first = k
+    end do
+  end subroutine variables
 
   subroutine compute(scene, group, kinematics, law, instant, first, x, du, committed, trial, force, stiffness, report)
     type(scene_t), intent(in) :: scene
@@ -86,6 +103,8 @@ contains
         if (scene%finite) section = instant%section + section_motion(scene, du(:, e))
         place(1:6) = [1, 2, 3, nnode + 1, nnode + 2, nnode + 3]
         place(13:15) = [2*nnode + 1, 2*nnode + 2, 2*nnode + 3]
+        trial(at_work, :, e) = committed(at_work, :, e)*thinning(xi, xi, section, section_motion(scene, du(:, e)), &
+                                                                x(:, 1:3, e), du(place(1:6), e))
         if (box_distance(die, box_of(x(:, 1:3, e), du(place(1:6), e))) > side) cycle
         do p = 1, size(xi)
           call line3(xi(p), phi, dphi)
@@ -106,7 +125,8 @@ contains
           call line3(foot%xi, psi, dpsi)
           call meet(foot, matmul(x(:, 1:3, e), phi), x(:, at + 1:at + 3, e), du(place(7:12), e), point, meeting, dxi)
           call act(law, scene%materials(group%material), penalties(scene%materials(group%material), group%amplitude, side), &
-                   point, meeting, weight(p), instant%tangent, committed(:, p, e), trial(:, p, e), q, dq)
+                   flow_stress_of(law, committed(:, p, e)), point, meeting, weight(p), instant%tangent, committed(:, p, e), &
+                   trial(:, p, e), q, dq)
           if (nint(committed(at_status, p, e)) /= contact_open) then
             report%jump = max(report%jump, abs(trial(at_penetration, p, e) - committed(at_penetration, p, e))/side)
           end if
@@ -151,8 +171,8 @@ contains
     y(2, :) = x(2, :) + du(4:6)
     first0 = matmul(x, dpsi)
     first = matmul(y, dpsi)
-    axis0 = first0/norm2(first0)
-    axis = first/norm2(first)
+    axis0 = first0/length_of(first0)
+    axis = first/length_of(first)
     n = foot%normal
     t = [-n(2), n(1)]
     meeting%d = foot%d
@@ -164,14 +184,14 @@ contains
     meeting%dd = matmul(n, relative)
     tangential = matmul(t, relative)
     turn_of_axes = 0
-    turn_of_axes(7:9) = -axis(2)*dpsi/norm2(first)
-    turn_of_axes(10:12) = axis(1)*dpsi/norm2(first)
+    turn_of_axes(7:9) = -axis(2)*dpsi/length_of(first)
+    turn_of_axes(10:12) = axis(1)*dpsi/length_of(first)
     ! 1/(1 + kappa d), 0 at a vertex
     still = 1 - foot%turn*foot%d
     if (abs(still) <= at_vertex) still = 0
     meeting%turn = foot%turn*tangential + still*turn_of_axes
 
-    dxi = still*(tangential - foot%d*turn_of_axes)/norm2(first)
+    dxi = still*(tangential - foot%d*turn_of_axes)/length_of(first)
 
     ! the tangent of the fan at a vertex, in axes that turn with the side
     t0 = dot_product(axis, t)*axis0 + cross(axis, t)*[-axis0(2), axis0(1)]
@@ -179,8 +199,8 @@ contains
     gap0 = start - matmul(x, psi)
     meeting%slip = -dot_product(t0, gap0)
     if (abs(still) > 0) then
-      bend0 = cross(first0, x(:, 1) - 2*x(:, 2) + x(:, 3))/norm2(first0)**3
-      meeting%dslip = norm2(first0)*(1 + bend0*dot_product(n0, gap0))*dxi
+      bend0 = cross(first0, x(:, 1) - 2*x(:, 2) + x(:, 3))/length_of(first0)**3
+      meeting%dslip = length_of(first0)*(1 + bend0*dot_product(n0, gap0))*dxi
     else
       meeting%dslip = dot_product(n0, gap0)*(meeting%turn - turn_of_axes)
     end if

@@ -117,8 +117,10 @@ contains
     real(wp), intent(in) :: tangent(:, :, :)                     !! d stress/d h_bar (4, 5, npoint)
     real(wp), intent(in) :: geometric(:, :, :)                   !! s tr h - s h^T as a matrix on h (5, 5, npoint)
     real(wp), intent(inout) :: stiffness(:, :)
-    real(wp) :: t(size(g, 2), size(dv)), theta(size(g, 2), size(dv)), g_bar(5, size(g, 2)), a(5, 5), pressure
-    integer :: p, k, n
+    real(wp), dimension(size(g, 2), size(dv)) :: t, theta
+    real(wp), dimension(size(g, 2)) :: more, row, column
+    real(wp) :: gt(size(g, 2), 5), a(5, 5), q(5), pressure, both
+    integer :: p, j, k, n
 
     n = size(dv)
     t = g(1, :, :) + g(4, :, :) + g(5, :, :)
@@ -129,27 +131,38 @@ contains
       end associate
     end do
     do p = 1, n
-      g_bar = g(:, :, p)
-      g_bar([1, 4, 5], :) = g_bar([1, 4, 5], :) + spread((theta(:, p) - t(:, p))/3, 1, 3)
+      gt = transpose(g(:, :, p))
       a = tangent([1, 3, 3, 2, 4], :, p)
+      if (finite) call add_trace(stress(:, p), a)
+      a = m(p)*a
+      ! G_bar = G + 1 more^T: what the second part adds to G^T a G
+      more = (theta(:, p) - t(:, p))/3
+      row = matmul(gt, matmul(trace_h, a))
+      column = matmul(gt, matmul(a, trace_h))
+      both = dot_product(trace_h, matmul(a, trace_h))
+      pressure = 0
       if (finite) then
-        do k = 1, 5
-          a(:, k) = a(:, k) + stress([1, 3, 3, 2, 4], p)*trace_h(k)
-        end do
+        pressure = m(p)*dot_product(trace_s, stress(:, p))/3
+        a = a + dv(p)*geometric(:, :, p)
+        call add_trace(dv(p)*(dot_product(trace_s, shared(:, p))/3*trace_s - shared(:, p)), a)
       end if
-      stiffness = stiffness + matmul(transpose(g_bar), matmul(m(p)*a, g_bar))
-      if (.not. finite) cycle
-      pressure = dot_product(trace_s, shared(:, p))/3
-      a = geometric(:, :, p)
-      do k = 1, 5
-        a(:, k) = a(:, k) + (pressure*trace_h - shared([1, 3, 3, 2, 4], p))*trace_h(k)
-      end do
-      stiffness = stiffness + matmul(transpose(g(:, :, p)), matmul(dv(p)*a, g(:, :, p)))
-      pressure = dot_product(trace_s, stress(:, p))/3
-      do k = 1, size(t, 1)
-        stiffness(:, k) = stiffness(:, k) - pressure*m(p)*theta(k, p)*theta(:, p)
+      do j = 1, size(gt, 1)
+        q = matmul(a, g(:, j, p))
+        stiffness(:, j) = stiffness(:, j) + q(1)*gt(:, 1) + q(2)*gt(:, 2) + q(3)*gt(:, 3) + q(4)*gt(:, 4) + q(5)*gt(:, 5) &
+                          + (row(j) + both*more(j))*more + more(j)*column - pressure*theta(j, p)*theta(:, p)
       end do
     end do
   end subroutine add_mean_matrix
+
+  !> Add stress (xx, yy, xy, zz) times tr h to a matrix on h.
+  pure subroutine add_trace(stress, a)
+    real(wp), intent(in) :: stress(4)
+    real(wp), intent(inout) :: a(5, 5)
+    integer :: k
+
+    do k = 1, 5
+      a(:, k) = a(:, k) + stress([1, 3, 3, 2, 4])*trace_h(k)
+    end do
+  end subroutine add_trace
 
 end module mean_dilatation

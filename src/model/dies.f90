@@ -10,7 +10,10 @@ module dies
   use vectors, only: length_of
   implicit none
   private
-  public :: die_t, finish_die, is_deformable, place_on_nodes
+  public :: die_t, finish_die, is_deformable, place_on_nodes, present_die
+
+  !> A vertex where the chain turns by less than this sine is no corner: parabolas that follow a curve within a tolerance.
+  real(wp), parameter :: blunt = 0.02_wp
 
   type :: die_t
     character(len=:), allocatable :: name
@@ -23,6 +26,11 @@ module dies
     real(wp), allocatable :: tree(:, :)
     !> The last piece ends where the first one begins: they share a vertex.
     logical :: closed = .false.
+    !> Corners of a rigid die that point to the part, open ends included: the point, and the tangents before and behind it
+    !> (x, y, t1x, t1y, t2x, t2y; ncorner), in the pilot's axes; the piece each belongs to, and the place on it.
+    real(wp), allocatable :: corners(:, :)
+    integer, allocatable :: corner_piece(:)
+    real(wp), allocatable :: corner_xi(:)
     !> Where the pilot stands at the start (x, y, angle).
     real(wp) :: pilot(3) = 0.0_wp
     !> Nodes of the pieces of a deformable die (3, npiece); not allocated for a rigid one.
@@ -54,7 +62,52 @@ contains
     associate (n => size(die%pieces, 3))
       die%closed = n > 1 .and. .not. length_of(die%pieces(:, 3, n) - die%pieces(:, 1, 1)) > 0
     end associate
+    if (.not. is_deformable(die)) call list_corners(die)
   end subroutine finish_die
+
+  !> Vertices where the chain turns right, away from the part. At an open end the body is taken to go down at a right angle.
+  pure subroutine list_corners(die)
+    type(die_t), intent(inout) :: die
+    real(wp) :: list(6, size(die%pieces, 3) + 1), t1(2), t2(2)
+    integer :: piece(size(die%pieces, 3) + 1)
+    integer :: k, n, npiece
+
+    npiece = size(die%pieces, 3)
+    n = 0
+    t1 = 0
+    do k = 0, npiece
+      if (k == 0 .and. die%closed) cycle
+      if (k > 0) t1 = end_tangent(die%pieces(:, :, k), 1)
+      if (k < npiece) then
+        t2 = end_tangent(die%pieces(:, :, k + 1), -1)
+      else if (die%closed) then
+        t2 = end_tangent(die%pieces(:, :, 1), -1)
+      else
+        t2 = [t1(2), -t1(1)]
+      end if
+      if (k == 0) t1 = [-t2(2), t2(1)]
+      if (t1(1)*t2(2) - t1(2)*t2(1) > -blunt .and. dot_product(t1, t2) > 0) cycle
+      if (t1(1)*t2(2) - t1(2)*t2(1) > 0) cycle
+      n = n + 1
+      piece(n) = k
+      list(1:2, n) = die%pieces(:, 1, max(k, 1))
+      if (k > 0) list(1:2, n) = die%pieces(:, 3, k)
+      list(3:6, n) = [t1, t2]
+    end do
+    die%corners = list(:, :n)
+    die%corner_piece = max(piece(:n), 1)
+    die%corner_xi = merge(-1.0_wp, 1.0_wp, piece(:n) == 0)
+  end subroutine list_corners
+
+  !> Unit tangent at the start (-1) or end (1) of a piece.
+  pure function end_tangent(piece, xi) result(t)
+    real(wp), intent(in) :: piece(2, 3)
+    integer, intent(in) :: xi
+    real(wp) :: t(2)
+
+    t = (xi - 0.5_wp)*piece(:, 1) - 2*xi*piece(:, 2) + (xi + 0.5_wp)*piece(:, 3)
+    t = t/length_of(t)
+  end function end_tangent
 
   !> Inner nodes of the tree over the boxes, as many as make its lowest row full; those over no piece stay empty.
   pure subroutine grow_tree(boxes, tree)
@@ -118,5 +171,15 @@ contains
     end do
     call finish_die(die)
   end subroutine place_on_nodes
+
+  !> The die as its nodes now are; a rigid one is as it was: its pilot moves it.
+  pure function present_die(die, coordinates) result(now)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: coordinates(:, :)   !! of all nodes (2, nnode) [length]
+    type(die_t) :: now
+
+    now = die
+    if (is_deformable(now)) call place_on_nodes(coordinates, now)
+  end function present_die
 
 end module dies

@@ -30,7 +30,7 @@ module scene
     integer :: elem_id = 0
     !> Material (place in the scene's list); 0 for elements without a law.
     integer :: material = 0
-    !> Integration points of an element (negative: Lobatto).
+    !> Integration points of an element (negative: at equal distances).
     integer :: npoint = 0
     !> The points of a solid element share few values of the change of volume (mean_dilatation).
     logical :: mean_dilatation = .false.

@@ -40,6 +40,11 @@ module solution
     !> What the scene has borne so far, worst of all accepted steps.
     real(wp) :: worst_linear_residual = 0.0_wp, worst_penetration = 0.0_wp, worst_penetration_ratio = 0.0_wp
     real(wp) :: least_dissipation = 0.0_wp
+    !> Largest share of a motion that the points of an element did not see (spurious_mode), and the element.
+    real(wp) :: worst_spurious = 0.0_wp
+    integer :: spurious_group = 0, spurious_element = 0
+    !> Largest depth of a side in a die anywhere along it, and over what the side allows.
+    real(wp) :: worst_sample = 0.0_wp, worst_sample_ratio = 0.0_wp
     !> Forces below this are round-off (set at the first evaluation of a mesh).
     real(wp) :: force_floor = 0.0_wp
     !> Forces from outside at the last accepted instant: reactions, nodal forces, pressures, on

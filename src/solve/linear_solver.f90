@@ -1,6 +1,6 @@
 !> Direct solution of the linear system: analysis once per mesh, factorisation per matrix, residual of every solve checked
 !> and refined. Factors are made without pivoting, by all threads; a matrix for which these prove too poor, and those
-!> after it, get MUMPS with pivoting.
+!> after it in the step, get MUMPS with pivoting.
 module linear_solver
   use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
@@ -11,7 +11,7 @@ module linear_solver
   use vectors, only: length_of
   implicit none
   private
-  public :: linear_solver_t, analyse, factorise, solve_linear, release
+  public :: linear_solver_t, analyse, factorise, solve_linear, release, try_without_pivoting
 
   !> Backward error of a solve that is refined; and what is accepted at last.
   real(wp), parameter, public :: refine_above = 1.0e-14_wp
@@ -71,6 +71,13 @@ contains
     end do
   end subroutine start_rows
 
+  !> At the start of a step: what earlier steps needed does not count, or a run taken up again would go another way.
+  pure subroutine try_without_pivoting(solver)
+    type(linear_solver_t), intent(inout) :: solver
+
+    solver%pivoting = .false.
+  end subroutine try_without_pivoting
+
   !> Factorise the matrix with these nonzeros. A singular matrix answers exit_no_convergence: the step is cut.
   subroutine factorise(solver, values, error)
     type(linear_solver_t), intent(inout) :: solver
@@ -86,7 +93,7 @@ contains
   end subroutine factorise
 
   !> Solve for one right-hand side with the present factors, refining while the residual asks for it.
-  !> Factors made without pivoting that prove too poor are made again with it, once and for all.
+  !> Factors made without pivoting that prove too poor are made again with it, for the rest of the step.
   subroutine solve_linear(solver, pattern, rhs, x, error)
     type(linear_solver_t), intent(inout) :: solver
     type(pattern_t), intent(in) :: pattern
@@ -99,7 +106,7 @@ contains
     if (allocated(error)) return
     if (.not. solver%pivoting .and. .not. (solver%regular .and. solver%residual <= linear_tolerance)) then
       solver%pivoting = .true.
-      call mumps_analyse(solver%mumps, pattern, solver%position, error)
+      if (.not. solver%mumps%started) call mumps_analyse(solver%mumps, pattern, solver%position, error)
       if (.not. allocated(error)) call mumps_factorise(solver%mumps, solver%values, error)
       if (.not. allocated(error)) call refine(solver, pattern, rhs, x, error)
     end if

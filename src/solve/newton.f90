@@ -10,6 +10,7 @@ module newton
   use equations, only: equations_t, evaluate, external_forces, solve_correction
   use errors, only: error_t, exit_no_convergence
   use kinds, only: wp
+  use linear_solver, only: try_without_pivoting
   use line_search, only: search_along, short_share
   use predictor, only: predict
   use scene, only: scene_t
@@ -71,6 +72,7 @@ contains
     integer :: first
 
     allocate (outcome%history(0), outcome%du(equations%dofs%ndof))
+    call try_without_pivoting(equations%solver)
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     call predict(scene, equations, solution, dt, outcome%du, missing, report)
     if (report%status /= block_done) then

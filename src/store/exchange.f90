@@ -4,6 +4,7 @@
 !> names, units and transfer kinds of its variables, taken from the laws and elements that declare
 !> them: who reads it needs to know no law.
 module exchange
+  use contact_ends, only: contact_end_t
   use dies, only: is_deformable
   use errors, only: error_t, exit_input, fail
   use hash, only: sha256
@@ -25,10 +26,11 @@ module exchange
 contains
 
   !> Write the whole state of a run, atomically; the one before is kept beside it.
-  subroutine write_checkpoint(path, deck_path, deck_text, scene, solution, error)
+  subroutine write_checkpoint(path, deck_path, deck_text, scene, solution, ends, error)
     character(len=*), intent(in) :: path, deck_path, deck_text
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
+    type(contact_end_t), intent(in) :: ends(:)   !! where contact begins and ends now
     type(error_t), allocatable, intent(out) :: error
     type(hdf5_file_t) :: file
 
@@ -43,6 +45,7 @@ contains
     call write_dies(file, scene, solution)
     call write_progress(file, solution)
     call write_states(file, scene, solution)
+    call write_ends(file, ends)
     call commit_atomic(file, error, keep_previous=.true.)
   end subroutine write_checkpoint
 
@@ -91,7 +94,10 @@ contains
     call file%write('progress/initial_volume', solution%initial_volume)
     call file%write('progress/force_floor', solution%force_floor)
     call file%write('progress/worst', [solution%worst_linear_residual, solution%worst_penetration, &
-                                      solution%worst_penetration_ratio, solution%least_dissipation])
+                                      solution%worst_penetration_ratio, solution%least_dissipation, &
+                                      solution%worst_sample, solution%worst_sample_ratio])
+    call file%write('progress/spurious_mode', [solution%worst_spurious, real(solution%spurious_group, wp), &
+                                              real(solution%spurious_element, wp)])
     call file%write('section/position', solution%section)
     call file%write('section/last_increment', solution%last_section_increment)
     call file%write('section/applied', solution%section_applied)
@@ -135,6 +141,19 @@ contains
       end associate
     end do
   end subroutine write_states
+
+  !> Where contact begins and ends, for the remesher: one entry each. The solver does not read them back.
+  subroutine write_ends(file, ends)
+    type(hdf5_file_t), intent(inout) :: file
+    type(contact_end_t), intent(in) :: ends(:)
+
+    call file%write('contact_ends/begins', merge(1, 0, ends%begins))
+    call file%write('contact_ends/group', ends%group)
+    call file%write('contact_ends/side', ends%side)
+    call file%write('contact_ends/place', ends%place)
+    call file%write('contact_ends/die_piece', ends%piece)
+    call file%write('contact_ends/die_xi', ends%xi)
+  end subroutine write_ends
 
   pure function group_place(g) result(place)
     integer, intent(in) :: g
@@ -190,6 +209,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(hdf5_file_t) :: file
     real(wp), allocatable :: worst(:)
+    real(wp) :: spurious(3)
 
     call open_checkpoint(path, file, error)
     if (allocated(error)) return
@@ -203,15 +223,22 @@ contains
     call file%read('progress/initial_volume', solution%initial_volume)
     call file%read('progress/force_floor', solution%force_floor)
     call file%read('progress/worst', worst)
-    if (size(worst) == 4) then
+    if (size(worst) == 6) then
       solution%worst_linear_residual = worst(1)
       solution%worst_penetration = worst(2)
       solution%worst_penetration_ratio = worst(3)
       solution%least_dissipation = worst(4)
+      solution%worst_sample = worst(5)
+      solution%worst_sample_ratio = worst(6)
     end if
     call read_matrix(file, 'nodes/displacement', solution%displacement)
     call read_matrix(file, 'nodes/last_increment', solution%last_increment)
     call read_matrix(file, 'nodes/applied', solution%applied)
+    spurious = 0
+    call read_triple(file, 'progress/spurious_mode', spurious)
+    solution%worst_spurious = spurious(1)
+    solution%spurious_group = nint(spurious(2))
+    solution%spurious_element = nint(spurious(3))
     call read_triple(file, 'section/position', solution%section)
     call read_triple(file, 'section/last_increment', solution%last_section_increment)
     call read_triple(file, 'section/applied', solution%section_applied)

@@ -6,14 +6,15 @@ module element_cases
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use kinematics_registry, only: list_kinematics
-  use law_api, only: law_t
+  use law_api, only: law_of_material, law_t
   use law_cases, only: elastic_material, law_row, plastic_material
   use materials, only: material_t
   use scene, only: axisymmetric, scene_t
   use state_variables, only: total_components
   implicit none
   private
-  public :: case_t, solid_case, contact_case, pressure_case, body_force_case, evaluate, accept, difference_matrix, totals_of
+  public :: case_t, solid_case, material_case, contact_case, pressure_case, body_force_case, evaluate, accept
+  public :: difference_matrix, totals_of
   public :: die_of, segment, shape_of_test, elem_row, kinematics_row
   public :: step_of_differences, tolerance_of_differences
 
@@ -89,7 +90,7 @@ contains
     type(material_t), intent(in) :: material
     integer :: k
 
-    case%law = law_row(material%law)
+    case%law = law_of_material(law_row(material%law), material)
     allocate (case%scene%materials(1), source=[material])
     associate (group => case%scene%groups(1))
       group%material = 1
@@ -108,13 +109,24 @@ contains
     real(wp), intent(in) :: x(2, 8)
     type(case_t) :: case
 
-    call begin_case('PL8LS', kinematics, plane_state, npoint, x, case)
     if (hardening == 0) then
-      call add_law(case, elastic_material())
+      case = material_case(plane_state, kinematics, elastic_material(), npoint, x)
     else
-      call add_law(case, plastic_material(hardening))
+      case = material_case(plane_state, kinematics, plastic_material(hardening), npoint, x)
     end if
   end function solid_case
+
+  !> PL8LS of any material.
+  function material_case(plane_state, kinematics, material, npoint, x) result(case)
+    integer, intent(in) :: plane_state, npoint
+    character(len=*), intent(in) :: kinematics
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: x(2, 8)
+    type(case_t) :: case
+
+    call begin_case('PL8LS', kinematics, plane_state, npoint, x, case)
+    call add_law(case, material)
+  end function material_case
 
   !> CNT2D on a die whose pilot stands at `pilot`; the die is given with its pilot at (0, 0, 0).
   function contact_case(plane_state, material, npoint, x, die, pilot) result(case)

@@ -19,7 +19,7 @@ EXACT, CLOSE = 1.0e-10, 1.0e-6
 NORMS = "NORMS FORCE 1.E-11 DISPL 1.E-10\n"
 # Many iterations wanted: steps stay the longest, whatever round-off does to the count of iterations.
 STEADY = "STRAT 0.25 1.E-4 0.25 20 3"
-RULES = (2, 3, 4, -3)
+RULES = (2, 3, 4, -3, -5, -9, -17)
 
 
 def pressed(state, kinem, nu, rule, npoint=4, drive=0.01, law=f"AKP {num(AKP)}"):

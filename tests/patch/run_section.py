@@ -6,9 +6,10 @@ usage: run_section.py [-v] [-k]
 Patches as in run_patch.py: u = H x on the boundary, in plane stress with the strain across that makes sigma_zz vanish (Hooke:
 e_zz = -nu/(1-nu) (e_xx + e_yy), logarithmic strains where large; after yielding by bisection), in generalised plane strain with a
 strain E of the section that is imposed, or free (then sigma_zz = 0: plane stress again).
-Bars: Hencky's law in tension, tau = E ln(lambda), lateral ln = -nu ln(lambda), force tau A0/lambda; after yielding ln(lambda) = tau/E + p,
-tau = RE + H p. The beam bends by moments: sigma_zz = E (e + KX x + KY y), u_x = -nu (e x + KX (x^2 - y^2)/2 + KY x y), and so on:
-quadratic, so met exactly. The cylinder is Lame's with free ends: u_r of plane stress, e_z = -2 nu p a^2/(E (b^2 - a^2)).
+Bars: Hencky's law in tension, tau = E ln(lambda), lateral ln = -nu ln(lambda), force tau A0/lambda; after yielding ln(lambda) =
+tau/E + p, tau = RE + H p. The beam bends by moments: sigma_zz = E (e + KX x + KY y), u_x = -nu (e x + KX (x^2 - y^2)/2 + KY x y),
+and so on: quadratic, so met exactly; beyond yield it gives the same answer in mm and in m. The cylinder is Lame's with free ends:
+u_r of plane stress, e_z = -2 nu p a^2/(E (b^2 - a^2)).
 """
 import sys
 
@@ -215,12 +216,33 @@ def cylinder(checks):
         checks.small(abs(run.history["section_force"][-1])/(p*a*a), 1e-9, "cylinder: no force on the ends")
 
 
+def units(checks):
+    """A bar bent and pulled beyond yield in mm and N, and in m and N: the same iterations and the same answer."""
+    runs = []
+    for name, metre in (("mm", 1000.0), ("m", 1.0)):
+        young, sy = 200e9/metre**2, 300e6/metre**2
+        text = (f"TITLE {name}\nSTATE GPLSTN {num(0.01*metre)}\nKINEM LOG\nBLOCK p PL8LS 4 m\n"
+                f"   {num(*(metre*v for v in (-0.01, 0, 0.01, 0, 0.01, 0.005, -0.01, 0.005)))}\n   6 1. 2 1.\nLAW m EPLA\n   {num(young, 0.3)}\n"
+                f"   LINEAR {num(sy, 20*sy)}\nSECTN E FORCE {num(15e3)} t\nSECTN KX FORCE {num(120*metre)} t\nSECTN KY HELD\n"
+                "FIXED p 1 Y\nFIXED POINT 0. 0. X\nLIC t\n   0. 0.   1. 1.\nSTRAT 0.1 1.E-4 0.1 4 3\nEND\n")
+        run = Run(checks, f"units-{name}", text)
+        if not run.ok:
+            return
+        runs.append((run.history, metre))
+    (one, a), (two, b) = runs
+    checks.that(list(one["iterations"]) == list(two["iterations"]), "units: the same iterations", (one["iterations"], two["iterations"]))
+    checks.that(one["plastic_work"][-1] > 0.1*one["elastic_energy"][-1], "units: the bar yields", one["plastic_work"])
+    for name, power in (("section_strain", 0), ("section_curvature_x", -1), ("section_moment_y", 1), ("plastic_work", 1)):
+        close(checks, one[name][-1]/(two[name][-1]*(a/b)**power), 1.0, f"units: {name}", 1e-9)
+
+
 def main():
     checks = Checks()
     patches(checks)
     bars(checks)
     beams(checks)
     cylinder(checks)
+    units(checks)
     checks.end()
 
 

@@ -136,6 +136,7 @@ def main():
     tight(checks, "tight-upsetting", deck_text(UPSETTING), 0.95)
     tight(checks, "tight-gluing", deck_text(UPSETTING), 0.95, ["-p", "travel=4"])
     tight(checks, "tight-sliding", SLIDING, 0.95)
+    tight(checks, "tight-jaumann", SLIDING.replace("KINEM  LOG", "KINEM  JAUMANN"), 0.95)
     checks.end()
 
 

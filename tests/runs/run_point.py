@@ -21,15 +21,24 @@ KINEM  LOG
 LAW    steel EPLA
    200000. 0.3
    LINEAR 300. 1000.
-PATH   steel T 20.
+PATH   steel
    1. 10   E 0.1  S 0.  E 0.  S 0.
-   2. 10   S 0.   S 0.  S 50. S 0.  T 100.
+   2. 10   S 0.   S 0.  S 50. S 0.
+END
+"""
+WARM = """TITLE  Warm
+KINEM  SMALL
+LAW    bar ELATH
+   200000. 0.3 1.E-5
+PATH   bar T 20.
+   1. 10   S 0.   S 0.  S 0.  S 0.
+   2. 10   S 0.   E 0.  S 0.  S 0.  T 100.
 END
 """
 
 # What is changed in the base, and what the error must say, where.
 REFUSED = [
-    ("PATH   steel T 20.", "PATH   steal T 20.", 6, "nearest: 'steel'"),
+    ("PATH   steel", "PATH   steal", 6, "nearest: 'steel'"),
     ("   1. 10   E 0.1", "   0. 10   E 0.1", 7, "a time later than the one before"),
     ("   2. 10   S 0. ", "   1. 10   S 0. ", 8, "a time later than the one before"),
     ("   1. 10   E 0.1", "   1. 0    E 0.1", 7, "the number of steps"),
@@ -37,13 +46,14 @@ REFUSED = [
     ("E 0.1  S 0.", "E 0.1  X 0.", 7, "E (strain) or S (stress) for yy"),
     ("E 0.1  S 0.", "0.1  S 0.", 7, "E (strain) or S (stress) for xx"),
     ("E 0.  S 0.\n", "E 0.\n", 7, "E (strain) or S (stress) for zz"),
-    ("PATH   steel T 20.", "PATH   steel", 8, "wants one at the start"),
-    ("PATH   steel T 20.", "PATH   steel T", 6, "the temperature at the start"),
-    ("S 0.  T 100.", "S 0.  T 100. 3.", 8, "the end of the line"),
+    ("PATH   steel", "PATH   steel T", 6, "the temperature at the start"),
+    ("PATH   steel", "PATH   steel T 20.", 6, "does not depend on the temperature"),
+    ("S 50. S 0.", "S 50. S 0. T 100.", 8, "wants one at the start"),
+    ("S 50. S 0.", "S 50. S 0. 3.", 8, "T and a temperature, or the end of the line"),
     ("KINEM  LOG", "KINEM  HENCKY", 2, "'JAUMANN'"),
     ("KINEM  LOG", "STATE  PLSTN\nKINEM  LOG", 2, "there is no such card"),
     ("LAW    steel EPLA\n   200000. 0.3\n   LINEAR 300. 1000.", "LAW    steel COUL2D\n   PHI 0.1", 5, "expected one for solids"),
-    ("PATH   steel T 20.", "LAW    other ELA\n   1. 0.\nPATH   steel T 20.", 6, "defined and never used"),
+    ("PATH   steel", "LAW    other ELA\n   1. 0.\nPATH   steel", 6, "defined and never used"),
     ("END\n", "PATH   steel\n   1. 1  E 0. E 0. E 0. E 0.\nEND\n", 9, "given twice"),
 ]
 
@@ -148,11 +158,20 @@ def there_and_back(checks):
 
 
 def temperatures(checks):
-    """Temperatures are linear between rows, and stay where a row has none."""
-    path = follow(checks, "warm", write(checks.path("warm.point"), BASE))
-    if path:
-        checks.that(path["temperature"][:11] == [20.0]*11 and path["temperature"][-1] == 100.0, "temperatures of rows", path["temperature"])
-        near(checks, path["temperature"][15], 60.0, 60.0, "temperature between rows", 1e-14)
+    """Temperatures are linear between rows, and stay where a row has none; a bar held along y answers by -E alpha dT."""
+    path = follow(checks, "warm", write(checks.path("warm.point"), WARM))
+    if not path:
+        return
+    checks.that(path["temperature"][:11] == [20.0]*11 and path["temperature"][-1] == 100.0, "temperatures of rows", path["temperature"])
+    for k in range(11):
+        near(checks, path["temperature"][10 + k], 20.0 + 8.0*k, 100.0, f"temperature {k}", 1e-14)
+        near(checks, path["stress_yy"][10 + k], -200000.0*1.0e-5*8.0*k, 160.0, f"held bar, step {k}: stress")
+        near(checks, path["strain_xx"][10 + k], 1.0e-5*8.0*k*1.3, 1e-3, f"held bar, step {k}: strain across")
+    for old, new, line, phrase in (("PATH   bar T 20.", "PATH   bar", 5, "depends on the temperature"),
+                                   ("T 100.", "T 100. 3.", 7, "the end of the line")):
+        deck = write(checks.path("cold.point"), WARM.replace(old, new))
+        result = run(["--point", deck])
+        checks.that(result.returncode == INPUT and f"{deck}:{line}:" in result.stderr and phrase in result.stderr, f"'{new}': refused", said(result))
 
 
 def refusals(checks):
@@ -186,14 +205,14 @@ def failures(checks):
 
 def words(checks):
     """--check runs nothing; the screen names the point, ends of rows and the table; titles have units."""
-    deck = checks.path("warm.point")
+    deck = write(checks.path("base.point"), BASE)
     result = run(["--point", deck, "--check", "--out", checks.path("checked")])
     checks.that(result.returncode == DONE and "20 steps until time 2" in result.stdout, "--check: tells the path", said(result))
     checks.that(not os.path.exists(checks.path("checked")), "--check: runs nothing")
     result = run(["--point", deck, "--out", checks.path("told")])
     lines = result.stdout.splitlines()
     checks.that(result.returncode == DONE and lines[0] == "Base" and lines[-1].startswith("done: 20 steps") and len(lines) == 7, "the screen", lines)
-    titles = table(checks.path("told"), "warm")[1]
+    titles = table(checks.path("told"), "base")[1]
     checks.that(all(title.endswith("]") for title in titles) and "stress_xx [stress]" in titles and "plastic_work [stress]" in titles,
                 "titles have units", titles)
 

@@ -46,7 +46,7 @@ GLUED = {"end": "billet 3 upper 2 stick", "rough": "PENETR 1.E-3   PHI 0.5   AUG
          "more": ""}
 SLIDING = {"end": "billet 3 upper 2 rough", "rough": "AKP {P:60000}   AKTAU {P:6000}   PHI 0.2   PBOUE {S:2}   "
            "TAUMAX {S:120}", "hardening": "VOCE {S:300} {S:250} 6. {S:80}",
-           "more": "PRES2D billet 2 2 {S:30} squeeze\nLIC    squeeze\n   0. 0.   {T:1} 1.\n"}
+           "more": "PRES2D billet 2 2 {S:30} squeeze\nBFORC  billet Y {P:-0.4} squeeze\nCENTR  billet {D:8E-9} {W:1E4} squeeze\nLIC    squeeze\n   0. 0.   {T:1} 1.\n"}
 
 
 class Scaled:
@@ -62,7 +62,8 @@ class Scaled:
 def scaled_deck(name, scene, nx, ny):
     """The deck in a system of units."""
     length, stress, time = UNITS[name]
-    units = {"L": Scaled(length), "S": Scaled(stress), "T": Scaled(time), "P": Scaled(stress / length)}
+    units = {"L": Scaled(length), "S": Scaled(stress), "T": Scaled(time), "P": Scaled(stress / length),
+             "W": Scaled(1 / time), "D": Scaled(stress * time**2 / length**2)}
     parts = {key: value.format(**units) for key, value in scene.items()}
     text = DECK.format(name=name, stick=STICK, nx=nx, ny=ny, **units, **parts)
     # A law that is not used is refused.

@@ -9,8 +9,9 @@ from .reader import Run
 from .tables import number
 from .words import brief
 
-# Above these the page warns: shares of the work and of the volume, and what a sound linear solution leaves.
-ENERGY_IMBALANCE, VOLUME_DRIFT, LINEAR_RESIDUAL = 0.02, 0.01, 1e-10
+# Above these the page warns: shares of the work and of the volume, what a sound linear solution leaves, and the share of an
+# element's strain that its points do not see.
+ENERGY_IMBALANCE, VOLUME_DRIFT, LINEAR_RESIDUAL, SPURIOUS_MODE = 0.02, 0.01, 1e-10, 0.9
 # Signs of the page that not every terminal has.
 PLAIN = {0x2212: "-", 0x202F: None, 0x221E: "infinite", 0x2013: "-"}
 
@@ -51,13 +52,15 @@ def checks(run: Run) -> List[Check]:
     within("volume_drift", "volume drift", VOLUME_DRIFT, percent, "look for large elastic volume changes or distorted elements")
     within("worst_linear_residual", "worst linear residual", LINEAR_RESIDUAL, lambda value: brief(value, 2),
            "the equations are badly scaled or nearly singular: look at the supports")
+    within("spurious_mode", "strain unseen by the points of an element", SPURIOUS_MODE, percent,
+           "take PL8LS with 9 points and MEAN, which has no such motion")
     if "least_dissipation" in given:
         slack = 1e-12 * max(abs(number(run.summary["energy"].get("external_work", 0))), 1e-300)
         good = values["least_dissipation"] >= -slack
         result.append(Check("least friction work of a step", brief(values["least_dissipation"], 3), "not negative", good,
                             "" if good else "friction gave energy back: report it with the deck"))
     known = {"max_penetration", "allowed_penetration", "energy_imbalance", "volume_drift", "worst_linear_residual",
-             "least_dissipation"}
+             "least_dissipation", "spurious_mode"}
     for name in given:
         if name not in known:
             result.append(Check(name.replace("_", " "), brief(values[name], 4), "–", None))

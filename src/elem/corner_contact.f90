@@ -1,0 +1,139 @@
+!> Corners of a die between the integration points of a side as points of contact of their own.
+!>
+!> The deepest corner in the stretch between two points (side_corners) acts there with the length of
+!> the stretch as its weight, on what is deeper than half the allowed penetration, where one is given:
+!> a side that lies on the die by a corner has its points for that. No corner pulls, whatever the law.
+module corner_contact
+  use contact_point, only: at_augmentation, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, most_unknowns, &
+                           no_surface, npoint_state, share_to_contact, thinning
+  use dies, only: die_t
+  use elem_api, only: report_t
+  use kinds, only: wp
+  use law_api, only: contact_open, law_t
+  use materials, only: material_t
+  use rigid_contact, only: drift_t, ndof, outer, place_point, press, side_t, turned
+  use shape_functions, only: line3
+  use side_corners, only: corner_t, deepest_corner, foot_at_corner
+  implicit none
+  private
+  public :: press_corners, stretch_before, at_place
+
+  !> Place on the side of a corner, after the state of the point and that of the corner.
+  integer, parameter :: at_place = 2*npoint_state + 1
+  !> A corner acts on what is deeper than this share of the allowed penetration.
+  real(wp), parameter :: corner_share = 0.5_wp
+
+contains
+
+  !> Contact of a side with the corners of a die. States are of all points of the side (nstate, npoint).
+  pure subroutine press_corners(die, law, material, axisym, side, xi, flow_stress, committed, trial, force, stiffness, report)
+    type(die_t), intent(in) :: die
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    logical, intent(in) :: axisym
+    type(side_t), intent(in) :: side
+    real(wp), intent(in) :: xi(:), flow_stress(:)
+    real(wp), intent(in) :: committed(:, :)
+    real(wp), intent(inout) :: trial(:, :), force(ndof), stiffness(ndof, ndof)
+    type(report_t), intent(inout) :: report
+    type(corner_t) :: corner
+    real(wp) :: nodes(2, 3), from, to, worn(1)
+    integer :: p, k
+
+    if (size(die%corners, 2) == 0 .or. .not. material%values(1) > 0) return
+    do k = 1, 3
+      nodes(:, k) = turned([side%x(1, k) + side%du(k), side%x(2, k) + side%du(k + 3)] - side%pilot(1:2, 2), -side%pilot(3, 2))
+    end do
+    do p = 1, size(xi)
+      call stretch_before(xi, p, from, to)
+      if (.not. to > from) cycle
+      call deepest_corner(die, nodes, from, to, side%length, corner)
+      if (.not. corner%found) cycle
+      trial(at_place, p) = corner%place
+      associate (before => committed(npoint_state + 1:2*npoint_state, p), now => trial(npoint_state + 1:2*npoint_state, p))
+        worn = thinning(committed([at_place], p), [corner%place], side%section, side%thickening, side%x, side%du(1:6))
+        now(at_work) = before(at_work)*worn(1)
+        call corner_at(law, material, axisym, side, corner, to - from, flow_stress(p), before, now, force, stiffness)
+        if (nint(before(at_status)) /= contact_open) then
+          report%jump = max(report%jump, abs(now(at_penetration) - before(at_penetration))/side%length)
+        end if
+        report%event = min(report%event, share_to_contact(before, now, side%length))
+      end associate
+    end do
+  end subroutine press_corners
+
+  !> Contact at one corner: state, forces, matrix.
+  pure subroutine corner_at(law, material, axisym, side, corner, weight, flow_stress, committed, trial, force, stiffness)
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    logical, intent(in) :: axisym
+    type(side_t), intent(in) :: side
+    type(corner_t), intent(in) :: corner
+    real(wp), intent(in) :: weight, flow_stress, committed(:)
+    real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
+    type(contact_point_t) :: point
+    type(drift_t) :: drift
+    real(wp) :: allowed
+
+    call place_point(side, corner%place, point)
+    if (axisym .and. point%x(1) <= no_surface*side%length) return
+    allowed = corner_share*material%values(1)*side%length
+    if (.not. committed(at_augmentation) + side%penalty(1)*(corner%d - allowed) > 0) then
+      ! its gap is known
+      trial([at_penetration, at_piece, at_xi]) = [corner%d, real(corner%piece, wp), corner%xi]
+      return
+    end if
+    call follow_corner(side, corner, point, drift)
+    call press(law, material, side, corner%place, point, foot_at_corner(corner), allowed, weight, flow_stress, committed, &
+               trial, force, stiffness, drift)
+  end subroutine corner_at
+
+  !> The place of a corner on the side moves with nodes and pilot, and the point with it: from (V - y).y' = 0,
+  !> ((V - y).y'' - y'.y') dxi = -(dV - dy).y' - (V - y).dy'.
+  pure subroutine follow_corner(side, corner, point, drift)
+    type(side_t), intent(in) :: side
+    type(corner_t), intent(in) :: corner
+    type(contact_point_t), intent(inout) :: point
+    type(drift_t), intent(out) :: drift
+    real(wp) :: phi(3), dphi(3), arm(2), way(2), bend(2), dv(2, ndof), dtangent(2, ndof), dxi(most_unknowns)
+    real(wp), parameter :: second(3) = [1.0_wp, -2.0_wp, 1.0_wp]
+    integer :: j
+
+    call line3(corner%place, phi, dphi)
+    arm = turned(corner%vertex, side%pilot(3, 2))
+    way = side%pilot(1:2, 2) + arm - point%x
+    bend = matmul(side%x, second) + [dot_product(second, side%du(1:3)), dot_product(second, side%du(4:6))]
+    dv = 0
+    dv(1, 7) = 1
+    dv(2, 8) = 1
+    dv(:, 9) = [-arm(2), arm(1)]
+    dtangent = 0
+    dtangent(1, 1:3) = dphi
+    dtangent(2, 4:6) = dphi
+    drift%dxi = (matmul(point%tangent, dv - point%dx(:, :ndof)) + matmul(way, dtangent)) &
+                /(point%length**2 - dot_product(way, bend))
+    dxi = 0
+    dxi(:ndof) = drift%dxi
+    point%dx(:, :ndof) = point%dx(:, :ndof) + outer(point%tangent, drift%dxi)
+    point%dlength = point%dlength + dot_product(point%tangent, bend)/point%length*dxi
+    point%dthickness = point%dthickness + dot_product(side%section(2:3), point%tangent)*dxi
+    drift%spin(9) = 1
+    if (.not. corner%own) return
+    do j = 1, ndof
+      drift%spin(j) = dot_product(point%e_r, dtangent(:, j) + bend*drift%dxi(j))/point%length
+    end do
+  end subroutine follow_corner
+
+  !> The stretch of the side between a point and the one before; the last one goes on to the end of the side.
+  pure subroutine stretch_before(xi, p, from, to)
+    real(wp), intent(in) :: xi(:)
+    integer, intent(in) :: p
+    real(wp), intent(out) :: from, to
+
+    from = -1
+    if (p > 1) from = xi(p - 1)
+    to = xi(p)
+    if (p == size(xi)) to = 1
+  end subroutine stretch_before
+
+end module corner_contact

@@ -1,0 +1,164 @@
+!> A point of a side against a rigid die: how the two meet, and where the force between them goes.
+!>
+!> The slip of a step is the way of the part's point relative to the die, taken in the axes of the
+!> pilot, along the die's tangent: a rigid motion of part and die together makes none. The force acts
+!> on the nodes of the side by their shape functions, and on the pilot with its moment.
+!>
+!> A point may be one that moves along its side as that moves, as the place of a corner does: drift_t.
+module rigid_contact
+  use contact_point, only: act, at_penetration, at_piece, at_status, at_xi, contact_point_t, meeting_t, most_unknowns, side_point
+  use die_search, only: foot_t
+  use kinds, only: wp
+  use law_api, only: contact_open, law_t
+  use materials, only: material_t
+  use shape_functions, only: line3
+  implicit none
+  private
+  public :: side_t, drift_t, place_point, press, turned, outer
+  public :: ndof
+
+  !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle, section; the last three are
+  !> there in generalised plane strain only.
+  integer, parameter :: ndof = 12
+
+  !> A side in a step.
+  type :: side_t
+    !> Nodes at the start of the step [length], and motion of all local unknowns.
+    real(wp) :: x(2, 3) = 0.0_wp, du(ndof) = 0.0_wp
+    !> Pilot (x, y, angle) at the start of the step and at its end.
+    real(wp) :: pilot(3, 2) = 0.0_wp
+    !> Section at the end of the step (sections), and its change in the step.
+    real(wp) :: section(3) = 0.0_wp, thickening(3) = 0.0_wp
+    !> Chord in the mesh as it began: how far the side looks [length].
+    real(wp) :: length = 0.0_wp
+    !> Normal and tangential penalty [stress/length].
+    real(wp) :: penalty(2) = 0.0_wp
+    !> Matrices are wanted.
+    logical :: tangent = .true.
+  end type side_t
+
+  !> Derivatives of a point's place on the side, and of the angle by which the normal of depth turns.
+  type :: drift_t
+    real(wp), dimension(ndof) :: dxi = 0.0_wp, spin = 0.0_wp
+  end type drift_t
+
+contains
+
+  !> The point of a side at a place, in the present geometry.
+  pure subroutine place_point(side, xi, point)
+    type(side_t), intent(in) :: side
+    real(wp), intent(in) :: xi
+    type(contact_point_t), intent(out) :: point
+    real(wp) :: phi(3), dphi(3)
+
+    call line3(xi, phi, dphi)
+    call side_point(phi, dphi, side%section, side%x, side%du(1:6), ndof, point)
+  end subroutine place_point
+
+  !> Contact of a point with its foot on the die: state, forces, matrix.
+  pure subroutine press(law, material, side, xi, point, foot, allowed, weight, flow_stress, committed, trial, force, stiffness, &
+                        drift)
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    type(side_t), intent(in) :: side
+    real(wp), intent(in) :: xi                     !! place on the side
+    type(contact_point_t), intent(in) :: point
+    type(foot_t), intent(in) :: foot               !! in the pilot's axes
+    real(wp), intent(in) :: allowed                !! depth that needs no pressure [length]
+    real(wp), intent(in) :: weight, flow_stress
+    real(wp), intent(in) :: committed(:)
+    real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
+    type(drift_t), intent(in), optional :: drift   !! of a point that is not fixed on its side
+    type(meeting_t) :: meeting
+    real(wp) :: phi(3), dphi(3), lever(2), q(2), moment, dlever(2, ndof), dmoment(ndof), dq(2, most_unknowns)
+    integer :: j, k
+
+    trial(at_penetration) = foot%d
+    trial(at_piece) = foot%piece
+    trial(at_xi) = foot%xi
+    call line3(xi, phi, dphi)
+    lever = point%x - side%pilot(1:2, 2)
+    dlever = point%dx(:, :ndof)
+    dlever(1, 7) = dlever(1, 7) - 1
+    dlever(2, 8) = dlever(2, 8) - 1
+    call meet(side, phi, dphi, foot, lever, dlever, meeting, drift)
+    meeting%allowed = allowed
+    call act(law, material, side%penalty, flow_stress, point, meeting, weight, side%tangent, committed, trial, q, dq)
+    if (nint(trial(at_status)) == contact_open) return
+
+    moment = lever(1)*q(2) - lever(2)*q(1)
+    force(1:3) = force(1:3) - phi*q(1)
+    force(4:6) = force(4:6) - phi*q(2)
+    force(7:8) = force(7:8) + q
+    force(9) = force(9) + moment
+    if (.not. side%tangent) return
+    dmoment = dlever(1, :)*q(2) - dlever(2, :)*q(1) + lever(1)*dq(2, :ndof) - lever(2)*dq(1, :ndof)
+    do j = 1, ndof
+      do k = 1, 3
+        stiffness(k, j) = stiffness(k, j) - phi(k)*dq(1, j)
+        stiffness(k + 3, j) = stiffness(k + 3, j) - phi(k)*dq(2, j)
+      end do
+      stiffness(7:8, j) = stiffness(7:8, j) + dq(:, j)
+      stiffness(9, j) = stiffness(9, j) + dmoment(j)
+    end do
+    if (.not. present(drift)) return
+    stiffness(1:3, :) = stiffness(1:3, :) - q(1)*spread(dphi, 2, ndof)*spread(drift%dxi, 1, 3)
+    stiffness(4:6, :) = stiffness(4:6, :) - q(2)*spread(dphi, 2, ndof)*spread(drift%dxi, 1, 3)
+  end subroutine press
+
+  !> Depth, slip and turn of the normal, with their derivatives.
+  pure subroutine meet(side, phi, dphi, foot, lever, dlever, meeting, drift)
+    type(side_t), intent(in) :: side
+    real(wp), intent(in) :: phi(3), dphi(3)
+    type(foot_t), intent(in) :: foot
+    real(wp), intent(in) :: lever(2), dlever(2, ndof)   !! from the pilot to the point
+    type(meeting_t), intent(out) :: meeting
+    type(drift_t), intent(in), optional :: drift
+    real(wp) :: n(2), t(2), turn(2), way(2), relative(2, ndof), dway(2, ndof), dt(2, ndof), rotation
+    integer :: j
+
+    n = turned(foot%normal, side%pilot(3, 2))
+    t = [-n(2), n(1)]
+    meeting%d = foot%d
+    meeting%normal = n
+
+    ! motion of the point relative to the die, and what it does to depth and normal
+    relative = dlever
+    relative(:, 9) = relative(:, 9) - [-lever(2), lever(1)]
+    meeting%dd = 0
+    meeting%dd(:ndof) = matmul(n, relative)
+    meeting%turn = 0
+    meeting%turn(:ndof) = foot%turn*matmul(t, relative)
+    meeting%turn(9) = meeting%turn(9) + 1
+    if (present(drift)) meeting%turn(:ndof) = drift%spin
+    do j = 1, ndof
+      dt(:, j) = -meeting%turn(j)*n
+    end do
+
+    ! way relative to the die, in its axes, turned back into the present ones
+    rotation = side%pilot(3, 2) - side%pilot(3, 1)
+    turn = turned(matmul(side%x, phi) - side%pilot(1:2, 1), rotation)
+    way = lever - turn
+    dway = dlever
+    dway(:, 9) = dway(:, 9) - [-turn(2), turn(1)]
+    if (present(drift)) dway = dway - outer(turned(matmul(side%x, dphi), rotation), drift%dxi)
+    meeting%slip = dot_product(t, way)
+    meeting%dslip = 0
+    meeting%dslip(:ndof) = matmul(t, dway) + matmul(way, dt)
+  end subroutine meet
+
+  pure function turned(v, angle) result(w)
+    real(wp), intent(in) :: v(2), angle
+    real(wp) :: w(2)
+
+    w = [cos(angle)*v(1) - sin(angle)*v(2), sin(angle)*v(1) + cos(angle)*v(2)]
+  end function turned
+
+  pure function outer(a, b) result(c)
+    real(wp), intent(in) :: a(2), b(ndof)
+    real(wp) :: c(2, ndof)
+
+    c = spread(a, 2, ndof)*spread(b, 1, 2)
+  end function outer
+
+end module rigid_contact

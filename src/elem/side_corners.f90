@@ -1,0 +1,95 @@
+!> Corners of a die that stick into a side of the part between its integration points.
+!>
+!> Contact is a condition on the whole side and integration points are where it is asked for. How far
+!> a smooth die can go in between them is a matter of their number; a corner goes in however many they
+!> are. So it is asked for itself: with y(xi) the side's point closest to the corner V,
+!> (V - y).y' = 0, its depth is d = (V - y).e_R, along the side's own inner normal e_R. Where e_R
+!> leaves the corner's fan the side lies along a face, and the face's normal is taken.
+module side_corners
+  use die_feet, only: foot_t, projections
+  use dies, only: die_t
+  use kinds, only: wp
+  use shape_functions, only: line3
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: corner_t, deepest_corner, foot_at_corner
+
+  !> The corner deepest in a stretch of a side.
+  type :: corner_t
+    logical :: found = .false.
+    !> Place on the side.
+    real(wp) :: place = 0.0_wp
+    !> Piece and place on the die; in the pilot's axes the corner, and the normal of depth, inner for the die.
+    integer :: piece = 0
+    real(wp) :: xi = 0.0_wp, vertex(2) = 0.0_wp, normal(2) = 0.0_wp
+    !> That normal is the side's own and turns with it, else it is a face's.
+    logical :: own = .false.
+    !> Depth [length].
+    real(wp) :: d = 0.0_wp
+  end type corner_t
+
+  !> Beyond this sine outside the fan the side faces away from the corner.
+  real(wp), parameter :: beside = 0.3_wp
+
+contains
+
+  !> The corner that is deepest between two places of a side, if there is one nearer than `reach`.
+  pure subroutine deepest_corner(die, side, from, to, reach, corner)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: side(2, 3)   !! nodes of the side in the pilot's axes [length]
+    real(wp), intent(in) :: from, to     !! places on the side; `to` belongs to the next stretch
+    real(wp), intent(in) :: reach        !! [length]
+    type(corner_t), intent(out) :: corner
+    type(corner_t) :: one
+    real(wp) :: box(4), xi(3)
+    integer :: k, r, n
+
+    box = [minval(side, 2) - reach, maxval(side, 2) + reach]
+    do k = 1, size(die%corners, 2)
+      one%vertex = die%corners(1:2, k)
+      if (any(one%vertex < box(1:2)) .or. any(one%vertex > box(3:4))) cycle
+      call projections(side, one%vertex, n, xi)
+      do r = 1, n
+        if (xi(r) < from .or. .not. xi(r) < to) cycle
+        one%place = xi(r)
+        one%piece = die%corner_piece(k)
+        one%xi = die%corner_xi(k)
+        call measure_corner(die%corners(3:4, k), die%corners(5:6, k), side, one)
+        if (.not. (one%found .and. abs(one%d) < reach)) cycle
+        if (.not. corner%found .or. one%d > corner%d) corner = one
+      end do
+    end do
+  end subroutine deepest_corner
+
+  !> Normal and depth of a corner between tangents t1 and t2.
+  pure subroutine measure_corner(t1, t2, side, corner)
+    real(wp), intent(in) :: t1(2), t2(2), side(2, 3)
+    type(corner_t), intent(inout) :: corner
+    real(wp) :: phi(3), dphi(3), tangent(2), inner(2)
+
+    call line3(corner%place, phi, dphi)
+    tangent = matmul(side, dphi)
+    inner = [-tangent(2), tangent(1)]/length_of(tangent)
+    corner%found = dot_product(inner, t1) >= -beside .and. dot_product(inner, t2) <= beside
+    corner%own = dot_product(inner, t1) >= 0 .and. dot_product(inner, t2) <= 0
+    corner%normal = -inner
+    if (.not. corner%own) then
+      corner%normal = [t1(2), -t1(1)]
+      if (dot_product(inner, t1) >= 0) corner%normal = [t2(2), -t2(1)]
+    end if
+    corner%d = dot_product(matmul(side, phi) - corner%vertex, corner%normal)
+  end subroutine measure_corner
+
+  !> A corner as the foot of the side's point.
+  pure function foot_at_corner(corner) result(foot)
+    type(corner_t), intent(in) :: corner
+    type(foot_t) :: foot
+
+    foot%piece = corner%piece
+    foot%xi = corner%xi
+    foot%d = corner%d
+    foot%normal = corner%normal
+  end function foot_at_corner
+
+end module side_corners

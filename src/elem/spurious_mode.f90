@@ -1,0 +1,96 @@
+!> The motion that 2 x 2 points do not see.
+!>
+!> In the parent square u = xi (3 eta^2 - 1), v = -eta (3 xi^2 - 1), which 8 nodes can make, has no strain at xi, eta = +-1/sqrt(3):
+!> nothing resists it in an element that stands alone. (In other shapes there is one like it, 16 unknowns having 3 rigid motions and
+!> 12 strains.) Neighbours that share a side cannot both make it; an element lightly held can.
+!> Measure: of the square of the strain of a motion, the share which 3 x 3 points see, and 2 x 2 points do not: 1 for the mode, 0
+!> for strains that are linear over the element. Where an element deforms less than the mean of the group that mean is its measure.
+module spurious_mode
+  use kinds, only: wp
+  use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
+  use scene, only: axisymmetric, group_t, is_solid, scene_t
+  implicit none
+  private
+  public :: has_spurious_mode, may_stand_alone, find_spurious_mode, spurious_limit
+
+  !> A share above this is told. The mode has 1; smooth motions have less than 0.05, corners that a body folds over up to 0.71.
+  real(wp), parameter :: spurious_limit = 0.9_wp
+  !> Points of the elements that have the mode.
+  integer, parameter :: reduced_rule = 4
+  !> A body of more elements has neighbours enough to stop the mode.
+  integer, parameter :: few_elements = 16
+
+contains
+
+  !> Whether a group's elements have the mode.
+  elemental function has_spurious_mode(group) result(yes)
+    type(group_t), intent(in) :: group
+    logical :: yes
+
+    yes = is_solid(group) .and. group%npoint == reduced_rule
+  end function has_spurious_mode
+
+  !> Whether the mode of a group may go unresisted.
+  elemental function may_stand_alone(group) result(yes)
+    type(group_t), intent(in) :: group
+    logical :: yes
+
+    yes = has_spurious_mode(group) .and. size(group%connectivity, 2) <= few_elements
+  end function may_stand_alone
+
+  !> Largest share among the elements of a group, and where.
+  pure subroutine find_spurious_mode(scene, group, x, motion, share, element)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: x(:, :, :)       !! places at the end of the motion (2, 8, nelem)
+    real(wp), intent(in) :: motion(:, :)     !! of all nodes (2, nnode)
+    real(wp), intent(out) :: share
+    integer, intent(out) :: element
+    type(quad8_rule_t) :: seen, all
+    real(wp), dimension(size(x, 3)) :: hidden, whole, volume
+    real(wp) :: u(2, 8), unused, mean
+    integer :: e
+
+    call quad8_rule(group%npoint, seen)
+    call quad8_rule(9, all)
+    do e = 1, size(x, 3)
+      u = motion(:, group%connectivity(:, e))
+      call square_of_strain(all, scene%plane_state == axisymmetric, x(:, :, e), u, whole(e), volume(e))
+      call square_of_strain(seen, scene%plane_state == axisymmetric, x(:, :, e), u, hidden(e), unused)
+      hidden(e) = whole(e) - hidden(e)
+    end do
+    share = 0
+    element = 0
+    if (.not. sum(whole) > 0) return
+    mean = sum(whole)/sum(volume)
+    element = maxloc(hidden/max(whole, mean*volume), 1)
+    share = max(0.0_wp, hidden(element)/max(whole(element), mean*volume(element)))
+  end subroutine find_spurious_mode
+
+  !> Integral of the strain squared by a rule, and of 1.
+  pure subroutine square_of_strain(rule, hoop, x, u, square, volume)
+    type(quad8_rule_t), intent(in) :: rule
+    logical, intent(in) :: hoop
+    real(wp), intent(in) :: x(2, 8), u(2, 8)
+    real(wp), intent(out) :: square, volume
+    real(wp) :: nx(8), ny(8), detj, dv, r, strain(4)
+    integer :: p
+
+    square = 0
+    volume = 0
+    do p = 1, rule%npoint
+      call derivatives(rule%dphi(:, :, p), x, nx, ny, detj)
+      dv = detj*rule%weight(p)
+      strain = [dot_product(nx, u(1, :)), dot_product(ny, u(2, :)), 0.5_wp*(dot_product(ny, u(1, :)) + dot_product(nx, u(2, :))), &
+                0.0_wp]
+      if (hoop) then
+        r = dot_product(rule%phi(:, p), x(1, :))
+        strain(4) = dot_product(rule%phi(:, p), u(1, :))/r
+        dv = dv*r
+      end if
+      square = square + dv*(strain(1)**2 + strain(2)**2 + 2*strain(3)**2 + strain(4)**2)
+      volume = volume + dv
+    end do
+  end subroutine square_of_strain
+
+end module spurious_mode

@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""Contact that needs no care: an S-shaped die, a thin rib, a corner that enters a side, a part that leaves the end of a die and
+comes back. Every run reaches its end, no pressure pulls, and the part is nowhere deeper in the die than allowed.
+
+usage: run_contact_cases.py [-v] [-k]
+
+Depth is looked for at 20 places of every side of every saved step, quadratic interpolation between its nodes, against the chain of
+parabolas as the fields file has it (die_depth.py), independently of the solver's search. It is compared with the allowed
+penetration, 1e-3 of the side, and with what the solver says of it in summary.json.
+"""
+import sys
+
+sys.dont_write_bytecode = True
+from support import DONE, Checks, run, said, summary, with_h5py, write  # noqa: E402
+
+ALLOWED = 1.0e-3
+
+HEAD = """TITLE  {title}
+STATE  PLSTN
+KINEM  LOG
+LAW    metal EPLA
+   200000. 0.3
+   LINEAR 400. 500.
+LAW    oil COUL2D
+   PENETR 1.E-3   PHI {phi}   AUGMENT 20
+CNT2D  block 1  tool {points} oil
+"""
+
+PRESSED = """BLOCK  block PL8LS 4 metal
+   0. 0.   {width} 0.   {width} 4.   0. 4.
+   {width} 1.   4 1.
+FIXED  block 3  X
+MOVE   block 3  Y press
+LIC    press
+   0. 0.   1. -{travel}
+STRAT  0.02 1.E-6 0.05   5 3
+SAVE   1
+END
+"""
+
+# Hills and valleys with a radius of 1.3 at their tops, sides of 1: the part flows over both.
+S_DIE = """DIE    tool
+   PARAB  0. -1.5   2. 0.   4. -1.5
+   PARAB  4. -1.5   6. -3.  8. -1.5
+   PARAB  8. -1.5  10. 0.  12. -1.5
+"""
+# A fifth of a side in width, between the nodes of one.
+RIB = """DIE    tool
+   SEGM  -5. -2.    4.4 -2.
+   SEGM   4.4 -2.   4.4 0.
+   SEGM   4.4 0.    4.6 0.
+   SEGM   4.6 0.    4.6 -2.
+   SEGM   4.6 -2.  13. -2.
+"""
+# The same with rounded corners.
+ROUND_RIB = RIB.replace("   SEGM   4.4 0.    4.6 0.\n", "   FILLT 0.05 1.E-4\n   SEGM   4.4 0.    4.6 0.\n   FILLT 0.05 1.E-4\n")
+WEDGE = """DIE    tool
+   SEGM   0.5 -4.   4.4 0.
+   SEGM   4.4 0.    8.5 -4.
+"""
+# Pressed down, pushed over the end by 4 sides, lifted, taken back, pressed down again, over the end by half a side.
+LEAVING = """BLOCK  block PL8LS 4 metal
+   0. 0.   6. 0.   6. 3.   0. 3.
+   6 1.   3 1.
+DIE    tool
+   SEGM  -4. 0.   5.3 0.
+MOVE   block 3  Y press
+MOVE   block 3  X go
+LIC    press
+   0. 0.   1. -0.1   4. -0.1   5. 0.2   6. 0.2   7. -0.1
+LIC    go
+   0. 0.   1. 0.     4. 4.     5. 4.    6. -1.   7. -1.
+STRAT  0.02 1.E-6 0.1   5 3
+SAVE   1
+END
+"""
+
+CASES = (
+    ("s-die", S_DIE + PRESSED.format(width=12, travel=1.5), -17, 0.1),
+    ("s-die-rough", S_DIE + PRESSED.format(width=12, travel=1.5), -17, 0.3),
+    ("rib", RIB + PRESSED.format(width=8, travel=0.6), -3, 0.1),
+    ("rib-many-points", RIB + PRESSED.format(width=8, travel=0.6), -9, 0.1),
+    ("round-rib", ROUND_RIB + PRESSED.format(width=8, travel=0.6), -17, 0.1),
+    ("wedge", WEDGE + PRESSED.format(width=8, travel=0.6), -3, 0.1),
+    ("wedge-rough", WEDGE + PRESSED.format(width=8, travel=0.6), -9, 0.4),
+    ("leaving", LEAVING, -9, 0.1),
+    ("leaving-few-points", LEAVING, -3, 0.1),
+)
+
+
+def judge(checks, name, cards, points, phi):
+    """One case."""
+    import die_depth  # pylint: disable=import-outside-toplevel
+
+    deck = write(checks.path(name, "case.lag"), HEAD.format(title=name, points=points, phi=phi) + cards)
+    result = run([deck, "--out", checks.path(name, "out"), "--threads", "1"])
+    if not checks.that(result.returncode == DONE, f"{name}: done", said(result)):
+        return
+    rows = die_depth.sampled(checks.path(name, "out", "case.g01.h5"))
+    told = summary(checks.path(name, "out"))
+    checks.that(len(rows) == told["steps"] + 1, f"{name}: all steps saved", f"{len(rows)} of {told['steps'] + 1}")
+    worst = max(rows, key=lambda row: row["share"])
+    print(f"{name}: {told['steps']} steps, {told['iterations']} iterations, {told['cutbacks']} cutbacks; deepest {worst['share']:.3g} of a "
+          f"side, largest pressure {max(row['most_pressure'] for row in rows):.4g}")
+    checks.that(min(row["least_pressure"] for row in rows) >= 0, f"{name}: no pressure below zero")
+    checks.that(max(row["most_pressure"] for row in rows) > 100, f"{name}: there is contact")
+    checks.that(worst["share"] <= ALLOWED, f"{name}: nowhere deeper than allowed", worst)
+    says = told["checks"]["max_penetration_sampled_over_allowed"] * ALLOWED
+    checks.that(abs(says - worst["share"]) <= 1e-6 * ALLOWED, f"{name}: summary.json says so", f"{says} against {worst['share']}")
+    checks.that(abs(told["checks"]["max_penetration_sampled"] - max(row["depth"] for row in rows)) <= 1e-6 * ALLOWED,
+                f"{name}: and how deep", told["checks"])
+    checks.that(told["checks"]["least_dissipation"] >= 0, f"{name}: friction takes work", told["checks"]["least_dissipation"])
+    if name.startswith("leaving"):
+        touching = [row["most_pressure"] > 0 for row in rows]
+        changes = sum(a != b for a, b in zip(touching, touching[1:]))
+        checks.that(changes >= 3 and touching[-1], f"{name}: it leaves and comes back", changes)
+
+
+def main():
+    with_h5py()
+    checks = Checks()
+    for name, cards, points, phi in CASES:
+        judge(checks, name, cards, points, phi)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,125 @@
+!> A material of every solid law and of every form and option it has, with the stress at which it flows written once more.
+!> A law without a sample here fails test_tangent_table.
+module sample_laws
+  use kinds, only: wp
+  use law_cases, only: at_temperatures, closed_form_yield, elastic_material, material_of, plastic_material, set_value
+  use materials, only: material_t
+  implicit none
+  private
+  public :: sample_law_t, list_samples, flow_stress, young_at, poisson_of, thermal_strain
+
+  type :: sample_law_t
+    character(len=16) :: name
+    type(material_t) :: material
+    !> Temperatures at the start, and at the end of the first and of the second step.
+    real(wp) :: temperatures(0:2) = 0.0_wp
+  end type sample_law_t
+
+  real(wp), parameter :: expansion = 1.2e-5_wp
+  !> HKIN; RATE0 and COWPER; RATE0 and JOHNSON.
+  real(wp), parameter :: kinematic = 2500.0_wp, cowper(2) = [40.0_wp, 5.0_wp], johnson(2) = [1.0e-3_wp, 0.02_wp]
+  !> E NU P1 P2 P3 P4 and E NU K W H M A TABS.
+  real(wp), parameter :: norton(6) = [150000.0_wp, 0.3_wp, 0.5_wp, 90.0_wp, 0.12_wp, 0.2_wp]
+  real(wp), parameter :: gsell(8) = [500.0_wp, 0.4_wp, 0.02_wp, 30.0_wp, 0.6_wp, 0.06_wp, 2000.0_wp, 273.15_wp]
+  !> The card by temperature: numbers at 20, and these shares of E and of the yield stress at 420.
+  real(wp), parameter :: hot_modulus = 0.7_wp, hot_yield = 0.5_wp
+
+contains
+
+  subroutine list_samples(samples)
+    type(sample_law_t), allocatable, intent(out) :: samples(:)
+    character(len=16), parameter :: forms(6) = [character(len=16) :: 'EPLA LINEAR', 'EPLA VOCE', 'EPLA SWIFT', 'EPLA TABLE', &
+                                                'EPLA perfect', 'EPLA softening']
+    type(material_t) :: hot
+    integer :: k
+
+    allocate (samples(15))
+    samples(1) = sample_law_t('ELA', elastic_material())
+    samples(2) = sample_law_t('ELATH', material_of('ELATH', [200000.0_wp, 0.3_wp, expansion]), [20.0_wp, 220.0_wp, 320.0_wp])
+    do k = 1, 6
+      samples(2 + k) = sample_law_t(forms(k), plastic_material(k))
+    end do
+    samples(9) = sample_law_t('EPLA HKIN', plastic_material(2))
+    call set_value(samples(9)%material, 'HKIN', kinematic)
+    samples(10) = sample_law_t('EPLA COWPER', plastic_material(1))
+    call set_value(samples(10)%material, 'RATE0', cowper(1))
+    call set_value(samples(10)%material, 'COWPER', cowper(2))
+    samples(11) = sample_law_t('EPLA JOHNSON', plastic_material(1))
+    call set_value(samples(11)%material, 'RATE0', johnson(1))
+    call set_value(samples(11)%material, 'JOHNSON', johnson(2))
+    samples(12) = samples(10)
+    samples(12)%name = 'EPLA HKIN+COWPER'
+    call set_value(samples(12)%material, 'HKIN', kinematic)
+    hot = plastic_material(1)
+    hot%values(1) = hot_modulus*hot%values(1)
+    hot%values(4:5) = hot_yield*hot%values(4:5)
+    samples(13) = sample_law_t('EPLA temperature', at_temperatures(plastic_material(1), 20.0_wp, hot, 420.0_wp), &
+                               [20.0_wp, 120.0_wp, 320.0_wp])
+    samples(14) = sample_law_t('EVP-NH', material_of('EVP-NH', norton))
+    samples(15) = sample_law_t('GSELL', material_of('GSELL', gsell), [120.0_wp, 110.0_wp, 100.0_wp])
+  end subroutine list_samples
+
+  !> Von Mises stress of monotonic flow at plastic strain p, rate and temperature; 0 for laws that do not flow.
+  pure function flow_stress(name, p, rate, temperature) result(stress)
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: p, rate, temperature
+    real(wp) :: stress
+
+    stress = 0
+    select case (name)
+    case ('EPLA LINEAR')
+      stress = closed_form_yield(1, p)
+    case ('EPLA VOCE')
+      stress = closed_form_yield(2, p)
+    case ('EPLA SWIFT')
+      stress = closed_form_yield(3, p)
+    case ('EPLA TABLE')
+      stress = closed_form_yield(4, p)
+    case ('EPLA perfect')
+      stress = closed_form_yield(5, p)
+    case ('EPLA softening')
+      stress = closed_form_yield(6, p)
+    case ('EPLA HKIN')
+      stress = closed_form_yield(2, p) + kinematic*p
+    case ('EPLA COWPER')
+      stress = closed_form_yield(1, p)*(1 + (rate/cowper(1))**(1/cowper(2)))
+    case ('EPLA HKIN+COWPER')
+      stress = closed_form_yield(1, p)*(1 + (rate/cowper(1))**(1/cowper(2))) + kinematic*p
+    case ('EPLA JOHNSON')
+      stress = closed_form_yield(1, p)*(1 + johnson(2)*log(rate/johnson(1)))
+    case ('EPLA temperature')
+      stress = closed_form_yield(1, p)*(1 + (hot_yield - 1)*(temperature - 20)/400)
+    case ('EVP-NH')
+      stress = p**norton(6)*exp(-norton(3)*p)*norton(4)*sqrt(3.0_wp)*(sqrt(3.0_wp)*rate)**norton(5)
+    case ('GSELL')
+      stress = gsell(3)*exp(gsell(7)/(temperature + gsell(8)))*(1 - exp(-gsell(4)*p))*exp(gsell(5)*p**2)*rate**gsell(6)
+    end select
+  end function flow_stress
+
+  pure function young_at(sample, temperature) result(young)
+    type(sample_law_t), intent(in) :: sample
+    real(wp), intent(in) :: temperature
+    real(wp) :: young
+
+    young = sample%material%values(1)
+    if (sample%name == 'EPLA temperature') young = young*(1 + (hot_modulus - 1)*(temperature - 20)/400)
+  end function young_at
+
+  pure function poisson_of(sample) result(poisson)
+    type(sample_law_t), intent(in) :: sample
+    real(wp) :: poisson
+
+    poisson = sample%material%values(2)
+  end function poisson_of
+
+  !> Thermal strain since the start.
+  pure function thermal_strain(sample, temperature) result(strain)
+    type(sample_law_t), intent(in) :: sample
+    real(wp), intent(in) :: temperature
+    real(wp) :: strain
+
+    strain = 0
+    if (sample%name == 'ELATH') strain = expansion*(temperature - sample%temperatures(0))
+  end function thermal_strain
+
+end module sample_laws
