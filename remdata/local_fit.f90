@@ -7,13 +7,16 @@ module local_fit
   use kinds, only: wp
   implicit none
   private
-  public :: terms_of, terms_at, fit_polynomial, max_terms
+  public :: terms_of, terms_at, fit_polynomial, max_terms, most_amplified
 
   !> Terms of the complete quadratic.
   integer, parameter :: max_terms = 6
   !> Sine of the angle between the values of a term and those of the terms before it below which it is not determined: one layer
   !> of points gives 0, a regular grid 0.7, two layers with a bend of a hundredth 0.01.
   real(wp), parameter :: least_angle = 0.02_wp
+  !> Largest sum of absolute weights of a good fit: what a wrong value can become. Inside a mesh it is below 2, at a corner 4;
+  !> points all to one side of the new one would give much more.
+  real(wp), parameter :: most_amplified = 6.0_wp
 
 contains
 

@@ -8,16 +8,26 @@ module transfer_api
   implicit none
   private
   public :: transfer_t, transfer_options_t, transfer_weights_i, check_materials
+  public :: limit_none, limit_material, limit_sources
+
+  !> What keeps a value in range: nothing, the range of its material in the old mesh, or that of the old points it is made from.
+  integer, parameter :: limit_none = 0, limit_material = 1, limit_sources = 2
 
   type :: transfer_options_t
+    !> Number of the method.
+    integer :: method = 2
     !> N of 1/R^N, and how many points it takes.
     real(wp) :: exponent = 2.0_wp
     integer :: nearest = 8
-    !> Points and degree (1 or 2) of moving least squares.
+    !> Points of moving least squares; degree (0, 1, 2) of it and of the patches.
     integer :: neighbours = 20
     integer :: degree = 2
     !> How far an element is prolonged beyond the contour, in halves of an element.
     real(wp) :: outside = 0.5_wp
+    !> Range that scalars of the history are kept in.
+    integer :: limit = limit_material
+    !> Correct scalars and fractions so that their means over the volume of a material stay.
+    logical :: conserve = .false.
   end type transfer_options_t
 
   !> One method. Its place in the list is its number + 1.

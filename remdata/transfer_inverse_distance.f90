@@ -57,7 +57,7 @@ contains
     if (squares(1) > tiny(1.0_wp)) then
       weight = (squares(1)/squares)**(0.5_wp*exponent)
     else
-      weight = merge(1.0_wp, 0.0_wp, .not. squares > tiny(1.0_wp))
+      weight = merge(1.0_wp, 0.0_wp,.not. squares > tiny(1.0_wp))
     end if
     weight = weight/sum(weight)
   end subroutine from_distances

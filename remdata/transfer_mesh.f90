@@ -10,44 +10,51 @@ module transfer_mesh
   public :: transfer_mesh_t, set_up_mesh, plant_mesh_trees
 
   type :: transfer_mesh_t
-    !> Points of an element; point p of element e is number (e - 1) npoint + p.
-    integer :: npoint = 0
-    !> Materials are numbered 1 ... nmaterial.
+    !> Materials are numbered 1 ... nmaterial. Values go from points to points of the same number only.
     integer :: nmaterial = 0
+    !> Points of element e are first_point(e) ... first_point(e + 1) - 1 (nelem + 1).
+    integer, allocatable :: first_point(:)
     real(wp), allocatable :: nodes(:, :)         !! (2, nnode), where they are now [length]
     integer, allocatable :: connectivity(:, :)   !! (8, nelem)
     integer, allocatable :: material(:)          !! (nelem)
-    real(wp), allocatable :: points(:, :)        !! (2, npoint nelem) [length]
-    real(wp), allocatable :: volumes(:)          !! (npoint nelem), per unit thickness, or per radian [length^2 or length^3]
-    integer, allocatable :: point_material(:)    !! (npoint nelem)
+    real(wp), allocatable :: points(:, :)        !! (2, n) [length]
+    real(wp), allocatable :: volumes(:)          !! (n), per unit thickness, or per radian [length^2 or length^3]
+    integer, allocatable :: point_material(:)    !! (n)
     type(box_tree_t), allocatable :: point_trees(:), element_trees(:)  !! (nmaterial), where they were planted
   end type transfer_mesh_t
 
 contains
 
-  !> Points and volumes of 8-node elements with a Gauss rule of `npoint` points.
+  !> Points and volumes of 8-node elements, each with the Gauss rule of so many points.
   pure subroutine set_up_mesh(nodes, connectivity, material, npoint, axisymmetric, mesh)
     real(wp), intent(in) :: nodes(:, :)
-    integer, intent(in) :: connectivity(:, :), material(:), npoint
+    integer, intent(in) :: connectivity(:, :), material(:)
+    integer, intent(in) :: npoint(:)             !! (nelem)
     logical, intent(in) :: axisymmetric          !! the radius is x
     type(transfer_mesh_t), intent(out) :: mesh
     real(wp), allocatable :: xi(:, :), weight(:)
     real(wp) :: phi(8), dphi(2, 8), x(2, 8), jacobian(2, 2)
-    integer :: e, p, k
+    integer :: e, p, k, n, rule
 
-    mesh%npoint = npoint
-    mesh%nmaterial = maxval(material)
+    mesh%nmaterial = max(0, maxval(material))
     allocate (mesh%nodes, source=nodes)
     allocate (mesh%connectivity, source=connectivity)
     allocate (mesh%material, source=material)
-    allocate (mesh%points(2, npoint*size(material)), mesh%volumes(npoint*size(material)), &
-              mesh%point_material(npoint*size(material)))
-    call square_rule(npoint, xi, weight)
-    do p = 1, npoint
-      call quad8(xi(1, p), xi(2, p), phi, dphi)
-      do e = 1, size(material)
-        k = (e - 1)*npoint + p
-        x = nodes(:, connectivity(:, e))
+    allocate (mesh%first_point(size(material) + 1))
+    mesh%first_point(1) = 1
+    do e = 1, size(material)
+      mesh%first_point(e + 1) = mesh%first_point(e) + npoint(e)
+    end do
+    n = sum(npoint)
+    allocate (mesh%points(2, n), mesh%volumes(n), mesh%point_material(n))
+    rule = 0
+    do e = 1, size(material)
+      if (npoint(e) /= rule) call square_rule(npoint(e), xi, weight)
+      rule = npoint(e)
+      x = nodes(:, connectivity(:, e))
+      do p = 1, rule
+        call quad8(xi(1, p), xi(2, p), phi, dphi)
+        k = mesh%first_point(e) + p - 1
         mesh%points(:, k) = matmul(x, phi)
         jacobian = matmul(x, transpose(dphi))
         mesh%volumes(k) = weight(p)*(jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1))

@@ -7,9 +7,9 @@ module transfer_moving_squares
   use box_tree, only: nearest_items
   use errors, only: error_t
   use kinds, only: wp
-  use local_fit, only: fit_polynomial, max_terms, terms_of
+  use local_fit, only: fit_polynomial, max_terms, most_amplified, terms_of
   use transfer_api, only: check_materials, transfer_options_t, transfer_t
-  use transfer_map, only: start_map, transfer_map_t
+  use transfer_map, only: append_rows, start_rows, transfer_map_t
   use transfer_mesh, only: transfer_mesh_t
   implicit none
   private
@@ -18,9 +18,8 @@ module transfer_moving_squares
   !> Neighbours are doubled so often, where they do not determine the polynomial, before its degree is lowered: in a layer of flat
   !> elements the nearest points lie on a line.
   integer, parameter :: doublings = 2
-  !> Largest sum of absolute weights of a good fit: what a wrong value can become. Inside a mesh it is below 2, at a corner 4;
-  !> points all to one side of the new one would give much more.
-  real(wp), parameter :: most_amplified = 6.0_wp
+  !> Points between two appendings to the map.
+  integer, parameter :: block = 512
 
 contains
 
@@ -41,24 +40,23 @@ contains
     integer, intent(in) :: material(:)
     type(transfer_map_t), intent(out) :: map
     type(error_t), allocatable, intent(out) :: error
-    type(transfer_map_t) :: wide
-    integer :: p, most, used(size(material))
+    integer :: source(options%neighbours*2**doublings, block), used(block), p, k, n
+    real(wp) :: weight(size(source, 1), block)
 
     call check_materials(mesh, material, error)
     if (allocated(error)) return
-    most = options%neighbours*2**doublings
-    call start_map(spread(most, 1, size(material)), wide)
-    !$omp parallel do schedule(static)
-    do p = 1, size(material)
-      call weights_of_point(mesh, options, points(:, p), material(p), wide%source(wide%first(p):wide%first(p + 1) - 1), &
-                            wide%weight(wide%first(p):wide%first(p + 1) - 1), used(p), wide%degree(p))
-    end do
-    !$omp end parallel do
-    call start_map(used, map)
-    map%degree = wide%degree
-    do p = 1, size(material)
-      map%source(map%first(p):map%first(p + 1) - 1) = wide%source(wide%first(p):wide%first(p) + used(p) - 1)
-      map%weight(map%first(p):map%first(p + 1) - 1) = wide%weight(wide%first(p):wide%first(p) + used(p) - 1)
+    n = size(material)
+    call start_rows(n, map)
+    allocate (map%outside(n), source=0.0_wp)
+    allocate (map%degree(n), source=0)
+    do p = 0, n - 1, block
+      !$omp parallel do schedule(static)
+      do k = 1, min(block, n - p)
+        call weights_of_point(mesh, options, points(:, p + k), material(p + k), source(:, k), weight(:, k), used(k), &
+                              map%degree(p + k))
+      end do
+      !$omp end parallel do
+      call append_rows(p, source, weight, used(:min(block, n - p)), map)
     end do
   end subroutine weights
 
@@ -75,6 +73,8 @@ contains
     real(wp) :: squares(size(source) + 1), local(2, size(source)), fit(max_terms, size(source)), kernel(size(source)), reach
     logical :: determined
 
+    determined = .false.
+    n = 0
     do degree = options%degree, 0, -1
       do doubling = 0, doublings
         n = options%neighbours*2**doubling
