@@ -6,7 +6,6 @@
 !> that zones without strain stay without, and peaks as they are.
 module transfer_balance
   use kinds, only: eps, wp
-  use transfer_limits, only: keep_fractions, sum_is_one
   implicit none
   private
   public :: integral, keep_mean, keep_mean_fractions
@@ -45,23 +44,26 @@ contains
     end do
   end subroutine keep_mean
 
-  !> Fractions (fraction, point) whose sums are 1 at every point and whose integrals are the given ones, by turns.
-  !> Source: W.E. Deming, F.F. Stephan, Ann. Math. Stat. 11 (1940) 427-444.
+  !> Fractions (fraction, point) whose sums are 1 at every point and whose integrals are the given ones: each is multiplied by a
+  !> factor of its own, then all of a point are divided by their sum (W.E. Deming, F.F. Stephan, Ann. Math. Stat. 11 (1940) 427).
+  !> The factors are found one by one in Newton's steps of their logarithms, d integral(v)/d log(factor) = integral(v (1 - v)).
   pure subroutine keep_mean_fractions(volumes, wanted, values)
     real(wp), intent(in) :: volumes(:), wanted(:)
     real(wp), intent(inout) :: values(:, :)
-    real(wp) :: now, worst
+    real(wp) :: missing, freedom, worst
     integer :: sweep, i, p
 
     do sweep = 1, most_sweeps
       worst = 0
       do i = 1, size(wanted)
-        now = integral(values(i, :), volumes)
-        worst = max(worst, abs(wanted(i) - now))
-        if (now > 0) values(i, :) = values(i, :)*(wanted(i)/now)
-      end do
-      do p = 1, size(volumes)
-        call keep_fractions(sum_is_one, values(:, p))
+        missing = wanted(i) - integral(values(i, :), volumes)
+        freedom = integral(values(i, :)*(1 - values(i, :)), volumes)
+        worst = max(worst, abs(missing))
+        if (.not. freedom > tiny(1.0_wp)) cycle
+        values(i, :) = values(i, :)*exp(max(-1.0_wp, min(1.0_wp, missing/freedom)))
+        do p = 1, size(volumes)
+          values(:, p) = values(:, p)/sum(values(:, p))
+        end do
       end do
       if (worst <= same_integral*sum(volumes)) exit
     end do
