@@ -1,0 +1,247 @@
+!> The elements of matter of a scene with their state, and that state as one table (component, point) of all groups.
+module state_pieces
+  use errors, only: error_t, exit_bug, fail
+  use kinds, only: wp
+  use scene, only: axisymmetric, is_solid, scene_t
+  use solution, only: solution_t
+  use state_variables, only: find_variable, state_variable_t
+  use text, only: to_text
+  use transfer_mesh, only: set_up_mesh, transfer_mesh_t
+  implicit none
+  private
+  public :: state_group_t, state_pieces_t, solid_pieces, store_states, mesh_of, list_variables, gather_states, hand_out_states
+
+  !> Elements of one declared state.
+  type :: state_group_t
+    !> Values go from and to groups of the same number (one material, one body).
+    integer :: material = 0
+    !> Points of an element.
+    integer :: npoint = 0
+    integer, allocatable :: connectivity(:, :)   !! (8, nelem)
+    type(state_variable_t), allocatable :: variables(:)
+    real(wp), allocatable :: values(:, :, :)     !! (component, point, element)
+    !> Place of the group in its scene.
+    integer :: place = 0
+  end type state_group_t
+
+  type :: state_pieces_t
+    real(wp), allocatable :: nodes(:, :)         !! (2, nnode), where they are now [length]
+    logical :: axisymmetric = .false.
+    type(state_group_t), allocatable :: groups(:)
+  end type state_pieces_t
+
+contains
+
+  !> Solid groups of a scene where it stands at the start or, with a solution, now. Groups of one material that share nodes have one
+  !> number, the place of the first of them: bodies of one material that only touch do not mix.
+  pure subroutine solid_pieces(scene, pieces, solution)
+    type(scene_t), intent(in) :: scene
+    type(state_pieces_t), intent(out) :: pieces
+    type(solution_t), intent(in), optional :: solution
+    logical :: touched(size(scene%mesh%coordinates, 2))
+    integer :: g, k, other, nsolid, low, high
+
+    allocate (pieces%nodes, source=scene%mesh%coordinates)
+    if (present(solution)) pieces%nodes = pieces%nodes + solution%displacement
+    pieces%axisymmetric = scene%plane_state == axisymmetric
+    nsolid = 0
+    do g = 1, size(scene%groups)
+      if (is_solid(scene%groups(g))) nsolid = nsolid + 1
+    end do
+    allocate (pieces%groups(nsolid))
+    k = 0
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      k = k + 1
+      associate (group => pieces%groups(k))
+        group%place = g
+        group%material = k
+        group%npoint = scene%groups(g)%npoint
+        allocate (group%connectivity, source=scene%groups(g)%connectivity)
+        allocate (group%variables, source=scene%groups(g)%variables)
+        if (present(solution)) allocate (group%values, source=solution%groups(g)%committed)
+      end associate
+    end do
+    do k = 2, nsolid
+      touched = .false.
+      call touch(pieces%groups(k)%connectivity, touched)
+      do other = 1, k - 1
+        if (scene%groups(pieces%groups(k)%place)%material /= scene%groups(pieces%groups(other)%place)%material) cycle
+        if (.not. touches(pieces%groups(other)%connectivity, touched)) cycle
+        low = min(pieces%groups(k)%material, pieces%groups(other)%material)
+        high = max(pieces%groups(k)%material, pieces%groups(other)%material)
+        do g = 1, k
+          if (pieces%groups(g)%material == high) pieces%groups(g)%material = low
+        end do
+      end do
+    end do
+  end subroutine solid_pieces
+
+  pure subroutine touch(connectivity, touched)
+    integer, intent(in) :: connectivity(:, :)
+    logical, intent(inout) :: touched(:)
+    integer :: e
+
+    do e = 1, size(connectivity, 2)
+      touched(connectivity(:, e)) = .true.
+    end do
+  end subroutine touch
+
+  pure function touches(connectivity, touched) result(yes)
+    integer, intent(in) :: connectivity(:, :)
+    logical, intent(in) :: touched(:)
+    logical :: yes
+    integer :: e
+
+    yes = .false.
+    do e = 1, size(connectivity, 2)
+      yes = yes .or. any(touched(connectivity(:, e)))
+    end do
+  end function touches
+
+  !> The states of the pieces become those of a solution that was started on their scene.
+  pure subroutine store_states(pieces, solution)
+    type(state_pieces_t), intent(in) :: pieces
+    type(solution_t), intent(inout) :: solution
+    integer :: k
+
+    do k = 1, size(pieces%groups)
+      associate (state => solution%groups(pieces%groups(k)%place))
+        state%committed = pieces%groups(k)%values
+        state%trial = pieces%groups(k)%values
+      end associate
+    end do
+  end subroutine store_states
+
+  !> All elements of the groups, in their order.
+  pure subroutine mesh_of(pieces, mesh)
+    type(state_pieces_t), intent(in) :: pieces
+    type(transfer_mesh_t), intent(out) :: mesh
+    integer, allocatable :: connectivity(:, :), material(:), npoint(:)
+    integer :: g, n, before
+
+    n = 0
+    do g = 1, size(pieces%groups)
+      n = n + size(pieces%groups(g)%connectivity, 2)
+    end do
+    allocate (connectivity(8, n), material(n), npoint(n))
+    before = 0
+    do g = 1, size(pieces%groups)
+      n = before + size(pieces%groups(g)%connectivity, 2)
+      connectivity(:, before + 1:n) = pieces%groups(g)%connectivity
+      material(before + 1:n) = pieces%groups(g)%material
+      npoint(before + 1:n) = pieces%groups(g)%npoint
+      before = n
+    end do
+    call set_up_mesh(pieces%nodes, connectivity, material, npoint, pieces%axisymmetric, mesh)
+  end subroutine mesh_of
+
+  !> Variables of all groups of some kinds, each name once, with its first row in a table of them all.
+  pure subroutine list_variables(groups, kinds_taken, variables, error)
+    type(state_group_t), intent(in) :: groups(:)
+    character(len=*), intent(in) :: kinds_taken(:)
+    type(state_variable_t), allocatable, intent(out) :: variables(:)
+    type(error_t), allocatable, intent(out) :: error
+    type(state_variable_t), allocatable :: list(:)
+    integer :: g, v, k, n, most
+
+    most = 0
+    do g = 1, size(groups)
+      most = most + size(groups(g)%variables)
+    end do
+    allocate (list(most))
+    n = 0
+    do g = 1, size(groups)
+      do v = 1, size(groups(g)%variables)
+        associate (variable => groups(g)%variables(v))
+          if (.not. any(kinds_taken == variable%transfer)) cycle
+          k = find_variable(list(:n), variable%name)
+          if (k == 0) then
+            n = n + 1
+            list(n) = variable
+            list(n)%first = 1
+            if (n > 1) list(n)%first = list(n - 1)%first + list(n - 1)%ncomp
+          else if (list(k)%ncomp /= variable%ncomp .or. list(k)%transfer /= variable%transfer) then
+            call fail(error, exit_bug, 'state transfer: '//variable%name//' is declared as '//list(k)%transfer//' of ' &
+                      //to_text(list(k)%ncomp)//' and as '//variable%transfer//' of '//to_text(variable%ncomp)//' components')
+            return
+          end if
+        end associate
+      end do
+    end do
+    allocate (variables, source=list(:n))
+  end subroutine list_variables
+
+  !> Put the groups' values of the listed variables into one table (component, point); zero where a group has no such variable.
+  pure subroutine gather_states(groups, variables, table)
+    type(state_group_t), intent(in) :: groups(:)
+    type(state_variable_t), intent(in) :: variables(:)
+    real(wp), intent(out) :: table(:, :)
+    integer :: g, v, k, e, from, last, place
+
+    table = 0
+    place = 0
+    do g = 1, size(groups)
+      do v = 1, size(variables)
+        k = find_variable(groups(g)%variables, variables(v)%name)
+        if (k == 0) cycle
+        from = groups(g)%variables(k)%first
+        last = variables(v)%ncomp - 1
+        do e = 1, size(groups(g)%values, 3)
+          associate (points => table(:, place + (e - 1)*groups(g)%npoint + 1:place + e*groups(g)%npoint))
+            points(variables(v)%first:variables(v)%first + last, :) = groups(g)%values(from:from + last, :, e)
+          end associate
+        end do
+      end do
+      place = place + groups(g)%npoint*size(groups(g)%connectivity, 2)
+    end do
+  end subroutine gather_states
+
+  !> States of the groups from the table; what is not in the list, or in no old group of the number, starts at its declared value.
+  pure subroutine hand_out_states(old, variables, table, groups)
+    type(state_group_t), intent(in) :: old(:)
+    type(state_variable_t), intent(in) :: variables(:)
+    real(wp), intent(in) :: table(:, :)
+    type(state_group_t), intent(inout) :: groups(:)
+    integer :: g, v, k, e, from, last, place, n
+
+    place = 0
+    do g = 1, size(groups)
+      n = size(groups(g)%connectivity, 2)
+      if (allocated(groups(g)%values)) deallocate (groups(g)%values)
+      allocate (groups(g)%values(sum(groups(g)%variables%ncomp), groups(g)%npoint, n))
+      do v = 1, size(groups(g)%variables)
+        associate (variable => groups(g)%variables(v), npoint => groups(g)%npoint)
+          from = variable%first
+          last = variable%ncomp - 1
+          k = 0
+          if (is_known(old, groups(g)%material, variable%name)) k = find_variable(variables, variable%name)
+          if (k == 0) then
+            groups(g)%values(from:from + last, :, :) = variable%initial
+            cycle
+          end if
+          do e = 1, n
+            groups(g)%values(from:from + last, :, e) = table(variables(k)%first:variables(k)%first + last, &
+                                                             place + (e - 1)*npoint + 1:place + e*npoint)
+          end do
+        end associate
+      end do
+      place = place + groups(g)%npoint*n
+    end do
+  end subroutine hand_out_states
+
+  !> Every old group of the number has the variable.
+  pure function is_known(groups, material, name) result(yes)
+    type(state_group_t), intent(in) :: groups(:)
+    integer, intent(in) :: material
+    character(len=*), intent(in) :: name
+    logical :: yes
+    integer :: g
+
+    yes = .true.
+    do g = 1, size(groups)
+      if (groups(g)%material == material) yes = yes .and. find_variable(groups(g)%variables, name) > 0
+    end do
+  end function is_known
+
+end module state_pieces
