@@ -1,0 +1,65 @@
+!> The transfer family: how values at the integration points of a mesh go to the points of another one.
+module transfer_api
+  use errors, only: error_t, exit_input, fail
+  use kinds, only: wp
+  use text, only: to_text
+  use transfer_map, only: transfer_map_t
+  use transfer_mesh, only: transfer_mesh_t
+  implicit none
+  private
+  public :: transfer_t, transfer_options_t, transfer_weights_i, check_materials
+
+  type :: transfer_options_t
+    !> N of 1/R^N, and how many points it takes.
+    real(wp) :: exponent = 2.0_wp
+    integer :: nearest = 8
+    !> Points and degree (1 or 2) of moving least squares.
+    integer :: neighbours = 20
+    integer :: degree = 2
+    !> How far an element is prolonged beyond the contour, in halves of an element.
+    real(wp) :: outside = 0.5_wp
+  end type transfer_options_t
+
+  !> One method. Its place in the list is its number + 1.
+  type :: transfer_t
+    character(len=:), allocatable :: name, purpose
+    !> Number on the card.
+    integer :: number = 0
+    !> Degree of the fields that come through unchanged: 0 constant, 1 linear, 2 quadratic.
+    integer :: exact_degree = 0
+    procedure(transfer_weights_i), nopass, pointer :: weights => null()
+  end type transfer_t
+
+  abstract interface
+    !> Weights for new points, each of which takes from old points of its material only.
+    subroutine transfer_weights_i(mesh, options, points, material, map, error)
+      import :: error_t, transfer_map_t, transfer_mesh_t, transfer_options_t, wp
+      type(transfer_mesh_t), intent(in) :: mesh        !! the old one, its trees planted
+      type(transfer_options_t), intent(in) :: options
+      real(wp), intent(in) :: points(:, :)             !! (2, n) of the new mesh [length]
+      integer, intent(in) :: material(:)               !! (n)
+      type(transfer_map_t), intent(out) :: map
+      type(error_t), allocatable, intent(out) :: error
+    end subroutine transfer_weights_i
+  end interface
+
+contains
+
+  !> Every material of the new points must have points in the old mesh.
+  pure subroutine check_materials(mesh, material, error)
+    type(transfer_mesh_t), intent(in) :: mesh
+    integer, intent(in) :: material(:)
+    type(error_t), allocatable, intent(out) :: error
+    integer :: p
+
+    do p = 1, size(material)
+      if (material(p) >= 1 .and. material(p) <= mesh%nmaterial) then
+        if (mesh%point_trees(material(p))%n > 0) cycle
+      end if
+      call fail(error, exit_input, 'state transfer: material '//to_text(material(p)) &
+                //' is in the new mesh, but no element of the old mesh is made of it')
+      return
+    end do
+  end subroutine check_materials
+
+end module transfer_api

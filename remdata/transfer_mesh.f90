@@ -1,0 +1,95 @@
+!> A mesh as the state transfer sees it: elements, integration points with their volumes, and trees to find them by, all of them
+!> by material.
+module transfer_mesh
+  use box_tree, only: box_tree_t, plant_tree
+  use kinds, only: wp
+  use quadrature, only: square_rule
+  use shape_functions, only: quad8, quad8_side
+  implicit none
+  private
+  public :: transfer_mesh_t, set_up_mesh, plant_mesh_trees
+
+  type :: transfer_mesh_t
+    !> Points of an element; point p of element e is number (e - 1) npoint + p.
+    integer :: npoint = 0
+    !> Materials are numbered 1 ... nmaterial.
+    integer :: nmaterial = 0
+    real(wp), allocatable :: nodes(:, :)         !! (2, nnode), where they are now [length]
+    integer, allocatable :: connectivity(:, :)   !! (8, nelem)
+    integer, allocatable :: material(:)          !! (nelem)
+    real(wp), allocatable :: points(:, :)        !! (2, npoint nelem) [length]
+    real(wp), allocatable :: volumes(:)          !! (npoint nelem), per unit thickness, or per radian [length^2 or length^3]
+    integer, allocatable :: point_material(:)    !! (npoint nelem)
+    type(box_tree_t), allocatable :: point_trees(:), element_trees(:)  !! (nmaterial), where they were planted
+  end type transfer_mesh_t
+
+contains
+
+  !> Points and volumes of 8-node elements with a Gauss rule of `npoint` points.
+  pure subroutine set_up_mesh(nodes, connectivity, material, npoint, axisymmetric, mesh)
+    real(wp), intent(in) :: nodes(:, :)
+    integer, intent(in) :: connectivity(:, :), material(:), npoint
+    logical, intent(in) :: axisymmetric          !! the radius is x
+    type(transfer_mesh_t), intent(out) :: mesh
+    real(wp), allocatable :: xi(:, :), weight(:)
+    real(wp) :: phi(8), dphi(2, 8), x(2, 8), jacobian(2, 2)
+    integer :: e, p, k
+
+    mesh%npoint = npoint
+    mesh%nmaterial = maxval(material)
+    allocate (mesh%nodes, source=nodes)
+    allocate (mesh%connectivity, source=connectivity)
+    allocate (mesh%material, source=material)
+    allocate (mesh%points(2, npoint*size(material)), mesh%volumes(npoint*size(material)), &
+              mesh%point_material(npoint*size(material)))
+    call square_rule(npoint, xi, weight)
+    do p = 1, npoint
+      call quad8(xi(1, p), xi(2, p), phi, dphi)
+      do e = 1, size(material)
+        k = (e - 1)*npoint + p
+        x = nodes(:, connectivity(:, e))
+        mesh%points(:, k) = matmul(x, phi)
+        jacobian = matmul(x, transpose(dphi))
+        mesh%volumes(k) = weight(p)*(jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1))
+        if (axisymmetric) mesh%volumes(k) = mesh%volumes(k)*mesh%points(1, k)
+        mesh%point_material(k) = material(e)
+      end do
+    end do
+  end subroutine set_up_mesh
+
+  !> Trees of points and of elements, one of each a material. Only the old mesh needs them.
+  pure subroutine plant_mesh_trees(mesh)
+    type(transfer_mesh_t), intent(inout) :: mesh
+    real(wp), allocatable :: boxes(:, :), point_boxes(:, :)
+    integer :: e, m, i
+
+    if (allocated(mesh%point_trees)) deallocate (mesh%point_trees, mesh%element_trees)
+    allocate (boxes(4, size(mesh%material)), point_boxes(4, size(mesh%volumes)))
+    allocate (mesh%point_trees(mesh%nmaterial), mesh%element_trees(mesh%nmaterial))
+    do e = 1, size(mesh%material)
+      boxes(:, e) = box_of(mesh%nodes(:, mesh%connectivity(:, e)))
+    end do
+    point_boxes(1:2, :) = mesh%points
+    point_boxes(3:4, :) = mesh%points
+    do m = 1, mesh%nmaterial
+      call plant_tree(boxes, pack([(i, i=1, size(mesh%material))], mesh%material == m), mesh%element_trees(m))
+      call plant_tree(point_boxes, pack([(i, i=1, size(mesh%volumes))], mesh%point_material == m), mesh%point_trees(m))
+    end do
+  end subroutine plant_mesh_trees
+
+  !> Box that holds an element with its bulging sides: a parabola stays in the triangle of its ends and of the point where the
+  !> tangents at its ends meet, which is 2 middle - (first + last)/2.
+  pure function box_of(x) result(box)
+    real(wp), intent(in) :: x(2, 8)
+    real(wp) :: box(4), tip(2)
+    integer :: s
+
+    box = [minval(x(:, 1:4), 2), maxval(x(:, 1:4), 2)]
+    do s = 1, 4
+      tip = 2*x(:, quad8_side(2, s)) - 0.5_wp*(x(:, quad8_side(1, s)) + x(:, quad8_side(3, s)))
+      box(1:2) = min(box(1:2), tip)
+      box(3:4) = max(box(3:4), tip)
+    end do
+  end function box_of
+
+end module transfer_mesh

@@ -1,0 +1,116 @@
+!> Method 1: moving least squares over the nearest integration points (generalised finite differences).
+!>
+!> Sources: P. Lancaster, K. Salkauskas, Math. Comput. 37 (1981) 141-158; T. Liszka, J. Orkisz, Comput. Struct. 11 (1980) 83-95.
+!> The weight of a neighbour is the quartic spline of T. Belytschko et al., Comput. Methods Appl. Mech. Eng. 139 (1996) 3-47,
+!> eq. 20; it vanishes at the nearest point left out, so that values do not jump as neighbours change.
+module transfer_moving_squares
+  use box_tree, only: nearest_items
+  use errors, only: error_t
+  use kinds, only: wp
+  use local_fit, only: fit_polynomial, max_terms, terms_of
+  use transfer_api, only: check_materials, transfer_options_t, transfer_t
+  use transfer_map, only: start_map, transfer_map_t
+  use transfer_mesh, only: transfer_mesh_t
+  implicit none
+  private
+  public :: transfer_moving_squares_row
+
+  !> Neighbours are doubled so often, where they do not determine the polynomial, before its degree is lowered: in a layer of flat
+  !> elements the nearest points lie on a line.
+  integer, parameter :: doublings = 2
+  !> Largest sum of absolute weights of a good fit: what a wrong value can become. Inside a mesh it is below 2, at a corner 4;
+  !> points all to one side of the new one would give much more.
+  real(wp), parameter :: most_amplified = 6.0_wp
+
+contains
+
+  function transfer_moving_squares_row() result(row)
+    type(transfer_t) :: row
+
+    row%name = 'SQUARES'
+    row%purpose = 'polynomial through the nearest points by moving least squares'
+    row%number = 1
+    row%exact_degree = 2
+    row%weights => weights
+  end function transfer_moving_squares_row
+
+  subroutine weights(mesh, options, points, material, map, error)
+    type(transfer_mesh_t), intent(in) :: mesh
+    type(transfer_options_t), intent(in) :: options
+    real(wp), intent(in) :: points(:, :)
+    integer, intent(in) :: material(:)
+    type(transfer_map_t), intent(out) :: map
+    type(error_t), allocatable, intent(out) :: error
+    type(transfer_map_t) :: wide
+    integer :: p, most, used(size(material))
+
+    call check_materials(mesh, material, error)
+    if (allocated(error)) return
+    most = options%neighbours*2**doublings
+    call start_map(spread(most, 1, size(material)), wide)
+    !$omp parallel do schedule(static)
+    do p = 1, size(material)
+      call weights_of_point(mesh, options, points(:, p), material(p), wide%source(wide%first(p):wide%first(p + 1) - 1), &
+                            wide%weight(wide%first(p):wide%first(p + 1) - 1), used(p), wide%degree(p))
+    end do
+    !$omp end parallel do
+    call start_map(used, map)
+    map%degree = wide%degree
+    do p = 1, size(material)
+      map%source(map%first(p):map%first(p + 1) - 1) = wide%source(wide%first(p):wide%first(p) + used(p) - 1)
+      map%weight(map%first(p):map%first(p + 1) - 1) = wide%weight(wide%first(p):wide%first(p) + used(p) - 1)
+    end do
+  end subroutine weights
+
+  !> The polynomial's value at its centre is its first coefficient. More points, then a lower degree, until they determine it.
+  pure subroutine weights_of_point(mesh, options, point, material, source, weight, used, degree)
+    type(transfer_mesh_t), intent(in) :: mesh
+    type(transfer_options_t), intent(in) :: options
+    real(wp), intent(in) :: point(2)
+    integer, intent(in) :: material
+    integer, intent(out) :: source(:)
+    real(wp), intent(out) :: weight(:)
+    integer, intent(out) :: used, degree
+    integer :: items(size(source) + 1), found, n, doubling
+    real(wp) :: squares(size(source) + 1), local(2, size(source)), fit(max_terms, size(source)), kernel(size(source)), reach
+    logical :: determined
+
+    do degree = options%degree, 0, -1
+      do doubling = 0, doublings
+        n = options%neighbours*2**doubling
+        call nearest_items(mesh%point_trees(material), point, found, items(:n + 1), squares(:n + 1))
+        ! the last one found sets the reach; where the material has no more points all of them count
+        if (found == n + 1) then
+          reach = sqrt(squares(n + 1))
+        else
+          n = found
+          reach = 2*sqrt(squares(n))
+        end if
+        if (.not. reach > 0) reach = 1
+        kernel(:n) = quartic(sqrt(squares(:n))/reach)
+        local(:, :n) = (mesh%points(:, items(:n)) - spread(point, 2, n))/reach
+        call fit_polynomial(local(:, :n), kernel(:n), terms_of(degree), fit(:, :n), determined)
+        if (determined .and. degree > 0) determined = sum(abs(fit(1, :n))) <= most_amplified
+        if (determined .or. found <= n) exit
+      end do
+      if (determined) exit
+    end do
+    used = n
+    source(:n) = items(:n)
+    weight(:n) = fit(1, :n)
+    if (determined) return
+    ! all points at the same distance: their mean
+    degree = 0
+    weight(:n) = 1/real(n, wp)
+  end subroutine weights_of_point
+
+  !> 1 at s = 0, 0 with its first two derivatives at s = 1.
+  pure elemental function quartic(s) result(w)
+    real(wp), intent(in) :: s
+    real(wp) :: w
+
+    w = 0
+    if (s < 1) w = 1 - 6*s**2 + 8*s**3 - 3*s**4
+  end function quartic
+
+end module transfer_moving_squares
