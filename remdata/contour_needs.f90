@@ -1,0 +1,182 @@
+!> Sizes that the geometry asks for, at points along contours and dies.
+!>
+!> A bend of radius R wants elements of R times the angle one element may turn by; a stretch of contact wants a number of
+!> elements across it. Along a chain the sizes grow by no more than the gradation.
+module contour_needs
+  use contour_chain, only: chain_t, joint_after, kind_end, kind_entry, turn_at
+  use graded_sizes, only: slope_of
+  use kinds, only: wp
+  use size_field, only: size_limits_t
+  use stretches, only: cross, length_between, point_at, stretch_t, tangent_at
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: geometry_wish_t, needs_of_chain, needs_of_die
+
+  type :: geometry_wish_t
+    !> Angle an element may turn by [radian].
+    real(wp) :: turn = 0.26_wp
+    !> Elements across a stretch of contact, 0: as they come.
+    integer :: across = 0
+  end type geometry_wish_t
+
+  !> Parts of a stretch that are looked at.
+  integer, parameter :: parts = 4
+
+contains
+
+  !> Needs (3, n) along a chain: x, y, size. Places that want the largest size or more are left out.
+  pure subroutine needs_of_chain(chain, wish, limits, needs)
+    type(chain_t), intent(in) :: chain
+    type(geometry_wish_t), intent(in) :: wish
+    type(size_limits_t), intent(in) :: limits
+    real(wp), allocatable, intent(out) :: needs(:, :)
+    real(wp) :: all(3, (parts + 1)*size(chain%stretches)), contact(size(chain%stretches)), bend, mean
+    integer :: k, i, last
+
+    call sizes_of_contact(chain, wish, contact)
+    do k = 1, size(chain%stretches)
+      i = (parts + 1)*(k - 1) + 1
+      last = merge(size(chain%stretches), k - 1, k == 1)
+      associate (s => chain%stretches(k))
+        all(1:2, i) = point_at(s, s%range(1))
+        all(3, i) = limits%largest
+        if (chain%kinds(k) == kind_end) then
+          ! between straight sides the bend is in their joints
+          bend = abs(turn_at(chain, k))
+          mean = 0.5_wp*(chain%arc(k) - chain%arc(k - 1) + chain%arc(last) - chain%arc(last - 1))
+          all(3, i) = size_of_bend(mean, bend, wish, limits)
+        end if
+        call sizes_of_stretch(s, wish, limits, all(:, i + 1:i + parts))
+        all(3, i:i + parts) = min(all(3, i:i + parts), contact(k))
+      end associate
+    end do
+    call grade_along(slope_of(limits%gradation), all)
+    call keep_needs(limits, all, needs)
+  end subroutine needs_of_chain
+
+  !> Needs (3, n) of the bends of a die. They count where the contour is near, for sizes grow with distance.
+  pure subroutine needs_of_die(pieces, wish, limits, needs)
+    type(stretch_t), intent(in) :: pieces(:)   !! where the die stands
+    type(geometry_wish_t), intent(in) :: wish
+    type(size_limits_t), intent(in) :: limits
+    real(wp), allocatable, intent(out) :: needs(:, :)
+    real(wp) :: all(3, parts*size(pieces))
+    integer :: k
+
+    do k = 1, size(pieces)
+      call sizes_of_stretch(pieces(k), wish, limits, all(:, parts*(k - 1) + 1:parts*k))
+    end do
+    call keep_needs(limits, all, needs)
+  end subroutine needs_of_die
+
+  pure subroutine keep_needs(limits, all, needs)
+    type(size_limits_t), intent(in) :: limits
+    real(wp), intent(in) :: all(:, :)
+    real(wp), allocatable, intent(out) :: needs(:, :)
+    integer :: i
+
+    needs = all(:, pack([(i, i=1, size(all, 2))], all(3, :) < limits%largest))
+    needs(3, :) = max(needs(3, :), limits%smallest)
+  end subroutine keep_needs
+
+  !> Sizes in the middles of parts of a stretch, by what the tangent turns over each.
+  pure subroutine sizes_of_stretch(stretch, wish, limits, sizes)
+    type(stretch_t), intent(in) :: stretch
+    type(geometry_wish_t), intent(in) :: wish
+    type(size_limits_t), intent(in) :: limits
+    real(wp), intent(out) :: sizes(:, :)   !! (3, parts)
+    real(wp) :: xi(2), before(2), after(2)
+    integer :: i
+
+    do i = 1, parts
+      xi = stretch%range(1) + (stretch%range(2) - stretch%range(1))*[i - 1, i]/parts
+      before = tangent_at(stretch, xi(1))
+      after = tangent_at(stretch, xi(2))
+      sizes(1:2, i) = point_at(stretch, 0.5_wp*(xi(1) + xi(2)))
+      sizes(3, i) = size_of_bend(length_between(stretch, xi(1), xi(2)), &
+                                 abs(atan2(cross(before, after), dot_product(before, after))), wish, limits)
+    end do
+  end subroutine sizes_of_stretch
+
+  pure function size_of_bend(length, bend, wish, limits) result(h)
+    real(wp), intent(in) :: length, bend
+    type(geometry_wish_t), intent(in) :: wish
+    type(size_limits_t), intent(in) :: limits
+    real(wp) :: h
+
+    h = limits%largest
+    if (wish%turn*length < h*bend) h = wish%turn*length/bend
+  end function size_of_bend
+
+  !> Size each stretch wants for the contact it belongs to: its length over the number across.
+  pure subroutine sizes_of_contact(chain, wish, contact)
+    type(chain_t), intent(in) :: chain
+    type(geometry_wish_t), intent(in) :: wish
+    real(wp), intent(out) :: contact(:)    !! (n)
+    real(wp) :: length
+    integer :: n, first, k, step, count
+
+    contact = huge(1.0_wp)
+    n = size(chain%stretches)
+    if (wish%across == 0) return
+    ! begin where a contact does, or anywhere when the die is all around
+    first = 1
+    do k = n, 1, -1
+      if (begins(k)) first = k
+    end do
+    step = 0
+    do while (step < n)
+      length = 0
+      count = 0
+      do
+        k = mod(first + step + count - 1, n) + 1
+        length = length + chain%arc(k) - chain%arc(k - 1)
+        count = count + 1
+        if (step + count == n) exit
+        if (begins(joint_after(chain, k))) exit
+      end do
+      do k = step, step + count - 1
+        associate (one => mod(first + k - 1, n) + 1)
+          if (chain%stretches(one)%die > 0) contact(one) = length/wish%across
+        end associate
+      end do
+      step = step + count
+    end do
+
+  contains
+
+    !> Whether a contact, or a free part, begins with a stretch.
+    pure function begins(k) result(yes)
+      integer, intent(in) :: k
+      logical :: yes
+      integer :: last
+
+      last = merge(n, k - 1, k == 1)
+      yes = chain%stretches(k)%die /= chain%stretches(last)%die .or. chain%kinds(k) == kind_entry
+    end function begins
+
+  end subroutine sizes_of_contact
+
+  !> Twice around in both directions: what begins anywhere has then been everywhere.
+  pure subroutine grade_along(slope, sizes)
+    real(wp), intent(in) :: slope
+    real(wp), intent(inout) :: sizes(:, :)
+    integer :: i, j, n
+
+    n = size(sizes, 2)
+    do i = 1, 2*n
+      j = mod(i - 1, n) + 1
+      associate (next => mod(i, n) + 1)
+        sizes(3, next) = min(sizes(3, next), sizes(3, j) + slope*length_of(sizes(1:2, next) - sizes(1:2, j)))
+      end associate
+    end do
+    do i = 2*n, 1, -1
+      j = mod(i, n) + 1
+      associate (next => mod(i - 1, n) + 1)
+        sizes(3, next) = min(sizes(3, next), sizes(3, j) + slope*length_of(sizes(1:2, next) - sizes(1:2, j)))
+      end associate
+    end do
+  end subroutine grade_along
+
+end module contour_needs

@@ -1,0 +1,259 @@
+!> The sides of zones as curves walked by length, and nodes along them where 1/h is shared out evenly.
+!>
+!> A side along the contour is broken where the contour has a corner or contact begins or ends: these stay ends of elements.
+module side_curves
+  use contour_chain, only: chain_length, chain_t, joint_after, kind_corner, kind_entry, kind_exit, place_at_arc, place_t
+  use kinds, only: wp
+  use size_field, only: size_at, size_field_t
+  use stretches, only: length_between, point_at, straight, stretch_t, tangent_at, xi_at_length
+  use vectors, only: length_of
+  use zones, only: arc_along, coordinates_of, exact_point, follows_contour, layout_t, on_chain, runs_curved, side_t
+  implicit none
+  private
+  public :: curve_t, draw_side, curve_point, measure_density, divide_curve
+
+  type :: curve_t
+    integer :: chain = 0
+    !> Arc length on the chain where it begins [length].
+    real(wp) :: start = 0.0_wp
+    !> Straight line or parabola of a side inside.
+    type(stretch_t) :: line
+    real(wp) :: ends(2, 2) = 0.0_wp        !! [length]
+    real(wp) :: length = 0.0_wp            !! [length]
+    !> Lengths where elements must end, both ends of the curve among them (0:npart).
+    real(wp), allocatable :: breaks(:)
+    !> Integral of 1/h: at lengths `at`, with breaks among them, `count` elements from the start.
+    real(wp), allocatable :: at(:), count(:)
+  end type curve_t
+
+  !> Breaks that are closer than this share of a chain are one, and so are an entry and a corner.
+  real(wp), parameter :: same = 1.0e-9_wp
+  !> Entry and exit leave no element shorter than this share of the wanted size beside another break.
+  real(wp), parameter :: least_share = 0.1_wp
+  !> 1/h is looked at twice in an element, and no less and no more often along a part than this.
+  integer, parameter :: fewest = 8, most = 4000
+  !> Neighbours on either hand of a break are brought closer by this many passes.
+  integer, parameter :: evening_passes = 20
+
+contains
+
+  !> The curve of a side, with its breaks.
+  pure subroutine draw_side(chains, layout, side, field, curve)
+    type(chain_t), intent(in) :: chains(:)
+    type(layout_t), intent(in) :: layout
+    type(side_t), intent(in) :: side
+    type(size_field_t), intent(in) :: field
+    type(curve_t), intent(out) :: curve
+    real(wp) :: arc(2)
+    integer :: i
+
+    do i = 1, 2
+      curve%ends(:, i) = coordinates_of(chains, layout%points(side%points(i)))
+    end do
+    if (side%form == follows_contour) then
+      curve%chain = side%chain
+      arc = arc_along(chains, layout, side)
+      curve%start = arc(1)
+      curve%length = arc(2) - arc(1)
+      call find_breaks(chains(side%chain), field, layout%zones(side%zones(1))%material, curve)
+      return
+    end if
+    curve%line = straight(curve%ends(:, 1), curve%ends(:, 2))
+    if (side%form == runs_curved) curve%line%points(:, 2) = side%middle
+    curve%length = length_between(curve%line, -1.0_wp, 1.0_wp)
+    allocate (curve%breaks(0:1), source=[0.0_wp, curve%length])
+  end subroutine draw_side
+
+  !> Corners between the ends of the curve, then entries and exits that are not too close to others.
+  pure subroutine find_breaks(chain, field, material, curve)
+    type(chain_t), intent(in) :: chain
+    type(size_field_t), intent(in) :: field
+    integer, intent(in) :: material
+    type(curve_t), intent(inout) :: curve
+    real(wp) :: found(0:size(chain%stretches) + 1), s, apart
+    integer :: k, n, pass, i
+
+    found(0:1) = [0.0_wp, curve%length]
+    n = 1
+    do pass = 1, 2
+      do k = 1, size(chain%stretches)
+        if (pass == 1 .and. chain%kinds(k) /= kind_corner) cycle
+        if (pass == 2 .and. chain%kinds(k) /= kind_entry .and. chain%kinds(k) /= kind_exit) cycle
+        s = modulo(chain%arc(k - 1) - curve%start, chain_length(chain))
+        if (s >= curve%length) cycle
+        apart = same*chain_length(chain)
+        if (pass == 2) apart = max(apart, least_share*size_at(field, material, &
+                                                              point_at(chain%stretches(k), chain%stretches(k)%range(1))))
+        if (minval(abs(found(:n) - s)) <= apart) cycle
+        i = count(found(:n) < s)
+        found(i + 1:n + 1) = found(i:n)
+        found(i) = s
+        n = n + 1
+      end do
+    end do
+    allocate (curve%breaks(0:n), source=found(0:n))
+  end subroutine find_breaks
+
+  !> Point at a length from the start [length]; on a chain also its place. The ends are exactly those of the side.
+  pure subroutine curve_point(chains, curve, s, x, place)
+    type(chain_t), intent(in) :: chains(:)
+    type(curve_t), intent(in) :: curve
+    real(wp), intent(in) :: s
+    real(wp), intent(out) :: x(2)
+    type(place_t), intent(out) :: place
+
+    if (curve%chain > 0) then
+      place = place_at_arc(chains(curve%chain), curve%start + s)
+      ! a break is the start of a stretch, not the last bit of the one before
+      associate (chain => chains(curve%chain))
+        if (abs(chain%arc(place%stretch) - modulo(curve%start + s, chain_length(chain))) <= same*chain_length(chain)) then
+          place%stretch = joint_after(chain, place%stretch)
+          place%xi = chain%stretches(place%stretch)%range(1)
+        end if
+      end associate
+      x = on_chain(chains(curve%chain), place)
+    else if (.not. s > 0) then
+      x = curve%ends(:, 1)
+    else if (.not. s < curve%length) then
+      x = curve%ends(:, 2)
+    else
+      x = exact_point(curve%line, xi_at_length(curve%line, s))
+    end if
+  end subroutine curve_point
+
+  !> Integrate 1/h along the curve by the trapezoidal rule, in steps of half the size that is wanted there.
+  pure subroutine measure_density(chains, field, material, curve)
+    type(chain_t), intent(in) :: chains(:)
+    type(size_field_t), intent(in) :: field
+    integer, intent(in) :: material
+    type(curve_t), intent(inout) :: curve
+    real(wp), allocatable :: at(:), count(:)
+    real(wp) :: h, h_next, s, step, part, x(2)
+    type(place_t) :: place
+    integer :: p, n
+
+    n = (most + 1)*ubound(curve%breaks, 1)
+    allocate (at(0:n), count(0:n))
+    at(0) = 0
+    count(0) = 0
+    n = 0
+    call curve_point(chains, curve, 0.0_wp, x, place)
+    h = size_at(field, material, x)
+    do p = 1, ubound(curve%breaks, 1)
+      part = curve%breaks(p) - curve%breaks(p - 1)
+      do
+        step = min(max(0.5_wp*h, part/most), part/fewest)
+        s = at(n) + step
+        ! no crumb is left before the break
+        if (s + 0.5_wp*step > curve%breaks(p)) s = curve%breaks(p)
+        call curve_point(chains, curve, s, x, place)
+        h_next = size_at(field, material, x)
+        n = n + 1
+        at(n) = s
+        count(n) = count(n - 1) + 0.5_wp*(s - at(n - 1))*(1/h + 1/h_next)
+        h = h_next
+        if (.not. s < curve%breaks(p)) exit
+      end do
+    end do
+    allocate (curve%at(0:n), source=at(0:n))
+    allocate (curve%count(0:n), source=count(0:n))
+  end subroutine measure_density
+
+  !> Lengths of the n + 1 ends of n elements (0:n): each part gets its share of them, at least one.
+  pure subroutine divide_curve(curve, gradation, n, ends)
+    type(curve_t), intent(in) :: curve
+    real(wp), intent(in) :: gradation
+    integer, intent(in) :: n                !! not less than there are parts
+    real(wp), intent(out) :: ends(0:)
+    integer :: shares(ubound(curve%breaks, 1)), p, k, i
+    real(wp) :: need(ubound(curve%breaks, 1)), from, to
+
+    do p = 1, size(need)
+      from = count_at(curve, curve%breaks(p - 1))
+      need(p) = count_at(curve, curve%breaks(p)) - from
+    end do
+    shares = 1
+    do k = size(need) + 1, n
+      p = maxloc(need/shares, 1)
+      shares(p) = shares(p) + 1
+    end do
+    k = 0
+    ends(0) = 0
+    do p = 1, size(need)
+      from = count_at(curve, curve%breaks(p - 1))
+      to = count_at(curve, curve%breaks(p))
+      do i = 1, shares(p) - 1
+        ends(k + i) = length_at(curve, from + (to - from)*i/shares(p))
+      end do
+      k = k + shares(p)
+      ends(k) = curve%breaks(p)
+    end do
+    if (size(need) > 1) call even_out(shares, gradation, ends(0:n))
+  end subroutine divide_curve
+
+  !> Where whole numbers leave a jump at a break, sizes are drawn toward the geometric mean of their neighbours', in each part
+  !> with its length kept. A geometric progression, the grading that is wanted, is left as it is.
+  pure subroutine even_out(shares, gradation, ends)
+    integer, intent(in) :: shares(:)
+    real(wp), intent(in) :: gradation
+    real(wp), intent(inout) :: ends(0:)
+    real(wp) :: h(ubound(ends, 1)), mean(ubound(ends, 1)), whole
+    integer :: pass, p, k, i, n
+
+    n = size(h)
+    do pass = 1, evening_passes
+      h = ends(1:) - ends(:n - 1)
+      if (maxval(max(h(2:)/h(:n - 1), h(:n - 1)/h(2:))) <= gradation) return
+      mean = h
+      mean(2:n - 1) = sqrt(h(2:n - 1)*sqrt(h(:n - 2)*h(3:)))
+      mean(1) = h(1)**0.75_wp*h(2)**0.25_wp
+      mean(n) = h(n)**0.75_wp*h(n - 1)**0.25_wp
+      k = 0
+      do p = 1, size(shares)
+        whole = ends(k + shares(p)) - ends(k)
+        mean(k + 1:k + shares(p)) = mean(k + 1:k + shares(p))*whole/sum(mean(k + 1:k + shares(p)))
+        do i = k + 1, k + shares(p) - 1
+          ends(i) = ends(i - 1) + mean(i)
+        end do
+        k = k + shares(p)
+      end do
+    end do
+  end subroutine even_out
+
+  !> Elements from the start to a length.
+  pure function count_at(curve, s) result(n)
+    type(curve_t), intent(in) :: curve
+    real(wp), intent(in) :: s
+    real(wp) :: n
+
+    n = between(curve%at, curve%count, s)
+  end function count_at
+
+  pure function length_at(curve, n) result(s)
+    type(curve_t), intent(in) :: curve
+    real(wp), intent(in) :: n
+    real(wp) :: s
+
+    s = between(curve%count, curve%at, n)
+  end function length_at
+
+  !> Straight between the values of a table with growing arguments.
+  pure function between(argument, value, x) result(y)
+    real(wp), intent(in) :: argument(0:), value(0:), x
+    real(wp) :: y
+    integer :: low, high, middle
+
+    low = 0
+    high = ubound(argument, 1)
+    do while (high - low > 1)
+      middle = (low + high)/2
+      if (argument(middle) <= x) then
+        low = middle
+      else
+        high = middle
+      end if
+    end do
+    y = value(low) + (value(high) - value(low))*(x - argument(low))/(argument(high) - argument(low))
+  end function between
+
+end module side_curves

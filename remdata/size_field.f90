@@ -1,0 +1,142 @@
+!> The size of element that is wanted at a point.
+!>
+!> On the old mesh: from the error of each of its elements, h (limit/error)^(1/p), as values at its corners; around points of need
+!> (a bend of the contour, a contact): the size there, growing with the distance. Between smallest and largest, and from one
+!> element to the next by no more than the gradation.
+module size_field
+  use box_tree, only: box_tree_t, nearest_items, plant_tree
+  use graded_sizes, only: grade, slope_of
+  use kinds, only: wp
+  use locate_point, only: locate, location_t => place_t
+  use shape_functions, only: quad4
+  use transfer_mesh, only: plant_mesh_trees, set_up_mesh, transfer_mesh_t
+  implicit none
+  private
+  public :: size_limits_t, size_field_t, old_mesh_t, wanted_size, set_up_sizes, size_at
+
+  type :: size_limits_t
+    real(wp) :: smallest = 0.0_wp        !! [length]
+    real(wp) :: largest = sqrt(huge(1.0_wp))   !! [length]
+    !> Largest ratio of an element to its neighbour.
+    real(wp) :: gradation = 1.5_wp
+  end type size_limits_t
+
+  !> The mesh before, and the size wanted in place of each of its elements.
+  type :: old_mesh_t
+    real(wp), allocatable :: nodes(:, :)         !! (2, nnode) where they are now [length]
+    integer, allocatable :: connectivity(:, :)   !! (8, nelem)
+    integer, allocatable :: material(:)          !! (nelem) from 1
+    real(wp), allocatable :: wanted(:)           !! (nelem) [length]
+  end type old_mesh_t
+
+  type :: size_field_t
+    type(size_limits_t) :: limits
+    logical :: has_mesh = .false.
+    type(transfer_mesh_t) :: mesh
+    real(wp), allocatable :: sizes(:)            !! (nnode) at corners of the old mesh [length]
+    real(wp), allocatable :: needs(:, :)         !! (3, n) x, y, size [length]
+    type(box_tree_t) :: need_tree
+  end type size_field_t
+
+  !> As many of the nearest needs are asked: both neighbours on a contour and on the one it lies on, with one to spare.
+  integer, parameter :: asked = 6
+
+contains
+
+  !> Size at which the error becomes its limit when it goes with size to the power `order`; any size where there is no error.
+  pure elemental function wanted_size(size_now, error, limit, order) result(wanted)
+    real(wp), intent(in) :: size_now   !! [length]
+    real(wp), intent(in) :: error, limit, order
+    real(wp) :: wanted
+
+    wanted = huge(1.0_wp)
+    if (error > 0) wanted = size_now*exp(min(log(limit/error)/order, 0.25_wp*log(huge(1.0_wp))))
+  end function wanted_size
+
+  !> The field of an old mesh and of needs; for a first mesh there is no old one.
+  pure subroutine set_up_sizes(limits, needs, field, old)
+    type(size_limits_t), intent(in) :: limits
+    real(wp), intent(in) :: needs(:, :)                 !! (3, n) x, y, size [length]
+    type(size_field_t), intent(out) :: field
+    type(old_mesh_t), intent(in), optional :: old
+    integer :: i
+
+    field%limits = limits
+    allocate (field%needs, source=needs)
+    call plant_tree(needs([1, 2, 1, 2], :), [(i, i=1, size(needs, 2))], field%need_tree)
+    if (.not. present(old)) return
+    field%has_mesh = .true.
+    call set_up_mesh(old%nodes, old%connectivity, old%material, 1, .false., field%mesh)
+    call plant_mesh_trees(field%mesh)
+    call sizes_of_corners(limits, old, field%sizes)
+    do i = 1, size(field%sizes)
+      field%sizes(i) = min(field%sizes(i), size_by_needs(field, old%nodes(:, i)))
+    end do
+    call grade(old%nodes, old%connectivity, slope_of(limits%gradation), field%sizes)
+  end subroutine set_up_sizes
+
+  !> Geometric mean of the sizes wanted around a corner.
+  pure subroutine sizes_of_corners(limits, old, sizes)
+    type(size_limits_t), intent(in) :: limits
+    type(old_mesh_t), intent(in) :: old
+    real(wp), allocatable, intent(out) :: sizes(:)
+    integer :: meeting(size(old%nodes, 2))
+    integer :: e
+
+    allocate (sizes(size(old%nodes, 2)))
+    sizes = 0
+    meeting = 0
+    do e = 1, size(old%wanted)
+      associate (corners => old%connectivity(1:4, e))
+        sizes(corners) = sizes(corners) + log(within(limits, old%wanted(e)))
+        meeting(corners) = meeting(corners) + 1
+      end associate
+    end do
+    sizes = merge(exp(sizes/max(meeting, 1)), limits%largest, meeting > 0)
+  end subroutine sizes_of_corners
+
+  !> Size wanted at a point of a material [length].
+  pure function size_at(field, material, x) result(h)
+    type(size_field_t), intent(in) :: field
+    integer, intent(in) :: material
+    real(wp), intent(in) :: x(2)
+    real(wp) :: h
+    type(location_t) :: place
+    real(wp) :: phi(4)
+
+    h = size_by_needs(field, x)
+    if (field%has_mesh) then
+      call locate(field%mesh, material, x, 0.0_wp, place)
+      if (place%element > 0) then
+        call quad4(place%xi(1), place%xi(2), phi)
+        h = min(h, dot_product(phi, field%sizes(field%mesh%connectivity(1:4, place%element))))
+      end if
+    end if
+    h = within(field%limits, h)
+  end function size_at
+
+  !> Smallest size the nearest needs allow.
+  pure function size_by_needs(field, x) result(h)
+    type(size_field_t), intent(in) :: field
+    real(wp), intent(in) :: x(2)
+    real(wp) :: h
+    real(wp) :: squares(asked)
+    integer :: items(asked), found, i
+
+    h = field%limits%largest
+    if (field%need_tree%n == 0) return
+    call nearest_items(field%need_tree, x, found, items, squares)
+    do i = 1, found
+      h = min(h, field%needs(3, items(i)) + slope_of(field%limits%gradation)*sqrt(squares(i)))
+    end do
+  end function size_by_needs
+
+  pure function within(limits, h) result(kept)
+    type(size_limits_t), intent(in) :: limits
+    real(wp), intent(in) :: h
+    real(wp) :: kept
+
+    kept = min(max(h, limits%smallest), limits%largest)
+  end function within
+
+end module size_field

@@ -1,0 +1,146 @@
+!> Smoothing of the ends of elements of all zones.
+!>
+!> Each zone first by itself, from a coarse grid to its own; then all together, where the sides between zones move too and
+!> lose the bends that lines would have there. Contours, corners of zones and sides between materials stay.
+module zone_lines
+  use grid_lines, only: interpolate_inside, relaxed, smooth_inside
+  use kinds, only: wp
+  use size_field, only: size_at, size_field_t
+  use zone_divisions, only: division_t
+  use zone_numbers, only: ends_of_side, ends_of_zone, numbers_t, row_beside
+  use zones, only: layout_t
+  implicit none
+  private
+  public :: interpolate_zones, smooth_zones
+
+contains
+
+  !> Ends of elements inside zones, from those on the sides.
+  pure subroutine interpolate_zones(layout, division, numbers, x)
+    type(layout_t), intent(in) :: layout
+    type(division_t), intent(in) :: division
+    type(numbers_t), intent(in) :: numbers
+    real(wp), intent(inout) :: x(:, :)   !! (2, nnode) [length]
+    integer, allocatable :: grid(:, :)
+    real(wp), allocatable :: inside(:, :, :)
+    integer :: z
+
+    do z = 1, size(layout%zones)
+      call ends_of_zone(layout, division, numbers, z, grid)
+      call gather(grid, x, inside)
+      call interpolate_inside(inside)
+      call scatter(grid, inside, x)
+    end do
+  end subroutine interpolate_zones
+
+  pure subroutine smooth_zones(layout, division, numbers, field, passes, x)
+    type(layout_t), intent(in) :: layout
+    type(division_t), intent(in) :: division
+    type(numbers_t), intent(in) :: numbers
+    type(size_field_t), intent(in) :: field
+    integer, intent(in) :: passes
+    real(wp), intent(inout) :: x(:, :)   !! (2, nnode) [length]
+    integer, allocatable :: grid(:, :), around(:, :)
+    real(wp), allocatable :: inside(:, :, :), density(:, :)
+    real(wp) :: log_density(numbers%nend), control(2, numbers%nend)
+    logical :: known(numbers%nend)
+    integer :: z, i, j, pass, k, n
+
+    known = .false.
+    allocate (around(9, numbers%nend))
+    n = 0
+    do z = 1, size(layout%zones)
+      call ends_of_zone(layout, division, numbers, z, grid)
+      allocate (density(0:ubound(grid, 1), 0:ubound(grid, 2)))
+      do j = 0, ubound(grid, 2)
+        do i = 0, ubound(grid, 1)
+          k = grid(i, j)
+          if (.not. known(k)) log_density(k) = -log(size_at(field, layout%zones(z)%material, x(:, k)))
+          known(k) = .true.
+          density(i, j) = log_density(k)
+        end do
+      end do
+      call gather(grid, x, inside)
+      call smooth_inside(density, passes, inside)
+      call scatter(grid, inside, x)
+      call list_inside(grid, around, n)
+      deallocate (density)
+    end do
+    call list_between(layout, division, numbers, around, n)
+    if (size(layout%zones) == 1) return
+    do k = 1, n
+      control(:, k) = 0.5_wp*(log_density(around([6, 8], k)) - log_density(around([4, 2], k)))
+    end do
+    do pass = 1, passes
+      do k = 1, n
+        x(:, around(5, k)) = relaxed(x(:, around(:, k)), control(1, k), control(2, k))
+      end do
+    end do
+  end subroutine smooth_zones
+
+  !> The points inside a zone with the eight around each, row by row.
+  pure subroutine list_inside(grid, around, n)
+    integer, intent(in) :: grid(0:, 0:)
+    integer, intent(inout) :: around(:, :), n
+    integer :: i, j
+
+    do j = 1, ubound(grid, 2) - 1
+      do i = 1, ubound(grid, 1) - 1
+        n = n + 1
+        around(:, n) = reshape(grid(i - 1:i + 1, j - 1:j + 1), [9])
+      end do
+    end do
+  end subroutine list_inside
+
+  !> The points inside sides that move: the row to the right of the side, the side, the row to its left.
+  pure subroutine list_between(layout, division, numbers, around, n)
+    type(layout_t), intent(in) :: layout
+    type(division_t), intent(in) :: division
+    type(numbers_t), intent(in) :: numbers
+    integer, intent(inout) :: around(:, :), n
+    integer, allocatable :: grid(:, :), rows(:, :)
+    integer :: s, k, m
+
+    do s = 1, size(layout%sides)
+      associate (side => layout%sides(s))
+        if (.not. side%moves) cycle
+        m = division%count(s)
+        allocate (rows(0:m, 3))
+        rows(:, 2) = ends_of_side(layout, division, numbers, s)
+        call ends_of_zone(layout, division, numbers, side%zones(1), grid)
+        rows(:, 3) = row_beside(grid, side%local(1))
+        call ends_of_zone(layout, division, numbers, side%zones(2), grid)
+        rows(m:0:-1, 1) = row_beside(grid, side%local(2))
+        do k = 1, m - 1
+          n = n + 1
+          around(:, n) = reshape(rows(k - 1:k + 1, :), [9])
+        end do
+        deallocate (rows)
+      end associate
+    end do
+  end subroutine list_between
+
+  pure subroutine gather(grid, x, inside)
+    integer, intent(in) :: grid(0:, 0:)
+    real(wp), intent(in) :: x(:, :)
+    real(wp), allocatable, intent(out) :: inside(:, :, :)
+    integer :: j
+
+    allocate (inside(2, 0:ubound(grid, 1), 0:ubound(grid, 2)))
+    do j = 0, ubound(grid, 2)
+      inside(:, :, j) = x(:, grid(:, j))
+    end do
+  end subroutine gather
+
+  pure subroutine scatter(grid, inside, x)
+    integer, intent(in) :: grid(0:, 0:)
+    real(wp), intent(in) :: inside(:, 0:, 0:)
+    real(wp), intent(inout) :: x(:, :)
+    integer :: j
+
+    do j = 1, ubound(grid, 2) - 1
+      x(:, grid(1:ubound(grid, 1) - 1, j)) = inside(:, 1:ubound(grid, 1) - 1, j)
+    end do
+  end subroutine scatter
+
+end module zone_lines

@@ -1,0 +1,203 @@
+!> Contours, zones and measures of quality for the tests of meshes of zones.
+module zone_cases
+  use contour_chain, only: chain_t, close_chain, closest_place, kind_end, place_t, point_on
+  use kinds, only: pi, wp
+  use quadrature, only: square_rule
+  use shape_functions, only: quad8, quad8_corner, quad8_side
+  use size_field, only: set_up_sizes, size_field_t, size_limits_t
+  use vectors, only: length_of
+  use zone_mesh, only: new_mesh_t
+  use zones, only: zone_point_t, zone_t
+  implicit none
+  private
+  public :: chain_of_points, polygon, circle, point_at_contour, point_inside, zone_of, uniform_field
+  public :: quality_t, quality_of, off_contour, area_of, shared_exactly
+
+  type :: quality_t
+    !> Smallest over Gauss points (3 x 3), corners and middles, over the largest of the element.
+    real(wp) :: least_jacobian = huge(1.0_wp)
+    !> Smallest sine between the sides of an element at a corner, with its sign.
+    real(wp) :: scaled_jacobian = huge(1.0_wp)
+    !> Farthest a middle node is from the half of its chord, as a share of the chord (1/6 leaves the middle third).
+    real(wp) :: off_middle = 0.0_wp
+  end type quality_t
+
+contains
+
+  !> A chain through ends and middles in turn, the part on its left.
+  pure function chain_of_points(x, corner_turn) result(chain)
+    real(wp), intent(in) :: x(:, :)   !! (2, 2n)
+    real(wp), intent(in) :: corner_turn
+    type(chain_t) :: chain
+    integer :: k, n
+
+    n = size(x, 2)/2
+    allocate (chain%stretches(n), chain%kinds(n))
+    do k = 1, n
+      chain%stretches(k)%points = x(:, [2*k - 1, 2*k, mod(2*k, 2*n) + 1])
+      chain%stretches(k)%middle = k
+    end do
+    chain%kinds = kind_end
+    call close_chain(corner_turn, chain)
+  end function chain_of_points
+
+  !> Straight sides between corners, each cut into `cuts`.
+  pure function polygon(corners, cuts) result(chain)
+    real(wp), intent(in) :: corners(:, :)
+    integer, intent(in) :: cuts
+    type(chain_t) :: chain
+    real(wp) :: x(2, 2*cuts*size(corners, 2))
+    integer :: c, i
+
+    do c = 1, size(corners, 2)
+      do i = 1, 2*cuts
+        x(:, 2*cuts*(c - 1) + i) = corners(:, c) + (corners(:, mod(c, size(corners, 2)) + 1) - corners(:, c)) &
+                                   *(i - 1)/(2*cuts)
+      end do
+    end do
+    chain = chain_of_points(x, 0.5_wp)
+  end function polygon
+
+  !> A full circle of `n` parabolas; a hole with a negative radius.
+  pure function circle(centre, radius, n) result(chain)
+    real(wp), intent(in) :: centre(2), radius
+    integer, intent(in) :: n
+    type(chain_t) :: chain
+    real(wp) :: x(2, 2*n), angle
+    integer :: i
+
+    do i = 1, 2*n
+      angle = sign(pi*(i - 1)/n, radius)
+      x(:, i) = centre + abs(radius)*[cos(angle), sin(angle)]
+    end do
+    chain = chain_of_points(x, 0.9_wp)
+  end function circle
+
+  !> The zone point of a chain closest to a target.
+  pure function point_at_contour(number, chain, target) result(point)
+    integer, intent(in) :: number
+    type(chain_t), intent(in) :: chain
+    real(wp), intent(in) :: target(2)
+    type(zone_point_t) :: point
+
+    point%chain = number
+    point%place = closest_place(chain, target)
+  end function point_at_contour
+
+  pure function point_inside(x) result(point)
+    real(wp), intent(in) :: x(2)
+    type(zone_point_t) :: point
+
+    point%x = x
+  end function point_inside
+
+  pure function zone_of(corners) result(zone)
+    integer, intent(in) :: corners(4)
+    type(zone_t) :: zone
+
+    zone%corners = corners
+  end function zone_of
+
+  pure function uniform_field(h) result(field)
+    real(wp), intent(in) :: h
+    type(size_field_t) :: field
+    type(size_limits_t) :: limits
+    real(wp) :: none(3, 0)
+
+    limits%largest = h
+    call set_up_sizes(limits, none, field)
+  end function uniform_field
+
+  pure function quality_of(mesh) result(quality)
+    type(new_mesh_t), intent(in) :: mesh
+    type(quality_t) :: quality
+    real(wp), allocatable :: xi(:, :), weight(:)
+    real(wp) :: phi(8, 17), dphi(2, 8, 17), x(2, 8), j(2, 2), det(17), chord(2), half(2)
+    integer :: p, e, s
+
+    call square_rule(9, xi, weight)
+    do p = 1, 9
+      call quad8(xi(1, p), xi(2, p), phi(:, p), dphi(:, :, p))
+    end do
+    do p = 1, 4
+      call quad8(quad8_corner(1, p), quad8_corner(2, p), phi(:, 9 + p), dphi(:, :, 9 + p))
+      xi(:, 1) = 0.5_wp*(quad8_corner(:, p) + quad8_corner(:, mod(p, 4) + 1))
+      call quad8(xi(1, 1), xi(2, 1), phi(:, 13 + p), dphi(:, :, 13 + p))
+    end do
+    do e = 1, size(mesh%connectivity, 2)
+      x = mesh%coordinates(:, mesh%connectivity(:, e))
+      do p = 1, 17
+        j = matmul(x, transpose(dphi(:, :, p)))
+        det(p) = j(1, 1)*j(2, 2) - j(1, 2)*j(2, 1)
+        if (p < 10 .or. p > 13) cycle
+        quality%scaled_jacobian = min(quality%scaled_jacobian, det(p)/(length_of(j(:, 1))*length_of(j(:, 2))))
+      end do
+      quality%least_jacobian = min(quality%least_jacobian, minval(det)/maxval(abs(det)))
+      do s = 1, 4
+        chord = x(:, quad8_side(3, s)) - x(:, quad8_side(1, s))
+        half = 0.5_wp*(x(:, quad8_side(1, s)) + x(:, quad8_side(3, s)))
+        quality%off_middle = max(quality%off_middle, &
+                                 abs(dot_product(x(:, quad8_side(2, s)) - half, chord))/dot_product(chord, chord))
+      end do
+    end do
+  end function quality_of
+
+  !> Farthest a node of the contour is from the chain it says it lies on, by a search that knows nothing of its place.
+  pure function off_contour(chains, mesh) result(distance)
+    type(chain_t), intent(in) :: chains(:)
+    type(new_mesh_t), intent(in) :: mesh
+    real(wp) :: distance
+    type(place_t) :: place
+    integer :: i, k
+
+    distance = 0
+    do i = 1, size(mesh%sides)
+      do k = 1, 3
+        associate (x => mesh%coordinates(:, mesh%sides(i)%nodes(k)), chain => chains(mesh%sides(i)%chain))
+          place = closest_place(chain, x)
+          distance = max(distance, length_of(x - point_on(chain, place)))
+        end associate
+      end do
+    end do
+  end function off_contour
+
+  !> Area of all elements, by 3 x 3 Gauss points, exact for parabolas.
+  pure function area_of(mesh) result(area)
+    type(new_mesh_t), intent(in) :: mesh
+    real(wp) :: area
+    real(wp), allocatable :: xi(:, :), weight(:)
+    real(wp) :: phi(8), dphi(2, 8), j(2, 2)
+    integer :: p, e
+
+    call square_rule(9, xi, weight)
+    area = 0
+    do p = 1, 9
+      call quad8(xi(1, p), xi(2, p), phi, dphi)
+      do e = 1, size(mesh%connectivity, 2)
+        j = matmul(mesh%coordinates(:, mesh%connectivity(:, e)), transpose(dphi))
+        area = area + weight(p)*(j(1, 1)*j(2, 2) - j(1, 2)*j(2, 1))
+      end do
+    end do
+  end function area_of
+
+  !> Whether the sides of elements that no other shares are those listed as contour, and no node stands alone.
+  pure function shared_exactly(mesh) result(yes)
+    type(new_mesh_t), intent(in) :: mesh
+    logical :: yes
+    integer :: owners(size(mesh%coordinates, 2)), ends(size(mesh%coordinates, 2)), e, i
+
+    owners = 0
+    ends = 0
+    do e = 1, size(mesh%connectivity, 2)
+      owners(mesh%connectivity(5:8, e)) = owners(mesh%connectivity(5:8, e)) + 1
+      ends(mesh%connectivity(1:4, e)) = ends(mesh%connectivity(1:4, e)) + 1
+    end do
+    yes = all(owners + ends > 0) .and. maxval(owners) <= 2 .and. count(owners == 1) == size(mesh%sides)
+    do i = 1, size(mesh%sides)
+      associate (side => mesh%sides(i))
+        yes = yes .and. owners(side%nodes(2)) == 1 .and. any(mesh%connectivity(5:8, side%element) == side%nodes(2))
+      end associate
+    end do
+  end function shared_exactly
+
+end module zone_cases
