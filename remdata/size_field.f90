@@ -66,7 +66,7 @@ contains
     call plant_tree(needs([1, 2, 1, 2], :), [(i, i=1, size(needs, 2))], field%need_tree)
     if (.not. present(old)) return
     field%has_mesh = .true.
-    call set_up_mesh(old%nodes, old%connectivity, old%material, 1, .false., field%mesh)
+    call set_up_mesh(old%nodes, old%connectivity, old%material, spread(1, 1, size(old%material)), .false., field%mesh)
     call plant_mesh_trees(field%mesh)
     call sizes_of_corners(limits, old, field%sizes)
     do i = 1, size(field%sizes)

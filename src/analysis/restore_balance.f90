@@ -111,12 +111,12 @@ contains
       if (allocated(balance%reason)) what = what//' ('//balance%reason//')'
       what = what//'; stage to blame: '//trim(merge('contact ', 'transfer', size(scene%dies) > 0 &
                                                     .and. balance%first_residual > large_residual))
-    else if (balance%iterations > scene%remeshing%most_iterations) then
-      what = to_text(balance%iterations)//' iterations to equilibrium, at most '//to_text(scene%remeshing%most_iterations) &
+    else if (balance%iterations > scene%remesher%most_iterations) then
+      what = to_text(balance%iterations)//' iterations to equilibrium, at most '//to_text(scene%remesher%most_iterations) &
              //'; stage to blame: transfer'
-    else if (force_change(balance) > scene%remeshing%force_change) then
+    else if (force_change(balance) > scene%remesher%force_change) then
       what = 'the force of a die changes by '//to_text(100*force_change(balance), 3)//' %, at most ' &
-             //to_text(100*scene%remeshing%force_change, 3)//' %; stage to blame: contact'
+             //to_text(100*scene%remesher%force_change, 3)//' %; stage to blame: contact'
     end if
     if (len(what) > 0) call fail(error, exit_no_convergence, 'mesh '//to_text(scene%generation)//' refused at step ' &
                                  //to_text(solution%step)//': '//what, &

@@ -7,7 +7,7 @@ module scene
   use materials, only: material_t
   use mesh, only: mesh_t
   use probes, only: probe_t
-  use remeshing, only: remeshing_t
+  use remesher_options, only: remesher_options_t
   use sections, only: section_drive_t
   use state_variables, only: state_variable_t
   use strategy, only: strategy_t
@@ -75,7 +75,7 @@ module scene
     type(nodal_force_t), allocatable :: forces(:)
     type(probe_t), allocatable :: probes(:)
     type(strategy_t) :: strategy
-    type(remeshing_t) :: remeshing
+    type(remesher_options_t) :: remesher
     type(effect_t), allocatable :: effects(:)
     !> Mesh generation, 1 for the deck's own mesh.
     integer :: generation = 1

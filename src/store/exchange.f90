@@ -14,7 +14,7 @@ module exchange
   use materials, only: material_t
   use pairs, only: pairs_t
   use remesh, only: remesh_t
-  use remeshing, only: remeshing_t
+  use remesher_options, only: remesher_options_t
   use scene, only: scene_t
   use state_variables, only: state_variable
   use solution, only: solution_t
@@ -71,50 +71,50 @@ contains
       call file%write(set_place(k)//'/nodes', scene%mesh%sides(k)%nodes)
     end do
     call file%write('mesh/ngroup', size(scene%groups))
-    call write_remeshing(file, scene%remeshing)
+    call write_remesher(file, scene%remesher)
   end subroutine write_mesh
 
   !> What the deck asks of the remesher.
-  subroutine write_remeshing(file, remeshing)
+  subroutine write_remesher(file, remesher)
     type(hdf5_file_t), intent(inout) :: file
-    type(remeshing_t), intent(in) :: remeshing
+    type(remesher_options_t), intent(in) :: remesher
 
-    call file%write('remeshing/wanted', merge(1, 0, remeshing%wanted))
-    call file%write('remeshing/transfer', [remeshing%transfer, remeshing%neighbours])
-    call file%write('remeshing/exponent', remeshing%exponent)
-    call file%write('remeshing/size', [remeshing%smallest, remeshing%largest])
-    call file%write('remeshing/strain_error', remeshing%strain_error)
-    call file%write('remeshing/count', [remeshing%most_elements, remeshing%across_contact])
-  end subroutine write_remeshing
+    call file%write('remesher/wanted', merge(1, 0, remesher%wanted))
+    call file%write('remesher/transfer', [remesher%transfer, remesher%neighbours])
+    call file%write('remesher/exponent', remesher%exponent)
+    call file%write('remesher/size', [remesher%smallest, remesher%largest])
+    call file%write('remesher/strain_error', remesher%strain_error)
+    call file%write('remesher/count', [remesher%most_elements, remesher%across_contact])
+  end subroutine write_remesher
 
-  subroutine read_remeshing(file, remeshing)
+  subroutine read_remesher(file, remesher)
     type(hdf5_file_t), intent(inout) :: file
-    type(remeshing_t), intent(out) :: remeshing
+    type(remesher_options_t), intent(out) :: remesher
     integer, allocatable :: numbers(:)
     real(wp), allocatable :: sizes(:)
     integer :: wanted
 
     wanted = 0
-    call file%read('remeshing/wanted', wanted)
-    remeshing%wanted = wanted == 1
-    call file%read('remeshing/transfer', numbers)
+    call file%read('remesher/wanted', wanted)
+    remesher%wanted = wanted == 1
+    call file%read('remesher/transfer', numbers)
     if (size(numbers) == 2) then
-      remeshing%transfer = numbers(1)
-      remeshing%neighbours = numbers(2)
+      remesher%transfer = numbers(1)
+      remesher%neighbours = numbers(2)
     end if
-    call file%read('remeshing/exponent', remeshing%exponent)
-    call file%read('remeshing/size', sizes)
+    call file%read('remesher/exponent', remesher%exponent)
+    call file%read('remesher/size', sizes)
     if (size(sizes) == 2) then
-      remeshing%smallest = sizes(1)
-      remeshing%largest = sizes(2)
+      remesher%smallest = sizes(1)
+      remesher%largest = sizes(2)
     end if
-    call file%read('remeshing/strain_error', remeshing%strain_error)
-    call file%read('remeshing/count', numbers)
+    call file%read('remesher/strain_error', remesher%strain_error)
+    call file%read('remesher/count', numbers)
     if (size(numbers) == 2) then
-      remeshing%most_elements = numbers(1)
-      remeshing%across_contact = numbers(2)
+      remesher%most_elements = numbers(1)
+      remesher%across_contact = numbers(2)
     end if
-  end subroutine read_remeshing
+  end subroutine read_remesher
 
   subroutine write_dies(file, scene, solution)
     type(hdf5_file_t), intent(inout) :: file
@@ -378,7 +378,7 @@ contains
       call file%read(set_place(k)//'/name', scene%mesh%sides(k)%name)
       call file%read(set_place(k)//'/nodes', scene%mesh%sides(k)%nodes)
     end do
-    call read_remeshing(file, scene%remeshing)
+    call read_remesher(file, scene%remesher)
     call file%read('dies_in_order', names)
     allocate (scene%dies(size(names)))
     do k = 1, size(names)

@@ -1,11 +1,11 @@
 !> How a scene is remeshed: what REMSH cards ask of the remesher, and of the restart on a new mesh.
-module remeshing
+module remesher_options
   use kinds, only: wp
   implicit none
   private
-  public :: remeshing_t
+  public :: remesher_options_t
 
-  type :: remeshing_t
+  type :: remesher_options_t
     !> A REMSH card is there.
     logical :: wanted = .false.
     !> State transfer: number of the method, exponent of 1/R^N, points of moving least squares.
@@ -21,5 +21,5 @@ module remeshing
     !> Limits of the restart: iterations, and change of the force of a die (share of the largest).
     integer :: most_iterations = 40
     real(wp) :: force_change = 0.1_wp
-  end type remeshing_t
-end module remeshing
+  end type remesher_options_t
+end module remesher_options
