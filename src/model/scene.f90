@@ -7,6 +7,7 @@ module scene
   use materials, only: material_t
   use mesh, only: mesh_t
   use probes, only: probe_t
+  use remeshing, only: remesh_rules_t
   use sections, only: section_drive_t
   use state_variables, only: state_variable_t
   use strategy, only: strategy_t
@@ -74,6 +75,7 @@ module scene
     type(nodal_force_t), allocatable :: forces(:)
     type(probe_t), allocatable :: probes(:)
     type(strategy_t) :: strategy
+    type(remesh_rules_t) :: remesh
     type(effect_t), allocatable :: effects(:)
     !> Mesh generation, 1 for the deck's own mesh.
     integer :: generation = 1
