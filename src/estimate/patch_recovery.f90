@@ -15,6 +15,15 @@ module patch_recovery
 
   !> Terms of the polynomials: 1, x, y, x^2, x y, y^2.
   integer, parameter :: nterm = 6
+  !> Sums of products of two terms: x^a y^b up to the fourth degree in the order 1, x, y, x^2, x y, y^2, x^3, x^2 y, ... y^4,
+  !> and the place of each product among them.
+  integer, parameter :: nmoment = 15
+  integer, parameter :: moment(nterm, nterm) = reshape([1, 2, 3, 4, 5, 6, &
+                                                        2, 4, 5, 7, 8, 9, &
+                                                        3, 5, 6, 8, 9, 10, &
+                                                        4, 7, 8, 11, 12, 13, &
+                                                        5, 8, 9, 12, 13, 14, &
+                                                        6, 9, 10, 13, 14, 15], [nterm, nterm])
   !> Points of an element.
   integer, parameter :: nsample = 4
   !> Elements that a node needs for a patch of its own.
@@ -32,7 +41,7 @@ module patch_recovery
     integer, allocatable :: first_donor(:), donor(:)
   end type patches_t
 
-  !> A polynomial for every vertex: coefficients (ncomp, nterm, nvertex) in (x - node)/scale.
+  !> A polynomial for every vertex: coefficients (nterm, ncomp, nvertex) in (x - node)/scale.
   type :: polynomials_t
     real(wp), allocatable :: centre(:, :), scale(:), coefficient(:, :, :)
   end type polynomials_t
@@ -44,7 +53,7 @@ contains
     integer, intent(in) :: connectivity(:, :)
     type(patches_t), intent(out) :: patches
     integer, allocatable :: start(:), around(:), seen_element(:), seen_vertex(:)
-    integer :: v, nvertex, pass, i, k
+    integer :: v, nvertex, pass, reach, at, i, k
 
     call number_vertices(connectivity, patches)
     nvertex = size(patches%node)
@@ -65,11 +74,16 @@ contains
           end do
           cycle
         end if
-        do i = start(v), start(v + 1) - 1
-          do k = 1, 4
-            if (has_own(patches%vertex(k, around(i)))) call add(patches%vertex(k, around(i)), v, seen_vertex, patches%donor, &
-                                                                patches%first_donor(v + 1))
+        do reach = 1, 2   ! along the sides, else across the elements
+          do i = start(v), start(v + 1) - 1
+            at = findloc(patches%vertex(:, around(i)), v, 1)
+            do k = 1, 4
+              if (mod(k - at, 2) == 0 .eqv. reach == 1) cycle
+              if (has_own(patches%vertex(k, around(i)))) call add(patches%vertex(k, around(i)), v, seen_vertex, patches%donor, &
+                                                                  patches%first_donor(v + 1))
+            end do
           end do
+          if (patches%first_donor(v + 1) > patches%first_donor(v)) exit
         end do
         if (patches%first_donor(v + 1) > patches%first_donor(v)) cycle
         call widen(patches%vertex, start, around, v, seen_element, patches%element, patches%first(v + 1))
@@ -180,28 +194,31 @@ contains
     real(wp), intent(in) :: place(:, :, :)       !! points (2, 4, nelem) [length]
     real(wp), intent(in) :: value(:, :, :)       !! (ncomp, 4, nelem)
     type(polynomials_t), intent(out) :: polynomials
-    real(wp) :: gram(nterm, nterm), right(size(value, 1), nterm), t(nterm)
-    integer :: v, i, j, k, e, n
+    real(wp) :: moments(nmoment), gram(nterm, nterm), right(nterm, size(value, 1)), t(nterm)
+    integer :: v, i, j, k, c, e, n
 
     n = size(patches%node)
-    allocate (polynomials%centre(2, n), polynomials%scale(n), polynomials%coefficient(size(value, 1), nterm, n))
+    allocate (polynomials%centre(2, n), polynomials%scale(n), polynomials%coefficient(nterm, size(value, 1), n))
     do v = 1, n
       associate (mine => patches%element(patches%first(v):patches%first(v + 1) - 1), centre => polynomials%centre(:, v))
         centre = coordinates(:, patches%node(v))
         polynomials%scale(v) = 1
         if (size(mine) == 0) cycle
         polynomials%scale(v) = max(maxval(abs(place(1, :, mine) - centre(1))), maxval(abs(place(2, :, mine) - centre(2))))
-        gram = 0
+        moments = 0
         right = 0
         do i = 1, size(mine)
           e = mine(i)
           do k = 1, nsample
             t = terms((place(:, k, e) - centre)/polynomials%scale(v))
-            do j = 1, nterm
-              gram(:, j) = gram(:, j) + t*t(j)
-              right(:, j) = right(:, j) + value(:, k, e)*t(j)
+            moments = moments + [t, t(2)*t(4), t(3)*t(4), t(2)*t(6), t(3)*t(6), t(4)*t(4:6), t(5)*t(6), t(6)*t(6)]
+            do c = 1, size(value, 1)
+              right(:, c) = right(:, c) + t*value(c, k, e)
             end do
           end do
+        end do
+        do j = 1, nterm
+          gram(:, j) = moments(moment(:, j))
         end do
         call solve_normal(gram, right)
         polynomials%coefficient(:, :, v) = right
@@ -212,11 +229,12 @@ contains
     end do
   end subroutine fit_patches
 
-  !> Solve for the coefficients, in place, by Cholesky's factors; of a lower degree where the points do not tell one.
+  !> Solve for the coefficients, in place, by Cholesky's factors (their diagonal inverted); of a lower degree where the points do
+  !> not tell one.
   pure subroutine solve_normal(gram, right)
     real(wp), intent(inout) :: gram(nterm, nterm), right(:, :)
     real(wp) :: diagonal
-    integer :: i, j, degree_end
+    integer :: i, j, c, degree_end
 
     degree_end = nterm
     do j = 1, nterm
@@ -228,24 +246,21 @@ contains
         degree_end = merge(3, 1, j > 3)
         exit
       end if
-      gram(j, j) = sqrt(gram(j, j))
+      gram(j, j) = 1/sqrt(gram(j, j))
       do i = j + 1, nterm
-        gram(i, j) = (gram(i, j) - dot_product(gram(i, :j - 1), gram(j, :j - 1)))/gram(j, j)
+        gram(i, j) = (gram(i, j) - dot_product(gram(i, :j - 1), gram(j, :j - 1)))*gram(j, j)
       end do
     end do
-    do j = 1, degree_end
-      do i = 1, j - 1
-        right(:, j) = right(:, j) - right(:, i)*gram(j, i)
+    do c = 1, size(right, 2)
+      do j = 1, degree_end
+        right(j, c) = right(j, c)*gram(j, j)
+        right(j + 1:, c) = right(j + 1:, c) - gram(j + 1:, j)*right(j, c)
       end do
-      right(:, j) = right(:, j)/gram(j, j)
-    end do
-    do j = degree_end, 1, -1
-      do i = j + 1, degree_end
-        right(:, j) = right(:, j) - right(:, i)*gram(i, j)
+      do j = degree_end, 1, -1
+        right(j, c) = (right(j, c) - dot_product(gram(j + 1:degree_end, j), right(j + 1:degree_end, c)))*gram(j, j)
       end do
-      right(:, j) = right(:, j)/gram(j, j)
     end do
-    right(:, degree_end + 1:) = 0
+    right(degree_end + 1:, :) = 0
   end subroutine solve_normal
 
   !> The mean of the donors' polynomials, moved to the place and scale of this vertex.
@@ -263,10 +278,10 @@ contains
         d = donors(i)
         s = polynomials%scale(v)/polynomials%scale(d)
         t = (polynomials%centre(:, v) - polynomials%centre(:, d))/polynomials%scale(d)
-        c(:, 1, v) = c(:, 1, v) + matmul(c(:, :, d), terms(t))
-        c(:, 2, v) = c(:, 2, v) + s*(c(:, 2, d) + 2*t(1)*c(:, 4, d) + t(2)*c(:, 5, d))
-        c(:, 3, v) = c(:, 3, v) + s*(c(:, 3, d) + t(1)*c(:, 5, d) + 2*t(2)*c(:, 6, d))
-        c(:, 4:6, v) = c(:, 4:6, v) + s*s*c(:, 4:6, d)
+        c(1, :, v) = c(1, :, v) + matmul(terms(t), c(:, :, d))
+        c(2, :, v) = c(2, :, v) + s*(c(2, :, d) + 2*t(1)*c(4, :, d) + t(2)*c(5, :, d))
+        c(3, :, v) = c(3, :, v) + s*(c(3, :, d) + t(1)*c(5, :, d) + 2*t(2)*c(6, :, d))
+        c(4:6, :, v) = c(4:6, :, v) + s*s*c(4:6, :, d)
       end do
       c(:, :, v) = c(:, :, v)/size(donors)
     end associate
@@ -279,16 +294,16 @@ contains
     integer, intent(in) :: e
     real(wp), intent(in) :: place(2)   !! [length]
     real(wp), intent(in) :: blend(4)   !! bilinear shape functions of the corners there
-    real(wp) :: value(size(polynomials%coefficient, 1))
+    real(wp) :: value(size(polynomials%coefficient, 2))
     real(wp) :: t(nterm)
-    integer :: k, j, v
+    integer :: k, c, v
 
     value = 0
     do k = 1, 4
       v = patches%vertex(k, e)
       t = blend(k)*terms((place - polynomials%centre(:, v))/polynomials%scale(v))
-      do j = 1, nterm
-        value = value + polynomials%coefficient(:, j, v)*t(j)
+      do c = 1, size(value)
+        value(c) = value(c) + sum(polynomials%coefficient(:, c, v)*t)
       end do
     end do
   end function recovered

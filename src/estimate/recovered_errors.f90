@@ -8,7 +8,7 @@
 module recovered_errors
   use kinds, only: wp
   use patch_recovery, only: patches_t, polynomials_t, fit_patches, recovered
-  use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
+  use quad8_geometry, only: quad8_rule, quad8_rule_t
   use quadrature, only: square_rule
   use sections, only: thickness_at
   use shape_functions, only: quad4
@@ -88,14 +88,17 @@ contains
     real(wp), intent(out) :: volume(:)               !! (nelem)
     type(polynomials_t) :: polynomials
     real(wp) :: place(2, nsample, size(connectivity, 2)), at_samples(ncomp, nsample, size(connectivity, 2))
-    real(wp) :: x(2, 8), here(2), own(ncomp), better(ncomp), nx(8), ny(8), detj, dv
+    real(wp) :: x(2, 8), here(2), own(ncomp, npoint), better(ncomp), a(2), b(2), dv
     integer :: e, q, n
 
     do e = 1, size(connectivity, 2)
       associate (f => fields(rule_of(e)))
         n = f%own%npoint
-        place(:, :, e) = matmul(coordinates(:, connectivity(:, e)), f%samples%phi(:, :nsample))
-        at_samples(:, :, e) = matmul(value(:, :n, e), f%to_samples)
+        x = coordinates(:, connectivity(:, e))
+        do q = 1, nsample
+          place(:, q, e) = [dot_product(x(1, :), f%samples%phi(:, q)), dot_product(x(2, :), f%samples%phi(:, q))]
+        end do
+        call carry(value(:, :n, e), f%to_samples, at_samples(:, :, e))
       end associate
     end do
     call fit_patches(patches, coordinates, place, at_samples, polynomials)
@@ -105,19 +108,34 @@ contains
     do e = 1, size(connectivity, 2)
       x = coordinates(:, connectivity(:, e))
       associate (f => fields(rule_of(e)))
+        call carry(value(:, :f%own%npoint, e), f%to_points, own)
         do q = 1, npoint
-          call derivatives(f%points%dphi(:, :, q), x, nx, ny, detj)
-          here = matmul(x, f%points%phi(:, q))
-          dv = detj*f%points%weight(q)*thickness_at(section, here)
+          a = [dot_product(x(1, :), f%points%dphi(1, :, q)), dot_product(x(2, :), f%points%dphi(1, :, q))]
+          b = [dot_product(x(1, :), f%points%dphi(2, :, q)), dot_product(x(2, :), f%points%dphi(2, :, q))]
+          here = [dot_product(x(1, :), f%points%phi(:, q)), dot_product(x(2, :), f%points%phi(:, q))]
+          dv = (a(1)*b(2) - a(2)*b(1))*f%points%weight(q)*thickness_at(section, here)
           better = recovered(patches, polynomials, e, here, f%blend(:, q))
-          own = matmul(value(:, :f%own%npoint, e), f%to_points(:, q))
-          missing(:, e) = missing(:, e) + dv*squares(better - own, weights(:, e))
+          missing(:, e) = missing(:, e) + dv*squares(better - own(:, q), weights(:, e))
           whole(:, e) = whole(:, e) + dv*squares(better, weights(:, e))
           volume(e) = volume(e) + dv
         end do
       end associate
     end do
   end subroutine missing_squares
+
+  !> Values at points from those at others.
+  pure subroutine carry(from, weights, to)
+    real(wp), intent(in) :: from(:, :), weights(:, :)   !! (ncomp, nfrom), (nfrom, nto)
+    real(wp), intent(out) :: to(ncomp, size(weights, 2))
+    integer :: p, q
+
+    to = 0
+    do q = 1, size(weights, 2)
+      do p = 1, size(weights, 1)
+        to(:, q) = to(:, q) + weights(p, q)*from(:ncomp, p)
+      end do
+    end do
+  end subroutine carry
 
   !> Energy density of a stress, s:s and p^2 by their weights, and e:e of the deviator of a strain.
   pure function squares(value, weights) result(square)
