@@ -55,7 +55,10 @@ contains
     type(solution_t), intent(inout) :: solution
 
     if (scene%remesh%distress == huge(0) .or. .not. was_good(scene, solution)) return
-    if (give_up .or. cuts >= scene%remesh%distress) call ask_for_mesh(scene, [distress_trigger(scene, cuts)], listing, solution)
+    if (.not. give_up .and. cuts < scene%remesh%distress) return
+    call ask_for_mesh(scene, [distress_trigger(scene, cuts)], listing, solution)
+    ! what comes next is another mesh, or one more try
+    solution%next_step = max(solution%next_step, scene%strategy%least_step)
   end subroutine answer_distress
 
   subroutine ask_for_mesh(scene, found, listing, solution)
