@@ -49,7 +49,8 @@ contains
     integer :: k, n
 
     allocate (columns(14 + 6*size(scene%dies) - 3*count(is_deformable(scene%dies)) &
-                      + merge(6, 0, scene%plane_state == generalised_plane_strain) + size(scene%probes)))
+                      + merge(6, 0, scene%plane_state == generalised_plane_strain) &
+                      + merge(2, 0, scene%remesh%estimate) + size(scene%probes)))
     n = 0
     call add('time [time]')
     call add('step [-]')
@@ -81,6 +82,10 @@ contains
       call add('section_force [force]')
       call add('section_moment_x [force*length]')
       call add('section_moment_y [force*length]')
+    end if
+    if (scene%remesh%estimate) then
+      call add('error_stress [-]')
+      call add('error_strain [-]')
     end if
     do k = 1, size(scene%probes)
       call add(scene%probes(k)%name//' ['//scene%probes(k)%unit//']')
@@ -125,6 +130,7 @@ contains
       call table%put((solution%section - scene%section)/scene%section(1))
       call table%put(solution%section_applied)
     end if
+    if (scene%remesh%estimate) call table%put([solution%estimate%stress, solution%estimate%strain])
     do k = 1, size(scene%probes)
       call table%put(probe_value(scene, solution, scene%probes(k)))
     end do

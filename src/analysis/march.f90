@@ -8,7 +8,8 @@ module march
   use dies, only: present_die
   use elem_api, only: totals_t
   use equations, only: equations_t, set_up
-  use errors, only: error_t, exit_done, exit_no_convergence, exit_signal, fail
+  use errors, only: error_t, exit_done, exit_no_convergence, exit_remesh, exit_signal, fail
+  use estimator, only: estimator_t, set_up_estimator
   use exchange, only: write_checkpoint
   use history, only: open_history, write_row
   use kinds, only: eps, wp
@@ -23,6 +24,7 @@ module march
   use step_strategy, only: after_failure, after_success, choose_step
   use system, only: caught_signal, join_path
   use text, only: to_text
+  use watch_mesh, only: answer_distress, estimate, look_at_mesh, mesh_is_due, remesh_reason
   implicit none
   private
   public :: run_t, march_to_end
@@ -33,6 +35,8 @@ module march
     character(len=:), allocatable :: folder, stem, deck_path, deck_text
     logical :: resume = .false.
     type(equations_t) :: equations
+    !> Set up where errors are estimated.
+    type(estimator_t) :: estimator
     type(listing_t) :: listing
     type(csv_t) :: table
     type(results_t) :: results
@@ -59,7 +63,9 @@ contains
     type(outcome_t) :: outcome
     real(wp) :: dt
     logical :: give_up
+    integer :: cuts
 
+    cuts = 0
     call start(scene, solution, run, error)
     if (solution%unbalanced .and. .not. allocated(error)) call begin_on_new_mesh(scene, solution, run, error)
     do while (.not. allocated(error) .and. solution%time < scene%strategy%end_time*(1 - 64*eps))
@@ -80,6 +86,12 @@ contains
         solution%cutbacks = solution%cutbacks + 1
         call after_failure(scene, dt, solution%next_step, give_up)
         call list_cut(run%listing, scene, solution, dt, solution%next_step, outcome)
+        cuts = cuts + 1
+        call answer_distress(scene, cuts, give_up, run%listing, solution)
+        if (mesh_is_due(solution)) then
+          call save_all(scene, solution, run, error)
+          exit
+        end if
         if (give_up) call stop_here(scene, solution, dt, outcome, run, error)
         cycle
       end if
@@ -87,11 +99,15 @@ contains
       solution%next_step = after_success(scene, dt, solution%next_step, outcome%first_iterations, outcome%strain)
       call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
       if (allocated(error)) exit
+      cuts = 0
+      call estimate(scene, run%estimator, run%equations%timers, solution)
       call list_step(run%listing, solution, outcome, run%totals)
+      ! at the end a new mesh would have nothing to do
+      if (.not. at_end(scene, solution)) call look_at_mesh(scene, run%equations%timers, run%listing, solution)
       call tell_spurious_mode(scene, solution, run)
       call show_progress(run%listing, scene, solution, outcome%iterations)
       call record(scene, solution, outcome, run, error)
-      if (caught_signal() /= 0) exit
+      if (caught_signal() /= 0 .or. mesh_is_due(solution)) exit
     end do
     call finish(scene, solution, run, error)
   end subroutine march_to_end
@@ -107,6 +123,7 @@ contains
     if (allocated(error)) return
     call update_flow_stress(scene, run%equations%laws, run%equations%bodies, solution)
     call measure_scene(scene, run%equations, solution, run%totals)
+    if (scene%remesh%estimate) call set_up_estimator(scene, run%equations%laws, run%estimator)
     if (.not. solution%initial_volume > 0) solution%initial_volume = run%totals%volume
     call open_history(scene, solution, join_path(run%folder, 'history.csv'), run%resume, run%table, error)
     if (allocated(error)) return
@@ -166,14 +183,33 @@ contains
     call write_row(scene, solution, outcome, run%totals, run%table, error)
     if (allocated(error)) return
     fields_due = is_due(solution%step, scene%strategy%save_every) .or. at_end(scene, solution) &
-                 .or. is_save_time(scene, solution)
-    if (fields_due) call save_fields(scene, solution, run%results, error)
-    if (allocated(error)) return
-    if (fields_due .or. is_due(solution%step, scene%strategy%checkpoint_every) .or. caught_signal() /= 0) then
-      call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, ends_now(scene, solution), &
-                            error)
+                 .or. is_save_time(scene, solution) .or. mesh_is_due(solution)
+    if (fields_due) then
+      call save_all(scene, solution, run, error)
+    else if (is_due(solution%step, scene%strategy%checkpoint_every) .or. caught_signal() /= 0) then
+      call save_checkpoint(scene, solution, run, error)
     end if
   end subroutine record
+
+  !> Fields and checkpoint of the accepted instant.
+  subroutine save_all(scene, solution, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+
+    call save_fields(scene, solution, run%results, error)
+    if (.not. allocated(error)) call save_checkpoint(scene, solution, run, error)
+  end subroutine save_all
+
+  subroutine save_checkpoint(scene, solution, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(in) :: run
+    type(error_t), allocatable, intent(out) :: error
+
+    call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, ends_now(scene, solution), error)
+  end subroutine save_checkpoint
 
   !> Where contact begins and ends in all contact groups.
   function ends_now(scene, solution) result(ends)
@@ -287,12 +323,11 @@ contains
       run%exit_code = error%code
       run%stop_reason = error%message
       if (error%code == exit_no_convergence .and. solution%step > 0) then
-        call save_fields(scene, solution, run%results, late)
-        if (.not. allocated(late)) then
-          call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, ends_now(scene, solution), &
-                            late)
-        end if
+        call save_all(scene, solution, run, late)
       end if
+    else if (mesh_is_due(solution)) then
+      run%exit_code = exit_remesh
+      run%stop_reason = remesh_reason(scene, solution)
     else if (caught_signal() /= 0 .and. .not. at_end(scene, solution)) then
       run%exit_code = exit_signal + caught_signal()
       run%stop_reason = 'stopped by signal '//to_text(caught_signal())//' at step '//to_text(solution%step)

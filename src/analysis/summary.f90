@@ -72,6 +72,7 @@ contains
     call json%add('symmetric', equations%pattern%symmetric)
     call add_effects(json, scene, equations)
     call add_seconds(json, equations)
+    if (scene%remesh%estimate) call add_estimate(json, scene, solution)
     call json%begin_object('checks')
     call json%add('volume_drift', totals%volume/solution%initial_volume - 1)
     call json%add('max_penetration', solution%worst_penetration)
@@ -92,6 +93,35 @@ contains
     call json%end_object()
     call json%write_file(path, error)
   end subroutine write_summary
+
+  !> Estimated errors in percent, and why a new mesh is due.
+  subroutine add_estimate(json, scene, solution)
+    type(json_t), intent(inout) :: json
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer :: k
+
+    call json%begin_object('error')
+    call json%add('stress_pct', 100*solution%estimate%stress)
+    call json%add('strain_pct', 100*solution%estimate%strain)
+    call json%end_object()
+    if (.not. scene%remesh%on) return
+    call json%begin_array('remesh')
+    do k = 1, size(solution%estimate%triggers)
+      associate (trigger => solution%estimate%triggers(k))
+        call json%begin_object()
+        call json%add('name', trigger%name)
+        call json%add('value', trigger%value)
+        call json%add('limit', trigger%limit)
+        if (trigger%group > 0) then
+          call json%add('group', scene%groups(trigger%group)%name)
+          call json%add('element', trigger%element)
+        end if
+        call json%end_object()
+      end associate
+    end do
+    call json%end_array()
+  end subroutine add_estimate
 
   !> External work that is neither stored nor dissipated, over the external work. Steps of finite
   !> length and the penalty's own energy are in it.
@@ -185,7 +215,7 @@ contains
     type(string_t), allocatable, intent(out) :: lines(:)
     integer :: t, n
 
-    allocate (lines(8 + equations%timers%size()))
+    allocate (lines(8 + merge(1, 0, scene%remesh%estimate) + equations%timers%size()))
     lines(1)%s = ''
     lines(2)%s = facts%status//': '//facts%stop_reason
     lines(3)%s = '  time '//to_text(solution%time)//' of '//to_text(scene%strategy%end_time)//', '//to_text(solution%step) &
@@ -207,8 +237,13 @@ contains
     lines(6)%s = '  '//to_text(equations%dofs%neq)//' equations, '//to_text(solid_elements(scene))//' elements, ' &
                  //to_text(facts%threads)//' threads, '//to_text(facts%wall, 4)//' s on the wall, ' &
                  //to_text(cpu_seconds(), 4)//' s of processor, '//to_text(peak_memory_mb(), 4)//' MB'
-    lines(7)%s = '  seconds by effect and task:'
     n = 7
+    if (scene%remesh%estimate) then
+      lines(7)%s = '  estimated error: stress '//to_text(100*solution%estimate%stress, 3)//' %, strain ' &
+                   //to_text(100*solution%estimate%strain, 3)//' %'
+      n = 8
+    end if
+    lines(n)%s = '  seconds by effect and task:'
     do t = 1, equations%timers%size()
       n = n + 1
       lines(n)%s = '    '//equations%timers%name(t)//'  '//to_text(equations%timers%seconds(t), 4)//' s in ' &

@@ -25,7 +25,7 @@ contains
     type(scene_t), intent(inout) :: scene
     integer :: g, k
 
-    allocate (scene%effects(10))
+    allocate (scene%effects(12))
     call set(1, 'displacement', 'no body')
     call set(2, 'large strain', 'KINEM '//scene%kinematics, 'displacement')
     call set(3, 'plasticity', 'no LAW with a yield stress is used', 'displacement')
@@ -36,8 +36,13 @@ contains
     call set(8, 'heat', 'no card asks for it')
     call set(9, 'phases', 'no card asks for it')
     call set(10, 'temperature', 'no TEMPE card', 'displacement')
+    call set(11, 'error estimates', 'no ESTIM or REMSH card')
+    call set(12, 'remeshing', 'no REMSH card')
 
     call switch_on(2, scene%finite, 'KINEM', scene%kinematics, 'geometry that follows, geometric matrix')
+    call switch_on(11, scene%remesh%estimate, trim(merge('REMSH', 'ESTIM', scene%remesh%on)), '', &
+                   '2 sums per element, an estimate per step')
+    call switch_on(12, scene%remesh%on, 'REMSH', '', 'a look at the mesh after every step')
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
         select case (elems(group%elem_id)%effect)
@@ -107,9 +112,12 @@ contains
       s = keyword//' '//first_field
       do i = 1, size(deck%cards)
         if (deck%cards(i)%keyword /= keyword .and. .not. (deck%cards(i)%keyword == 'BLOCK' .and. keyword == body)) cycle
-        if (size(deck%cards(i)%head%fields) == 0) cycle
-        if (deck%cards(i)%head%fields(1)%text /= first_field) cycle
-        s = deck%cards(i)%keyword//' '//first_field//' at '//diagnostics%place(head_location(deck%cards(i)))
+        if (size(deck%cards(i)%head%fields) > 0) then
+          if (deck%cards(i)%head%fields(1)%text /= first_field) cycle
+        else if (first_field /= '') then
+          cycle
+        end if
+        s = trim(deck%cards(i)%keyword//' '//first_field)//' at '//diagnostics%place(head_location(deck%cards(i)))
         s = s(:index(s, ':', back=.true.) - 1)
         return
       end do

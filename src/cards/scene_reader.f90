@@ -9,6 +9,7 @@ module scene_reader
   use cards_pilots, only: read_pilots
   use cards_mesh, only: is_body_elem, read_elements, read_nodes, read_side_sets
   use cards_probes, only: read_probes
+  use cards_remesh, only: read_remesh
   use cards_section, only: read_section, read_state
   use cards_side_dies, only: read_side_dies
   use cards_sides, only: read_contacts, read_pressures
@@ -76,6 +77,7 @@ contains
     call read_tractions(deck, draft, diagnostics)
     call read_pilots(deck, draft, diagnostics)
     call read_strategy(deck, draft, diagnostics)
+    call read_remesh(deck, draft, diagnostics)
     call read_probes(deck, draft, diagnostics)
     call refuse_unused_names(deck, draft, keywords, diagnostics)
 
@@ -93,7 +95,7 @@ contains
 
     call list_elems(elems)
     call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE FIXED MOVE ' &
-                  //'FORCE FREE SPRNG LIC STRAT NORMS STOP SAVE CKPT PROBE', keywords)
+                  //'FORCE FREE SPRNG LIC STRAT NORMS STOP SAVE CKPT PROBE ESTIM REMSH', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle

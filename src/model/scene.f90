@@ -8,6 +8,7 @@ module scene
   use mesh, only: mesh_t
   use probes, only: probe_t
   use remesher_options, only: remesher_options_t
+  use remeshing, only: remesh_rules_t
   use sections, only: section_drive_t
   use state_variables, only: state_variable_t
   use strategy, only: strategy_t
@@ -76,6 +77,7 @@ module scene
     type(probe_t), allocatable :: probes(:)
     type(strategy_t) :: strategy
     type(remesher_options_t) :: remesher
+    type(remesh_rules_t) :: remesh
     type(effect_t), allocatable :: effects(:)
     !> Mesh generation, 1 for the deck's own mesh.
     integer :: generation = 1

@@ -2,7 +2,8 @@
 module solution
   use kinds, only: wp
   use pairs, only: pairs_t, start_pairs
-  use scene, only: scene_t
+  use remeshing, only: estimate_t
+  use scene, only: is_solid, scene_t
   use state_variables, only: total_components
   implicit none
   private
@@ -56,6 +57,8 @@ module solution
     real(wp) :: section_applied(3) = 0.0_wp
     !> Reactions of supports and of imposed motions (2, nnode), without the loads that act on the same nodes.
     real(wp), allocatable :: reactions(:, :)
+    !> Errors of the mesh; of no elements where nothing asks for them.
+    type(estimate_t) :: estimate
   end type solution_t
 
 contains
@@ -64,7 +67,7 @@ contains
   pure subroutine start_solution(scene, solution)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(out) :: solution
-    integer :: g, v, c, nnode, ndie, npoint
+    integer :: g, v, c, nnode, ndie, npoint, nsolid
 
     nnode = size(scene%mesh%coordinates, 2)
     ndie = size(scene%dies)
@@ -90,6 +93,13 @@ contains
         state%trial = state%committed
       end associate
     end do
+    nsolid = 0
+    do g = 1, size(scene%groups)
+      if (scene%remesh%estimate .and. is_solid(scene%groups(g))) nsolid = nsolid + size(scene%groups(g)%connectivity, 2)
+    end do
+    allocate (solution%estimate%stress_of(nsolid), solution%estimate%strain_of(nsolid), &
+              solution%estimate%strain_sums(2, nsolid), source=0.0_wp)
+    allocate (solution%estimate%triggers(0))
   end subroutine start_solution
 
 end module solution

@@ -1,6 +1,6 @@
 !> Length of the steps, in LAGAMINE's tradition: after a step of n iterations the next is multiplied
 !> by (NOPTI/n)**(1/NALPHA), between DMINMU and DMAXMU. Corners of multipliers, times of saving and
-!> the end are hit exactly.
+!> of new meshes, and the end are hit exactly.
 module step_strategy
   use kinds, only: eps, wp
   use scene, only: scene_t
@@ -50,6 +50,7 @@ contains
     if (allocated(scene%strategy%save_times)) then
       next = min(next, minval(scene%strategy%save_times, mask=scene%strategy%save_times > after))
     end if
+    if (allocated(scene%remesh%times)) next = min(next, minval(scene%remesh%times, mask=scene%remesh%times > after))
   end function next_time
 
   !> Proposal after an accepted step: by its iterations, and no longer than its strain increment allows to

@@ -15,7 +15,8 @@ module exchange
   use pairs, only: pairs_t
   use remesh, only: remesh_t
   use remesher_options, only: remesher_options_t
-  use scene, only: scene_t
+  use remeshing, only: estimate_t
+  use scene, only: is_solid, scene_t
   use state_variables, only: state_variable
   use solution, only: solution_t
   use text, only: string_t, to_text
@@ -49,6 +50,7 @@ contains
     call write_dies(file, scene, solution)
     call write_progress(file, solution)
     call write_states(file, scene, solution)
+    if (scene%remesh%estimate) call write_estimate(file, scene, solution%estimate)
     call write_ends(file, ends)
     call commit_atomic(file, error, keep_previous=.true.)
   end subroutine write_checkpoint
@@ -204,6 +206,39 @@ contains
     end do
   end subroutine write_states
 
+  !> Errors of the mesh, element by element in the groups, and why a new one is due: triggers with value, limit, group and
+  !> element (0: no place).
+  subroutine write_estimate(file, scene, estimate)
+    type(hdf5_file_t), intent(inout) :: file
+    type(scene_t), intent(in) :: scene
+    type(estimate_t), intent(in) :: estimate
+    type(string_t), allocatable :: names(:)
+    integer :: g, k, n, last
+
+    call file%write('estimate/stress', estimate%stress)
+    call file%write('estimate/strain', estimate%strain)
+    last = 0
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      n = last + 1
+      last = last + size(scene%groups(g)%connectivity, 2)
+      call file%write(group_place(g)//'/error_stress', estimate%stress_of(n:last))
+      call file%write(group_place(g)//'/error_strain', estimate%strain_of(n:last))
+      call file%write(group_place(g)//'/strain_sums', estimate%strain_sums(:, n:last))
+    end do
+    call file%write('remesh/last_stop', estimate%last_stop)
+    if (size(estimate%triggers) == 0) return
+    allocate (names(size(estimate%triggers)))
+    do k = 1, size(names)
+      names(k)%s = estimate%triggers(k)%name
+    end do
+    call file%write('remesh/triggers', names)
+    call file%write('remesh/value', estimate%triggers%value)
+    call file%write('remesh/limit', estimate%triggers%limit)
+    call file%write('remesh/group', estimate%triggers%group)
+    call file%write('remesh/element', estimate%triggers%element)
+  end subroutine write_estimate
+
   !> Where contact begins and ends, for the remesher: one entry each. The solver does not read them back.
   subroutine write_ends(file, ends)
     type(hdf5_file_t), intent(inout) :: file
@@ -349,6 +384,7 @@ contains
     call read_triple(file, 'section/applied', solution%section_applied)
     call read_dies(file, scene, solution)
     call read_states(file, scene, solution)
+    if (scene%remesh%estimate) call read_estimate(file, scene, solution%estimate)
     call file%close(error)
   end subroutine read_checkpoint
 
@@ -494,6 +530,35 @@ contains
       end if
     end do
   end subroutine read_states
+
+  !> Errors so far. What made the run stop is of the past: it has gone on.
+  subroutine read_estimate(file, scene, estimate)
+    type(hdf5_file_t), intent(inout) :: file
+    type(scene_t), intent(in) :: scene
+    type(estimate_t), intent(inout) :: estimate
+    real(wp), allocatable :: stress(:), strain(:), sums(:, :)
+    integer :: g, n, last
+
+    call file%read('estimate/stress', estimate%stress)
+    call file%read('estimate/strain', estimate%strain)
+    call file%read('remesh/last_stop', estimate%last_stop)
+    last = 0
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      n = last + 1
+      last = last + size(scene%groups(g)%connectivity, 2)
+      call file%read(group_place(g)//'/error_stress', stress)
+      call file%read(group_place(g)//'/error_strain', strain)
+      call file%read(group_place(g)//'/strain_sums', sums)
+      if (size(stress) == last - n + 1 .and. size(strain) == last - n + 1 .and. size(sums) == 2*(last - n + 1)) then
+        estimate%stress_of(n:last) = stress
+        estimate%strain_of(n:last) = strain
+        estimate%strain_sums(:, n:last) = sums
+      else
+        call file%record_error(exit_input, group_place(g)//'/strain_sums: does not fit the deck''s group '//scene%groups(g)%name)
+      end if
+    end do
+  end subroutine read_estimate
 
   !> Pairs decide the order in which the matrix is eliminated: a run that goes on needs them, to the last bit.
   subroutine read_pairs(file, place, pairs)

@@ -1,7 +1,7 @@
 !> Fields for people: one HDF5 file per mesh generation, one XDMF over all of them.
 !>
 !> `NAME.gNN.h5`: mesh/ (coordinates, topology from 0, groups), dies/, steps/NNNNNN/ with the
-!> coordinates reached, nodal fields (node/NAME) and the raw state of the points (points/GROUP).
+!> coordinates reached, nodal fields (node/NAME), numbers of elements (element/NAME) and the raw state of the points (points/GROUP).
 module results
   use dies, only: is_deformable
   use errors, only: error_t
@@ -183,6 +183,10 @@ contains
     call put_vector(file, place, 'applied_force', solution%applied, grid)
     if (present(residual)) call put_vector(file, place, 'residual_force', residual, grid)
     call put_nodal_fields(file, place, scene, solution, grid)
+    if (scene%remesh%estimate) then
+      call put_cells(file, place, 'error_stress', solution%estimate%stress_of, grid)
+      call put_cells(file, place, 'error_strain', solution%estimate%strain_of, grid)
+    end if
     call put_points(file, place, scene, solution)
     call file%close(error)
     if (.not. allocated(error)) call results%xdmf%add(grid, error)
@@ -269,6 +273,17 @@ contains
     end subroutine put_field
 
   end subroutine put_nodal_fields
+
+  !> A number for each solid element.
+  subroutine put_cells(file, place, name, values, grid)
+    type(hdf5_file_t), intent(inout) :: file
+    character(len=*), intent(in) :: place, name
+    real(wp), intent(in) :: values(:)
+    type(xdmf_grid_t), intent(inout) :: grid
+
+    call file%write(place//'/element/'//name, values)
+    grid%fields = [grid%fields, xdmf_field_t(name, 'Cell', 'Scalar', place//'/element/'//name)]
+  end subroutine put_cells
 
   !> State of all points of all groups, as the solver holds it.
   subroutine put_points(file, place, scene, solution)

@@ -12,7 +12,7 @@ sys.dont_write_bytecode = True
 from support import DONE, LAGAMINE, SOURCE, UPSETTING, Checks, mesh, run, said, summary, write  # noqa: E402
 
 EFFECTS = ("displacement", "large strain", "plasticity", "contact", "friction", "pressure", "body force", "heat", "phases",
-           "temperature")
+           "temperature", "error estimates", "remeshing")
 OPTIONS = ("--out", "--check", "--resume", "-p", "--threads", "--quiet", "--law", "--point", "--help", "--version")
 
 # One effect each, and nothing else.

@@ -1,0 +1,113 @@
+!> The mesh under watch: its errors after every step, and whether a new one is due (cards ESTIM, REMSH).
+module watch_mesh
+  use estimator, only: estimate_errors, estimator_t
+  use listing, only: list_lines, listing_t
+  use remeshing, only: trigger_t
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use text, only: string_t, to_text
+  use timers, only: ledger_t
+  use triggers, only: distress_trigger, find_triggers, was_good
+  implicit none
+  private
+  public :: estimate, look_at_mesh, answer_distress, mesh_is_due, remesh_reason
+
+contains
+
+  !> Errors of the accepted instant.
+  subroutine estimate(scene, estimator, timers, solution)
+    type(scene_t), intent(in) :: scene
+    type(estimator_t), intent(in) :: estimator
+    type(ledger_t), intent(inout) :: timers
+    type(solution_t), intent(inout) :: solution
+    integer :: timer
+
+    if (.not. scene%remesh%estimate) return
+    call timers%add('error estimates', timer)
+    call timers%start(timer)
+    call estimate_errors(estimator, scene, solution)
+    call timers%stop(timer)
+  end subroutine estimate
+
+  !> Ask for a new mesh when the one just used has passed a limit.
+  subroutine look_at_mesh(scene, timers, listing, solution)
+    type(scene_t), intent(in) :: scene
+    type(ledger_t), intent(inout) :: timers
+    type(listing_t), intent(in) :: listing
+    type(solution_t), intent(inout) :: solution
+    type(trigger_t), allocatable :: found(:)
+    integer :: timer
+
+    if (.not. scene%remesh%on) return
+    call timers%add('remeshing', timer)
+    call timers%start(timer)
+    call find_triggers(scene, solution, found)
+    call timers%stop(timer)
+    if (size(found) > 0) call ask_for_mesh(scene, found, listing, solution)
+  end subroutine look_at_mesh
+
+  !> Ask for a new mesh when a step has been cut often on one that was good before, or can be cut no more.
+  subroutine answer_distress(scene, cuts, give_up, listing, solution)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: cuts       !! one after the other
+    logical, intent(in) :: give_up    !! the least step has failed
+    type(listing_t), intent(in) :: listing
+    type(solution_t), intent(inout) :: solution
+
+    if (scene%remesh%distress == huge(0) .or. .not. was_good(scene, solution)) return
+    if (.not. give_up .and. cuts < scene%remesh%distress) return
+    call ask_for_mesh(scene, [distress_trigger(scene, cuts)], listing, solution)
+    ! what comes next is another mesh, or one more try
+    solution%next_step = max(solution%next_step, scene%strategy%least_step)
+  end subroutine answer_distress
+
+  subroutine ask_for_mesh(scene, found, listing, solution)
+    type(scene_t), intent(in) :: scene
+    type(trigger_t), intent(in) :: found(:)
+    type(listing_t), intent(in) :: listing
+    type(solution_t), intent(inout) :: solution
+    type(string_t) :: lines(size(found))
+    integer :: k
+
+    deallocate (solution%estimate%triggers)
+    allocate (solution%estimate%triggers, source=found)
+    solution%estimate%last_stop = solution%step
+    do k = 1, size(found)
+      lines(k)%s = 'remesh: '//trigger_text(scene, found(k))
+    end do
+    call list_lines(listing, lines)
+  end subroutine ask_for_mesh
+
+  !> A new mesh has been asked for.
+  pure function mesh_is_due(solution) result(due)
+    type(solution_t), intent(in) :: solution
+    logical :: due
+
+    due = size(solution%estimate%triggers) > 0
+  end function mesh_is_due
+
+  !> Why the run stops for a new mesh, in one line.
+  function remesh_reason(scene, solution) result(s)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    character(len=:), allocatable :: s
+    integer :: k
+
+    s = 'a new mesh is due at step '//to_text(solution%step)//':'
+    do k = 1, size(solution%estimate%triggers)
+      if (k > 1) s = s//';'
+      s = s//' '//trigger_text(scene, solution%estimate%triggers(k))
+    end do
+  end function remesh_reason
+
+  !> `aspect_ratio 12.3 (limit 10), element 7 of billet`.
+  function trigger_text(scene, trigger) result(s)
+    type(scene_t), intent(in) :: scene
+    type(trigger_t), intent(in) :: trigger
+    character(len=:), allocatable :: s
+
+    s = trigger%name//' '//to_text(trigger%value, 4)//' (limit '//to_text(trigger%limit)//')'
+    if (trigger%group > 0) s = s//', element '//to_text(trigger%element)//' of '//scene%groups(trigger%group)%name
+  end function trigger_text
+
+end module watch_mesh

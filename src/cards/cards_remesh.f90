@@ -1,0 +1,169 @@
+!> REMSH and ESTIM: when a new mesh is wanted, and whether errors are estimated.
+module cards_remesh
+  use deck_cursor, only: cursor_t
+  use deck_reader, only: deck_t
+  use diagnostics, only: diagnostics_t
+  use dies, only: is_deformable
+  use kinds, only: wp
+  use remeshing, only: aspect_ratio, jacobian_ratio, largest_angle, least_angle, middle_share, never, remesh_rules_t, &
+                       scaled_jacobian, stroke_t
+  use scene_draft, only: close_card, draft_t, only_card, words_of
+  use text, only: string_t, to_text
+  implicit none
+  private
+  public :: read_remesh
+
+  !> Rows of REMSH, one word each, in the order of `read_row`.
+  character(len=*), parameter :: rows = 'ERROR ANGLE MIDDLE JACOB SCALED ASPECT BAD CONTACT DISTRESS TIMES STROKE LEAST'
+  !> The middle third of a side.
+  real(wp), parameter :: middle_third = 1.0_wp/3.0_wp
+
+contains
+
+  subroutine read_remesh(deck, draft, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    integer :: k
+
+    allocate (draft%scene%remesh%times(0), draft%scene%remesh%strokes(0))
+    call only_card(deck, 'ESTIM', .false., diagnostics, k)
+    if (k > 0) then
+      call cursor%open(deck%cards(k), diagnostics)
+      draft%scene%remesh%estimate = .true.
+      call close_card(draft, cursor, deck%cards(k))
+    end if
+    call only_card(deck, 'REMSH', .false., diagnostics, k)
+    if (k > 0) then
+      call cursor%open(deck%cards(k), diagnostics)
+      draft%scene%remesh%on = .true.
+      draft%scene%remesh%estimate = .true.
+      call read_rows(cursor, draft)
+      call close_card(draft, cursor, deck%cards(k))
+    end if
+  end subroutine read_remesh
+
+  !> Each row once, but STROKE, and at least one that asks for something.
+  subroutine read_rows(cursor, draft)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+    type(string_t), allocatable :: words(:)
+    logical, allocatable :: given(:)
+    integer :: k
+    logical :: asked
+
+    call words_of(rows, words)
+    given = spread(.false., 1, size(words))
+    asked = .false.
+    call cursor%end_row()
+    do
+      call cursor%next_row('one of '//rows)
+      call cursor%name('one of '//rows, words, k)
+      if (k == 0) return
+      if (given(k) .and. words(k)%s /= 'STROKE') call cursor%fail(words(k)%s//' is given twice')
+      given(k) = .true.
+      asked = asked .or. all(words(k)%s /= ['BAD  ', 'LEAST'])
+      call read_row(cursor, draft, words(k)%s)
+      if (.not. cursor%more_rows()) exit
+    end do
+    call cursor%end_row()
+    associate (rules => draft%scene%remesh)
+      if (.not. asked) call cursor%fail('nothing here asks for a new mesh: expected one of '//rows//' beside BAD and LEAST')
+      if (rules%bad_share > 0 .and. .not. any(abs(rules%shape) < never)) &
+        call cursor%fail('BAD counts elements by their shape: expected one of ANGLE MIDDLE JACOB SCALED ASPECT too')
+    end associate
+  end subroutine read_rows
+
+  subroutine read_row(cursor, draft, word)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+    character(len=*), intent(in) :: word
+
+    associate (rules => draft%scene%remesh, shape => draft%scene%remesh%shape)
+      select case (word)
+      case ('ERROR')
+        call cursor%real('the largest error of the stress', rules%stress_error, lower=0.0_wp, strict_lower=.true.)
+      case ('ANGLE')
+        call cursor%real('the least angle of a corner', shape(least_angle), lower=0.0_wp, upper=90.0_wp, &
+                         strict_upper=.true., unit='degrees')
+        call cursor%real('the largest angle of a corner', shape(largest_angle), lower=90.0_wp, upper=180.0_wp, &
+                         strict_lower=.true., unit='degrees')
+      case ('MIDDLE')
+        shape(middle_share) = middle_third
+        if (cursor%more()) call cursor%real('the part of a side over which its middle node may lie', shape(middle_share), &
+                                            lower=0.0_wp, upper=0.5_wp, strict_lower=.true.)
+      case ('JACOB')
+        call cursor%real('the least Jacobian over the largest of an element', shape(jacobian_ratio), lower=0.0_wp, &
+                         upper=1.0_wp, strict_upper=.true.)
+      case ('SCALED')
+        call cursor%real('the least scaled Jacobian', shape(scaled_jacobian), lower=0.0_wp, upper=1.0_wp, strict_upper=.true.)
+      case ('ASPECT')
+        call cursor%real('the largest aspect ratio', shape(aspect_ratio), lower=1.0_wp, strict_lower=.true.)
+      case ('BAD')
+        call cursor%real('the share of elements that may be bad', rules%bad_share, lower=0.0_wp, upper=1.0_wp, strict_upper=.true.)
+      case ('CONTACT')
+        rules%contact = 1
+        if (cursor%more()) call cursor%real('the largest depth between points over the allowed penetration', rules%contact, &
+                                            lower=0.0_wp, strict_lower=.true.)
+        if (size(draft%scene%dies) == 0) call cursor%fail('the deck has no die')
+      case ('DISTRESS')
+        call cursor%integer('the cuts of a step one after the other', rules%distress, lower=1)
+      case ('TIMES')
+        call read_times(cursor, draft)
+      case ('STROKE')
+        call read_strokes(cursor, draft)
+      case ('LEAST')
+        call cursor%integer('the least number of steps between two new meshes', rules%least_steps, lower=1)
+      end select
+    end associate
+  end subroutine read_row
+
+  !> Times in ascending order, before the end.
+  subroutine read_times(cursor, draft)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+    real(wp) :: time, last
+
+    last = 0
+    do
+      call cursor%real('a time later than the one before', time, lower=last, strict_lower=.true., unit='time')
+      if (cursor%failed()) return
+      associate (end_time => draft%scene%strategy%end_time)
+        if (end_time > 0 .and. .not. time < end_time) &
+          call cursor%fail('this time is not before the end at '//to_text(end_time)//': a new mesh would have nothing to do')
+      end associate
+      draft%scene%remesh%times = [draft%scene%remesh%times, time]
+      last = time
+      if (.not. cursor%more()) exit
+    end do
+  end subroutine read_times
+
+  !> `die X|Y|A`, then ways of its pilot from where it stood at the start.
+  subroutine read_strokes(cursor, draft)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+    type(string_t), allocatable :: words(:)
+    type(stroke_t) :: stroke
+    integer :: k
+
+    call draft%places%find(cursor, 'the name of a die', k)
+    if (k == 0) return
+    if (draft%places%keywords(k)%s /= 'DIE') then
+      call cursor%fail(''''//draft%places%words(k)%s//''' is no DIE')
+      return
+    end if
+    stroke%die = draft%places%item(k)
+    if (is_deformable(draft%scene%dies(stroke%die))) call cursor%fail('the DIE '''//draft%places%words(k)%s//''' is deformable')
+    call words_of('X Y A', words)
+    call cursor%name('X, Y or A', words, stroke%component)
+    do while (.not. cursor%failed())
+      call cursor%real('a stroke of the die', stroke%value, unit='length, for A rad')
+      if (.not. abs(stroke%value) > 0) call cursor%fail('expected a stroke that is not 0')
+      if (cursor%failed()) return
+      draft%scene%remesh%strokes = [draft%scene%remesh%strokes, stroke]
+      if (.not. cursor%more()) exit
+    end do
+  end subroutine read_strokes
+
+end module cards_remesh

@@ -1,0 +1,80 @@
+!> How well the sides of a mesh can follow the dies they touch.
+!>
+!> Two things that no pressure mends: a side whose parabola is deeper in the die between its points than at them, and a corner of
+!> the die that sticks into a side. Both are measured over the penetration that the side's law allows.
+module contact_quality
+  use contact_point, only: at_penetration, at_status, npoint_state
+  use contact_scan, only: deepest_sample, in_pilot_axes, is_near
+  use dies, only: die_t, present_die
+  use kinds, only: wp
+  use law_api, only: contact_open
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use state_variables, only: find_variable
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: misfit_t, measure_misfit
+
+  !> The worst of a group, over the allowed penetration, and the sides where it is (0: none).
+  type :: misfit_t
+    real(wp) :: between = 0.0_wp, corner = 0.0_wp
+    integer :: between_side = 0, corner_side = 0
+  end type misfit_t
+
+contains
+
+  !> Misfit of the sides of a contact group; none where its law states no penetration.
+  pure function measure_misfit(scene, g, solution) result(misfit)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g                   !! a group that faces a die
+    type(solution_t), intent(in) :: solution   !! at an accepted instant
+    type(misfit_t) :: misfit
+    type(die_t) :: die
+    real(wp) :: side(2, 3), x(2, size(scene%mesh%coordinates, 2)), allowed, length, known, deep
+    logical :: corners
+    integer :: e
+
+    ! every contact law begins with it (contact_penalties)
+    allowed = scene%materials(scene%groups(g)%material)%values(1)
+    if (.not. allowed > 0) return
+    corners = find_variable(scene%groups(g)%variables, 'corner_place') > 0
+    x = scene%mesh%coordinates + solution%displacement
+    die = present_die(scene%dies(scene%groups(g)%die), x)
+    do e = 1, size(scene%groups(g)%connectivity, 2)
+      associate (nodes => scene%groups(g)%connectivity(:, e), state => solution%groups(g)%committed(:, :, e))
+        side = in_pilot_axes(x(:, nodes), solution%pilots(:, scene%groups(g)%die))
+        length = length_of(scene%mesh%coordinates(:, nodes(3)) - scene%mesh%coordinates(:, nodes(1)))
+        if (.not. is_near(die, side, length)) cycle
+        known = depth_of(state(:npoint_state, :))
+        if (corners) then
+          deep = depth_of(state(npoint_state + 1:2*npoint_state, :))
+          call keep(deep/(allowed*length), e, misfit%corner, misfit%corner_side)
+          known = max(known, deep)
+        end if
+        deep = deepest_sample(die, side, length) - known
+        call keep(deep/(allowed*length), e, misfit%between, misfit%between_side)
+      end associate
+    end do
+  end function measure_misfit
+
+  !> Largest penetration of points in contact [length].
+  pure function depth_of(state) result(depth)
+    real(wp), intent(in) :: state(:, :)   !! (npoint_state, npoint)
+    real(wp) :: depth
+
+    depth = max(0.0_wp, maxval(state(at_penetration, :), mask=nint(state(at_status, :)) /= contact_open))
+  end function depth_of
+
+  pure subroutine keep(value, side, worst, worst_side)
+    real(wp), intent(in) :: value
+    integer, intent(in) :: side
+    real(wp), intent(inout) :: worst
+    integer, intent(inout) :: worst_side
+
+    if (.not. value > worst) return
+    worst = value
+    worst_side = side
+  end subroutine keep
+
+end module contact_quality

@@ -1,0 +1,243 @@
+!> Estimated error of stress and strain of a scene at an accepted instant.
+!>
+!> Stress: eta = ||sigma* - sigma_h|| / ||sigma*|| in the norm of the elastic complementary energy, s:s/(4 G) + p^2/(2 K); where
+!> some solid law has no elastic moduli the norm is s:s for all. Strain: in every step the recovered less the computed strain
+!> increment, in the norm of its deviator; errors and increments of an element are summed over the steps since the mesh began.
+!> Recovery (patch_recovery) goes over all elements of one material, and not across the line to another.
+module estimator
+  use elasticity, only: moduli
+  use kinds, only: wp
+  use law_api, only: find_parameter, law_t
+  use loads, only: multiplier_at
+  use materials, only: values_at
+  use patch_recovery, only: find_patches, patches_t
+  use quad8_geometry, only: derivatives, quad8_rule_t
+  use recovered_errors, only: fields_of_rule, fields_t, missing_squares, ncomp, npoint
+  use remeshing, only: estimate_t
+  use scene, only: is_solid, scene_t
+  use sections, only: thickness_at
+  use solution, only: solution_t
+  implicit none
+  private
+  public :: estimator_t, set_up_estimator, estimate_errors
+
+  !> Elements of one material.
+  type :: part_t
+    integer :: material = 0
+    type(patches_t) :: patches
+    integer, allocatable :: connectivity(:, :)   !! (8, nelem)
+    !> Group, element of the group, place among all solid elements, rule (nelem).
+    integer, allocatable :: group(:), element(:), place(:), rule(:)
+  end type part_t
+
+  !> What is made once for a mesh.
+  type :: estimator_t
+    type(part_t), allocatable :: parts(:)
+    type(fields_t) :: fields(2)
+    !> Places of Young's modulus and Poisson's ratio among the values of each material; 0 where its law has none.
+    integer, allocatable :: young(:), poisson(:)
+    !> Every solid law has elastic moduli: errors are energies.
+    logical :: elastic = .true.
+  end type estimator_t
+
+  !> Stress over the shear modulus, or strain, below which nothing has happened yet: round-off of a stress that is zero.
+  real(wp), parameter :: at_rest = 1.0e-9_wp
+
+contains
+
+  !> Patches of all materials.
+  pure subroutine set_up_estimator(scene, laws, self)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    type(estimator_t), intent(out) :: self
+    integer :: m, n
+    integer :: list(size(scene%materials))
+
+    self%fields = [fields_of_rule(4), fields_of_rule(9)]
+    allocate (self%young(size(scene%materials)), self%poisson(size(scene%materials)), source=0)
+    n = 0
+    do m = 1, size(scene%materials)
+      if (.not. any(is_part(scene, m))) cycle
+      n = n + 1
+      list(n) = m
+      self%young(m) = find_parameter(laws(scene%materials(m)%law_id), 'E')
+      self%poisson(m) = find_parameter(laws(scene%materials(m)%law_id), 'NU')
+      self%elastic = self%elastic .and. self%young(m) > 0 .and. self%poisson(m) > 0
+    end do
+    allocate (self%parts(n))
+    do m = 1, n
+      call gather_part(scene, list(m), self%parts(m))
+    end do
+  end subroutine set_up_estimator
+
+  !> Groups of elements of a material.
+  pure function is_part(scene, material) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: material
+    logical :: yes(size(scene%groups))
+    integer :: g
+
+    do g = 1, size(yes)
+      yes(g) = is_solid(scene%groups(g)) .and. scene%groups(g)%material == material
+    end do
+  end function is_part
+
+  pure subroutine gather_part(scene, material, part)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: material
+    type(part_t), intent(out) :: part
+    logical :: mine(size(scene%groups))
+    integer :: g, e, n, all, total
+
+    mine = is_part(scene, material)
+    total = 0
+    do g = 1, size(mine)
+      if (mine(g)) total = total + size(scene%groups(g)%connectivity, 2)
+    end do
+    part%material = material
+    allocate (part%connectivity(8, total), part%group(total), part%element(total), part%place(total), part%rule(total))
+    n = 0
+    all = 0
+    do g = 1, size(mine)
+      if (.not. is_solid(scene%groups(g))) cycle
+      do e = 1, size(scene%groups(g)%connectivity, 2)
+        all = all + 1
+        if (.not. mine(g)) cycle
+        n = n + 1
+        part%connectivity(:, n) = scene%groups(g)%connectivity(:, e)
+        part%group(n) = g
+        part%element(n) = e
+        part%place(n) = all
+        part%rule(n) = merge(1, 2, scene%groups(g)%npoint == 4)
+      end do
+    end do
+    call find_patches(part%connectivity, part%patches)
+  end subroutine gather_part
+
+  !> Errors of the stress now, and of the strain of the step just accepted added to those before.
+  pure subroutine estimate_errors(self, scene, solution)
+    type(estimator_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    real(wp), dimension(2, size(solution%estimate%stress_of)) :: missing, whole
+    real(wp) :: volume(size(missing, 2)), x(2, size(scene%mesh%coordinates, 2)), section(3), stiffness
+    integer :: k
+
+    x = scene%mesh%coordinates
+    section = scene%section
+    if (scene%finite) then
+      x = x + solution%displacement
+      section = solution%section
+    end if
+    stiffness = 0
+    do k = 1, size(self%parts)
+      call of_part(self, self%parts(k), scene, solution, x, section, missing, whole, volume, stiffness)
+    end do
+    associate (estimate => solution%estimate)
+      call relate(missing(1, :), whole(1, :), volume, sum(whole(1, :)) > at_rest**2*stiffness, estimate%stress, estimate%stress_of)
+      estimate%strain_sums = estimate%strain_sums + sqrt(reshape([missing(2, :)/volume, whole(2, :)/volume], &
+                                                                 [2, size(volume)], order=[2, 1]))
+      missing(2, :) = volume*estimate%strain_sums(1, :)**2
+      whole(2, :) = volume*estimate%strain_sums(2, :)**2
+      call relate(missing(2, :), whole(2, :), volume, sum(whole(2, :)) > at_rest**2*sum(volume), estimate%strain, &
+                  estimate%strain_of)
+    end associate
+  end subroutine estimate_errors
+
+  !> The error of the whole, and that of elements as densities over the density of the whole; zero at rest.
+  pure subroutine relate(missing, whole, volume, moved, error, error_of)
+    real(wp), intent(in) :: missing(:), whole(:), volume(:)
+    logical, intent(in) :: moved
+    real(wp), intent(out) :: error, error_of(:)
+
+    error = 0
+    error_of = 0
+    if (.not. moved) return
+    error = sqrt(sum(missing)/sum(whole))
+    error_of = sqrt(missing/volume*(sum(volume)/sum(whole)))
+  end subroutine relate
+
+  !> Squares of the elements of one material, and the sum of G V to compare energies with (of s:s where there are no moduli).
+  pure subroutine of_part(self, part, scene, solution, x, section, missing, whole, volume, stiffness)
+    type(estimator_t), intent(in) :: self
+    type(part_t), intent(in) :: part
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: x(:, :), section(3)
+    real(wp), intent(inout) :: missing(:, :), whole(:, :), volume(:), stiffness
+    real(wp) :: value(ncomp, npoint, size(part%place)), weights(2, size(part%place)), shear
+    real(wp) :: missing_here(2, size(part%place)), whole_here(2, size(part%place)), volume_here(size(part%place))
+    integer :: e, g, n
+
+    do e = 1, size(part%place)
+      g = part%group(e)
+      n = scene%groups(g)%npoint
+      value(1:4, :n, e) = solution%groups(g)%committed(1:4, :, part%element(e))
+      call increments(self%fields(part%rule(e))%own, scene%finite, section, solution%last_section_increment, &
+                      x(:, part%connectivity(:, e)), solution%last_increment(:, part%connectivity(:, e)), value(5:8, :n, e))
+      weights(:, e) = energy_weights(self, scene, g, solution%time)
+    end do
+    call missing_squares(part%patches, self%fields, part%rule, section, x, part%connectivity, value, weights, &
+                         missing_here, whole_here, volume_here)
+    missing(:, part%place) = missing_here
+    whole(:, part%place) = whole_here
+    volume(part%place) = volume_here
+    shear = 0
+    if (self%elastic) shear = 0.25_wp/minval(weights(1, :))
+    stiffness = stiffness + shear*sum(volume_here)
+  end subroutine of_part
+
+  !> 1/(4 G) and 1/(2 K) of a group at its temperature.
+  pure function energy_weights(self, scene, g, time) result(weights)
+    type(estimator_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g
+    real(wp), intent(in) :: time
+    real(wp) :: weights(2)
+    real(wp) :: temperature, bulk, shear
+
+    weights = [1.0_wp, 0.0_wp]
+    if (.not. self%elastic) return
+    associate (group => scene%groups(g), material => scene%materials(scene%groups(g)%material))
+      block
+        real(wp) :: values(size(material%values))
+
+        temperature = 0
+        if (group%temperature_multiplier > 0) &
+          temperature = group%temperature_amplitude*multiplier_at(scene%multipliers(group%temperature_multiplier), time)
+        call values_at(material, temperature, values)
+        call moduli(values(self%young(group%material)), values(self%poisson(group%material)), bulk, shear)
+      end block
+    end associate
+    weights = [0.25_wp/shear, 0.5_wp/bulk]
+  end function energy_weights
+
+  !> Strain increments of a step at the points of an element, on the geometry of its middle (of the start for small
+  !> displacements): a second order of the logarithmic strain. Source: T.J.R. Hughes, J. Winget, Int. J. Num. Meth. Engng 15 (1980)
+  !> 1862-1867. Across the plane that of the section; in plane stress none.
+  pure subroutine increments(rule, finite, section, motion, x, du, strain)
+    type(quad8_rule_t), intent(in) :: rule
+    logical, intent(in) :: finite
+    real(wp), intent(in) :: section(3), motion(3)   !! at the end of the step, and its motion
+    real(wp), intent(in) :: x(2, 8), du(2, 8)       !! nodes at the end of the step, and their motion [length]
+    real(wp), intent(out) :: strain(:, :)           !! xx, yy, xy, zz (4, npoint)
+    real(wp) :: y(2, 8), a(3), nx(8), ny(8), detj, here(2), way(2)
+    integer :: p
+
+    y = x
+    a = section
+    if (finite) then
+      y = x - 0.5_wp*du
+      a = section - 0.5_wp*motion
+    end if
+    do p = 1, rule%npoint
+      call derivatives(rule%dphi(:, :, p), y, nx, ny, detj)
+      here = matmul(y, rule%phi(:, p))
+      way = matmul(du, rule%phi(:, p))
+      strain(:, p) = [dot_product(nx, du(1, :)), dot_product(ny, du(2, :)), &
+                      0.5_wp*(dot_product(ny, du(1, :)) + dot_product(nx, du(2, :))), &
+                      (dot_product(a(2:3), way) + thickness_at(motion, here))/thickness_at(a, here)]
+    end do
+  end subroutine increments
+
+end module estimator

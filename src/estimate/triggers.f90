@@ -1,0 +1,155 @@
+!> Why a new mesh is due at an accepted instant: every limit of the card REMSH that is passed.
+!>
+!> Errors, shapes, contacts and distress wait until the mesh has made its least number of steps; times and strokes do not.
+module triggers
+  use contact_quality, only: measure_misfit, misfit_t
+  use kinds, only: eps, wp
+  use mesh_quality, only: element_shape, is_bad, shape_places, shape_places_t
+  use remeshing, only: criterion_names, is_upper, ncriteria, never, stroke_t, trigger_t
+  use scene, only: is_solid, scene_t
+  use solution, only: solution_t
+  implicit none
+  private
+  public :: find_triggers, distress_trigger, was_good, has_passed
+
+contains
+
+  !> All limits passed by the step just accepted.
+  pure subroutine find_triggers(scene, solution, found)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(trigger_t), allocatable, intent(out) :: found(:)
+    integer :: k
+
+    allocate (found(0))
+    if (was_good(scene, solution)) then
+      if (solution%estimate%stress > scene%remesh%stress_error) &
+        call add(found, 'stress_error', solution%estimate%stress, scene%remesh%stress_error)
+      if (any(abs(scene%remesh%shape) < never)) call find_bad_shapes(scene, solution, found)
+      if (scene%remesh%contact < never) call find_misfits(scene, solution, found)
+    end if
+    do k = 1, size(scene%remesh%times)
+      if (abs(scene%remesh%times(k) - solution%time) <= 64*eps*scene%strategy%end_time) &
+        call add(found, 'time', solution%time, scene%remesh%times(k))
+    end do
+    do k = 1, size(scene%remesh%strokes)
+      associate (stroke => scene%remesh%strokes(k))
+        if (.not. has_passed(scene, solution, stroke)) cycle
+        call add(found, 'stroke', solution%pilots(stroke%component, stroke%die) &
+                 - scene%dies(stroke%die)%pilot(stroke%component), stroke%value)
+      end associate
+    end do
+  end subroutine find_triggers
+
+  !> The mesh has carried the steps it must before another one is asked for.
+  pure function was_good(scene, solution) result(good)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    logical :: good
+
+    good = solution%step - solution%estimate%last_stop >= scene%remesh%least_steps
+  end function was_good
+
+  !> Cuts in a row on a mesh that was good before.
+  pure function distress_trigger(scene, cuts) result(trigger)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: cuts
+    type(trigger_t) :: trigger
+
+    trigger%name = 'distress'
+    trigger%value = real(cuts, wp)
+    trigger%limit = real(scene%remesh%distress, wp)
+  end function distress_trigger
+
+  !> The stroke was reached in the last step; reached to round-off is reached.
+  pure function has_passed(scene, solution, stroke) result(passed)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(stroke_t), intent(in) :: stroke
+    logical :: passed
+    real(wp) :: now, before, aim
+
+    now = solution%pilots(stroke%component, stroke%die) - scene%dies(stroke%die)%pilot(stroke%component)
+    before = now - solution%last_pilot_increment(stroke%component, stroke%die)
+    aim = stroke%value*(1 - 64*eps)
+    passed = merge(now >= aim .and. before < aim, now <= aim .and. before > aim, stroke%value > 0)
+  end function has_passed
+
+  !> Shapes beyond their limits, when more elements than allowed have one: each criterion with its worst element.
+  pure subroutine find_bad_shapes(scene, solution, found)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(trigger_t), allocatable, intent(inout) :: found(:)
+    type(shape_places_t) :: places
+    real(wp) :: measures(ncriteria), worst(ncriteria), x(2, size(scene%mesh%coordinates, 2)), share
+    integer :: group(ncriteria), element(ncriteria), g, e, k, n, nbad
+    logical :: bad(ncriteria)
+
+    x = scene%mesh%coordinates
+    if (scene%finite) x = x + solution%displacement
+    places = shape_places()
+    worst = scene%remesh%shape
+    group = 0
+    element = 0
+    n = 0
+    nbad = 0
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      do e = 1, size(scene%groups(g)%connectivity, 2)
+        measures = element_shape(places, x(:, scene%groups(g)%connectivity(:, e)))
+        n = n + 1
+        if (any(is_bad(measures, scene%remesh%shape))) nbad = nbad + 1
+        bad = is_bad(measures, worst)
+        where (bad)
+          worst = measures
+          group = g
+          element = e
+        end where
+      end do
+    end do
+    share = real(nbad, wp)/max(n, 1)
+    if (.not. share > scene%remesh%bad_share) return
+    do k = 1, ncriteria
+      if (group(k) > 0) call add(found, trim(criterion_names(k)), worst(k), scene%remesh%shape(k), group(k), element(k))
+    end do
+    if (scene%remesh%bad_share > 0) call add(found, 'bad_share', share, scene%remesh%bad_share)
+  end subroutine find_bad_shapes
+
+  !> Sides that cannot follow their die.
+  pure subroutine find_misfits(scene, solution, found)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(trigger_t), allocatable, intent(inout) :: found(:)
+    type(misfit_t) :: misfit
+    integer :: g
+
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%die == 0 .or. scene%groups(g)%material == 0) cycle
+      misfit = measure_misfit(scene, g, solution)
+      if (misfit%between > scene%remesh%contact) &
+        call add(found, 'contact_between', misfit%between, scene%remesh%contact, g, misfit%between_side)
+      if (misfit%corner > scene%remesh%contact) &
+        call add(found, 'contact_corner', misfit%corner, scene%remesh%contact, g, misfit%corner_side)
+    end do
+  end subroutine find_misfits
+
+  pure subroutine add(found, name, value, limit, group, element)
+    type(trigger_t), allocatable, intent(inout) :: found(:)
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: value, limit
+    integer, intent(in), optional :: group, element
+    type(trigger_t), allocatable :: more(:)
+    integer :: n
+
+    n = size(found)
+    allocate (more(n + 1))
+    more(:n) = found
+    more(n + 1)%name = name
+    more(n + 1)%value = value
+    more(n + 1)%limit = limit
+    if (present(group)) more(n + 1)%group = group
+    if (present(element)) more(n + 1)%element = element
+    call move_alloc(more, found)
+  end subroutine add
+
+end module triggers

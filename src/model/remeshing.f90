@@ -1,0 +1,63 @@
+!> When a new mesh is wanted (card REMSH), and what an estimate says of the present one (cards ESTIM, REMSH).
+module remeshing
+  use kinds, only: wp
+  implicit none
+  private
+  public :: remesh_rules_t, stroke_t, trigger_t, estimate_t
+  public :: ncriteria, criterion_names, is_upper, never
+  public :: least_angle, largest_angle, middle_share, jacobian_ratio, scaled_jacobian, aspect_ratio
+
+  !> Criteria of the shape of an element, by place in the lists below (mesh_quality measures them).
+  integer, parameter :: least_angle = 1, largest_angle = 2, middle_share = 3, jacobian_ratio = 4, scaled_jacobian = 5, &
+                        aspect_ratio = 6, ncriteria = 6
+  character(len=*), parameter :: criterion_names(ncriteria) = ['least_angle    ', 'largest_angle  ', 'middle_share   ', &
+                                                               'jacobian_ratio ', 'scaled_jacobian', 'aspect_ratio   ']
+  !> The limit is the largest good value; else the least.
+  logical, parameter :: is_upper(ncriteria) = [.false., .true., .true., .false., .false., .true.]
+  !> An upper limit that nothing exceeds; a lower one is its negative.
+  real(wp), parameter :: never = huge(1.0_wp)
+
+  !> A stroke at which a new mesh is made: a component of a die's pilot (x, y, angle) has moved so far.
+  type :: stroke_t
+    integer :: die = 0, component = 0
+    real(wp) :: value = 0.0_wp
+  end type stroke_t
+
+  !> Limits beyond which a new mesh is due. Without the card nothing is looked at.
+  type :: remesh_rules_t
+    !> A new mesh may be asked for; errors are estimated.
+    logical :: on = .false., estimate = .false.
+    !> Shape of elements, and the share of the elements that may be bad.
+    real(wp) :: shape(ncriteria) = merge(never, -never, is_upper)
+    real(wp) :: bad_share = 0.0_wp
+    !> Error of the stress, and depth of a side or a corner over what is allowed.
+    real(wp) :: stress_error = never, contact = never
+    !> Cuts of a step one after the other.
+    integer :: distress = huge(0)
+    !> Steps at least from one stop to the next.
+    integer :: least_steps = 1
+    real(wp), allocatable :: times(:)
+    type(stroke_t), allocatable :: strokes(:)
+  end type remesh_rules_t
+
+  !> A limit that was passed: its name, the value found, and where it is worst (0: no such place).
+  type :: trigger_t
+    character(len=:), allocatable :: name
+    real(wp) :: value = 0.0_wp, limit = 0.0_wp
+    integer :: group = 0, element = 0
+  end type trigger_t
+
+  !> Errors at the accepted instant. Those of elements are in the order of the solid groups, and are intensive: root mean
+  !> square over the element, relative to that of the whole scene; where all are the same they are the error of the scene.
+  type :: estimate_t
+    real(wp) :: stress = 0.0_wp, strain = 0.0_wp
+    real(wp), allocatable :: stress_of(:), strain_of(:)   !! (nelem)
+    !> Sums over the steps since the mesh began, of the error of the strain increment and of the increment (2, nelem).
+    real(wp), allocatable :: strain_sums(:, :)
+    !> Step at which the mesh began, or at which a new one was asked for last.
+    integer :: last_stop = 0
+    !> Why a new mesh is due; none while the present one is good.
+    type(trigger_t), allocatable :: triggers(:)
+  end type estimate_t
+
+end module remeshing
