@@ -4,7 +4,8 @@ program lagamine
   use errors, only: error_t, exit_done
   use point_run, only: run_point
   use run_deck, only: print_law, run_options_on_deck
-  use run_options, only: read_options, run_options_t, usage_text, version_text
+  use run_options, only: read_options, run_options_t, usage_text
+  use run_version, only: version_text
   use system, only: program_stop
   implicit none
   type(run_options_t) :: options

@@ -1,12 +1,11 @@
 !> The command line of `lagamine`.
 module run_options
+  use arguments, only: argument, refuse_option, value_of
   use errors, only: error_t, exit_input, fail
-  use text, only: nearest_word, string_t
+  use text, only: string_t
   implicit none
   private
-  public :: run_options_t, read_options, stem_of, usage_text, version_text
-
-  character(len=*), parameter :: version_text = '0.1.0'
+  public :: run_options_t, read_options, stem_of, usage_text
 
   type :: run_options_t
     character(len=:), allocatable :: deck
@@ -63,7 +62,9 @@ contains
         end if
       case default
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
-          call refuse(word, error)
+          call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--check'), string_t('--quiet'), &
+                                    string_t('--out'), string_t('--resume'), string_t('--law'), string_t('--point'), &
+                                    string_t('-p'), string_t('--threads')], 'lagamine', error)
         else if (allocated(options%deck)) then
           call fail(error, exit_input, 'one deck at a time: found '''//options%deck//''' and '''//word//'''')
         else
@@ -82,44 +83,6 @@ contains
       call fail(error, exit_input, '--out: expected the name of a folder, found nothing')
     end if
   end subroutine read_options
-
-  subroutine argument(k, word)
-    integer, intent(in) :: k
-    character(len=:), allocatable, intent(out) :: word
-    integer :: length
-
-    call get_command_argument(k, length=length)
-    allocate (character(len=length) :: word)
-    if (length > 0) call get_command_argument(k, word)
-  end subroutine argument
-
-  !> The argument after an option.
-  subroutine value_of(option, k, value, error)
-    character(len=*), intent(in) :: option
-    integer, intent(inout) :: k
-    character(len=:), allocatable, intent(inout) :: value
-    type(error_t), allocatable, intent(inout) :: error
-
-    if (k == command_argument_count()) then
-      call fail(error, exit_input, option//': a value is missing after it', 'lagamine --help shows how to call')
-      return
-    end if
-    k = k + 1
-    call argument(k, value)
-  end subroutine value_of
-
-  subroutine refuse(word, error)
-    character(len=*), intent(in) :: word
-    type(error_t), allocatable, intent(out) :: error
-    type(string_t) :: known(10)
-    character(len=:), allocatable :: nearest
-
-    known = [string_t('--help'), string_t('--version'), string_t('--check'), string_t('--quiet'), string_t('--out'), &
-             string_t('--resume'), string_t('--law'), string_t('--point'), string_t('-p'), string_t('--threads')]
-    nearest = nearest_word(word, known)
-    if (nearest /= '') nearest = '; nearest: '''//nearest//''''
-    call fail(error, exit_input, 'unknown option '''//word//''''//nearest, 'lagamine --help shows how to call')
-  end subroutine refuse
 
   !> Name of a file without folders and ending.
   pure function stem_of(path) result(stem)

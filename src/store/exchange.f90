@@ -22,7 +22,7 @@ module exchange
   use text, only: string_t, to_text
   implicit none
   private
-  public :: write_checkpoint, read_deck_of_checkpoint, read_remesh, read_checkpoint, read_bare_scene, schema_version
+  public :: write_checkpoint, read_deck_of_checkpoint, read_remesh, read_checkpoint, read_bare_scene, read_ends, schema_version
 
   !> Raised whenever a dataset changes its name, shape or meaning.
   integer, parameter :: schema_version = 3
@@ -73,6 +73,11 @@ contains
       call file%write(set_place(k)//'/nodes', scene%mesh%sides(k)%nodes)
     end do
     call file%write('mesh/ngroup', size(scene%groups))
+    call file%write('mesh/nfixation', size(scene%fixations))
+    do k = 1, size(scene%fixations)
+      call file%write(fixation_place(k)//'/nodes', scene%fixations(k)%nodes)
+      call file%write(fixation_place(k)//'/component', scene%fixations(k)%component)
+    end do
     call write_remesher(file, scene%remesher)
   end subroutine write_mesh
 
@@ -122,9 +127,12 @@ contains
     type(hdf5_file_t), intent(inout) :: file
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
+    type(string_t) :: names(size(scene%dies))
     integer :: k
-
-    call file%write('dies_in_order', [(string_t(scene%dies(k)%name), k=1, size(scene%dies))])
+    do k = 1, size(scene%dies)
+      names(k)%s = scene%dies(k)%name
+    end do
+    call file%write('dies_in_order', names)
     call file%group('dies')
     do k = 1, size(scene%dies)
       call file%write('dies/'//scene%dies(k)%name//'/pieces', scene%dies(k)%pieces)
@@ -252,6 +260,36 @@ contains
     call file%write('contact_ends/die_xi', ends%xi)
   end subroutine write_ends
 
+  !> Where contact began and ended.
+  subroutine read_ends(path, ends, error)
+    character(len=*), intent(in) :: path
+    type(contact_end_t), allocatable, intent(out) :: ends(:)
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+    integer, allocatable :: begins(:), group(:), side(:), piece(:)
+    real(wp), allocatable :: place(:), xi(:)
+    integer :: k
+
+    call open_checkpoint(path, file, error)
+    if (allocated(error)) return
+    call file%read('contact_ends/begins', begins)
+    call file%read('contact_ends/group', group)
+    call file%read('contact_ends/side', side)
+    call file%read('contact_ends/place', place)
+    call file%read('contact_ends/die_piece', piece)
+    call file%read('contact_ends/die_xi', xi)
+    if (any([size(group), size(side), size(piece), size(place), size(xi)] /= size(begins))) then
+      call file%record_error(exit_input, 'contact_ends: lists of different length')
+      allocate (ends(0))
+    else
+      allocate (ends(size(begins)))
+      do k = 1, size(ends)
+        ends(k) = contact_end_t(begins(k) == 1, group(k), side(k), place(k), piece(k), xi(k))
+      end do
+    end if
+    call file%close(error)
+  end subroutine read_ends
+
   pure function group_place(g) result(place)
     integer, intent(in) :: g
     character(len=:), allocatable :: place
@@ -265,6 +303,13 @@ contains
 
     place = 'mesh/sides/'//to_text(k)
   end function set_place
+
+  pure function fixation_place(k) result(place)
+    integer, intent(in) :: k
+    character(len=:), allocatable :: place
+
+    place = 'mesh/fixations/'//to_text(k)
+  end function fixation_place
 
   !> The mesh of a checkpoint, when it is not the deck's own: then only `generation` is read, and it is 1.
   subroutine read_remesh(path, remesh, error)
@@ -414,7 +459,15 @@ contains
       call file%read(set_place(k)//'/name', scene%mesh%sides(k)%name)
       call file%read(set_place(k)//'/nodes', scene%mesh%sides(k)%nodes)
     end do
+    n = 0
+    call file%read('mesh/nfixation', n)
+    allocate (scene%fixations(n))
+    do k = 1, n
+      call file%read(fixation_place(k)//'/nodes', scene%fixations(k)%nodes)
+      call file%read(fixation_place(k)//'/component', scene%fixations(k)%component)
+    end do
     call read_remesher(file, scene%remesher)
+    scene%remesh%estimate = file%has('estimate/stress')
     call file%read('dies_in_order', names)
     allocate (scene%dies(size(names)))
     do k = 1, size(names)
@@ -444,6 +497,7 @@ contains
     type(hdf5_file_t), intent(inout) :: file
     integer, intent(in) :: k
     type(scene_t), intent(inout) :: scene
+    character(len=:), allocatable :: place
     type(string_t), allocatable :: names(:), units(:), kinds(:)
     type(material_t), allocatable :: more(:)
     integer, allocatable :: components(:)
@@ -451,7 +505,8 @@ contains
     integer :: v
 
     if (.not. allocated(scene%materials)) allocate (scene%materials(0))
-    associate (group => scene%groups(k), place => group_place(k))
+    place = group_place(k)
+    associate (group => scene%groups(k))
       call file%read(place//'/name', group%name)
       call file%read(place//'/elem', group%elem)
       call file%read(place//'/npoint', group%npoint)

@@ -1,0 +1,222 @@
+!> The state of contact on the new sides: along each run of contact, from where it begins to where it ends.
+module contact_carry
+  use boundary_sides, only: loop_t
+  use contact_runs, only: run_t
+  use contour_chain, only: arc_at, chain_length
+  use kinds, only: wp
+  use new_scene, only: middle_place
+  use part_contour, only: contour_t
+  use quadrature, only: line_rule
+  use scene, only: axisymmetric, scene_t
+  use shape_functions, only: line3
+  use solution, only: solution_t
+  use state_variables, only: find_variable, kind_contact => transfer_contact
+  use transfer_contact, only: carry_along
+  use vectors, only: length_of
+  use zone_mesh, only: new_mesh_t
+  implicit none
+  private
+  public :: carry_contacts
+
+  !> Points of a run in their order along it: arc length from its start, length each stands for, values.
+  type :: row_t
+    real(wp) :: length = 0.0_wp                  !! of the run [length]
+    real(wp), allocatable :: s(:), weight(:)     !! [length], times the radius when axisymmetric
+    integer, allocatable :: point(:), element(:)
+  end type row_t
+
+contains
+
+  !> Contact variables and status of all groups of the new solution; open where there was no run.
+  pure subroutine carry_contacts(old, from, contours, mesh, new, to)
+    type(scene_t), intent(in) :: old, new
+    type(solution_t), intent(in) :: from
+    type(contour_t), intent(in) :: contours(:)
+    type(new_mesh_t), intent(in) :: mesh
+    type(solution_t), intent(inout) :: to
+    real(wp) :: x(2, size(old%mesh%coordinates, 2))
+    type(row_t) :: row_old, row_new
+    integer, allocatable :: carried(:)
+    integer :: c, k, g
+
+    x = old%mesh%coordinates + from%displacement
+    do c = 1, size(contours)
+      do k = 1, size(contours(c)%contacts)
+        g = contours(c)%contacts(k)%run%group
+        call old_row(old, g, contours(c)%loop, contours(c)%contacts(k)%run, x, row_old)
+        call new_row(new, g, contours, c, k, mesh, row_new)
+        call list_carried(old, g, carried)
+        call carry_run(carried, row_old, row_new, from%groups(g)%committed, status_place(old, g), to%groups(g)%committed)
+      end do
+    end do
+    do g = 1, size(to%groups)
+      to%groups(g)%trial = to%groups(g)%committed
+    end do
+  end subroutine carry_contacts
+
+  pure function status_place(scene, g) result(place)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g
+    integer :: place
+
+    place = find_variable(scene%groups(g)%variables, 'contact_status')
+    if (place > 0) place = scene%groups(g)%variables(place)%first
+  end function status_place
+
+  !> Components that go along the contour.
+  pure subroutine list_carried(scene, g, carried)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g
+    integer, allocatable, intent(out) :: carried(:)
+    integer :: v, i
+
+    allocate (carried(0))
+    do v = 1, size(scene%groups(g)%variables)
+      associate (variable => scene%groups(g)%variables(v))
+        if (variable%transfer == kind_contact) carried = [carried, (variable%first + i, i=0, variable%ncomp - 1)]
+      end associate
+    end do
+  end subroutine list_carried
+
+  !> Old points of a group that lie in a run.
+  pure subroutine old_row(scene, g, loop, run, x, row)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g
+    type(loop_t), intent(in) :: loop
+    type(run_t), intent(in) :: run
+    real(wp), intent(in) :: x(:, :)
+    type(row_t), intent(out) :: row
+    real(wp), allocatable :: xi(:), weight(:)
+    real(wp) :: low, high, start
+    integer :: side, number, e, p
+
+    allocate (row%s(0), row%weight(0), row%point(0), row%element(0))
+    call line_rule(scene%groups(g)%npoint, xi, weight)
+    do side = run%from%side, run%to%side
+      number = modulo(side - 1, size(loop%sides, 2)) + 1
+      low = -1
+      high = 1
+      if (side == run%from%side) low = run%from%xi
+      if (side == run%to%side) high = run%to%xi
+      start = row%length - arc_of(x(:, loop%sides(:, number)), -1.0_wp, low)
+      e = findloc(scene%groups(g)%connectivity(2, :), loop%sides(2, number), 1)
+      do p = 1, size(xi)
+        if (e == 0 .or. xi(p) < low .or. xi(p) > high) cycle
+        call add_point(start + arc_of(x(:, loop%sides(:, number)), -1.0_wp, xi(p)), &
+                       weight(p)*stretch_at(x(:, loop%sides(:, number)), xi(p), scene%plane_state == axisymmetric), p, e, row)
+      end do
+      row%length = row%length + arc_of(x(:, loop%sides(:, number)), low, high)
+    end do
+  end subroutine old_row
+
+  !> Length of a side between two places, by Gauss's four points.
+  pure function arc_of(x, from, to) result(length)
+    real(wp), intent(in) :: x(2, 3), from, to
+    real(wp) :: length
+    real(wp), allocatable :: xi(:), weight(:)
+    integer :: p
+
+    call line_rule(4, xi, weight)
+    length = 0
+    do p = 1, size(xi)
+      length = length + 0.5_wp*(to - from)*weight(p)*stretch_at(x, 0.5_wp*(from + to + (to - from)*xi(p)), .false.)
+    end do
+  end function arc_of
+
+  !> d(length)/d(xi), times the radius.
+  pure function stretch_at(x, xi, round) result(stretch)
+    real(wp), intent(in) :: x(2, 3), xi
+    logical, intent(in) :: round
+    real(wp) :: stretch
+    real(wp) :: phi(3), dphi(3)
+
+    call line3(xi, phi, dphi)
+    stretch = length_of(matmul(x, dphi))
+    if (round) stretch = stretch*dot_product(x(1, :), phi)
+  end function stretch_at
+
+  pure subroutine add_point(s, weight, point, element, row)
+    real(wp), intent(in) :: s, weight
+    integer, intent(in) :: point, element
+    type(row_t), intent(inout) :: row
+
+    row%s = [row%s, s]
+    row%weight = [row%weight, weight]
+    row%point = [row%point, point]
+    row%element = [row%element, element]
+  end subroutine add_point
+
+  !> New points of a group on the stretches of a run.
+  pure subroutine new_row(scene, g, contours, c, run, mesh, row)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g, c, run
+    type(contour_t), intent(in) :: contours(:)
+    type(new_mesh_t), intent(in) :: mesh
+    type(row_t), intent(out) :: row
+    type(row_t) :: unsorted
+    real(wp), allocatable :: xi(:), weight(:)
+    real(wp) :: start, from, to, total
+    integer, allocatable :: order(:)
+    logical :: taken(size(mesh%sides)*abs(scene%groups(g)%npoint))
+    integer :: k, e, p
+
+    allocate (unsorted%s(0), unsorted%weight(0), unsorted%point(0), unsorted%element(0))
+    call line_rule(scene%groups(g)%npoint, xi, weight)
+    associate (chain => contours(c)%chain, contact => contours(c)%contacts(run))
+      total = chain_length(chain)
+      start = chain%arc(contact%first - 1)
+      row%length = modulo(chain%arc(contact%next - 1) - start, total)
+      if (.not. row%length > 0) row%length = total
+      do k = 1, size(mesh%sides)
+        if (mesh%sides(k)%chain /= c) cycle
+        associate (place => middle_place(contours, mesh%sides(k)))
+          if (chain%stretches(place%stretch)%run /= run) cycle
+        end associate
+        e = findloc(scene%groups(g)%connectivity(2, :), mesh%sides(k)%nodes(2), 1)
+        if (e == 0) cycle
+        from = modulo(arc_at(chain, mesh%sides(k)%from) - start, total)
+        to = modulo(arc_at(chain, mesh%sides(k)%to) - start, total)
+        if (from > row%length) from = 0
+        if (.not. to > from) to = row%length
+        do p = 1, size(xi)
+          call add_point(from + 0.5_wp*(1 + xi(p))*(to - from), weight(p)*stretch_at(mesh%coordinates(:, mesh%sides(k)%nodes), &
+                                                                          xi(p), scene%plane_state == axisymmetric), p, e, unsorted)
+        end do
+      end do
+    end associate
+    allocate (order(size(unsorted%s)))
+    taken = .false.
+    do k = 1, size(order)
+      order(k) = minloc(unsorted%s, 1, mask=.not. taken(:size(order)))
+      taken(order(k)) = .true.
+    end do
+    row%s = unsorted%s(order)
+    row%weight = unsorted%weight(order)
+    row%point = unsorted%point(order)
+    row%element = unsorted%element(order)
+  end subroutine new_row
+
+  pure subroutine carry_run(carried, row_old, row_new, before, status, after)
+    integer, intent(in) :: carried(:)
+    type(row_t), intent(in) :: row_old, row_new
+    real(wp), intent(in) :: before(:, :, :)
+    integer, intent(in) :: status
+    real(wp), intent(inout) :: after(:, :, :)
+    real(wp) :: old(size(carried), size(row_old%s)), new(size(carried), size(row_new%s)), change(size(carried))
+    integer :: p, nearest
+
+    if (size(row_old%s) == 0) return
+    do p = 1, size(row_old%s)
+      old(:, p) = before(carried, row_old%point(p), row_old%element(p))
+    end do
+    call carry_along(row_old%length, row_old%s, old, row_old%weight, row_new%length, row_new%s, row_new%weight, 2, .true., &
+                     new, change)
+    do p = 1, size(row_new%s)
+      after(carried, row_new%point(p), row_new%element(p)) = new(:, p)
+      if (status == 0) cycle
+      nearest = minloc(abs(row_old%s*row_new%length - row_new%s(p)*row_old%length), 1)
+      after(status, row_new%point(p), row_new%element(p)) = before(status, row_old%point(nearest), row_old%element(nearest))
+    end do
+  end subroutine carry_run
+
+end module contact_carry

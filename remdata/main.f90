@@ -1,0 +1,47 @@
+!> The remesher: arguments -> new mesh and state -> exit code.
+program remdata
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use errors, only: error_t, exit_done
+  use kinds, only: wp
+  use remesh_options, only: read_remesh_options, remesh_options_t, remesh_usage
+  use remesh_report, only: print_facts, write_facts
+  use remesh_scene, only: remesh_checkpoint, remesh_facts_t
+  use run_version, only: version_text
+  use system, only: program_stop, wall_seconds
+  implicit none
+  type(remesh_options_t) :: options
+  type(remesh_facts_t) :: facts
+  type(error_t), allocatable :: error, late
+  integer :: code
+
+  code = exit_done
+  call read_remesh_options(options, error)
+  if (allocated(error)) then
+    code = error%code
+  else if (options%help) then
+    write (*, '(a)') remesh_usage()
+  else if (options%version) then
+    write (*, '(a)') 'remdata '//version_text
+  else
+    call run()
+  end if
+  if (allocated(error)) then
+    code = error%code
+    write (error_unit, '(a)') error%message
+    if (allocated(error%advice)) write (error_unit, '(a)') error%advice
+  end if
+  call program_stop(code)
+
+contains
+
+  subroutine run()
+    real(wp) :: started
+
+    started = wall_seconds()
+    call remesh_checkpoint(options, facts, error)
+    call write_facts(options%out//'.json', facts, wall_seconds() - started, error, late)
+    if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
+    if (.not. options%quiet .and. .not. allocated(error)) call print_facts(facts, wall_seconds() - started)
+  end subroutine run
+
+end program remdata

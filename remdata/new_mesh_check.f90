@@ -1,0 +1,81 @@
+!> A new mesh is fit to be used, or refused with the reason.
+module new_mesh_check
+  use contour_chain, only: closest_place, point_on
+  use errors, only: error_t, exit_no_convergence, fail
+  use kinds, only: wp
+  use mesh_quality, only: mesh_shape
+  use part_contour, only: contour_t
+  use remeshing, only: largest_angle, least_angle, middle_share, ncriteria, scaled_jacobian
+  use text, only: to_text
+  use vectors, only: length_of
+  use zone_mesh, only: new_mesh_t
+  implicit none
+  private
+  public :: mesh_check_t, check_new_mesh
+
+  type :: mesh_check_t
+    !> Worst of all elements.
+    real(wp) :: scaled_jacobian = 1.0_wp, least_angle = 90.0_wp, largest_angle = 90.0_wp, middle_share = 0.0_wp
+    !> Largest distance of a node of the contour from it, over the length of its side.
+    real(wp) :: off_contour = 0.0_wp
+  end type mesh_check_t
+
+  real(wp), parameter :: least_scaled_jacobian = 0.2_wp
+  !> Middle nodes lie in the middle third.
+  real(wp), parameter :: largest_middle_share = 1.0_wp/3
+  !> Nodes lie on the contour within this share of their side.
+  real(wp), parameter :: on_contour = 1.0e-8_wp
+
+contains
+
+  subroutine check_new_mesh(contours, mesh, check, error)
+    type(contour_t), intent(in) :: contours(:)
+    type(new_mesh_t), intent(in) :: mesh
+    type(mesh_check_t), intent(out) :: check
+    type(error_t), allocatable, intent(out) :: error
+    real(wp), allocatable :: measures(:, :)
+    real(wp) :: x(2, 3)
+    integer :: worst, k, i
+
+    allocate (measures(ncriteria, size(mesh%connectivity, 2)))
+    call mesh_shape(mesh%coordinates, mesh%connectivity, measures)
+    check%scaled_jacobian = minval(measures(scaled_jacobian, :))
+    check%least_angle = minval(measures(least_angle, :))
+    check%largest_angle = maxval(measures(largest_angle, :))
+    check%middle_share = maxval(measures(middle_share, :))
+    do k = 1, size(mesh%sides)
+      x = mesh%coordinates(:, mesh%sides(k)%nodes)
+      do i = 1, 3
+        associate (chain => contours(mesh%sides(k)%chain)%chain)
+          check%off_contour = max(check%off_contour, length_of(point_on(chain, closest_place(chain, x(:, i))) - x(:, i)) &
+                                  /length_of(x(:, 3) - x(:, 1)))
+        end associate
+      end do
+    end do
+    if (check%scaled_jacobian < least_scaled_jacobian) then
+      worst = minloc(measures(scaled_jacobian, :), 1)
+      call refuse('scaled Jacobian '//to_text(check%scaled_jacobian, 3)//', at least '//to_text(least_scaled_jacobian), worst)
+    else if (check%middle_share > largest_middle_share) then
+      worst = maxloc(measures(middle_share, :), 1)
+      call refuse('a middle node outside the middle third of its side', worst)
+    else if (check%off_contour > on_contour) then
+      call fail(error, exit_no_convergence, 'remdata: nodes lie off the contour by '//to_text(check%off_contour, 3) &
+                //' of their sides')
+    end if
+
+  contains
+
+    subroutine refuse(what, element)
+      character(len=*), intent(in) :: what
+      integer, intent(in) :: element
+      real(wp) :: middle(2)
+
+      middle = sum(mesh%coordinates(:, mesh%connectivity(1:4, element)), 2)/4
+      call fail(error, exit_no_convergence, 'remdata: the new mesh is of bad shape: '//what//', element at x = ' &
+                //to_text(middle(1))//', y = '//to_text(middle(2)), &
+                'remesh earlier, or give zones that fit the shape better')
+    end subroutine refuse
+
+  end subroutine check_new_mesh
+
+end module new_mesh_check

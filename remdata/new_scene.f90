@@ -1,0 +1,174 @@
+!> The scene on the new mesh: groups, sets of sides and elements on sides as the deck has them.
+module new_scene
+  use contour_chain, only: arc_at, chain_length, chain_t, place_at_arc, place_t
+  use errors, only: error_t, exit_input, fail
+  use kinds, only: wp
+  use mesh, only: side_set_t
+  use part_contour, only: contour_t
+  use scene, only: is_solid, scene_t
+  use zone_mesh, only: contour_side_t, new_mesh_t
+  use zone_numbers, only: ends_of_side, middles_of_side, number_nodes, numbers_t
+  use zone_plan, only: plan_t
+  use zones, only: follows_contour
+  implicit none
+  private
+  public :: set_up_new_scene, middle_place
+
+contains
+
+  !> Everything of the old scene that does not hang on nodes, with the new mesh. `origin` is left to the transfer.
+  subroutine set_up_new_scene(old, contours, plan, mesh, new, error)
+    type(scene_t), intent(in) :: old
+    type(contour_t), intent(in) :: contours(:)
+    type(plan_t), intent(in) :: plan
+    type(new_mesh_t), intent(in) :: mesh
+    type(scene_t), intent(out) :: new
+    type(error_t), allocatable, intent(out) :: error
+    logical :: mine(size(mesh%zone))
+    integer :: g, e, k, n
+
+    new = old
+    new%generation = old%generation + 1
+    new%mesh%coordinates = mesh%coordinates
+    new%mesh%labels = [(k, k=1, size(mesh%coordinates, 2))]
+    do k = 1, size(old%mesh%sides)
+      new%mesh%sides(k)%nodes = new_set(contours, plan, mesh, k)
+    end do
+    do g = 1, size(old%groups)
+      associate (group => new%groups(g))
+        if (is_solid(group)) then
+          mine = plan%group(mesh%zone) == g
+          n = count(mine)
+          group%connectivity = reshape(pack(mesh%connectivity, spread(mine, 1, 8)), [8, n])
+        else if (size(group%connectivity, 1) == 3) then
+          call gather_sides(old, g, new%mesh%sides, group%connectivity)
+        end if
+      end associate
+    end do
+    ! loads on the volume of a body have its elements
+    do g = 1, size(old%groups)
+      if (is_solid(old%groups(g)) .or. size(old%groups(g)%connectivity, 1) == 3) cycle
+      do e = 1, size(old%groups)
+        if (.not. is_solid(old%groups(e))) cycle
+        if (.not. same_elements(old%groups(e)%connectivity, old%groups(g)%connectivity)) cycle
+        new%groups(g)%connectivity = new%groups(e)%connectivity
+        exit
+      end do
+      if (e > size(old%groups)) call fail(error, exit_input, 'remdata: the elements of '//old%groups(g)%name &
+                                          //' are those of no body')
+    end do
+  end subroutine set_up_new_scene
+
+  pure function same_elements(a, b) result(same)
+    integer, intent(in) :: a(:, :), b(:, :)
+    logical :: same
+
+    same = all(shape(a) == shape(b))
+    if (same) same = all(a == b)
+  end function same_elements
+
+  !> Sides of a set: those between zones, or the contour sides that stand for sides of the old set: sets go with the matter.
+  pure function new_set(contours, plan, mesh, set) result(sides)
+    type(contour_t), intent(in) :: contours(:)
+    type(plan_t), intent(in) :: plan
+    type(new_mesh_t), intent(in) :: mesh
+    integer, intent(in) :: set
+    integer, allocatable :: sides(:, :)
+    logical :: mine(size(mesh%sides))
+    type(place_t) :: place
+    integer :: k, z
+
+    do z = 1, size(plan%zones)
+      do k = 1, 4
+        if (plan%sets(k, z) /= set .or. plan%zones(z)%form(k) == follows_contour) cycle
+        sides = zone_side(mesh, z, k)
+        return
+      end do
+    end do
+    do k = 1, size(mesh%sides)
+      place = middle_place(contours, mesh%sides(k))
+      associate (contour => contours(mesh%sides(k)%chain))
+        mine(k) = contour%tags%on_set(set, contour%chain%stretches(place%stretch)%side)
+      end associate
+    end do
+    sides = all_nodes(pack([(k, k=1, size(mine))], mine))
+
+  contains
+
+    pure function all_nodes(list) result(nodes)
+      integer, intent(in) :: list(:)
+      integer :: nodes(3, size(list)), i
+
+      do i = 1, size(list)
+        nodes(:, i) = mesh%sides(list(i))%nodes
+      end do
+    end function all_nodes
+
+  end function new_set
+
+  !> Sides of elements along side k of a zone, the zone on their left.
+  pure function zone_side(mesh, z, k) result(sides)
+    type(new_mesh_t), intent(in) :: mesh
+    integer, intent(in) :: z, k
+    integer, allocatable :: sides(:, :)
+    type(numbers_t) :: numbers
+    integer, allocatable :: ends(:), middles(:)
+    integer :: s, n
+
+    s = mesh%layout%zone_sides(k, z)
+    n = mesh%division%count(s)
+    numbers = number_nodes(mesh%layout, mesh%division)
+    ends = ends_of_side(mesh%layout, mesh%division, numbers, s)
+    middles = middles_of_side(mesh%division, numbers, s)
+    if (mesh%layout%sides(s)%zones(1) /= z .or. mesh%layout%sides(s)%local(1) /= k) then
+      ends = ends(n + 1:1:-1)
+      middles = middles(n:1:-1)
+    end if
+    allocate (sides(3, n))
+    sides(1, :) = ends(:n)
+    sides(2, :) = middles
+    sides(3, :) = ends(2:)
+  end function zone_side
+
+  !> Half way along a contour side.
+  pure function middle_place(contours, side) result(place)
+    type(contour_t), intent(in) :: contours(:)
+    type(contour_side_t), intent(in) :: side
+    type(place_t) :: place
+    real(wp) :: from, to
+
+    associate (chain => contours(side%chain)%chain)
+      from = arc_at(chain, side%from)
+      to = arc_at(chain, side%to)
+      if (.not. to > from) to = to + chain_length(chain)
+      place = place_at_arc(chain, 0.5_wp*(from + to))
+    end associate
+  end function middle_place
+
+  !> Elements on sides: those of all sets that the old group is made of, each side once.
+  pure subroutine gather_sides(old, g, sets, connectivity)
+    type(scene_t), intent(in) :: old
+    integer, intent(in) :: g
+    type(side_set_t), intent(in) :: sets(:)
+    integer, allocatable, intent(out) :: connectivity(:, :)
+    integer :: k, i, n
+    logical :: part
+
+    n = 0
+    allocate (connectivity(3, sum([(size(sets(k)%nodes, 2), k=1, size(sets))])))
+    do k = 1, size(sets)
+      part = size(old%mesh%sides(k)%nodes, 2) > 0
+      do i = 1, size(old%mesh%sides(k)%nodes, 2)
+        part = part .and. any(old%groups(g)%connectivity(2, :) == old%mesh%sides(k)%nodes(2, i))
+      end do
+      if (.not. part) cycle
+      do i = 1, size(sets(k)%nodes, 2)
+        if (any(connectivity(2, :n) == sets(k)%nodes(2, i))) cycle
+        n = n + 1
+        connectivity(:, n) = sets(k)%nodes(:, i)
+      end do
+    end do
+    connectivity = connectivity(:, :n)
+  end subroutine gather_sides
+
+end module new_scene

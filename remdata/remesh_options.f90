@@ -1,0 +1,90 @@
+!> The command line of `remdata`.
+module remesh_options
+  use arguments, only: argument, refuse_option, value_of
+  use errors, only: error_t, exit_input, fail
+  use kinds, only: wp
+  use text, only: string_t
+  implicit none
+  private
+  public :: remesh_options_t, read_remesh_options, remesh_usage
+
+  type :: remesh_options_t
+    !> Checkpoint of the old mesh, and file for the new one.
+    character(len=:), allocatable :: checkpoint, out
+    !> Method of state transfer in place of the deck's (-1: the deck's).
+    integer :: transfer = -1
+    !> Wanted sizes are divided by this.
+    real(wp) :: finer = 1.0_wp
+    logical :: quiet = .false., help = .false., version = .false.
+  end type remesh_options_t
+
+contains
+
+  subroutine read_remesh_options(options, error)
+    type(remesh_options_t), intent(out) :: options
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: word
+    integer :: k, status
+
+    k = 0
+    do while (k < command_argument_count() .and. .not. allocated(error))
+      k = k + 1
+      call argument(k, word)
+      select case (word)
+      case ('--help', '-h')
+        options%help = .true.
+      case ('--version')
+        options%version = .true.
+      case ('--quiet')
+        options%quiet = .true.
+      case ('--out')
+        call value_of(word, k, options%out, error)
+      case ('--transfer')
+        call value_of('--transfer', k, word, error)
+        if (allocated(error)) exit
+        read (word, *, iostat=status) options%transfer
+        if (status /= 0 .or. options%transfer < 0) &
+          call fail(error, exit_input, '--transfer: expected the number of a method (0, 1, 2), found '''//word//'''')
+      case ('--finer')
+        call value_of('--finer', k, word, error)
+        if (allocated(error)) exit
+        read (word, *, iostat=status) options%finer
+        if (status /= 0 .or. .not. options%finer > 0) &
+          call fail(error, exit_input, '--finer: expected a number above 0, found '''//word//'''')
+      case default
+        if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
+          call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--quiet'), string_t('--out'), &
+                                    string_t('--transfer'), string_t('--finer')], 'remdata', error)
+        else if (allocated(options%checkpoint)) then
+          call fail(error, exit_input, 'one checkpoint at a time: found '''//options%checkpoint//''' and '''//word//'''')
+        else
+          options%checkpoint = word
+        end if
+      end select
+    end do
+    if (allocated(error) .or. options%help .or. options%version) return
+    if (.not. allocated(options%checkpoint)) then
+      call fail(error, exit_input, 'no checkpoint given', 'remdata --help shows how to call')
+    else if (.not. allocated(options%out)) then
+      call fail(error, exit_input, '--out is missing: the checkpoint of the new mesh', 'remdata --help shows how to call')
+    else if (options%out == options%checkpoint) then
+      call fail(error, exit_input, '--out: the old checkpoint may not be overwritten')
+    end if
+  end subroutine read_remesh_options
+
+  !> What --help prints.
+  function remesh_usage() result(text)
+    character(len=:), allocatable :: text
+    character(len=*), parameter :: nl = new_line('a')
+
+    text = 'remdata: a new mesh and the state on it, from a checkpoint of lagamine'//nl//nl// &
+           'remdata CHECKPOINT --out NEW [--transfer N] [--finer F] [--quiet]'//nl// &
+           'remdata --help | --version'//nl//nl// &
+           '  --out NEW       checkpoint of the new mesh, for lagamine --resume; facts in NEW.json'//nl// &
+           '  --transfer N    state transfer: 0 inverse distance, 1 moving least squares, 2 patches (default: the deck''s)'//nl// &
+           '  --finer F       divide the wanted sizes of elements by F'//nl// &
+           '  --quiet         print errors only'//nl//nl// &
+           'Exit codes: 0 done, 2 input refused, 3 no mesh that is good enough, 5 the machine failed, 6 a check of our own failed'
+  end function remesh_usage
+
+end module remesh_options

@@ -1,0 +1,103 @@
+!> What a remesh says of itself: lines for people, a JSON file for the cycle and the report.
+module remesh_report
+  use contour_chain, only: kind_entry
+  use errors, only: error_t
+  use json_writer, only: json_t
+  use kinds, only: wp
+  use remesh_scene, only: remesh_facts_t
+  use run_version, only: version_text
+  use text, only: to_text
+  implicit none
+  private
+  public :: print_facts, write_facts
+
+contains
+
+  !> A few lines on the terminal.
+  subroutine print_facts(facts, seconds)
+    type(remesh_facts_t), intent(in) :: facts
+    real(wp), intent(in) :: seconds
+    integer :: k, status
+
+    write (*, '(a)', iostat=status) 'mesh '//to_text(facts%generation)//' at step '//to_text(facts%step)//', time ' &
+      //to_text(facts%time)//': '//to_text(facts%old_elements)//' -> '//to_text(facts%new_elements)//' elements, '// &
+      to_text(seconds, 3)//' s'
+    if (status /= 0) return
+    write (*, '(a)') '  contour: largest move '//to_text(facts%contour%largest_move, 3)//', free sides shifted by ' &
+      //to_text(facts%contour%largest_shift, 3)//', volume '//to_text(100*facts%contour%volume_error, 3)//' %'
+    do k = 1, size(facts%contour%limits)
+      associate (limit => facts%contour%limits(k))
+        write (*, '(a)') '  contact '//trim(merge('begins', 'ends  ', limit%kind == kind_entry))//' at x = ' &
+          //to_text(limit%point(1))//', y = '//to_text(limit%point(2))
+      end associate
+    end do
+    write (*, '(a)') '  shape: scaled Jacobian from '//to_text(facts%mesh%scaled_jacobian, 3)//', angles ' &
+      //to_text(facts%mesh%least_angle, 3)//' to '//to_text(facts%mesh%largest_angle, 4)//' degrees'
+    if (facts%coarser > 1) write (*, '(a)') '  sizes '//to_text(facts%coarser, 3) &
+      //' times the wanted ones, for the limit on the number of elements: errors '//to_text(facts%coarser**2, 3)//' times'
+    write (*, '(a)') '  transfer by '//facts%transfer%method//':'
+    do k = 1, size(facts%transfer%rows)
+      associate (row => facts%transfer%rows(k))
+        write (*, '(a)') '    '//row%name//': integral '//to_text(row%before, 6)//' -> '//to_text(row%after, 6)//', largest ' &
+          //to_text(row%largest_before, 4)//' -> '//to_text(row%largest_after, 4)
+      end associate
+    end do
+  end subroutine print_facts
+
+  !> The file; `failure` is what ended the remesh, if something did.
+  subroutine write_facts(path, facts, seconds, failure, error)
+    character(len=*), intent(in) :: path
+    type(remesh_facts_t), intent(in) :: facts
+    real(wp), intent(in) :: seconds
+    type(error_t), allocatable, intent(in) :: failure
+    type(error_t), allocatable, intent(out) :: error
+    type(json_t) :: json
+    integer :: k
+
+    call json%begin_object()
+    call json%add('program', 'remdata')
+    call json%add('version', version_text)
+    call json%add('accepted', .not. allocated(failure))
+    if (allocated(failure)) then
+      call json%add('stage', facts%stage)
+      call json%add('reason', failure%message)
+    end if
+    call json%add('generation', facts%generation)
+    call json%add('step', facts%step)
+    call json%add('time', facts%time)
+    call json%add('old_elements', facts%old_elements)
+    call json%add('new_elements', facts%new_elements)
+    call json%add('wall_s', seconds)
+    call json%begin_object('contour')
+    call json%add('largest_move', facts%contour%largest_move)
+    call json%add('largest_shift', facts%contour%largest_shift)
+    call json%add('volume_error', facts%contour%volume_error)
+    call json%end_object()
+    call json%begin_object('mesh')
+    call json%add('scaled_jacobian', facts%mesh%scaled_jacobian)
+    call json%add('least_angle', facts%mesh%least_angle)
+    call json%add('largest_angle', facts%mesh%largest_angle)
+    call json%add('off_contour', facts%mesh%off_contour)
+    call json%add('coarser', facts%coarser)
+    call json%end_object()
+    call json%begin_array('transfer')
+    if (allocated(facts%transfer%rows)) then
+      do k = 1, size(facts%transfer%rows)
+        associate (row => facts%transfer%rows(k))
+          call json%begin_object()
+          call json%add('name', row%name)
+          call json%add('before', row%before)
+          call json%add('carried', row%carried)
+          call json%add('after', row%after)
+          call json%add('largest_before', row%largest_before)
+          call json%add('largest_after', row%largest_after)
+          call json%end_object()
+        end associate
+      end do
+    end if
+    call json%end_array()
+    call json%end_object()
+    call json%write_file(path, error)
+  end subroutine write_facts
+
+end module remesh_report

@@ -1,0 +1,309 @@
+!> The remesher's page: from the checkpoint of an old mesh to that of a new one.
+!>
+!> contour -> zones -> sizes -> mesh -> state -> checkpoint (annex 2; chapter 12). Whatever cannot be done ends in an error that
+!> names its stage; the old checkpoint is never touched.
+module remesh_scene
+  use contact_carry, only: carry_contacts
+  use contact_ends, only: contact_end_t
+  use contour_chain, only: chain_t
+  use contour_needs, only: geometry_wish_t, needs_of_chain
+  use dies, only: is_deformable
+  use errors, only: error_t, exit_input, fail
+  use exchange, only: read_bare_scene, read_checkpoint, read_deck_of_checkpoint, read_ends, write_checkpoint
+  use kinds, only: wp
+  use new_mesh_check, only: mesh_check_t, check_new_mesh
+  use new_scene, only: set_up_new_scene
+  use part_contour, only: build_contours, contour_options_t, contour_report_t, contour_t
+  use remesh_options, only: remesh_options_t
+  use scene, only: is_solid, scene_t
+  use size_field, only: old_mesh_t, set_up_sizes, size_field_t, size_limits_t, wanted_size
+  use solution, only: solution_t, start_solution
+  use state_pieces, only: mesh_of, solid_pieces, state_pieces_t
+  use text, only: to_text
+  use transfer_api, only: transfer_options_t
+  use transfer_map, only: carry, transfer_map_t
+  use transfer_mesh, only: plant_mesh_trees, transfer_mesh_t
+  use transfer_nodes, only: shape_weights
+  use transfer_report, only: transfer_report_t
+  use transfer_states, only: carry_states
+  use zone_mesh, only: mesh_wish_t, mesh_zones, new_mesh_t
+  use zone_plan, only: plan_t, plan_zones
+  implicit none
+  private
+  public :: remesh_facts_t, remesh_checkpoint
+
+  !> What was made, for the report.
+  type :: remesh_facts_t
+    character(len=:), allocatable :: stage
+    integer :: generation = 0, step = 0
+    real(wp) :: time = 0.0_wp
+    integer :: old_elements = 0, new_elements = 0
+    type(contour_report_t) :: contour
+    type(mesh_check_t) :: mesh
+    type(transfer_report_t) :: transfer
+    !> Sizes are so many times the wanted ones, for the limit on the number of elements.
+    real(wp) :: coarser = 1.0_wp
+  end type remesh_facts_t
+
+  !> Errors of strain fall with the size to this power (8-node elements).
+  real(wp), parameter :: strain_order = 2.0_wp
+  !> Attempts at a mesh of good shape: smoothing, then finer.
+  integer, parameter :: attempts = 3
+
+contains
+
+  subroutine remesh_checkpoint(options, facts, error)
+    type(remesh_options_t), intent(in) :: options
+    type(remesh_facts_t), intent(out) :: facts
+    type(error_t), allocatable, intent(out) :: error
+    type(scene_t) :: old, new
+    type(solution_t) :: before, after
+    type(contact_end_t), allocatable :: ends(:)
+    type(contour_t), allocatable :: contours(:)
+    type(plan_t) :: plan
+    type(size_field_t) :: sizes
+    type(new_mesh_t) :: mesh
+    character(len=:), allocatable :: deck_path, deck_text
+
+    facts%stage = 'checkpoint'
+    call read_deck_of_checkpoint(options%checkpoint, deck_path, deck_text, error)
+    if (.not. allocated(error)) call read_bare_scene(options%checkpoint, old, error)
+    if (.not. allocated(error)) call start_solution(old, before)
+    if (.not. allocated(error)) call read_checkpoint(options%checkpoint, old, before, error)
+    if (.not. allocated(error)) call read_ends(options%checkpoint, ends, error)
+    if (.not. allocated(error)) call refuse_what_is_not_offered(old, error)
+    if (allocated(error)) return
+    call take_options(options, old)
+    facts%step = before%step
+    facts%time = before%time
+    facts%generation = old%generation + 1
+
+    facts%stage = 'contour'
+    call build_contours(old, before, ends, contour_options_t(), contours, facts%contour, error)
+    if (allocated(error)) return
+    facts%stage = 'mesh'
+    call plan_zones(old, old%mesh%coordinates + before%displacement, materials_of(old, before), contours, plan, error)
+    if (allocated(error)) return
+    call wanted_sizes(old, before, contours, sizes)
+    call make_mesh(old, contours, plan, sizes, options%finer, mesh, facts, error)
+    if (allocated(error)) return
+    call set_up_new_scene(old, contours, plan, mesh, new, error)
+    if (allocated(error)) return
+    facts%stage = 'transfer'
+    call start_solution(new, after)
+    call carry_progress(before, after)
+    call carry_solids(old, before, new, after, facts%transfer, error)
+    if (allocated(error)) return
+    facts%stage = 'contact'
+    call carry_contacts(old, before, contours, mesh, new, after)
+    facts%stage = 'checkpoint'
+    call write_checkpoint(options%out, deck_path, deck_text, new, after, [contact_end_t ::], error)
+    facts%old_elements = count_elements(old)
+    facts%new_elements = count_elements(new)
+  end subroutine remesh_checkpoint
+
+  subroutine refuse_what_is_not_offered(scene, error)
+    type(scene_t), intent(in) :: scene
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: k
+
+    do k = 1, size(scene%dies)
+      if (is_deformable(scene%dies(k))) call fail(error, exit_input, 'remdata: DIE '//scene%dies(k)%name &
+                                        //' is made of sides: scenes with bodies that touch one another cannot be remeshed yet')
+    end do
+  end subroutine refuse_what_is_not_offered
+
+  !> What the command line says in place of the deck.
+  subroutine take_options(options, scene)
+    type(remesh_options_t), intent(in) :: options
+    type(scene_t), intent(inout) :: scene
+
+    if (options%transfer >= 0) scene%remesher%transfer = options%transfer
+  end subroutine take_options
+
+  pure function count_elements(scene) result(n)
+    type(scene_t), intent(in) :: scene
+    integer :: n
+    integer :: g
+
+    n = 0
+    do g = 1, size(scene%groups)
+      if (is_solid(scene%groups(g))) n = n + size(scene%groups(g)%connectivity, 2)
+    end do
+  end function count_elements
+
+  !> Numbers of materials as the transfer sees them, by group of the scene.
+  pure function materials_of(scene, solution) result(material)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer :: material(size(scene%groups))
+    type(state_pieces_t) :: pieces
+    integer :: k
+
+    material = 0
+    call solid_pieces(scene, pieces, solution)
+    do k = 1, size(pieces%groups)
+      material(pieces%groups(k)%place) = pieces%groups(k)%material
+    end do
+  end function materials_of
+
+  !> Sizes by the error of the strains, by bends of the contour and by stretches of contact.
+  subroutine wanted_sizes(scene, solution, contours, sizes)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(contour_t), intent(in) :: contours(:)
+    type(size_field_t), intent(out) :: sizes
+    type(state_pieces_t) :: pieces
+    type(transfer_mesh_t) :: mesh
+    type(old_mesh_t) :: old
+    type(size_limits_t) :: limits
+    type(geometry_wish_t) :: wish
+    real(wp), allocatable :: needs(:, :), more(:, :)
+    real(wp) :: error
+    integer :: e, c
+
+    call solid_pieces(scene, pieces, solution)
+    pieces%axisymmetric = .false.
+    call mesh_of(pieces, mesh)
+    old%nodes = mesh%nodes
+    old%connectivity = mesh%connectivity
+    old%material = mesh%material
+    allocate (old%wanted(size(mesh%material)))
+    do e = 1, size(old%wanted)
+      old%wanted(e) = sqrt(area_of(old%nodes(:, old%connectivity(:, e))))
+    end do
+    if (scene%remesher%smallest > 0) limits%smallest = scene%remesher%smallest
+    if (scene%remesher%largest > 0) limits%largest = scene%remesher%largest
+    if (scene%remesh%estimate) then
+      do e = 1, size(old%wanted)
+        error = solution%estimate%strain_of(e)
+        old%wanted(e) = wanted_size(old%wanted(e), error, scene%remesher%strain_error, strain_order)
+      end do
+    end if
+    wish%across = scene%remesher%across_contact
+    allocate (needs(3, 0))
+    do c = 1, size(contours)
+      call needs_of_chain(contours(c)%chain, wish, limits, more)
+      needs = reshape([needs, more], [3, size(needs, 2) + size(more, 2)])
+    end do
+    call set_up_sizes(limits, needs, sizes, old)
+  end subroutine wanted_sizes
+
+  !> Area of an element between its corners.
+  pure function area_of(x) result(area)
+    real(wp), intent(in) :: x(2, 8)
+    real(wp) :: area, a(2), b(2)
+
+    a = x(:, 3) - x(:, 1)
+    b = x(:, 4) - x(:, 2)
+    area = 0.5_wp*abs(a(1)*b(2) - a(2)*b(1))
+  end function area_of
+
+  !> Mesh the zones; a mesh of bad shape is smoothed more, then made finer.
+  subroutine make_mesh(scene, contours, plan, sizes, finer, mesh, facts, error)
+    type(scene_t), intent(in) :: scene
+    type(contour_t), intent(in) :: contours(:)
+    type(plan_t), intent(in) :: plan
+    type(size_field_t), intent(in) :: sizes
+    real(wp), intent(in) :: finer
+    type(new_mesh_t), intent(out) :: mesh
+    type(remesh_facts_t), intent(inout) :: facts
+    type(error_t), allocatable, intent(out) :: error
+    type(mesh_wish_t) :: wish
+    type(chain_t) :: chains(size(contours))
+    integer :: attempt, c
+
+    do c = 1, size(contours)
+      chains(c) = contours(c)%chain
+    end do
+    wish%division%refine = finer
+    if (scene%remesher%most_elements > 0) wish%division%most_elements = scene%remesher%most_elements
+    do attempt = 1, attempts
+      if (allocated(error)) deallocate (error)
+      if (attempt == 2) wish%passes = 4*wish%passes
+      if (attempt == 3) wish%division%refine = 1.5_wp*wish%division%refine
+      call mesh_zones(chains, plan%points, plan%zones, sizes, wish, mesh, error)
+      if (allocated(error)) return
+      facts%coarser = mesh%division%coarser
+      call check_new_mesh(contours, mesh, facts%mesh, error)
+      if (.not. allocated(error)) return
+    end do
+  end subroutine make_mesh
+
+  !> Time, dies, work: what does not hang on the mesh.
+  pure subroutine carry_progress(before, after)
+    type(solution_t), intent(in) :: before
+    type(solution_t), intent(inout) :: after
+
+    after%time = before%time
+    after%step = before%step
+    after%last_step = before%last_step
+    after%next_step = before%next_step
+    after%pilots = before%pilots
+    after%last_pilot_increment = before%last_pilot_increment
+    after%pilot_applied = before%pilot_applied
+    after%section = before%section
+    after%last_section_increment = before%last_section_increment
+    after%section_applied = before%section_applied
+    after%iterations = before%iterations
+    after%cutbacks = before%cutbacks
+    after%external_work = before%external_work
+    after%initial_volume = before%initial_volume
+    after%worst_linear_residual = before%worst_linear_residual
+    after%worst_penetration = before%worst_penetration
+    after%worst_penetration_ratio = before%worst_penetration_ratio
+    after%worst_sample = before%worst_sample
+    after%worst_sample_ratio = before%worst_sample_ratio
+    after%least_dissipation = before%least_dissipation
+    after%estimate%last_stop = before%step
+    after%unbalanced = .true.
+  end subroutine carry_progress
+
+  !> State of the solids, and what belongs to nodes: origin of the matter and motion of the last step.
+  subroutine carry_solids(old, before, new, after, report, error)
+    type(scene_t), intent(in) :: old
+    type(solution_t), intent(in) :: before
+    type(scene_t), intent(inout) :: new
+    type(solution_t), intent(inout) :: after
+    type(transfer_report_t), intent(out) :: report
+    type(error_t), allocatable, intent(out) :: error
+    type(state_pieces_t) :: from, to
+    type(transfer_options_t) :: options
+    type(transfer_mesh_t) :: mesh, target
+    type(transfer_map_t) :: map
+    real(wp), allocatable :: values(:, :)
+    integer, allocatable :: material(:)
+    integer :: k
+
+    options%method = old%remesher%transfer
+    options%exponent = old%remesher%exponent
+    options%neighbours = old%remesher%neighbours
+    call solid_pieces(old, from, before)
+    call solid_pieces(new, to)
+    do k = 1, size(to%groups)
+      allocate (to%groups(k)%values, source=after%groups(to%groups(k)%place)%committed)
+    end do
+    call carry_states(from, to, options, report, error)
+    if (allocated(error)) return
+    do k = 1, size(to%groups)
+      after%groups(to%groups(k)%place)%committed = to%groups(k)%values
+      after%groups(to%groups(k)%place)%trial = to%groups(k)%values
+    end do
+
+    call mesh_of(from, mesh)
+    call plant_mesh_trees(mesh)
+    call mesh_of(to, target)
+    allocate (material(size(new%mesh%coordinates, 2)), source=0)
+    do k = 1, size(target%material)
+      material(target%connectivity(:, k)) = target%material(k)
+    end do
+    call shape_weights(mesh, mesh%connectivity, new%mesh%coordinates, material, options%outside, map, error)
+    if (allocated(error)) return
+    allocate (values(4, size(material)))
+    call carry(map, reshape([old%mesh%origin(1, :), old%mesh%origin(2, :), before%last_increment(1, :), &
+                             before%last_increment(2, :)], [4, size(old%mesh%origin, 2)], order=[2, 1]), values)
+    new%mesh%origin = values(1:2, :)
+    after%last_increment = values(3:4, :)
+  end subroutine carry_solids
+
+end module remesh_scene

@@ -1,0 +1,260 @@
+!> Zones of a scene on its corrected contours: where their corners go.
+!>
+!> The blocks of a deck are its zones: four sets of sides each, `name.1` to `name.4`, which every remesh makes again. A corner
+!> of one zone alone goes by shape: to the corner of the contour, or the place where contact begins or ends, nearest to it. When
+!> a side folds onto a die the old corner lies flat there, and the new one is where contact ends. A corner that several zones
+!> share on the contour goes with the matter; one inside moves with it, and smoothing may move it on.
+!>
+!> No quadrilateral has a corner of 180 degrees: where one corner of a body's only zone has become flat, the zone is a triangle to
+!> be divided into three, and the flat corner is a point of its long side.
+module zone_plan
+  use contour_chain, only: arc_at, chain_length, chain_t, kind_corner, kind_entry, kind_exit, place_at_arc, place_t, point_on, &
+                           turn_at
+  use errors, only: error_t, exit_input, fail
+  use kinds, only: pi, wp
+  use mesh, only: find_side_set
+  use part_contour, only: contour_t, place_of_node
+  use scene, only: is_solid, scene_t
+  use text, only: to_text
+  use zones, only: as_found, follows_contour, zone_point_t, zone_t
+  implicit none
+  private
+  public :: plan_t, plan_zones
+
+  type :: plan_t
+    type(zone_point_t), allocatable :: points(:)
+    type(zone_t), allocatable :: zones(:)
+    !> Group of the scene each zone's elements are of, and its four sets of sides (0: none).
+    integer, allocatable :: group(:), sets(:, :)
+  end type plan_t
+
+  !> A corner where the contour turns by less is flat: 35 degrees, a scaled Jacobian of 0.57.
+  real(wp), parameter :: flat_turn = 35*pi/180
+
+contains
+
+  !> Zones of all solid groups.
+  pure subroutine plan_zones(scene, x, material, contours, plan, error)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: x(:, :)               !! nodes now (2, nnode) [length]
+    integer, intent(in) :: material(:)            !! of each group of the scene, as sizes are asked for it (ngroup)
+    type(contour_t), intent(in) :: contours(:)
+    type(plan_t), intent(out) :: plan
+    type(error_t), allocatable, intent(out) :: error
+    integer :: point_of(size(x, 2)), sharing(size(x, 2)), corners(4), g, k, n, z
+
+    n = 0
+    do g = 1, size(scene%groups)
+      if (is_solid(scene%groups(g))) n = n + 1
+    end do
+    allocate (plan%zones(n), plan%group(n), plan%sets(4, n), plan%points(0))
+    sharing = 0
+    z = 0
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      z = z + 1
+      plan%group(z) = g
+      plan%zones(z)%material = material(g)
+      do k = 1, 4
+        plan%sets(k, z) = find_side_set(scene%mesh, scene%groups(g)%name//'.'//to_text(k))
+        if (plan%sets(k, z) > 0) cycle
+        call fail(error, exit_input, 'body '//scene%groups(g)%name//' is no BLOCK: it has no zone to be meshed by', &
+                  'make the mesh of BLOCK cards, or leave REMSH out')
+        return
+      end do
+      corners = corners_of(scene, plan%sets(:, z))
+      sharing(corners) = sharing(corners) + 1
+    end do
+    point_of = 0
+    do z = 1, n
+      corners = corners_of(scene, plan%sets(:, z))
+      do k = 1, 4
+        if (point_of(corners(k)) == 0) then
+          plan%points = [plan%points, point_at_node(contours, x, corners(k), sharing(corners(k)) == 1)]
+          point_of(corners(k)) = size(plan%points)
+        end if
+        plan%zones(z)%corners(k) = point_of(corners(k))
+      end do
+    end do
+    do z = 1, n
+      call follow_contours(scene, contours, plan%sets(:, z), plan%zones(z))
+    end do
+    call refuse_same_places(contours, plan, error)
+    if (allocated(error)) return
+    do z = 1, n
+      k = flat_corner(contours, plan, z)
+      if (k > 0) call split_in_three(contours, z, k, plan)
+    end do
+  end subroutine plan_zones
+
+  !> The corner of a zone with the contour on all sides that is nearly flat, 0 when there is none.
+  pure function flat_corner(contours, plan, z) result(corner)
+    type(contour_t), intent(in) :: contours(:)
+    type(plan_t), intent(in) :: plan
+    integer, intent(in) :: z
+    integer :: corner
+    real(wp) :: turn, least
+    integer :: k
+
+    corner = 0
+    if (any(plan%zones(z)%form /= follows_contour)) return
+    least = flat_turn
+    do k = 1, 4
+      associate (point => plan%points(plan%zones(z)%corners(k)))
+        turn = abs(turn_at(contours(point%chain)%chain, point%place%stretch))
+        if (point%place%xi > contours(point%chain)%chain%stretches(point%place%stretch)%range(1)) turn = 0
+      end associate
+      if (.not. turn < least) cycle
+      least = turn
+      corner = k
+    end do
+  end function flat_corner
+
+  !> Three zones around a point inside, between the middles of the sides that do not end in the flat corner D, and D:
+  !> with B and C before and after D, and A opposite, (A, AB, M, CA), (B, D, M, AB), (C, CA, M, D).
+  pure subroutine split_in_three(contours, z, flat, plan)
+    type(contour_t), intent(in) :: contours(:)
+    integer, intent(in) :: z, flat
+    type(plan_t), intent(inout) :: plan
+    type(zone_t) :: zone, parts(3)
+    integer :: a, b, c, d, ab, ca, m, k
+
+    zone = plan%zones(z)
+    d = zone%corners(flat)
+    c = zone%corners(modulo(flat, 4) + 1)
+    a = zone%corners(modulo(flat + 1, 4) + 1)
+    b = zone%corners(modulo(flat + 2, 4) + 1)
+    plan%points = [plan%points, halfway(contours, plan%points(a), plan%points(b)), &
+                   halfway(contours, plan%points(c), plan%points(a))]
+    ab = size(plan%points) - 1
+    ca = size(plan%points)
+    plan%points = [plan%points, zone_point_t(x=(placed(ab) + placed(ca) + placed(d))/3)]
+    m = size(plan%points)
+    parts = zone
+    parts(1)%corners = [a, ab, m, ca]
+    parts(2)%corners = [b, d, m, ab]
+    parts(3)%corners = [c, ca, m, d]
+    do k = 1, 3
+      parts(k)%form = [follows_contour, as_found, as_found, follows_contour]
+    end do
+    plan%zones(z) = parts(1)
+    plan%zones = [plan%zones, parts(2:)]
+    plan%group = [plan%group, plan%group(z), plan%group(z)]
+    ! all sets of the zone are on the contour, and go with its sides
+    plan%sets(:, z) = 0
+    plan%sets = reshape([reshape(plan%sets, [size(plan%sets)]), spread(0, 1, 8)], [4, size(plan%sets, 2) + 2])
+
+  contains
+
+    pure function placed(p) result(x)
+      integer, intent(in) :: p
+      real(wp) :: x(2)
+
+      x = point_on(contours(plan%points(p)%chain)%chain, plan%points(p)%place)
+    end function placed
+
+  end subroutine split_in_three
+
+  !> Half way along a chain from one point to another.
+  pure function halfway(contours, from, to) result(point)
+    type(contour_t), intent(in) :: contours(:)
+    type(zone_point_t), intent(in) :: from, to
+    type(zone_point_t) :: point
+    real(wp) :: start, way
+
+    associate (chain => contours(from%chain)%chain)
+      start = arc_at(chain, from%place)
+      way = modulo(arc_at(chain, to%place) - start, chain_length(chain))
+      point%chain = from%chain
+      point%place = place_at_arc(chain, start + 0.5_wp*way)
+    end associate
+  end function halfway
+
+  !> First nodes of the four sides of a block.
+  pure function corners_of(scene, sets) result(nodes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: sets(4)
+    integer :: nodes(4), k
+
+    do k = 1, 4
+      nodes(k) = scene%mesh%sides(sets(k))%nodes(1, 1)
+    end do
+  end function corners_of
+
+  !> Where a corner of a zone goes.
+  pure function point_at_node(contours, x, node, by_shape) result(point)
+    type(contour_t), intent(in) :: contours(:)
+    real(wp), intent(in) :: x(:, :)
+    integer, intent(in) :: node
+    logical, intent(in) :: by_shape
+    type(zone_point_t) :: point
+    integer :: c, side
+
+    point%x = x(:, node)
+    do c = 1, size(contours)
+      side = findloc(contours(c)%loop%sides(1, :), node, 1)
+      if (side == 0) cycle
+      point%chain = c
+      point%place = place_of_node(contours(c), x, side, 1)
+      if (by_shape) point%place = nearest_corner(contours(c)%chain, point%place)
+      return
+    end do
+  end function point_at_node
+
+  !> The corner, beginning or end of contact nearest along the chain.
+  pure function nearest_corner(chain, from) result(place)
+    type(chain_t), intent(in) :: chain
+    type(place_t), intent(in) :: from
+    type(place_t) :: place
+    real(wp) :: here, way, least
+    integer :: k
+
+    place = from
+    here = arc_at(chain, from)
+    least = huge(least)
+    do k = 1, size(chain%stretches)
+      if (all(chain%kinds(k) /= [kind_corner, kind_entry, kind_exit])) cycle
+      way = abs(chain%arc(k - 1) - here)
+      way = min(way, chain_length(chain) - way)
+      if (.not. way < least) cycle
+      least = way
+      place = place_t(k, chain%stretches(k)%range(1))
+    end do
+  end function nearest_corner
+
+  !> Sides of a zone that the contour forms: those whose old sides are on it.
+  pure subroutine follow_contours(scene, contours, sets, zone)
+    type(scene_t), intent(in) :: scene
+    type(contour_t), intent(in) :: contours(:)
+    integer, intent(in) :: sets(4)
+    type(zone_t), intent(inout) :: zone
+    integer :: c, k
+
+    do k = 1, 4
+      do c = 1, size(contours)
+        if (any(contours(c)%loop%sides(2, :) == scene%mesh%sides(sets(k))%nodes(2, 1))) zone%form(k) = follows_contour
+      end do
+    end do
+  end subroutine follow_contours
+
+  !> Two corners may not come to lie in one place.
+  pure subroutine refuse_same_places(contours, plan, error)
+    type(contour_t), intent(in) :: contours(:)
+    type(plan_t), intent(in) :: plan
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i, k
+
+    do k = 2, size(plan%points)
+      do i = 1, k - 1
+        associate (a => plan%points(i), b => plan%points(k))
+          if (a%chain == 0 .or. a%chain /= b%chain) cycle
+          if (abs(arc_at(contours(a%chain)%chain, a%place) - arc_at(contours(b%chain)%chain, b%place)) > 0) cycle
+          call fail(error, exit_input, 'two corners of zones meet at x = '//to_text(a%x(1))//', y = '//to_text(a%x(2)) &
+                    //': the contour has lost a corner there', 'give zones that fit the new shape, or remesh earlier')
+          return
+        end associate
+      end do
+    end do
+  end subroutine refuse_same_places
+
+end module zone_plan
