@@ -6,6 +6,7 @@
 module part_contour
   use boundary_sides, only: find_loops, loop_t, loops_found, shared_by_three
   use contact_ends, only: contact_end_t
+  use contact_gaps, only: close_gaps
   use contact_knots, only: sections_of_run, section_t
   use contact_runs, only: along, find_runs, run_t, spot_t
   use contour_assembly, only: assemble_chain, contact_t
@@ -31,6 +32,8 @@ module part_contour
     real(wp) :: corner_turn = 20*pi/180
     !> Contact over less of a side, in sides, is left as it is.
     real(wp) :: least_contact = 0.05_wp
+    !> Gaps between two runs that are no wider than this share of a side are contact too: the depth a solver allows by default.
+    real(wp) :: narrow_gap = 1.0e-3_wp
   end type contour_options_t
 
   !> Where contact begins or ends.
@@ -193,6 +196,7 @@ contains
     integer :: k, n
 
     call find_runs(scene, contour%loop, contour%tags, ends, closed, options%least_contact, runs)
+    call close_gaps(scene, solution, contour%loop, contour%tags, x, options%narrow_gap, runs)
     allocate (list(size(runs)))
     n = 0
     do k = 1, size(runs)

@@ -17,7 +17,7 @@ module exchange
   use text, only: string_t, to_text
   implicit none
   private
-  public :: write_checkpoint, read_deck_of_checkpoint, read_checkpoint, schema_version
+  public :: write_checkpoint, read_deck_of_checkpoint, read_checkpoint, read_contact_ends, schema_version
 
   !> Raised whenever a dataset changes its name, shape or meaning.
   integer, parameter :: schema_version = 2
@@ -154,6 +154,40 @@ contains
     call file%write('contact_ends/die_piece', ends%piece)
     call file%write('contact_ends/die_xi', ends%xi)
   end subroutine write_ends
+
+  !> Where contact begins and ends at the instant of a checkpoint.
+  subroutine read_contact_ends(path, ends, error)
+    character(len=*), intent(in) :: path
+    type(contact_end_t), allocatable, intent(out) :: ends(:)
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+    integer, allocatable :: begins(:), group(:), side(:), piece(:)
+    real(wp), allocatable :: place(:), xi(:)
+    integer :: n
+
+    allocate (ends(0))
+    call open_checkpoint(path, file, error)
+    if (allocated(error)) return
+    call file%read('contact_ends/begins', begins)
+    call file%read('contact_ends/group', group)
+    call file%read('contact_ends/side', side)
+    call file%read('contact_ends/place', place)
+    call file%read('contact_ends/die_piece', piece)
+    call file%read('contact_ends/die_xi', xi)
+    n = size(begins)
+    if (any([size(group), size(side), size(place), size(piece), size(xi)] /= n)) &
+      call file%record_error(exit_input, 'contact_ends: lists of unlike lengths')
+    call file%close(error)
+    if (allocated(error)) return
+    deallocate (ends)
+    allocate (ends(n))
+    ends%begins = begins == 1
+    ends%group = group
+    ends%side = side
+    ends%place = place
+    ends%piece = piece
+    ends%xi = xi
+  end subroutine read_contact_ends
 
   pure function group_place(g) result(place)
     integer, intent(in) :: g
