@@ -8,7 +8,7 @@ module part_contour
   use contact_ends, only: contact_end_t
   use contact_gaps, only: close_gaps
   use contact_knots, only: sections_of_run, section_t
-  use contact_runs, only: along, find_runs, run_t, spot_t
+  use contact_runs, only: find_runs, run_t
   use contour_assembly, only: assemble_chain, contact_t
   use contour_chain, only: chain_t, closest_place, joint_point, kind_entry, kind_exit, largest_gap, place_t, point_on, size_of_chain
   use contour_laps, only: find_laps, lap_t
@@ -20,12 +20,11 @@ module part_contour
   use side_tags, only: find_tags, held_nodes, side_tags_t
   use solution, only: solution_t
   use state_variables, only: find_variable
-  use stretches, only: closest_xi, point_at
   use text, only: to_text
   use vectors, only: length_of
   implicit none
   private
-  public :: contour_options_t, contour_t, contour_report_t, contact_limit_t, build_contours, place_of_node
+  public :: contour_options_t, contour_t, contour_report_t, contact_limit_t, build_contours
 
   type :: contour_options_t
     !> Tangents that turn by more make a corner [radian].
@@ -327,37 +326,5 @@ contains
               //', the first at x = '//to_text(laps(1)%point(1))//', y = '//to_text(laps(1)%point(2)), &
               'remesh earlier, before the sides fold over each other, or let these sides face a die')
   end subroutine refuse_laps
-
-  !> Where an old node of the loop has gone: on its side, or to the closest place of the run of contact that its side is in.
-  pure function place_of_node(contour, x, side, local) result(place)
-    type(contour_t), intent(in) :: contour
-    real(wp), intent(in) :: x(:, :)              !! nodes before the correction (2, nnode) [length]
-    integer, intent(in) :: side, local           !! side of the loop, and 1, 2 or 3: first end, middle, second end
-    type(place_t) :: place
-    real(wp) :: xi, s, distance, least
-    integer :: k, run
-
-    xi = local - 2
-    run = 0
-    do k = 1, size(contour%contacts)
-      associate (limits => along([contour%contacts(k)%run%from, contour%contacts(k)%run%to]))
-        s = along(spot_t(side, xi))
-        if (s < limits(1)) s = s + size(contour%loop%sides, 2)
-        if (s <= limits(2)) run = k
-      end associate
-    end do
-    least = huge(least)
-    do k = 1, size(contour%chain%stretches)
-      associate (one => contour%chain%stretches(k))
-        if (one%run /= run .or. run == 0 .and. one%middle /= contour%loop%sides(2, side)) cycle
-        if (run > 0) xi = closest_xi(one, x(:, contour%loop%sides(local, side)))
-        if (xi < one%range(1) .or. xi > one%range(2)) cycle
-        distance = length_of(point_at(one, xi) - x(:, contour%loop%sides(local, side)))
-        if (.not. distance < least) cycle
-        least = distance
-        place = place_t(k, xi)
-      end associate
-    end do
-  end function place_of_node
 
 end module part_contour
