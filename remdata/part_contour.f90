@@ -233,7 +233,7 @@ contains
     contour%volume_after = volume_inside(contour%chain, round)
     if (size(contour%contacts) == 0) return
     moved = x
-    may_move = .not. (contour%tags%on_axis .or. any(contour%tags%on_fixation, 1) .or. any(contour%tags%on_die, 1))
+    may_move = .not. (contour%tags%on_axis .or. any(contour%tags%on_die, 1))
     do k = 1, size(contour%contacts)
       associate (run => contour%contacts(k)%run)
         do i = run%from%side, run%to%side
