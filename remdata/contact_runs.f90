@@ -3,9 +3,9 @@
 !> The solver finds the ends group by group (contact_ends). Here they are put in their order along the loop and paired. On
 !> the axis a point of contact has no surface and is never found closed: a run whose last point before the axis is closed
 !> goes on to it. A run that begins or ends almost in a node where sets of sides meet does so in the node: no sliver is left
-!> for a mesh to resolve, and the contour is the same. Runs of two groups that overlap are cut in the middle of what they share, and one that lies inside another
-!> gives way. A run that covers less than a share of one side is left as it is: the part's own contour carries its pressure
-!> just as well, and no element would fit.
+!> for a mesh to resolve, and the contour is the same. Runs of two groups that overlap are cut in the middle of what they
+!> share, and one that lies inside another gives way. A run that covers less than a share of one side is left as it is: the
+!> part's own contour carries its pressure just as well, and no element would fit.
 module contact_runs
   use boundary_sides, only: loop_t
   use contact_ends, only: contact_end_t

@@ -31,8 +31,8 @@ module part_contour
     real(wp) :: corner_turn = 20*pi/180
     !> Contact over less of a side, in sides, is left as it is.
     real(wp) :: least_contact = 0.05_wp
-    !> Gaps between two runs that are no wider than this share of a side are contact too: the depth a solver allows by default.
-    real(wp) :: narrow_gap = 1.0e-3_wp
+    !> Gaps between two runs that are no wider than this share of a side are contact too: no mesh resolves them.
+    real(wp) :: narrow_gap = 0.01_wp
   end type contour_options_t
 
   !> Where contact begins or ends.
