@@ -2,11 +2,12 @@
 !>
 !> Behind a side that folds onto a die, or where points chatter, contact opens by less than the solver's own depth. Two runs
 !> with such a gap between them become one: the contour keeps its distance from the die there (a depth below zero), but no
-!> beginning and no end of contact is left for a mesh to resolve.
+!> beginning and no end of contact is left for a mesh to resolve. A pocket is wider but as short as an element or two, as a coarse
+!> side leaves where it folds: it keeps its shape, and its ends are none for the mesh either.
 module contact_gaps
   use boundary_sides, only: loop_t
   use contact_knots, only: find_knot, point_of_spot
-  use contact_runs, only: along, run_t, spot_t
+  use contact_runs, only: along, run_t, same_spot, spot_t
   use contact_stretches, only: knot_t
   use dies, only: die_t, present_die
   use kinds, only: wp
@@ -16,7 +17,7 @@ module contact_gaps
   use vectors, only: length_of
   implicit none
   private
-  public :: close_gaps
+  public :: close_gaps, mark_pockets
 
   !> Places of a side that are looked at.
   real(wp), parameter :: places(5) = [-1.0_wp, -0.5_wp, 0.0_wp, 0.5_wp, 1.0_wp]
@@ -55,6 +56,26 @@ contains
       runs(k)%to%side = runs(k)%to%side - nside
     end do
   end subroutine close_gaps
+
+  !> Mark runs that a pocket follows.
+  pure subroutine mark_pockets(scene, solution, loop, x, widest, longest, runs)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(loop_t), intent(in) :: loop
+    real(wp), intent(in) :: x(:, :)            !! nodes now (2, nnode) [length]
+    real(wp), intent(in) :: widest, longest    !! width, share of the side, and length, in sides
+    type(run_t), intent(inout) :: runs(:)      !! in their order along the loop
+    type(spot_t) :: until
+    integer :: i, next
+
+    do i = 1, size(runs)
+      next = mod(i, size(runs)) + 1
+      if (next == i .or. scene%groups(runs(i)%group)%die /= scene%groups(runs(next)%group)%die) cycle
+      until = begins_after(runs(i), runs(next), size(loop%sides, 2))
+      if (same_spot(until, runs(i)%to) .or. along(until) - along(runs(i)%to) > longest) cycle
+      runs(i)%pocket = is_narrow(scene, solution, loop, x, widest, runs(i), until)
+    end do
+  end subroutine mark_pockets
 
   !> Where the next run begins, counted on from the end of a run.
   pure function begins_after(run, next, nside) result(spot)

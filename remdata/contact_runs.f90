@@ -28,6 +28,8 @@ module contact_runs
   type :: run_t
     integer :: group = 0
     type(spot_t) :: from, to
+    !> What follows is a pocket: contact with the same die goes on behind it (contact_gaps).
+    logical :: pocket = .false.
   end type run_t
 
   !> Places closer than this, in sides, are one; runs begin and end in a node when they do so within it.

@@ -6,7 +6,7 @@
 module part_contour
   use boundary_sides, only: find_loops, loop_t, loops_found, shared_by_three
   use contact_ends, only: contact_end_t
-  use contact_gaps, only: close_gaps
+  use contact_gaps, only: close_gaps, mark_pockets
   use contact_knots, only: sections_of_run, section_t
   use contact_runs, only: find_runs, run_t
   use contour_assembly, only: assemble_chain, contact_t
@@ -33,6 +33,8 @@ module part_contour
     real(wp) :: least_contact = 0.05_wp
     !> Gaps between two runs that are no wider than this share of a side are contact too: no mesh resolves them.
     real(wp) :: narrow_gap = 0.01_wp
+    !> Gaps that are no wider than this share of a side, and no longer than some sides, are pockets: their ends are no limits.
+    real(wp) :: pocket_width = 0.1_wp, pocket_length = 2.0_wp
   end type contour_options_t
 
   !> Where contact begins or ends.
@@ -73,6 +75,8 @@ module part_contour
     type(lap_t), allocatable :: laps(:)
     !> Largest shift and move of all contours; largest relative change of volume of one [length, length, -].
     real(wp) :: largest_shift = 0.0_wp, largest_move = 0.0_wp, volume_error = 0.0_wp
+    !> Pockets between runs, whose ends are not among the limits.
+    integer :: pockets = 0
     !> Runs left out because they go backwards along their die.
     integer :: backward_runs = 0
   end type contour_report_t
@@ -96,7 +100,7 @@ contains
     integer, allocatable :: connectivity(:, :)
     real(wp) :: x(2, size(scene%mesh%coordinates, 2))
     logical :: closed(size(scene%groups)), held(size(x, 2))
-    integer :: status, node, k
+    integer :: status, node, k, i
 
     x = scene%mesh%coordinates + solution%displacement
     call gather_solids(scene, connectivity)
@@ -115,6 +119,7 @@ contains
       call place_contacts(scene, solution, x, ends, closed, options, contours(k), report%backward_runs)
       call correct(scene, x, held, options, contours(k))
       call list_limits(k, contours(k), report%limits)
+      report%pockets = report%pockets + count([(contours(k)%contacts(i)%run%pocket, i=1, size(contours(k)%contacts))])
       if (largest_gap(contours(k)%chain) > closed_within*size_of_chain(contours(k)%chain)) &
         call fail(error, exit_bug, 'contour '//to_text(k)//' is not closed')
       if (allocated(error)) return
@@ -196,6 +201,7 @@ contains
 
     call find_runs(scene, contour%loop, contour%tags, ends, closed, options%least_contact, runs)
     call close_gaps(scene, solution, contour%loop, contour%tags, x, options%narrow_gap, runs)
+    call mark_pockets(scene, solution, contour%loop, x, options%pocket_width, options%pocket_length, runs)
     allocate (list(size(runs)))
     n = 0
     do k = 1, size(runs)
