@@ -108,7 +108,7 @@ contains
     allocate (contours(size(loops)), report%limits(0), report%laps(0))
     if (status /= loops_found) then
       call fail(error, exit_bug, 'contour: the side with middle node '//to_text(scene%mesh%labels(node))// &
-                merge(' belongs to three elements       ', ' is walked alike by two elements ', status == shared_by_three))
+                trim(merge(' belongs to three elements       ', ' is walked alike by two elements ', status == shared_by_three)))
       return
     end if
     call find_closed(scene, solution, closed)
