@@ -218,6 +218,8 @@ contains
       list(n) = one
       call move_alloc(sections, list(n)%sections)
     end do
+    ! behind a run that is left out there is no pocket
+    if (n < size(runs)) list%run%pocket = .false.
     allocate (contour%contacts, source=list(:n))
   end subroutine place_contacts
 
