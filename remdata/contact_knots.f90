@@ -18,7 +18,7 @@ module contact_knots
   use vectors, only: length_of
   implicit none
   private
-  public :: section_t, sections_of_run, point_of_spot
+  public :: section_t, sections_of_run, point_of_spot, find_knot
 
   !> Part of a run on sides of one kind.
   type :: section_t
@@ -179,19 +179,23 @@ contains
     type(knot_t), intent(out) :: knot
     logical, intent(out) :: sound          !! the point lies over the piece, not in a corner
     type(stretch_t) :: one
-    real(wp) :: xi, distance, least, normal(2), slack
+    real(wp) :: xi, distance, least, normal(2), slack, local(2)
     integer :: k, piece, npiece, count
 
+    associate (way => point - pilot(1:2), c => cos(pilot(3)), s => sin(pilot(3)))
+      local = [c*way(1) + s*way(2), -s*way(1) + c*way(2)]
+    end associate
+    slack = 16*eps*max(maxval(abs(point)), maxval(abs(pilot(1:2))), maxval(abs(local)))
     npiece = size(die%pieces, 3)
     count = modulo(pieces(2) - pieces(1), npiece) + 1
     if (.not. die%closed .and. pieces(2) < pieces(1)) count = 1
     least = huge(least)
     do k = 0, count - 1
       piece = modulo(pieces(1) + k - 1, npiece) + 1
+      if (length_of(max(die%boxes(1:2, piece) - local, local - die%boxes(3:4, piece), 0.0_wp)) > least + slack) cycle
       one = placed_piece(die, pilot, piece)
       xi = closest_xi(one, point)
       distance = length_of(point_at(one, xi) - point)
-      slack = 16*eps*maxval(abs(one%points))
       ! the point of a vertex is that of two pieces
       if (distance > least + slack .or. distance >= least - slack .and. .not. begins) cycle
       least = distance

@@ -2,16 +2,17 @@
 !>
 !> The solver finds the ends group by group (contact_ends). Here they are put in their order along the loop and paired. On
 !> the axis a point of contact has no surface and is never found closed: a run whose last point before the axis is closed
-!> goes on to it. Runs of two groups that overlap are cut in the middle of what they share, and one that lies inside another
-!> gives way. A run that covers less than a share of one side is left as it is: the part's own contour carries its pressure
-!> just as well, and no element would fit.
+!> goes on to it. A run that begins or ends almost in a node where sets of sides meet does so in the node: no sliver is left
+!> for a mesh to resolve, and the contour is the same. Runs of two groups that overlap are cut in the middle of what they
+!> share, and one that lies inside another gives way. A run that covers less than a share of one side is left as it is: the
+!> part's own contour carries its pressure just as well, and no element would fit.
 module contact_runs
   use boundary_sides, only: loop_t
   use contact_ends, only: contact_end_t
   use kinds, only: wp
   use quadrature, only: line_rule
   use scene, only: group_t, scene_t
-  use side_tags, only: side_tags_t
+  use side_tags, only: same_tags, side_tags_t
   implicit none
   private
   public :: spot_t, run_t, find_runs, along, same_spot
@@ -27,6 +28,8 @@ module contact_runs
   type :: run_t
     integer :: group = 0
     type(spot_t) :: from, to
+    !> What follows is a pocket: contact with the same die goes on behind it (contact_gaps).
+    logical :: pocket = .false.
   end type run_t
 
   !> Places closer than this, in sides, are one; runs begin and end in a node when they do so within it.
@@ -63,6 +66,9 @@ contains
       end do
     end do
     call keep(along(list(:n)%to) - along(list(:n)%from) >= least, list, n)
+    do k = 1, n
+      call snap(tags, size(loop%sides, 2), least, list(k))
+    end do
     call sort_runs(list(:n))
     call part_overlaps(size(loop%sides, 2), list, n)
     call keep(along(list(:n)%to) - along(list(:n)%from) >= least, list, n)
@@ -137,19 +143,50 @@ contains
     real(wp), allocatable :: xi(:), weight(:)
 
     call line_rule(group%npoint, xi, weight)
-    if (tags%on_axis(wrapped(run%to%side + 1)) .and. .not. any(xi > run%to%xi .and. xi < 1)) run%to%xi = 1
-    if (tags%on_axis(wrapped(run%from%side - 1)) .and. .not. any(xi < run%from%xi .and. xi > -1)) run%from%xi = -1
+    if (tags%on_axis(wrapped(run%to%side + 1, nside)) .and. .not. any(xi > run%to%xi .and. xi < 1)) run%to%xi = 1
+    if (tags%on_axis(wrapped(run%from%side - 1, nside)) .and. .not. any(xi < run%from%xi .and. xi > -1)) run%from%xi = -1
+  end subroutine reach_axis
+
+  !> Move ends of a run to nodes where sets meet, when they are nearer than `least`.
+  pure subroutine snap(tags, nside, least, run)
+    type(side_tags_t), intent(in) :: tags
+    integer, intent(in) :: nside
+    real(wp), intent(in) :: least   !! [sides]
+    type(run_t), intent(inout) :: run
+
+    if (run%from%xi > 1 - 2*least .and. is_meeting(run%from%side)) then
+      run%from = spot_t(run%from%side + 1, -1.0_wp, run%from%piece)
+    else if (run%from%xi < -1 + 2*least .and. is_meeting(run%from%side - 1)) then
+      run%from%xi = -1
+    end if
+    if (run%to%xi < -1 + 2*least .and. is_meeting(run%to%side - 1)) then
+      run%to = spot_t(run%to%side - 1, 1.0_wp, run%to%piece)
+    else if (run%to%xi > 1 - 2*least .and. is_meeting(run%to%side)) then
+      run%to%xi = 1
+    end if
+    if (run%from%side <= nside) return
+    run%from%side = run%from%side - nside
+    run%to%side = run%to%side - nside
 
   contains
 
-    pure function wrapped(side) result(k)
+    !> Sets meet where a side ends.
+    pure function is_meeting(side) result(yes)
       integer, intent(in) :: side
-      integer :: k
+      logical :: yes
 
-      k = modulo(side - 1, nside) + 1
-    end function wrapped
+      yes = .not. same_tags(tags, wrapped(side, nside), wrapped(side + 1, nside))
+    end function is_meeting
 
-  end subroutine reach_axis
+  end subroutine snap
+
+  !> Number of a side that is counted on around the loop.
+  pure function wrapped(side, nside) result(k)
+    integer, intent(in) :: side, nside
+    integer :: k
+
+    k = modulo(side - 1, nside) + 1
+  end function wrapped
 
   pure subroutine keep(which, list, n)
     logical, intent(in) :: which(:)

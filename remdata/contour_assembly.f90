@@ -26,7 +26,7 @@ module contour_assembly
     real(wp) :: pilot(3) = 0.0_wp
     !> Stretch it begins with, and the one that comes after it.
     integer :: first = 0, next = 0
-    !> Contact begins there, and ends; else another run goes on.
+    !> Contact begins there, and ends; else another run goes on, or a pocket is between them.
     logical :: begins = .true., ends = .true.
   end type contact_t
 
@@ -87,8 +87,23 @@ contains
     call finish_chain(draft, corner_turn, chain)
     do k = 1, size(contacts)
       if (contacts(k)%next > size(chain%stretches)) contacts(k)%next = 1
+      if (.not. contacts(k)%run%pocket) cycle
+      call make_plain(tags, contacts(k)%next, chain)
+      call make_plain(tags, contacts(mod(k, size(contacts)) + 1)%first, chain)
     end do
   end subroutine assemble_chain
+
+  !> The ends of a pocket are no corners, but sets may meet there.
+  pure subroutine make_plain(tags, joint, chain)
+    type(side_tags_t), intent(in) :: tags
+    integer, intent(in) :: joint
+    type(chain_t), intent(inout) :: chain
+    integer :: before
+
+    before = merge(size(chain%stretches), joint - 1, joint == 1)
+    chain%kinds(joint) = merge(kind_end, kind_joint, &
+                               same_tags(tags, chain%stretches(before)%side, chain%stretches(joint)%side))
+  end subroutine make_plain
 
   !> Where the walk that starts behind a run across the start of the loop, or at the start, comes to its end.
   pure function first_spot(contacts, nside) result(spot)
@@ -100,13 +115,17 @@ contains
     if (contacts(size(contacts))%run%to%side > nside) spot = contacts(size(contacts))%run%to
   end function first_spot
 
-  !> A run that begins where another one ends goes on with it.
+  !> A run that begins where another one ends, or behind a pocket, goes on with it.
   pure subroutine mark_neighbours(nside, contacts)
     integer, intent(in) :: nside
     type(contact_t), intent(inout) :: contacts(:)
     integer :: i, k
 
     do i = 1, size(contacts)
+      if (contacts(i)%run%pocket) then
+        contacts(i)%ends = .false.
+        contacts(mod(i, size(contacts)) + 1)%begins = .false.
+      end if
       do k = 1, size(contacts)
         if (abs(modulo(along(contacts(i)%run%to) - along(contacts(k)%run%from) + 0.5_wp, real(nside, wp)) - 0.5_wp) > nothing) cycle
         contacts(i)%ends = .false.

@@ -3,7 +3,7 @@
 !> Stretches are looked at as chords; chords that cross are followed to the point where the curves do, by Newton's method. Where
 !> two bodies are in contact one lies in the other by the depth of contact: what follows a deformable die may cross that die.
 module contour_laps
-  use contour_chain, only: chain_t, joint_after, kind_entry, kind_exit
+  use contour_chain, only: chain_t, joint_after, joint_point, kind_entry, kind_exit
   use kinds, only: eps, wp
   use stretches, only: cross, point_at, stretch_t, tangent_at
   use vectors, only: length_of
@@ -21,6 +21,8 @@ module contour_laps
   integer, parameter :: nchord = 8
   !> Ends of contact touch the die: crossings nearer to them than this share of the stretch are none.
   real(wp), parameter :: touching = 1.0e-6_wp
+  !> Depths from a corner in contact to where its free side leaves the die: sides that stand at 20 degrees or more.
+  real(wp), parameter :: oblique = 3.0_wp
 
 contains
 
@@ -150,18 +152,24 @@ contains
     end do
   end function is_shared
 
-  !> The point is where contact begins or ends on a stretch.
+  !> The point is where contact begins or ends on a stretch, or as near to that as it is deep.
   pure function is_end_of_contact(chain, k, point) result(yes)
     type(chain_t), intent(in) :: chain
     integer, intent(in) :: k
     real(wp), intent(in) :: point(2)
     logical :: yes
+    real(wp) :: slack
+    integer :: joint, before
 
-    associate (s => chain%stretches(k))
-      yes = any(chain%kinds(k) == [kind_entry, kind_exit]) .and. length_of(point_at(s, s%range(1)) - point) <= touching*extent(s)
-      yes = yes .or. any(chain%kinds(joint_after(chain, k)) == [kind_entry, kind_exit]) .and. &
-            length_of(point_at(s, s%range(2)) - point) <= touching*extent(s)
-    end associate
+    yes = .false.
+    do joint = 1, size(chain%kinds)
+      if (chain%kinds(joint) /= kind_entry .and. chain%kinds(joint) /= kind_exit) cycle
+      before = merge(size(chain%kinds), joint - 1, joint == 1)
+      if (joint /= k .and. before /= k) cycle
+      slack = touching*extent(chain%stretches(k)) + oblique*max(abs(chain%stretches(joint)%depth(1)), &
+                                                               abs(chain%stretches(before)%depth(2)))
+      yes = yes .or. length_of(joint_point(chain, joint) - point) <= slack
+    end do
   end function is_end_of_contact
 
   pure function extent(stretch) result(length)

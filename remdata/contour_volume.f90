@@ -17,6 +17,8 @@ module contour_volume
   !> Gauss's rule on halves and on the whole agree to this share of a stretch times its arm.
   real(wp), parameter :: accuracy = 16*eps
   integer, parameter :: most_halvings = 12
+  !> Volumes that differ by less than this share are the same.
+  real(wp), parameter :: round_off = 64*eps
   !> Corners sharper than 30 degrees stay: 1 + cos(150 degrees).
   real(wp), parameter :: sharpest = 0.134_wp
 
@@ -134,7 +136,7 @@ contains
     start = volume_of_loop(loop, coordinates, axisymmetric)
     last_shift = 0
     last_excess = -gain
-    restored = .not. abs(gain) > 0
+    restored = abs(gain) <= round_off*abs(start)
     if (restored .or. .not. surface > 0) return
     ! the first guess moves a plane surface; around an axis the volume of a thin layer is measured with it
     step = merge(sign(eps**0.5_wp*surface, gain), gain/surface, axisymmetric)
@@ -142,7 +144,7 @@ contains
       shift = last_shift + step
       coordinates = before + shift*ways
       excess = volume_of_loop(loop, coordinates, axisymmetric) - start - gain
-      restored = abs(excess) <= 64*eps*abs(start)
+      restored = abs(excess) <= round_off*abs(start)
       if (restored .or. .not. abs(excess - last_excess) > 0) exit
       step = -excess*(shift - last_shift)/(excess - last_excess)
       last_shift = shift

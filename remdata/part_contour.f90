@@ -6,8 +6,9 @@
 module part_contour
   use boundary_sides, only: find_loops, loop_t, loops_found, shared_by_three
   use contact_ends, only: contact_end_t
+  use contact_gaps, only: close_gaps, mark_pockets
   use contact_knots, only: sections_of_run, section_t
-  use contact_runs, only: along, find_runs, run_t, spot_t
+  use contact_runs, only: find_runs, run_t
   use contour_assembly, only: assemble_chain, contact_t
   use contour_chain, only: chain_t, closest_place, joint_point, kind_entry, kind_exit, largest_gap, place_t, point_on, size_of_chain
   use contour_laps, only: find_laps, lap_t
@@ -19,18 +20,21 @@ module part_contour
   use side_tags, only: find_tags, held_nodes, side_tags_t
   use solution, only: solution_t
   use state_variables, only: find_variable
-  use stretches, only: closest_xi, point_at
   use text, only: to_text
   use vectors, only: length_of
   implicit none
   private
-  public :: contour_options_t, contour_t, contour_report_t, contact_limit_t, build_contours, place_of_node
+  public :: contour_options_t, contour_t, contour_report_t, contact_limit_t, build_contours
 
   type :: contour_options_t
     !> Tangents that turn by more make a corner [radian].
     real(wp) :: corner_turn = 20*pi/180
     !> Contact over less of a side, in sides, is left as it is.
     real(wp) :: least_contact = 0.05_wp
+    !> Gaps between two runs that are no wider than this share of a side are contact too: no mesh resolves them.
+    real(wp) :: narrow_gap = 0.01_wp
+    !> Gaps that are no wider than this share of a side, and no longer than some sides, are pockets: their ends are no limits.
+    real(wp) :: pocket_width = 0.1_wp, pocket_length = 2.0_wp
   end type contour_options_t
 
   !> Where contact begins or ends.
@@ -71,6 +75,8 @@ module part_contour
     type(lap_t), allocatable :: laps(:)
     !> Largest shift and move of all contours; largest relative change of volume of one [length, length, -].
     real(wp) :: largest_shift = 0.0_wp, largest_move = 0.0_wp, volume_error = 0.0_wp
+    !> Pockets between runs, whose ends are not among the limits.
+    integer :: pockets = 0
     !> Runs left out because they go backwards along their die.
     integer :: backward_runs = 0
   end type contour_report_t
@@ -94,7 +100,7 @@ contains
     integer, allocatable :: connectivity(:, :)
     real(wp) :: x(2, size(scene%mesh%coordinates, 2))
     logical :: closed(size(scene%groups)), held(size(x, 2))
-    integer :: status, node, k
+    integer :: status, node, k, i
 
     x = scene%mesh%coordinates + solution%displacement
     call gather_solids(scene, connectivity)
@@ -102,7 +108,7 @@ contains
     allocate (contours(size(loops)), report%limits(0), report%laps(0))
     if (status /= loops_found) then
       call fail(error, exit_bug, 'contour: the side with middle node '//to_text(scene%mesh%labels(node))// &
-                merge(' belongs to three elements       ', ' is walked alike by two elements ', status == shared_by_three))
+                trim(merge(' belongs to three elements       ', ' is walked alike by two elements ', status == shared_by_three)))
       return
     end if
     call find_closed(scene, solution, closed)
@@ -113,6 +119,7 @@ contains
       call place_contacts(scene, solution, x, ends, closed, options, contours(k), report%backward_runs)
       call correct(scene, x, held, options, contours(k))
       call list_limits(k, contours(k), report%limits)
+      report%pockets = report%pockets + count([(contours(k)%contacts(i)%run%pocket, i=1, size(contours(k)%contacts))])
       if (largest_gap(contours(k)%chain) > closed_within*size_of_chain(contours(k)%chain)) &
         call fail(error, exit_bug, 'contour '//to_text(k)//' is not closed')
       if (allocated(error)) return
@@ -193,6 +200,8 @@ contains
     integer :: k, n
 
     call find_runs(scene, contour%loop, contour%tags, ends, closed, options%least_contact, runs)
+    call close_gaps(scene, solution, contour%loop, contour%tags, x, options%narrow_gap, runs)
+    call mark_pockets(scene, solution, contour%loop, x, options%pocket_width, options%pocket_length, runs)
     allocate (list(size(runs)))
     n = 0
     do k = 1, size(runs)
@@ -209,6 +218,8 @@ contains
       list(n) = one
       call move_alloc(sections, list(n)%sections)
     end do
+    ! behind a run that is left out there is no pocket
+    if (n < size(runs)) list%run%pocket = .false.
     allocate (contour%contacts, source=list(:n))
   end subroutine place_contacts
 
@@ -230,7 +241,7 @@ contains
     contour%volume_after = volume_inside(contour%chain, round)
     if (size(contour%contacts) == 0) return
     moved = x
-    may_move = .not. (contour%tags%on_axis .or. any(contour%tags%on_fixation, 1) .or. any(contour%tags%on_die, 1))
+    may_move = .not. (contour%tags%on_axis .or. any(contour%tags%on_die, 1))
     do k = 1, size(contour%contacts)
       associate (run => contour%contacts(k)%run)
         do i = run%from%side, run%to%side
@@ -323,37 +334,5 @@ contains
               //', the first at x = '//to_text(laps(1)%point(1))//', y = '//to_text(laps(1)%point(2)), &
               'remesh earlier, before the sides fold over each other, or let these sides face a die')
   end subroutine refuse_laps
-
-  !> Where an old node of the loop has gone: on its side, or to the closest place of the run of contact that its side is in.
-  pure function place_of_node(contour, x, side, local) result(place)
-    type(contour_t), intent(in) :: contour
-    real(wp), intent(in) :: x(:, :)              !! nodes before the correction (2, nnode) [length]
-    integer, intent(in) :: side, local           !! side of the loop, and 1, 2 or 3: first end, middle, second end
-    type(place_t) :: place
-    real(wp) :: xi, s, distance, least
-    integer :: k, run
-
-    xi = local - 2
-    run = 0
-    do k = 1, size(contour%contacts)
-      associate (limits => along([contour%contacts(k)%run%from, contour%contacts(k)%run%to]))
-        s = along(spot_t(side, xi))
-        if (s < limits(1)) s = s + size(contour%loop%sides, 2)
-        if (s <= limits(2)) run = k
-      end associate
-    end do
-    least = huge(least)
-    do k = 1, size(contour%chain%stretches)
-      associate (one => contour%chain%stretches(k))
-        if (one%run /= run .or. run == 0 .and. one%middle /= contour%loop%sides(2, side)) cycle
-        if (run > 0) xi = closest_xi(one, x(:, contour%loop%sides(local, side)))
-        if (xi < one%range(1) .or. xi > one%range(2)) cycle
-        distance = length_of(point_at(one, xi) - x(:, contour%loop%sides(local, side)))
-        if (.not. distance < least) cycle
-        least = distance
-        place = place_t(k, xi)
-      end associate
-    end do
-  end function place_of_node
 
 end module part_contour

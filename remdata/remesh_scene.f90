@@ -9,7 +9,7 @@ module remesh_scene
   use contour_needs, only: geometry_wish_t, needs_of_chain
   use dies, only: is_deformable
   use errors, only: error_t, exit_input, fail
-  use exchange, only: read_bare_scene, read_checkpoint, read_deck_of_checkpoint, read_ends, write_checkpoint
+  use exchange, only: read_bare_scene, read_checkpoint, read_deck_of_checkpoint, read_contact_ends, write_checkpoint
   use kinds, only: wp
   use new_mesh_check, only: mesh_check_t, check_new_mesh
   use new_scene, only: set_up_new_scene
@@ -70,7 +70,7 @@ contains
     if (.not. allocated(error)) call read_bare_scene(options%checkpoint, old, error)
     if (.not. allocated(error)) call start_solution(old, before)
     if (.not. allocated(error)) call read_checkpoint(options%checkpoint, old, before, error)
-    if (.not. allocated(error)) call read_ends(options%checkpoint, ends, error)
+    if (.not. allocated(error)) call read_contact_ends(options%checkpoint, ends, error)
     if (.not. allocated(error)) call refuse_what_is_not_offered(old, error)
     if (allocated(error)) return
     call take_options(options, old)

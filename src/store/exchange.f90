@@ -22,7 +22,7 @@ module exchange
   use text, only: string_t, to_text
   implicit none
   private
-  public :: write_checkpoint, read_deck_of_checkpoint, read_remesh, read_checkpoint, read_bare_scene, read_ends, schema_version
+  public :: write_checkpoint, read_deck_of_checkpoint, read_remesh, read_checkpoint, read_bare_scene, read_contact_ends, schema_version
 
   !> Raised whenever a dataset changes its name, shape or meaning.
   integer, parameter :: schema_version = 3
@@ -260,16 +260,17 @@ contains
     call file%write('contact_ends/die_xi', ends%xi)
   end subroutine write_ends
 
-  !> Where contact began and ended.
-  subroutine read_ends(path, ends, error)
+  !> Where contact begins and ends at the instant of a checkpoint.
+  subroutine read_contact_ends(path, ends, error)
     character(len=*), intent(in) :: path
     type(contact_end_t), allocatable, intent(out) :: ends(:)
     type(error_t), allocatable, intent(out) :: error
     type(hdf5_file_t) :: file
     integer, allocatable :: begins(:), group(:), side(:), piece(:)
     real(wp), allocatable :: place(:), xi(:)
-    integer :: k
+    integer :: n
 
+    allocate (ends(0))
     call open_checkpoint(path, file, error)
     if (allocated(error)) return
     call file%read('contact_ends/begins', begins)
@@ -278,17 +279,20 @@ contains
     call file%read('contact_ends/place', place)
     call file%read('contact_ends/die_piece', piece)
     call file%read('contact_ends/die_xi', xi)
-    if (any([size(group), size(side), size(piece), size(place), size(xi)] /= size(begins))) then
-      call file%record_error(exit_input, 'contact_ends: lists of different length')
-      allocate (ends(0))
-    else
-      allocate (ends(size(begins)))
-      do k = 1, size(ends)
-        ends(k) = contact_end_t(begins(k) == 1, group(k), side(k), place(k), piece(k), xi(k))
-      end do
-    end if
+    n = size(begins)
+    if (any([size(group), size(side), size(place), size(piece), size(xi)] /= n)) &
+      call file%record_error(exit_input, 'contact_ends: lists of unlike lengths')
     call file%close(error)
-  end subroutine read_ends
+    if (allocated(error)) return
+    deallocate (ends)
+    allocate (ends(n))
+    ends%begins = begins == 1
+    ends%group = group
+    ends%side = side
+    ends%place = place
+    ends%piece = piece
+    ends%xi = xi
+  end subroutine read_contact_ends
 
   pure function group_place(g) result(place)
     integer, intent(in) :: g
