@@ -12,7 +12,7 @@ module zone_lines
   use zones, only: layout_t
   implicit none
   private
-  public :: interpolate_zones, smooth_zones
+  public :: interpolate_zones, smooth_zones, find_movable
 
 contains
 
@@ -80,6 +80,24 @@ contains
       call relax_points(next, log_density, x)
     end do
   end subroutine smooth_zones
+
+  !> Ends of elements that may move: inside zones and sides, and zone points, as far as these move.
+  pure subroutine find_movable(layout, division, numbers, may_move)
+    type(layout_t), intent(in) :: layout
+    type(division_t), intent(in) :: division
+    type(numbers_t), intent(in) :: numbers
+    logical, allocatable, intent(out) :: may_move(:)   !! (nend)
+    integer :: p, s
+
+    allocate (may_move(numbers%nend))
+    may_move = .true.
+    do s = 1, size(layout%sides)
+      may_move(numbers%side_ends(s) + 1:numbers%side_ends(s) + division%count(s) - 1) = layout%sides(s)%moves
+    end do
+    do p = 1, size(layout%points)
+      if (numbers%point(p) > 0) may_move(numbers%point(p)) = layout%point_moves(p)
+    end do
+  end subroutine find_movable
 
   !> The points inside a zone with the eight around each, row by row.
   pure subroutine list_inside(grid, around, n)
