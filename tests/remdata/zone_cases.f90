@@ -6,7 +6,7 @@ module zone_cases
   use kinds, only: pi, wp
   use quadrature, only: square_rule
   use shape_functions, only: quad8, quad8_corner, quad8_side
-  use size_field, only: set_up_sizes, size_field_t, size_limits_t
+  use size_field, only: need_t, set_up_sizes, size_field_t, size_limits_t
   use vectors, only: length_of
   use zone_mesh, only: mesh_wish_t, mesh_zones, new_mesh_t
   use zones, only: zone_point_t, zone_t
@@ -161,10 +161,9 @@ contains
     real(wp), intent(in) :: h
     type(size_field_t) :: field
     type(size_limits_t) :: limits
-    real(wp) :: none(3, 0)
 
     limits%largest = h
-    call set_up_sizes(limits, none, field)
+    call set_up_sizes(limits, [need_t ::], field)
   end function uniform_field
 
   !> Uniform squares of about the size h on a rectangle from the origin.
