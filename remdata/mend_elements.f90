@@ -1,8 +1,9 @@
 !> Elements that smoothing left too skewed, mended by moving their corners.
 !>
 !> An element is as good as the smallest sine between its lines at its eight nodes (the Jacobian over the lengths of its
-!> columns); where it is folded, as the Jacobian itself over its area before, for beyond a right angle the sine grows again. A corner of a bad element goes where the worst element around it is best, by trial in eight directions; the
-!> middles of its sides follow by half. Elements that are good are not touched, and none becomes the new worst around.
+!> columns); where it is folded, as the Jacobian itself over its area before, for beyond a right angle the sine grows again. A
+!> corner of a bad element goes where the worst element around it is best, by trial in eight directions; the middles of its
+!> sides follow by half. Elements that are good are not touched, and none becomes the new worst around.
 module mend_elements
   use kinds, only: wp
   use graded_sizes, only: list_elements
