@@ -6,7 +6,7 @@ module contour_needs
   use contour_chain, only: chain_t, joint_after, kind_end, kind_entry, turn_at
   use graded_sizes, only: slope_of
   use kinds, only: wp
-  use size_field, only: size_limits_t
+  use size_field, only: need_t, size_limits_t
   use stretches, only: cross, length_between, point_at, stretch_t, tangent_at
   use vectors, only: length_of
   implicit none
@@ -25,13 +25,14 @@ module contour_needs
 
 contains
 
-  !> Needs (3, n) along a chain: x, y, size. Places that want the largest size or more are left out.
+  !> Needs along a chain. Places that want the largest size or more are left out.
   pure subroutine needs_of_chain(chain, wish, limits, needs)
     type(chain_t), intent(in) :: chain
     type(geometry_wish_t), intent(in) :: wish
     type(size_limits_t), intent(in) :: limits
-    real(wp), allocatable, intent(out) :: needs(:, :)
-    real(wp) :: all(3, (parts + 1)*size(chain%stretches)), contact(size(chain%stretches)), bend, mean
+    type(need_t), allocatable, intent(out) :: needs(:)
+    type(need_t) :: all((parts + 1)*size(chain%stretches))
+    real(wp) :: contact(size(chain%stretches)), mean
     integer :: k, i, last
 
     call sizes_of_contact(chain, wish, contact)
@@ -39,65 +40,72 @@ contains
       i = (parts + 1)*(k - 1) + 1
       last = merge(size(chain%stretches), k - 1, k == 1)
       associate (s => chain%stretches(k))
-        all(1:2, i) = point_at(s, s%range(1))
-        all(3, i) = limits%largest
+        all(i)%x = point_at(s, s%range(1))
+        all(i)%size = limits%largest
         if (chain%kinds(k) == kind_end) then
           ! between straight sides the bend is in their joints
-          bend = abs(turn_at(chain, k))
           mean = 0.5_wp*(chain%arc(k) - chain%arc(k - 1) + chain%arc(last) - chain%arc(last - 1))
-          all(3, i) = size_of_bend(mean, bend, wish, limits)
+          all(i)%size = size_of_bend(mean, abs(turn_at(chain, k)), wish, limits)
+          if (all(i)%size < limits%largest) all(i)%radius = 0.5_wp*mean
         end if
-        call sizes_of_stretch(s, wish, limits, all(:, i + 1:i + parts))
-        all(3, i:i + parts) = min(all(3, i:i + parts), contact(k))
+        call needs_of_stretch(s, wish, limits, all(i + 1:i + parts))
+        all(i:i + parts)%size = min(all(i:i + parts)%size, contact(k))
       end associate
     end do
     call grade_along(slope_of(limits%gradation), all)
     call keep_needs(limits, all, needs)
   end subroutine needs_of_chain
 
-  !> Needs (3, n) of the bends of a die. They count where the contour is near, for sizes grow with distance.
+  !> Needs of the bends of a die. They count where the contour is near, for sizes grow with distance.
   pure subroutine needs_of_die(pieces, wish, limits, needs)
     type(stretch_t), intent(in) :: pieces(:)   !! where the die stands
     type(geometry_wish_t), intent(in) :: wish
     type(size_limits_t), intent(in) :: limits
-    real(wp), allocatable, intent(out) :: needs(:, :)
-    real(wp) :: all(3, parts*size(pieces))
+    type(need_t), allocatable, intent(out) :: needs(:)
+    type(need_t) :: all(parts*size(pieces))
     integer :: k
 
     do k = 1, size(pieces)
-      call sizes_of_stretch(pieces(k), wish, limits, all(:, parts*(k - 1) + 1:parts*k))
+      call needs_of_stretch(pieces(k), wish, limits, all(parts*(k - 1) + 1:parts*k))
     end do
     call keep_needs(limits, all, needs)
   end subroutine needs_of_die
 
   pure subroutine keep_needs(limits, all, needs)
     type(size_limits_t), intent(in) :: limits
-    real(wp), intent(in) :: all(:, :)
-    real(wp), allocatable, intent(out) :: needs(:, :)
-    integer :: i
+    type(need_t), intent(in) :: all(:)
+    type(need_t), allocatable, intent(out) :: needs(:)
+    integer :: i, n
 
-    needs = all(:, pack([(i, i=1, size(all, 2))], all(3, :) < limits%largest))
-    needs(3, :) = max(needs(3, :), limits%smallest)
+    allocate (needs(count(all%size < limits%largest)))
+    n = 0
+    do i = 1, size(all)
+      if (.not. all(i)%size < limits%largest) cycle
+      n = n + 1
+      needs(n) = all(i)
+      needs(n)%size = max(needs(n)%size, limits%smallest)
+    end do
   end subroutine keep_needs
 
-  !> Sizes in the middles of parts of a stretch, by what the tangent turns over each.
-  pure subroutine sizes_of_stretch(stretch, wish, limits, sizes)
+  !> Needs in the middles of parts of a stretch, by what the tangent turns over each; each holds over its part.
+  pure subroutine needs_of_stretch(stretch, wish, limits, needs)
     type(stretch_t), intent(in) :: stretch
     type(geometry_wish_t), intent(in) :: wish
     type(size_limits_t), intent(in) :: limits
-    real(wp), intent(out) :: sizes(:, :)   !! (3, parts)
-    real(wp) :: xi(2), before(2), after(2)
+    type(need_t), intent(out) :: needs(:)   !! (parts)
+    real(wp) :: xi(2), before(2), after(2), length
     integer :: i
 
     do i = 1, parts
       xi = stretch%range(1) + (stretch%range(2) - stretch%range(1))*[i - 1, i]/parts
       before = tangent_at(stretch, xi(1))
       after = tangent_at(stretch, xi(2))
-      sizes(1:2, i) = point_at(stretch, 0.5_wp*(xi(1) + xi(2)))
-      sizes(3, i) = size_of_bend(length_between(stretch, xi(1), xi(2)), &
-                                 abs(atan2(cross(before, after), dot_product(before, after))), wish, limits)
+      length = length_between(stretch, xi(1), xi(2))
+      needs(i)%x = point_at(stretch, 0.5_wp*(xi(1) + xi(2)))
+      needs(i)%radius = 0.5_wp*length
+      needs(i)%size = size_of_bend(length, abs(atan2(cross(before, after), dot_product(before, after))), wish, limits)
     end do
-  end subroutine sizes_of_stretch
+  end subroutine needs_of_stretch
 
   pure function size_of_bend(length, bend, wish, limits) result(h)
     real(wp), intent(in) :: length, bend
@@ -159,24 +167,36 @@ contains
   end subroutine sizes_of_contact
 
   !> Twice around in both directions: what begins anywhere has then been everywhere.
-  pure subroutine grade_along(slope, sizes)
+  pure subroutine grade_along(slope, needs)
     real(wp), intent(in) :: slope
-    real(wp), intent(inout) :: sizes(:, :)
-    integer :: i, j, n
+    type(need_t), intent(inout) :: needs(:)
+    integer :: i, n
 
-    n = size(sizes, 2)
-    do i = 1, 2*n
-      j = mod(i - 1, n) + 1
-      associate (next => mod(i, n) + 1)
-        sizes(3, next) = min(sizes(3, next), sizes(3, j) + slope*length_of(sizes(1:2, next) - sizes(1:2, j)))
-      end associate
+    n = size(needs)
+    do i = 0, 2*n - 1
+      call limit_next(slope, needs(mod(i, n) + 1), needs(mod(i + 1, n) + 1))
     end do
     do i = 2*n, 1, -1
-      j = mod(i, n) + 1
-      associate (next => mod(i - 1, n) + 1)
-        sizes(3, next) = min(sizes(3, next), sizes(3, j) + slope*length_of(sizes(1:2, next) - sizes(1:2, j)))
-      end associate
+      call limit_next(slope, needs(mod(i, n) + 1), needs(mod(i - 1, n) + 1))
     end do
   end subroutine grade_along
+
+  !> Keep a need below what the one beside it allows. It then holds no farther than to where it comes up to what it was.
+  pure subroutine limit_next(slope, one, next)
+    real(wp), intent(in) :: slope
+    type(need_t), intent(in) :: one
+    type(need_t), intent(inout) :: next
+    real(wp) :: most, drop
+
+    most = one%size + slope*max(0.0_wp, length_of(next%x - one%x) - one%radius)
+    if (.not. next%size > most) return
+    drop = next%size - most
+    if (slope*next%radius > drop) then
+      next%radius = next%radius - drop/slope
+    else
+      next%radius = 0
+    end if
+    next%size = most
+  end subroutine limit_next
 
 end module contour_needs

@@ -7,7 +7,7 @@ module graded_sizes
   use vectors, only: length_of
   implicit none
   private
-  public :: grade, slope_of
+  public :: grade, slope_of, list_elements
 
   !> Nodes that wait, the smallest size on top of a binary heap.
   type :: heap_t

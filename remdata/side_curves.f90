@@ -24,6 +24,8 @@ module side_curves
     real(wp), allocatable :: breaks(:)
     !> Integral of 1/h: at lengths `at`, with breaks among them, `count` elements from the start.
     real(wp), allocatable :: at(:), count(:)
+    !> Elements each part between breaks needs (npart).
+    real(wp), allocatable :: needs(:)
   end type curve_t
 
   !> Breaks that are closer than this share of a chain are one, and so are an entry and a corner.
@@ -133,7 +135,7 @@ contains
     integer :: p, n
 
     n = (most + 1)*ubound(curve%breaks, 1)
-    allocate (at(0:n), count(0:n))
+    allocate (at(0:n), count(0:n), curve%needs(ubound(curve%breaks, 1)))
     at(0) = 0
     count(0) = 0
     n = 0
@@ -154,6 +156,7 @@ contains
         h = h_next
         if (.not. s < curve%breaks(p)) exit
       end do
+      curve%needs(p) = count(n) - sum(curve%needs(:p - 1))
     end do
     allocate (curve%at(0:n), source=at(0:n))
     allocate (curve%count(0:n), source=count(0:n))
@@ -165,30 +168,26 @@ contains
     real(wp), intent(in) :: gradation
     integer, intent(in) :: n                !! not less than there are parts
     real(wp), intent(out) :: ends(0:)
-    integer :: shares(ubound(curve%breaks, 1)), p, k, i
-    real(wp) :: need(ubound(curve%breaks, 1)), from, to
+    integer :: shares(size(curve%needs)), p, k, i
+    real(wp) :: from
 
-    do p = 1, size(need)
-      from = count_at(curve, curve%breaks(p - 1))
-      need(p) = count_at(curve, curve%breaks(p)) - from
-    end do
     shares = 1
-    do k = size(need) + 1, n
-      p = maxloc(need/shares, 1)
+    do k = size(shares) + 1, n
+      p = maxloc(curve%needs/shares, 1)
       shares(p) = shares(p) + 1
     end do
     k = 0
     ends(0) = 0
-    do p = 1, size(need)
-      from = count_at(curve, curve%breaks(p - 1))
-      to = count_at(curve, curve%breaks(p))
+    from = 0
+    do p = 1, size(shares)
       do i = 1, shares(p) - 1
-        ends(k + i) = length_at(curve, from + (to - from)*i/shares(p))
+        ends(k + i) = length_at(curve, from + curve%needs(p)*i/shares(p))
       end do
+      from = from + curve%needs(p)
       k = k + shares(p)
       ends(k) = curve%breaks(p)
     end do
-    if (size(need) > 1) call even_out(shares, gradation, ends(0:n))
+    if (size(shares) > 1) call even_out(shares, gradation, ends(0:n))
   end subroutine divide_curve
 
   !> Where whole numbers leave a jump at a break, sizes are drawn toward the geometric mean of their neighbours', in each part
@@ -220,40 +219,24 @@ contains
     end do
   end subroutine even_out
 
-  !> Elements from the start to a length.
-  pure function count_at(curve, s) result(n)
-    type(curve_t), intent(in) :: curve
-    real(wp), intent(in) :: s
-    real(wp) :: n
-
-    n = between(curve%at, curve%count, s)
-  end function count_at
-
+  !> Length at a number of elements from the start: straight between those where it was looked at.
   pure function length_at(curve, n) result(s)
     type(curve_t), intent(in) :: curve
     real(wp), intent(in) :: n
     real(wp) :: s
-
-    s = between(curve%count, curve%at, n)
-  end function length_at
-
-  !> Straight between the values of a table with growing arguments.
-  pure function between(argument, value, x) result(y)
-    real(wp), intent(in) :: argument(0:), value(0:), x
-    real(wp) :: y
     integer :: low, high, middle
 
     low = 0
-    high = ubound(argument, 1)
+    high = ubound(curve%count, 1)
     do while (high - low > 1)
       middle = (low + high)/2
-      if (argument(middle) <= x) then
+      if (curve%count(middle) <= n) then
         low = middle
       else
         high = middle
       end if
     end do
-    y = value(low) + (value(high) - value(low))*(x - argument(low))/(argument(high) - argument(low))
-  end function between
+    s = curve%at(low) + (curve%at(high) - curve%at(low))*(n - curve%count(low))/(curve%count(high) - curve%count(low))
+  end function length_at
 
 end module side_curves

@@ -12,7 +12,7 @@ module size_field
   use transfer_mesh, only: plant_mesh_trees, set_up_mesh, transfer_mesh_t
   implicit none
   private
-  public :: size_limits_t, size_field_t, old_mesh_t, wanted_size, set_up_sizes, size_at
+  public :: size_limits_t, need_t, size_field_t, old_mesh_t, wanted_size, set_up_sizes, size_at
 
   type :: size_limits_t
     real(wp) :: smallest = 0.0_wp        !! [length]
@@ -20,6 +20,14 @@ module size_field
     !> Largest ratio of an element to its neighbour.
     real(wp) :: gradation = 1.5_wp
   end type size_limits_t
+
+  !> A point where the geometry asks for a size.
+  type :: need_t
+    real(wp) :: x(2) = 0.0_wp       !! [length]
+    real(wp) :: size = 0.0_wp       !! [length]
+    !> So far around the point the size holds; from there it grows [length].
+    real(wp) :: radius = 0.0_wp
+  end type need_t
 
   !> The mesh before, and the size wanted in place of each of its elements.
   type :: old_mesh_t
@@ -34,7 +42,7 @@ module size_field
     logical :: has_mesh = .false.
     type(transfer_mesh_t) :: mesh
     real(wp), allocatable :: sizes(:)            !! (nnode) at corners of the old mesh [length]
-    real(wp), allocatable :: needs(:, :)         !! (3, n) x, y, size [length]
+    type(need_t), allocatable :: needs(:)
     type(box_tree_t) :: need_tree
   end type size_field_t
 
@@ -56,14 +64,18 @@ contains
   !> The field of an old mesh and of needs; for a first mesh there is no old one.
   pure subroutine set_up_sizes(limits, needs, field, old)
     type(size_limits_t), intent(in) :: limits
-    real(wp), intent(in) :: needs(:, :)                 !! (3, n) x, y, size [length]
+    type(need_t), intent(in) :: needs(:)
     type(size_field_t), intent(out) :: field
     type(old_mesh_t), intent(in), optional :: old
+    real(wp) :: boxes(4, size(needs))
     integer :: i
 
     field%limits = limits
     allocate (field%needs, source=needs)
-    call plant_tree(needs([1, 2, 1, 2], :), [(i, i=1, size(needs, 2))], field%need_tree)
+    do i = 1, size(needs)
+      boxes(:, i) = needs(i)%x([1, 2, 1, 2])
+    end do
+    call plant_tree(boxes, [(i, i=1, size(needs))], field%need_tree)
     if (.not. present(old)) return
     field%has_mesh = .true.
     call set_up_mesh(old%nodes, old%connectivity, old%material, spread(1, 1, size(old%material)), .false., field%mesh)
@@ -127,7 +139,9 @@ contains
     if (field%need_tree%n == 0) return
     call nearest_items(field%need_tree, x, found, items, squares)
     do i = 1, found
-      h = min(h, field%needs(3, items(i)) + slope_of(field%limits%gradation)*sqrt(squares(i)))
+      associate (need => field%needs(items(i)))
+        h = min(h, need%size + slope_of(field%limits%gradation)*max(0.0_wp, sqrt(squares(i)) - need%radius))
+      end associate
     end do
   end function size_by_needs
 

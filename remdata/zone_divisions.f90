@@ -1,8 +1,9 @@
 !> How many elements each side gets.
 !>
-!> Sides opposite in a zone have one number, hence all sides of a class, from zone to zone. The need of a zone in one direction
-!> is measured along its two sides and three lines between them (integral of 1/h): the mean of their mean and of their largest, so
-!> that a peak that touches one line alone counts half. The class takes the largest need of its zones, rounded.
+!> Sides opposite in a zone have one number, hence all sides of a class, from zone to zone. A side along the contour gets what it
+!> needs, the integral of 1/h, in each part between its breaks: there the geometry has its say, and contact. The need inside a
+!> zone is measured along its two sides and three lines between them: the mean of their mean and of their largest, so that a
+!> peak that touches one line alone counts half. The class takes the largest number of its sides and zones, rounded up.
 module zone_divisions
   use contour_chain, only: chain_t, place_t
   use errors, only: error_t, exit_input, fail
@@ -30,12 +31,16 @@ module zone_divisions
   type :: division_t
     integer, allocatable :: count(:)   !! elements along each side (nside)
     integer :: nelem = 0
-    !> Sizes are so many times the wanted ones, to keep within the number of elements; the error is this to the power p larger.
-    real(wp) :: coarser = 1.0_wp
+    !> Sizes are so many times the wanted ones: refined below 1, above 1 to keep within the number of elements.
+    real(wp) :: factor = 1.0_wp
   end type division_t
 
   !> Steps along a line between two sides, and lines.
   integer, parameter :: steps = 32, lines = 3
+  !> Share of an element that is given away in rounding up.
+  real(wp), parameter :: spared = 0.1_wp
+  !> Elements along a part of a side, that no mesh will have.
+  real(wp), parameter :: most_along = 1.0e6_wp
   !> Halvings of the factor on sizes: closer than any whole number of elements can show.
   integer, parameter :: halvings = 40
 
@@ -50,11 +55,11 @@ contains
     type(division_t), intent(out) :: division
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: need(size(curves)), low, high, factor
-    integer :: group(size(curves)), least(size(curves)), fewest, halving
+    integer :: group(size(curves)), fewest, halving
 
     call find_classes(layout, group)
-    call find_needs(chains, layout, field, curves, wish%rule, group, need, least)
-    fewest = elements(layout, group, least)
+    call find_needs(chains, layout, field, curves, wish%rule, group, need)
+    fewest = elements(layout, numbers(curves, group, need, most_along**2))
     if (fewest > wish%most_elements) then
       call fail(error, exit_input, 'the zones take '//to_text(fewest)//' elements at least, more than the ' &
                 //to_text(wish%most_elements)//' allowed', 'allow more elements, or give fewer zones')
@@ -62,15 +67,15 @@ contains
     end if
     low = 1/wish%refine
     factor = low
-    if (elements(layout, group, numbers(need, least, low)) > wish%most_elements) then
+    if (elements(layout, numbers(curves, group, need, low)) > wish%most_elements) then
       high = 2*low
-      do while (elements(layout, group, numbers(need, least, high)) > wish%most_elements)
+      do while (elements(layout, numbers(curves, group, need, high)) > wish%most_elements)
         low = high
         high = 2*high
       end do
       do halving = 1, halvings
         factor = 0.5_wp*(low + high)
-        if (elements(layout, group, numbers(need, least, factor)) > wish%most_elements) then
+        if (elements(layout, numbers(curves, group, need, factor)) > wish%most_elements) then
           low = factor
         else
           high = factor
@@ -78,11 +83,10 @@ contains
       end do
       factor = high
     end if
-    least = numbers(need, least, factor)
-    allocate (division%count(size(group)))
-    division%count = least(group)
-    division%nelem = elements(layout, group, least)
-    division%coarser = factor*wish%refine
+    allocate (division%count(size(curves)))
+    division%count = numbers(curves, group, need, factor)
+    division%nelem = elements(layout, division%count)
+    division%factor = factor
   end subroutine choose_divisions
 
   !> Whether a side of a zone runs as the zone walks it.
@@ -125,30 +129,23 @@ contains
 
   end subroutine find_classes
 
-  !> Need of each class, and the least number its breaks allow; both stand at the class's lowest side.
-  pure subroutine find_needs(chains, layout, field, curves, rule, group, need, least)
+  !> Need of each class inside its zones; it stands at the class's lowest side.
+  pure subroutine find_needs(chains, layout, field, curves, rule, group, need)
     type(chain_t), intent(in) :: chains(:)
     type(layout_t), intent(in) :: layout
     type(size_field_t), intent(in) :: field
     type(curve_t), intent(in) :: curves(:)
     integer, intent(in) :: rule, group(:)
     real(wp), intent(out) :: need(:)
-    integer, intent(out) :: least(:)
     real(wp) :: line(lines + 2, 2), one
     integer :: z, k, s
 
     need = 0
-    least = 1
-    do s = 1, size(curves)
-      least(group(s)) = max(least(group(s)), ubound(curves(s)%breaks, 1))
-    end do
     do z = 1, size(layout%zones)
       call measure_inside(chains, layout, field, curves, z, line)
       do k = 1, 2
         do s = 1, 2
-          associate (n => curves(layout%zone_sides(k + 2*(s - 1), z))%count)
-            line(lines + s, k) = n(ubound(n, 1))
-          end associate
+          line(lines + s, k) = sum(curves(layout%zone_sides(k + 2*(s - 1), z))%needs)
         end do
         one = maxval(line(:, k))
         if (rule == by_mean) one = 0.5_wp*(one + sum(line(:, k))/size(line, 1))
@@ -211,26 +208,41 @@ contains
 
   end subroutine measure_inside
 
-  pure function numbers(need, least, factor) result(n)
+  !> Number of each side when sizes are so many times the wanted ones.
+  pure function numbers(curves, group, need, factor) result(number)
+    type(curve_t), intent(in) :: curves(:)
+    integer, intent(in) :: group(:)
     real(wp), intent(in) :: need(:), factor
-    integer, intent(in) :: least(:)
-    integer :: n(size(need))
+    integer :: number(size(curves))
+    integer :: s
 
-    ! a number that no mesh can have stays one that can be counted
-    n = max(nint(min(need/factor, 0.5_wp*huge(1))), least)
+    number = rounded_up(need/factor)
+    do s = 1, size(curves)
+      if (curves(s)%chain == 0) cycle
+      number(group(s)) = max(number(group(s)), sum(rounded_up(curves(s)%needs/factor)))
+    end do
+    number = number(group)
   end function numbers
 
+  !> At least one; a number that no mesh can have stays one that can be counted.
+  pure elemental function rounded_up(need) result(n)
+    real(wp), intent(in) :: need
+    integer :: n
+
+    n = max(1, ceiling(min(need, most_along) - spared))
+  end function rounded_up
+
   !> Elements of all zones, at most the largest number there is.
-  pure function elements(layout, group, number) result(total)
+  pure function elements(layout, number) result(total)
     type(layout_t), intent(in) :: layout
-    integer, intent(in) :: group(:), number(:)
+    integer, intent(in) :: number(:)
     integer :: total
     real(wp) :: sum_of_all
     integer :: z
 
     sum_of_all = 0
     do z = 1, size(layout%zones)
-      sum_of_all = sum_of_all + real(number(group(layout%zone_sides(1, z))), wp)*number(group(layout%zone_sides(2, z)))
+      sum_of_all = sum_of_all + real(number(layout%zone_sides(1, z)), wp)*number(layout%zone_sides(2, z))
     end do
     total = nint(min(sum_of_all, real(huge(1) - 1, wp)))
   end function elements

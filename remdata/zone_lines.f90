@@ -1,7 +1,8 @@
 !> Smoothing of the ends of elements of all zones.
 !>
 !> Each zone first by itself, from a coarse grid to its own; then all together, where the sides between zones move too and
-!> lose the bends that lines would have there. Contours, corners of zones and sides between materials stay.
+!> lose the bends that lines would have there, and corners of zones inside go to the middle of the ends of elements next to
+!> them, weighted by the density between. Contours and sides between materials stay.
 module zone_lines
   use grid_lines, only: interpolate_inside, relaxed, smooth_inside
   use kinds, only: wp
@@ -11,7 +12,7 @@ module zone_lines
   use zones, only: layout_t
   implicit none
   private
-  public :: interpolate_zones, smooth_zones
+  public :: interpolate_zones, smooth_zones, find_movable
 
 contains
 
@@ -40,7 +41,7 @@ contains
     type(size_field_t), intent(in) :: field
     integer, intent(in) :: passes
     real(wp), intent(inout) :: x(:, :)   !! (2, nnode) [length]
-    integer, allocatable :: grid(:, :), around(:, :)
+    integer, allocatable :: grid(:, :), around(:, :), next(:, :)
     real(wp), allocatable :: inside(:, :, :), density(:, :)
     real(wp) :: log_density(numbers%nend), control(2, numbers%nend)
     logical :: known(numbers%nend)
@@ -68,6 +69,7 @@ contains
     end do
     call list_between(layout, division, numbers, around, n)
     if (size(layout%zones) == 1) return
+    call list_next(layout, division, numbers, next)
     do k = 1, n
       control(:, k) = 0.5_wp*(log_density(around([6, 8], k)) - log_density(around([4, 2], k)))
     end do
@@ -75,8 +77,27 @@ contains
       do k = 1, n
         x(:, around(5, k)) = relaxed(x(:, around(:, k)), control(1, k), control(2, k))
       end do
+      call relax_points(next, log_density, x)
     end do
   end subroutine smooth_zones
+
+  !> Ends of elements that may move: inside zones and sides, and zone points, as far as these move.
+  pure subroutine find_movable(layout, division, numbers, may_move)
+    type(layout_t), intent(in) :: layout
+    type(division_t), intent(in) :: division
+    type(numbers_t), intent(in) :: numbers
+    logical, allocatable, intent(out) :: may_move(:)   !! (nend)
+    integer :: p, s
+
+    allocate (may_move(numbers%nend))
+    may_move = .true.
+    do s = 1, size(layout%sides)
+      may_move(numbers%side_ends(s) + 1:numbers%side_ends(s) + division%count(s) - 1) = layout%sides(s)%moves
+    end do
+    do p = 1, size(layout%points)
+      if (numbers%point(p) > 0) may_move(numbers%point(p)) = layout%point_moves(p)
+    end do
+  end subroutine find_movable
 
   !> The points inside a zone with the eight around each, row by row.
   pure subroutine list_inside(grid, around, n)
@@ -119,6 +140,57 @@ contains
       end associate
     end do
   end subroutine list_between
+
+  !> Pairs of a zone point that moves and the end of element next to it on each of its sides (2, n), point by point.
+  pure subroutine list_next(layout, division, numbers, next)
+    type(layout_t), intent(in) :: layout
+    type(division_t), intent(in) :: division
+    type(numbers_t), intent(in) :: numbers
+    integer, allocatable, intent(out) :: next(:, :)
+    integer :: list(2, 2*size(layout%sides)), s, i, k, n
+    integer, allocatable :: nodes(:)
+
+    n = 0
+    do s = 1, size(layout%sides)
+      nodes = ends_of_side(layout, division, numbers, s)
+      do i = 1, 2
+        if (.not. layout%point_moves(layout%sides(s)%points(i))) cycle
+        if (i == 2) nodes = nodes(size(nodes):1:-1)
+        k = n
+        do while (k > 0)
+          if (list(1, k) <= nodes(1)) exit
+          list(:, k + 1) = list(:, k)
+          k = k - 1
+        end do
+        list(:, k + 1) = nodes(1:2)
+        n = n + 1
+      end do
+    end do
+    allocate (next(2, n), source=list(:, :n))
+  end subroutine list_next
+
+  !> Springs to the neighbours, as stiff as the density halfway: the sum of w (x' - x) is zero.
+  pure subroutine relax_points(next, log_density, x)
+    integer, intent(in) :: next(:, :)
+    real(wp), intent(in) :: log_density(:)
+    real(wp), intent(inout) :: x(:, :)
+    real(wp) :: stiffness, total, weighted(2)
+    integer :: k
+
+    total = 0
+    weighted = 0
+    do k = 1, size(next, 2)
+      stiffness = exp(0.5_wp*(log_density(next(2, k)) + log_density(next(1, k))))
+      total = total + stiffness
+      weighted = weighted + stiffness*x(:, next(2, k))
+      if (k < size(next, 2)) then
+        if (next(1, k + 1) == next(1, k)) cycle
+      end if
+      x(:, next(1, k)) = weighted/total
+      total = 0
+      weighted = 0
+    end do
+  end subroutine relax_points
 
   pure subroutine gather(grid, x, inside)
     integer, intent(in) :: grid(0:, 0:)

@@ -6,11 +6,12 @@ module zone_mesh
   use contour_chain, only: chain_t, place_t
   use errors, only: error_t
   use kinds, only: wp
+  use mend_elements, only: mend
   use side_curves, only: curve_point, curve_t, divide_curve, draw_side, measure_density
   use side_middles, only: bend_lines, place_middle
   use size_field, only: size_field_t
   use zone_divisions, only: choose_divisions, division_t, division_wish_t
-  use zone_lines, only: interpolate_zones, smooth_zones
+  use zone_lines, only: find_movable, interpolate_zones, smooth_zones
   use zone_numbers, only: divisions_of, ends_of_side, ends_of_zone, middles_of_side, middles_of_zone, &
                           number_nodes, numbers_t
   use zones, only: coordinates_of, follows_contour, layout_t, lay_out, runs_straight, zone_point_t, zone_t
@@ -23,6 +24,8 @@ module zone_mesh
     type(division_wish_t) :: division
     !> Passes of smoothing, 0 for lines as they are interpolated.
     integer :: passes = 12
+    !> Elements with a smaller sine between their lines are mended, 0: none.
+    real(wp) :: least_sine = 0.3_wp
   end type mesh_wish_t
 
   !> A side of an element on the contour, the part on its left.
@@ -58,6 +61,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(curve_t), allocatable :: curves(:)
     type(numbers_t) :: numbers
+    logical, allocatable :: may_move(:)
     integer :: s
 
     call lay_out(chains, points, zones, mesh%layout, error)
@@ -80,6 +84,10 @@ contains
       call interpolate_zones(layout, division, numbers, mesh%coordinates)
       if (wish%passes > 0) call smooth_zones(layout, division, numbers, field, wish%passes, mesh%coordinates)
       call make_elements(layout, division, numbers, mesh)
+      if (wish%least_sine > 0) then
+        call find_movable(layout, division, numbers, may_move)
+        call mend(mesh%connectivity, may_move, wish%least_sine, mesh%coordinates)
+      end if
       call list_sides(layout, division, numbers, curves, mesh)
     end associate
   end subroutine mesh_zones

@@ -23,6 +23,8 @@ module zones
     integer :: chain = 0             !! 0: inside
     type(place_t) :: place
     real(wp) :: x(2) = 0.0_wp        !! [length], read inside only
+    !> A point inside may be moved when lines are smoothed, unless the user wants it where it is.
+    logical :: stays = .false.
   end type zone_point_t
 
   type :: zone_t
@@ -43,7 +45,7 @@ module zones
     real(wp) :: middle(2) = 0.0_wp
     !> Zones on its left and on its right, 0 where there is none, and which of their sides it is.
     integer :: zones(2) = 0, local(2) = 0
-    !> Smoothing may move it: nothing was said of it, and both zones are of one material.
+    !> Smoothing may move it.
     logical :: moves = .false.
   end type side_t
 
@@ -53,6 +55,7 @@ module zones
     type(zone_t), allocatable :: zones(:)
     type(side_t), allocatable :: sides(:)
     integer, allocatable :: zone_sides(:, :)   !! (4, nzone)
+    logical, allocatable :: point_moves(:)     !! (npoint)
   end type layout_t
 
   !> Lengths along a chain that differ by less are one; zones that small against the square of their extent have no area.
@@ -79,6 +82,7 @@ contains
     end do
     call find_sides(layout, error)
     if (.not. allocated(error)) call follow_chains(chains, layout, error)
+    if (.not. allocated(error)) call find_what_moves(layout)
   end subroutine lay_out
 
   !> Coordinates of a zone point [length].
@@ -234,7 +238,6 @@ contains
     do s = 1, size(layout%sides)
       associate (side => layout%sides(s))
         side%moves = side%form == as_found .and. side%zones(2) > 0
-        if (side%moves) side%moves = layout%zones(side%zones(1))%material == layout%zones(side%zones(2))%material
         if (side%form == as_found) side%form = merge(follows_contour, runs_straight, side%zones(2) == 0)
         if (side%zones(2) > 0 .neqv. side%form /= follows_contour) then
           call fail(error, exit_input, side_name(side)//' is said to follow the contour where two zones share it, or not to' &
@@ -261,6 +264,40 @@ contains
       return
     end do
   end subroutine follow_chains
+
+  !> Sides move of which nothing was said, between zones of one material; points inside with all their sides. Where other than
+  !> four sides meet in a point that stays, they stay with it: smoothed, they would close up on it.
+  pure subroutine find_what_moves(layout)
+    type(layout_t), intent(inout) :: layout
+    integer :: sides_at(size(layout%points)), s
+    logical :: changed
+
+    sides_at = 0
+    do s = 1, size(layout%sides)
+      associate (side => layout%sides(s))
+        sides_at(side%points) = sides_at(side%points) + 1
+        if (side%moves) side%moves = layout%zones(side%zones(1))%material == layout%zones(side%zones(2))%material
+      end associate
+    end do
+    allocate (layout%point_moves(size(layout%points)))
+    layout%point_moves = layout%points%chain == 0 .and. .not. layout%points%stays
+    do
+      changed = .false.
+      do s = 1, size(layout%sides)
+        associate (side => layout%sides(s))
+          if (side%moves) then
+            side%moves = .not. any(layout%points(side%points)%chain == 0 .and. sides_at(side%points) /= 4 &
+                                   .and. .not. layout%point_moves(side%points))
+            changed = changed .or. .not. side%moves
+          else
+            changed = changed .or. any(layout%point_moves(side%points))
+            layout%point_moves(side%points) = .false.
+          end if
+        end associate
+      end do
+      if (.not. changed) exit
+    end do
+  end subroutine find_what_moves
 
   pure function side_name(side) result(name)
     type(side_t), intent(in) :: side

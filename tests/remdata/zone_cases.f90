@@ -1,16 +1,19 @@
 !> Contours, zones and measures of quality for the tests of meshes of zones.
 module zone_cases
-  use contour_chain, only: chain_t, close_chain, closest_place, kind_end, place_t, point_on
+  use contour_chain, only: chain_t, close_chain, closest_place, kind_corner, kind_end, place_t, point_on
+  use derived_zones, only: one_zone
+  use errors, only: error_t
   use kinds, only: pi, wp
   use quadrature, only: square_rule
   use shape_functions, only: quad8, quad8_corner, quad8_side
-  use size_field, only: set_up_sizes, size_field_t, size_limits_t
+  use size_field, only: need_t, set_up_sizes, size_field_t, size_limits_t
   use vectors, only: length_of
-  use zone_mesh, only: new_mesh_t
+  use zone_mesh, only: mesh_wish_t, mesh_zones, new_mesh_t
   use zones, only: zone_point_t, zone_t
   implicit none
   private
-  public :: chain_of_points, polygon, circle, point_at_contour, point_inside, zone_of, uniform_field
+  public :: chain_of_points, polygon, circle, barrel, point_at_contour, point_inside, zone_of, uniform_field
+  public :: rectangle_mesh, l_shape, ring
   public :: quality_t, quality_of, off_contour, area_of, shared_exactly
 
   type :: quality_t
@@ -73,6 +76,26 @@ contains
     chain = chain_of_points(x, 0.9_wp)
   end function circle
 
+  !> A square of side 1 whose right side bulges to 1 + bulge sin(pi s), at the height s - fold sin(2 pi s); the first corner
+  !> at the origin, n parabolas a side. With a fold the bulge hangs over the corners.
+  pure function barrel(bulge, fold, n) result(chain)
+    real(wp), intent(in) :: bulge, fold
+    integer, intent(in) :: n
+    type(chain_t) :: chain
+    real(wp) :: x(2, 8*n), s
+    integer :: i
+
+    do i = 1, 2*n
+      s = (i - 1)/real(2*n, wp)
+      x(:, i) = [s, 0.0_wp]
+      x(:, 2*n + i) = [1 + bulge*sin(pi*s), s - fold*sin(2*pi*s)]
+      x(:, 4*n + i) = [1 - s, 1.0_wp]
+      x(:, 6*n + i) = [0.0_wp, 1 - s]
+    end do
+    chain = chain_of_points(x, 0.5_wp)
+    chain%kinds([1, n + 1, 2*n + 1, 3*n + 1]) = kind_corner
+  end function barrel
+
   !> The zone point of a chain closest to a target.
   pure function point_at_contour(number, chain, target) result(point)
     integer, intent(in) :: number
@@ -98,15 +121,66 @@ contains
     zone%corners = corners
   end function zone_of
 
+  !> An L of three unit squares, one zone each.
+  pure subroutine l_shape(chains, points, zones)
+    type(chain_t), allocatable, intent(out) :: chains(:)
+    type(zone_point_t), allocatable, intent(out) :: points(:)
+    type(zone_t), allocatable, intent(out) :: zones(:)
+    real(wp), parameter :: x(2, 8) = reshape([0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, 2.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, &
+                                              1.0_wp, 2.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, 1.0_wp], [2, 8])
+    integer :: i
+
+    allocate (chains(1), points(8), zones(3))
+    chains(1) = polygon(x(:, [1, 3, 4, 5, 6, 7]), 3)
+    do i = 1, 8
+      points(i) = point_at_contour(1, chains(1), x(:, i))
+    end do
+    zones = [zone_of([1, 2, 5, 8]), zone_of([2, 3, 4, 5]), zone_of([5, 6, 7, 8])]
+  end subroutine l_shape
+
+  !> A disc with a hole beside its centre, four zones around.
+  pure subroutine ring(chains, points, zones)
+    type(chain_t), allocatable, intent(out) :: chains(:)
+    type(zone_point_t), allocatable, intent(out) :: points(:)
+    type(zone_t), allocatable, intent(out) :: zones(:)
+    real(wp) :: angle
+    integer :: i
+
+    allocate (chains(2), points(8), zones(4))
+    chains(1) = circle([0.0_wp, 0.0_wp], 2.0_wp, 16)
+    chains(2) = circle([0.3_wp, 0.0_wp], -0.7_wp, 12)
+    do i = 1, 4
+      angle = 0.5_wp*pi*(i - 1) + 0.3_wp
+      points(i) = point_at_contour(1, chains(1), 2*[cos(angle), sin(angle)])
+      points(4 + i) = point_at_contour(2, chains(2), [0.3_wp, 0.0_wp] + 0.7_wp*[cos(angle), sin(angle)])
+    end do
+    zones = [zone_of([1, 2, 6, 5]), zone_of([2, 3, 7, 6]), zone_of([3, 4, 8, 7]), zone_of([4, 1, 5, 8])]
+  end subroutine ring
+
   pure function uniform_field(h) result(field)
     real(wp), intent(in) :: h
     type(size_field_t) :: field
     type(size_limits_t) :: limits
-    real(wp) :: none(3, 0)
 
     limits%largest = h
-    call set_up_sizes(limits, none, field)
+    call set_up_sizes(limits, [need_t ::], field)
   end function uniform_field
+
+  !> Uniform squares of about the size h on a rectangle from the origin.
+  function rectangle_mesh(width, height, h) result(mesh)
+    real(wp), intent(in) :: width, height, h
+    type(new_mesh_t) :: mesh
+    type(chain_t) :: chains(1)
+    type(zone_point_t), allocatable :: points(:)
+    type(zone_t), allocatable :: zones(:)
+    type(mesh_wish_t) :: wish
+    type(place_t) :: none(0)
+    type(error_t), allocatable :: error
+
+    chains(1) = polygon(reshape([0.0_wp, 0.0_wp, width, 0.0_wp, width, height, 0.0_wp, height], [2, 4]), 1)
+    call one_zone(chains, none, points, zones, error)
+    call mesh_zones(chains, points, zones, uniform_field(h), wish, mesh, error)
+  end function rectangle_mesh
 
   pure function quality_of(mesh) result(quality)
     type(new_mesh_t), intent(in) :: mesh

@@ -1,0 +1,46 @@
+!> The error a mesh is expected to have, from its sizes over the wanted ones.
+!>
+!> Where an element has the size that is wanted its error is the limit; it goes with the size to the power p. Zones cannot follow
+!> every size, and the number of elements may be limited: this is what both cost.
+module mesh_prediction
+  use block_mesh, only: polygon_area
+  use kinds, only: wp
+  use size_field, only: size_at, size_field_t
+  use zone_mesh, only: new_mesh_t
+  implicit none
+  private
+  public :: prediction_t, predict
+
+  type :: prediction_t
+    !> Error over its limit: square mean over the area, and of the worst element.
+    real(wp) :: mean = 0.0_wp, worst = 0.0_wp
+    !> Elements per element that sizes as wanted would take: above 1 where zones waste some.
+    real(wp) :: elements = 0.0_wp
+  end type prediction_t
+
+contains
+
+  pure function predict(mesh, field, order) result(prediction)
+    type(new_mesh_t), intent(in) :: mesh
+    type(size_field_t), intent(in) :: field
+    real(wp), intent(in) :: order
+    type(prediction_t) :: prediction
+    real(wp) :: x(2, 4), area, total, wanted, ratio
+    integer :: e
+
+    total = 0
+    do e = 1, size(mesh%zone)
+      x = mesh%coordinates(:, mesh%connectivity(1:4, e))
+      area = polygon_area(x)
+      wanted = size_at(field, mesh%layout%zones(mesh%zone(e))%material, 0.25_wp*sum(x, 2))
+      ratio = sqrt(max(area, 0.0_wp))/wanted
+      prediction%mean = prediction%mean + area*ratio**(2*order)
+      prediction%worst = max(prediction%worst, ratio**order)
+      prediction%elements = prediction%elements + ratio**2
+      total = total + area
+    end do
+    prediction%mean = sqrt(prediction%mean/total)
+    prediction%elements = size(mesh%zone)/prediction%elements
+  end function predict
+
+end module mesh_prediction
