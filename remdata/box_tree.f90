@@ -7,7 +7,7 @@ module box_tree
   use kinds, only: wp
   implicit none
   private
-  public :: box_tree_t, plant_tree, nearest_items
+  public :: box_tree_t, plant_tree, nearest_items, insert
 
   !> Most items of a leaf, and depth that no tree reaches (halves of 2^31 items).
   integer, parameter :: leaf = 8, deepest = 64
@@ -165,7 +165,7 @@ contains
     if (present(tried)) tried = looked
   end subroutine nearest_items
 
-  !> Put an item at its place in the list, where it is among the nearest.
+  !> Put an item at its place in the list of the nearest, where it belongs there.
   pure subroutine insert(item, distance, found, items, distances)
     integer, intent(in) :: item
     real(wp), intent(in) :: distance

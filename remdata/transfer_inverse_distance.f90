@@ -3,15 +3,20 @@
 !> Source: D. Shepard, Proc. 23rd ACM Nat. Conf. (1968) 517-524. A constant comes through exactly, a linear field does not:
 !> the mean of points on one side only (at a boundary, on a graded mesh) is off by the size of an element.
 module transfer_inverse_distance
-  use box_tree, only: nearest_items
+  use connected_points, only: nearest_connected
   use errors, only: error_t
   use kinds, only: wp
+  use locate_point, only: locate, place_t
+  use patch_nodes, only: number_nodes, patch_nodes_t
   use transfer_api, only: check_materials, transfer_options_t, transfer_t
-  use transfer_map, only: start_map, transfer_map_t
+  use transfer_map, only: append_rows, start_rows, transfer_map_t
   use transfer_mesh, only: transfer_mesh_t
   implicit none
   private
   public :: transfer_inverse_distance_row
+
+  !> Points between two appendings to the map.
+  integer, parameter :: block = 512
 
 contains
 
@@ -32,21 +37,29 @@ contains
     integer, intent(in) :: material(:)
     type(transfer_map_t), intent(out) :: map
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: squares(options%nearest)
-    integer :: p, found
+    type(patch_nodes_t) :: nodes
+    type(place_t) :: place
+    integer :: source(options%nearest, block), used(block), p, k, n
+    real(wp) :: weight(options%nearest, block), squares(options%nearest)
 
     call check_materials(mesh, material, error)
     if (allocated(error)) return
-    call start_map(min(options%nearest, mesh%point_trees(material)%n), map)
-    !$omp parallel do schedule(static) private(squares, found)
-    do p = 1, size(material)
-      associate (first => map%first(p), last => map%first(p + 1) - 1)
-        call nearest_items(mesh%point_trees(material(p)), points(:, p), found, map%source(first:last), &
-                           squares(:last - first + 1))
-        call from_distances(squares(:last - first + 1), options%exponent, map%weight(first:last))
-      end associate
+    call number_nodes(mesh, nodes)
+    n = size(material)
+    call start_rows(n, map)
+    allocate (map%outside(n), source=0.0_wp)
+    allocate (map%degree(n), source=0)
+    do p = 0, n - 1, block
+      !$omp parallel do schedule(static) private(place, squares)
+      do k = 1, min(block, n - p)
+        call locate(mesh, material(p + k), points(:, p + k), 0.0_wp, place)
+        map%outside(p + k) = place%distance
+        call nearest_connected(mesh, nodes, place%element, points(:, p + k), used(k), source(:, k), squares)
+        call from_distances(squares(:used(k)), options%exponent, weight(:used(k), k))
+      end do
+      !$omp end parallel do
+      call append_rows(p, source, weight, used(:min(block, n - p)), map)
     end do
-    !$omp end parallel do
   end subroutine weights
 
   !> Weights from squares of distances, nearest first. Distances are taken over the nearest: no overflow, no unit.

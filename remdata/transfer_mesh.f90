@@ -20,6 +20,7 @@ module transfer_mesh
     real(wp), allocatable :: points(:, :)        !! (2, n) [length]
     real(wp), allocatable :: volumes(:)          !! (n), per unit thickness, or per radian [length^2 or length^3]
     integer, allocatable :: point_material(:)    !! (n)
+    integer, allocatable :: point_element(:)     !! (n)
     type(box_tree_t), allocatable :: point_trees(:), element_trees(:)  !! (nmaterial), where they were planted
   end type transfer_mesh_t
 
@@ -46,7 +47,7 @@ contains
       mesh%first_point(e + 1) = mesh%first_point(e) + npoint(e)
     end do
     n = sum(npoint)
-    allocate (mesh%points(2, n), mesh%volumes(n), mesh%point_material(n))
+    allocate (mesh%points(2, n), mesh%volumes(n), mesh%point_material(n), mesh%point_element(n))
     rule = 0
     do e = 1, size(material)
       if (npoint(e) /= rule) call square_rule(npoint(e), xi, weight)
@@ -60,6 +61,7 @@ contains
         mesh%volumes(k) = weight(p)*(jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1))
         if (axisymmetric) mesh%volumes(k) = mesh%volumes(k)*mesh%points(1, k)
         mesh%point_material(k) = material(e)
+        mesh%point_element(k) = e
       end do
     end do
   end subroutine set_up_mesh

@@ -4,10 +4,12 @@
 !> The weight of a neighbour is the quartic spline of T. Belytschko et al., Comput. Methods Appl. Mech. Eng. 139 (1996) 3-47,
 !> eq. 20; it vanishes at the nearest point left out, so that values do not jump as neighbours change.
 module transfer_moving_squares
-  use box_tree, only: nearest_items
+  use connected_points, only: nearest_connected
   use errors, only: error_t
   use kinds, only: wp
   use local_fit, only: fit_polynomial, max_terms, most_amplified, terms_of
+  use locate_point, only: locate, place_t
+  use patch_nodes, only: number_nodes, patch_nodes_t
   use transfer_api, only: check_materials, transfer_options_t, transfer_t
   use transfer_map, only: append_rows, start_rows, transfer_map_t
   use transfer_mesh, only: transfer_mesh_t
@@ -40,19 +42,24 @@ contains
     integer, intent(in) :: material(:)
     type(transfer_map_t), intent(out) :: map
     type(error_t), allocatable, intent(out) :: error
+    type(patch_nodes_t) :: nodes
+    type(place_t) :: place
     integer :: source(options%neighbours*2**doublings, block), used(block), p, k, n
     real(wp) :: weight(size(source, 1), block)
 
     call check_materials(mesh, material, error)
     if (allocated(error)) return
+    call number_nodes(mesh, nodes)
     n = size(material)
     call start_rows(n, map)
     allocate (map%outside(n), source=0.0_wp)
     allocate (map%degree(n), source=0)
     do p = 0, n - 1, block
-      !$omp parallel do schedule(static)
+      !$omp parallel do schedule(static) private(place)
       do k = 1, min(block, n - p)
-        call weights_of_point(mesh, options, points(:, p + k), material(p + k), source(:, k), weight(:, k), used(k), &
+        call locate(mesh, material(p + k), points(:, p + k), 0.0_wp, place)
+        map%outside(p + k) = place%distance
+        call weights_of_point(mesh, nodes, options, points(:, p + k), place%element, source(:, k), weight(:, k), used(k), &
                               map%degree(p + k))
       end do
       !$omp end parallel do
@@ -61,11 +68,12 @@ contains
   end subroutine weights
 
   !> The polynomial's value at its centre is its first coefficient. More points, then a lower degree, until they determine it.
-  pure subroutine weights_of_point(mesh, options, point, material, source, weight, used, degree)
+  pure subroutine weights_of_point(mesh, nodes, options, point, element, source, weight, used, degree)
     type(transfer_mesh_t), intent(in) :: mesh
+    type(patch_nodes_t), intent(in) :: nodes
     type(transfer_options_t), intent(in) :: options
     real(wp), intent(in) :: point(2)
-    integer, intent(in) :: material
+    integer, intent(in) :: element
     integer, intent(out) :: source(:)
     real(wp), intent(out) :: weight(:)
     integer, intent(out) :: used, degree
@@ -78,7 +86,7 @@ contains
     do degree = options%degree, 0, -1
       do doubling = 0, doublings
         n = options%neighbours*2**doubling
-        call nearest_items(mesh%point_trees(material), point, found, items(:n + 1), squares(:n + 1))
+        call nearest_connected(mesh, nodes, element, point, found, items(:n + 1), squares(:n + 1))
         ! the last one found sets the reach; where the material has no more points all of them count
         if (found == n + 1) then
           reach = sqrt(squares(n + 1))
