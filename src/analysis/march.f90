@@ -124,6 +124,8 @@ contains
     call update_flow_stress(scene, run%equations%laws, run%equations%bodies, solution)
     call measure_scene(scene, run%equations, solution, run%totals)
     if (scene%remesh%estimate) call set_up_estimator(scene, run%equations%laws, run%estimator)
+    if (.not. run%estimator%elastic) call list_note(run%listing, 'note: a law has no elastic moduli, so error_stress is in the ' &
+                                                    //'norm of the deviator, not of the energy')
     if (.not. solution%initial_volume > 0) solution%initial_volume = run%totals%volume
     call open_history(scene, solution, join_path(run%folder, 'history.csv'), run%resume, run%table, error)
     if (allocated(error)) return

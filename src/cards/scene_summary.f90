@@ -1,6 +1,8 @@
 !> What a scene holds, in lines for people: printed by `--check` and at the start of a run.
 module scene_summary
   use dies, only: is_deformable
+  use kinds, only: wp
+  use remeshing, only: criterion_names, is_upper, ncriteria, never
   use scene, only: axisymmetric, generalised_plane_strain, plane_state_names, scene_t
   use sections, only: section_drive_t, section_forced, section_moved, section_names
   use text, only: string_t, to_text
@@ -49,12 +51,31 @@ contains
     do k = 1, size(scene%probes)
       call put('probe      '//padded(scene%probes(k)%name, 24)//'['//scene%probes(k)%unit//']')
     end do
+    if (scene%remesh%on) then
+      if (scene%remesh%stress_error < never) call put_limit('stress_error', 'above '//to_text(scene%remesh%stress_error))
+      do k = 1, ncriteria
+        if (.not. abs(scene%remesh%shape(k)) < never) cycle
+        call put_limit(trim(criterion_names(k)), trim(merge('above', 'below', is_upper(k)))//' '//to_text(scene%remesh%shape(k)) &
+                       //share_text(scene%remesh%bad_share))
+      end do
+      if (scene%remesh%contact < never) &
+        call put_limit('contact', 'deeper by '//to_text(scene%remesh%contact)//' times the allowed penetration')
+      if (scene%remesh%distress < huge(0)) call put_limit('distress', to_text(scene%remesh%distress)//' cuts in a row')
+      do k = 1, size(scene%remesh%times)
+        call put_limit('time', to_text(scene%remesh%times(k)))
+      end do
+      do k = 1, size(scene%remesh%strokes)
+        associate (stroke => scene%remesh%strokes(k))
+          call put_limit('stroke', scene%dies(stroke%die)%name//' '//directions(stroke%component)//' = '//to_text(stroke%value))
+        end associate
+      end do
+    end if
     do k = 1, size(scene%effects)
       associate (effect => scene%effects(k))
         if (effect%on) then
-          call put('effect     '//padded(effect%name, 14)//'on   '//effect%why//'; adds '//effect%adds)
+          call put('effect     '//padded(effect%name, 16)//'on   '//effect%why//'; adds '//effect%adds)
         else
-          call put('effect     '//padded(effect%name, 14)//'off  '//effect%why)
+          call put('effect     '//padded(effect%name, 16)//'off  '//effect%why)
         end if
       end associate
     end do
@@ -68,6 +89,20 @@ contains
       line%s = s
       lines = [lines, line]
     end subroutine put
+
+    subroutine put_limit(name, limit)
+      character(len=*), intent(in) :: name, limit
+
+      call put('remesh     '//padded(name, 24)//limit)
+    end subroutine put_limit
+
+    pure function share_text(share) result(s)
+      real(wp), intent(in) :: share
+      character(len=:), allocatable :: s
+
+      s = ''
+      if (share > 0) s = ' in more than '//to_text(100*share)//' % of the elements'
+    end function share_text
 
     !> The thickness where it has been given another value than 1.
     pure function thickness() result(s)

@@ -40,7 +40,8 @@ module estimator
     logical :: elastic = .true.
   end type estimator_t
 
-  !> Stress over the shear modulus, or strain, below which nothing has happened yet: round-off of a stress that is zero.
+  !> Stress over the shear modulus (over the largest stress where there are no moduli), or strain, below which nothing has happened
+  !> yet: round-off of a stress that is zero.
   real(wp), parameter :: at_rest = 1.0e-9_wp
 
 contains
@@ -157,7 +158,8 @@ contains
     error_of = sqrt(missing/volume*(sum(volume)/sum(whole)))
   end subroutine relate
 
-  !> Squares of the elements of one material, and the sum of G V to compare energies with (of s:s where there are no moduli).
+  !> Squares of the elements of one material, and the sum of G V to compare energies with (without moduli: of the largest stress,
+  !> squared).
   pure subroutine of_part(self, part, scene, solution, x, section, missing, whole, volume, stiffness)
     type(estimator_t), intent(in) :: self
     type(part_t), intent(in) :: part
@@ -169,10 +171,12 @@ contains
     real(wp) :: missing_here(2, size(part%place)), whole_here(2, size(part%place)), volume_here(size(part%place))
     integer :: e, g, n
 
+    shear = 0
     do e = 1, size(part%place)
       g = part%group(e)
       n = scene%groups(g)%npoint
       value(1:4, :n, e) = solution%groups(g)%committed(1:4, :, part%element(e))
+      if (.not. self%elastic) shear = max(shear, maxval(value(1:4, :n, e)**2))
       call increments(self%fields(part%rule(e))%own, scene%finite, section, solution%last_section_increment, &
                       x(:, part%connectivity(:, e)), solution%last_increment(:, part%connectivity(:, e)), value(5:8, :n, e))
       weights(:, e) = energy_weights(self, scene, g, solution%time)
@@ -182,7 +186,6 @@ contains
     missing(:, part%place) = missing_here
     whole(:, part%place) = whole_here
     volume(part%place) = volume_here
-    shear = 0
     if (self%elastic) shear = 0.25_wp/minval(weights(1, :))
     stiffness = stiffness + shear*sum(volume_here)
   end subroutine of_part

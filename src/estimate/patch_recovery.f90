@@ -194,11 +194,13 @@ contains
     real(wp), intent(in) :: place(:, :, :)       !! points (2, 4, nelem) [length]
     real(wp), intent(in) :: value(:, :, :)       !! (ncomp, 4, nelem)
     type(polynomials_t), intent(out) :: polynomials
-    real(wp) :: moments(nmoment), gram(nterm, nterm), right(nterm, size(value, 1)), t(nterm)
-    integer :: v, i, j, k, c, e, n
+    real(wp) :: moments(nmoment), gram(nterm, nterm), right(nterm, size(value, 1)), t(nterm), sums(nterm)
+    real(wp), allocatable :: points(:, :)   ! terms at the points of a patch
+    integer :: v, i, j, k, c, n
 
     n = size(patches%node)
     allocate (polynomials%centre(2, n), polynomials%scale(n), polynomials%coefficient(nterm, size(value, 1), n))
+    allocate (points(nterm, nsample*maxval(patches%first(2:) - patches%first(:n))))
     do v = 1, n
       associate (mine => patches%element(patches%first(v):patches%first(v + 1) - 1), centre => polynomials%centre(:, v))
         centre = coordinates(:, patches%node(v))
@@ -206,16 +208,21 @@ contains
         if (size(mine) == 0) cycle
         polynomials%scale(v) = max(maxval(abs(place(1, :, mine) - centre(1))), maxval(abs(place(2, :, mine) - centre(2))))
         moments = 0
-        right = 0
         do i = 1, size(mine)
-          e = mine(i)
           do k = 1, nsample
-            t = terms((place(:, k, e) - centre)/polynomials%scale(v))
+            t = terms((place(:, k, mine(i)) - centre)/polynomials%scale(v))
+            points(:, nsample*(i - 1) + k) = t
             moments = moments + [t, t(2)*t(4), t(3)*t(4), t(2)*t(6), t(3)*t(6), t(4)*t(4:6), t(5)*t(6), t(6)*t(6)]
-            do c = 1, size(value, 1)
-              right(:, c) = right(:, c) + t*value(c, k, e)
+          end do
+        end do
+        do c = 1, size(value, 1)
+          sums = 0
+          do i = 1, size(mine)
+            do k = 1, nsample
+              sums = sums + points(:, nsample*(i - 1) + k)*value(c, k, mine(i))
             end do
           end do
+          right(:, c) = sums
         end do
         do j = 1, nterm
           gram(:, j) = moments(moment(:, j))

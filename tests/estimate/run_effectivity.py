@@ -7,7 +7,9 @@ usage: run_effectivity.py [-v] [-k]
   points (2 x 2: bilinear, 3 x 3: biquadratic); its error in the energy norm is integrated here on 5 x 5 points.
 - `hole`: a quarter of a plate with a hole, pulled, and `cook`: Cook's membrane in plane stress, clamped, whose corner is singular; both
   with 3 x 3 points. Where loads are given, ||sigma - sigma_h||^2 = 2 (U - U_h); U is that of a much finer mesh.
-Strain: the same with the norm of the deviator, of one step of small strains. Norms of estimate and truth are both over that of the stress itself. Where few elements go round an arc (`ring`, `hole`) the polynomials
+Strain: the same with the norm of the deviator, of one step of small strains. - `billet`: the deck decks/upsetting, plastic, a quarter of its height pressed, sticking: the truth is the stress of a mesh four or two
+  times as fine at the same points of the material (the corner where the die ends is singular).
+Norms of estimate and truth are both over that of the stress itself. Where few elements go round an arc (`ring`, `hole`) the polynomials
 of the patches miss the turning of the stress: the estimate is then too high, and its upper bound is asked for from a finer mesh on.
 """
 import os
@@ -15,7 +17,7 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "patch"))
-from patch_support import STRESS, Checks, Run, at_points, np, num  # noqa: E402
+from patch_support import SOURCE, STRESS, Checks, Run, at_points, np, num  # noqa: E402
 from run_order import MU, NU, TAIL, YOUNG, ring, ring_deck, tensor_stress, tube, tube_deck, waves, waves_deck  # noqa: E402
 
 BULK = YOUNG/(3*(1 - 2*NU))
@@ -24,21 +26,26 @@ FINE = 96
 BAND = (0.8, 1.2)
 # A corner's singularity spoils elements that are far from it, which no recovery there sees.
 LEAST_AT_SINGULARITY = 0.75
+BILLETS, FINE_BILLET = (6, 12), 24
 LEAST_ORDER = 1.9
 
 
-def density(stress):
+def density(stress, mu=MU, bulk=BULK):
     """Complementary energy of stresses (..., 4), without the half."""
     mean = (stress[..., 0] + stress[..., 1] + stress[..., 3])/3
     deviator = stress - mean[..., None]*np.array([1, 1, 0, 1])
-    return (deviator**2*np.array([1, 1, 2, 1])).sum(axis=-1)/(2*MU) + mean**2/BULK
+    return (deviator**2*np.array([1, 1, 2, 1])).sum(axis=-1)/(2*mu) + mean**2/bulk
+
+
+def lagrange(m, places):
+    """Polynomials that are 1 at one of m Gauss points and 0 at the others, at places of the line (nplace, m)."""
+    own = np.polynomial.legendre.leggauss(m)[0]
+    return np.array([[np.prod([(x - own[j])/(own[i] - own[j]) for j in range(m) if j != i]) for i in range(m)] for x in places])
 
 
 def through_points(npoint, n):
     """Values at n x n Gauss points of the tensor-product polynomial through its values at npoint points: (n*n, npoint)."""
-    m = int(npoint**0.5)
-    own, to = np.polynomial.legendre.leggauss(m)[0], np.polynomial.legendre.leggauss(n)[0]
-    one = np.array([[np.prod([(x - own[j])/(own[i] - own[j]) for j in range(m) if j != i]) for i in range(m)] for x in to])
+    one = lagrange(int(npoint**0.5), np.polynomial.legendre.leggauss(n)[0])
     return np.kron(one, one)
 
 
@@ -145,6 +152,44 @@ def against_fine(checks, name, make, least_order, lower=BAND[0]):
     tell(checks, name, rows, least_order, 0, lower)
 
 
+def billet_deck(n):
+    """The billet on n x 3n/2 elements, a quarter of its height pressed."""
+    with open(os.path.join(SOURCE, "decks", "upsetting", "upsetting.lag"), encoding="utf-8") as deck:
+        text = deck.read()
+    for name, value in (("nx", n), ("ny", 3*n//2), ("travel", 3.75)):
+        line = next(line for line in text.splitlines() if line.split()[:2] == ["PARAM", name])
+        text = text.replace(line, f"PARAM  {name} {value}")
+    return with_estimate(text)
+
+
+def billet(checks):
+    """Blocks of elements of the fine mesh lie in elements of the coarse ones, at the same points of the material."""
+    fine = Run(checks, f"billet-{FINE_BILLET}", billet_deck(FINE_BILLET))
+    if not fine.ok:
+        return
+    nodes, elements = fine.mesh()
+    places, _, _, volumes = at_points((nodes + fine.displacement())[elements], nodes[elements], 2)
+    volumes = volumes*places[..., 0]
+    young, nu = 200000.0, 0.3
+    moduli = young/(2*(1 + nu)), young/(3*(1 - 2*nu))
+    stress = fine.state("billet", *STRESS).reshape(len(elements), 4, 4)
+    gauss = np.polynomial.legendre.leggauss(2)[0]
+    rows = []
+    for n in BILLETS:
+        run = Run(checks, f"billet-{n}", billet_deck(n))
+        if not run.ok:
+            return
+        coarse = run.state("billet", *STRESS).reshape(3*n//2, n, 4, 4)
+        computed, ratio = np.zeros_like(stress), FINE_BILLET//n
+        for e in range(len(elements)):
+            j, i = divmod(e, FINE_BILLET)
+            x, y = (lagrange(2, -1 + 2*(k % ratio + (gauss + 1)/2)/ratio) for k in (i, j))
+            computed[e] = np.kron(y, x) @ coarse[j//ratio, i//ratio]
+        true = np.sqrt((volumes*density(computed - stress, *moduli)).sum()/(volumes*density(stress, *moduli)).sum())
+        rows.append((n, true, run.history["error_stress"][-1]))
+    tell(checks, "billet", rows, 0, 0, LEAST_AT_SINGULARITY)
+
+
 def main():
     checks = Checks()
     for npoint in (4, 9):
@@ -153,6 +198,7 @@ def main():
         against_exact(checks, "tube", tube_deck, tube, npoint, axisym=True)
     against_fine(checks, "hole", hole_deck, LEAST_ORDER)
     against_fine(checks, "cook", cook_deck, 0, LEAST_AT_SINGULARITY)
+    billet(checks)
     checks.end()
 
 
