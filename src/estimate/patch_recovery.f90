@@ -11,7 +11,7 @@ module patch_recovery
   use kinds, only: wp
   implicit none
   private
-  public :: patches_t, polynomials_t, find_patches, fit_patches, recovered
+  public :: patches_t, polynomials_t, find_patches, fit_patches, recover, nvalue
 
   !> Terms of the polynomials: 1, x, y, x^2, x y, y^2.
   integer, parameter :: nterm = 6
@@ -24,8 +24,8 @@ module patch_recovery
                                                         4, 7, 8, 11, 12, 13, &
                                                         5, 8, 9, 12, 13, 14, &
                                                         6, 9, 10, 13, 14, 15], [nterm, nterm])
-  !> Points of an element.
-  integer, parameter :: nsample = 4
+  !> Points of an element, and values that are recovered together: a fixed number, so that their loops are short code.
+  integer, parameter :: nsample = 4, nvalue = 8
   !> Elements that a node needs for a patch of its own.
   integer, parameter :: least_elements = 3
   !> A term that keeps less than this share of itself beside the others is not told from them.
@@ -41,7 +41,7 @@ module patch_recovery
     integer, allocatable :: first_donor(:), donor(:)
   end type patches_t
 
-  !> A polynomial for every vertex: coefficients (nterm, ncomp, nvertex) in (x - node)/scale.
+  !> A polynomial for every vertex: coefficients (nvalue, nterm, nvertex) in (x - node)/scale.
   type :: polynomials_t
     real(wp), allocatable :: centre(:, :), scale(:), coefficient(:, :, :)
   end type polynomials_t
@@ -192,40 +192,45 @@ contains
     type(patches_t), intent(in) :: patches
     real(wp), intent(in) :: coordinates(:, :)    !! of all nodes (2, nnode) [length]
     real(wp), intent(in) :: place(:, :, :)       !! points (2, 4, nelem) [length]
-    real(wp), intent(in) :: value(:, :, :)       !! (ncomp, 4, nelem)
+    real(wp), intent(in) :: value(:, :, :)       !! (nvalue, 4, nelem)
     type(polynomials_t), intent(out) :: polynomials
-    real(wp) :: moments(nmoment), gram(nterm, nterm), right(nterm, size(value, 1)), t(nterm), sums(nterm)
+    real(wp) :: moments(nmoment), gram(nterm, nterm), right(nvalue, nterm), sums(nvalue), t(nterm), scale
     real(wp), allocatable :: points(:, :)   ! terms at the points of a patch
-    integer :: v, i, j, k, c, n
+    integer :: v, i, j, k, n
 
     n = size(patches%node)
-    allocate (polynomials%centre(2, n), polynomials%scale(n), polynomials%coefficient(nterm, size(value, 1), n))
-    allocate (points(nterm, nsample*maxval(patches%first(2:) - patches%first(:n))))
+    allocate (polynomials%centre(2, n), polynomials%scale(n), polynomials%coefficient(nvalue, nterm, n))
+    allocate (points(nsample*maxval(patches%first(2:) - patches%first(:n)), nterm))
     do v = 1, n
       associate (mine => patches%element(patches%first(v):patches%first(v + 1) - 1), centre => polynomials%centre(:, v))
         centre = coordinates(:, patches%node(v))
         polynomials%scale(v) = 1
         if (size(mine) == 0) cycle
-        polynomials%scale(v) = max(maxval(abs(place(1, :, mine) - centre(1))), maxval(abs(place(2, :, mine) - centre(2))))
+        scale = 0
+        do i = 1, size(mine)
+          do k = 1, nsample
+            scale = max(scale, abs(place(1, k, mine(i)) - centre(1)), abs(place(2, k, mine(i)) - centre(2)))
+          end do
+        end do
+        polynomials%scale(v) = scale
+        scale = 1/scale
         moments = 0
         do i = 1, size(mine)
           do k = 1, nsample
-            t = terms((place(:, k, mine(i)) - centre)/polynomials%scale(v))
-            points(:, nsample*(i - 1) + k) = t
+            t = terms(scale*(place(:, k, mine(i)) - centre))
+            points(nsample*(i - 1) + k, :) = t
             moments = moments + [t, t(2)*t(4), t(3)*t(4), t(2)*t(6), t(3)*t(6), t(4)*t(4:6), t(5)*t(6), t(6)*t(6)]
           end do
         end do
-        do c = 1, size(value, 1)
+        do j = 1, nterm
+          gram(:, j) = moments(moment(:, j))
           sums = 0
           do i = 1, size(mine)
             do k = 1, nsample
-              sums = sums + points(:, nsample*(i - 1) + k)*value(c, k, mine(i))
+              sums = sums + value(:nvalue, k, mine(i))*points(nsample*(i - 1) + k, j)
             end do
           end do
-          right(:, c) = sums
-        end do
-        do j = 1, nterm
-          gram(:, j) = moments(moment(:, j))
+          right(:, j) = sums
         end do
         call solve_normal(gram, right)
         polynomials%coefficient(:, :, v) = right
@@ -239,9 +244,9 @@ contains
   !> Solve for the coefficients, in place, by Cholesky's factors (their diagonal inverted); of a lower degree where the points do
   !> not tell one.
   pure subroutine solve_normal(gram, right)
-    real(wp), intent(inout) :: gram(nterm, nterm), right(:, :)
+    real(wp), intent(inout) :: gram(nterm, nterm), right(nvalue, nterm)
     real(wp) :: diagonal
-    integer :: i, j, c, degree_end
+    integer :: i, j, degree_end
 
     degree_end = nterm
     do j = 1, nterm
@@ -258,16 +263,19 @@ contains
         gram(i, j) = (gram(i, j) - dot_product(gram(i, :j - 1), gram(j, :j - 1)))*gram(j, j)
       end do
     end do
-    do c = 1, size(right, 2)
-      do j = 1, degree_end
-        right(j, c) = right(j, c)*gram(j, j)
-        right(j + 1:, c) = right(j + 1:, c) - gram(j + 1:, j)*right(j, c)
-      end do
-      do j = degree_end, 1, -1
-        right(j, c) = (right(j, c) - dot_product(gram(j + 1:degree_end, j), right(j + 1:degree_end, c)))*gram(j, j)
+    do j = 1, degree_end
+      right(:, j) = right(:, j)*gram(j, j)
+      do i = j + 1, degree_end
+        right(:, i) = right(:, i) - gram(i, j)*right(:, j)
       end do
     end do
-    right(degree_end + 1:, :) = 0
+    do j = degree_end, 1, -1
+      do i = j + 1, degree_end
+        right(:, j) = right(:, j) - gram(i, j)*right(:, i)
+      end do
+      right(:, j) = right(:, j)*gram(j, j)
+    end do
+    right(:, degree_end + 1:) = 0
   end subroutine solve_normal
 
   !> The mean of the donors' polynomials, moved to the place and scale of this vertex.
@@ -285,34 +293,37 @@ contains
         d = donors(i)
         s = polynomials%scale(v)/polynomials%scale(d)
         t = (polynomials%centre(:, v) - polynomials%centre(:, d))/polynomials%scale(d)
-        c(1, :, v) = c(1, :, v) + matmul(terms(t), c(:, :, d))
-        c(2, :, v) = c(2, :, v) + s*(c(2, :, d) + 2*t(1)*c(4, :, d) + t(2)*c(5, :, d))
-        c(3, :, v) = c(3, :, v) + s*(c(3, :, d) + t(1)*c(5, :, d) + 2*t(2)*c(6, :, d))
-        c(4:6, :, v) = c(4:6, :, v) + s*s*c(4:6, :, d)
+        c(:, 1, v) = c(:, 1, v) + matmul(c(:, :, d), terms(t))
+        c(:, 2, v) = c(:, 2, v) + s*(c(:, 2, d) + 2*t(1)*c(:, 4, d) + t(2)*c(:, 5, d))
+        c(:, 3, v) = c(:, 3, v) + s*(c(:, 3, d) + t(1)*c(:, 5, d) + 2*t(2)*c(:, 6, d))
+        c(:, 4:6, v) = c(:, 4:6, v) + s*s*c(:, 4:6, d)
       end do
       c(:, :, v) = c(:, :, v)/size(donors)
     end associate
   end subroutine take_mean
 
-  !> The recovered field at a point of element e.
-  pure function recovered(patches, polynomials, e, place, blend) result(value)
+  !> The recovered fields at points of element e.
+  pure subroutine recover(patches, polynomials, e, place, blend, value)
     type(patches_t), intent(in) :: patches
     type(polynomials_t), intent(in) :: polynomials
     integer, intent(in) :: e
-    real(wp), intent(in) :: place(2)   !! [length]
-    real(wp), intent(in) :: blend(4)   !! bilinear shape functions of the corners there
-    real(wp) :: value(size(polynomials%coefficient, 2))
-    real(wp) :: t(nterm)
-    integer :: k, c, v
+    real(wp), intent(in) :: place(:, :)   !! points (2, n) [length]
+    real(wp), intent(in) :: blend(:, :)   !! bilinear shape functions of the corners there (4, n)
+    real(wp), intent(out) :: value(nvalue, size(place, 2))
+    real(wp) :: t(nterm), sums(nvalue)
+    integer :: k, j, v, p
 
-    value = 0
-    do k = 1, 4
-      v = patches%vertex(k, e)
-      t = blend(k)*terms((place - polynomials%centre(:, v))/polynomials%scale(v))
-      do c = 1, size(value)
-        value(c) = value(c) + sum(polynomials%coefficient(:, c, v)*t)
+    do p = 1, size(place, 2)
+      sums = 0
+      do k = 1, 4
+        v = patches%vertex(k, e)
+        t = blend(k, p)*terms((place(:, p) - polynomials%centre(:, v))/polynomials%scale(v))
+        do j = 1, nterm
+          sums = sums + polynomials%coefficient(:nvalue, j, v)*t(j)
+        end do
       end do
+      value(:, p) = sums
     end do
-  end function recovered
+  end subroutine recover
 
 end module patch_recovery

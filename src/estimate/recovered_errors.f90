@@ -2,12 +2,13 @@
 !>
 !> The computed field of an element is the tensor-product polynomial through its own 2 x 2 or 3 x 3 points: bilinear or biquadratic.
 !> For 2 x 2 points this is the stress of the mixed element that the one with reduced integration is equal to; its stress at the
-!> points alone is better than that, and an error taken there would see nothing. Norms are integrals over 3 x 3 points.
+!> points alone is better than that, and an error taken there would see nothing. Norms are integrals over 3 x 3 points. What the
+!> polynomials miss of the values they are fitted to counts as error: near singularities and in plastic flow it is most of it.
 !> Sources: D.S. Malkus, T.J.R. Hughes, Comput. Meth. Appl. Mech. Engng 15 (1978) 63-81 (equivalence); O.C. Zienkiewicz, J.Z. Zhu,
 !> Int. J. Num. Meth. Engng 24 (1987) 337-357 (error by recovery, energy norm).
 module recovered_errors
   use kinds, only: wp
-  use patch_recovery, only: patches_t, polynomials_t, fit_patches, recovered
+  use patch_recovery, only: fit_patches, ncomp => nvalue, patches_t, polynomials_t, recover
   use quad8_geometry, only: quad8_rule, quad8_rule_t
   use quadrature, only: square_rule
   use sections, only: thickness_at
@@ -16,8 +17,9 @@ module recovered_errors
   private
   public :: fields_t, fields_of_rule, missing_squares, ncomp, npoint
 
-  !> Components: stress xx, yy, xy, zz, then strain increment in the same order; integration points of the norms.
-  integer, parameter :: ncomp = 8, npoint = 9, nsample = 4
+  !> Integration points of the norms, and those of the patches. The ncomp components are stress xx, yy, xy, zz, then the strain
+  !> increment in the same order.
+  integer, parameter :: npoint = 9, nsample = 4
 
   !> How values at the points of an element become those at 2 x 2 and at 3 x 3 points, and the rules of all three.
   type :: fields_t
@@ -88,7 +90,7 @@ contains
     real(wp), intent(out) :: volume(:)               !! (nelem)
     type(polynomials_t) :: polynomials
     real(wp) :: place(2, nsample, size(connectivity, 2)), at_samples(ncomp, nsample, size(connectivity, 2))
-    real(wp) :: x(2, 8), here(2), own(ncomp, npoint), better(ncomp), a(2), b(2), dv
+    real(wp) :: x(2, 8), here(2, npoint), own(ncomp, npoint), better(ncomp, npoint), a(2), b(2), dv
     integer :: e, q, n
 
     do e = 1, size(connectivity, 2)
@@ -110,13 +112,15 @@ contains
       associate (f => fields(rule_of(e)))
         call carry(value(:, :f%own%npoint, e), f%to_points, own)
         do q = 1, npoint
+          here(:, q) = [dot_product(x(1, :), f%points%phi(:, q)), dot_product(x(2, :), f%points%phi(:, q))]
+        end do
+        call recover(patches, polynomials, e, here, f%blend, better)
+        do q = 1, npoint
           a = [dot_product(x(1, :), f%points%dphi(1, :, q)), dot_product(x(2, :), f%points%dphi(1, :, q))]
           b = [dot_product(x(1, :), f%points%dphi(2, :, q)), dot_product(x(2, :), f%points%dphi(2, :, q))]
-          here = [dot_product(x(1, :), f%points%phi(:, q)), dot_product(x(2, :), f%points%phi(:, q))]
-          dv = (a(1)*b(2) - a(2)*b(1))*f%points%weight(q)*thickness_at(section, here)
-          better = recovered(patches, polynomials, e, here, f%blend(:, q))
-          missing(:, e) = missing(:, e) + dv*squares(better - own(:, q), weights(:, e))
-          whole(:, e) = whole(:, e) + dv*squares(better, weights(:, e))
+          dv = (a(1)*b(2) - a(2)*b(1))*f%points%weight(q)*thickness_at(section, here(:, q))
+          missing(:, e) = missing(:, e) + dv*squares(better(:, q) - own(:, q), weights(:, e))
+          whole(:, e) = whole(:, e) + dv*squares(better(:, q), weights(:, e))
           volume(e) = volume(e) + dv
         end do
       end associate
