@@ -63,7 +63,7 @@ contains
     if (place > 0) place = scene%groups(g)%variables(place)%first
   end function status_place
 
-  !> Components that go along the contour.
+  !> Components that go along the contour; those of corners of dies inside sides, of the same names, find themselves anew.
   pure subroutine list_carried(scene, g, carried)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g
@@ -73,6 +73,7 @@ contains
     allocate (carried(0))
     do v = 1, size(scene%groups(g)%variables)
       associate (variable => scene%groups(g)%variables(v))
+        if (find_variable(scene%groups(g)%variables, variable%name) < v) cycle
         if (variable%transfer == kind_contact) carried = [carried, (variable%first + i, i=0, variable%ncomp - 1)]
       end associate
     end do
@@ -92,6 +93,7 @@ contains
 
     allocate (row%s(0), row%weight(0), row%point(0), row%element(0))
     call line_rule(scene%groups(g)%npoint, xi, weight)
+    if (.not. run%from%xi > -1) call add_neighbour(scene, g, loop, x, run%from%side - 1, 1.0_wp, row)
     do side = run%from%side, run%to%side
       number = modulo(side - 1, size(loop%sides, 2)) + 1
       low = -1
@@ -107,7 +109,60 @@ contains
       end do
       row%length = row%length + arc_of(x(:, loop%sides(:, number)), low, high)
     end do
+    if (.not. run%to%xi < 1) call add_neighbour(scene, g, loop, x, run%to%side + 1, -1.0_wp, row)
   end subroutine old_row
+
+  !> The point that a side before or behind a run has in the node where the run begins (so far) or ends.
+  pure subroutine add_neighbour(scene, g, loop, x, side, at, row)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g, side
+    type(loop_t), intent(in) :: loop
+    real(wp), intent(in) :: x(:, :), at
+    type(row_t), intent(inout) :: row
+    real(wp), allocatable :: xi(:), weight(:)
+    real(wp) :: stretch
+    integer :: n, e, p
+
+    n = modulo(side - 1, size(loop%sides, 2)) + 1
+    e = findloc(scene%groups(g)%connectivity(2, :), loop%sides(2, n), 1)
+    if (e == 0) return
+    call line_rule(scene%groups(g)%npoint, xi, weight)
+    stretch = stretch_at(x(:, loop%sides(:, n)), at, scene%plane_state == axisymmetric)
+    do p = 1, size(xi)
+      if (abs(xi(p) - at) > 0) cycle
+      call add_point(row%length, weight(p)*stretch, p, e, row)
+    end do
+  end subroutine add_neighbour
+
+  !> Points of other sides of the group in the nodes where the sides of a row begin and end.
+  pure subroutine add_neighbours(scene, g, row)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g
+    type(row_t), intent(inout) :: row
+    real(wp), allocatable :: xi(:), weight(:)
+    logical :: inside(size(scene%groups(g)%connectivity, 2))
+    real(wp) :: stretch, at
+    integer :: ends(2), k, e, p
+
+    call line_rule(scene%groups(g)%npoint, xi, weight)
+    associate (sides => scene%groups(g)%connectivity)
+      ends(1) = sides(1, row%element(minloc(row%s, 1)))
+      ends(2) = sides(3, row%element(maxloc(row%s, 1)))
+      inside = .false.
+      inside(row%element) = .true.
+      do e = 1, size(inside)
+        do k = 1, 2
+          if (inside(e) .or. sides(5 - 2*k, e) /= ends(k)) cycle
+          at = 3 - 2*k
+          stretch = stretch_at(scene%mesh%coordinates(:, sides(:, e)), at, scene%plane_state == axisymmetric)
+          do p = 1, size(xi)
+            if (abs(xi(p) - at) > 0) cycle
+            call add_point(merge(0.0_wp, row%length, k == 1), weight(p)*stretch, p, e, row)
+          end do
+        end do
+      end do
+    end associate
+  end subroutine add_neighbours
 
   !> Length of a side between two places, by Gauss's four points.
   pure function arc_of(x, from, to) result(length)
@@ -157,7 +212,7 @@ contains
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: start, from, to, total
     integer, allocatable :: order(:)
-    logical :: taken(size(mesh%sides)*abs(scene%groups(g)%npoint))
+    logical :: taken((size(mesh%sides) + 2)*abs(scene%groups(g)%npoint))
     integer :: k, e, p
 
     allocate (unsorted%s(0), unsorted%weight(0), unsorted%point(0), unsorted%element(0))
@@ -167,6 +222,7 @@ contains
       start = chain%arc(contact%first - 1)
       row%length = modulo(chain%arc(contact%next - 1) - start, total)
       if (.not. row%length > 0) row%length = total
+      unsorted%length = row%length
       do k = 1, size(mesh%sides)
         if (mesh%sides(k)%chain /= c) cycle
         associate (place => middle_place(contours, mesh%sides(k)))
@@ -184,6 +240,7 @@ contains
         end do
       end do
     end associate
+    if (size(unsorted%s) > 0) call add_neighbours(scene, g, unsorted)
     allocate (order(size(unsorted%s)))
     taken = .false.
     do k = 1, size(order)

@@ -16,7 +16,7 @@ module remesh_scene
   use part_contour, only: build_contours, contour_options_t, contour_report_t, contour_t
   use remesh_options, only: remesh_options_t
   use scene, only: is_solid, scene_t
-  use size_field, only: old_mesh_t, set_up_sizes, size_field_t, size_limits_t, wanted_size
+  use size_field, only: need_t, old_mesh_t, set_up_sizes, size_field_t, size_limits_t, wanted_size
   use solution, only: solution_t, start_solution
   use state_pieces, only: mesh_of, solid_pieces, state_pieces_t
   use text, only: to_text
@@ -158,7 +158,7 @@ contains
     type(old_mesh_t) :: old
     type(size_limits_t) :: limits
     type(geometry_wish_t) :: wish
-    real(wp), allocatable :: needs(:, :), more(:, :)
+    type(need_t), allocatable :: needs(:), more(:)
     real(wp) :: error
     integer :: e, c
 
@@ -181,10 +181,10 @@ contains
       end do
     end if
     wish%across = scene%remesher%across_contact
-    allocate (needs(3, 0))
+    allocate (needs(0))
     do c = 1, size(contours)
       call needs_of_chain(contours(c)%chain, wish, limits, more)
-      needs = reshape([needs, more], [3, size(needs, 2) + size(more, 2)])
+      needs = [needs, more]
     end do
     call set_up_sizes(limits, needs, sizes, old)
   end subroutine wanted_sizes
@@ -224,7 +224,7 @@ contains
       if (attempt == 3) wish%division%refine = 1.5_wp*wish%division%refine
       call mesh_zones(chains, plan%points, plan%zones, sizes, wish, mesh, error)
       if (allocated(error)) return
-      facts%coarser = mesh%division%coarser
+      facts%coarser = mesh%division%factor
       call check_new_mesh(contours, mesh, facts%mesh, error)
       if (.not. allocated(error)) return
     end do

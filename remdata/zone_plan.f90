@@ -10,10 +10,11 @@
 module zone_plan
   use contour_chain, only: arc_at, chain_length, chain_t, kind_corner, kind_entry, kind_exit, place_at_arc, place_t, point_on, &
                            turn_at
+  use contour_match, only: place_of_old
   use errors, only: error_t, exit_input, fail
   use kinds, only: pi, wp
   use mesh, only: find_side_set
-  use part_contour, only: contour_t, place_of_node
+  use part_contour, only: contour_t
   use scene, only: is_solid, scene_t
   use text, only: to_text
   use zones, only: as_found, follows_contour, zone_point_t, zone_t
@@ -195,7 +196,7 @@ contains
       side = findloc(contours(c)%loop%sides(1, :), node, 1)
       if (side == 0) cycle
       point%chain = c
-      point%place = place_of_node(contours(c), x, side, 1)
+      point%place = place_of_old(contours(c)%loop, contours(c)%chain, contours(c)%contacts, x, side, -1.0_wp)
       if (by_shape) point%place = nearest_corner(contours(c)%chain, point%place)
       return
     end do

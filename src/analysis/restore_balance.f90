@@ -11,6 +11,7 @@ module restore_balance
   use errors, only: error_t, exit_no_convergence, fail
   use scene, only: scene_t
   use solution, only: solution_t
+  use state_variables, only: find_variable
   use text, only: to_text
   use vectors, only: length_of
   implicit none
@@ -54,6 +55,8 @@ contains
     rest = 0
     call external_forces(scene, equations%dofs, solution%time, external)
     call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report)
+    call keep_pressures(scene, solution)
+    call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report)
     rest = external - equations%force
     where (equations%dofs%equation == 0) rest = 0
     left = 1
@@ -80,6 +83,27 @@ contains
     allocate (balance%pilot_after, source=solution%pilot_applied)
     if (balance%restored) solution%unbalanced = .false.
   end subroutine restore_equilibrium
+
+  !> The penalty of contact goes with the length of sides: at the depth that was kept, sides of another length bear another
+  !> pressure. The multiplier takes the difference, so that every closed point begins with the pressure that was carried.
+  subroutine keep_pressures(scene, solution)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    integer :: g, pressure, multiplier, status
+
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g), state => solution%groups(g))
+        if (group%die == 0 .or. group%material == 0) cycle
+        pressure = group%variables(find_variable(group%variables, 'pressure'))%first
+        multiplier = group%variables(find_variable(group%variables, 'augmentation'))%first
+        status = group%variables(find_variable(group%variables, 'contact_status'))%first
+        where (nint(state%committed(status, :, :)) > 0)
+          state%committed(multiplier, :, :) = state%committed(multiplier, :, :) + state%committed(pressure, :, :) &
+                                              - state%trial(pressure, :, :)
+        end where
+      end associate
+    end do
+  end subroutine keep_pressures
 
   !> Change of the force of a die over the largest force on any: the worst.
   pure function force_change(balance) result(change)

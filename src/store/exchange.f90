@@ -22,7 +22,8 @@ module exchange
   use text, only: string_t, to_text
   implicit none
   private
-  public :: write_checkpoint, read_deck_of_checkpoint, read_remesh, read_checkpoint, read_bare_scene, read_contact_ends, schema_version
+  public :: write_checkpoint, read_deck_of_checkpoint, read_remesh, read_checkpoint, read_bare_scene, read_contact_ends
+  public :: schema_version
 
   !> Raised whenever a dataset changes its name, shape or meaning.
   integer, parameter :: schema_version = 3
