@@ -172,6 +172,8 @@ contains
     do e = 1, size(old%wanted)
       old%wanted(e) = sqrt(area_of(old%nodes(:, old%connectivity(:, e))))
     end do
+    limits%smallest = 0.6_wp*0.83_wp
+    limits%largest = 1.5_wp*0.83_wp
     if (scene%remesher%smallest > 0) limits%smallest = scene%remesher%smallest
     if (scene%remesher%largest > 0) limits%largest = scene%remesher%largest
     if (scene%remesh%estimate) then
