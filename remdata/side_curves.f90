@@ -10,7 +10,7 @@ module side_curves
   use zones, only: arc_along, coordinates_of, exact_point, follows_contour, layout_t, on_chain, runs_curved, side_t
   implicit none
   private
-  public :: curve_t, draw_side, curve_point, measure_density, divide_curve
+  public :: curve_t, draw_side, curve_point, measure_density, divide_curve, shares_of
 
   type :: curve_t
     integer :: chain = 0
@@ -34,8 +34,6 @@ module side_curves
   real(wp), parameter :: least_share = 0.1_wp
   !> 1/h is looked at twice in an element, and no less and no more often along a part than this.
   integer, parameter :: fewest = 8, most = 4000
-  !> Neighbours on either hand of a break are brought closer by this many passes.
-  integer, parameter :: evening_passes = 20
 
 contains
 
@@ -162,20 +160,29 @@ contains
     allocate (curve%count(0:n), source=count(0:n))
   end subroutine measure_density
 
-  !> Lengths of the n + 1 ends of n elements (0:n): each part gets its share of them, at least one.
-  pure subroutine divide_curve(curve, gradation, n, ends)
+  !> Elements of each part of n along the curve: by need, at least one.
+  pure function shares_of(curve, n) result(shares)
     type(curve_t), intent(in) :: curve
-    real(wp), intent(in) :: gradation
-    integer, intent(in) :: n                !! not less than there are parts
-    real(wp), intent(out) :: ends(0:)
-    integer :: shares(size(curve%needs)), p, k, i
-    real(wp) :: from
+    integer, intent(in) :: n              !! not less than there are parts
+    integer :: shares(size(curve%needs))
+    integer :: k, p
 
     shares = 1
     do k = size(shares) + 1, n
       p = maxloc(curve%needs/shares, 1)
       shares(p) = shares(p) + 1
     end do
+  end function shares_of
+
+  !> Lengths of the n + 1 ends of n elements (0:n).
+  pure subroutine divide_curve(curve, n, ends)
+    type(curve_t), intent(in) :: curve
+    integer, intent(in) :: n                !! not less than there are parts
+    real(wp), intent(out) :: ends(0:)
+    integer :: shares(size(curve%needs)), p, k, i
+    real(wp) :: from
+
+    shares = shares_of(curve, n)
     k = 0
     ends(0) = 0
     from = 0
@@ -187,37 +194,7 @@ contains
       k = k + shares(p)
       ends(k) = curve%breaks(p)
     end do
-    if (size(shares) > 1) call even_out(shares, gradation, ends(0:n))
   end subroutine divide_curve
-
-  !> Where whole numbers leave a jump at a break, sizes are drawn toward the geometric mean of their neighbours', in each part
-  !> with its length kept. A geometric progression, the grading that is wanted, is left as it is.
-  pure subroutine even_out(shares, gradation, ends)
-    integer, intent(in) :: shares(:)
-    real(wp), intent(in) :: gradation
-    real(wp), intent(inout) :: ends(0:)
-    real(wp) :: h(ubound(ends, 1)), mean(ubound(ends, 1)), whole
-    integer :: pass, p, k, i, n
-
-    n = size(h)
-    do pass = 1, evening_passes
-      h = ends(1:) - ends(:n - 1)
-      if (maxval(max(h(2:)/h(:n - 1), h(:n - 1)/h(2:))) <= gradation) return
-      mean = h
-      mean(2:n - 1) = sqrt(h(2:n - 1)*sqrt(h(:n - 2)*h(3:)))
-      mean(1) = h(1)**0.75_wp*h(2)**0.25_wp
-      mean(n) = h(n)**0.75_wp*h(n - 1)**0.25_wp
-      k = 0
-      do p = 1, size(shares)
-        whole = ends(k + shares(p)) - ends(k)
-        mean(k + 1:k + shares(p)) = mean(k + 1:k + shares(p))*whole/sum(mean(k + 1:k + shares(p)))
-        do i = k + 1, k + shares(p) - 1
-          ends(i) = ends(i - 1) + mean(i)
-        end do
-        k = k + shares(p)
-      end do
-    end do
-  end subroutine even_out
 
   !> Length at a number of elements from the start: straight between those where it was looked at.
   pure function length_at(curve, n) result(s)
