@@ -99,7 +99,7 @@ contains
       if (i < n) then
         if (.not. begins_run(order(mod(start + i - 1, n) + 1))) cycle
       end if
-      call even_run(curves, division, gradation, run(:k), .not. begins_run(run(1)), first, ends)
+      call even_run(curves, division, gradation, run(:k),.not. begins_run(run(1)), first, ends)
       k = 0
     end do
 

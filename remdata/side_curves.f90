@@ -2,15 +2,16 @@
 !>
 !> A side along the contour is broken where the contour has a corner or contact begins or ends: these stay ends of elements.
 module side_curves
-  use contour_chain, only: chain_length, chain_t, joint_after, kind_corner, kind_entry, kind_exit, place_at_arc, place_t
+  use contour_chain, only: arc_at, chain_length, chain_t, joint_after, kind_corner, kind_entry, kind_exit, place_at_arc, place_t
   use kinds, only: wp
   use size_field, only: size_at, size_field_t
   use stretches, only: length_between, point_at, straight, stretch_t, tangent_at, xi_at_length
   use vectors, only: length_of
-  use zones, only: arc_along, coordinates_of, exact_point, follows_contour, layout_t, on_chain, runs_curved, side_t
+  use zones, only: arc_along, coordinates_of, exact_point, follows_contour, layout_t, on_chain, runs_curved, side_t, &
+                   zone_point_t, zone_t
   implicit none
   private
-  public :: curve_t, draw_side, curve_point, measure_density, divide_curve, shares_of
+  public :: curve_t, snap_to_corners, draw_side, curve_point, measure_density, divide_curve, shares_of
 
   type :: curve_t
     integer :: chain = 0
@@ -30,12 +31,42 @@ module side_curves
 
   !> Breaks that are closer than this share of a chain are one, and so are an entry and a corner.
   real(wp), parameter :: same = 1.0e-9_wp
-  !> Entry and exit leave no element shorter than this share of the wanted size beside another break.
+  !> No zone point beside a corner, and no entry or exit beside another break, leaves an element shorter than this share of the
+  !> wanted size.
   real(wp), parameter :: least_share = 0.1_wp
   !> 1/h is looked at twice in an element, and no less and no more often along a part than this.
   integer, parameter :: fewest = 8, most = 4000
 
 contains
+
+  !> Zone points on a contour go to a corner of it that is so near that no element fits between, unless they are to stay.
+  pure subroutine snap_to_corners(chains, zones, field, points)
+    type(chain_t), intent(in) :: chains(:)
+    type(zone_t), intent(in) :: zones(:)
+    type(size_field_t), intent(in) :: field
+    type(zone_point_t), intent(inout) :: points(:)
+    real(wp) :: arc, apart, most
+    integer :: z, i, k
+
+    do z = 1, size(zones)
+      do i = 1, 4
+        associate (point => points(zones(z)%corners(i)))
+          if (point%chain == 0 .or. point%stays) cycle
+          associate (chain => chains(point%chain))
+            arc = arc_at(chain, point%place)
+            most = least_share*size_at(field, zones(z)%material, on_chain(chain, point%place))
+            do k = 1, size(chain%stretches)
+              if (chain%kinds(k) /= kind_corner) cycle
+              apart = modulo(chain%arc(k - 1) - arc, chain_length(chain))
+              if (min(apart, chain_length(chain) - apart) > most) cycle
+              point%place = place_t(k, chain%stretches(k)%range(1))
+              exit
+            end do
+          end associate
+        end associate
+      end do
+    end do
+  end subroutine snap_to_corners
 
   !> The curve of a side, with its breaks.
   pure subroutine draw_side(chains, layout, side, field, curve)

@@ -8,7 +8,7 @@ module zone_mesh
   use errors, only: error_t
   use kinds, only: wp
   use mend_elements, only: mend
-  use side_curves, only: curve_point, curve_t, draw_side, measure_density
+  use side_curves, only: curve_point, curve_t, draw_side, measure_density, snap_to_corners
   use side_middles, only: bend_lines, place_middle
   use size_field, only: size_field_t
   use zone_divisions, only: choose_divisions, division_t, division_wish_t
@@ -62,12 +62,17 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(curve_t), allocatable :: curves(:)
     type(numbers_t) :: numbers
+    type(zone_point_t) :: snapped(size(points))
     logical, allocatable :: may_move(:)
     integer, allocatable :: first(:)
     real(wp), allocatable :: ends(:)
     integer :: s
 
     call lay_out(chains, points, zones, mesh%layout, error)
+    if (allocated(error)) return
+    snapped = points
+    call snap_to_corners(chains, mesh%layout%zones, field, snapped)
+    call lay_out(chains, snapped, zones, mesh%layout, error)
     if (allocated(error)) return
     associate (layout => mesh%layout, division => mesh%division)
       allocate (curves(size(layout%sides)))
