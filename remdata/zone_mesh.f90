@@ -52,6 +52,7 @@ module zone_mesh
 
 contains
 
+  !> The mesh, or why there can be none. `division%factor` of the mesh says what a limited number of elements cost.
   pure subroutine mesh_zones(chains, points, zones, field, wish, mesh, error)
     type(chain_t), intent(in) :: chains(:)
     type(zone_point_t), intent(in) :: points(:)
