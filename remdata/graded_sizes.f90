@@ -32,11 +32,12 @@ contains
     integer, intent(in) :: connectivity(:, :)    !! (4 at least, nelem) corners first
     real(wp), intent(in) :: slope
     real(wp), intent(inout) :: sizes(:)          !! (nnode) [length]; those of other nodes than corners stay
-    integer :: first(size(sizes) + 1), around(4*size(connectivity, 2))
+    integer, allocatable :: first(:), around(:)
     type(heap_t) :: heap
     real(wp) :: most
     integer :: e, k, i, j, node, other
 
+    allocate (first(size(sizes) + 1), around(4*size(connectivity, 2)))
     call list_elements(connectivity, first, around)
     allocate (heap%nodes(size(sizes)), heap%spot(size(sizes)))
     do node = 1, size(sizes)

@@ -31,10 +31,12 @@ contains
     real(wp), intent(in) :: least
     real(wp), intent(inout) :: x(:, :)          !! (2, nnode) [length]
     integer, allocatable :: first(:), around(:)
-    real(wp) :: sine(size(connectivity, 2)), unit(size(connectivity, 2)), dphi(2, 8, 8)
+    real(wp), allocatable :: sine(:), unit(:)
+    real(wp) :: dphi(2, 8, 8)
     integer :: pass, e, k, node
     logical :: moved, changed
 
+    allocate (sine(size(connectivity, 2)), unit(size(connectivity, 2)))
     call slopes_at_nodes(dphi)
     do e = 1, size(sine)
       unit(e) = mean_square(x(:, connectivity(1:4, e)))

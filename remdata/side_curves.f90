@@ -2,15 +2,16 @@
 !>
 !> A side along the contour is broken where the contour has a corner or contact begins or ends: these stay ends of elements.
 module side_curves
-  use contour_chain, only: chain_length, chain_t, joint_after, kind_corner, kind_entry, kind_exit, place_at_arc, place_t
+  use contour_chain, only: arc_at, chain_length, chain_t, joint_after, kind_corner, kind_entry, kind_exit, place_at_arc, place_t
   use kinds, only: wp
   use size_field, only: size_at, size_field_t
   use stretches, only: length_between, point_at, straight, stretch_t, tangent_at, xi_at_length
   use vectors, only: length_of
-  use zones, only: arc_along, coordinates_of, exact_point, follows_contour, layout_t, on_chain, runs_curved, side_t
+  use zones, only: arc_along, coordinates_of, exact_point, follows_contour, layout_t, on_chain, runs_curved, side_t, &
+                   zone_point_t, zone_t
   implicit none
   private
-  public :: curve_t, draw_side, curve_point, measure_density, divide_curve
+  public :: curve_t, snap_to_corners, draw_side, curve_point, measure_density, divide_curve, shares_of
 
   type :: curve_t
     integer :: chain = 0
@@ -30,14 +31,42 @@ module side_curves
 
   !> Breaks that are closer than this share of a chain are one, and so are an entry and a corner.
   real(wp), parameter :: same = 1.0e-9_wp
-  !> Entry and exit leave no element shorter than this share of the wanted size beside another break.
+  !> No zone point beside a corner, and no entry or exit beside another break, leaves an element shorter than this share of the
+  !> wanted size.
   real(wp), parameter :: least_share = 0.1_wp
   !> 1/h is looked at twice in an element, and no less and no more often along a part than this.
   integer, parameter :: fewest = 8, most = 4000
-  !> Neighbours on either hand of a break are brought closer by this many passes.
-  integer, parameter :: evening_passes = 20
 
 contains
+
+  !> Zone points on a contour go to a corner of it that is so near that no element fits between, unless they are to stay.
+  pure subroutine snap_to_corners(chains, zones, field, points)
+    type(chain_t), intent(in) :: chains(:)
+    type(zone_t), intent(in) :: zones(:)
+    type(size_field_t), intent(in) :: field
+    type(zone_point_t), intent(inout) :: points(:)
+    real(wp) :: arc, apart, most
+    integer :: z, i, k
+
+    do z = 1, size(zones)
+      do i = 1, 4
+        associate (point => points(zones(z)%corners(i)))
+          if (point%chain == 0 .or. point%stays) cycle
+          associate (chain => chains(point%chain))
+            arc = arc_at(chain, point%place)
+            most = least_share*size_at(field, zones(z)%material, on_chain(chain, point%place))
+            do k = 1, size(chain%stretches)
+              if (chain%kinds(k) /= kind_corner) cycle
+              apart = modulo(chain%arc(k - 1) - arc, chain_length(chain))
+              if (min(apart, chain_length(chain) - apart) > most) cycle
+              point%place = place_t(k, chain%stretches(k)%range(1))
+              exit
+            end do
+          end associate
+        end associate
+      end do
+    end do
+  end subroutine snap_to_corners
 
   !> The curve of a side, with its breaks.
   pure subroutine draw_side(chains, layout, side, field, curve)
@@ -162,20 +191,29 @@ contains
     allocate (curve%count(0:n), source=count(0:n))
   end subroutine measure_density
 
-  !> Lengths of the n + 1 ends of n elements (0:n): each part gets its share of them, at least one.
-  pure subroutine divide_curve(curve, gradation, n, ends)
+  !> Elements of each part of n along the curve: by need, at least one.
+  pure function shares_of(curve, n) result(shares)
     type(curve_t), intent(in) :: curve
-    real(wp), intent(in) :: gradation
-    integer, intent(in) :: n                !! not less than there are parts
-    real(wp), intent(out) :: ends(0:)
-    integer :: shares(size(curve%needs)), p, k, i
-    real(wp) :: from
+    integer, intent(in) :: n              !! not less than there are parts
+    integer :: shares(size(curve%needs))
+    integer :: k, p
 
     shares = 1
     do k = size(shares) + 1, n
       p = maxloc(curve%needs/shares, 1)
       shares(p) = shares(p) + 1
     end do
+  end function shares_of
+
+  !> Lengths of the n + 1 ends of n elements (0:n).
+  pure subroutine divide_curve(curve, n, ends)
+    type(curve_t), intent(in) :: curve
+    integer, intent(in) :: n                !! not less than there are parts
+    real(wp), intent(out) :: ends(0:)
+    integer :: shares(size(curve%needs)), p, k, i
+    real(wp) :: from
+
+    shares = shares_of(curve, n)
     k = 0
     ends(0) = 0
     from = 0
@@ -187,37 +225,7 @@ contains
       k = k + shares(p)
       ends(k) = curve%breaks(p)
     end do
-    if (size(shares) > 1) call even_out(shares, gradation, ends(0:n))
   end subroutine divide_curve
-
-  !> Where whole numbers leave a jump at a break, sizes are drawn toward the geometric mean of their neighbours', in each part
-  !> with its length kept. A geometric progression, the grading that is wanted, is left as it is.
-  pure subroutine even_out(shares, gradation, ends)
-    integer, intent(in) :: shares(:)
-    real(wp), intent(in) :: gradation
-    real(wp), intent(inout) :: ends(0:)
-    real(wp) :: h(ubound(ends, 1)), mean(ubound(ends, 1)), whole
-    integer :: pass, p, k, i, n
-
-    n = size(h)
-    do pass = 1, evening_passes
-      h = ends(1:) - ends(:n - 1)
-      if (maxval(max(h(2:)/h(:n - 1), h(:n - 1)/h(2:))) <= gradation) return
-      mean = h
-      mean(2:n - 1) = sqrt(h(2:n - 1)*sqrt(h(:n - 2)*h(3:)))
-      mean(1) = h(1)**0.75_wp*h(2)**0.25_wp
-      mean(n) = h(n)**0.75_wp*h(n - 1)**0.25_wp
-      k = 0
-      do p = 1, size(shares)
-        whole = ends(k + shares(p)) - ends(k)
-        mean(k + 1:k + shares(p)) = mean(k + 1:k + shares(p))*whole/sum(mean(k + 1:k + shares(p)))
-        do i = k + 1, k + shares(p) - 1
-          ends(i) = ends(i - 1) + mean(i)
-        end do
-        k = k + shares(p)
-      end do
-    end do
-  end subroutine even_out
 
   !> Length at a number of elements from the start: straight between those where it was looked at.
   pure function length_at(curve, n) result(s)

@@ -67,11 +67,12 @@ contains
     type(need_t), intent(in) :: needs(:)
     type(size_field_t), intent(out) :: field
     type(old_mesh_t), intent(in), optional :: old
-    real(wp) :: boxes(4, size(needs))
+    real(wp), allocatable :: boxes(:, :)
     integer :: i
 
     field%limits = limits
     allocate (field%needs, source=needs)
+    allocate (boxes(4, size(needs)))
     do i = 1, size(needs)
       boxes(:, i) = needs(i)%x([1, 2, 1, 2])
     end do
@@ -92,10 +93,10 @@ contains
     type(size_limits_t), intent(in) :: limits
     type(old_mesh_t), intent(in) :: old
     real(wp), allocatable, intent(out) :: sizes(:)
-    integer :: meeting(size(old%nodes, 2))
+    integer, allocatable :: meeting(:)
     integer :: e
 
-    allocate (sizes(size(old%nodes, 2)))
+    allocate (sizes(size(old%nodes, 2)), meeting(size(old%nodes, 2)))
     sizes = 0
     meeting = 0
     do e = 1, size(old%wanted)

@@ -2,7 +2,7 @@
 !>
 !> Sides opposite in a zone have one number, hence all sides of a class, from zone to zone. A side along the contour gets what it
 !> needs, the integral of 1/h, in each part between its breaks: there the geometry has its say, and contact. The need inside a
-!> zone is measured along its two sides and three lines between them: the mean of their mean and of their largest, so that a
+!> zone is measured along its two sides and seven lines between them: the mean of their mean and of their largest, so that a
 !> peak that touches one line alone counts half. The class takes the largest number of its sides and zones, rounded up.
 module zone_divisions
   use contour_chain, only: chain_t, place_t
@@ -36,7 +36,7 @@ module zone_divisions
   end type division_t
 
   !> Steps along a line between two sides, and lines.
-  integer, parameter :: steps = 32, lines = 3
+  integer, parameter :: steps = 32, lines = 7
   !> Share of an element that is given away in rounding up.
   real(wp), parameter :: spared = 0.1_wp
   !> Elements along a part of a side, that no mesh will have.

@@ -42,13 +42,12 @@ contains
     integer, intent(in) :: passes
     real(wp), intent(inout) :: x(:, :)   !! (2, nnode) [length]
     integer, allocatable :: grid(:, :), around(:, :), next(:, :)
-    real(wp), allocatable :: inside(:, :, :), density(:, :)
-    real(wp) :: log_density(numbers%nend), control(2, numbers%nend)
-    logical :: known(numbers%nend)
+    real(wp), allocatable :: inside(:, :, :), density(:, :), log_density(:), control(:, :)
+    logical, allocatable :: known(:)
     integer :: z, i, j, pass, k, n
 
+    allocate (around(9, numbers%nend), known(numbers%nend), log_density(numbers%nend), control(2, numbers%nend))
     known = .false.
-    allocate (around(9, numbers%nend))
     n = 0
     do z = 1, size(layout%zones)
       call ends_of_zone(layout, division, numbers, z, grid)

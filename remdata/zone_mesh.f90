@@ -4,17 +4,18 @@
 !> then the lines inside all follow (transfinite, elliptic), where the annex moves the nearest one and wishes for all.
 module zone_mesh
   use contour_chain, only: chain_t, place_t
+  use contour_divisions, only: divide_sides, order_along
   use errors, only: error_t
   use kinds, only: wp
   use mend_elements, only: mend
-  use side_curves, only: curve_point, curve_t, divide_curve, draw_side, measure_density
+  use side_curves, only: curve_point, curve_t, draw_side, measure_density, snap_to_corners
   use side_middles, only: bend_lines, place_middle
   use size_field, only: size_field_t
   use zone_divisions, only: choose_divisions, division_t, division_wish_t
   use zone_lines, only: find_movable, interpolate_zones, smooth_zones
   use zone_numbers, only: divisions_of, ends_of_side, ends_of_zone, middles_of_side, middles_of_zone, &
                           number_nodes, numbers_t
-  use zones, only: coordinates_of, follows_contour, layout_t, lay_out, runs_straight, zone_point_t, zone_t
+  use zones, only: coordinates_of, layout_t, lay_out, runs_straight, zone_point_t, zone_t
   implicit none
   private
   public :: mesh_wish_t, contour_side_t, new_mesh_t, mesh_zones
@@ -51,6 +52,7 @@ module zone_mesh
 
 contains
 
+  !> The mesh, or why there can be none. `division%factor` of the mesh says what a limited number of elements cost.
   pure subroutine mesh_zones(chains, points, zones, field, wish, mesh, error)
     type(chain_t), intent(in) :: chains(:)
     type(zone_point_t), intent(in) :: points(:)
@@ -61,10 +63,17 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(curve_t), allocatable :: curves(:)
     type(numbers_t) :: numbers
+    type(zone_point_t) :: snapped(size(points))
     logical, allocatable :: may_move(:)
+    integer, allocatable :: first(:)
+    real(wp), allocatable :: ends(:)
     integer :: s
 
     call lay_out(chains, points, zones, mesh%layout, error)
+    if (allocated(error)) return
+    snapped = points
+    call snap_to_corners(chains, mesh%layout%zones, field, snapped)
+    call lay_out(chains, snapped, zones, mesh%layout, error)
     if (allocated(error)) return
     associate (layout => mesh%layout, division => mesh%division)
       allocate (curves(size(layout%sides)))
@@ -78,8 +87,10 @@ contains
       allocate (mesh%coordinates(2, numbers%nnode), mesh%chain(numbers%nnode), mesh%place(numbers%nnode))
       mesh%chain = 0
       call put_points(chains, layout, numbers, mesh)
+      allocate (first(size(curves) + 1))
+      call divide_sides(layout, curves, division, field%limits%gradation, first, ends)
       do s = 1, size(curves)
-        call put_side(chains, layout, division, numbers, field%limits%gradation, curves(s), s, mesh)
+        call put_side(chains, layout, division, numbers, ends(first(s):first(s + 1) - 1), curves(s), s, mesh)
       end do
       call interpolate_zones(layout, division, numbers, mesh%coordinates)
       if (wish%passes > 0) call smooth_zones(layout, division, numbers, field, wish%passes, mesh%coordinates)
@@ -111,22 +122,20 @@ contains
   end subroutine put_points
 
   !> Nodes along a side: ends of elements; middles too where the side is a curve that stays.
-  pure subroutine put_side(chains, layout, division, numbers, gradation, curve, side, mesh)
+  pure subroutine put_side(chains, layout, division, numbers, s, curve, side, mesh)
     type(chain_t), intent(in) :: chains(:)
     type(layout_t), intent(in) :: layout
     type(division_t), intent(in) :: division
     type(numbers_t), intent(in) :: numbers
-    real(wp), intent(in) :: gradation
+    real(wp), intent(in) :: s(0:)               !! lengths to the ends of elements [length]
     type(curve_t), intent(in) :: curve
     integer, intent(in) :: side
     type(new_mesh_t), intent(inout) :: mesh
-    real(wp) :: s(0:division%count(side))
     integer :: nodes(0:division%count(side)), middles(division%count(side)), k, n
 
     n = division%count(side)
     nodes = ends_of_side(layout, division, numbers, side)
     middles = middles_of_side(division, numbers, side)
-    call divide_curve(curve, gradation, n, s)
     do k = 1, n - 1
       call curve_point(chains, curve, s(k), mesh%coordinates(:, nodes(k)), mesh%place(nodes(k)))
     end do
@@ -172,28 +181,17 @@ contains
     type(numbers_t), intent(in) :: numbers
     type(curve_t), intent(in) :: curves(:)
     type(new_mesh_t), intent(inout) :: mesh
-    integer :: order(size(curves)), first(size(layout%zones) + 1), n, s, i, k, z
-    integer, allocatable :: nodes(:), middles(:)
+    integer :: first(size(layout%zones) + 1), n, s, i, k, z
+    integer, allocatable :: order(:), nodes(:), middles(:)
 
     first(1) = 0
     do z = 1, size(layout%zones)
       first(z + 1) = first(z) + product(division%count(layout%zone_sides(1:2, z)))
     end do
+    call order_along(layout, curves, order)
+    allocate (mesh%sides(sum(division%count(order))))
     n = 0
-    do s = 1, size(curves)
-      if (layout%sides(s)%form /= follows_contour) cycle
-      i = n
-      do while (i > 0)
-        if (.not. comes_later(curves(order(i)), curves(s))) exit
-        order(i + 1) = order(i)
-        i = i - 1
-      end do
-      order(i + 1) = s
-      n = n + 1
-    end do
-    allocate (mesh%sides(sum(division%count(order(:n)))))
-    n = 0
-    do i = 1, count(layout%sides%form == follows_contour)
+    do i = 1, size(order)
       s = order(i)
       nodes = ends_of_side(layout, division, numbers, s)
       middles = middles_of_side(division, numbers, s)
@@ -226,12 +224,5 @@ contains
       element = n(1)*(n(2) - k) + 1
     end select
   end function number_beside
-
-  pure function comes_later(a, b) result(later)
-    type(curve_t), intent(in) :: a, b
-    logical :: later
-
-    later = a%chain > b%chain .or. (a%chain == b%chain .and. a%start > b%start)
-  end function comes_later
 
 end module zone_mesh

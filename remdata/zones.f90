@@ -23,7 +23,7 @@ module zones
     integer :: chain = 0             !! 0: inside
     type(place_t) :: place
     real(wp) :: x(2) = 0.0_wp        !! [length], read inside only
-    !> A point inside may be moved when lines are smoothed, unless the user wants it where it is.
+    !> Unless the user wants a point where it is, it moves inside when lines are smoothed, and on a contour to a corner close by.
     logical :: stays = .false.
   end type zone_point_t
 

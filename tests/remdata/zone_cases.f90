@@ -12,7 +12,7 @@ module zone_cases
   use zones, only: zone_point_t, zone_t
   implicit none
   private
-  public :: chain_of_points, polygon, circle, barrel, point_at_contour, point_inside, zone_of, uniform_field
+  public :: chain_of_points, polygon, circle, blob, barrel, point_at_contour, point_inside, zone_of, uniform_field
   public :: rectangle_mesh, l_shape, ring
   public :: quality_t, quality_of, off_contour, area_of, shared_exactly
 
@@ -75,6 +75,23 @@ contains
     end do
     chain = chain_of_points(x, 0.9_wp)
   end function circle
+
+  !> A wavy circle of n parabolas about a centre, by six shares from 0 to 1; a hole with a negative radius.
+  pure function blob(centre, radius, share, n) result(chain)
+    real(wp), intent(in) :: centre(2), radius, share(6)
+    integer, intent(in) :: n
+    type(chain_t) :: chain
+    real(wp) :: x(2, 2*n), angle
+    integer :: i
+
+    do i = 1, 2*n
+      angle = sign(pi*(i - 1)/n, radius)
+      x(:, i) = centre + abs(radius)*[cos(angle), sin(angle)] &
+                *(1 + 0.3_wp*(share(1) - 0.5_wp)*sin(2*angle + 6*share(2)) + 0.25_wp*(share(3) - 0.5_wp)*sin(3*angle + 6*share(4)) &
+                  + 0.1_wp*(share(5) - 0.5_wp)*sin(5*angle + 6*share(6)))
+    end do
+    chain = chain_of_points(x, 0.9_wp)
+  end function blob
 
   !> A square of side 1 whose right side bulges to 1 + bulge sin(pi s), at the height s - fold sin(2 pi s); the first corner
   !> at the origin, n parabolas a side. With a fold the bulge hangs over the corners.
