@@ -31,6 +31,8 @@ module zone_plan
 
   !> A corner where the contour turns by less is flat: 35 degrees, a scaled Jacobian of 0.57.
   real(wp), parameter :: flat_turn = 35*pi/180
+  !> A point lies in a corner that is nearer than this share of the contour.
+  real(wp), parameter :: in_place = 1.0e-6_wp
 
 contains
 
@@ -43,6 +45,7 @@ contains
     type(plan_t), intent(out) :: plan
     type(error_t), allocatable, intent(out) :: error
     integer :: point_of(size(x, 2)), sharing(size(x, 2)), corners(4), g, k, n, z
+    logical, allocatable :: by_shape(:)
 
     n = 0
     do g = 1, size(scene%groups)
@@ -67,16 +70,19 @@ contains
       sharing(corners) = sharing(corners) + 1
     end do
     point_of = 0
+    allocate (by_shape(0))
     do z = 1, n
       corners = corners_of(scene, plan%sets(:, z))
       do k = 1, 4
         if (point_of(corners(k)) == 0) then
-          plan%points = [plan%points, point_at_node(contours, x, corners(k), sharing(corners(k)) == 1)]
+          plan%points = [plan%points, point_at_node(contours, x, corners(k))]
+          by_shape = [by_shape, sharing(corners(k)) == 1 .and. plan%points(size(plan%points))%chain > 0]
           point_of(corners(k)) = size(plan%points)
         end if
         plan%zones(z)%corners(k) = point_of(corners(k))
       end do
     end do
+    call go_by_shape(contours, by_shape, plan%points)
     do z = 1, n
       call follow_contours(scene, contours, plan%sets(:, z), plan%zones(z))
     end do
@@ -111,25 +117,27 @@ contains
     end do
   end function flat_corner
 
-  !> Three zones around a point inside, between the middles of the sides that do not end in the flat corner D, and D:
-  !> with B and C before and after D, and A opposite, (A, AB, M, CA), (B, D, M, AB), (C, CA, M, D).
+  !> Three zones around a point M inside: with B and C before and after the flat corner D, and A opposite, they are
+  !> (A, AB, M, CA), (B, D, M, AB), (C, CA, M, D). From AB to B and from C to CA it is half the shorter of the sides AB and CA, so
+  !> that in a flat disc only its rim is divided in this way; M stands opposite to A, a third of the way to D.
   pure subroutine split_in_three(contours, z, flat, plan)
     type(contour_t), intent(in) :: contours(:)
     integer, intent(in) :: z, flat
     type(plan_t), intent(inout) :: plan
     type(zone_t) :: zone, parts(3)
     integer :: a, b, c, d, ab, ca, m, k
+    real(wp) :: half
 
     zone = plan%zones(z)
     d = zone%corners(flat)
     c = zone%corners(modulo(flat, 4) + 1)
     a = zone%corners(modulo(flat + 1, 4) + 1)
     b = zone%corners(modulo(flat + 2, 4) + 1)
-    plan%points = [plan%points, halfway(contours, plan%points(a), plan%points(b)), &
-                   halfway(contours, plan%points(c), plan%points(a))]
+    half = 0.5_wp*min(way_between(contours, plan%points(a), plan%points(b)), way_between(contours, plan%points(c), plan%points(a)))
+    plan%points = [plan%points, moved_by(contours, plan%points(b), -half), moved_by(contours, plan%points(c), half)]
     ab = size(plan%points) - 1
     ca = size(plan%points)
-    plan%points = [plan%points, zone_point_t(x=(placed(ab) + placed(ca) + placed(d))/3)]
+    plan%points = [plan%points, zone_point_t(x=(2*(placed(ab) + placed(ca) - placed(a)) + placed(d))/3)]
     m = size(plan%points)
     parts = zone
     parts(1)%corners = [a, ab, m, ca]
@@ -156,20 +164,27 @@ contains
 
   end subroutine split_in_three
 
-  !> Half way along a chain from one point to another.
-  pure function halfway(contours, from, to) result(point)
+  !> Length of the contour from one point to another [length].
+  pure function way_between(contours, from, to) result(way)
     type(contour_t), intent(in) :: contours(:)
     type(zone_point_t), intent(in) :: from, to
-    type(zone_point_t) :: point
-    real(wp) :: start, way
+    real(wp) :: way
 
     associate (chain => contours(from%chain)%chain)
-      start = arc_at(chain, from%place)
-      way = modulo(arc_at(chain, to%place) - start, chain_length(chain))
-      point%chain = from%chain
-      point%place = place_at_arc(chain, start + 0.5_wp*way)
+      way = modulo(arc_at(chain, to%place) - arc_at(chain, from%place), chain_length(chain))
     end associate
-  end function halfway
+  end function way_between
+
+  !> The point so far along the contour from another one.
+  pure function moved_by(contours, from, way) result(point)
+    type(contour_t), intent(in) :: contours(:)
+    type(zone_point_t), intent(in) :: from
+    real(wp), intent(in) :: way   !! [length]
+    type(zone_point_t) :: point
+
+    point%chain = from%chain
+    point%place = place_at_arc(contours(from%chain)%chain, arc_at(contours(from%chain)%chain, from%place) + way)
+  end function moved_by
 
   !> First nodes of the four sides of a block.
   pure function corners_of(scene, sets) result(nodes)
@@ -182,12 +197,11 @@ contains
     end do
   end function corners_of
 
-  !> Where a corner of a zone goes.
-  pure function point_at_node(contours, x, node, by_shape) result(point)
+  !> Where a corner of a zone has gone with the matter.
+  pure function point_at_node(contours, x, node) result(point)
     type(contour_t), intent(in) :: contours(:)
     real(wp), intent(in) :: x(:, :)
     integer, intent(in) :: node
-    logical, intent(in) :: by_shape
     type(zone_point_t) :: point
     integer :: c, side
 
@@ -197,31 +211,59 @@ contains
       if (side == 0) cycle
       point%chain = c
       point%place = place_of_old(contours(c)%loop, contours(c)%chain, contours(c)%contacts, x, side, -1.0_wp)
-      if (by_shape) point%place = nearest_corner(contours(c)%chain, point%place)
       return
     end do
   end function point_at_node
 
-  !> The corner, beginning or end of contact nearest along the chain.
-  pure function nearest_corner(chain, from) result(place)
+  !> Points that lie in a corner of the contour stay there; then the others go to the nearest corner, beginning or end of
+  !> contact that none has taken.
+  pure subroutine go_by_shape(contours, by_shape, points)
+    type(contour_t), intent(in) :: contours(:)
+    logical, intent(in) :: by_shape(:)
+    type(zone_point_t), intent(inout) :: points(:)
+    logical :: settled(size(points))
+    integer :: p, pass, joint(size(points))
+    real(wp) :: way
+
+    settled = .not. by_shape
+    joint = 0
+    do pass = 1, 2
+      do p = 1, size(points)
+        if (settled(p)) cycle
+        call nearest_joint(contours(points(p)%chain)%chain, points(p)%place, &
+                           pack(joint, points%chain == points(p)%chain .and. joint > 0), joint(p), way)
+        if (joint(p) == 0 .or. (pass == 1 .and. way > in_place*chain_length(contours(points(p)%chain)%chain))) then
+          joint(p) = 0
+          cycle
+        end if
+        points(p)%place = place_t(joint(p), contours(points(p)%chain)%chain%stretches(joint(p))%range(1))
+        settled(p) = .true.
+      end do
+    end do
+  end subroutine go_by_shape
+
+  !> The corner, beginning or end of contact nearest along the chain that is not taken; 0 when there is none.
+  pure subroutine nearest_joint(chain, from, taken, joint, least)
     type(chain_t), intent(in) :: chain
     type(place_t), intent(in) :: from
-    type(place_t) :: place
-    real(wp) :: here, way, least
+    integer, intent(in) :: taken(:)
+    integer, intent(out) :: joint
+    real(wp), intent(out) :: least
+    real(wp) :: here, way
     integer :: k
 
-    place = from
+    joint = 0
     here = arc_at(chain, from)
     least = huge(least)
     do k = 1, size(chain%stretches)
-      if (all(chain%kinds(k) /= [kind_corner, kind_entry, kind_exit])) cycle
+      if (all(chain%kinds(k) /= [kind_corner, kind_entry, kind_exit]) .or. any(taken == k)) cycle
       way = abs(chain%arc(k - 1) - here)
       way = min(way, chain_length(chain) - way)
       if (.not. way < least) cycle
       least = way
-      place = place_t(k, chain%stretches(k)%range(1))
+      joint = k
     end do
-  end function nearest_corner
+  end subroutine nearest_joint
 
   !> Sides of a zone that the contour forms: those whose old sides are on it.
   pure subroutine follow_contours(scene, contours, sets, zone)
