@@ -1,8 +1,8 @@
 !> The integration points nearest to a place that hang together with it: those across a slit or a closed fold of the same
 !> material are near, but their values have nothing to do with it.
 !>
-!> A point counts where its element is reached from the element that holds the place in few steps from element to element over common
-!> nodes. On meshes without slits the nearest points are all reached.
+!> A point counts where its element is reached from the element that holds the place in few steps from element to element over
+!> common nodes. On meshes without slits the nearest points are all reached.
 module connected_points
   use box_tree, only: insert, nearest_items
   use kinds, only: wp

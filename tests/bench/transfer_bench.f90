@@ -64,7 +64,8 @@ contains
     end do
   end subroutine print_losses
 
-  !> Rows of csv: seconds of the processor (run it with one thread) for a whole transfer of one scalar, the least of three, by method and size.
+  !> Rows of csv: seconds of the processor (run it with one thread) for a whole transfer of one scalar, the least of three, by
+  !> method and size.
   subroutine print_seconds()
     integer, parameter :: across(4) = [22, 71, 141, 224], again = 3
     type(transfer_options_t) :: options
