@@ -12,7 +12,7 @@ module connected_points
   private
   public :: nearest_connected
 
-  !> Steps from element to element: the 80 nearest points of a grid with 2 x 2 points in an element are within 3.
+  !> Steps from element to element: the 64 nearest points of a grid with 2 x 2 points in an element are within 3.
   integer, parameter :: most_steps = 4
   !> Room for the elements reached: 81 in a grid.
   integer, parameter :: most_elements = 160
