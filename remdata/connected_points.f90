@@ -1,8 +1,8 @@
 !> The integration points nearest to a place that hang together with it: those across a slit or a closed fold of the same
 !> material are near, but their values have nothing to do with it.
 !>
-!> A point counts where its element is reached from the element that holds the place in few steps from element to element over common
-!> nodes. On meshes without slits the nearest points are all reached.
+!> A point counts where its element is reached from the element that holds the place in few steps from element to element over
+!> common nodes. On meshes without slits the nearest points are all reached.
 module connected_points
   use box_tree, only: insert, nearest_items
   use kinds, only: wp
@@ -12,7 +12,7 @@ module connected_points
   private
   public :: nearest_connected
 
-  !> Steps from element to element: the 80 nearest points of a grid with 2 x 2 points in an element are within 3.
+  !> Steps from element to element: the 64 nearest points of a grid with 2 x 2 points in an element are within 3.
   integer, parameter :: most_steps = 4
   !> Room for the elements reached: 81 in a grid.
   integer, parameter :: most_elements = 160

@@ -37,6 +37,7 @@ contains
     real(wp) :: x(2, size(old%mesh%coordinates, 2))
     type(row_t) :: row_old, row_new
     integer, allocatable :: carried(:)
+    logical, allocatable :: conserved(:)
     integer :: c, k, g
 
     x = old%mesh%coordinates + from%displacement
@@ -45,8 +46,8 @@ contains
         g = contours(c)%contacts(k)%run%group
         call old_row(old, g, contours(c)%loop, contours(c)%contacts(k)%run, x, row_old)
         call new_row(new, g, contours, c, k, mesh, row_new)
-        call list_carried(old, g, carried)
-        call carry_run(carried, row_old, row_new, from%groups(g)%committed, status_place(old, g), to%groups(g)%committed)
+        call list_carried(old, g, carried, conserved)
+        call carry_run(carried, conserved, row_old, row_new, from%groups(g)%committed, status_place(old, g), to%groups(g)%committed)
       end do
     end do
     do g = 1, size(to%groups)
@@ -64,17 +65,21 @@ contains
   end function status_place
 
   !> Components that go along the contour; those of corners of dies inside sides, of the same names, find themselves anew.
-  pure subroutine list_carried(scene, g, carried)
+  pure subroutine list_carried(scene, g, carried, conserved)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g
     integer, allocatable, intent(out) :: carried(:)
+    logical, allocatable, intent(out) :: conserved(:)
     integer :: v, i
 
-    allocate (carried(0))
+    allocate (carried(0), conserved(0))
     do v = 1, size(scene%groups(g)%variables)
       associate (variable => scene%groups(g)%variables(v))
         if (find_variable(scene%groups(g)%variables, variable%name) < v) cycle
-        if (variable%transfer == kind_contact) carried = [carried, (variable%first + i, i=0, variable%ncomp - 1)]
+        if (variable%transfer /= kind_contact) cycle
+        carried = [carried, (variable%first + i, i=0, variable%ncomp - 1)]
+        ! forces and work are sums along the run, a slip is none
+        conserved = [conserved, spread(variable%unit /= 'length', 1, variable%ncomp)]
       end associate
     end do
   end subroutine list_carried
@@ -253,21 +258,24 @@ contains
     row%element = unsorted%element(order)
   end subroutine new_row
 
-  pure subroutine carry_run(carried, row_old, row_new, before, status, after)
+  pure subroutine carry_run(carried, conserved, row_old, row_new, before, status, after)
     integer, intent(in) :: carried(:)
+    logical, intent(in) :: conserved(:)   !! the integral along the run is kept
     type(row_t), intent(in) :: row_old, row_new
     real(wp), intent(in) :: before(:, :, :)
     integer, intent(in) :: status
     real(wp), intent(inout) :: after(:, :, :)
     real(wp) :: old(size(carried), size(row_old%s)), new(size(carried), size(row_new%s)), change(size(carried))
-    integer :: p, nearest
+    integer :: p, v, nearest
 
     if (size(row_old%s) == 0) return
     do p = 1, size(row_old%s)
       old(:, p) = before(carried, row_old%point(p), row_old%element(p))
     end do
-    call carry_along(row_old%length, row_old%s, old, row_old%weight, row_new%length, row_new%s, row_new%weight, 2, .true., &
-                     new, change)
+    do v = 1, size(carried)
+      call carry_along(row_old%length, row_old%s, old(v:v, :), row_old%weight, row_new%length, row_new%s, row_new%weight, 2, &
+                       conserved(v), new(v:v, :), change(v:v))
+    end do
     do p = 1, size(row_new%s)
       after(carried, row_new%point(p), row_new%element(p)) = new(:, p)
       if (status == 0) cycle

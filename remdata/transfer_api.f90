@@ -19,8 +19,9 @@ module transfer_api
     !> N of 1/R^N, and how many points it takes.
     real(wp) :: exponent = 2.0_wp
     integer :: nearest = 8
-    !> Points of moving least squares; degree (0, 1, 2) of it and of the patches.
-    integer :: neighbours = 20
+    !> Points of moving least squares: with less than 12 errors grow from transfer to transfer, with more peaks are flattened
+    !> (tests/bench/README.md); degree (0, 1, 2) of it and of the patches.
+    integer :: neighbours = 16
     integer :: degree = 2
     !> How far an element is prolonged beyond the contour, in halves of an element.
     real(wp) :: outside = 0.5_wp

@@ -7,13 +7,41 @@ module transfer_nodes
   use locate_point, only: locate, place_t
   use shape_functions, only: quad8
   use transfer_api, only: check_materials
-  use transfer_map, only: start_map, transfer_map_t
-  use transfer_mesh, only: transfer_mesh_t
+  use transfer_map, only: carry, start_map, transfer_map_t
+  use transfer_mesh, only: plant_mesh_trees, set_up_mesh, transfer_mesh_t
   implicit none
   private
-  public :: shape_weights
+  public :: carry_nodal, shape_weights
+
+  !> Any rule will do: nodal fields do not look at integration points.
+  integer, parameter :: any_rule = 4
 
 contains
+
+  !> Values (component, node) of an old mesh carried to the nodes of a new one, within each material (all 1: the whole mesh is one).
+  subroutine carry_nodal(nodes, connectivity, material, values, new_nodes, new_material, outside, new_values, farthest, error)
+    real(wp), intent(in) :: nodes(:, :)              !! (2, nnode) of the old mesh [length]
+    integer, intent(in) :: connectivity(:, :)        !! (8, nelem)
+    integer, intent(in) :: material(:)               !! (nelem)
+    real(wp), intent(in) :: values(:, :)             !! (component, nnode)
+    real(wp), intent(in) :: new_nodes(:, :)          !! (2, n) [length]
+    integer, intent(in) :: new_material(:)           !! (n)
+    real(wp), intent(in) :: outside                  !! how far an element is prolonged, in halves of an element
+    real(wp), intent(out) :: new_values(:, :)        !! (component, n)
+    real(wp), intent(out) :: farthest                !! new node outside the old mesh [length]
+    type(error_t), allocatable, intent(out) :: error
+    type(transfer_mesh_t) :: mesh
+    type(transfer_map_t) :: map
+
+    new_values = 0
+    farthest = 0
+    call set_up_mesh(nodes, connectivity, material, spread(any_rule, 1, size(material)), .false., mesh)
+    call plant_mesh_trees(mesh)
+    call shape_weights(mesh, mesh%connectivity, new_nodes, new_material, outside, map, error)
+    if (allocated(error)) return
+    call carry(map, values, new_values)
+    if (size(map%outside) > 0) farthest = maxval(map%outside)
+  end subroutine carry_nodal
 
   !> Weights of the columns `places` (8, nelem) of the old elements: its connectivity, where values belong to nodes.
   subroutine shape_weights(mesh, places, points, material, outside, map, error)

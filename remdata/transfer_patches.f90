@@ -46,7 +46,8 @@ contains
     type(patch_nodes_t) :: nodes
     integer, allocatable :: source(:, :)
     real(wp), allocatable :: weight(:, :)
-    integer :: used(block), degree(block), first, k, n
+    integer, allocatable :: degree(:)
+    integer :: used(block), first, k, n, p
 
     call number_nodes(mesh, nodes)
     call shape_weights(mesh, nodes%places, points, material, options%outside, map, error)
@@ -55,14 +56,17 @@ contains
     allocate (map%nodal)
     call start_rows(n, map%nodal)
     allocate (source(most_points, block), weight(most_points, block))
-    map%degree = options%degree
+    allocate (degree(n))
     do first = 0, n - 1, block
       !$omp parallel do schedule(static)
       do k = 1, min(block, n - first)
-        call recover(mesh, nodes, first + k, options%degree, source(:, k), weight(:, k), used(k), degree(k))
+        call recover(mesh, nodes, first + k, options%degree, source(:, k), weight(:, k), used(k), degree(first + k))
       end do
       !$omp end parallel do
       call append_rows(first, source, weight, used(:min(block, n - first)), map%nodal)
+    end do
+    do p = 1, size(material)
+      map%degree(p) = minval(degree(map%source(map%first(p):map%first(p + 1) - 1)))
     end do
   end subroutine weights
 

@@ -1,9 +1,10 @@
 !> What a state transfer tells of itself.
 module transfer_report
   use kinds, only: wp
+  use text, only: string_t, to_text
   implicit none
   private
-  public :: balance_t, transfer_report_t
+  public :: balance_t, transfer_report_t, report_lines
 
   !> One component of a variable in one material, over the volume (per unit thickness or per radian).
   type :: balance_t
@@ -32,5 +33,50 @@ module transfer_report
     !> New points whose polynomial was of a lower degree than asked for.
     integer :: lower_degree = 0
   end type transfer_report_t
+
+contains
+
+  !> The report in words, a line a material and a component: integrals before and after, the change over the integral of the
+  !> absolute value before and after the correction, ranges, and the share of the volume brought back into range.
+  pure subroutine report_lines(report, lines)
+    type(transfer_report_t), intent(in) :: report
+    type(string_t), allocatable, intent(out) :: lines(:)
+    integer :: m, k, n
+
+    allocate (lines(1 + count(report%volume_after > 0) + size(report%rows)))
+lines(1)%s = 'transfer by '//report%method//': '//to_text(report%points_outside)//' points outside the old mesh, the farthest by ' &
+                 //to_text(report%farthest)//'; polynomial of lower degree at '//to_text(report%lower_degree)//' points'
+    n = 1
+    do m = 1, size(report%volume_after)
+      if (.not. report%volume_after(m) > 0) cycle
+      n = n + 1
+      lines(n)%s = 'material '//to_text(m)//': volume '//to_text(report%volume_before(m))//' -> ' &
+                   //to_text(report%volume_after(m))//' ('//percent(report%volume_after(m) - report%volume_before(m), &
+                                                                    report%volume_before(m))//')'
+      do k = 1, size(report%rows)
+        if (report%rows(k)%material /= m) cycle
+        n = n + 1
+        lines(n)%s = in_words(report%rows(k))
+      end do
+    end do
+  end subroutine report_lines
+
+  pure function in_words(row) result(words)
+    type(balance_t), intent(in) :: row
+    character(len=:), allocatable :: words
+
+    words = '  '//row%name//': integral '//to_text(row%before)//' -> '//to_text(row%after)//' (' &
+            //percent(row%carried - row%before, row%magnitude)//' as carried, '//percent(row%after - row%before, row%magnitude) &
+            //' left), range '//to_text(row%least_before)//' ... '//to_text(row%largest_before)//' -> ' &
+            //to_text(row%least_after)//' ... '//to_text(row%largest_after)
+    if (row%clipped > 0) words = words//', '//percent(row%clipped, 1.0_wp)//' of the volume was out of range'
+  end function in_words
+
+  pure function percent(part, whole) result(words)
+    real(wp), intent(in) :: part, whole
+    character(len=:), allocatable :: words
+
+    words = to_text(100*part/max(whole, tiny(1.0_wp)), 3)//' %'
+  end function percent
 
 end module transfer_report

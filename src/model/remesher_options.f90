@@ -9,9 +9,9 @@ module remesher_options
     !> A REMSH card is there.
     logical :: wanted = .false.
     !> State transfer: number of the method, exponent of 1/R^N, points of moving least squares.
-    integer :: transfer = 2
+    integer :: transfer = 1
     real(wp) :: exponent = 2.0_wp
-    integer :: neighbours = 20
+    integer :: neighbours = 16
     !> Sizes of elements, smallest and largest; 0: from the mesh before [length].
     real(wp) :: smallest = 0.0_wp, largest = 0.0_wp
     !> Error of the strains an element is made for, elements at most (0: no limit), elements across a contact zone.

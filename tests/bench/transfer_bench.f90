@@ -9,16 +9,19 @@ program transfer_bench
   use transfer_states, only: carry_states
   use transfer_study, only: field_edge, field_hill, loss_t, study_pieces, there_and_back
   implicit none
+  character(len=4), parameter :: fields(3) = ['hill', 'band', 'edge']
   character(len=16) :: what
 
   call get_command_argument(1, what)
   select case (what)
   case ('losses')
     call print_losses()
+  case ('neighbours')
+    call print_neighbours()
   case ('seconds')
     call print_seconds()
   case default
-    error stop 'transfer_bench losses | seconds'
+    error stop 'transfer_bench losses | neighbours | seconds'
   end select
 
 contains
@@ -26,7 +29,6 @@ contains
   !> Rows of csv: one for each field, mesh, method with its options, and number of transfers.
   subroutine print_losses()
     integer, parameter :: transfers = 100, meshes(2) = [16, 32]
-    character(len=4), parameter :: fields(3) = ['hill', 'band', 'edge']
     character(len=8), parameter :: limits(0:2) = ['none    ', 'material', 'sources ']
     character(len=3), parameter :: answers(0:1) = ['no ', 'yes']
     type(transfer_options_t) :: options
@@ -64,7 +66,30 @@ contains
     end do
   end subroutine print_losses
 
-  !> Rows of csv: seconds of the processor (run it with one thread) for a whole transfer of one scalar, the least of three, by method and size.
+  !> Rows of csv: what 100 transfers by moving least squares over so many points change.
+  subroutine print_neighbours()
+    integer, parameter :: numbers(8) = [9, 10, 11, 12, 14, 16, 18, 20]
+    type(transfer_options_t) :: options
+    type(loss_t) :: losses(50)
+    type(error_t), allocatable :: error
+    integer :: k, f, n
+
+    print '(a)', 'neighbours,field,elements,rms_change'
+    options%conserve = .false.
+    do k = 1, size(numbers)
+      options%neighbours = numbers(k)
+      do f = field_hill, field_edge
+        do n = 16, 32, 16
+          call there_and_back(f, n, 2*size(losses), options, losses, error)
+          if (allocated(error)) error stop 'transfer_bench: the transfer failed'
+          print '(i0,",",a,",",i0,",",es13.5)', numbers(k), fields(f), n, losses(size(losses))%change
+        end do
+      end do
+    end do
+  end subroutine print_neighbours
+
+  !> Rows of csv: seconds of the processor (run it with one thread) for a whole transfer of one scalar, the least of three, by
+  !> method and size.
   subroutine print_seconds()
     integer, parameter :: across(4) = [22, 71, 141, 224], again = 3
     type(transfer_options_t) :: options

@@ -4,7 +4,7 @@
     python3 tests/bench/transfer_study.py [--write] [--keep]
 
 Needs LAGAMINE_BIN (folder of the programs of a build with its tests) and matplotlib (LAGAMINE_PYTHON names a Python that has it).
-Prints the tables, writes out/bench/transfer_losses.csv, transfer_seconds.csv and transfer.png; --write puts the tables into
+Prints the tables, writes out/bench/transfer_*.csv and transfer.png; --write puts the tables into
 tests/bench/README.md, --keep draws the numbers of the run before. Measured, not judged: the ranking is a test (tests/remdata).
 """
 import argparse
@@ -65,6 +65,17 @@ def table_of_losses(losses):
     return lines
 
 
+def table_of_neighbours(changes):
+    columns = [(field, mesh) for field in FIELDS for mesh in ("16", "32")]
+    lines = ["| neighbours | " + " | ".join(f"{FIELDS[field]} {mesh}x{mesh}" for field, mesh in columns) + " |",
+             "|---" * (len(columns) + 1) + "|"]
+    for number in dict.fromkeys(row["neighbours"] for row in changes):
+        values = [float(chosen(changes, neighbours=number, field=field, elements=mesh)[0]["rms_change"])
+                  for field, mesh in columns]
+        lines.append(f"| {number} | " + " | ".join(f"{100 * value:.1f}" for value in values) + " |")
+    return lines
+
+
 def table_of_seconds(seconds):
     sizes = sorted({int(row["elements"]) for row in seconds})
     lines = ["| method | " + " | ".join(f"{size} elements" for size in sizes) + " | grows as |",
@@ -108,9 +119,11 @@ def main():
         if "LAGAMINE_BIN" not in os.environ:
             sys.exit("transfer_study.py: LAGAMINE_BIN must name the folder of the programs")
         measure("losses")
+        measure("neighbours")
         measure("seconds")
-    losses, seconds = rows_of("losses"), rows_of("seconds")
-    text = "\n".join(table_of_losses(losses) + [""] + table_of_seconds(seconds))
+    losses = rows_of("losses")
+    text = "\n".join(table_of_losses(losses) + ["", "Change % after 100 transfers by SQUARES over so many neighbours:", ""]
+                     + table_of_neighbours(rows_of("neighbours")) + [""] + table_of_seconds(rows_of("seconds")))
     print(text)
     draw(losses, os.path.join(OUT, "transfer.png"))
     if options.write:
