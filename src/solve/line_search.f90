@@ -10,6 +10,11 @@
 !> stays on this side of the turn, with the same matrix: it would go on so for ever. Hence the
 !> caller may ask for the whole correction, whatever the residual (the watchdog of R.M. Chamberlain
 !> et al., Math. Programming Study 16 (1982) 1-17): beyond the turn the matrix is the right one.
+!>
+!> A correction against which the residual works (their product is negative) leads uphill: the state is past a limit point,
+!> as where a side lifts off a die it was bent around. If the whole of it is no better, the way back is taken, where the forces
+!> drive the body, whatever the residual: equilibrium is further on, and no shorter step would find it nearer (J.J. More,
+!> D.C. Sorensen, Math. Programming 16 (1979) 1-20: directions of negative curvature).
 module line_search
   use convergence, only: free_force
   use elem_api, only: block_done, report_t
@@ -30,7 +35,7 @@ module line_search
 
 contains
 
-  !> Move `du` along the correction by the share `s` and evaluate there. s = 0: every share tried
+  !> Move `du` along the correction by the share `s` and evaluate there; s = -1 is the way back. s = 0: every share tried
   !> fails, and `report` says why. A prescribed motion still missing, or `whole`, is taken without search.
   subroutine search_along(scene, equations, solution, dt, external, residual, missing, correction, whole, du, s, report)
     type(scene_t), intent(in) :: scene
@@ -43,11 +48,13 @@ contains
     real(wp), intent(out) :: s
     type(report_t), intent(out) :: report
     real(wp) :: start(size(du)), trial, slope0, slope, best, norm, norm0, near(2), far(2)
+    logical :: uphill, accepted
     integer :: k
 
     start = du
     trial = 1
     slope0 = dot_product(correction, residual)
+    uphill = slope0 < 0
     norm0 = free_force(equations, residual)
     near = [0.0_wp, slope0]
     far = 0
@@ -67,14 +74,23 @@ contains
         best = abs(slope)
         s = trial
       end if
-      if (whole .or. abs(slope) <= search_above*abs(slope0) .or. any(abs(missing) > 0) .or. norm < real_fall*norm0 .or. &
-          (k == 1 .and. norm < norm0)) then
+      accepted = whole .or. any(abs(missing) > 0) .or. norm < real_fall*norm0
+      if (.not. uphill) accepted = accepted .or. abs(slope) <= search_above*slope0 .or. (k == 1 .and. norm < norm0)
+      if (accepted) then
         s = trial
         return
       end if
+      if (uphill .and. k == 1) then
+        du = start - correction
+        call evaluate(scene, equations, solution, dt, du, .true., report)
+        if (report%status == block_done) then
+          s = -1
+          return
+        end if
+      end if
       call narrow(trial, slope, near, far)
     end do
-    if (s <= 0) return
+    if (.not. s > 0) return
     du = start + s*correction + missing
     call evaluate(scene, equations, solution, dt, du, .true., report)
   end subroutine search_along
