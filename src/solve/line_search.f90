@@ -11,6 +11,9 @@
 !> caller may ask for the whole correction, whatever the residual (the watchdog of R.M. Chamberlain
 !> et al., Math. Programming Study 16 (1982) 1-17): beyond the turn the matrix is the right one.
 !>
+!> Where points of contact change to and fro, states on either side of the change answer one another with corrections that both go
+!> too far; the caller may ask for a closer search, which stops between them.
+!>
 !> A correction against which the residual works (their product is negative) leads uphill: the state is past a limit point,
 !> as where a side lifts off a die it was bent around. If the whole of it is no better, the way back is taken, where the forces
 !> drive the body, whatever the residual: equilibrium is further on, and no shorter step would find it nearer (J.J. More,
@@ -24,11 +27,16 @@ module line_search
   use solution, only: solution_t
   implicit none
   private
-  public :: search_along, short_share
+  public :: search_along, manner_t, short_share
+
+  !> How to search: take the whole whatever the residual, or find the zero along the way more closely.
+  type :: manner_t
+    logical :: whole = .false., closely = .false.
+  end type manner_t
 
   !> A search that ends below this share of the correction is short.
   real(wp), parameter :: short_share = 0.2_wp
-  real(wp), parameter :: search_above = 0.8_wp
+  real(wp), parameter :: search_above = 0.8_wp, search_closely_above = 0.3_wp
   !> A share of the correction is taken when the whole residual falls to this part of what it was.
   real(wp), parameter :: real_fall = 0.5_wp
   integer, parameter :: max_searches = 6
@@ -36,18 +44,18 @@ module line_search
 contains
 
   !> Move `du` along the correction by the share `s` and evaluate there; s = -1 is the way back. s = 0: every share tried
-  !> fails, and `report` says why. A prescribed motion still missing, or `whole`, is taken without search.
-  subroutine search_along(scene, equations, solution, dt, external, residual, missing, correction, whole, du, s, report)
+  !> fails, and `report` says why. A prescribed motion still missing is taken without search.
+  subroutine search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, du, s, report)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt
     real(wp), intent(in) :: external(:), residual(:), missing(:), correction(:)
-    logical, intent(in) :: whole
+    type(manner_t), intent(in) :: manner
     real(wp), intent(inout) :: du(:)
     real(wp), intent(out) :: s
     type(report_t), intent(out) :: report
-    real(wp) :: start(size(du)), trial, slope0, slope, best, norm, norm0, near(2), far(2)
+    real(wp) :: start(size(du)), trial, slope0, slope, enough, best, norm, norm0, near(2), far(2)
     logical :: uphill, accepted
     integer :: k
 
@@ -55,6 +63,7 @@ contains
     trial = 1
     slope0 = dot_product(correction, residual)
     uphill = slope0 < 0
+    enough = merge(search_closely_above, search_above, manner%closely)
     norm0 = free_force(equations, residual)
     near = [0.0_wp, slope0]
     far = 0
@@ -74,8 +83,8 @@ contains
         best = abs(slope)
         s = trial
       end if
-      accepted = whole .or. any(abs(missing) > 0) .or. norm < real_fall*norm0
-      if (.not. uphill) accepted = accepted .or. abs(slope) <= search_above*slope0 .or. (k == 1 .and. norm < norm0)
+      accepted = manner%whole .or. any(abs(missing) > 0) .or. norm < real_fall*norm0
+      if (.not. uphill) accepted = accepted .or. abs(slope) <= enough*slope0 .or. (k == 1 .and. norm < norm0)
       if (accepted) then
         s = trial
         return

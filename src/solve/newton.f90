@@ -12,7 +12,7 @@ module newton
   use errors, only: error_t, exit_no_convergence
   use kinds, only: wp
   use linear_solver, only: try_without_pivoting
-  use line_search, only: search_along, short_share
+  use line_search, only: manner_t, search_along, short_share
   use predictor, only: predict
   use scene, only: scene_t
   use solution, only: group_state_t, solution_t
@@ -71,6 +71,7 @@ contains
     real(wp), dimension(equations%dofs%ndof) :: external, missing, residual, correction
     type(group_state_t) :: before(size(scene%groups))
     type(iteration_t) :: line
+    type(manner_t) :: manner
     type(report_t) :: report
     integer, allocatable :: contact(:)
     logical :: changed
@@ -119,8 +120,9 @@ contains
         exit
       end if
       outcome%linear_residual = max(outcome%linear_residual, equations%solver%residual)
-      call search_along(scene, equations, solution, dt, external, residual, missing, correction, &
-                        caught(outcome%history(first:)), outcome%du, line%line_search, report)
+      manner = manner_t(whole=caught(outcome%history(first:)), closely=in_turmoil(outcome%history(first:)))
+      call search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, outcome%du, &
+                        line%line_search, report)
       if (.not. abs(line%line_search) > 0) then
         call blame(report, outcome)
         exit
@@ -165,6 +167,19 @@ contains
     caught = size(history) > short_searches
     if (caught) caught = all(abs(history(size(history) - short_searches + 1:)%line_search) < short_share)
   end function caught
+
+  !> Contact keeps changing and the residual does not fall: it stagnates over the last two iterations.
+  pure function in_turmoil(history)
+    type(iteration_t), intent(in) :: history(:)
+    logical :: in_turmoil
+    integer :: n
+
+    n = size(history)
+    in_turmoil = n > 3
+    if (.not. in_turmoil) return
+    in_turmoil = all(history(n - 1:)%contact_changed) &
+                 .and. minval(history(n - 1:)%force_norm) > stagnant*minval(history(2:n - 2)%force_norm)
+  end function in_turmoil
 
   !> Contact changed, or the search went back: the residual need not fall.
   elemental function is_under_way(line)
