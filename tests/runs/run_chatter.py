@@ -18,8 +18,8 @@ import signal
 import sys
 
 sys.dont_write_bytecode = True
-from support import (DONE, SIGNAL, SOURCE, UPSETTING, Checks, deck_text, result_differences, run, said, start, stop_after,  # noqa: E402
-                     summary, with_h5py, write)
+from support import (DONE, SIGNAL, SOURCE, UPSETTING, Checks, deck_text, result_differences, run, said, start,  # noqa: E402
+                     stop_after, summary, with_h5py, write)
 
 DRAW = os.path.join(SOURCE, "decks", "stamping", "draw.lag")
 # Options, and the most cutbacks: about twice what there are. Without the control `held` and `snap` end with code 3 after 14 and
