@@ -9,7 +9,8 @@ As the decks are, a step ends as soon as it has converged. The last three residu
 log(r3/r2)/log(r2/r1); 1.6 and more is taken for quadratic, and so is an end below 1e-9, since round-off has no order. The
 residual a sequence starts from (the predictor's, or an augmentation's) is not Newton's and does not count; sequences with fewer
 than three others are not judged. The first correction may still change the set of points that flow or touch, and then the
-order is near 1 whatever the tangent is: so a share is asked for here, not all.
+order is near 1 whatever the tangent is: so a share is asked for here, not all; and of all scenes together, since one of eight
+sequences says nothing about nine tenths. Each scene's median must be quadratic.
 
 With FORCE 1E-11 in the same scenes the fall can be followed down to round-off (near 1e-13): a sequence shows quadratic
 convergence when at most two more solutions lead from below 1e-5 to below 1e-11. A tangent wrong by 2 % takes four.
@@ -21,7 +22,7 @@ import sys
 sys.dont_write_bytecode = True
 from support import DONE, UPSETTING, Checks, add_cards, deck_text, run, said, write  # noqa: E402
 
-ORDER, ROUND_OFF = 1.6, 1.0e-9
+ORDER, ROUND_OFF, SHARE = 1.6, 1.0e-9, 0.9
 START, END, MOST = 1.0e-5, 1.0e-11, 2
 
 SLIDING = """TITLE  Block pressed down, then pushed sideways under Coulomb friction
@@ -81,26 +82,24 @@ def order(residuals):
     return math.log(third / second) / math.log(second / first)
 
 
-def judge(checks, name, deck, least_share, options=()):
-    """Share of the sequences that end quadratically."""
+def judge(checks, name, deck, options=()):
+    """Sequences that end quadratically, sequences judged, and steps that slip."""
     out = checks.path(name)
     result = run([deck, "--out", out, "--threads", "1"] + list(options))
     if not checks.that(result.returncode == DONE, f"{name}: done", said(result)):
-        return 0
+        return 0, 0, 0
     stem = deck.rsplit("/", 1)[1].replace(".lag", ".log")
     with open(f"{out}/{stem}", encoding="utf-8") as file:
         found, slipping = sequences(file.read())
     orders = [(order(one), one[-1]) for one in found]
     judged = [(p, last) for p, last in orders if p is not None]
     good = [last < ROUND_OFF or p >= ORDER for p, last in judged]
-    share = sum(good) / max(len(judged), 1)
     median = sorted(p for p, _ in judged)[len(judged) // 2] if judged else float("nan")
-    print(f"{name}: {sum(good)} of {len(judged)} sequences quadratic ({share:.0%}), median order {median:.2f}, "
+    print(f"{name}: {sum(good)} of {len(judged)} sequences quadratic, median order {median:.2f}, "
           f"{len(found)} sequences, {slipping} steps with slip")
     checks.that(len(judged) >= 5, f"{name}: enough to judge", f"{len(judged)} sequences")
-    checks.that(share >= least_share, f"{name}: share of quadratic ends at least {least_share:.0%}", f"{share:.0%}")
     checks.that(median >= ORDER, f"{name}: median order at least {ORDER}", f"{median:.2f}")
-    return slipping
+    return sum(good), len(judged), slipping
 
 
 def tight(checks, name, text, least_share, options=()):
@@ -129,10 +128,13 @@ def fall_length(residuals):
 
 def main():
     checks = Checks()
-    judge(checks, "upsetting", UPSETTING, 0.9)
-    judge(checks, "gluing", UPSETTING, 0.9, ["-p", "travel=4"])
-    slipping = judge(checks, "sliding", write(checks.path("sliding.lag"), SLIDING), 0.9)
-    checks.that(slipping > 10, "sliding: it slides", f"{slipping} steps with slip")
+    scenes = [judge(checks, "upsetting", UPSETTING),
+              judge(checks, "gluing", UPSETTING, ["-p", "travel=4"]),
+              judge(checks, "sliding", write(checks.path("sliding.lag"), SLIDING))]
+    good, judged = (sum(scene[k] for scene in scenes) for k in range(2))
+    checks.that(judged >= 50 and good >= SHARE * judged, f"share of quadratic ends at least {SHARE:.0%} of 50 or more",
+                f"{good} of {judged}")
+    checks.that(scenes[2][2] > 10, "sliding: it slides", f"{scenes[2][2]} steps with slip")
     tight(checks, "tight-upsetting", deck_text(UPSETTING), 0.95)
     tight(checks, "tight-gluing", deck_text(UPSETTING), 0.95, ["-p", "travel=4"])
     tight(checks, "tight-sliding", SLIDING, 0.95)
