@@ -2,7 +2,10 @@
 !>
 !> The deepest corner in the stretch between two points (side_corners) acts there with the length of
 !> the stretch as its weight, on what is deeper than half the allowed penetration, where one is given:
-!> a side that lies on the die by a corner has its points for that. No corner pulls, whatever the law.
+!> a side that lies on the die by a corner has its points for that. Toward an end of the side the weight
+!> goes to zero: a node that slides past the corner of a die hands its load over little by little, and
+!> takes it back; a sudden change would leave positions without equilibrium. No corner pulls, whatever
+!> the law.
 module corner_contact
   use contact_point, only: at_augmentation, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, most_unknowns, &
                            no_surface, npoint_state, share_to_contact, thinning
@@ -22,6 +25,8 @@ module corner_contact
   integer, parameter :: at_place = 2*npoint_state + 1
   !> A corner acts on what is deeper than this share of the allowed penetration.
   real(wp), parameter :: corner_share = 0.5_wp
+  !> A corner nearer than this to an end of the side, in xi, has lost a part of its weight to the node there.
+  real(wp), parameter :: handing_over = 0.05_wp
 
 contains
 
@@ -73,7 +78,7 @@ contains
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: point
     type(drift_t) :: drift
-    real(wp) :: allowed
+    real(wp) :: allowed, before(ndof), toward_end
 
     call place_point(side, corner%place, point)
     if (axisym .and. point%x(1) <= no_surface*side%length) return
@@ -84,9 +89,22 @@ contains
       return
     end if
     call follow_corner(side, corner, point, drift)
-    call press(law, material, side, corner%place, point, foot_at_corner(corner), allowed, weight, flow_stress, committed, &
-               trial, force, stiffness, drift)
+    before = force
+    call press(law, material, side, corner%place, point, foot_at_corner(corner), allowed, weight*share_of(corner%place), &
+               flow_stress, committed, trial, force, stiffness, drift)
+    if (.not. (side%tangent .and. share_of(corner%place) < 1)) return
+    ! the share changes with the place: d(ln share) = -sign(place)/(1 - |place|) d(place)
+    toward_end = sign(1.0_wp, corner%place)/(1 - abs(corner%place))
+    stiffness = stiffness - toward_end*spread(force - before, 2, ndof)*spread(drift%dxi, 1, ndof)
   end subroutine corner_at
+
+  !> Share of its weight that a corner at a place of the side has.
+  pure function share_of(place) result(share)
+    real(wp), intent(in) :: place
+    real(wp) :: share
+
+    share = min(1.0_wp, (1 - abs(place))/handing_over)
+  end function share_of
 
   !> The place of a corner on the side moves with nodes and pilot, and the point with it: from (V - y).y' = 0,
   !> ((V - y).y'' - y'.y') dxi = -(dV - dy).y' - (V - y).dy'.

@@ -12,8 +12,9 @@ module dies
   private
   public :: die_t, finish_die, is_deformable, place_on_nodes, present_die
 
-  !> A vertex where the chain turns by less than this sine is no corner: parabolas that follow a curve within a tolerance.
-  real(wp), parameter :: blunt = 0.02_wp
+  !> A vertex where the chain turns by less than this sine is no corner: parabolas that follow a curve within a tolerance turn
+  !> by up to 3 degrees where they meet.
+  real(wp), parameter :: blunt = 0.1_wp
 
   type :: die_t
     character(len=:), allocatable :: name

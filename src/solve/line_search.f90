@@ -10,6 +10,14 @@
 !> stays on this side of the turn, with the same matrix: it would go on so for ever. Hence the
 !> caller may ask for the whole correction, whatever the residual (the watchdog of R.M. Chamberlain
 !> et al., Math. Programming Study 16 (1982) 1-17): beyond the turn the matrix is the right one.
+!>
+!> Where points of contact change to and fro, states on either side of the change answer one another with corrections that both go
+!> too far; the caller may ask for a closer search, which stops between them.
+!>
+!> A correction against which the residual works (their product is negative) leads uphill: the state is past a limit point,
+!> as where a side lifts off a die it was bent around. If the whole of it is no better, the way back is taken, where the forces
+!> drive the body, whatever the residual: equilibrium is further on, and no shorter step would find it nearer (J.J. More,
+!> D.C. Sorensen, Math. Programming 16 (1979) 1-20: directions of negative curvature).
 module line_search
   use convergence, only: free_force
   use elem_api, only: block_done, report_t
@@ -19,35 +27,43 @@ module line_search
   use solution, only: solution_t
   implicit none
   private
-  public :: search_along, short_share
+  public :: search_along, manner_t, short_share
+
+  !> How to search: take the whole whatever the residual, or find the zero along the way more closely.
+  type :: manner_t
+    logical :: whole = .false., closely = .false.
+  end type manner_t
 
   !> A search that ends below this share of the correction is short.
   real(wp), parameter :: short_share = 0.2_wp
-  real(wp), parameter :: search_above = 0.8_wp
+  real(wp), parameter :: search_above = 0.8_wp, search_closely_above = 0.3_wp
   !> A share of the correction is taken when the whole residual falls to this part of what it was.
   real(wp), parameter :: real_fall = 0.5_wp
   integer, parameter :: max_searches = 6
 
 contains
 
-  !> Move `du` along the correction by the share `s` and evaluate there. s = 0: every share tried
-  !> fails, and `report` says why. A prescribed motion still missing, or `whole`, is taken without search.
-  subroutine search_along(scene, equations, solution, dt, external, residual, missing, correction, whole, du, s, report)
+  !> Move `du` along the correction by the share `s` and evaluate there; s = -1 is the way back. s = 0: every share tried
+  !> fails, and `report` says why. A prescribed motion still missing is taken without search.
+  subroutine search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, du, s, report)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt
     real(wp), intent(in) :: external(:), residual(:), missing(:), correction(:)
-    logical, intent(in) :: whole
+    type(manner_t), intent(in) :: manner
     real(wp), intent(inout) :: du(:)
     real(wp), intent(out) :: s
     type(report_t), intent(out) :: report
-    real(wp) :: start(size(du)), trial, slope0, slope, best, norm, norm0, near(2), far(2)
+    real(wp) :: start(size(du)), trial, slope0, slope, enough, best, norm, norm0, near(2), far(2)
+    logical :: uphill, accepted
     integer :: k
 
     start = du
     trial = 1
     slope0 = dot_product(correction, residual)
+    uphill = slope0 < 0
+    enough = merge(search_closely_above, search_above, manner%closely)
     norm0 = free_force(equations, residual)
     near = [0.0_wp, slope0]
     far = 0
@@ -67,14 +83,23 @@ contains
         best = abs(slope)
         s = trial
       end if
-      if (whole .or. abs(slope) <= search_above*abs(slope0) .or. any(abs(missing) > 0) .or. norm < real_fall*norm0 .or. &
-          (k == 1 .and. norm < norm0)) then
+      accepted = manner%whole .or. any(abs(missing) > 0) .or. norm < real_fall*norm0
+      if (.not. uphill) accepted = accepted .or. abs(slope) <= enough*slope0 .or. (k == 1 .and. norm < norm0)
+      if (accepted) then
         s = trial
         return
       end if
+      if (uphill .and. k == 1) then
+        du = start - correction
+        call evaluate(scene, equations, solution, dt, du, .true., report)
+        if (report%status == block_done) then
+          s = -1
+          return
+        end if
+      end if
       call narrow(trial, slope, near, far)
     end do
-    if (s <= 0) return
+    if (.not. s > 0) return
     du = start + s*correction + missing
     call evaluate(scene, equations, solution, dt, du, .true., report)
   end subroutine search_along

@@ -4,6 +4,7 @@
 !> correction still to come (the last one times the last fall of the residual) is below
 !> `displacement_norm` of the motion of the step.
 module newton
+  use contact_changes, only: contact_set, note_contact
   use convergence, only: pilots_in_equilibrium, relative_motion, relative_residual
   use elem_api, only: block_done, block_inverted, report_t
   use element_loop, only: add_prescribed
@@ -11,7 +12,7 @@ module newton
   use errors, only: error_t, exit_no_convergence
   use kinds, only: wp
   use linear_solver, only: try_without_pivoting
-  use line_search, only: search_along, short_share
+  use line_search, only: manner_t, search_along, short_share
   use predictor, only: predict
   use scene, only: scene_t
   use solution, only: group_state_t, solution_t
@@ -23,6 +24,8 @@ module newton
   !> One line of the listing.
   type :: iteration_t
     real(wp) :: force_norm = 0.0_wp, displacement_norm = 0.0_wp, line_search = 1.0_wp
+    !> Points opened, closed, stuck or slipped the other way.
+    logical :: contact_changed = .false.
   end type iteration_t
 
   type :: outcome_t
@@ -50,7 +53,8 @@ module newton
   !> A residual this many times larger than the first one, after `patience` iterations, is hopeless.
   real(wp), parameter :: hopeless = 1.0e3_wp
   integer, parameter :: patience = 6
-  !> The residual stagnates when the best of the last `patience` - 1 iterations is above this share of the best before.
+  !> The residual stagnates when the best of the last `patience` - 1 iterations is above this share of the best before, and
+  !> none of them was under way.
   real(wp), parameter :: stagnant = 0.3_wp
   !> After so many short searches one after the other the whole correction is taken.
   integer, parameter :: short_searches = 2
@@ -68,7 +72,9 @@ contains
     real(wp), dimension(equations%dofs%ndof) :: external, missing, residual, correction
     type(group_state_t) :: before(size(scene%groups))
     type(iteration_t) :: line
+    type(manner_t) :: manner
     type(report_t) :: report
+    integer, allocatable :: contact(:)
     logical :: changed
     integer :: first
 
@@ -86,6 +92,7 @@ contains
 
     first = 1
     correction = 0
+    allocate (contact, source=contact_set(scene, solution))
     do
       residual = external - equations%force
       line%force_norm = relative_residual(equations, solution%force_floor, external, residual, outcome%du)
@@ -115,12 +122,14 @@ contains
         exit
       end if
       outcome%linear_residual = max(outcome%linear_residual, equations%solver%residual)
-      call search_along(scene, equations, solution, dt, external, residual, missing, correction, &
-                        caught(outcome%history(first:)), outcome%du, line%line_search, report)
-      if (line%line_search <= 0) then
+      manner = manner_t(whole=caught(outcome%history(first:)), closely=in_turmoil(outcome%history(first:)))
+      call search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, outcome%du, &
+                        line%line_search, report)
+      if (.not. abs(line%line_search) > 0) then
         call blame(report, outcome)
         exit
       end if
+      call note_contact(scene, solution, contact, line%contact_changed)
       correction = line%line_search*correction
       missing = 0
     end do
@@ -152,14 +161,35 @@ contains
     converged = to_come <= scene%strategy%displacement_norm
   end function has_converged
 
-  !> The last searches were all short: they do not get past a turn of loading to unloading.
+  !> The last searches were all short: they do not get past a turn of loading to unloading. One that went back is not short.
   pure function caught(history)
     type(iteration_t), intent(in) :: history(:)
     logical :: caught
 
     caught = size(history) > short_searches
-    if (caught) caught = all(history(size(history) - short_searches + 1:)%line_search < short_share)
+    if (caught) caught = all(abs(history(size(history) - short_searches + 1:)%line_search) < short_share)
   end function caught
+
+  !> Contact keeps changing and the residual does not fall: it stagnates over the last two iterations.
+  pure function in_turmoil(history)
+    type(iteration_t), intent(in) :: history(:)
+    logical :: in_turmoil
+    integer :: n
+
+    n = size(history)
+    in_turmoil = n > 3
+    if (.not. in_turmoil) return
+    in_turmoil = all(history(n - 1:)%contact_changed) &
+                 .and. minval(history(n - 1:)%force_norm) > stagnant*minval(history(2:n - 2)%force_norm)
+  end function in_turmoil
+
+  !> Contact changed, or the search went back: the residual need not fall.
+  elemental function is_under_way(line)
+    type(iteration_t), intent(in) :: line
+    logical :: is_under_way
+
+    is_under_way = line%contact_changed .or. line%line_search < 0
+  end function is_under_way
 
   !> Is there a reason to give up?
   pure subroutine judge(scene, history, reason)
@@ -177,7 +207,8 @@ contains
       else if (n > patience .and. norms(n + 1) > hopeless*norms(min(2, n + 1))) then
         reason = 'diverged: residual '//to_text(norms(n + 1), 3)
       else if (n >= patience) then
-        if (minval(norms(n - patience + 3:)) > stagnant*minval(norms(2:n - patience + 2))) then
+        if (minval(norms(n - patience + 3:)) > stagnant*minval(norms(2:n - patience + 2)) &
+            .and. .not. any(is_under_way(history(n - patience + 3:)))) then
           reason = 'residual stagnates at '//to_text(norms(n + 1), 3)
         end if
       end if

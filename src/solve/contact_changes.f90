@@ -1,0 +1,59 @@
+!> Which points are in contact, and how: what may change from one iteration to the next.
+!>
+!> While it does, Newton's method seeks the set of points in contact rather than a zero nearby: it changes matrix at every
+!> iteration, and its residual need not fall until the set is found (M. Hintermüller, K. Ito, K. Kunisch, SIAM J. Optim. 13
+!> (2003) 865-888: primal-dual active sets are Newton's method).
+module contact_changes
+  use kinds, only: wp
+  use law_api, only: contact_slip
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use state_variables, only: find_variable
+  implicit none
+  private
+  public :: contact_set, note_contact
+
+contains
+
+  !> The set as it is now, and whether it is another than before.
+  pure subroutine note_contact(scene, solution, set, changed)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer, allocatable, intent(inout) :: set(:)
+    logical, intent(out) :: changed
+    integer, allocatable :: now(:)
+
+    allocate (now, source=contact_set(scene, solution))
+    changed = any(now /= set)
+    call move_alloc(now, set)
+  end subroutine note_contact
+
+  !> Status of all points and corners in the trial state, one after the other: open, stick, slip; slip backwards is negative.
+  pure function contact_set(scene, solution) result(set)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer, allocatable :: set(:)
+    integer :: g
+
+    allocate (set(0))
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%die == 0 .or. scene%groups(g)%material == 0) cycle
+      associate (variables => scene%groups(g)%variables, state => solution%groups(g)%trial)
+        set = [set, ways(state(variables(find_variable(variables, 'contact_status'))%first, :, :), &
+                         state(variables(find_variable(variables, 'friction'))%first, :, :))]
+        if (find_variable(variables, 'corner_place') == 0) cycle
+        set = [set, ways(state(variables(find_variable(variables, 'corner_contact_status'))%first, :, :), &
+                         state(variables(find_variable(variables, 'corner_friction'))%first, :, :))]
+      end associate
+    end do
+  end function contact_set
+
+  pure function ways(status, friction)
+    real(wp), intent(in) :: status(:, :), friction(:, :)
+    integer :: ways(size(status))
+
+    ways = reshape(nint(status), [size(status)])
+    where (ways == contact_slip .and. reshape(friction < 0, [size(status)])) ways = -ways
+  end function ways
+
+end module contact_changes
