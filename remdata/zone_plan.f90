@@ -33,6 +33,8 @@ module zone_plan
   real(wp), parameter :: flat_turn = 35*pi/180
   !> A point lies in a corner that is nearer than this share of the contour.
   real(wp), parameter :: in_place = 1.0e-6_wp
+  !> Free contour beside an end of contact, as a share of all, that makes it one of shape.
+  real(wp), parameter :: free_share = 0.1_wp
 
 contains
 
@@ -256,7 +258,7 @@ contains
     here = arc_at(chain, from)
     least = huge(least)
     do k = 1, size(chain%stretches)
-      if (all(chain%kinds(k) /= [kind_corner, kind_entry, kind_exit]) .or. any(taken == k)) cycle
+      if (any(taken == k) .or. .not. (chain%kinds(k) == kind_corner .or. is_outer_end(chain, k))) cycle
       way = abs(chain%arc(k - 1) - here)
       way = min(way, chain_length(chain) - way)
       if (.not. way < least) cycle
@@ -264,6 +266,26 @@ contains
       joint = k
     end do
   end subroutine nearest_joint
+
+  !> Does contact begin or end there for a good part of the contour? Gaps within a stretch of contact are no end of it.
+  pure function is_outer_end(chain, joint) result(outer)
+    type(chain_t), intent(in) :: chain
+    integer, intent(in) :: joint
+    logical :: outer
+    real(wp) :: way
+    integer :: k, i, n
+
+    outer = .false.
+    if (all(chain%kinds(joint) /= [kind_entry, kind_exit])) return
+    n = size(chain%stretches)
+    way = 0
+    do i = 1, n
+      k = merge(modulo(joint + i - 2, n) + 1, modulo(joint - i - 1, n) + 1, chain%kinds(joint) == kind_exit)
+      if (chain%stretches(k)%run > 0) exit
+      way = way + chain%arc(k) - chain%arc(k - 1)
+    end do
+    outer = way > free_share*chain_length(chain)
+  end function is_outer_end
 
   !> Sides of a zone that the contour forms: those whose old sides are on it.
   pure subroutine follow_contours(scene, contours, sets, zone)
