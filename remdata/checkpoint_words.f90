@@ -38,9 +38,8 @@ contains
 
   subroutine say(word, its_value)
     character(len=*), intent(in) :: word, its_value
-    integer :: status
 
-    write (*, '(a)', iostat=status) word//' '//its_value
+    write (*, '(a)') word//' '//its_value
   end subroutine say
 
 end module checkpoint_words
