@@ -28,6 +28,7 @@ LAGAMINE = os.path.join(os.path.abspath(BIN), "lagamine")
 REMESH = 4
 LONGEST_CYCLE = 300  # seconds
 ACTIONS = ["as the deck says", "other transfer", "finer", "earlier", "old mesh"]
+STOPS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 # What is measured in seconds differs from run to run.
 CLOCKS = ("remdata [s]", "restart [s]")
 
@@ -39,10 +40,16 @@ def go(deck, out, *options, **environment):
                           env=dict(os.environ, **environment))
 
 
+def hear_signals():
+    """A shell cannot catch what was ignored when it began, as under nohup."""
+    for number in STOPS:
+        signal.signal(number, signal.SIG_DFL)
+
+
 def begin(deck, out, **environment):
     """A cycle that is not waited for. Its output goes nowhere: a program left behind by a kill would hold a pipe open."""
     return subprocess.Popen([CYCLE, deck, "--out", out, "--threads", "1"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                            stderr=subprocess.DEVNULL, env=dict(os.environ, **environment))
+                            stderr=subprocess.DEVNULL, env=dict(os.environ, **environment), preexec_fn=hear_signals)
 
 
 def tries(out):
@@ -198,7 +205,7 @@ def kills(checks, draw, deck, whole, number, seconds, **environment):
 
 def stops(checks, draw, deck, whole, seconds):
     """Stopped by a signal: exit code 128+n, and the same command goes on."""
-    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+    for number in STOPS:
         out = checks.path(f"stop-{number}")
         process = begin(deck, out)
         time.sleep(draw.uniform(0.1, 0.6) * seconds)
