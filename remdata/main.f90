@@ -1,6 +1,7 @@
 !> The remesher: arguments -> new mesh and state -> exit code.
 program remdata
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use checkpoint_words, only: print_about
   use errors, only: error_t, exit_done
   use kinds, only: wp
   use remesh_options, only: read_remesh_options, remesh_options_t, remesh_usage
@@ -22,6 +23,8 @@ program remdata
     write (*, '(a)') remesh_usage()
   else if (options%version) then
     write (*, '(a)') 'remdata '//version_text
+  else if (options%about) then
+    call print_about(options%checkpoint, error)
   else
     call run()
   end if

@@ -15,6 +15,8 @@ module remesh_options
     integer :: transfer = -1
     !> Wanted sizes are divided by this.
     real(wp) :: finer = 1.0_wp
+    !> Only tell what the checkpoint holds.
+    logical :: about = .false.
     logical :: quiet = .false., help = .false., version = .false.
   end type remesh_options_t
 
@@ -35,6 +37,8 @@ contains
         options%help = .true.
       case ('--version')
         options%version = .true.
+      case ('--about')
+        options%about = .true.
       case ('--quiet')
         options%quiet = .true.
       case ('--out')
@@ -54,7 +58,7 @@ contains
       case default
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
           call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--quiet'), string_t('--out'), &
-                                    string_t('--transfer'), string_t('--finer')], 'remdata', error)
+                                    string_t('--transfer'), string_t('--finer'), string_t('--about')], 'remdata', error)
         else if (allocated(options%checkpoint)) then
           call fail(error, exit_input, 'one checkpoint at a time: found '''//options%checkpoint//''' and '''//word//'''')
         else
@@ -65,6 +69,8 @@ contains
     if (allocated(error) .or. options%help .or. options%version) return
     if (.not. allocated(options%checkpoint)) then
       call fail(error, exit_input, 'no checkpoint given', 'remdata --help shows how to call')
+    else if (options%about) then
+      return
     else if (.not. allocated(options%out)) then
       call fail(error, exit_input, '--out is missing: the checkpoint of the new mesh', 'remdata --help shows how to call')
     else if (options%out == options%checkpoint) then
@@ -79,10 +85,12 @@ contains
 
     text = 'remdata: a new mesh and the state on it, from a checkpoint of lagamine'//nl//nl// &
            'remdata CHECKPOINT --out NEW [--transfer N] [--finer F] [--quiet]'//nl// &
+           'remdata --about CHECKPOINT'//nl// &
            'remdata --help | --version'//nl//nl// &
            '  --out NEW       checkpoint of the new mesh, for lagamine --resume; facts in NEW.json'//nl// &
            '  --transfer N    state transfer: 0 inverse distance, 1 moving least squares, 2 patches (default: the deck''s)'//nl// &
            '  --finer F       divide the wanted sizes of elements by F'//nl// &
+           '  --about         check the file and print what it holds, a word and its value a line'//nl// &
            '  --quiet         print errors only'//nl//nl// &
            'Exit codes: 0 done, 2 input refused, 3 no mesh that is good enough, 5 the machine failed, 6 a check of our own failed'
   end function remesh_usage

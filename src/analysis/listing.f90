@@ -15,7 +15,7 @@ module listing
   implicit none
   private
   public :: listing_t, open_listing, close_listing, show_progress, end_progress
-  public :: list_lines, list_balance, list_step, list_cut, list_event, list_note
+  public :: list_lines, list_resumed, list_balance, list_step, list_cut, list_event, list_note
 
   type :: listing_t
     integer :: unit = -1
@@ -69,6 +69,17 @@ contains
     end do
     flush (listing%unit)
   end subroutine list_lines
+
+  !> The listing is a diary: what was written before stays, also of steps that are now made again. The empty line ends one that
+  !> was cut in the middle.
+  subroutine list_resumed(listing, path, solution)
+    type(listing_t), intent(in) :: listing
+    character(len=*), intent(in) :: path
+    type(solution_t), intent(in) :: solution
+
+    write (listing%unit, '(/,a)') 'resumed from '//path//' after step '//to_text(solution%step)//', time ' &
+      //to_text(solution%time)
+  end subroutine list_resumed
 
   !> An accepted step with its iterations.
   subroutine list_step(listing, solution, outcome, totals)

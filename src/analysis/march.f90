@@ -16,6 +16,7 @@ module march
   use listing, only: list_balance, list_cut, list_event, list_note, list_step, listing_t, show_progress
   use newton, only: outcome_t, solve_step
   use restore_balance, only: balance_t, refuse_remesh, restore_equilibrium
+  use restart_report, only: write_restart
   use results, only: open_results, results_t, save_failure, save_fields
   use scene, only: scene_t
   use solution, only: solution_t
@@ -23,8 +24,8 @@ module march
   use state_variables, only: find_variable
   use step_strategy, only: after_failure, after_success, choose_step
   use system, only: caught_signal, join_path
-  use text, only: to_text
-  use watch_mesh, only: answer_distress, estimate, look_at_mesh, mesh_is_due, remesh_reason
+  use text, only: to_text, two_digits
+  use watch_mesh, only: answer_distress, estimate, estimate_stress, look_at_mesh, mesh_is_due, remesh_reason
   implicit none
   private
   public :: run_t, march_to_end
@@ -67,7 +68,6 @@ contains
 
     cuts = 0
     call start(scene, solution, run, error)
-    if (solution%unbalanced .and. .not. allocated(error)) call begin_on_new_mesh(scene, solution, run, error)
     do while (.not. allocated(error) .and. solution%time < scene%strategy%end_time*(1 - 64*eps))
       dt = choose_step(scene, solution%time, solution%next_step)
 
@@ -112,13 +112,15 @@ contains
     call finish(scene, solution, run, error)
   end subroutine march_to_end
 
-  !> Equations, files, and the scene at rest.
+  !> Equations, the scene at rest, and files. A mesh that is refused has touched none of the results.
   subroutine start(scene, solution, run, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
     type(run_t), intent(inout) :: run
     type(error_t), allocatable, intent(out) :: error
+    logical :: new_mesh
 
+    new_mesh = solution%unbalanced
     call set_up(scene, run%equations, error)
     if (allocated(error)) return
     call update_flow_stress(scene, run%equations%laws, run%equations%bodies, solution)
@@ -127,21 +129,27 @@ contains
     if (.not. run%estimator%elastic) call list_note(run%listing, 'note: a law has no elastic moduli, so error_stress is in the ' &
                                                     //'norm of the deviator, not of the energy')
     if (.not. solution%initial_volume > 0) solution%initial_volume = run%totals%volume
+    if (new_mesh) call balance_new_mesh(scene, solution, run, error)
+    if (allocated(error)) return
     call open_history(scene, solution, join_path(run%folder, 'history.csv'), run%resume, run%table, error)
     if (allocated(error)) return
-    call open_results(scene, solution, run%stem, run%resume, run%results, error)
+    call open_results(scene, solution, run%stem, merge(solution%step, -1, run%resume), new_mesh, run%results, error)
     if (allocated(error)) return
     if (allocated(run%results%note)) call list_note(run%listing, run%results%note)
-    if (run%resume) return
-    call save_fields(scene, solution, run%results, error)
+    if (new_mesh) then
+      call save_all(scene, solution, run, error)
+    else if (.not. run%resume) then
+      call save_fields(scene, solution, run%results, error)
+    end if
   end subroutine start
 
   !> Equilibrium on a new mesh, judged; what is there then is what later steps stand on.
-  subroutine begin_on_new_mesh(scene, solution, run, error)
+  subroutine balance_new_mesh(scene, solution, run, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
     type(run_t), intent(inout) :: run
     type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: late
     type(outcome_t) :: outcome
 
     allocate (run%balance)
@@ -154,11 +162,10 @@ contains
     run%totals = run%balance%after
     call list_balance(run%listing, scene, solution, run%balance, outcome)
     call refuse_remesh(scene, solution, run%balance, error)
-    if (allocated(error)) return
-    call save_fields(scene, solution, run%results, error)
-    if (allocated(error)) return
-    call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, ends_now(scene, solution), error)
-  end subroutine begin_on_new_mesh
+    if (run%balance%restored) call estimate_stress(scene, run%estimator, solution)
+    call write_restart(run%stem//'.g'//two_digits(scene%generation)//'.restart.json', scene, solution, run%balance, late)
+    if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
+  end subroutine balance_new_mesh
 
   !> A note, once, when an element has moved in a way that its points do not see.
   subroutine tell_spurious_mode(scene, solution, run)
@@ -204,12 +211,15 @@ contains
     if (.not. allocated(error)) call save_checkpoint(scene, solution, run, error)
   end subroutine save_all
 
+  !> The checkpoint; the rows of the history up to it are on the disk before it is.
   subroutine save_checkpoint(scene, solution, run, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
-    type(run_t), intent(in) :: run
+    type(run_t), intent(inout) :: run
     type(error_t), allocatable, intent(out) :: error
 
+    call run%table%flush_rows(error)
+    if (allocated(error)) return
     call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, ends_now(scene, solution), error)
   end subroutine save_checkpoint
 
@@ -324,7 +334,7 @@ contains
     if (allocated(error)) then
       run%exit_code = error%code
       run%stop_reason = error%message
-      if (error%code == exit_no_convergence .and. solution%step > 0) then
+      if (error%code == exit_no_convergence .and. solution%step > 0 .and. .not. mesh_is_refused(run)) then
         call save_all(scene, solution, run, late)
       end if
     else if (mesh_is_due(solution)) then
@@ -336,5 +346,14 @@ contains
     end if
     call run%table%close(late)
   end subroutine finish
+
+  !> The new mesh was refused: what was there before it stays.
+  pure function mesh_is_refused(run) result(refused)
+    type(run_t), intent(in) :: run
+    logical :: refused
+
+    refused = .false.
+    if (allocated(run%balance)) refused = run%balance%refused
+  end function mesh_is_refused
 
 end module march

@@ -12,6 +12,7 @@ module restore_balance
   use scene, only: scene_t
   use solution, only: solution_t
   use state_variables, only: find_variable
+  use system, only: wall_seconds
   use text, only: to_text
   use vectors, only: length_of
   implicit none
@@ -21,6 +22,9 @@ module restore_balance
   !> What the restart tells of the remesh.
   type :: balance_t
     logical :: restored = .false.
+    !> The remesh is refused, by the fault of this stage.
+    logical :: refused = .false.
+    character(len=:), allocatable :: stage
     !> First residual over the forces at work, iterations in all, parts it took.
     real(wp) :: first_residual = 0.0_wp
     integer :: iterations = 0, parts = 0
@@ -31,6 +35,8 @@ module restore_balance
     !> Force on each pilot before (as the old mesh had it) and after (3, ndie).
     real(wp), allocatable :: pilot_before(:, :), pilot_after(:, :)
     character(len=:), allocatable :: reason
+    !> Seconds on the wall.
+    real(wp) :: wall = 0.0_wp
   end type balance_t
 
   !> Parts smaller than this are not tried.
@@ -48,9 +54,10 @@ contains
     type(balance_t), intent(inout) :: balance   !! `before` is known
     type(outcome_t), intent(out) :: outcome
     real(wp), dimension(equations%dofs%ndof) :: external, rest
-    real(wp) :: left, part
+    real(wp) :: left, part, started
     type(report_t) :: report
 
+    started = wall_seconds()
     allocate (balance%pilot_before, source=solution%pilot_applied)
     rest = 0
     call external_forces(scene, equations%dofs, solution%time, external)
@@ -82,6 +89,7 @@ contains
     balance%motion = maxval(abs(solution%displacement))/equations%size
     allocate (balance%pilot_after, source=solution%pilot_applied)
     if (balance%restored) solution%unbalanced = .false.
+    balance%wall = wall_seconds() - started
   end subroutine restore_equilibrium
 
   !> The penalty of contact goes with the length of sides: at the depth that was kept, sides of another length bear another
@@ -125,7 +133,7 @@ contains
   subroutine refuse_remesh(scene, solution, balance, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
-    type(balance_t), intent(in) :: balance
+    type(balance_t), intent(inout) :: balance
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: what
 
@@ -133,18 +141,19 @@ contains
     if (.not. balance%restored) then
       what = 'equilibrium is not restored'
       if (allocated(balance%reason)) what = what//' ('//balance%reason//')'
-      what = what//'; stage to blame: '//trim(merge('contact ', 'transfer', size(scene%dies) > 0 &
-                                                    .and. balance%first_residual > large_residual))
+      balance%stage = trim(merge('contact ', 'transfer', size(scene%dies) > 0 .and. balance%first_residual > large_residual))
     else if (balance%iterations > scene%remesher%most_iterations) then
-      what = to_text(balance%iterations)//' iterations to equilibrium, at most '//to_text(scene%remesher%most_iterations) &
-             //'; stage to blame: transfer'
+      what = to_text(balance%iterations)//' iterations to equilibrium, at most '//to_text(scene%remesher%most_iterations)
+      balance%stage = 'transfer'
     else if (force_change(balance) > scene%remesher%force_change) then
       what = 'the force of a die changes by '//to_text(100*force_change(balance), 3)//' %, at most ' &
-             //to_text(100*scene%remesher%force_change, 3)//' %; stage to blame: contact'
+             //to_text(100*scene%remesher%force_change, 3)//' %'
+      balance%stage = 'contact'
     end if
-    if (len(what) > 0) call fail(error, exit_no_convergence, 'mesh '//to_text(scene%generation)//' refused at step ' &
-                                 //to_text(solution%step)//': '//what, &
-                                 'remesh again from the checkpoint of the old mesh with another transfer or finer elements')
+    balance%refused = len(what) > 0
+    if (balance%refused) call fail(error, exit_no_convergence, 'mesh '//to_text(scene%generation)//' refused at step ' &
+                                   //to_text(solution%step)//': '//what//'; stage to blame: '//balance%stage, &
+                                   'remesh again from the checkpoint of the old mesh with another transfer or finer elements')
   end subroutine refuse_remesh
 
 end module restore_balance

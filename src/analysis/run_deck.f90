@@ -9,7 +9,7 @@ module run_deck
   use law_api, only: law_t
   use law_manual, only: law_card
   use law_registry, only: law_names, list_laws
-  use listing, only: close_listing, end_progress, list_lines, open_listing
+  use listing, only: close_listing, end_progress, list_lines, list_resumed, open_listing
   use march, only: march_to_end, run_t
   use run_options, only: run_options_t, stem_of
   use run_version, only: version_text
@@ -123,6 +123,7 @@ contains
     started = wall_seconds()
     call open_listing(run%stem//'.log', run%resume, options%quiet, solution%time/scene%strategy%end_time, run%listing, error)
     if (allocated(error)) return
+    if (run%resume) call list_resumed(run%listing, options%resume, solution)
     call scene_lines(scene, lines)
     call list_lines(run%listing, lines)
     call march_to_end(scene, solution, run, error)
@@ -141,7 +142,8 @@ contains
     call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
     call list_lines(run%listing, lines)
     call close_listing(run%listing)
-    call write_summary(join_path(run%folder, 'summary.json'), facts, scene, run%equations, solution, run%totals, late)
+    call write_summary(join_path(run%folder, 'summary.json'), facts, scene, run%equations, solution, run%totals, &
+                       run%balance, late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
     if (.not. options%quiet) then
       do k = 1, size(lines)

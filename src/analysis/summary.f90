@@ -8,6 +8,8 @@ module summary
   use history, only: circumference
   use json_writer, only: json_t
   use kinds, only: i8, wp
+  use restart_report, only: add_restart
+  use restore_balance, only: balance_t
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use system, only: cpu_seconds, peak_memory_mb
@@ -30,13 +32,14 @@ module summary
 
 contains
 
-  subroutine write_summary(path, facts, scene, equations, solution, totals, error)
+  subroutine write_summary(path, facts, scene, equations, solution, totals, balance, error)
     character(len=*), intent(in) :: path
     type(run_facts_t), intent(in) :: facts
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
     type(totals_t), intent(in) :: totals
+    type(balance_t), allocatable, intent(in) :: balance   !! of a restart on a new mesh
     type(error_t), allocatable, intent(out) :: error
     type(json_t) :: json
     integer :: k
@@ -73,6 +76,7 @@ contains
     call add_effects(json, scene, equations)
     call add_seconds(json, equations)
     if (scene%remesh%estimate) call add_estimate(json, scene, solution)
+    if (allocated(balance)) call add_restart(json, scene, solution, balance)
     call json%begin_object('checks')
     call json%add('volume_drift', totals%volume/solution%initial_volume - 1)
     call json%add('max_penetration', solution%worst_penetration)

@@ -10,7 +10,7 @@ module watch_mesh
   use triggers, only: distress_trigger, find_triggers, was_good
   implicit none
   private
-  public :: estimate, look_at_mesh, answer_distress, mesh_is_due, remesh_reason
+  public :: estimate, estimate_stress, look_at_mesh, answer_distress, mesh_is_due, remesh_reason
 
 contains
 
@@ -28,6 +28,20 @@ contains
     call estimate_errors(estimator, scene, solution)
     call timers%stop(timer)
   end subroutine estimate
+
+  !> Error of the stress restored on a new mesh; nothing has been added yet to the error of the strain.
+  subroutine estimate_stress(scene, estimator, solution)
+    type(scene_t), intent(in) :: scene
+    type(estimator_t), intent(in) :: estimator
+    type(solution_t), intent(inout) :: solution
+    type(solution_t), allocatable :: tried
+
+    if (.not. scene%remesh%estimate) return
+    allocate (tried, source=solution)
+    call estimate_errors(estimator, scene, tried)
+    solution%estimate%stress = tried%estimate%stress
+    solution%estimate%stress_of = tried%estimate%stress_of
+  end subroutine estimate_stress
 
   !> Ask for a new mesh when the one just used has passed a limit.
   subroutine look_at_mesh(scene, timers, listing, solution)

@@ -4,7 +4,7 @@ module text
   use kinds, only: i8, wp
   implicit none
   private
-  public :: string_t, to_text, upper_case, nearest_word, edit_distance, join
+  public :: string_t, to_text, upper_case, nearest_word, edit_distance, join, two_digits
 
   !> A text of its own length, so that arrays of words need no padding.
   type :: string_t
@@ -19,6 +19,15 @@ module text
   end interface to_text
 
 contains
+
+  !> A number of a file: 07.
+  pure function two_digits(n) result(s)
+    integer, intent(in) :: n
+    character(len=:), allocatable :: s
+
+    s = to_text(n)
+    if (len(s) < 2) s = '0'//s
+  end function two_digits
 
   pure function integer_to_text(value) result(s)
     integer, intent(in) :: value

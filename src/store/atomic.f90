@@ -7,7 +7,7 @@ module atomic
   use system, only: directory_of, file_exists, flush_to_disk, link_file, remove_file, rename_file
   implicit none
   private
-  public :: temporary_name, previous_name, replace_file, write_text, read_text
+  public :: temporary_name, previous_name, replace_file, copy_to_temporary, write_text, read_text
 
 contains
 
@@ -79,6 +79,25 @@ contains
   subroutine write_text(path, text, error)
     character(len=*), intent(in) :: path, text
     type(error_t), allocatable, intent(out) :: error
+
+    call write_temporary(path, text, error)
+    if (.not. allocated(error)) call replace_file(path, error)
+  end subroutine write_text
+
+  !> A copy of the file `path` under its temporary name, to be changed and then put in its place by `replace_file`.
+  subroutine copy_to_temporary(path, error)
+    character(len=*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: bytes
+
+    call read_text(path, bytes, error)
+    if (.not. allocated(error)) call write_temporary(path, bytes, error)
+  end subroutine copy_to_temporary
+
+  !> Write `text` into `temporary_name(path)`; after an error nothing is left of it.
+  subroutine write_temporary(path, text, error)
+    character(len=*), intent(in) :: path, text
+    type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: ignored
     character(len=200) :: why
     integer(i8) :: length
@@ -101,10 +120,8 @@ contains
     if (status /= 0) then
       call remove_file(temporary_name(path), ignored)
       call fail(error, exit_machine, "cannot write '"//path//"': "//trim(why))
-      return
     end if
-    call replace_file(path, error)
-  end subroutine write_text
+  end subroutine write_temporary
 
   !> The whole content of the file `path`; '' when it cannot be read.
   subroutine read_text(path, text, error)

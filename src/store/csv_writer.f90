@@ -9,7 +9,7 @@ module csv_writer
   use errors, only: error_t, exit_bug, exit_input, exit_machine, fail
   use exact_numbers, only: exact_text
   use kinds, only: i8, wp
-  use system, only: file_exists
+  use system, only: file_exists, flush_to_disk
   use text, only: join, string_t, to_text
   implicit none
   private
@@ -32,6 +32,7 @@ module csv_writer
     procedure :: create
     procedure :: resume
     procedure :: end_row
+    procedure :: flush_rows
     procedure :: status
     procedure :: close => close_table
     !> `put(value)`: the next cell of the row, or several cells from an array.
@@ -210,6 +211,14 @@ contains
     end if
     if (flag /= 0) call self%record(exit_machine, "cannot write '"//self%path//"': "//trim(why))
   end subroutine append
+
+  !> Wait until the rows so far would survive a power cut.
+  subroutine flush_rows(self, error)
+    class(csv_t), intent(in) :: self
+    type(error_t), allocatable, intent(out) :: error
+
+    if (self%ready) call flush_to_disk(self%path, error)
+  end subroutine flush_rows
 
   !> The first error so far; unallocated when there was none.
   pure subroutine status(self, error)

@@ -23,7 +23,20 @@ module exchange
   implicit none
   private
   public :: write_checkpoint, read_deck_of_checkpoint, read_remesh, read_checkpoint, read_bare_scene, read_contact_ends
-  public :: schema_version
+  public :: checkpoint_facts_t, read_facts, schema_version
+
+  !> A checkpoint in short: where the run stands, on which mesh, and why a new one is due (no triggers: it is not).
+  type :: checkpoint_facts_t
+    integer :: generation = 1, step = 0, elements = 0
+    real(wp) :: time = 0.0_wp
+    !> State carried over to a new mesh, not yet in equilibrium.
+    logical :: unbalanced = .false.
+    integer :: transfer = 0
+    !> Estimated errors of stress and strain, negative where they were not asked for [-].
+    real(wp) :: error_stress = -1.0_wp, error_strain = -1.0_wp
+    type(string_t), allocatable :: triggers(:)
+    real(wp), allocatable :: values(:), limits(:)
+  end type checkpoint_facts_t
 
   !> Raised whenever a dataset changes its name, shape or meaning.
   integer, parameter :: schema_version = 3
@@ -330,6 +343,7 @@ contains
     if (remesh%generation > 1) then
       call file%read('mesh/coordinates', remesh%coordinates)
       call file%read('mesh/origin', remesh%origin)
+      call refuse_not_finite(file, 'mesh/coordinates', all_finite(remesh%coordinates) .and. all_finite(remesh%origin))
       n = 0
       call file%read('mesh/nset', n)
       allocate (remesh%sides(n))
@@ -361,6 +375,49 @@ contains
     call file%read('deck/text', deck_text)
     call file%close(error)
   end subroutine read_deck_of_checkpoint
+
+  !> What a checkpoint tells scripts of itself, once it was found whole and of this schema.
+  subroutine read_facts(path, facts, error)
+    character(len=*), intent(in) :: path
+    type(checkpoint_facts_t), intent(out) :: facts
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+    type(scene_t) :: scene
+    real(wp), allocatable :: values(:), limits(:)
+    integer :: unbalanced, g
+
+    call read_bare_scene(path, scene, error)
+    if (allocated(error)) return
+    facts%generation = scene%generation
+    do g = 1, size(scene%groups)
+      if (is_solid(scene%groups(g))) facts%elements = facts%elements + size(scene%groups(g)%connectivity, 2)
+    end do
+    call open_checkpoint(path, file, error)
+    if (allocated(error)) return
+    call file%read('progress/time', facts%time)
+    call file%read('progress/step', facts%step)
+    unbalanced = 0
+    call file%read('progress/unbalanced', unbalanced)
+    facts%unbalanced = unbalanced == 1
+    facts%transfer = scene%remesher%transfer
+    allocate (facts%triggers(0))
+    if (file%has('estimate/stress')) then
+      call file%read('estimate/stress', facts%error_stress)
+      call file%read('estimate/strain', facts%error_strain)
+    end if
+    if (file%has('remesh/triggers')) then
+      call file%read('remesh/triggers', facts%triggers)
+      call file%read('remesh/value', values)
+      call file%read('remesh/limit', limits)
+      if (any([size(values), size(limits)] /= size(facts%triggers))) then
+        call file%record_error(exit_input, 'remesh/triggers: lists of unlike lengths')
+      else
+        facts%values = values
+        facts%limits = limits
+      end if
+    end if
+    call file%close(error)
+  end subroutine read_facts
 
   subroutine open_checkpoint(path, file, error)
     character(len=*), intent(in) :: path
@@ -432,6 +489,8 @@ contains
     call read_triple(file, 'section/position', solution%section)
     call read_triple(file, 'section/last_increment', solution%last_section_increment)
     call read_triple(file, 'section/applied', solution%section_applied)
+    call refuse_not_finite(file, 'progress', all(abs([solution%time, solution%last_step, solution%next_step, &
+                                                      solution%external_work, solution%initial_volume]) <= huge(1.0_wp)))
     call read_dies(file, scene, solution)
     call read_states(file, scene, solution)
     if (scene%remesh%estimate) call read_estimate(file, scene, solution%estimate)
@@ -455,6 +514,7 @@ contains
     call file%read('mesh/generation', scene%generation)
     call file%read('mesh/coordinates', scene%mesh%coordinates)
     call file%read('mesh/origin', scene%mesh%origin)
+    call refuse_not_finite(file, 'mesh/coordinates', all_finite(scene%mesh%coordinates) .and. all_finite(scene%mesh%origin))
     call file%read('mesh/labels', scene%mesh%labels)
     allocate (scene%mesh%node_sets(0))
     n = 0
@@ -569,7 +629,25 @@ contains
 
     call file%read(place, values)
     if (size(values) == 3) triple = values
+    call refuse_not_finite(file, place, all(abs(values) <= huge(1.0_wp)))
   end subroutine read_triple
+
+  !> A state that is not a number would spread through all that follows.
+  subroutine refuse_not_finite(file, place, finite)
+    type(hdf5_file_t), intent(inout) :: file
+    character(len=*), intent(in) :: place
+    logical, intent(in) :: finite
+
+    if (.not. finite) call file%record_error(exit_input, place//': holds what is not a finite number')
+  end subroutine refuse_not_finite
+
+  !> False for NaN too, which is not in any order.
+  pure function all_finite(values) result(finite)
+    real(wp), intent(in) :: values(:, :)
+    logical :: finite
+
+    finite = all(abs(values) <= huge(1.0_wp))
+  end function all_finite
 
   subroutine read_states(file, scene, solution)
     type(hdf5_file_t), intent(inout) :: file
@@ -585,6 +663,7 @@ contains
       if (all(shape(state) == shape(solution%groups(g)%committed))) then
         solution%groups(g)%committed = state
         solution%groups(g)%trial = state
+        call refuse_not_finite(file, group_place(g)//'/state', all(abs(state) <= huge(1.0_wp)))
       else
         call file%record_error(exit_input, group_place(g)//'/state: does not fit the deck''s group '//scene%groups(g)%name)
       end if
@@ -645,6 +724,7 @@ contains
     call file%read(place, values)
     if (all(shape(values) == shape(matrix))) then
       matrix = values
+      call refuse_not_finite(file, place, all_finite(values))
     else
       call file%record_error(exit_input, place//': does not fit the deck''s mesh')
     end if

@@ -43,6 +43,7 @@ module hdf5_file
     procedure :: record_error
     procedure :: path => path_of_file
     procedure :: group
+    procedure :: link
     procedure :: has
     procedure :: list
     procedure :: remove
@@ -163,7 +164,13 @@ module hdf5_file
       type(string_t), allocatable, intent(out) :: names(:)
     end subroutine list
 
-    !> Remove a dataset, or a group with all in it; nothing there is fine. The room in the file is not won back.
+    !> Let `path` stand for what is at the root of another file, named as seen from the folder of this one.
+    module subroutine link(self, path, other_file)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path, other_file
+    end subroutine link
+
+    !> Remove a link, a dataset, or a group with all in it; nothing there is fine. The room in the file is not won back.
     module subroutine remove(self, path)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path

@@ -2,8 +2,9 @@
 submodule(hdf5_file) hdf5_file_access
   use hdf5, only: h5dont_atexit_f, h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_close_strong_f, &
     h5f_scope_local_f, h5fclose_f, h5fcreate_f, h5fflush_f, h5fis_hdf5_f, h5fopen_f, h5gclose_f, h5gcreate_f, &
-    h5gget_obj_info_idx_f, h5gn_members_f, h5iis_valid_f, h5ldelete_f, h5lexists_f, h5open_f, h5p_file_access_f, &
-    h5p_link_create_f, h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_fclose_degree_f, h5t_native_double
+    h5gget_obj_info_idx_f, h5gn_members_f, h5iis_valid_f, h5lcreate_external_f, h5ldelete_f, h5lexists_f, h5open_f, &
+    h5p_file_access_f, h5p_link_create_f, h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_fclose_degree_f, &
+    h5t_native_double
   use errors, only: exit_bug, exit_input, exit_machine, fail
   use system, only: file_exists, set_environment
   implicit none
@@ -156,6 +157,18 @@ contains
     call h5pclose_f(links, flag(4))
     if (any(flag /= 0)) call self%record_error(exit_machine, "the group '"//path//"' cannot be made")
   end procedure group
+
+  module procedure link
+    integer(hid_t) :: links
+    integer :: flag(4)
+
+    if (self%failed()) return
+    call h5pcreate_f(h5p_link_create_f, links, flag(1))
+    call h5pset_create_inter_group_f(links, 1, flag(2))
+    call h5lcreate_external_f(other_file, '/', self%id, path, flag(3), lcpl_id=links)
+    call h5pclose_f(links, flag(4))
+    if (any(flag /= 0)) call self%record_error(exit_machine, "the link '"//path//"' cannot be made")
+  end procedure link
 
   module procedure has
     integer :: last, flag

@@ -1,8 +1,13 @@
-!> Fields for people: one HDF5 file per mesh generation, one XDMF over all of them.
+!> Fields for people: one HDF5 file per mesh generation, one per saved instant, one XDMF over all of them.
 !>
-!> `NAME.gNN.h5`: mesh/ (coordinates, topology from 0, groups), dies/, steps/NNNNNN/ with the
-!> coordinates reached, nodal fields (node/NAME), numbers of elements (element/NAME) and the raw state of the points (points/GROUP).
+!> `NAME.gNN.h5`: mesh/ (coordinates, topology from 0, groups), dies/, and steps/NNNNNN, links to the instants: files
+!> `NAME.gNN/NNNNNN.h5` with the coordinates reached, nodal fields (node/NAME), numbers of elements (element/NAME) and the raw state
+!> of the points (points/GROUP). Who reads follows the links without knowing.
+!>
+!> Every file is written under a temporary name and renamed; an instant that has been saved is never written to again. So a kill or
+!> a power cut at any moment loses nothing: a file that grows by appending would be lost as a whole, HDF5 keeps no journal.
 module results
+  use atomic, only: copy_to_temporary, replace_file, temporary_name
   use dies, only: is_deformable
   use errors, only: error_t
   use hdf5_file, only: hdf5_file_t
@@ -11,16 +16,16 @@ module results
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use state_variables, only: component_names
-  use system, only: base_name, file_exists, rename_file
-  use text, only: string_t, to_text
+  use system, only: base_name, file_exists, make_directory, remove_file, rename_file
+  use text, only: string_t, to_text, two_digits
   use xdmf_writer, only: xdmf_field_t, xdmf_grid_t, xdmf_t
   implicit none
   private
   public :: results_t, open_results, save_fields, save_failure
 
   type :: results_t
-    !> Path of the run's files without endings, of the present generation's HDF5 file, and the XDMF.
-    character(len=:), allocatable :: stem, path
+    !> Path of the run's files without endings, of the present generation's HDF5 file, and folder of its instants.
+    character(len=:), allocatable :: stem, path, folder
     !> Step saved last, -1 before the first.
     integer :: saved_step = -1
     !> What the user should know of the files; may be unallocated.
@@ -30,71 +35,130 @@ module results
 
 contains
 
-  !> Begin the files of this generation, or take them up again after the step of a checkpoint.
-  subroutine open_results(scene, solution, stem, resume, results, error)
+  !> Begin the files of this generation, or take them up again. Instants after the step `after` are made again: they are taken out,
+  !> of all generations, and so is all of a later generation, and of this one when its mesh is new.
+  subroutine open_results(scene, solution, stem, after, new_mesh, results, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     character(len=*), intent(in) :: stem
-    logical, intent(in) :: resume
+    integer, intent(in) :: after            !! -1: nothing stays
+    logical, intent(in) :: new_mesh
     type(results_t), intent(out) :: results
     type(error_t), allocatable, intent(out) :: error
+    integer :: first_new, saved, g
     logical :: there
 
     results%stem = stem
-    results%path = stem//'.g'//two_digits(scene%generation)//'.h5'
-    if (resume) then
-      call results%xdmf%resume(stem//'.xdmf', solution%time, error)
-      if (allocated(error)) return
-    end if
-    there = file_exists(results%path)
-    if (resume .and. there) then
-      call forget_later_steps(results%path, solution%step, results%saved_step, error)
-      if (allocated(error)) call begin_again(scene, results, error)
+    results%path = mesh_path(stem, scene%generation)
+    results%folder = instants_folder(stem, scene%generation)
+    first_new = scene%generation + merge(0, 1, new_mesh)
+    if (after < 0) first_new = 1
+    ! the XDMF first: at no moment does it name a file that is gone
+    if (after >= 0) call results%xdmf%resume(stem//'.xdmf', solution%time, base_name(mesh_path(stem, first_new)), error)
+    if (allocated(error)) return
+    if (results%xdmf%size() > 0) then
+      call results%xdmf%write_file(stem//'.xdmf', error)
     else
-      call write_mesh(results%path, scene, error)
+      call remove_file(stem//'.xdmf', error)
     end if
+    if (allocated(error)) return
+    g = 0
+    do
+      g = g + 1
+      there = file_exists(mesh_path(stem, g))
+      if (.not. there .and. g > scene%generation) exit
+      if (.not. there) cycle
+      call forget_later_steps(mesh_path(stem, g), instants_folder(stem, g), merge(after, -1, g < first_new), saved, error)
+      if (allocated(error) .and. after >= 0) then
+        call put_aside(mesh_path(stem, g), results, error)
+      else if (g >= first_new) then
+        call remove_file(mesh_path(stem, g), error)
+      else if (g == scene%generation .and. saved == solution%step) then
+        results%saved_step = saved
+      end if
+      if (allocated(error)) return
+    end do
+    call make_directory(results%folder, error)
+    if (allocated(error)) return
+    if (.not. file_exists(results%path)) call write_mesh(results%path, scene, error)
   end subroutine open_results
 
-  !> A fields file that was damaged (a full disk, a kill in the middle of a save) does not keep a run from
-  !> going on: it is put aside under another name, and a new one begins.
-  subroutine begin_again(scene, results, error)
-    type(scene_t), intent(in) :: scene
+  !> The file of a mesh generation.
+  pure function mesh_path(stem, generation) result(path)
+    character(len=*), intent(in) :: stem
+    integer, intent(in) :: generation
+    character(len=:), allocatable :: path
+
+    path = instants_folder(stem, generation)//'.h5'
+  end function mesh_path
+
+  !> Where the instants of a generation lie.
+  pure function instants_folder(stem, generation) result(path)
+    character(len=*), intent(in) :: stem
+    integer, intent(in) :: generation
+    character(len=:), allocatable :: path
+
+    path = stem//'.g'//two_digits(generation)
+  end function instants_folder
+
+  !> A file that somebody else has damaged does not keep a run from going on: it is put aside under another name.
+  subroutine put_aside(path, results, error)
+    character(len=*), intent(in) :: path
     type(results_t), intent(inout) :: results
     type(error_t), allocatable, intent(inout) :: error
     type(xdmf_t) :: empty
 
-    results%note = 'note: '//error%message//'; put aside as '//results%path//'.damaged, fields begin anew'
-    call rename_file(results%path, results%path//'.damaged', error)
-    if (allocated(error)) return
+    results%note = 'note: '//error%message//'; put aside as '//path//'.damaged, its fields begin anew'
+    call rename_file(path, path//'.damaged', error)
+    if (.not. allocated(error)) call remove_file(results%stem//'.xdmf', error)
     results%xdmf = empty
     results%saved_step = -1
-    call write_mesh(results%path, scene, error)
-  end subroutine begin_again
+  end subroutine put_aside
 
-  !> Steps saved after the checkpoint are made again: take them out. `saved` is the checkpoint's own step if it is there.
-  subroutine forget_later_steps(path, step, saved, error)
-    character(len=*), intent(in) :: path
+  !> Take the instants after `step` out of a generation: first their links, then their files. `saved` is the last one that stays.
+  subroutine forget_later_steps(path, folder, step, saved, error)
+    character(len=*), intent(in) :: path, folder
     integer, intent(in) :: step
     integer, intent(out) :: saved
     type(error_t), allocatable, intent(out) :: error
     type(hdf5_file_t) :: file
     type(string_t), allocatable :: names(:)
+    logical, allocatable :: gone(:)
     integer :: k, number, status
 
     saved = -1
-    call file%open_append(path, error)
+    allocate (names(0))
+    call file%open(path, error)
     if (allocated(error)) return
-    if (file%has('steps')) then
-      call file%list('steps', names)
-      do k = 1, size(names)
-        read (names(k)%s, *, iostat=status) number
-        if (status /= 0) cycle
-        if (number > step) call file%remove('steps/'//names(k)%s)
-        if (number == step) saved = step
-      end do
-    end if
+    if (file%has('steps')) call file%list('steps', names)
     call file%close(error)
+    if (allocated(error)) return
+    allocate (gone(size(names)), source=.false.)
+    do k = 1, size(names)
+      read (names(k)%s, *, iostat=status) number
+      if (status /= 0) cycle
+      gone(k) = number > step
+      if (.not. gone(k)) saved = max(saved, number)
+    end do
+    if (.not. any(gone)) return
+    call copy_to_temporary(path, error)
+    if (.not. allocated(error)) call file%open_append(temporary_name(path), error)
+    if (allocated(error)) return
+    do k = 1, size(names)
+      if (gone(k)) call file%remove('steps/'//names(k)%s)
+    end do
+    call put_in_place(file, path, error)
+    do k = 1, size(names)
+      if (gone(k) .and. .not. allocated(error)) call remove_file(instant_path(folder, names(k)%s), error)
+    end do
   end subroutine forget_later_steps
+
+  pure function instant_path(folder, number) result(path)
+    character(len=*), intent(in) :: folder, number
+    character(len=:), allocatable :: path
+
+    path = folder//'/'//number//'.h5'
+  end function instant_path
 
   subroutine write_mesh(path, scene, error)
     character(len=*), intent(in) :: path
@@ -105,7 +169,7 @@ contains
     character(len=:), allocatable :: place
     integer :: g, n
 
-    call file%create(path, error)
+    call begin_file(file, path, error)
     if (allocated(error)) return
     call solid_topology(scene, topology)
     call file%write('mesh/coordinates', scene%mesh%coordinates)
@@ -128,7 +192,8 @@ contains
       call file%write('dies/'//scene%dies(g)%name, scene%dies(g)%pieces)
       call file%write_attribute('dies/'//scene%dies(g)%name, 'number', n)
     end do
-    call file%close(error)
+    call file%group('steps')
+    call put_in_place(file, path, error)
   end subroutine write_mesh
 
   !> Nodes of all 8-node elements, counted from 0.
@@ -154,7 +219,7 @@ contains
     real(wp), intent(in), optional :: residual(:, :)  !! residual force of a step that failed (2, nnode)
     type(hdf5_file_t) :: file
     type(xdmf_grid_t) :: grid
-    character(len=:), allocatable :: place
+    character(len=:), allocatable :: path
     character(len=6) :: number
     integer, allocatable :: rigid(:)
     integer :: nnode, g
@@ -162,37 +227,77 @@ contains
     if (results%saved_step == solution%step) return
     nnode = size(scene%mesh%coordinates, 2)
     write (number, '(i6.6)') solution%step
-    place = 'steps/'//number
-    call file%open_append(results%path, error)
+    path = instant_path(results%folder, number)
+    call begin_file(file, path, error)
     if (allocated(error)) return
-    call file%write(place//'/coordinates', scene%mesh%coordinates + solution%displacement)
-    call file%write_attribute(place, 'time', solution%time)
-    call file%write_attribute(place, 'step', solution%step)
+    call file%write('coordinates', scene%mesh%coordinates + solution%displacement)
+    call file%write_attribute('/', 'time', solution%time)
+    call file%write_attribute('/', 'step', solution%step)
     rigid = pack([(g, g=1, size(scene%dies))],.not. is_deformable(scene%dies))
-    if (size(rigid) > 0) call file%write(place//'/pilots', solution%pilots(:, rigid))
+    if (size(rigid) > 0) call file%write('pilots', solution%pilots(:, rigid))
     grid%time = solution%time
-    grid%file = base_name(results%path)
-    grid%geometry = place//'/coordinates'
+    grid%file = base_name(results%folder)//'/'//base_name(path)
+    grid%mesh_file = base_name(results%path)
+    grid%geometry = 'coordinates'
     grid%nnode = nnode
     grid%topology = 'mesh/topology'
     allocate (grid%fields(0))
     do g = 1, size(scene%groups)
       if (is_solid(scene%groups(g))) grid%nelement = grid%nelement + size(scene%groups(g)%connectivity, 2)
     end do
-    call put_vector(file, place, 'displacement', solution%displacement, grid)
-    call put_vector(file, place, 'applied_force', solution%applied, grid)
-    if (present(residual)) call put_vector(file, place, 'residual_force', residual, grid)
-    call put_nodal_fields(file, place, scene, solution, grid)
+    call put_vector(file, 'displacement', solution%displacement, grid)
+    call put_vector(file, 'applied_force', solution%applied, grid)
+    if (present(residual)) call put_vector(file, 'residual_force', residual, grid)
+    call put_nodal_fields(file, scene, solution, grid)
     if (scene%remesh%estimate) then
-      call put_cells(file, place, 'error_stress', solution%estimate%stress_of, grid)
-      call put_cells(file, place, 'error_strain', solution%estimate%strain_of, grid)
+      call put_cells(file, 'error_stress', solution%estimate%stress_of, grid)
+      call put_cells(file, 'error_strain', solution%estimate%strain_of, grid)
     end if
-    call put_points(file, place, scene, solution)
-    call file%close(error)
+    call put_points(file, scene, solution)
+    call put_in_place(file, path, error)
+    if (.not. allocated(error)) call link_instant(results, number, error)
     if (.not. allocated(error)) call results%xdmf%add(grid, error)
     if (.not. allocated(error)) call results%xdmf%write_file(results%stem//'.xdmf', error)
     if (.not. allocated(error)) results%saved_step = solution%step
   end subroutine save_fields
+
+  !> Enter an instant in the file of its mesh.
+  subroutine link_instant(results, number, error)
+    type(results_t), intent(in) :: results
+    character(len=*), intent(in) :: number
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+
+    call copy_to_temporary(results%path, error)
+    if (.not. allocated(error)) call file%open_append(temporary_name(results%path), error)
+    if (allocated(error)) return
+    call file%remove('steps/'//number)
+    call file%link('steps/'//number, base_name(results%folder)//'/'//number//'.h5')
+    call put_in_place(file, results%path, error)
+  end subroutine link_instant
+
+  !> A new file under the temporary name of `path`.
+  subroutine begin_file(file, path, error)
+    type(hdf5_file_t), intent(inout) :: file
+    character(len=*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: ignored
+
+    call file%create(temporary_name(path), error)
+    if (allocated(error)) call remove_file(temporary_name(path), ignored)
+  end subroutine begin_file
+
+  !> Close a file written under its temporary name and give it its own; after an error the older one is there as it was.
+  subroutine put_in_place(file, path, error)
+    type(hdf5_file_t), intent(inout) :: file
+    character(len=*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: ignored
+
+    call file%close(error)
+    if (.not. allocated(error)) call replace_file(path, error)
+    if (allocated(error)) call remove_file(temporary_name(path), ignored)
+  end subroutine put_in_place
 
   !> A picture of the step that failed, in files of its own (NAME.failed.*): the last good state with the residual force.
   subroutine save_failure(scene, solution, stem, residual, error)
@@ -203,28 +308,27 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(results_t) :: failed
 
-    call open_results(scene, solution, stem//'.failed', .false., failed, error)
+    call open_results(scene, solution, stem//'.failed', -1, .false., failed, error)
     if (.not. allocated(error)) call save_fields(scene, solution, failed, error, residual)
   end subroutine save_failure
 
   !> A vector at the nodes, with the third component ParaView asks for.
-  subroutine put_vector(file, place, name, vector, grid)
+  subroutine put_vector(file, name, vector, grid)
     type(hdf5_file_t), intent(inout) :: file
-    character(len=*), intent(in) :: place, name
+    character(len=*), intent(in) :: name
     real(wp), intent(in) :: vector(:, :)
     type(xdmf_grid_t), intent(inout) :: grid
     real(wp) :: padded(3, size(vector, 2))
 
     padded(1:2, :) = vector
     padded(3, :) = 0
-    call file%write(place//'/node/'//name, padded)
-    grid%fields = [grid%fields, xdmf_field_t(name, 'Node', 'Vector', place//'/node/'//name)]
+    call file%write('node/'//name, padded)
+    grid%fields = [grid%fields, xdmf_field_t(name, 'Node', 'Vector', 'node/'//name)]
   end subroutine put_vector
 
   !> Every component of the solid groups' states at the nodes, and von Mises' equivalent stress.
-  subroutine put_nodal_fields(file, place, scene, solution, grid)
+  subroutine put_nodal_fields(file, scene, solution, grid)
     type(hdf5_file_t), intent(inout) :: file
-    character(len=*), intent(in) :: place
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(xdmf_grid_t), intent(inout) :: grid
@@ -268,27 +372,26 @@ contains
         end associate
       end do
       where (count_at > 0) at = at/count_at
-      call file%write(place//'/node/'//name, at)
-      grid%fields = [grid%fields, xdmf_field_t(name, 'Node', 'Scalar', place//'/node/'//name)]
+      call file%write('node/'//name, at)
+      grid%fields = [grid%fields, xdmf_field_t(name, 'Node', 'Scalar', 'node/'//name)]
     end subroutine put_field
 
   end subroutine put_nodal_fields
 
   !> A number for each solid element.
-  subroutine put_cells(file, place, name, values, grid)
+  subroutine put_cells(file, name, values, grid)
     type(hdf5_file_t), intent(inout) :: file
-    character(len=*), intent(in) :: place, name
+    character(len=*), intent(in) :: name
     real(wp), intent(in) :: values(:)
     type(xdmf_grid_t), intent(inout) :: grid
 
-    call file%write(place//'/element/'//name, values)
-    grid%fields = [grid%fields, xdmf_field_t(name, 'Cell', 'Scalar', place//'/element/'//name)]
+    call file%write('element/'//name, values)
+    grid%fields = [grid%fields, xdmf_field_t(name, 'Cell', 'Scalar', 'element/'//name)]
   end subroutine put_cells
 
   !> State of all points of all groups, as the solver holds it.
-  subroutine put_points(file, place, scene, solution)
+  subroutine put_points(file, scene, solution)
     type(hdf5_file_t), intent(inout) :: file
-    character(len=*), intent(in) :: place
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(string_t), allocatable :: names(:)
@@ -297,8 +400,8 @@ contains
     do g = 1, size(scene%groups)
       if (size(scene%groups(g)%variables) == 0) cycle
       call component_names(scene%groups(g)%variables, names)
-      call file%write(place//'/points/'//to_text(g)//'/state', solution%groups(g)%committed)
-      call file%write(place//'/points/'//to_text(g)//'/components', names)
+      call file%write('points/'//to_text(g)//'/state', solution%groups(g)%committed)
+      call file%write('points/'//to_text(g)//'/components', names)
     end do
   end subroutine put_points
 
@@ -322,12 +425,5 @@ contains
       found = found .or. words(k)%s == word
     end do
   end function any_is
-
-  pure function two_digits(n) result(s)
-    integer, intent(in) :: n
-    character(len=2) :: s
-
-    write (s, '(i2.2)') n
-  end function two_digits
 
 end module results

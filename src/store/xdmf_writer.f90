@@ -30,6 +30,7 @@ module xdmf_writer
   type :: xdmf_grid_t
     real(wp) :: time = 0
     character(len=:), allocatable :: file      !! HDF5 file, relative to the directory of the XDMF file
+    character(len=:), allocatable :: mesh_file !! that of the topology; unallocated = the same
     character(len=:), allocatable :: geometry  !! dataset of coordinates
     integer :: nnode = 0
     integer :: ndim = 2                        !! coordinates per node: 2 or 3
@@ -67,16 +68,18 @@ contains
     class(xdmf_t), intent(inout) :: self
     type(xdmf_grid_t), intent(in) :: grid
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: s, shape
+    character(len=:), allocatable :: s, shape, mesh_file
     integer :: i
 
     shape = 'Quadrilateral_8'
     if (allocated(grid%shape)) shape = grid%shape
+    mesh_file = grid%file
+    if (allocated(grid%mesh_file)) mesh_file = grid%mesh_file
     s = grid_head//exact_text(grid%time)//'"/>'//nl// &
       '    <Geometry GeometryType="'//trim(merge('XY ', 'XYZ', grid%ndim == 2))//'">'//nl// &
-      data_item(grid, grid%geometry, grid%nnode, grid%ndim, .false.)//'    </Geometry>'//nl// &
+      data_item(grid%file, grid%geometry, grid%nnode, grid%ndim, .false.)//'    </Geometry>'//nl// &
       '    <Topology TopologyType="'//shape//'" NumberOfElements="'//to_text(grid%nelement)//'">'//nl// &
-      data_item(grid, grid%topology, grid%nelement, grid%nodes_per_element, .true.)//'    </Topology>'//nl
+      data_item(mesh_file, grid%topology, grid%nelement, grid%nodes_per_element, .true.)//'    </Topology>'//nl
     if (allocated(grid%fields)) then
       do i = 1, size(grid%fields)
         call check_field(grid%fields(i), error)
@@ -88,11 +91,13 @@ contains
     self%grids = [self%grids, string_t(s//grid_foot)]
   end subroutine add
 
-  !> Take over the grids of an older file of ours up to `time`; no file is no grids.
-  subroutine resume(self, path, time, error)
+  !> Take over the grids of an older file of ours up to `time`, and before the first that has its mesh in `until`; no file is no
+  !> grids.
+  subroutine resume(self, path, time, until, error)
     class(xdmf_t), intent(inout) :: self
     character(len=*), intent(in) :: path
     real(wp), intent(in) :: time
+    character(len=*), intent(in) :: until   !! name of an HDF5 file, as in the grids
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: old
     real(wp) :: grid_time
@@ -114,6 +119,7 @@ contains
       read (old(number:number + index(old(number:), '"') - 2), *, iostat=flag) grid_time
       if (flag /= 0) exit
       if (grid_time > time) exit
+      if (index(old(first:last), '>'//escaped(until)//':') > 0) exit
       self%grids = [self%grids, string_t(old(first:last))]
       first = last + 1
     end do
@@ -161,13 +167,12 @@ contains
     n = grid%nnode
     if (field%center == 'Cell') n = grid%nelement
     s = '    <Attribute Name="'//escaped(field%name)//'" AttributeType="'//field%kind//'" Center="'//field%center//'">'//nl// &
-      data_item(grid, field%dataset, n, components(field%kind), field%is_integer)//'    </Attribute>'//nl
+      data_item(grid%file, field%dataset, n, components(field%kind), field%is_integer)//'    </Attribute>'//nl
   end function field_text
 
   !> Where an array lies and how large it is: `n` rows, of several columns unless `ncomponent` is 1.
-  pure function data_item(grid, dataset, n, ncomponent, is_integer) result(s)
-    type(xdmf_grid_t), intent(in) :: grid
-    character(len=*), intent(in) :: dataset
+  pure function data_item(file, dataset, n, ncomponent, is_integer) result(s)
+    character(len=*), intent(in) :: file, dataset
     integer, intent(in) :: n, ncomponent
     logical, intent(in) :: is_integer
     character(len=:), allocatable :: s
@@ -180,7 +185,7 @@ contains
     else
       s = s//'NumberType="Float" Precision="8">'
     end if
-    s = s//escaped(grid%file)//':'
+    s = s//escaped(file)//':'
     if (index(dataset, '/') /= 1) s = s//'/'
     s = s//escaped(dataset)//'</DataItem>'//nl
   end function data_item

@@ -7,6 +7,7 @@ times must grow; every saved step must be in it. Exit code 0 when all of it hold
 """
 import glob
 import os
+import re
 import sys
 import xml.etree.ElementTree as ElementTree
 
@@ -81,7 +82,9 @@ class Checker:
         if found:
             name, place, x = found
             nodes = len(x)
-            self.saved.setdefault(name, set()).add(os.path.dirname(place).strip("/"))
+            instant = re.fullmatch(r"(.*)/(\d+)\.h5", name)     # NAME.gNN/NNNNNN.h5 of NAME.gNN.h5
+            mesh, step = (instant[1] + ".h5", f"steps/{instant[2]}") if instant else (name, os.path.dirname(place).strip("/"))
+            self.saved.setdefault(mesh, set()).add(step)
             if x.shape != (nodes, width):
                 self.fault(f"{where}: coordinates of shape {x.shape} are not {geometry.get('GeometryType')}")
             if not np.isfinite(x).all():

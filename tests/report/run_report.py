@@ -230,8 +230,9 @@ class ReportTest(unittest.TestCase):
             file["mesh/topology"][0, 0] = 100000
 
         def wrong_shape(file):
-            del file["steps/000024/node/mises"]
-            file["steps/000024/node/mises"] = np.zeros(3)
+            step = file["steps/000024"]                      # a link into another file
+            del step["node/mises"]
+            step.create_dataset("node/mises", data=np.zeros(3))
 
         def no_pilots(file):
             del file["steps/000024/pilots"]

@@ -51,24 +51,32 @@ def write_generation(path, number, x0, topology, sides, steps, dies, plane_state
             file[f"mesh/groups/{k}"].attrs["elem"] = text(elem)
         for name, pieces in dies:
             file[f"dies/{name}"] = pieces
+        folder = path[:-len(".h5")]
+        os.makedirs(folder, exist_ok=True)
         for step, time, share, x, strain, pilots in steps:
-            place = file.create_group(f"steps/{step:06d}")
-            place["coordinates"] = x
-            place["pilots"] = pilots
-            place.attrs["time"] = float(time)
-            place.attrs["step"] = np.int32(step)
-            for name, vector in (("displacement", x - x0), ("applied_force", 0 * x)):
-                place[f"node/{name}"] = np.hstack([vector, np.zeros((len(x), 1))])
-            for k, name in enumerate(FIELDS):
-                place[f"node/{name}"] = strain if name == "plastic_strain" else (700 + 300 * strain) * [1, -.2, -1, .2, -.2, 0][k]
-            state = np.zeros((len(sides), 2, len(STATE)))
-            closed = np.abs(x[sides][:, [0, 2], 1] - x[:, 1].max()) < 1e-9
-            closed &= share > 0
-            state[..., 0] = closed * (900 + 40 * x[sides][:, [0, 2], 0])
-            state[..., 1] = -0.3 * state[..., 0]
-            state[..., 3] = closed * (1 + (x[sides][:, [0, 2], 0] > 5))
-            place["points/2/state"] = state
-            place["points/2/components"] = np.array([name.encode() for name in STATE], dtype=h5py.string_dtype("utf-8", 16))
+            file[f"steps/{step:06d}"] = h5py.ExternalLink(f"{os.path.basename(folder)}/{step:06d}.h5", "/")
+            write_instant(os.path.join(folder, f"{step:06d}.h5"), step, time, share, x0, x, strain, pilots, sides)
+
+
+def write_instant(path, step, time, share, x0, x, strain, pilots, sides):
+    """NAME.gNN/NNNNNN.h5."""
+    with h5py.File(path, "w") as place:
+        place["coordinates"] = x
+        place["pilots"] = pilots
+        place.attrs["time"] = float(time)
+        place.attrs["step"] = np.int32(step)
+        for name, vector in (("displacement", x - x0), ("applied_force", 0 * x)):
+            place[f"node/{name}"] = np.hstack([vector, np.zeros((len(x), 1))])
+        for k, name in enumerate(FIELDS):
+            place[f"node/{name}"] = strain if name == "plastic_strain" else (700 + 300 * strain) * [1, -.2, -1, .2, -.2, 0][k]
+        state = np.zeros((len(sides), 2, len(STATE)))
+        closed = np.abs(x[sides][:, [0, 2], 1] - x[:, 1].max()) < 1e-9
+        closed &= share > 0
+        state[..., 0] = closed * (900 + 40 * x[sides][:, [0, 2], 0])
+        state[..., 1] = -0.3 * state[..., 0]
+        state[..., 3] = closed * (1 + (x[sides][:, [0, 2], 0] > 5))
+        place["points/2/state"] = state
+        place["points/2/components"] = np.array([name.encode() for name in STATE], dtype=h5py.string_dtype("utf-8", 16))
 
 
 def write_xdmf(path, grids):
@@ -80,7 +88,7 @@ def write_xdmf(path, grids):
     out = ['<?xml version="1.0" encoding="UTF-8"?>\n<Xdmf Version="3.0">\n <Domain>\n'
            '  <Grid Name="history" GridType="Collection" CollectionType="Temporal">\n']
     for time, file, step, nodes, elements in grids:
-        place = f"{file}:/steps/{step:06d}"
+        place = f"{file[:-len('.h5')]}/{step:06d}.h5:"
         out.append(f'   <Grid Name="mesh" GridType="Uniform">\n    <Time Value="{time!r}"/>\n    <Geometry GeometryType="XY">\n'
                    + item(f"{nodes} 2", "f", f"{place}/coordinates") + "    </Geometry>\n"
                    f'    <Topology TopologyType="Quadrilateral_8" NumberOfElements="{elements}">\n'

@@ -17,6 +17,8 @@ from support import (DONE, INPUT, LAGAMINE, MACHINE, NO_CONVERGENCE, SOURCE, UPS
 
 LIMIT_LOAD = os.path.join(SOURCE, "decks", "thick_cylinder", "thick_cylinder_plastic.lag")
 SMALL = mesh(6, 9) + ["--threads", "1"]
+# What a file takes at least on a disk in memory [bytes].
+PAGE = 4096
 # Words that only a run-time library or a debugger says.
 STRANGE = ("Backtrace", "Fortran runtime", "HDF5-DIAG", "SIG", "core dumped", "At line")
 
@@ -91,7 +93,8 @@ def full_disk(checks):
     """The disk fills at several moments: 5, the file is named; what was whole stays whole, and the run can go on with more room."""
     whole = checks.path("whole")
     run([UPSETTING, "--out", whole, "--quiet"] + SMALL)
-    needed = sum(os.path.getsize(os.path.join(whole, name)) for name in os.listdir(whole)) // 1024
+    files = [os.path.join(folder, name) for folder, _, names in os.walk(whole) for name in names]
+    needed = sum(-(-os.path.getsize(file) // PAGE) * PAGE for file in files) // 1024
     disk = checks.path("disk")
     os.makedirs(disk)
     mounted = os.getuid() == 0 and subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4k", "none", disk], stdout=subprocess.DEVNULL,
@@ -111,7 +114,7 @@ def full_disk(checks):
                              restore_signals=False, env=dict(os.environ, GFORTRAN_ERROR_BACKTRACE="0"))
             fails(checks, result, MACHINE, what, [out])
             silent(checks, result, what)
-            left = [name for name in (os.listdir(out) if os.path.isdir(out) else []) if name.endswith(".tmp")]
+            left = [name for _, _, names in os.walk(out) for name in names if name.endswith(".tmp")]
             checks.that(not left, f"{what}: nothing half written is left", left)
             checkpoint = os.path.join(out, "upsetting.ckp.h5")
             if not os.path.exists(checkpoint):

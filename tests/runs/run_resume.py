@@ -79,9 +79,10 @@ def older_checkpoint(checks, deck, options, whole):
         out = checks.path(f"older-{place}")
         shutil.copytree(whole, out)
         if place == "empty":
-            for name in os.listdir(out):
-                if name != "billet.ckp.1.h5":
-                    os.remove(os.path.join(out, name))
+            for folder, _, names in os.walk(out):
+                for name in names:
+                    if name != "billet.ckp.1.h5":
+                        os.remove(os.path.join(folder, name))
         result = run([deck, "--out", out, "--resume", os.path.join(out, "billet.ckp.1.h5"), "--threads", "1"] + options)
         checks.that(result.returncode == DONE, f"the older checkpoint, {place} folder: resumed", said(result))
         if place == "same":

@@ -160,7 +160,7 @@ def h5_differences(first, second, leave_out=()):
         names = sorted(name for name in set(one) | set(two) if one.get(name) != two.get(name))
         return [name for name in names if not name.startswith(tuple(leave_out) or "\0")]
     excluded = [word for name in leave_out if "@" not in name for word in ("--exclude-path", "/" + name)]
-    command = ["h5diff"] + excluded + [first, second]
+    command = ["h5diff", "--follow-symlinks"] + excluded + [first, second]
     result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     ours = [line for line in result.stdout.splitlines() if line.strip() and "difference" not in line
             and not any(name.startswith("@") and name[1:] in line for name in leave_out)]
@@ -180,21 +180,26 @@ def h5_contents(path):
     contents = {}
 
     def visit(name, thing):
-        contents[name] = fingerprint(thing[()]) if isinstance(thing, h5py.Dataset) else "group"
         for key in thing.attrs:
             contents[f"{name}@{key}"] = fingerprint(thing.attrs[key])
+        if isinstance(thing, h5py.Dataset):
+            contents[name] = fingerprint(thing[()])
+            return
+        if name:
+            contents[name] = "group"
+        for key in thing:
+            visit(f"{name}/{key}" if name else key, thing[key])   # links to saved instants are followed
 
     with h5py.File(path, "r") as file:
-        for key in file.attrs:
-            contents[f"@{key}"] = fingerprint(file.attrs[key])
-        file.visititems(visit)
+        visit("", file)
     return contents
 
 
 def result_differences(first, second):
     """What differs between two folders of results that should be of one and the same run: names of files, and what in them."""
     wrong = []
-    names = {os.path.basename(path) for folder in (first, second) for path in glob.glob(os.path.join(folder, "*"))}
+    names = {os.path.relpath(path, folder) for folder in (first, second)
+             for path in glob.glob(os.path.join(folder, "**"), recursive=True) if os.path.isfile(path)}
     for name in sorted(names):
         one, two = os.path.join(first, name), os.path.join(second, name)
         if name.endswith((".log", ".1.h5")) or name == "summary.json":

@@ -1,0 +1,45 @@
+!> `remdata --about`: what a checkpoint holds, for scripts: a word and its value on each line.
+module checkpoint_words
+  use errors, only: error_t
+  use exact_numbers, only: exact_text
+  use exchange, only: checkpoint_facts_t, read_facts
+  use text, only: to_text
+  implicit none
+  private
+  public :: print_about
+
+contains
+
+  !> Refuse the file by name, or print its facts.
+  subroutine print_about(path, error)
+    character(len=*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    type(checkpoint_facts_t) :: facts
+    character(len=:), allocatable :: why
+    integer :: k
+
+    call read_facts(path, facts, error)
+    if (allocated(error)) return
+    call say('generation', to_text(facts%generation))
+    call say('step', to_text(facts%step))
+    call say('time', exact_text(facts%time))
+    call say('unbalanced', to_text(merge(1, 0, facts%unbalanced)))
+    call say('elements', to_text(facts%elements))
+    call say('transfer', to_text(facts%transfer))
+    if (facts%error_stress >= 0) call say('error_stress_pct', to_text(100*facts%error_stress, 4))
+    if (facts%error_strain >= 0) call say('error_strain_pct', to_text(100*facts%error_strain, 4))
+    why = ''
+    do k = 1, size(facts%triggers)
+      if (k > 1) why = why//'; '
+      why = why//facts%triggers(k)%s//' '//to_text(facts%values(k), 4)//' (limit '//to_text(facts%limits(k))//')'
+    end do
+    if (len(why) > 0) call say('due', why)
+  end subroutine print_about
+
+  subroutine say(word, its_value)
+    character(len=*), intent(in) :: word, its_value
+
+    write (*, '(a)') word//' '//its_value
+  end subroutine say
+
+end module checkpoint_words

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""What remdata and lagacycle do with a checkpoint that is not whole, not ours, or of another schema: refused by name.
+
+usage: run_checkpoints.py [-v] [-k]       -v prints every check, -k keeps the results
+"""
+import os
+import shutil
+import subprocess
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "runs"))
+from support import BIN, DONE, INPUT, UPSETTING, Checks, add_cards, deck_text, run, said, with_h5py, write  # noqa: E402
+
+REMESH = 4
+
+
+def call(program, *arguments):
+    return subprocess.run([os.path.join(os.path.abspath(BIN), program), *arguments], text=True, stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=100, check=False)
+
+
+def change(action):
+    """Damage by h5py."""
+    def damage(path):
+        import h5py  # pylint: disable=import-outside-toplevel
+        with h5py.File(path, "r+") as file:
+            action(file)
+    return damage
+
+
+def cut(share):
+    def damage(path):
+        os.truncate(path, int(share * os.path.getsize(path)))
+    return damage
+
+
+def text(path):
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("rubbish\n")
+
+
+def other_schema(file):
+    file.attrs["schema_version"] = file.attrs["schema_version"] + 1
+
+
+def not_a_number(file):
+    file["nodes/displacement"][0, 0] = float("nan")
+
+
+def other_hash(file):
+    file["mesh/coordinates"][0, 0] += 1e-9
+
+
+def main():
+    with_h5py()
+    checks = Checks()
+    deck = write(checks.path("case.lag"), add_cards(deck_text(UPSETTING), "CKPT 2\nREMSH\n   TIMES 0.1")
+                 .replace("nx 12", "nx 3").replace("ny 18", "ny 4").replace("travel 9", "travel 2"))
+    out = checks.path("out")
+    result = run([deck, "--out", out, "--threads", "1"])
+    checks.that(result.returncode == REMESH, "stops for a new mesh", said(result))
+    good, bad, new = os.path.join(out, "case.ckp.h5"), checks.path("bad.ckp.h5"), checks.path("new.h5")
+    result = call("remdata", "--about", good)
+    facts = dict(line.split(" ", 1) for line in result.stdout.splitlines())
+    checks.that(result.returncode == DONE and facts["generation"] == "1" and facts["elements"] == "12"
+                and facts["due"].startswith("time 0.1"), "--about tells what is in it", facts)
+    damages = {"a text": (text, "HDF5"), "cut to nothing": (cut(0), "HDF5"), "cut to 10 %": (cut(0.1), "cut short"),
+               "cut to 97 %": (cut(0.97), "cut short"), "another schema": (change(other_schema), "schema"),
+               "no schema": (change(lambda file: file.attrs.__delitem__("schema")), "not a checkpoint"),
+               "a number that is none": (change(not_a_number), "digest"), "a number altered": (change(other_hash), "digest"),
+               "a dataset gone": (change(lambda file: file.__delitem__("groups/1/state")), "digest"),
+               "no such file": (os.remove, "no such file")}
+    for what, (damage, phrase) in damages.items():
+        shutil.copy(good, bad)
+        damage(bad)
+        for arguments in (("--about", bad), (bad, "--out", new)):
+            result = call("remdata", *arguments)
+            lines = result.stderr.splitlines()
+            checks.that(result.returncode == INPUT and lines and bad in lines[0] and phrase in lines[0] and len(lines) <= 2,
+                        f"{what}: remdata {arguments[0]} refuses it by name", said(result))
+        checks.that(not os.path.exists(new), f"{what}: nothing is written")
+        # the cycle goes on from the one before; without one it stops
+        folder = checks.path("folder")
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(out, folder)
+        place = os.path.join(folder, "case.ckp.h5")
+        damage(place)
+        result = call("lagacycle", deck, "--out", folder, "--threads", "1")
+        checks.that(result.returncode == DONE and ("one before" in result.stdout or what == "no such file"),
+                    f"{what}: lagacycle goes on from the one before", said(result))
+        shutil.rmtree(folder)
+        shutil.copytree(out, folder)
+        damage(place)
+        os.remove(os.path.join(folder, "case.ckp.1.h5"))
+        if what != "no such file":      # nothing there is a beginning
+            result = call("lagacycle", deck, "--out", folder, "--threads", "1")
+            checks.that(result.returncode == INPUT and place in result.stderr and "--fresh" in result.stderr,
+                        f"{what}: without one before, refused by name", said(result))
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
