@@ -181,6 +181,7 @@ contains
       end do
     end if
     wish%across = scene%remesher%across_contact
+    wish%turn = scene%remesher%turn
     allocate (needs(0))
     do c = 1, size(contours)
       call needs_of_chain(contours(c)%chain, wish, limits, more)

@@ -24,6 +24,7 @@ module scene_reader
   use mesh_parts, only: mesh_parts_t, start_parts
   use remesh, only: remesh_t
   use remeshed_parts, only: order_as_remeshed, replace_parts
+  use remesher_rows, only: measure_own_mesh
   use scene, only: scene_t
   use scene_draft, only: draft_t, start_draft, words_of
   use scene_effects, only: list_effects
@@ -64,6 +65,7 @@ contains
     call read_blocks(deck, draft, parts, diagnostics)
     call read_side_sets(deck, draft, parts, diagnostics)
     call join_blocks(deck, draft, parts, diagnostics)
+    draft%own_mesh = measure_own_mesh(parts)
     if (present(remesh)) call replace_parts(remesh, draft, parts)
     call finish_mesh(draft, parts, diagnostics)
     if (size(parts%bodies) == 0) call refuse_empty(deck, diagnostics)

@@ -69,6 +69,10 @@ contains
           call put_limit('stroke', scene%dies(stroke%die)%name//' '//directions(stroke%component)//' = '//to_text(stroke%value))
         end associate
       end do
+      associate (wish => scene%remesher)
+        call put('new mesh   elements of '//to_text(wish%smallest, 4)//' to '//to_text(wish%largest, 4)//', at most ' &
+                 //to_text(wish%most_elements)//', error of the strain '//to_text(100*wish%strain_error)//' %')
+      end associate
     end if
     do k = 1, size(scene%effects)
       associate (effect => scene%effects(k))

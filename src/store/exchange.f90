@@ -26,7 +26,7 @@ module exchange
   public :: schema_version
 
   !> Raised whenever a dataset changes its name, shape or meaning.
-  integer, parameter :: schema_version = 3
+  integer, parameter :: schema_version = 4
   character(len=*), parameter :: schema_name = 'lagamine checkpoint'
 
 contains
@@ -93,6 +93,7 @@ contains
     call file%write('remesher/size', [remesher%smallest, remesher%largest])
     call file%write('remesher/strain_error', remesher%strain_error)
     call file%write('remesher/count', [remesher%most_elements, remesher%across_contact])
+    call file%write('remesher/turn', remesher%turn)
   end subroutine write_remesher
 
   subroutine read_remesher(file, remesher)
@@ -122,6 +123,7 @@ contains
       remesher%most_elements = numbers(1)
       remesher%across_contact = numbers(2)
     end if
+    call file%read('remesher/turn', remesher%turn)
   end subroutine read_remesher
 
   subroutine write_dies(file, scene, solution)
