@@ -82,7 +82,8 @@ contains
     call build_contours(old, before, ends, contour_options_t(), contours, facts%contour, error)
     if (allocated(error)) return
     facts%stage = 'mesh'
-    call plan_zones(old, old%mesh%coordinates + before%displacement, materials_of(old, before), contours, plan, error)
+    call plan_zones(old, old%mesh%coordinates + before%displacement, before%pilots, materials_of(old, before), &
+                    contours, plan, error)
     if (allocated(error)) return
     call wanted_sizes(old, before, contours, sizes)
     call make_mesh(old, contours, plan, sizes, options%finer, mesh, facts, error)

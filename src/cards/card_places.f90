@@ -6,6 +6,7 @@ module card_places
   use kinds, only: wp
   use mesh, only: nearest_node, nodes_of_sides
   use mesh_parts, only: find_label
+  use remesher_options, only: has_zones
   use scene_draft, only: draft_t, words_of
   use text, only: string_t, to_text
   implicit none
@@ -92,7 +93,10 @@ contains
       integer, intent(in) :: set
 
       associate (more => draft%scene%mesh%sides(set)%nodes)
-        if (draft%mesh_sound) sides = reshape([sides, more], [3, size(sides, 2) + size(more, 2)])
+        if (.not. draft%mesh_sound) return
+        sides = reshape([sides, more], [3, size(sides, 2) + size(more, 2)])
+        if (has_zones(draft%scene%remesher) .and. any(draft%sharing(more(2, :)) > 1)) &
+          call cursor%fail('with ZONE cards a new mesh has other sides inside the part: expected sides on its boundary')
       end associate
     end subroutine add_sides
 

@@ -1,7 +1,7 @@
 !> Rows of REMSH that say how the new mesh is made, and what they stand at where the deck says nothing.
 !>
-!> Sizes and numbers that are not given follow the deck's own mesh, however often it has been remeshed since: whoever chose that mesh
-!> has said how fine it should be.
+!> Sizes and numbers that are not given follow the mesh of the deck itself, however often it has been remeshed since: whoever chose
+!> that mesh has said how fine it should be.
 module remesher_rows
   use block_mesh, only: polygon_area
   use deck_cursor, only: cursor_t

@@ -16,6 +16,7 @@ module scene_reader
   use cards_strategy, only: read_strategy
   use cards_temperature, only: read_temperatures_of_bodies
   use cards_tractions, only: read_tractions
+  use cards_zones, only: read_zones
   use deck_reader, only: deck_t, refuse_unknown
   use diagnostics, only: diagnostics_t, location_t
   use elem_api, only: elem_t
@@ -72,6 +73,7 @@ contains
 
     call read_temperatures_of_bodies(deck, draft, diagnostics)
     call read_side_dies(deck, draft, diagnostics)
+    call read_zones(deck, draft, diagnostics)
     call read_contacts(deck, draft, diagnostics)
     call read_pressures(deck, draft, diagnostics)
     call read_body_forces(deck, draft, diagnostics)
@@ -97,7 +99,7 @@ contains
 
     call list_elems(elems)
     call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE FIXED MOVE ' &
-                  //'FORCE FREE SPRNG LIC STRAT NORMS STOP SAVE CKPT PROBE ESTIM REMSH', keywords)
+                  //'FORCE FREE SPRNG LIC STRAT NORMS STOP SAVE CKPT PROBE ESTIM REMSH ZPNT ZONE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle

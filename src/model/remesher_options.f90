@@ -1,9 +1,10 @@
 !> How a scene is remeshed: what REMSH cards ask of the remesher, and of the restart on a new mesh.
 module remesher_options
   use kinds, only: pi, wp
+  use zone_marks, only: zone_card_t, zone_mark_t
   implicit none
   private
-  public :: remesher_options_t
+  public :: remesher_options_t, has_zones
 
   type :: remesher_options_t
     !> A REMSH card is there.
@@ -23,5 +24,19 @@ module remesher_options
     !> Limits of the restart: iterations, and change of the force of a die (share of the largest).
     integer :: most_iterations = 40
     real(wp) :: force_change = 0.1_wp
+    !> Zones that cards give, and the points they name; without them blocks are zones.
+    type(zone_mark_t), allocatable :: marks(:)
+    type(zone_card_t), allocatable :: zones(:)
   end type remesher_options_t
+
+contains
+
+  pure function has_zones(options) result(yes)
+    type(remesher_options_t), intent(in) :: options
+    logical :: yes
+
+    yes = allocated(options%zones)
+    if (yes) yes = size(options%zones) > 0
+  end function has_zones
+
 end module remesher_options
