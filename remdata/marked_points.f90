@@ -47,7 +47,7 @@ contains
         if (mark%die > 0) place = carried(mark, scene%dies(mark%die)%pilot, pilots(:, mark%die))
         if (mark%form == mark_inside) then
           points(k)%x = place
-          if (mark%by_matter) points(k)%x = matter_inside(scene, x, place)
+          if (mark%by_matter .and. size(x, 2) > 0) points(k)%x = matter_inside(scene, x, place)
           cycle
         else if (mark%form == mark_crossing) then
           call find_crossing(contours, mark%axis, place(mark%axis), mark%pick, points(k), error)
@@ -87,17 +87,23 @@ contains
     type(chain_t) :: before
     type(place_t) :: place
     real(wp) :: distance, least
+    logical :: first
     integer :: c
 
     least = huge(least)
     do c = 1, size(contours)
-      before = chain_of_loop(contours(c)%loop, origin, pi)
+      ! contours of bodies without a mesh are what they were
+      first = size(contours(c)%loop%sides, 2) == 0
+      before = contours(c)%chain
+      if (.not. first) before = chain_of_loop(contours(c)%loop, origin, pi)
       place = closest_place(before, start)
       distance = length_of(point_on(before, place) - start)
       if (.not. distance < least) cycle
       least = distance
       point%chain = c
-      point%place = place_of_old(contours(c)%loop, contours(c)%chain, contours(c)%contacts, x, place%stretch, place%xi)
+      point%place = place
+      if (.not. first) &
+        point%place = place_of_old(contours(c)%loop, contours(c)%chain, contours(c)%contacts, x, place%stretch, place%xi)
     end do
   end subroutine find_matter
 

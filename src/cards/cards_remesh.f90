@@ -7,6 +7,7 @@ module cards_remesh
   use kinds, only: wp
   use remeshing, only: aspect_ratio, jacobian_ratio, largest_angle, least_angle, middle_share, never, remesh_rules_t, &
                        scaled_jacobian, stroke_t
+  use remesher_options, only: has_contours
   use remesher_rows, only: complete_options, read_remesher_row, remesher_words
   use scene_draft, only: close_card, draft_t, only_card, words_of
   use text, only: string_t, to_text
@@ -73,7 +74,8 @@ contains
     end do
     call cursor%end_row()
     associate (rules => draft%scene%remesh)
-      if (.not. asked) call cursor%fail('nothing here asks for a new mesh: expected one of '//askers)
+      if (.not. asked .and. .not. has_contours(draft%scene%remesher)) &
+        call cursor%fail('nothing here asks for a new mesh: expected one of '//askers)
       if (rules%bad_share > 0 .and. .not. any(abs(rules%shape) < never)) &
         call cursor%fail('BAD counts elements by their shape: expected one of ANGLE MIDDLE JACOB SCALED ASPECT too')
     end associate

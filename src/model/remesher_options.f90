@@ -1,10 +1,10 @@
 !> How a scene is remeshed: what REMSH cards ask of the remesher, and of the restart on a new mesh.
 module remesher_options
   use kinds, only: pi, wp
-  use zone_marks, only: zone_card_t, zone_mark_t
+  use zone_marks, only: contour_card_t, zone_card_t, zone_mark_t
   implicit none
   private
-  public :: remesher_options_t, has_zones
+  public :: remesher_options_t, has_zones, has_contours
 
   type :: remesher_options_t
     !> A REMSH card is there.
@@ -27,6 +27,8 @@ module remesher_options
     !> Zones that cards give, and the points they name; without them blocks are zones.
     type(zone_mark_t), allocatable :: marks(:)
     type(zone_card_t), allocatable :: zones(:)
+    !> Contours of bodies of which the remesher makes the first mesh too.
+    type(contour_card_t), allocatable :: contours(:)
   end type remesher_options_t
 
 contains
@@ -38,5 +40,13 @@ contains
     yes = allocated(options%zones)
     if (yes) yes = size(options%zones) > 0
   end function has_zones
+
+  pure function has_contours(options) result(yes)
+    type(remesher_options_t), intent(in) :: options
+    logical :: yes
+
+    yes = allocated(options%contours)
+    if (yes) yes = size(options%contours) > 0
+  end function has_contours
 
 end module remesher_options

@@ -1,9 +1,10 @@
-!> Zones as ZPNT and ZONE cards give them: quadrilaterals between named points, found anew on every contour.
+!> Zones as ZPNT and ZONE cards give them: quadrilaterals between named points, found anew on every contour; and contours of bodies
+!> that have no mesh yet.
 module zone_marks
   use kinds, only: wp
   implicit none
   private
-  public :: zone_mark_t, zone_card_t, name_length
+  public :: zone_mark_t, zone_card_t, contour_card_t, name_length
   public :: mark_corner, mark_matter, mark_crossing, mark_inside
 
   integer, parameter :: name_length = 32
@@ -34,5 +35,13 @@ module zone_marks
     !> Group its elements are of, and the ZPNT cards at its corners, either way round.
     integer :: group = 0, marks(4) = 0
   end type zone_card_t
+
+  !> A BODY card: a closed contour walked with the part on its left.
+  type :: contour_card_t
+    integer :: group = 0
+    !> Parabolas (2, 3, npiece) [length], and the row of the card each comes of: the number of its side of the body.
+    real(wp), allocatable :: pieces(:, :, :)
+    integer, allocatable :: row(:)
+  end type contour_card_t
 
 end module zone_marks

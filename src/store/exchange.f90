@@ -14,13 +14,13 @@ module exchange
   use materials, only: material_t
   use pairs, only: pairs_t
   use remesh, only: remesh_t
-  use remesher_options, only: has_zones, remesher_options_t
+  use remesher_options, only: has_contours, has_zones, remesher_options_t
   use remeshing, only: estimate_t
   use scene, only: is_solid, scene_t
   use state_variables, only: state_variable
   use solution, only: solution_t
   use text, only: string_t, to_text
-  use zone_marks, only: zone_card_t, zone_mark_t
+  use zone_marks, only: contour_card_t, zone_card_t, zone_mark_t
   implicit none
   private
   public :: write_checkpoint, read_deck_of_checkpoint, read_remesh, read_checkpoint, read_bare_scene, read_contact_ends
@@ -96,6 +96,7 @@ contains
     call file%write('remesher/count', [remesher%most_elements, remesher%across_contact])
     call file%write('remesher/turn', remesher%turn)
     if (has_zones(remesher)) call write_zones(file, remesher%marks, remesher%zones)
+    if (has_contours(remesher)) call write_contours(file, remesher%contours)
   end subroutine write_remesher
 
   subroutine read_remesher(file, remesher)
@@ -127,6 +128,7 @@ contains
     end if
     call file%read('remesher/turn', remesher%turn)
     if (file%has('remesher/zones')) call read_zones(file, remesher)
+    if (file%has('remesher/contours')) call read_contours(file, remesher%contours)
   end subroutine read_remesher
 
   !> Zones and their points, with the names that messages call them by. A row each of numbers: what a point is, axis, pick, by
@@ -188,6 +190,37 @@ contains
       remesher%zones(k) = zone_card_t(name=zone_names(k)%s, group=corners(1, k), marks=corners(2:, k))
     end do
   end subroutine read_zones
+
+  !> Contours of bodies: parabolas, the side of the body that each is of, and the group of the body.
+  subroutine write_contours(file, contours)
+    type(hdf5_file_t), intent(inout) :: file
+    type(contour_card_t), intent(in) :: contours(:)
+    integer :: k
+
+    call file%write('remesher/contours/group', contours%group)
+    do k = 1, size(contours)
+      call file%write('remesher/contours/'//to_text(k)//'/pieces', contours(k)%pieces)
+      call file%write_attribute('remesher/contours/'//to_text(k)//'/pieces', 'unit', 'length')
+      call file%write('remesher/contours/'//to_text(k)//'/side', contours(k)%row)
+    end do
+  end subroutine write_contours
+
+  subroutine read_contours(file, contours)
+    type(hdf5_file_t), intent(inout) :: file
+    type(contour_card_t), allocatable, intent(out) :: contours(:)
+    integer, allocatable :: groups(:)
+    integer :: k
+
+    call file%read('remesher/contours/group', groups)
+    allocate (contours(size(groups)))
+    do k = 1, size(groups)
+      contours(k)%group = groups(k)
+      call file%read('remesher/contours/'//to_text(k)//'/pieces', contours(k)%pieces)
+      call file%read('remesher/contours/'//to_text(k)//'/side', contours(k)%row)
+      if (any(shape(contours(k)%pieces) /= [2, 3, size(contours(k)%row)])) &
+        call file%record_error(exit_input, 'remesher/contours: pieces and sides do not fit')
+    end do
+  end subroutine read_contours
 
   subroutine write_dies(file, scene, solution)
     type(hdf5_file_t), intent(inout) :: file
@@ -392,6 +425,7 @@ contains
     call open_checkpoint(path, file, error)
     if (allocated(error)) return
     call file%read('mesh/generation', remesh%generation)
+    call file%read('progress/step', remesh%step)
     if (remesh%generation > 1) then
       call file%read('mesh/coordinates', remesh%coordinates)
       call file%read('mesh/origin', remesh%origin)
