@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""New meshes by ZONE cards in whole runs: a forging with a hub and a flange, and a body written out by PL8LS cards.
+"""New meshes by ZONE cards in whole runs: a forging with a hub and a flange, a body written out by PL8LS cards, and bodies that have a
+contour and no mesh.
 
 usage: run_zones.py [-v] [-k]
 
@@ -210,6 +211,61 @@ def written_out(checks):
     checks.that("body slab is no BLOCK" in words and "give ZONE cards" in words, "strip without zones: says what is missing", words)
 
 
+def first_mesh(checks, name, text):
+    """A run that begins without a mesh: its folder and the first mesh."""
+    folder = checks.path(name)
+    deck = write(os.path.join(folder, "case.lag"), text)
+    base = [deck, "--out", folder, "--threads", "1", "--quiet"]
+    result = run(base)
+    checks.that(result.returncode == REMESH, f"{name}: stops for a mesh", said(result))
+    with open(os.path.join(folder, "case.log"), encoding="utf-8") as listing:
+        checks.that("remesh: no mesh yet" in listing.read(), f"{name}: says why")
+    new = os.path.join(folder, "new2.h5")
+    remesh(checks, name, os.path.join(folder, "case.ckp.h5"), new)
+    result = run(base + ["--resume", new])
+    checks.that(result.returncode == DONE, f"{name}: runs on its mesh", said(result))
+    return folder, Mesh(new)
+
+
+def contour_or_block(checks):
+    """A rectangle by its contour and by a block, in elements of the same size: one and the same, but for the order of nodes."""
+    body = "BODY   slab PL8LS 4 metal\n   SEGM 0. 0. 6. 0.\n   SEGM 6. 0. 6. 4.\n   SEGM 6. 4. 0. 4.\n   SEGM 0. 4. 0. 0.\n"
+    block = "BLOCK  slab PL8LS 4 metal\n   0. 0.  6. 0.  6. 4.  0. 4.\n   6 1.  4 1.\n"
+    text = SMALL_STRIP.replace("lid upper", "slab 3 upper").replace("FIXED  floor", "FIXED  slab 1").replace("FIXED  wall", "FIXED  slab 4")
+    text = text.replace("   TIMES 0.5\n", "   SIZE 0.5 1.\n   ERROR 1.E3\n")
+    text = add_cards(text, ONE_ZONE)
+    folder, mesh = first_mesh(checks, "contour", text.format(mesh=body))
+    checks.that(len(mesh.elements) == 24, "contour: elements of the largest size", len(mesh.elements))
+    other = checks.path("block")
+    result = run([write(os.path.join(other, "case.lag"), text.format(mesh=block)), "--out", other, "--threads", "1", "--quiet"])
+    checks.that(result.returncode == DONE, "block: runs", said(result))
+    one, two = history(folder), history(other)
+    for name in ("time", "force_y_upper", "external_work", "plastic_work", "volume_drift", "error_stress"):
+        first, second = np.array(one[name]), np.array(two[name])
+        same = first.shape == second.shape and np.max(np.abs(first - second)) <= 1e-7 * np.max(np.abs(second))
+        checks.that(same, f"contour and block: {name} in all steps to 1e-7", (first[-1:], second[-1:]))
+
+
+def bracket(checks):
+    """Arcs and a re-entrant bend, the example of the manual: area of the contour, nodes on the arcs, work of the load."""
+    with open(os.path.join(SOURCE, "decks", "README.md"), encoding="utf-8") as manual:
+        text = next(block.split("```")[0] for block in manual.read().split("```lag\n") if "TITLE  A bracket\n" in block)
+    folder, mesh = first_mesh(checks, "bracket", add_cards(text, "PROBE  pull REACT Y bracket 2"))
+    least = mesh.jacobians().min()
+    checks.that(least > 0.1, "bracket: Jacobians above a tenth of the largest of their element", least)
+    # the arc outside: chord 3.2, height 0.4, hence a radius of 3.4; the bend inside: a quarter of a circle of radius 2
+    sector = 3.4**2 * np.arcsin(1.6 / 3.4) - 1.6 * 3.0
+    area = 12 * 3.2 + 4 * 6.8 + sector + (2**2 - np.pi * 2**2 / 4)
+    checks.that(abs(mesh.volume(False) / area - 1) < 1e-4, "bracket: area as its tolerances of arcs let it", mesh.volume(False) / area - 1)
+    bend = mesh.x[np.hypot(mesh.x[:, 0] - 6, mesh.x[:, 1] - 5.2) < 2.1]
+    bend = bend[(bend[:, 0] > 4.01) & (bend[:, 0] < 5.99)]
+    off = np.abs(np.hypot(bend[:, 0] - 6, bend[:, 1] - 5.2) - 2)
+    checks.that(np.sum(off < 1.1e-4) >= 7, "bracket: nodes on the bend", off)
+    end = {name: column[-1] for name, column in history(folder).items()}
+    work = 0.5 * 0.02 * abs(end["pull"])
+    checks.that(abs(end["external_work"] / work - 1) < 1e-3, "bracket: work is half of force times way", (end["external_work"], work))
+
+
 def lost_point(checks):
     """A line that leaves the part is told with the point's name."""
     cards = HUB_AND_FLANGE.replace(f"ON X {LINE} UPPER", "ON X 40. UPPER")
@@ -225,5 +281,7 @@ if __name__ == "__main__":
     count = Checks()
     forging(count)
     written_out(count)
+    contour_or_block(count)
+    bracket(count)
     lost_point(count)
     count.end()
