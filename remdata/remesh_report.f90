@@ -35,6 +35,7 @@ contains
       //to_text(facts%mesh%least_angle, 3)//' to '//to_text(facts%mesh%largest_angle, 4)//' degrees'
     if (facts%coarser > 1) write (*, '(a)') '  sizes '//to_text(facts%coarser, 3) &
       //' times the wanted ones, for the limit on the number of elements: errors '//to_text(facts%coarser**2, 3)//' times'
+    if (.not. allocated(facts%transfer%rows)) return   ! a first mesh
     write (*, '(a)') '  transfer by '//facts%transfer%method//':'
     do k = 1, size(facts%transfer%rows)
       associate (row => facts%transfer%rows(k))
@@ -57,7 +58,7 @@ contains
     call json%begin_object()
     call json%add('program', 'remdata')
     call json%add('version', version_text)
-    call json%add('accepted', .not. allocated(failure))
+    call json%add('accepted',.not. allocated(failure))
     if (allocated(failure)) then
       call json%add('stage', facts%stage)
       call json%add('reason', failure%message)

@@ -1,6 +1,7 @@
 !> The remesher's page: from the checkpoint of an old mesh to that of a new one.
 !>
-!> contour -> zones -> sizes -> mesh -> state -> checkpoint (annex 2; chapter 12). Whatever cannot be done ends in an error that
+!> contour -> zones -> sizes -> mesh -> state -> checkpoint (annex 2; chapter 12); bodies without a mesh get their first one the
+!> same way, from contours that cards give, and no state. Whatever cannot be done ends in an error that
 !> names its stage; the old checkpoint is never touched.
 module remesh_scene
   use contact_carry, only: carry_contacts
@@ -9,13 +10,14 @@ module remesh_scene
   use contour_needs, only: geometry_wish_t, needs_of_chain
   use dies, only: is_deformable
   use errors, only: error_t, exit_input, fail
+  use first_contours, only: contours_of_cards
   use exchange, only: read_bare_scene, read_checkpoint, read_deck_of_checkpoint, read_contact_ends, write_checkpoint
   use kinds, only: wp
   use new_mesh_check, only: mesh_check_t, check_new_mesh
   use new_scene, only: set_up_new_scene
   use part_contour, only: build_contours, contour_options_t, contour_report_t, contour_t
   use remesh_options, only: remesh_options_t
-  use scene, only: is_solid, scene_t
+  use scene, only: is_solid, lacks_mesh, scene_t
   use size_field, only: need_t, old_mesh_t, set_up_sizes, size_field_t, size_limits_t, wanted_size
   use solution, only: solution_t, start_solution
   use state_pieces, only: mesh_of, solid_pieces, state_pieces_t
@@ -64,6 +66,7 @@ contains
     type(size_field_t) :: sizes
     type(new_mesh_t) :: mesh
     character(len=:), allocatable :: deck_path, deck_text
+    logical :: first
 
     facts%stage = 'checkpoint'
     call read_deck_of_checkpoint(options%checkpoint, deck_path, deck_text, error)
@@ -73,34 +76,59 @@ contains
     if (.not. allocated(error)) call read_contact_ends(options%checkpoint, ends, error)
     if (.not. allocated(error)) call refuse_what_is_not_offered(old, error)
     if (allocated(error)) return
+    first = lacks_mesh(old)
     call take_options(options, old)
     facts%step = before%step
     facts%time = before%time
     facts%generation = old%generation + 1
 
     facts%stage = 'contour'
-    call build_contours(old, before, ends, contour_options_t(), contours, facts%contour, error)
+    if (first) then
+      call contours_of_cards(old, contours, facts%contour, error)
+    else
+      call build_contours(old, before, ends, contour_options_t(), contours, facts%contour, error)
+    end if
     if (allocated(error)) return
     facts%stage = 'mesh'
-    call plan_zones(old, old%mesh%coordinates + before%displacement, materials_of(old, before), contours, plan, error)
+    call plan_zones(old, old%mesh%coordinates + before%displacement, before%pilots, materials_of(old, before), &
+                    contours, plan, error)
     if (allocated(error)) return
-    call wanted_sizes(old, before, contours, sizes)
+    call wanted_sizes(old, before, contours, first, sizes)
     call make_mesh(old, contours, plan, sizes, options%finer, mesh, facts, error)
     if (allocated(error)) return
     call set_up_new_scene(old, contours, plan, mesh, new, error)
     if (allocated(error)) return
-    facts%stage = 'transfer'
     call start_solution(new, after)
-    call carry_progress(before, after)
-    call carry_solids(old, before, new, after, facts%transfer, error)
-    if (allocated(error)) return
-    facts%stage = 'contact'
-    call carry_contacts(old, before, contours, mesh, new, after)
+    if (first) then
+      new%mesh%origin = new%mesh%coordinates
+    else
+      call carry_state(old, before, contours, mesh, new, after, facts, error)
+      if (allocated(error)) return
+    end if
     facts%stage = 'checkpoint'
     call write_checkpoint(options%out, deck_path, deck_text, new, after, [contact_end_t ::], error)
     facts%old_elements = count_elements(old)
     facts%new_elements = count_elements(new)
   end subroutine remesh_checkpoint
+
+  !> All that the old mesh knows: progress, state of the solids, contact.
+  subroutine carry_state(old, before, contours, mesh, new, after, facts, error)
+    type(scene_t), intent(in) :: old
+    type(solution_t), intent(in) :: before
+    type(contour_t), intent(in) :: contours(:)
+    type(new_mesh_t), intent(in) :: mesh
+    type(scene_t), intent(inout) :: new
+    type(solution_t), intent(inout) :: after
+    type(remesh_facts_t), intent(inout) :: facts
+    type(error_t), allocatable, intent(out) :: error
+
+    facts%stage = 'transfer'
+    call carry_progress(before, after)
+    call carry_solids(old, before, new, after, facts%transfer, error)
+    if (allocated(error)) return
+    facts%stage = 'contact'
+    call carry_contacts(old, before, contours, mesh, new, after)
+  end subroutine carry_state
 
   subroutine refuse_what_is_not_offered(scene, error)
     type(scene_t), intent(in) :: scene
@@ -148,10 +176,11 @@ contains
   end function materials_of
 
   !> Sizes by the error of the strains, by bends of the contour and by stretches of contact.
-  subroutine wanted_sizes(scene, solution, contours, sizes)
+  subroutine wanted_sizes(scene, solution, contours, first, sizes)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(contour_t), intent(in) :: contours(:)
+    logical, intent(in) :: first                !! there is no mesh yet: largest elements but where the geometry wants smaller ones
     type(size_field_t), intent(out) :: sizes
     type(state_pieces_t) :: pieces
     type(transfer_mesh_t) :: mesh
@@ -162,6 +191,19 @@ contains
     real(wp) :: error
     integer :: e, c
 
+    if (scene%remesher%smallest > 0) limits%smallest = scene%remesher%smallest
+    if (scene%remesher%largest > 0) limits%largest = scene%remesher%largest
+    wish%across = scene%remesher%across_contact
+    wish%turn = scene%remesher%turn
+    allocate (needs(0))
+    do c = 1, size(contours)
+      call needs_of_chain(contours(c)%chain, wish, limits, more)
+      needs = [needs, more]
+    end do
+    if (first) then
+      call set_up_sizes(limits, needs, sizes)
+      return
+    end if
     call solid_pieces(scene, pieces, solution)
     pieces%axisymmetric = .false.
     call mesh_of(pieces, mesh)
@@ -172,22 +214,12 @@ contains
     do e = 1, size(old%wanted)
       old%wanted(e) = sqrt(area_of(old%nodes(:, old%connectivity(:, e))))
     end do
-    limits%smallest = 0.6_wp*0.83_wp
-    limits%largest = 1.5_wp*0.83_wp
-    if (scene%remesher%smallest > 0) limits%smallest = scene%remesher%smallest
-    if (scene%remesher%largest > 0) limits%largest = scene%remesher%largest
     if (scene%remesh%estimate) then
       do e = 1, size(old%wanted)
         error = solution%estimate%strain_of(e)
         old%wanted(e) = wanted_size(old%wanted(e), error, scene%remesher%strain_error, strain_order)
       end do
     end if
-    wish%across = scene%remesher%across_contact
-    allocate (needs(0))
-    do c = 1, size(contours)
-      call needs_of_chain(contours(c)%chain, wish, limits, more)
-      needs = [needs, more]
-    end do
     call set_up_sizes(limits, needs, sizes, old)
   end subroutine wanted_sizes
 

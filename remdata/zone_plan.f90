@@ -5,6 +5,9 @@
 !> a side folds onto a die the old corner lies flat there, and the new one is where contact ends. A corner that several zones
 !> share on the contour goes with the matter; one inside moves with it, and smoothing may move it on.
 !>
+!> ZONE cards take the place of the blocks: their points are found by what ZPNT cards say (marked_points), and a point is one
+!> point to all zones that name it. Sets of sides go with the contour alone.
+!>
 !> No quadrilateral has a corner of 180 degrees: where one corner of a body's only zone has become flat, the zone is a triangle to
 !> be divided into three, and the flat corner is a point of its long side.
 module zone_plan
@@ -13,8 +16,10 @@ module zone_plan
   use contour_match, only: place_of_old
   use errors, only: error_t, exit_input, fail
   use kinds, only: pi, wp
+  use marked_points, only: find_points
   use mesh, only: find_side_set
   use part_contour, only: contour_t
+  use remesher_options, only: has_zones
   use scene, only: is_solid, scene_t
   use text, only: to_text
   use zones, only: as_found, follows_contour, zone_point_t, zone_t
@@ -39,10 +44,58 @@ module zone_plan
 contains
 
   !> Zones of all solid groups.
-  pure subroutine plan_zones(scene, x, material, contours, plan, error)
+  pure subroutine plan_zones(scene, x, pilots, material, contours, plan, error)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: x(:, :)               !! nodes now (2, nnode) [length]
+    real(wp), intent(in) :: pilots(:, :)          !! of the dies now (3, ndie)
     integer, intent(in) :: material(:)            !! of each group of the scene, as sizes are asked for it (ngroup)
+    type(contour_t), intent(in) :: contours(:)
+    type(plan_t), intent(out) :: plan
+    type(error_t), allocatable, intent(out) :: error
+    integer :: z, k
+
+    if (has_zones(scene%remesher)) then
+      call zones_of_cards(scene, x, pilots, material, contours, plan, error)
+    else
+      call zones_of_blocks(scene, x, material, contours, plan, error)
+    end if
+    if (.not. allocated(error)) call refuse_same_places(contours, plan, error)
+    if (allocated(error) .or. has_zones(scene%remesher)) return
+    do z = 1, size(plan%zones)
+      k = flat_corner(contours, plan, z)
+      if (k > 0) call split_in_three(contours, z, k, plan)
+    end do
+  end subroutine plan_zones
+
+  !> Zones as the cards give them.
+  pure subroutine zones_of_cards(scene, x, pilots, material, contours, plan, error)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: x(:, :), pilots(:, :)
+    integer, intent(in) :: material(:)
+    type(contour_t), intent(in) :: contours(:)
+    type(plan_t), intent(out) :: plan
+    type(error_t), allocatable, intent(out) :: error
+    integer :: z
+
+    call find_points(scene, x, pilots, contours, plan%points, error)
+    if (allocated(error)) return
+    associate (cards => scene%remesher%zones)
+      allocate (plan%zones(size(cards)), plan%group(size(cards)))
+      allocate (plan%sets(4, size(cards)), source=0)
+      do z = 1, size(cards)
+        plan%group(z) = cards(z)%group
+        plan%zones(z)%name = cards(z)%name
+        plan%zones(z)%corners = cards(z)%marks
+        plan%zones(z)%material = material(cards(z)%group)
+      end do
+    end associate
+  end subroutine zones_of_cards
+
+  !> Zones as blocks had them.
+  pure subroutine zones_of_blocks(scene, x, material, contours, plan, error)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: x(:, :)
+    integer, intent(in) :: material(:)
     type(contour_t), intent(in) :: contours(:)
     type(plan_t), intent(out) :: plan
     type(error_t), allocatable, intent(out) :: error
@@ -65,7 +118,7 @@ contains
         plan%sets(k, z) = find_side_set(scene%mesh, scene%groups(g)%name//'.'//to_text(k))
         if (plan%sets(k, z) > 0) cycle
         call fail(error, exit_input, 'body '//scene%groups(g)%name//' is no BLOCK: it has no zone to be meshed by', &
-                  'make the mesh of BLOCK cards, or leave REMSH out')
+                  'give ZONE cards, or make the mesh of BLOCK cards')
         return
       end do
       corners = corners_of(scene, plan%sets(:, z))
@@ -88,13 +141,7 @@ contains
     do z = 1, n
       call follow_contours(scene, contours, plan%sets(:, z), plan%zones(z))
     end do
-    call refuse_same_places(contours, plan, error)
-    if (allocated(error)) return
-    do z = 1, n
-      k = flat_corner(contours, plan, z)
-      if (k > 0) call split_in_three(contours, z, k, plan)
-    end do
-  end subroutine plan_zones
+  end subroutine zones_of_blocks
 
   !> The corner of a zone with the contour on all sides that is nearly flat, 0 when there is none.
   pure function flat_corner(contours, plan, z) result(corner)
@@ -232,7 +279,7 @@ contains
     do pass = 1, 2
       do p = 1, size(points)
         if (settled(p)) cycle
-        call nearest_joint(contours(points(p)%chain)%chain, points(p)%place, &
+        call free_joint(contours(points(p)%chain)%chain, points(p)%place, &
                            pack(joint, points%chain == points(p)%chain .and. joint > 0), joint(p), way)
         if (joint(p) == 0 .or. (pass == 1 .and. way > in_place*chain_length(contours(points(p)%chain)%chain))) then
           joint(p) = 0
@@ -245,7 +292,7 @@ contains
   end subroutine go_by_shape
 
   !> The corner, beginning or end of contact nearest along the chain that is not taken; 0 when there is none.
-  pure subroutine nearest_joint(chain, from, taken, joint, least)
+  pure subroutine free_joint(chain, from, taken, joint, least)
     type(chain_t), intent(in) :: chain
     type(place_t), intent(in) :: from
     integer, intent(in) :: taken(:)
@@ -265,7 +312,7 @@ contains
       least = way
       joint = k
     end do
-  end subroutine nearest_joint
+  end subroutine free_joint
 
   !> Does contact begin or end there for a good part of the contour? Gaps within a stretch of contact are no end of it.
   pure function is_outer_end(chain, joint) result(outer)
@@ -314,12 +361,24 @@ contains
         associate (a => plan%points(i), b => plan%points(k))
           if (a%chain == 0 .or. a%chain /= b%chain) cycle
           if (abs(arc_at(contours(a%chain)%chain, a%place) - arc_at(contours(b%chain)%chain, b%place)) > 0) cycle
-          call fail(error, exit_input, 'two corners of zones meet at x = '//to_text(a%x(1))//', y = '//to_text(a%x(2)) &
-                    //': the contour has lost a corner there', 'give zones that fit the new shape, or remesh earlier')
+          call fail(error, exit_input, 'two corners of zones'//names_of(a, b)//' meet at x = '//to_text(a%x(1)) &
+                    //', y = '//to_text(a%x(2))//': the contour has lost a corner there', &
+                    'give zones that fit the new shape, or remesh earlier')
           return
         end associate
       end do
     end do
+
+  contains
+
+    pure function names_of(a, b) result(names)
+      type(zone_point_t), intent(in) :: a, b
+      character(len=:), allocatable :: names
+
+      names = ''
+      if (a%name /= '') names = ' ('//trim(a%name)//', '//trim(b%name)//')'
+    end function names_of
+
   end subroutine refuse_same_places
 
 end module zone_plan

@@ -10,6 +10,7 @@ module zones
   use kinds, only: wp
   use stretches, only: point_at, stretch_t
   use text, only: to_text
+  use zone_marks, only: name_length
   implicit none
   private
   public :: zone_point_t, zone_t, side_t, layout_t, lay_out, coordinates_of, on_chain, exact_point, arc_along
@@ -25,6 +26,8 @@ module zones
     real(wp) :: x(2) = 0.0_wp        !! [length], read inside only
     !> Unless the user wants a point where it is, it moves inside when lines are smoothed, and on a contour to a corner close by.
     logical :: stays = .false.
+    !> As cards name it.
+    character(len=name_length) :: name = ''
   end type zone_point_t
 
   type :: zone_t
@@ -35,6 +38,8 @@ module zones
     integer :: form(4) = as_found
     !> Where a curved side, a parabola, is halfway [length].
     real(wp) :: middle(2, 4) = 0.0_wp
+    !> As cards name it.
+    character(len=name_length) :: name = ''
   end type zone_t
 
   type :: side_t
@@ -141,18 +146,18 @@ contains
     integer :: k
 
     if (any(zone%corners < 1) .or. any(zone%corners > size(points))) then
-      call fail(error, exit_input, 'zone '//to_text(number)//' has a corner that is no zone point, expected 1 to ' &
+      call fail(error, exit_input, name_of_zone(zone, number)//' has a corner that is no zone point, expected 1 to ' &
                 //to_text(size(points)))
       return
     end if
     do k = 1, 4
       if (count(zone%corners == zone%corners(k)) > 1) then
-        call fail(error, exit_input, 'zone '//to_text(number)//' has point '//to_text(zone%corners(k)) &
+        call fail(error, exit_input, name_of_zone(zone, number)//' has point '//name_of_point(points, zone%corners(k)) &
                   //' twice among its corners, expected four different points')
         return
       end if
       if (points(zone%corners(k))%chain > size(chains)) then
-        call fail(error, exit_input, 'zone point '//to_text(zone%corners(k))//' is on a contour that does not exist')
+        call fail(error, exit_input, 'zone point '//name_of_point(points, zone%corners(k))//' is on a contour that does not exist')
         return
       end if
     end do
@@ -173,7 +178,7 @@ contains
     end do
     area = polygon_area(x)
     if (abs(area) <= same*sum((maxval(x, 2) - minval(x, 2))**2)) then
-      call fail(error, exit_input, 'zone '//to_text(number)//' has no area between its corners')
+      call fail(error, exit_input, name_of_zone(zone, number)//' has no area between its corners')
     else if (area < 0) then
       zone%corners = zone%corners([1, 4, 3, 2])
       zone%form = zone%form([4, 3, 2, 1])
@@ -210,8 +215,9 @@ contains
           list(n)%zones(1) = z
           list(n)%local(1) = k
         else if (list(s)%zones(2) > 0 .or. any(list(s)%points /= ends([2, 1]))) then
-          call fail(error, exit_input, 'zones '//to_text(list(s)%zones(1))//' and '//to_text(z)//' lie on the same hand of ' &
-                    //side_name(list(s))//', expected one on either hand')
+          call fail(error, exit_input, name_of_zone(layout%zones(list(s)%zones(1)), list(s)%zones(1))//' and ' &
+                    //name_of_zone(layout%zones(z), z)//' lie on the same hand of ' &
+                    //side_name(layout%points, list(s))//', expected one on either hand')
           return
         else
           list(s)%zones(2) = z
@@ -240,14 +246,15 @@ contains
         side%moves = side%form == as_found .and. side%zones(2) > 0
         if (side%form == as_found) side%form = merge(follows_contour, runs_straight, side%zones(2) == 0)
         if (side%zones(2) > 0 .neqv. side%form /= follows_contour) then
-          call fail(error, exit_input, side_name(side)//' is said to follow the contour where two zones share it, or not to' &
-                    //' where one zone has it')
+          call fail(error, exit_input, side_name(layout%points, side)//' is said to follow the contour where two zones share it,' &
+                    //' or not to where one zone has it')
           return
         end if
         if (side%form /= follows_contour) cycle
         c = layout%points(side%points(1))%chain
         if (c == 0 .or. layout%points(side%points(2))%chain /= c) then
-          call fail(error, exit_input, side_name(side)//' of zone '//to_text(side%zones(1)) &
+          call fail(error, exit_input, side_name(layout%points, side)//' of ' &
+                    //name_of_zone(layout%zones(side%zones(1)), side%zones(1)) &
                     //' has no second zone and not both ends on one contour')
           return
         end if
@@ -299,11 +306,31 @@ contains
     end do
   end subroutine find_what_moves
 
-  pure function side_name(side) result(name)
+  pure function side_name(points, side) result(name)
+    type(zone_point_t), intent(in) :: points(:)
     type(side_t), intent(in) :: side
     character(len=:), allocatable :: name
 
-    name = 'the side between zone points '//to_text(side%points(1))//' and '//to_text(side%points(2))
+    name = 'the side between zone points '//name_of_point(points, side%points(1))//' and '//name_of_point(points, side%points(2))
   end function side_name
+
+  !> A point as the user knows it.
+  pure function name_of_point(points, k) result(name)
+    type(zone_point_t), intent(in) :: points(:)
+    integer, intent(in) :: k
+    character(len=:), allocatable :: name
+
+    name = to_text(k)
+    if (points(k)%name /= '') name = trim(points(k)%name)
+  end function name_of_point
+
+  pure function name_of_zone(zone, number) result(name)
+    type(zone_t), intent(in) :: zone
+    integer, intent(in) :: number
+    character(len=:), allocatable :: name
+
+    name = 'zone '//to_text(number)
+    if (zone%name /= '') name = 'zone '//trim(zone%name)
+  end function name_of_zone
 
 end module zones

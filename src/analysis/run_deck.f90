@@ -1,20 +1,21 @@
 !> `lagamine DECK`: from a deck to its results.
 module run_deck
+  use contact_ends, only: contact_end_t
   use deck_reader, only: deck_t, fingerprint_text, read_deck
   use diagnostics, only: diagnostics_t
   use equations, only: equations_t
-  use errors, only: error_t, exit_done, exit_input, exit_machine, fail
-  use exchange, only: read_checkpoint, read_deck_of_checkpoint, read_remesh
+  use errors, only: error_t, exit_done, exit_input, exit_machine, exit_remesh, fail
+  use exchange, only: read_checkpoint, read_deck_of_checkpoint, read_remesh, write_checkpoint
   use kinds, only: wp
   use law_api, only: law_t
   use law_manual, only: law_card
   use law_registry, only: law_names, list_laws
-  use listing, only: close_listing, end_progress, list_lines, list_resumed, open_listing
+  use listing, only: close_listing, end_progress, list_lines, list_note, list_resumed, open_listing
   use march, only: march_to_end, run_t
   use run_options, only: run_options_t, stem_of
   use run_version, only: version_text
   use remesh, only: remesh_t
-  use scene, only: scene_t
+  use scene, only: lacks_mesh, scene_t
   use scene_reader, only: read_scene
   use scene_summary, only: scene_lines
   use solution, only: solution_t, start_solution
@@ -38,19 +39,20 @@ contains
     type(scene_t) :: scene
     type(solution_t) :: solution
     type(run_t) :: run
+    logical :: at_rest
 
     code = exit_done
     call catch_signals()
     call single_thread_blas()
     call set_threads(options%threads)
-    call read_input(options, deck, scene, run%deck_text, error)
+    call read_input(options, deck, scene, run%deck_text, at_rest, error)
     if (allocated(error)) return
     if (options%check) then
       call print_check(scene, error)
       return
     end if
     call start_solution(scene, solution)
-    run%resume = allocated(options%resume)
+    run%resume = allocated(options%resume) .and. .not. at_rest
     if (run%resume) call read_checkpoint(options%resume, scene, solution, error)
     if (allocated(error)) return
     call make_directory(options%out, error)
@@ -58,16 +60,41 @@ contains
     run%deck_path = options%deck
     run%folder = options%out
     run%stem = join_path(run%folder, stem_of(options%deck))
-    call run_and_report(options, scene, solution, run, error)
-    code = run%exit_code
+    if (lacks_mesh(scene)) then
+      call ask_for_mesh(options, scene, solution, run, error)
+      code = exit_remesh
+    else
+      call run_and_report(options, scene, solution, run, error)
+      code = run%exit_code
+    end if
   end subroutine run_options_on_deck
 
+  !> Bodies that have contours alone: a checkpoint for the remesher, who makes the first mesh.
+  subroutine ask_for_mesh(options, scene, solution, run, error)
+    type(run_options_t), intent(in) :: options
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+    character(len=*), parameter :: reason = 'remesh: no mesh yet, the remesher makes it'
+    type(string_t), allocatable :: lines(:)
+
+    call open_listing(run%stem//'.log', .false., options%quiet, 0.0_wp, run%listing, error)
+    if (allocated(error)) return
+    call scene_lines(scene, lines)
+    call list_lines(run%listing, lines)
+    call list_note(run%listing, reason)
+    call close_listing(run%listing)
+    call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, [contact_end_t ::], error)
+  end subroutine ask_for_mesh
+
   !> Deck and scene, with all mistakes at once.
-  subroutine read_input(options, deck, scene, text, error)
+  subroutine read_input(options, deck, scene, text, at_rest, error)
     type(run_options_t), intent(in) :: options
     type(deck_t), intent(out), target :: deck
     type(scene_t), intent(out) :: scene
     character(len=:), allocatable, intent(out) :: text
+    logical, intent(out) :: at_rest   !! there is a new mesh, but no step has been made
     type(error_t), allocatable, intent(out) :: error
     type(diagnostics_t), target :: diagnostics
     type(remesh_t), allocatable :: remesh
@@ -85,6 +112,9 @@ contains
     call diagnostics%error(error)
     if (.not. allocated(error) .and. allocated(unfit)) call move_alloc(unfit, error)
     if (.not. allocated(error)) call fingerprint_text(deck, text)
+    at_rest = allocated(remesh)
+    if (at_rest) at_rest = remesh%step == 0
+    if (.not. allocated(remesh)) at_rest = lacks_mesh(scene)
   end subroutine read_input
 
   !> The mesh of a checkpoint, which must come from the same deck; not allocated when it is the deck's own.
@@ -161,7 +191,8 @@ contains
     integer :: k
 
     call scene_lines(scene, lines)
-    call unknowns_lines(scene, more, error)
+    allocate (more(0))
+    if (.not. lacks_mesh(scene)) call unknowns_lines(scene, more, error)
     if (allocated(error)) return
     do k = 1, size(lines)
       write (*, '(a)') lines(k)%s

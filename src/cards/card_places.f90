@@ -6,6 +6,7 @@ module card_places
   use kinds, only: wp
   use mesh, only: nearest_node, nodes_of_sides
   use mesh_parts, only: find_label
+  use remesher_options, only: has_zones
   use scene_draft, only: draft_t, words_of
   use text, only: string_t, to_text
   implicit none
@@ -60,8 +61,8 @@ contains
     integer, intent(in) :: place, most
     character(len=:), allocatable, intent(inout) :: label
     integer, allocatable, intent(inout) :: sides(:, :)
-    logical :: given(4)
-    integer :: side, n
+    logical, allocatable :: given(:)
+    integer :: side, n, most_sides
 
     label = draft%places%words(place)%s
     select case (draft%places%keywords(place)%s)
@@ -69,11 +70,13 @@ contains
       call add_sides(draft%places%item(place))
       if (most > 0 .and. cursor%next_is_number()) &
         call cursor%fail(''''//label//''' is a set of sides, no numbers of sides may follow it')
-    case ('BLOCK')
-      given = .false.
+    case ('BLOCK', 'BODY')
+      most_sides = number_of_sides(draft, place)
+      allocate (given(most_sides), source=.false.)
       n = 0
       do while (cursor%next_is_number() .and. n < most)
-        call cursor%integer('a side of the block', side, lower=1, upper=4)
+        call cursor%integer('a side of the '//trim(merge('block', 'body ', draft%places%keywords(place)%s == 'BLOCK')), &
+                            side, lower=1, upper=most_sides)
         if (cursor%failed()) return
         if (given(side)) call cursor%fail('side '//to_text(side)//' is given twice')
         given(side) = .true.
@@ -81,7 +84,8 @@ contains
         label = label//trim(merge('.', '+', n == 1))//to_text(side)
         call add_sides(draft%places%item(place) + side - 1)
       end do
-      if (n == 0) call cursor%fail(''''//label//''' is a BLOCK: expected the numbers of its sides (1 to 4) after it')
+      if (n == 0) call cursor%fail(''''//label//''' is a '//draft%places%keywords(place)%s &
+                                   //': expected the numbers of its sides (1 to '//to_text(most_sides)//') after it')
     case default
       call cursor%fail(''''//label//''' is a '//draft%places%keywords(place)%s//', expected a BLOCK or a set of sides')
     end select
@@ -92,11 +96,29 @@ contains
       integer, intent(in) :: set
 
       associate (more => draft%scene%mesh%sides(set)%nodes)
-        if (draft%mesh_sound) sides = reshape([sides, more], [3, size(sides, 2) + size(more, 2)])
+        if (.not. draft%mesh_sound) return
+        sides = reshape([sides, more], [3, size(sides, 2) + size(more, 2)])
+        if (has_zones(draft%scene%remesher) .and. any(draft%sharing(more(2, :)) > 1)) &
+          call cursor%fail('with ZONE cards a new mesh has other sides inside the part: expected sides on its boundary')
       end associate
     end subroutine add_sides
 
   end subroutine read_sides_of
+
+  !> Sides of a block or body: sets that follow one another, NAME.1, NAME.2 ...
+  pure function number_of_sides(draft, place) result(n)
+    type(draft_t), intent(in) :: draft
+    integer, intent(in) :: place
+    integer :: n
+
+    n = 0
+    associate (sets => draft%scene%mesh%sides, first => draft%places%item(place))
+      do while (first + n <= size(sets))
+        if (sets(first + n)%name /= draft%places%words(place)%s//'.'//to_text(n + 1)) exit
+        n = n + 1
+      end do
+    end associate
+  end function number_of_sides
 
   !> Any place; a die only where `dies` allows it. Nodes are empty while the mesh has mistakes.
   subroutine read_place(cursor, draft, dies, place)

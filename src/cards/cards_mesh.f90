@@ -111,7 +111,7 @@ contains
     call refuse_same_labels(parts, diagnostics)
   end subroutine read_elements
 
-  !> `name [element] npoint law [MEAN]`, as on the cards of elements and on BLOCK.
+  !> `name [element] npoint law [MEAN]`, as on the cards of elements, and on BLOCK and BODY.
   subroutine read_body_head(cursor, draft, diagnostics, keyword, item, body)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
@@ -120,11 +120,13 @@ contains
     integer, intent(in) :: item      !! what the name stands for: 0, or the first set of sides of a block
     type(body_t), intent(inout) :: body
     type(string_t), allocatable :: known(:), options(:)
+    logical :: names_element
     integer :: k, n
 
     body%is_block = keyword == 'BLOCK'
+    names_element = any(keyword == ['BLOCK', 'BODY '])
     call draft%places%define(cursor, 'the name of the body', keyword, item, diagnostics, body%name)
-    if (body%is_block) then
+    if (names_element) then
       allocate (known(count([(is_body_elem(draft%elems(k)), k=1, size(draft%elems))])))
       n = 0
       do k = 1, size(draft%elems)

@@ -1,4 +1,4 @@
-!> REMSH and ESTIM: when a new mesh is wanted, and whether errors are estimated.
+!> REMSH and ESTIM: when a new mesh is wanted and how it is made, and whether errors are estimated.
 module cards_remesh
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
@@ -7,14 +7,17 @@ module cards_remesh
   use kinds, only: wp
   use remeshing, only: aspect_ratio, jacobian_ratio, largest_angle, least_angle, middle_share, never, remesh_rules_t, &
                        scaled_jacobian, stroke_t
+  use remesher_options, only: has_contours
+  use remesher_rows, only: complete_options, read_remesher_row, remesher_words
   use scene_draft, only: close_card, draft_t, only_card, words_of
   use text, only: string_t, to_text
   implicit none
   private
   public :: read_remesh
 
-  !> Rows of REMSH, one word each, in the order of `read_row`.
-  character(len=*), parameter :: rows = 'ERROR ANGLE MIDDLE JACOB SCALED ASPECT BAD CONTACT DISTRESS TIMES STROKE LEAST'
+  !> Rows of REMSH that ask for a new mesh, one word each, and all rows.
+  character(len=*), parameter :: askers = 'ERROR ANGLE MIDDLE JACOB SCALED ASPECT CONTACT DISTRESS TIMES STROKE'
+  character(len=*), parameter :: rows = askers//' BAD LEAST '//remesher_words
   !> The middle third of a side.
   real(wp), parameter :: middle_third = 1.0_wp/3.0_wp
 
@@ -39,9 +42,11 @@ contains
       call cursor%open(deck%cards(k), diagnostics)
       draft%scene%remesh%on = .true.
       draft%scene%remesh%estimate = .true.
+      draft%scene%remesher%wanted = .true.
       call read_rows(cursor, draft)
       call close_card(draft, cursor, deck%cards(k))
     end if
+    call complete_options(draft%own_mesh, draft%scene%remesher)
   end subroutine read_remesh
 
   !> Each row once, but STROKE, and at least one that asks for something.
@@ -63,13 +68,14 @@ contains
       if (k == 0) return
       if (given(k) .and. words(k)%s /= 'STROKE') call cursor%fail(words(k)%s//' is given twice')
       given(k) = .true.
-      asked = asked .or. all(words(k)%s /= ['BAD  ', 'LEAST'])
+      asked = asked .or. index(' '//askers//' ', ' '//words(k)%s//' ') > 0
       call read_row(cursor, draft, words(k)%s)
       if (.not. cursor%more_rows()) exit
     end do
     call cursor%end_row()
     associate (rules => draft%scene%remesh)
-      if (.not. asked) call cursor%fail('nothing here asks for a new mesh: expected one of '//rows//' beside BAD and LEAST')
+      if (.not. asked .and. .not. has_contours(draft%scene%remesher)) &
+        call cursor%fail('nothing here asks for a new mesh: expected one of '//askers)
       if (rules%bad_share > 0 .and. .not. any(abs(rules%shape) < never)) &
         call cursor%fail('BAD counts elements by their shape: expected one of ANGLE MIDDLE JACOB SCALED ASPECT too')
     end associate
@@ -115,6 +121,8 @@ contains
         call read_strokes(cursor, draft)
       case ('LEAST')
         call cursor%integer('the least number of steps between two new meshes', rules%least_steps, lower=1)
+      case default
+        call read_remesher_row(cursor, word, draft%scene%remesher)
       end select
     end associate
   end subroutine read_row

@@ -15,7 +15,14 @@ module scene_draft
   use text, only: string_t
   implicit none
   private
-  public :: draft_t, start_draft, only_card, close_card, find_elem, words_of, head_location
+  public :: draft_t, own_mesh_t, start_draft, only_card, close_card, find_elem, words_of, head_location
+
+  !> The mesh that the cards make, before any remesh took its place.
+  type :: own_mesh_t
+    integer :: elements = 0
+    !> Mean size of an element [length].
+    real(wp) :: size = 0.0_wp
+  end type own_mesh_t
 
   type :: draft_t
     type(scene_t) :: scene
@@ -37,6 +44,7 @@ module scene_draft
     logical :: groups_sound = .true.
     !> Length of the diagonal of the box around the mesh [length].
     real(wp) :: mesh_size = 0.0_wp
+    type(own_mesh_t) :: own_mesh
   end type draft_t
 
 contains

@@ -102,7 +102,7 @@ contains
       scene%effects(k)%adds = adds
     end subroutine switch_on
 
-    !> A card as people name it: keyword, first field, file and line. A body may come from a BLOCK.
+    !> A card as people name it: keyword, first field, file and line. A body may come from a BLOCK or a BODY.
     function card_text(keyword, first_field) result(s)
       character(len=*), intent(in) :: keyword, first_field
       character(len=:), allocatable :: s, body
@@ -111,7 +111,8 @@ contains
       body = scene%groups(1)%elem
       s = keyword//' '//first_field
       do i = 1, size(deck%cards)
-        if (deck%cards(i)%keyword /= keyword .and. .not. (deck%cards(i)%keyword == 'BLOCK' .and. keyword == body)) cycle
+        if (deck%cards(i)%keyword /= keyword .and. .not. (any(deck%cards(i)%keyword == ['BLOCK', 'BODY ']) .and. keyword == body)) &
+          cycle
         if (size(deck%cards(i)%head%fields) > 0) then
           if (deck%cards(i)%head%fields(1)%text /= first_field) cycle
         else if (first_field /= '') then

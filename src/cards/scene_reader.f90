@@ -2,6 +2,7 @@
 module scene_reader
   use cards_blocks, only: join_blocks, read_blocks
   use cards_body_forces, only: read_body_forces
+  use cards_contours, only: read_contours, refuse_half_contours
   use cards_dies, only: read_dies
   use cards_head, only: read_kinematics, read_title
   use cards_laws, only: read_laws
@@ -16,6 +17,7 @@ module scene_reader
   use cards_strategy, only: read_strategy
   use cards_temperature, only: read_temperatures_of_bodies
   use cards_tractions, only: read_tractions
+  use cards_zones, only: read_zones
   use deck_reader, only: deck_t, refuse_unknown
   use diagnostics, only: diagnostics_t, location_t
   use elem_api, only: elem_t
@@ -24,6 +26,8 @@ module scene_reader
   use mesh_parts, only: mesh_parts_t, start_parts
   use remesh, only: remesh_t
   use remeshed_parts, only: order_as_remeshed, replace_parts
+  use remesher_options, only: has_contours
+  use remesher_rows, only: measure_own_mesh
   use scene, only: scene_t
   use scene_draft, only: draft_t, start_draft, words_of
   use scene_effects, only: list_effects
@@ -62,14 +66,19 @@ contains
     call read_nodes(deck, draft, parts, diagnostics)
     call read_elements(deck, draft, parts, diagnostics)
     call read_blocks(deck, draft, parts, diagnostics)
+    call read_contours(deck, draft, parts, diagnostics)
     call read_side_sets(deck, draft, parts, diagnostics)
     call join_blocks(deck, draft, parts, diagnostics)
+    draft%own_mesh = measure_own_mesh(parts)
     if (present(remesh)) call replace_parts(remesh, draft, parts)
+    ! without a mesh cards are read as where it has mistakes: nothing is looked up in it
+    if (has_contours(draft%scene%remesher) .and. .not. present(remesh)) parts%sound = .false.
     call finish_mesh(draft, parts, diagnostics)
     if (size(parts%bodies) == 0) call refuse_empty(deck, diagnostics)
 
     call read_temperatures_of_bodies(deck, draft, diagnostics)
     call read_side_dies(deck, draft, diagnostics)
+    call read_zones(deck, draft, diagnostics)
     call read_contacts(deck, draft, diagnostics)
     call read_pressures(deck, draft, diagnostics)
     call read_body_forces(deck, draft, diagnostics)
@@ -78,6 +87,7 @@ contains
     call read_pilots(deck, draft, diagnostics)
     call read_strategy(deck, draft, diagnostics)
     call read_remesh(deck, draft, diagnostics)
+    call refuse_half_contours(deck, draft, parts, diagnostics)
     call read_probes(deck, draft, diagnostics)
     call refuse_unused_names(deck, draft, keywords, diagnostics)
 
@@ -94,8 +104,8 @@ contains
     integer :: k
 
     call list_elems(elems)
-    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK JOIN LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE FIXED MOVE ' &
-                  //'FORCE FREE SPRNG LIC STRAT NORMS STOP SAVE CKPT PROBE ESTIM REMSH', keywords)
+    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE FIXED MOVE ' &
+                  //'FORCE FREE SPRNG LIC STRAT NORMS STOP SAVE CKPT PROBE ESTIM REMSH ZPNT ZONE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle
@@ -110,7 +120,7 @@ contains
     type(location_t) :: where
 
     call diagnostics%register(deck%path, where%file)
-    call diagnostics%add(where, 'BLOCK', 'the deck has no body: expected a BLOCK or PL8LS card')
+    call diagnostics%add(where, 'BLOCK', 'the deck has no body: expected a BLOCK, PL8LS or BODY card')
   end subroutine refuse_empty
 
   !> What is defined must be used. Words on cards that nobody knows count as uses.

@@ -3,7 +3,7 @@ module scene_summary
   use dies, only: is_deformable
   use kinds, only: wp
   use remeshing, only: criterion_names, is_upper, ncriteria, never
-  use scene, only: axisymmetric, generalised_plane_strain, plane_state_names, scene_t
+  use scene, only: axisymmetric, generalised_plane_strain, lacks_mesh, plane_state_names, scene_t
   use sections, only: section_drive_t, section_forced, section_moved, section_names
   use text, only: string_t, to_text
   implicit none
@@ -24,6 +24,7 @@ contains
     call put('           '//trim(plane_state_names(scene%plane_state))//thickness()//', kinematics '//scene%kinematics &
              //', until time '//to_text(scene%strategy%end_time))
     call put('nodes      '//to_text(size(scene%mesh%labels)))
+    if (lacks_mesh(scene)) call put('mesh       none yet: the remesher makes it of contours and zones')
     do k = 1, size(scene%groups)
       associate (group => scene%groups(k))
         call put('group      '//padded(group%name, 24)//padded(to_text(size(group%connectivity, 2))//' '//group%elem, 14) &
@@ -69,6 +70,10 @@ contains
           call put_limit('stroke', scene%dies(stroke%die)%name//' '//directions(stroke%component)//' = '//to_text(stroke%value))
         end associate
       end do
+      associate (wish => scene%remesher)
+        call put('new mesh   elements of '//to_text(wish%smallest, 4)//' to '//to_text(wish%largest, 4) &
+                 //most_text(wish%most_elements)//', error of the strain '//to_text(100*wish%strain_error)//' %')
+      end associate
     end if
     do k = 1, size(scene%effects)
       associate (effect => scene%effects(k))
@@ -95,6 +100,14 @@ contains
 
       call put('remesh     '//padded(name, 24)//limit)
     end subroutine put_limit
+
+    pure function most_text(most) result(s)
+      integer, intent(in) :: most
+      character(len=:), allocatable :: s
+
+      s = ''
+      if (most > 0) s = ', at most '//to_text(most)
+    end function most_text
 
     pure function share_text(share) result(s)
       real(wp), intent(in) :: share

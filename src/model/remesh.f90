@@ -16,6 +16,8 @@ module remesh
   type :: remesh_t
     !> 1 for the deck's own mesh; nothing else is filled then.
     integer :: generation = 1
+    !> Steps before this mesh; 0: the bodies are at rest on it, as the cards have them.
+    integer :: step = 0
     !> Where the nodes are at the start of this mesh, and where their matter was at the start of the first (2, nnode) [length].
     real(wp), allocatable :: coordinates(:, :), origin(:, :)
     !> All groups and all sets of sides of the scene, in its order.

@@ -1,9 +1,10 @@
 !> How a scene is remeshed: what REMSH cards ask of the remesher, and of the restart on a new mesh.
 module remesher_options
-  use kinds, only: wp
+  use kinds, only: pi, wp
+  use zone_marks, only: contour_card_t, zone_card_t, zone_mark_t
   implicit none
   private
-  public :: remesher_options_t
+  public :: remesher_options_t, has_zones, has_contours
 
   type :: remesher_options_t
     !> A REMSH card is there.
@@ -12,14 +13,40 @@ module remesher_options
     integer :: transfer = 1
     real(wp) :: exponent = 2.0_wp
     integer :: neighbours = 16
-    !> Sizes of elements, smallest and largest; 0: from the mesh before [length].
+    !> Sizes of elements, smallest and largest [length].
     real(wp) :: smallest = 0.0_wp, largest = 0.0_wp
-    !> Error of the strains an element is made for, elements at most (0: no limit), elements across a contact zone.
+    !> Error of the strains an element is made for, elements at most.
     real(wp) :: strain_error = 0.05_wp
     integer :: most_elements = 0
-    integer :: across_contact = 8
+    !> Elements across a stretch of contact (0: as they come), angle a side of an element may turn by [radian].
+    integer :: across_contact = 4
+    real(wp) :: turn = pi/12
     !> Limits of the restart: iterations, and change of the force of a die (share of the largest).
     integer :: most_iterations = 40
     real(wp) :: force_change = 0.1_wp
+    !> Zones that cards give, and the points they name; without them blocks are zones.
+    type(zone_mark_t), allocatable :: marks(:)
+    type(zone_card_t), allocatable :: zones(:)
+    !> Contours of bodies of which the remesher makes the first mesh too.
+    type(contour_card_t), allocatable :: contours(:)
   end type remesher_options_t
+
+contains
+
+  pure function has_zones(options) result(yes)
+    type(remesher_options_t), intent(in) :: options
+    logical :: yes
+
+    yes = allocated(options%zones)
+    if (yes) yes = size(options%zones) > 0
+  end function has_zones
+
+  pure function has_contours(options) result(yes)
+    type(remesher_options_t), intent(in) :: options
+    logical :: yes
+
+    yes = allocated(options%contours)
+    if (yes) yes = size(options%contours) > 0
+  end function has_contours
+
 end module remesher_options

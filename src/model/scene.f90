@@ -7,14 +7,14 @@ module scene
   use materials, only: material_t
   use mesh, only: mesh_t
   use probes, only: probe_t
-  use remesher_options, only: remesher_options_t
+  use remesher_options, only: has_contours, remesher_options_t
   use remeshing, only: remesh_rules_t
   use sections, only: section_drive_t
   use state_variables, only: state_variable_t
   use strategy, only: strategy_t
   implicit none
   private
-  public :: scene_t, group_t, plane_state_names, is_solid
+  public :: scene_t, group_t, plane_state_names, is_solid, lacks_mesh
   public :: plane_strain, axisymmetric, plane_stress, generalised_plane_strain
 
   !> Plane states.
@@ -92,5 +92,14 @@ contains
 
     yes = size(group%connectivity, 1) == 8 .and. group%material > 0
   end function is_solid
+
+  !> Bodies are given by their contours, and no mesh has been made of them yet.
+  pure function lacks_mesh(scene) result(yes)
+    type(scene_t), intent(in) :: scene
+    logical :: yes
+
+    yes = has_contours(scene%remesher) .and. allocated(scene%mesh%coordinates)
+    if (yes) yes = size(scene%mesh%coordinates, 2) == 0
+  end function lacks_mesh
 
 end module scene

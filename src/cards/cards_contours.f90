@@ -1,0 +1,157 @@
+!> BODY: a body by its contour, of which the remesher makes the first mesh.
+module cards_contours
+  use cards_mesh, only: read_body_head
+  use deck_cursor, only: cursor_t
+  use deck_reader, only: deck_t
+  use diagnostics, only: diagnostics_t, location_t
+  use kinds, only: wp
+  use mesh, only: side_set_t
+  use mesh_parts, only: body_t, mesh_parts_t
+  use piece_rows, only: ends_meet, piece_words, read_piece
+  use remesher_options, only: has_contours, has_zones
+  use scene_draft, only: close_card, draft_t, head_location, words_of
+  use text, only: string_t, to_text
+  use zone_marks, only: contour_card_t
+  implicit none
+  private
+  public :: read_contours, refuse_half_contours
+
+contains
+
+  !> All BODY cards: a body without elements each, and a set of sides for each of its rows.
+  subroutine read_contours(deck, draft, parts, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(mesh_parts_t), intent(inout) :: parts
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    type(body_t) :: body
+    type(contour_card_t) :: contour
+    type(contour_card_t), allocatable :: contours(:)
+    integer :: i, n
+
+    allocate (contours(size(deck%cards)))
+    n = 0
+    do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword /= 'BODY') cycle
+      n = n + 1
+      call cursor%open(deck%cards(i), diagnostics)
+      call read_body_head(cursor, draft, diagnostics, 'BODY', size(draft%scene%mesh%sides) + 1, body)
+      call read_chain(cursor, size(deck%cards(i)%rows), contour)
+      call close_card(draft, cursor, deck%cards(i))
+      parts%sound = parts%sound .and. .not. cursor%failed()
+      if (cursor%failed()) contour%row = [integer ::]
+      contour%group = size(parts%bodies) + 1
+      contours(n) = contour
+      call append_body(head_location(deck%cards(i)), size(deck%cards(i)%rows), body, draft, parts)
+    end do
+    allocate (draft%scene%remesher%contours, source=contours(:n))
+  end subroutine read_contours
+
+  !> The rows: pieces end to end and around, the part on their left.
+  subroutine read_chain(cursor, nrow, contour)
+    type(cursor_t), intent(inout) :: cursor
+    integer, intent(in) :: nrow
+    type(contour_card_t), intent(inout) :: contour
+    type(string_t), allocatable :: forms(:)
+    integer, allocatable :: row(:)
+    integer :: form, k, n
+
+    call words_of(piece_words, forms)
+    if (allocated(contour%pieces)) deallocate (contour%pieces, contour%row)
+    allocate (contour%pieces(2, 3, 0), row(0))
+    do k = 1, max(nrow, 1)
+      call cursor%next_row('one of '//piece_words//' and its points')
+      call cursor%name('one of '//piece_words, forms, form)
+      n = size(contour%pieces, 3)
+      if (form > 0) call read_piece(cursor, form, contour%pieces)
+      row = [row, spread(k, 1, size(contour%pieces, 3) - n)]
+    end do
+    call move_alloc(row, contour%row)
+    call cursor%end_row()
+    if (cursor%failed()) return
+    n = size(contour%pieces, 3)
+    if (.not. ends_meet(contour%pieces)) then
+      call cursor%fail('the contour must end where it began, at '//to_text(contour%pieces(1, 1, 1), 10)//' ' &
+                       //to_text(contour%pieces(2, 1, 1), 10))
+    else if (.not. area_in(contour%pieces) > 0) then
+      call cursor%fail('the part must be on the left of its contour: give the pieces the other way round')
+    end if
+    contour%pieces(:, 3, n) = contour%pieces(:, 1, 1)
+  end subroutine read_chain
+
+  !> Area on the left of closed parabolas: half the integral of x dy - y dx, exact for each [length^2].
+  pure function area_in(pieces) result(area)
+    real(wp), intent(in) :: pieces(:, :, :)
+    real(wp) :: area
+    integer :: k
+
+    area = 0
+    do k = 1, size(pieces, 3)
+      associate (a => pieces(:, 1, k) - pieces(:, 1, 1), m => pieces(:, 2, k) - pieces(:, 1, 1), &
+                 b => pieces(:, 3, k) - pieces(:, 1, 1))
+        area = area + 0.5_wp*cross(a, b) + 2*cross(m - a, b - a)/3
+      end associate
+    end do
+
+  contains
+
+    pure function cross(u, v) result(z)
+      real(wp), intent(in) :: u(2), v(2)
+      real(wp) :: z
+
+      z = u(1)*v(2) - u(2)*v(1)
+    end function cross
+
+  end function area_in
+
+  !> Its sets of sides are empty until there is a mesh.
+  subroutine append_body(where, nrow, body, draft, parts)
+    type(location_t), intent(in) :: where
+    integer, intent(in) :: nrow
+    type(body_t), intent(inout) :: body
+    type(draft_t), intent(inout) :: draft
+    type(mesh_parts_t), intent(inout) :: parts
+    type(side_set_t) :: set
+    integer :: k
+
+    if (allocated(body%labels)) deallocate (body%labels, body%location, body%connectivity)
+    allocate (body%labels(0), body%location(1), body%connectivity(8, 0))
+    body%location = where
+    parts%bodies = [parts%bodies, body]
+    do k = 1, nrow
+      set%name = body%name//'.'//to_text(k)
+      if (allocated(set%nodes)) deallocate (set%nodes)
+      allocate (set%nodes(3, 0))
+      draft%scene%mesh%sides = [draft%scene%mesh%sides, set]
+      parts%joined = [parts%joined, location_t()]
+    end do
+  end subroutine append_body
+
+  !> The remesher makes the first mesh of all bodies or of none, by zones and to a size.
+  subroutine refuse_half_contours(deck, draft, parts, diagnostics)
+    type(deck_t), intent(in) :: deck
+    type(draft_t), intent(in) :: draft
+    type(mesh_parts_t), intent(in) :: parts
+    type(diagnostics_t), intent(inout) :: diagnostics
+    integer :: i
+
+    if (.not. has_contours(draft%scene%remesher)) return
+    do i = 1, size(draft%scene%remesher%contours)
+      if (size(draft%scene%remesher%contours(i)%row) == 0) return   ! a mistake that has been told
+    end do
+    do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword == 'BODY') exit
+    end do
+    associate (where => head_location(deck%cards(i)))
+      if (size(parts%bodies) > size(draft%scene%remesher%contours)) then
+        call diagnostics%add(where, 'BODY', 'a deck has bodies by their contours or bodies with elements, not both')
+      else if (.not. has_zones(draft%scene%remesher)) then
+        call diagnostics%add(where, 'BODY', 'there is nothing to make its mesh by: expected ZONE cards')
+      else if (.not. draft%scene%remesher%largest > 0) then
+        call diagnostics%add(where, 'BODY', 'there is nothing to tell the size of its elements: expected a REMSH card with SIZE')
+      end if
+    end associate
+  end subroutine refuse_half_contours
+
+end module cards_contours

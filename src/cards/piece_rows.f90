@@ -1,0 +1,81 @@
+!> Rows of pieces end to end: segments, parabolas and arcs of dies and of contours.
+module piece_rows
+  use card_points, only: read_xy
+  use deck_cursor, only: cursor_t
+  use die_arcs, only: arc_pieces
+  use kinds, only: wp
+  use text, only: to_text
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: piece_words, read_piece, ends_meet
+
+  !> A piece begins where the last one ended, to this share of the chain's size.
+  real(wp), parameter :: gap_tolerance = 1.0e-9_wp
+  !> The middle point of a parabola lies over the middle half of its chord, or the parabola folds.
+  real(wp), parameter :: middle_half(2) = [0.25_wp, 0.75_wp]
+
+  !> Forms of pieces.
+  character(len=*), parameter :: piece_words = 'SEGM PARAB ARC'
+  integer, parameter :: segment = 1, parabola = 2, arc = 3
+
+contains
+
+  !> A piece: its points, for an arc its tolerance.
+  subroutine read_piece(cursor, form, pieces)
+    type(cursor_t), intent(inout) :: cursor
+    integer, intent(in) :: form
+    real(wp), allocatable, intent(inout) :: pieces(:, :, :)   !! (2, 3, npiece) [length]
+    real(wp) :: first(2), middle(2), last(2), tolerance, gap, extent, share
+    real(wp), allocatable :: more(:, :, :)
+    character(len=:), allocatable :: message
+    integer :: n
+
+    call read_xy(cursor, 'the first point', first)
+    n = size(pieces, 3)
+    if (n > 0 .and. .not. cursor%failed()) then
+      gap = length_of(first - pieces(:, 3, n))
+      extent = max(maxval(abs(pieces)), maxval(abs(first)))
+      if (gap > gap_tolerance*extent) &
+        call cursor%fail('the piece must begin where the last one ended, at '//to_text(pieces(1, 3, n), 10)//' ' &
+                         //to_text(pieces(2, 3, n), 10)//'; it begins '//to_text(gap)//' away from there')
+      first = pieces(:, 3, n)
+    end if
+    middle = 0
+    if (form /= segment) call read_xy(cursor, 'the middle point', middle)
+    call read_xy(cursor, 'the last point', last)
+    if (form == arc) call cursor%real('the tolerance of the arc', tolerance, lower=0.0_wp, strict_lower=.true., unit='length')
+    if (cursor%failed()) return
+    if (.not. length_of(last - first) > gap_tolerance*max(maxval(abs(first)), maxval(abs(last)))) then
+      call cursor%fail('the piece ends where it begins')
+      return
+    end if
+    select case (form)
+    case (segment)
+      more = reshape([first, 0.5_wp*(first + last), last], [2, 3, 1])
+    case (parabola)
+      share = dot_product(middle - first, last - first)/dot_product(last - first, last - first)
+      if (.not. (share > middle_half(1) .and. share < middle_half(2))) &
+        call cursor%fail('the middle point must lie over the middle half of the chord, or the parabola folds; it lies at ' &
+                         //to_text(100*share, 4)//' % of it')
+      more = reshape([first, middle, last], [2, 3, 1])
+    case default
+      call arc_pieces(first, middle, last, tolerance, more, message)
+      if (message /= '') call cursor%fail(message)
+    end select
+    if (cursor%failed()) return
+    pieces = reshape([pieces, more], [2, 3, n + size(more, 3)])
+  end subroutine read_piece
+
+  !> The last of several pieces ends where the first begins, to round-off.
+  pure function ends_meet(pieces) result(yes)
+    real(wp), intent(in) :: pieces(:, :, :)
+    logical :: yes
+    integer :: n
+
+    n = size(pieces, 3)
+    yes = n >= 2
+    if (yes) yes = length_of(pieces(:, 3, n) - pieces(:, 1, 1)) <= gap_tolerance*maxval(abs(pieces))
+  end function ends_meet
+
+end module piece_rows

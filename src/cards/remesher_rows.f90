@@ -1,0 +1,110 @@
+!> Rows of REMSH that say how the new mesh is made, and what they stand at where the deck says nothing.
+!>
+!> Sizes and numbers that are not given follow the mesh of the deck itself, however often it has been remeshed since: whoever chose
+!> that mesh has said how fine it should be.
+module remesher_rows
+  use block_mesh, only: polygon_area
+  use deck_cursor, only: cursor_t
+  use kinds, only: pi, wp
+  use mesh_parts, only: mesh_parts_t
+  use remesher_options, only: remesher_options_t
+  use scene_draft, only: own_mesh_t, words_of
+  use text, only: string_t
+  implicit none
+  private
+  public :: remesher_words, read_remesher_row, measure_own_mesh, complete_options
+
+  !> In the order of `read_remesher_row`.
+  character(len=*), parameter :: remesher_words = 'STRAIN SIZE COUNT ACROSS TURN TRANSFER ACCEPT'
+  !> Methods of transfer by their numbers, from 0.
+  character(len=*), parameter :: methods = 'DIST MLS PATCH'
+  !> Moving squares of degree 2 need 6 points, and some more not to be an interpolation.
+  integer, parameter :: fewest_neighbours = 8, most_neighbours = 64
+  !> Smallest and largest elements over those of the deck's own mesh, and how many times as many elements there may be.
+  real(wp), parameter :: smallest_share = 0.4_wp, largest_share = 2.5_wp
+  integer, parameter :: growth = 3
+
+contains
+
+  subroutine read_remesher_row(cursor, word, options)
+    type(cursor_t), intent(inout) :: cursor
+    character(len=*), intent(in) :: word
+    type(remesher_options_t), intent(inout) :: options
+    real(wp) :: degrees
+
+    select case (word)
+    case ('STRAIN')
+      call cursor%real('the error of the strain an element is made for', options%strain_error, lower=0.0_wp, strict_lower=.true.)
+    case ('SIZE')
+      call cursor%real('the smallest size of an element', options%smallest, lower=0.0_wp, strict_lower=.true., unit='length')
+      call cursor%real('the largest size of an element', options%largest, lower=options%smallest, unit='length')
+    case ('COUNT')
+      call cursor%integer('the largest number of elements', options%most_elements, lower=1)
+    case ('ACROSS')
+      call cursor%integer('the number of elements across a stretch of contact', options%across_contact, lower=0, upper=1000)
+    case ('TURN')
+      call cursor%real('the angle a side of an element may turn by', degrees, lower=0.0_wp, upper=90.0_wp, &
+                       strict_lower=.true., unit='degrees')
+      options%turn = degrees*pi/180
+    case ('TRANSFER')
+      call read_transfer(cursor, options)
+    case ('ACCEPT')
+      call cursor%integer('the largest number of iterations to equilibrium', options%most_iterations, lower=1)
+      call cursor%real('the largest change of the force of a die', options%force_change, lower=0.0_wp, strict_lower=.true.)
+    end select
+  end subroutine read_remesher_row
+
+  !> A method, and its number if it has one.
+  subroutine read_transfer(cursor, options)
+    type(cursor_t), intent(inout) :: cursor
+    type(remesher_options_t), intent(inout) :: options
+    type(string_t), allocatable :: words(:)
+    integer :: k
+
+    call words_of(methods, words)
+    call cursor%name('a method of transfer', words, k)
+    if (k == 0) return
+    options%transfer = k - 1
+    if (.not. cursor%more()) return
+    select case (words(k)%s)
+    case ('DIST')
+      call cursor%real('N of 1/R^N', options%exponent, lower=0.0_wp, upper=20.0_wp, strict_lower=.true.)
+    case ('MLS')
+      call cursor%integer('the number of points', options%neighbours, lower=fewest_neighbours, upper=most_neighbours)
+    end select
+  end subroutine read_transfer
+
+  !> Elements of the mesh that the cards make, and their mean size: the side of a square of the mean area.
+  pure function measure_own_mesh(parts) result(own)
+    type(mesh_parts_t), intent(in) :: parts
+    type(own_mesh_t) :: own
+    real(wp) :: area
+    integer :: b, e
+
+    area = 0
+    if (parts%sound) then
+      do b = 1, size(parts%bodies)
+        associate (connectivity => parts%bodies(b)%connectivity)
+          own%elements = own%elements + size(connectivity, 2)
+          do e = 1, size(connectivity, 2)
+            area = area + abs(polygon_area(parts%coordinates(:, connectivity(1:4, e))))
+          end do
+        end associate
+      end do
+    end if
+    if (own%elements > 0) own%size = sqrt(area/own%elements)
+  end function measure_own_mesh
+
+  !> What was not given is taken from the deck's own mesh.
+  pure subroutine complete_options(own, options)
+    type(own_mesh_t), intent(in) :: own
+    type(remesher_options_t), intent(inout) :: options
+
+    if (.not. options%largest > 0) then
+      options%smallest = smallest_share*own%size
+      options%largest = largest_share*own%size
+    end if
+    if (options%most_elements == 0) options%most_elements = growth*own%elements
+  end subroutine complete_options
+
+end module remesher_rows
