@@ -143,7 +143,7 @@ contains
     end if
   end subroutine start
 
-  !> Equilibrium on a new mesh, judged; what is there then is what later steps stand on.
+  !> Equilibrium on a new mesh, judged; later steps stand on the state that was carried.
   subroutine balance_new_mesh(scene, solution, run, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
