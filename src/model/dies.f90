@@ -61,7 +61,8 @@ contains
     end do
     call grow_tree(die%boxes, die%tree)
     associate (n => size(die%pieces, 3))
-      die%closed = n > 1 .and. .not. length_of(die%pieces(:, 3, n) - die%pieces(:, 1, 1)) > 0
+      die%closed = n > 1
+      if (die%closed) die%closed = .not. length_of(die%pieces(:, 3, n) - die%pieces(:, 1, 1)) > 0
     end associate
     if (.not. is_deformable(die)) call list_corners(die)
   end subroutine finish_die
@@ -77,7 +78,7 @@ contains
     n = 0
     t1 = 0
     do k = 0, npiece
-      if (k == 0 .and. die%closed) cycle
+      if (k == 0 .and. (die%closed .or. npiece == 0)) cycle
       if (k > 0) t1 = end_tangent(die%pieces(:, :, k), 1)
       if (k < npiece) then
         t2 = end_tangent(die%pieces(:, :, k + 1), -1)
