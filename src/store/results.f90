@@ -3,21 +3,18 @@
 !> `NAME.gNN.h5`: mesh/ (coordinates, topology from 0, groups), dies/, and steps/NNNNNN, links to the instants: files
 !> `NAME.gNN/NNNNNN.h5` with the coordinates reached, nodal fields (node/NAME), numbers of elements (element/NAME) and the raw state
 !> of the points (points/GROUP). Who reads follows the links without knowing.
-!>
-!> Every file is written under a temporary name and renamed; an instant that has been saved is never written to again. So a kill or
-!> a power cut at any moment loses nothing: a file that grows by appending would be lost as a whole, HDF5 keeps no journal.
 module results
-  use atomic, only: copy_to_temporary, replace_file, temporary_name
   use dies, only: is_deformable
   use errors, only: error_t
   use hdf5_file, only: hdf5_file_t
+  use instant_files, only: begin_file, forget_later_steps, instant_path, instants_folder, link_instant, mesh_path, put_in_place
   use kinds, only: wp
   use nodal_average, only: add_to_nodes
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use state_variables, only: component_names
   use system, only: base_name, file_exists, make_directory, remove_file, rename_file
-  use text, only: string_t, to_text, two_digits
+  use text, only: string_t, to_text
   use xdmf_writer, only: xdmf_field_t, xdmf_grid_t, xdmf_t
   implicit none
   private
@@ -83,24 +80,6 @@ contains
     if (.not. file_exists(results%path)) call write_mesh(results%path, scene, error)
   end subroutine open_results
 
-  !> The file of a mesh generation.
-  pure function mesh_path(stem, generation) result(path)
-    character(len=*), intent(in) :: stem
-    integer, intent(in) :: generation
-    character(len=:), allocatable :: path
-
-    path = instants_folder(stem, generation)//'.h5'
-  end function mesh_path
-
-  !> Where the instants of a generation lie.
-  pure function instants_folder(stem, generation) result(path)
-    character(len=*), intent(in) :: stem
-    integer, intent(in) :: generation
-    character(len=:), allocatable :: path
-
-    path = stem//'.g'//two_digits(generation)
-  end function instants_folder
-
   !> A file that somebody else has damaged does not keep a run from going on: it is put aside under another name.
   subroutine put_aside(path, results, error)
     character(len=*), intent(in) :: path
@@ -114,51 +93,6 @@ contains
     results%xdmf = empty
     results%saved_step = -1
   end subroutine put_aside
-
-  !> Take the instants after `step` out of a generation: first their links, then their files. `saved` is the last one that stays.
-  subroutine forget_later_steps(path, folder, step, saved, error)
-    character(len=*), intent(in) :: path, folder
-    integer, intent(in) :: step
-    integer, intent(out) :: saved
-    type(error_t), allocatable, intent(out) :: error
-    type(hdf5_file_t) :: file
-    type(string_t), allocatable :: names(:)
-    logical, allocatable :: gone(:)
-    integer :: k, number, status
-
-    saved = -1
-    allocate (names(0))
-    call file%open(path, error)
-    if (allocated(error)) return
-    if (file%has('steps')) call file%list('steps', names)
-    call file%close(error)
-    if (allocated(error)) return
-    allocate (gone(size(names)), source=.false.)
-    do k = 1, size(names)
-      read (names(k)%s, *, iostat=status) number
-      if (status /= 0) cycle
-      gone(k) = number > step
-      if (.not. gone(k)) saved = max(saved, number)
-    end do
-    if (.not. any(gone)) return
-    call copy_to_temporary(path, error)
-    if (.not. allocated(error)) call file%open_append(temporary_name(path), error)
-    if (allocated(error)) return
-    do k = 1, size(names)
-      if (gone(k)) call file%remove('steps/'//names(k)%s)
-    end do
-    call put_in_place(file, path, error)
-    do k = 1, size(names)
-      if (gone(k) .and. .not. allocated(error)) call remove_file(instant_path(folder, names(k)%s), error)
-    end do
-  end subroutine forget_later_steps
-
-  pure function instant_path(folder, number) result(path)
-    character(len=*), intent(in) :: folder, number
-    character(len=:), allocatable :: path
-
-    path = folder//'/'//number//'.h5'
-  end function instant_path
 
   subroutine write_mesh(path, scene, error)
     character(len=*), intent(in) :: path
@@ -255,49 +189,11 @@ contains
     end if
     call put_points(file, scene, solution)
     call put_in_place(file, path, error)
-    if (.not. allocated(error)) call link_instant(results, number, error)
+    if (.not. allocated(error)) call link_instant(results%path, results%folder, number, error)
     if (.not. allocated(error)) call results%xdmf%add(grid, error)
     if (.not. allocated(error)) call results%xdmf%write_file(results%stem//'.xdmf', error)
     if (.not. allocated(error)) results%saved_step = solution%step
   end subroutine save_fields
-
-  !> Enter an instant in the file of its mesh.
-  subroutine link_instant(results, number, error)
-    type(results_t), intent(in) :: results
-    character(len=*), intent(in) :: number
-    type(error_t), allocatable, intent(out) :: error
-    type(hdf5_file_t) :: file
-
-    call copy_to_temporary(results%path, error)
-    if (.not. allocated(error)) call file%open_append(temporary_name(results%path), error)
-    if (allocated(error)) return
-    call file%remove('steps/'//number)
-    call file%link('steps/'//number, base_name(results%folder)//'/'//number//'.h5')
-    call put_in_place(file, results%path, error)
-  end subroutine link_instant
-
-  !> A new file under the temporary name of `path`.
-  subroutine begin_file(file, path, error)
-    type(hdf5_file_t), intent(inout) :: file
-    character(len=*), intent(in) :: path
-    type(error_t), allocatable, intent(out) :: error
-    type(error_t), allocatable :: ignored
-
-    call file%create(temporary_name(path), error)
-    if (allocated(error)) call remove_file(temporary_name(path), ignored)
-  end subroutine begin_file
-
-  !> Close a file written under its temporary name and give it its own; after an error the older one is there as it was.
-  subroutine put_in_place(file, path, error)
-    type(hdf5_file_t), intent(inout) :: file
-    character(len=*), intent(in) :: path
-    type(error_t), allocatable, intent(out) :: error
-    type(error_t), allocatable :: ignored
-
-    call file%close(error)
-    if (.not. allocated(error)) call replace_file(path, error)
-    if (allocated(error)) call remove_file(temporary_name(path), ignored)
-  end subroutine put_in_place
 
   !> A picture of the step that failed, in files of its own (NAME.failed.*): the last good state with the residual force.
   subroutine save_failure(scene, solution, stem, residual, error)
