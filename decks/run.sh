@@ -89,7 +89,10 @@ run_deck() {
   shift
   mkdir -p "$folder" && : >"$root/out/.started" || exit 5
   code=0
-  "$build/bin/lagamine" "$file" --out "$folder" "$@" || code=$?
+  program=lagamine
+  # a deck that asks for new meshes runs in a cycle
+  if grep -q "^REMSH" "$file"; then program=lagacycle; fi
+  "$build/bin/$program" "$file" --out "$folder" "$@" || code=$?
   # Results of an earlier run, or none, are not shown: with --check, or where the deck was refused.
   fresh "$folder/history.csv" || return "$code"
   echo "history.csv:"

@@ -23,7 +23,7 @@ module remesher_options
     real(wp) :: turn = pi/12
     !> Limits of the restart: iterations, and change of the force of a die (share of the largest).
     integer :: most_iterations = 40
-    real(wp) :: force_change = 0.1_wp
+    real(wp) :: force_change = 0.25_wp
     !> Zones that cards give, and the points they name; without them blocks are zones.
     type(zone_mark_t), allocatable :: marks(:)
     type(zone_card_t), allocatable :: zones(:)
