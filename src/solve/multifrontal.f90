@@ -1,8 +1,9 @@
 !> Multifrontal factorisation A = L U without pivoting, by all threads (I.S. Duff, J.K. Reid, ACM Trans. Math. Softw. 9 (1983)
 !> 302-325).
 !>
-!> Subtrees are tasks. A front sums its nonzeros and the borders of its children in a fixed order and writes only what
-!> is its own, so the bits are the same for any number of threads.
+!> Subtrees are tasks; the last of each front is done by the thread that is there: one that waits would help with the tasks of
+!> its own only, not with theirs. A front sums its nonzeros and the borders of its children in a fixed order and writes only
+!> what is its own, so the bits are the same for any number of threads.
 module multifrontal
   use blas, only: dgemv, dtrsv, keep_blas_to_one_thread
   use dense_lu, only: eliminate, eliminate_shared
@@ -72,7 +73,7 @@ contains
     integer :: k, c, s
 
     do k = layout%child_first(f), layout%child_first(f + 1) - 1
-      !$omp task default(shared) firstprivate(k) private(c, s)
+      !$omp task default(shared) firstprivate(k) private(c, s) if (k < layout%child_first(f + 1) - 1)
       c = layout%child(k)
       if (layout%shared(c)) then
         call decompose_below(layout, values, c, factors, borders, sound)
@@ -173,7 +174,7 @@ contains
     integer :: k, c, s
 
     do k = layout%child_first(f), layout%child_first(f + 1) - 1
-      !$omp task default(shared) firstprivate(k) private(c, s)
+      !$omp task default(shared) firstprivate(k) private(c, s) if (k < layout%child_first(f + 1) - 1)
       c = layout%child(k)
       if (layout%shared(c)) then
         call forward_below(layout, c, factors, y, sent)
@@ -224,7 +225,7 @@ contains
 
     if (f > 0) call backward(layout, f, factors, y)
     do k = layout%child_first(f), layout%child_first(f + 1) - 1
-      !$omp task default(shared) firstprivate(k) private(c, s)
+      !$omp task default(shared) firstprivate(k) private(c, s) if (k < layout%child_first(f + 1) - 1)
       c = layout%child(k)
       if (layout%shared(c)) then
         call backward_below(layout, c, factors, y)
