@@ -1,8 +1,10 @@
 !> The sides of zones as curves walked by length, and nodes along them where 1/h is shared out evenly.
 !>
-!> A side along the contour is broken where the contour has a corner or contact begins or ends: these stay ends of elements.
+!> A side along the contour is broken where the contour has a corner, where contact begins or ends, and where another set of sides
+!> begins: these stay ends of elements.
 module side_curves
-  use contour_chain, only: arc_at, chain_length, chain_t, joint_after, kind_corner, kind_entry, kind_exit, place_at_arc, place_t
+  use contour_chain, only: arc_at, chain_length, chain_t, joint_after, kind_corner, kind_entry, kind_exit, kind_joint, &
+                           place_at_arc, place_t
   use kinds, only: wp
   use size_field, only: size_at, size_field_t
   use stretches, only: length_between, point_at, straight, stretch_t, tangent_at, xi_at_length
@@ -95,7 +97,7 @@ contains
     allocate (curve%breaks(0:1), source=[0.0_wp, curve%length])
   end subroutine draw_side
 
-  !> Corners between the ends of the curve, then entries and exits that are not too close to others.
+  !> Corners between the ends of the curve, then joints, entries and exits that are not too close to others.
   pure subroutine find_breaks(chain, field, material, curve)
     type(chain_t), intent(in) :: chain
     type(size_field_t), intent(in) :: field
@@ -109,7 +111,7 @@ contains
     do pass = 1, 2
       do k = 1, size(chain%stretches)
         if (pass == 1 .and. chain%kinds(k) /= kind_corner) cycle
-        if (pass == 2 .and. chain%kinds(k) /= kind_entry .and. chain%kinds(k) /= kind_exit) cycle
+        if (pass == 2 .and. all(chain%kinds(k) /= [kind_joint, kind_entry, kind_exit])) cycle
         s = modulo(chain%arc(k - 1) - curve%start, chain_length(chain))
         if (s >= curve%length) cycle
         apart = same*chain_length(chain)

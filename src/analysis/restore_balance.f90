@@ -1,12 +1,12 @@
-!> Equilibrium on a new mesh, at fixed time and fixed dies: the trial that tells whether a remesh is good.
+!> Equilibrium on a new mesh, at fixed time and fixed dies.
 !>
 !> State that was carried over does not balance exactly. Newton's method removes the residual; where it does not manage at
 !> once, in parts: a share of the first residual is left as a force from outside, and taken away half by half. What this takes, and
 !> what it changes, is published and judged (chapter 12 of the thesis).
 !>
-!> The march goes on from the state as it was carried, and its first step carries the residual off while the dies move. The
-!> equilibrium at fixed dies is no state of a process: where everything flows, whatever is corrected can only unload, and the
-!> dies lose force, 2 to 15 % in an upsetting on a mesh that has folded; the step that goes on loading loses none of it.
+!> In no time nothing flows: the laws answer elastically. If they flowed, whatever is corrected could only unload where
+!> everything flows, and the dies would lose force (2 to 15 % in an upsetting on a mesh that has folded). What this leaves outside the
+!> yield surface the first step of the march returns, while the dies move on.
 module restore_balance
   use accept_step, only: accept_balance
   use elem_api, only: report_t, totals_t
@@ -51,8 +51,7 @@ module restore_balance
 
 contains
 
-  !> Restore equilibrium, and judge by it. When it is `restored` the solution is the carried one again, fit to go on; else it stands
-  !> where the last part left it.
+  !> Restore equilibrium. When it is not `restored`, the solution stands where the last part left it.
   subroutine restore_equilibrium(scene, equations, solution, balance, outcome)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -62,7 +61,6 @@ contains
     real(wp), dimension(equations%dofs%ndof) :: external, rest
     real(wp) :: left, part, started
     type(report_t) :: report
-    type(solution_t), allocatable :: carried
 
     started = wall_seconds()
     allocate (balance%pilot_before, source=solution%pilot_applied)
@@ -71,7 +69,6 @@ contains
     call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report)
     call keep_pressures(scene, solution)
     call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report)
-    allocate (carried, source=solution)
     rest = external - equations%force
     where (equations%dofs%equation == 0) rest = 0
     left = 1
@@ -96,11 +93,7 @@ contains
     if (allocated(outcome%reason)) balance%reason = outcome%reason
     balance%motion = maxval(abs(solution%displacement))/equations%size
     allocate (balance%pilot_after, source=solution%pilot_applied)
-    if (balance%restored) then
-      carried%iterations = solution%iterations
-      solution = carried
-      solution%unbalanced = .false.
-    end if
+    if (balance%restored) solution%unbalanced = .false.
     balance%wall = wall_seconds() - started
   end subroutine restore_equilibrium
 

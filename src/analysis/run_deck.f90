@@ -11,7 +11,8 @@ module run_deck
   use law_manual, only: law_card
   use law_registry, only: law_names, list_laws
   use listing, only: close_listing, end_progress, list_lines, list_note, list_resumed, open_listing
-  use march, only: march_to_end, run_t
+  use march, only: march_to_end
+  use run_record, only: run_t
   use run_options, only: run_options_t, stem_of
   use run_version, only: version_text
   use remesh, only: remesh_t

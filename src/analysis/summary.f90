@@ -66,7 +66,7 @@ contains
     call json%add('iterations', solution%iterations)
     call json%add('cutbacks', solution%cutbacks)
     call json%add('remeshings', scene%generation - 1)
-    call json%add('initial_volume', solution%initial_volume)
+    call json%add('initial_volume', circumference(scene)*solution%initial_volume)
     call json%add('wall_s', facts%wall)
     call json%add('cpu_s', cpu_seconds())
     call json%add('peak_rss_mb', peak_memory_mb())

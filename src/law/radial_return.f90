@@ -69,8 +69,8 @@ contains
     call yield_between(flow%form, flow%below, flow%above, flow%share, below, above, committed(1), sy, slope)
     limit = sy
     if (flow%rate_form == rate_power) limit = 0
-    ! in no time at all (equilibrium restored after a remesh) nothing flows whose flow takes time
-    if (q <= limit + yield_tolerance*(limit + start) .or. (flow%rate_form /= rate_none .and. .not. dt > 0)) then
+    ! in no time at all (equilibrium restored on a new mesh) nothing flows
+    if (q <= limit + yield_tolerance*(limit + start) .or. .not. dt > 0) then
       tangent = hooke_tangent(flow%bulk, flow%shear)
       return
     end if

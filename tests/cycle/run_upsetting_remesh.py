@@ -28,15 +28,9 @@ PERCENT = (30, 44, 50, 55, 60)
 LARGEST_JUMP, LARGEST_DEVIATION, LARGEST_DRIFT = 0.02, 0.03, 0.001
 
 
-def column(rows, name):
-    """A column of the history by the first word of its head."""
-    head = next(h for h in rows[0] if h.split(" ")[0] == name)
-    return [float(row[head]) for row in rows]
-
-
 def force_at(rows, percent):
     """Force on the die, straight between steps."""
-    travel, force = [-u for u in column(rows, "displacement_y_upper")], column(rows, "force_y_upper")
+    travel, force = [-u for u in rows["displacement_y_upper"]], rows["force_y_upper"]
     wanted = HALF_HEIGHT * percent / 100
     k = next(k for k, u in enumerate(travel) if u >= wanted - 1e-9)
     share = (wanted - travel[k - 1]) / (travel[k] - travel[k - 1])
@@ -45,7 +39,7 @@ def force_at(rows, percent):
 
 def jump(rows, step):
     """Relative distance of the force after a step from the straight line before it."""
-    steps, time, force = column(rows, "step"), column(rows, "time"), column(rows, "force_y_upper")
+    steps, time, force = rows["step"], rows["time"], rows["force_y_upper"]
     k = steps.index(step)
     line = force[k] + (force[k] - force[k - 1]) / (time[k] - time[k - 1]) * (time[k + 1] - time[k])
     return force[k + 1] / line - 1
@@ -67,8 +61,8 @@ def main():
     rows = history(out)
     with open(os.path.join(out, "cycle.csv"), newline="", encoding="utf-8") as file:
         tries = list(csv.DictReader(file))
-    checks.that(abs(column(rows, "displacement_y_upper")[-1] + 0.85 * HALF_HEIGHT) < 1e-9, "85 % reached",
-                column(rows, "displacement_y_upper")[-1])
+    checks.that(abs(rows["displacement_y_upper"][-1] + 0.85 * HALF_HEIGHT) < 1e-9, "85 % reached",
+                rows["displacement_y_upper"][-1])
     checks.that(len(tries) >= 5, "at least 5 remeshings", len(tries))
     checks.that(all(t["accepted"] == "y" for t in tries), "every new mesh is taken at the first try",
                 [t["reason"] for t in tries if t["accepted"] != "y"])
@@ -79,20 +73,20 @@ def main():
     for one in tries:
         generation, step = int(one["generation [-]"]), int(one["step [-]"])
         made, restart = facts(out, generation, "start"), facts(out, generation, "restart")
-        k = column(rows, "step").index(step)
+        k = rows["step"].index(step)
         if first_volume is None:
             first_volume = summary(out)["initial_volume"]
-        change = restart["volume_before"] / (first_volume * (1 + column(rows, "volume_drift")[k])) - 1
+        change = restart["volume_before"] / (first_volume * (1 + rows["volume_drift"][k])) - 1
         drift += abs(change)
         leap = jump(rows, step)
         checks.that(abs(leap) < LARGEST_JUMP, f"mesh {generation}: jump of the force below {LARGEST_JUMP:.0%}", f"{leap:.2%}")
         checks.that(abs(made["contour"]["volume_error"]) < 1e-12, f"mesh {generation}: the contour keeps the volume",
                     made["contour"]["volume_error"])
         reason = "; ".join(t.split(" ")[0] for t in one["trigger"].split("; "))
-        lines.append(f"| {generation} | {-column(rows, 'displacement_y_upper')[k] / HALF_HEIGHT:.1%} | {reason} | "
+        lines.append(f"| {generation} | {-100 * rows['displacement_y_upper'][k] / HALF_HEIGHT:.1f} | {reason} | "
                      f"{made['old_elements']} -> {made['new_elements']} | {made['mesh']['scaled_jacobian']:.2f} | "
                      f"{restart['first_residual']:.3f} | {restart['iterations']} | {100 * leap:+.2f} | {100 * change:+.4f} |"
-                     .replace("%", "", 1))
+                     )
     checks.that(drift < LARGEST_DRIFT, f"all remeshings together change the volume by less than {LARGEST_DRIFT:.1%}", f"{drift:.4%}")
 
     result = run([PLAIN, "--out", plain, "--threads", "1", "-p", "nx=24", "-p", "ny=36"])

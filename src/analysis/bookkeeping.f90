@@ -1,0 +1,197 @@
+!> What an accepted step is worth: work, reactions, sums over the scene, the worst it has borne.
+module bookkeeping
+  use contact_contour, only: sample_depth
+  use dies, only: is_deformable, present_die
+  use elem_api, only: add_totals, totals_t
+  use element_loop, only: group_geometry
+  use equations, only: equations_t, external_forces
+  use errors, only: error_t, exit_bug, fail
+  use kinds, only: wp
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use spurious_mode, only: find_spurious_mode, has_spurious_mode
+  use text, only: to_text
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: book_deformable_dies, book_reactions, book_spurious_mode, book_work, measure_scene, sample_contacts
+
+  !> Action and reaction of two bodies may differ by this share of the forces at their nodes: round-off of a sum.
+  real(wp), parameter :: reaction_slack = 1.0e-10_wp
+
+contains
+
+  !> External work by the trapezoidal rule: forces from outside on nodes and pilots times their motion.
+  !> What acts from outside on an unknown is the internal force there, without the elements that are loads.
+  subroutine book_work(equations, du, solution)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: du(:)
+    type(solution_t), intent(inout) :: solution
+    real(wp) :: applied(equations%dofs%ndof)
+    integer :: g, k, c, d, m
+
+    applied = equations%force
+    do g = 1, size(equations%dofs%groups)
+      if (.not. equations%is_load(g)) cycle
+      m = equations%pattern%force_start(g)
+      do k = 1, size(equations%dofs%groups(g)%dof, 2)
+        do c = 1, size(equations%dofs%groups(g)%dof, 1)
+          m = m + 1
+          d = equations%dofs%groups(g)%dof(c, k)
+          applied(d) = applied(d) - equations%buffers%force(m)
+        end do
+      end do
+    end do
+    do k = 1, size(equations%dofs%node, 2)
+      do c = 1, 2
+        call book(equations%dofs%node(c, k), solution%applied(c, k))
+      end do
+    end do
+    do k = 1, size(equations%dofs%pilot, 2)
+      do c = 1, 3
+        call book(equations%dofs%pilot(c, k), solution%pilot_applied(c, k))
+      end do
+    end do
+    do c = 1, 3
+      call book(equations%dofs%section(c), solution%section_applied(c))
+    end do
+
+  contains
+
+    subroutine book(dof, force)
+      integer, intent(in) :: dof
+      real(wp), intent(inout) :: force
+
+      if (dof == 0) return
+      solution%external_work = solution%external_work + 0.5_wp*(force + applied(dof))*du(dof)
+      force = applied(dof)
+    end subroutine book
+
+  end subroutine book_work
+
+  !> What supports and imposed motions bear: internal force less nodal forces; pressures are in it already.
+  subroutine book_reactions(scene, equations, time, reactions)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: time
+    real(wp), intent(out) :: reactions(:, :)
+    real(wp) :: external(equations%dofs%ndof)
+    integer :: k, c, d
+
+    call external_forces(scene, equations%dofs, time, external)
+    reactions = 0
+    do k = 1, size(reactions, 2)
+      do c = 1, 2
+        d = equations%dofs%node(c, k)
+        if (d == 0) cycle
+        if (equations%dofs%equation(d) == 0) reactions(c, k) = equations%force(d) - external(d)
+      end do
+    end do
+  end subroutine book_reactions
+
+  !> What deformable dies bear: the force of all contacts on them, and its moment about the origin, with the sign of a reaction.
+  !> What a die gets the sides that face it give.
+  subroutine book_deformable_dies(scene, equations, solution, error)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(inout) :: solution
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: sum(2), magnitude, x(2), force(2)
+    integer :: g, e, i, m, n
+
+    do g = 1, size(scene%dies)
+      if (is_deformable(scene%dies(g))) solution%pilot_applied(:, g) = 0
+    end do
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%pairs == 0) cycle
+      sum = 0
+      magnitude = 0
+      associate (nodes => equations%dofs%groups(g)%nodes, applied => solution%pilot_applied(:, scene%groups(g)%die))
+        n = size(nodes, 1)
+        do e = 1, size(nodes, 2)
+          m = equations%pattern%force_start(g) + (e - 1)*size(equations%dofs%groups(g)%dof, 1)
+          do i = 1, n
+            force = equations%buffers%force([m + i, m + n + i])
+            sum = sum + force
+            magnitude = magnitude + length_of(force)
+            if (i <= size(scene%groups(g)%connectivity, 1)) cycle
+            x = scene%mesh%coordinates(:, nodes(i, e)) + solution%displacement(:, nodes(i, e))
+            applied = applied + [force, x(1)*force(2) - x(2)*force(1)]
+          end do
+        end do
+      end associate
+      if (length_of(sum) > reaction_slack*magnitude) then
+        call fail(error, exit_bug, 'step '//to_text(solution%step)//': forces of contact '//scene%groups(g)%name &
+                  //' on its two bodies differ by '//to_text(length_of(sum)/magnitude, 3)//' of their size')
+        return
+      end if
+    end do
+  end subroutine book_deformable_dies
+
+  !> Sums over all groups at the present displacement, from the trial state (equal to the committed one at rest).
+  subroutine measure_scene(scene, equations, solution, totals)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    type(totals_t), intent(out) :: totals
+    type(totals_t) :: part
+    real(wp), allocatable :: x(:, :, :)
+    integer :: g, law
+
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g), row => equations%elems(scene%groups(g)%elem_id))
+        if (.not. associated(row%measure)) cycle
+        law = scene%materials(group%material)%law_id
+        call group_geometry(scene, group, row, solution%displacement, x)
+        call row%measure(scene, group, equations%laws(law), solution%section, x, solution%groups(g)%trial, &
+                         solution%groups(g)%committed, part)
+        call add_totals(totals, part)
+      end associate
+    end do
+  end subroutine measure_scene
+
+  !> The motion of the step that the points of an element did not see: the worst of all steps is kept.
+  subroutine book_spurious_mode(scene, equations, solution)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), allocatable :: x(:, :, :)
+    real(wp) :: share
+    integer :: g, element
+
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (.not. has_spurious_mode(group)) cycle
+        call group_geometry(scene, group, equations%elems(group%elem_id), solution%displacement, x)
+        call find_spurious_mode(scene, group, x, solution%last_increment, share, element)
+        if (.not. share > solution%worst_spurious) cycle
+        solution%worst_spurious = share
+        solution%spurious_group = g
+        solution%spurious_element = element
+      end associate
+    end do
+  end subroutine book_spurious_mode
+
+  !> Depth of the part in the dies all along its sides, between integration points too.
+  subroutine sample_contacts(scene, solution)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    real(wp), allocatable :: x(:, :)
+    real(wp) :: depth, ratio, allowed
+    integer :: g
+
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%die == 0 .or. group%material == 0) cycle
+        ! every contact law begins with it (contact_penalties)
+        allowed = scene%materials(group%material)%values(1)
+        x = scene%mesh%coordinates + solution%displacement
+        call sample_depth(group, present_die(scene%dies(group%die), x), solution%pilots(:, group%die), scene%mesh%coordinates, &
+                          x, allowed, depth, ratio)
+      end associate
+      solution%worst_sample = max(solution%worst_sample, depth)
+      solution%worst_sample_ratio = max(solution%worst_sample_ratio, ratio)
+    end do
+  end subroutine sample_contacts
+
+end module bookkeeping

@@ -1,0 +1,142 @@
+!> A run and its files: what is written when.
+module run_record
+  use contact_contour, only: find_contact_ends
+  use contact_ends, only: contact_end_t
+  use csv_writer, only: csv_t
+  use dies, only: present_die
+  use elem_api, only: totals_t
+  use equations, only: equations_t
+  use errors, only: error_t, exit_done
+  use estimator, only: estimator_t
+  use exchange, only: write_checkpoint
+  use history, only: write_row
+  use kinds, only: eps, wp
+  use listing, only: listing_t
+  use newton, only: outcome_t
+  use restore_balance, only: balance_t
+  use results, only: results_t, save_fields
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use state_variables, only: find_variable
+  use system, only: caught_signal
+  use watch_mesh, only: mesh_is_due
+  implicit none
+  private
+  public :: at_end, record, run_t, save_all
+
+  !> A run: its files, and what is needed to write them.
+  type :: run_t
+    !> Folder of the results, path of the run's own files without endings; the deck's path and canonical text.
+    character(len=:), allocatable :: folder, stem, deck_path, deck_text
+    logical :: resume = .false.
+    type(equations_t) :: equations
+    !> Set up where errors are estimated.
+    type(estimator_t) :: estimator
+    type(listing_t) :: listing
+    type(csv_t) :: table
+    type(results_t) :: results
+    type(totals_t) :: totals
+    !> How the run got into equilibrium on a new mesh; not allocated where it did not have to.
+    type(balance_t), allocatable :: balance
+    !> The note on a spurious mode has been given.
+    logical :: spurious_told = .false.
+    integer :: exit_code = exit_done
+    character(len=:), allocatable :: stop_reason
+  end type run_t
+
+contains
+
+  !> History after every step; fields and checkpoint when they are due.
+  subroutine record(scene, solution, outcome, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(outcome_t), intent(in) :: outcome
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+    logical :: fields_due
+
+    call write_row(scene, solution, outcome, run%totals, run%table, error)
+    if (allocated(error)) return
+    fields_due = is_due(solution%step, scene%strategy%save_every) .or. at_end(scene, solution) &
+                 .or. is_save_time(scene, solution) .or. mesh_is_due(solution)
+    if (fields_due) then
+      call save_all(scene, solution, run, error)
+    else if (is_due(solution%step, scene%strategy%checkpoint_every) .or. caught_signal() /= 0) then
+      call save_checkpoint(scene, solution, run, error)
+    end if
+  end subroutine record
+
+  !> Fields and checkpoint of the accepted instant.
+  subroutine save_all(scene, solution, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+
+    call save_fields(scene, solution, run%results, error)
+    if (.not. allocated(error)) call save_checkpoint(scene, solution, run, error)
+  end subroutine save_all
+
+  !> The checkpoint; the rows of the history up to it are on the disk before it is.
+  subroutine save_checkpoint(scene, solution, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+
+    call run%table%flush_rows(error)
+    if (allocated(error)) return
+    call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, ends_now(scene, solution), error)
+  end subroutine save_checkpoint
+
+  !> Where contact begins and ends in all contact groups.
+  function ends_now(scene, solution) result(ends)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(contact_end_t), allocatable :: ends(:)
+    real(wp), allocatable :: x(:, :)
+    integer :: g, status, penetration
+
+    allocate (ends(0))
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%die == 0 .or. group%material == 0) cycle
+        status = group%variables(find_variable(group%variables, 'contact_status'))%first
+        penetration = group%variables(find_variable(group%variables, 'penetration'))%first
+        x = scene%mesh%coordinates + solution%displacement
+        call find_contact_ends(group, g, present_die(scene%dies(group%die), x), solution%pilots(:, group%die), &
+                               scene%mesh%coordinates, x, &
+                               nint(solution%groups(g)%committed(status, :, :)), &
+                               solution%groups(g)%committed(penetration, :, :), ends)
+      end associate
+    end do
+  end function ends_now
+
+  pure function is_due(step, every) result(due)
+    integer, intent(in) :: step, every
+    logical :: due
+
+    due = .false.
+    if (every > 0) due = mod(step, every) == 0
+  end function is_due
+
+  pure function at_end(scene, solution) result(reached)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    logical :: reached
+
+    reached = solution%time >= scene%strategy%end_time*(1 - 64*eps)
+  end function at_end
+
+  pure function is_save_time(scene, solution) result(due)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    logical :: due
+
+    due = .false.
+    if (allocated(scene%strategy%save_times)) then
+      due = any(abs(scene%strategy%save_times - solution%time) <= 64*eps*scene%strategy%end_time)
+    end if
+  end function is_save_time
+
+end module run_record

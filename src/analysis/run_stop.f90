@@ -1,0 +1,104 @@
+!> How a run ends: at the end of the scene, at a limit, by a signal, or because it cannot go on.
+module run_stop
+  use equations, only: equations_t
+  use errors, only: error_t, exit_done, exit_no_convergence, exit_remesh, exit_signal, fail
+  use kinds, only: wp
+  use newton, only: outcome_t
+  use results, only: save_failure
+  use run_record, only: run_t, save_all, at_end
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use spurious_mode, only: may_stand_alone
+  use system, only: caught_signal
+  use text, only: to_text
+  use watch_mesh, only: mesh_is_due, remesh_reason
+  implicit none
+  private
+  public :: finish, stop_here
+
+contains
+
+  !> The smallest step has failed: say why, where, and what to try; leave a picture of the residual.
+  subroutine stop_here(scene, solution, dt, outcome, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt
+    type(outcome_t), intent(in) :: outcome
+    type(run_t), intent(in) :: run
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: late
+    real(wp), allocatable :: residual(:, :)
+    character(len=:), allocatable :: where_at, advice
+
+    where_at = ''
+    if (outcome%group > 0) where_at = ', element '//to_text(outcome%element)//' of '//scene%groups(outcome%group)%name
+    if (allocated(outcome%residual)) then
+      call residual_at_nodes(run%equations, outcome%residual, residual)
+      where_at = where_at//', worst at node '//to_text(scene%mesh%labels(maxloc(sum(residual**2, 1), 1)))
+      call save_failure(scene, solution, run%stem, residual, late)
+    end if
+    advice = 'the residual force is in '//run%stem//'.failed.xdmf; a limit load, a mesh too distorted or a least step too ' &
+             //'large in STRAT are the usual causes'
+    if (size(scene%die_forces) > 0) advice = 'a die that is free and touches nothing needs a SPRNG card until it does; '//advice
+    if (index(outcome%reason, 'singular') > 0 .and. any(may_stand_alone(scene%groups))) advice = advice//'; a body of few ' &
+      //'elements with 4 integration points has a motion that nothing resists, 9 points with MEAN have none'
+    if (solution%step > 0) advice = 'the last good state is in '//run%stem//'.ckp.h5, '//advice
+    call fail(error, exit_no_convergence, 'no convergence: step '//to_text(solution%step + 1)//' from time ' &
+              //to_text(solution%time)//', length '//to_text(dt)//where_at//': '//outcome%reason, &
+              advice)
+    if (allocated(late)) error%advice = error%advice//' (and '//late%message//')'
+  end subroutine stop_here
+
+  !> Residual of the free unknowns of the nodes; where the motion is given it is a reaction, left out.
+  pure subroutine residual_at_nodes(equations, residual, at_nodes)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: residual(:)
+    real(wp), allocatable, intent(out) :: at_nodes(:, :)
+    integer :: k, c, d
+
+    allocate (at_nodes(2, size(equations%dofs%node, 2)), source=0.0_wp)
+    do k = 1, size(at_nodes, 2)
+      do c = 1, 2
+        d = equations%dofs%node(c, k)
+        if (d == 0) cycle
+        if (equations%dofs%equation(d) > 0) at_nodes(c, k) = residual(d)
+      end do
+    end do
+  end subroutine residual_at_nodes
+
+  !> Leave files that tell how the run ended.
+  subroutine finish(scene, solution, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(inout) :: error
+    type(error_t), allocatable :: late
+
+    run%exit_code = exit_done
+    run%stop_reason = 'end of the scene'
+    if (allocated(error)) then
+      run%exit_code = error%code
+      run%stop_reason = error%message
+      if (error%code == exit_no_convergence .and. solution%step > 0 .and. .not. mesh_is_refused(run)) then
+        call save_all(scene, solution, run, late)
+      end if
+    else if (mesh_is_due(solution)) then
+      run%exit_code = exit_remesh
+      run%stop_reason = remesh_reason(scene, solution)
+    else if (caught_signal() /= 0 .and. .not. at_end(scene, solution)) then
+      run%exit_code = exit_signal + caught_signal()
+      run%stop_reason = 'stopped by signal '//to_text(caught_signal())//' at step '//to_text(solution%step)
+    end if
+    call run%table%close(late)
+  end subroutine finish
+
+  !> The new mesh was refused: what was there before it stays.
+  pure function mesh_is_refused(run) result(refused)
+    type(run_t), intent(in) :: run
+    logical :: refused
+
+    refused = .false.
+    if (allocated(run%balance)) refused = run%balance%refused
+  end function mesh_is_refused
+
+end module run_stop
