@@ -5,8 +5,8 @@
 !> what it changes, is published and judged (chapter 12 of the thesis).
 !>
 !> In no time nothing flows: the laws answer elastically. If they flowed, whatever is corrected could only unload where
-!> everything flows, and the dies would lose force (2 to 15 % in an upsetting on a mesh that has folded). What this leaves outside the
-!> yield surface the first step of the march returns, while the dies move on.
+!> everything flows, and the dies would lose force (2 to 15 % in an upsetting on a mesh that has folded). What this leaves outside
+!> the yield surface the first step of the march returns, while the dies move on.
 module restore_balance
   use accept_step, only: accept_balance
   use elem_api, only: report_t, totals_t

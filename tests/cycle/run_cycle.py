@@ -329,9 +329,9 @@ def all_ways_fail(checks, deck):
 
 
 def solver_refuses(checks):
-    """A mesh of one element is so poor that the solver refuses whatever is made of it: every way is tried, the old mesh goes on, and
+    """The mesh of one element is so poor, and the deck so strict, that the solver refuses whatever is made of it: every way is tried, the old mesh goes on, and
     nothing of its results is touched meanwhile: they are those of the solver alone, resumed at every stop."""
-    text = add_cards(deck_text(UPSETTING).replace("SAVE   20", "SAVE   3"), "CKPT 2\nREMSH\n   TIMES 0.3 0.6")
+    text = add_cards(deck_text(UPSETTING).replace("SAVE   20", "SAVE   3"), "CKPT 2\nREMSH\n   TIMES 0.3 0.6\n   ACCEPT 40 1.E-6")
     deck = write(checks.path("poor", "case.lag"), text.replace("nx 12", "nx 1").replace("ny 18", "ny 1"))
     alone, out = checks.path("poor", "alone"), checks.path("poor", "out")
     code, resume = REMESH, []

@@ -28,6 +28,7 @@ LINE = 11.0  # where hub and flange meet
 HUB_AND_FLANGE = f"""
 REMSH
    TIMES 0.6 0.8
+   STRAIN 0.03
 ZPNT   middle CORNER 0. 0.
 ZPNT   top    ON X 0. UPPER
 ZPNT   foot   ON X {LINE} UPPER
