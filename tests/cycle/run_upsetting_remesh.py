@@ -6,18 +6,12 @@ usage: run_upsetting_remesh.py [-v] [-k] [--write]     --write puts the tables i
 Compared with the same billet on 24 x 36 elements that are never remeshed, as far as these go (60 %). The jump of the force at a
 remesh is that of the first step on the new mesh from the straight line through the last two on the old one.
 """
-import csv
-import glob
-import json
 import os
-import subprocess
 import sys
 
 sys.dont_write_bytecode = True
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.dirname(os.path.dirname(HERE))
-sys.path.insert(0, os.path.join(os.path.dirname(HERE), "runs"))
-from support import BIN, DONE, Checks, history, run, said, summary  # noqa: E402
+from remeshed import ROOT, cycle, facts, jump, put_table, tries, value_at  # noqa: E402
+from support import DONE, Checks, history, run, said, summary  # noqa: E402
 
 DECK = os.path.join(ROOT, "decks", "upsetting_remesh", "upsetting_remesh.lag")
 PLAIN = os.path.join(ROOT, "decks", "upsetting", "upsetting.lag")
@@ -28,49 +22,23 @@ PERCENT = (30, 44, 50, 55, 60)
 LARGEST_JUMP, LARGEST_DEVIATION, LARGEST_DRIFT = 0.02, 0.03, 0.001
 
 
-def force_at(rows, percent):
-    """Force on the die, straight between steps."""
-    travel, force = [-u for u in rows["displacement_y_upper"]], rows["force_y_upper"]
-    wanted = HALF_HEIGHT * percent / 100
-    k = next(k for k, u in enumerate(travel) if u >= wanted - 1e-9)
-    share = (wanted - travel[k - 1]) / (travel[k] - travel[k - 1])
-    return force[k - 1] + share * (force[k] - force[k - 1])
-
-
-def jump(rows, step):
-    """Relative distance of the force after a step from the straight line before it."""
-    steps, time, force = rows["step"], rows["time"], rows["force_y_upper"]
-    k = steps.index(step)
-    line = force[k] + (force[k] - force[k - 1]) / (time[k] - time[k - 1]) * (time[k + 1] - time[k])
-    return force[k + 1] / line - 1
-
-
-def facts(out, generation, kind):
-    """What remdata (start) or the restart said of a mesh."""
-    pattern = {"start": f"*.g{generation:02d}.start.h5.json", "restart": f"*.g{generation:02d}.restart.json"}[kind]
-    with open(glob.glob(os.path.join(out, pattern))[0], encoding="utf-8") as file:
-        return json.load(file)
-
-
 def main():
     checks = Checks()
     out, plain = checks.path("remeshed"), checks.path("plain")
-    result = subprocess.run([os.path.join(os.path.abspath(BIN), "lagacycle"), DECK, "--out", out, "--threads", "1"], text=True,
-                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
-    checks.that(result.returncode == DONE, "the cycle ends by itself", result.stdout + result.stderr)
-    rows = history(out)
-    with open(os.path.join(out, "cycle.csv"), newline="", encoding="utf-8") as file:
-        tries = list(csv.DictReader(file))
+    code, words = cycle(DECK, out)
+    checks.that(code == DONE, "the cycle ends by itself", words)
+    rows, made_meshes = history(out), tries(out)
+    rows["travel"] = [-u for u in rows["displacement_y_upper"]]
     checks.that(abs(rows["displacement_y_upper"][-1] + 0.85 * HALF_HEIGHT) < 1e-9, "85 % reached",
                 rows["displacement_y_upper"][-1])
-    checks.that(len(tries) >= 5, "at least 5 remeshings", len(tries))
-    checks.that(all(t["accepted"] == "y" for t in tries), "every new mesh is taken at the first try",
-                [t["reason"] for t in tries if t["accepted"] != "y"])
+    checks.that(len(made_meshes) >= 5, "at least 5 remeshings", len(made_meshes))
+    checks.that(all(t["accepted"] == "y" for t in made_meshes), "every new mesh is taken at the first try",
+                [t["reason"] for t in made_meshes if t["accepted"] != "y"])
 
     lines = ["| mesh | at % | why | elements | scaled Jacobian | first residual | iterations | jump of force % | volume % |",
              "|---|---|---|---|---|---|---|---|---|"]
     drift, first_volume = 0.0, None
-    for one in tries:
+    for one in made_meshes:
         generation, step = int(one["generation [-]"]), int(one["step [-]"])
         made, restart = facts(out, generation, "start"), facts(out, generation, "restart")
         k = rows["step"].index(step)
@@ -78,32 +46,29 @@ def main():
             first_volume = summary(out)["initial_volume"]
         change = restart["volume_before"] / (first_volume * (1 + rows["volume_drift"][k])) - 1
         drift += abs(change)
-        leap = jump(rows, step)
+        leap = jump(rows, "force_y_upper", step)
         checks.that(abs(leap) < LARGEST_JUMP, f"mesh {generation}: jump of the force below {LARGEST_JUMP:.0%}", f"{leap:.2%}")
         checks.that(abs(made["contour"]["volume_error"]) < 1e-12, f"mesh {generation}: the contour keeps the volume",
                     made["contour"]["volume_error"])
         reason = "; ".join(t.split(" ")[0] for t in one["trigger"].split("; "))
         lines.append(f"| {generation} | {-100 * rows['displacement_y_upper'][k] / HALF_HEIGHT:.1f} | {reason} | "
                      f"{made['old_elements']} -> {made['new_elements']} | {made['mesh']['scaled_jacobian']:.2f} | "
-                     f"{restart['first_residual']:.3f} | {restart['iterations']} | {100 * leap:+.2f} | {100 * change:+.4f} |"
-                     )
+                     f"{restart['first_residual']:.3f} | {restart['iterations']} | {100 * leap:+.2f} | {100 * change:+.4f} |")
     checks.that(drift < LARGEST_DRIFT, f"all remeshings together change the volume by less than {LARGEST_DRIFT:.1%}", f"{drift:.4%}")
 
     result = run([PLAIN, "--out", plain, "--threads", "1", "-p", "nx=24", "-p", "ny=36"])
     checks.that(result.returncode == DONE, "24 x 36 without remeshing: done", said(result))
     fine = history(plain)
+    fine["travel"] = [-u for u in fine["displacement_y_upper"]]
     lines += ["", "| upset % | remeshed kN | 24 x 36, one mesh, kN | deviation % |", "|---|---|---|---|"]
     for percent in PERCENT:
-        here, there = force_at(rows, percent), force_at(fine, percent)
+        here, there = (value_at(r, "force_y_upper", "travel", HALF_HEIGHT * percent / 100) for r in (rows, fine))
         checks.that(abs(here / there - 1) < LARGEST_DEVIATION, f"force at {percent} % within {LARGEST_DEVIATION:.0%}",
                     f"{here / there - 1:.2%}")
         lines.append(f"| {percent} | {here / 1000:.1f} | {there / 1000:.1f} | {100 * (here / there - 1):+.2f} |")
     print("\n".join(lines))
     if "--write" in sys.argv:
-        with open(README, encoding="utf-8") as file:
-            head, _, tail = file.read().split(MARK)
-        with open(README, "w", encoding="utf-8") as file:
-            file.write(head + MARK + "\n" + "\n".join(lines) + "\n" + MARK + tail)
+        put_table(README, MARK, lines)
     checks.end()
 
 

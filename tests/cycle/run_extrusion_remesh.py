@@ -1,0 +1,52 @@
+#!/usr/bin/env python3
+"""Extrusion through a cone, remeshed three times, against the same rod on its first mesh (which bears the whole stroke).
+
+usage: run_extrusion_remesh.py [-v] [-k]
+
+The force of either waves by 2 to 3 % as elements pass the edge of the die, not in step: it is compared in the mean, and at places.
+"""
+import os
+import sys
+
+sys.dont_write_bytecode = True
+from remeshed import ROOT, cycle, facts, tries, value_at  # noqa: E402
+from support import DONE, Checks, history, run, said, summary  # noqa: E402
+
+FOLDER = os.path.join(ROOT, "decks", "extrusion")
+PLACES = [0.3, 0.4, 0.45, 0.55, 0.6, 0.65, 0.7, 0.8, 0.85, 0.9, 0.95, 1.0]
+AT_A_PLACE, IN_THE_MEAN, LARGEST_DRIFT = 0.03, 0.01, 0.001
+
+
+def main():
+    checks = Checks()
+    out, plain = checks.path("remeshed"), checks.path("plain")
+    code, words = cycle(os.path.join(FOLDER, "extrusion_remesh.lag"), out)
+    checks.that(code == DONE, "the cycle ends by itself", words)
+    result = run([os.path.join(FOLDER, "extrusion_cone.lag"), "--out", plain, "--threads", "1"])
+    checks.that(result.returncode == DONE, "one mesh: done", said(result))
+    rows, fine, made = history(out), history(plain), tries(out)
+    checks.that(len(made) == 3 and all(t["accepted"] == "y" for t in made), "three new meshes, each at the first try",
+                [t["reason"] for t in made])
+    initial, drift = summary(out)["initial_volume"], 0.0
+    for one in made:
+        generation, k = int(one["generation [-]"]), rows["step"].index(int(one["step [-]"]))
+        start, restart = facts(out, generation, "start"), facts(out, generation, "restart")
+        checks.that(abs(start["contour"]["volume_error"]) < 1e-12, f"mesh {generation}: the contour keeps the volume",
+                    start["contour"]["volume_error"])
+        drift += abs(restart["volume_before"] / (initial * (1 + rows["volume_drift"][k])) - 1)
+    checks.that(drift < LARGEST_DRIFT, f"all remeshings together change the volume by less than {LARGEST_DRIFT:.1%}", f"{drift:.4%}")
+    ratio = summary(out)["checks"]["max_penetration_over_allowed"]
+    checks.that(ratio < 1 + 1e-6, "no point deeper in the dies than allowed", ratio)
+    off = []
+    for place in PLACES:
+        here, there = (value_at(r, "force_y_punch", "time", place) for r in (rows, fine))
+        off.append(here / there - 1)
+        checks.that(abs(off[-1]) < AT_A_PLACE, f"force at {place:.0%} of the stroke within {AT_A_PLACE:.0%}", f"{off[-1]:.2%}")
+    mean = sum(off) / len(off)
+    print(f"force against one mesh: {mean:+.2%} in the mean, {min(off):+.2%} to {max(off):+.2%}; volume {drift:.4%}")
+    checks.that(abs(mean) < IN_THE_MEAN, f"force in the mean within {IN_THE_MEAN:.0%}", f"{mean:.2%}")
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
