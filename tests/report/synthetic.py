@@ -103,7 +103,8 @@ def write_xdmf(path, grids):
         file.write("".join(out) + "  </Grid>\n </Domain>\n</Xdmf>\n")
 
 
-def make_run(folder, name="billet", generations=1, stop=0, title="Billet <10 x 30> & dies", plane_state=2, bad_checks=False, cycle=False):
+def make_run(folder, name="billet", generations=1, stop=0, title="Billet <10 x 30> & dies", plane_state=2, bad_checks=False,
+             cycle=False):
     """A whole folder: fields, XDMF, history, summary, listing; with `cycle`, what lagacycle adds."""
     os.makedirs(folder, exist_ok=True)
     width, height, nsteps = 10.0, 15.0, 24
@@ -136,9 +137,9 @@ def make_run(folder, name="billet", generations=1, stop=0, title="Billet <10 x 3
     return folder
 
 
-CYCLE_HEAD = ("generation [-],try [-],stop_step [-],stop_time [time],step [-],trigger,action,result,accepted,stage,old_elements [-],"
-              "new_elements [-],error_before [%],error_after [%],first_residual [-],iterations [-],force_change [%],remdata [s],"
-              "restart [s],reason")
+CYCLE_HEAD = ("generation [-],try [-],stop_step [-],stop_time [time],step [-],trigger,action,result,accepted,stage,"
+              "old_elements [-],new_elements [-],error_before [%],error_after [%],first_residual [-],iterations [-],"
+              "force_change [%],remdata [s],restart [s],reason")
 
 
 def write_cycle(folder, name, grids):
@@ -153,7 +154,8 @@ def write_cycle(folder, name, grids):
         head, old, new = f"{step},{time!r},{step}", first[number - 1][2], elements
         if number == 2:
             rows.append(f"2,1,{head},times,old mesh,goes on,y,,{old},{old},20.,,,,,,,")
-            rows.append(f"2,1,{head},stress_error 0.2 (limit 0.1),as the deck says,refused,n,mesh,{old},,20.,,,,,,,an <angle> of 3")
+            rows.append(f"2,1,{head},stress_error 0.2 (limit 0.1),as the deck says,refused,n,mesh,{old},,20.,"
+                        ",,,,,,an <angle> of 3")
             rows.append(f"2,2,{head},stress_error 0.2 (limit 0.1),finer,goes on,y,,{old},{new},20.,7.25,0.0625,4,0.5,0.25,0.5,")
         else:
             rows.append(f"{number},1,{head},times,as the deck says,goes on,y,,{old},{new},9.,5.,0.03,3,-0.25,0.1,0.2,")
