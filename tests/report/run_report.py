@@ -176,6 +176,49 @@ class ReportTest(unittest.TestCase):
             with open(path, "rb") as file:
                 self.assertGreater(drawn_share(file.read()), BLANK, path)
 
+    def test_cycle(self):
+        """Every try a row; pictures of the first and the last six new meshes; what each has kept of the old one."""
+        folder = self.made(generations=9, cycle=True)
+        png = os.path.join(self.folder, "png")
+        result = report(folder, "--png", png)
+        self.assertEqual(0, result.returncode, result.stderr)
+        text = self.good_page(os.path.join(folder, "report.html"), 16)
+        for words in ("New meshes: 8; tries refused: 1.", "<b>refused</b> (as the deck says; stage mesh): an &lt;angle&gt; of 3",
+                      "try 2: finer", "20 → 7.25", "<td>48 → 80</td>", "Pictures of 7 of 8 new meshes",
+                      "Kept: volume +0.5 %, elastic energy −12.5 %, plastic work of the run – %",
+                      "<td>equivalent plastic strain</td><td>200</td><td>201</td><td>+0.5</td><td>2</td><td>1.875</td>"):
+            self.assertIn(words, text)
+        self.assertEqual(1, text.count('<tr class="bad"><td>2</td>'))
+        self.assertEqual(1, text.count("<b>the old mesh goes on</b>"))
+        drawn = sorted(name for name in os.listdir(png) if name.startswith("remesh_"))
+        self.assertEqual([f"remesh_g{g:02d}.png" for g in (2, 4, 5, 6, 7, 8, 9)], drawn)
+        self.assertEqual(0, report(folder, "--out", os.path.join(self.folder, "again.html"), "--quiet").returncode)
+        with open(os.path.join(self.folder, "again.html"), encoding="utf-8") as file:
+            self.assertTrue(text == file.read(), "the same results, another page")
+
+    def test_damaged_cycle(self):
+        for name, damage in (("cycle.csv", lambda s: ""), ("cycle.csv", lambda s: s[:-9]),
+                             ("cycle.csv", lambda s: s.replace("0.0625", "little")),
+                             ("cycle.csv", lambda s: s.replace("trigger", "reason", 1)),
+                             ("billet.g02.restart.json", lambda s: s[:20]), ("billet.g02.start.h5.json", lambda s: "[]"),
+                             ("billet.g02.start.h5.json", lambda s: s.replace('"name"', '"same"'))):
+            folder = self.made(generations=2, cycle=True)
+            path = os.path.join(folder, name)
+            with open(path, encoding="utf-8") as file:
+                old = file.read()
+            self.assertNotEqual(old, damage(old))
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(damage(old))
+            self.refused(folder, names=name)
+
+    def test_sizes_of_elements(self):
+        """The area inside the sides as they are curved: here 1 + 2/3 0.2, less what chords of eight parts leave out."""
+        sys.path.insert(0, os.path.join(SOURCE, "src", "report"))
+        from lagamine_report.geometry import element_curves, element_sizes
+        x = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [.5, -.2], [1, .5], [.5, 1], [0, .5]])
+        area = float(element_sizes(element_curves(x, np.arange(8)[None, :]))[0])**2
+        self.assertAlmostEqual(1 + 2 / 3 * .2 * (1 - 1 / 64), area, places=12)
+
     def test_field_and_mirror(self):
         folder = self.made()
         png = os.path.join(self.folder, "png")
@@ -309,6 +352,23 @@ class ReportTest(unittest.TestCase):
         result = report(out)
         self.assertEqual(0, result.returncode, result.stderr)
         self.assertIn("Tiny billet", self.good_page(os.path.join(out, "report.html"), 9))
+
+    @unittest.skipUnless(os.path.exists(os.path.join(BIN, "lagacycle")), "the solver and the remesher are not built")
+    def test_real_cycle(self):
+        deck, out = os.path.join(self.folder, "tiny.lag"), os.path.join(self.folder, "out")
+        with open(deck, "w", encoding="utf-8") as file:
+            file.write(DECK.replace("3 1.0   4 1.0", "6 1.0   9 1.0").replace("END", "REMSH\n   TIMES 0.4 0.7\nEND"))
+        run = subprocess.run([os.path.join(BIN, "lagacycle"), deck, "--out", out, "--threads", "1"], capture_output=True, text=True)
+        self.assertEqual(0, run.returncode, run.stderr)
+        self.assertEqual([], check_folder(out)[0])
+        png = os.path.join(self.folder, "png")
+        result = report(out, "--png", png)
+        self.assertEqual(0, result.returncode, result.stderr)
+        text = self.good_page(os.path.join(out, "report.html"), 11)
+        self.assertIn("New meshes: 2; tries refused: 0.", text)
+        self.assertIn("error: a density", text)
+        self.assertEqual(2, text.count("<summary>Kept: volume"))
+        self.assertLessEqual({"remesh_g02.png", "remesh_g03.png"}, set(os.listdir(png)))
 
 
 if __name__ == "__main__":

@@ -103,8 +103,9 @@ def write_xdmf(path, grids):
         file.write("".join(out) + "  </Grid>\n </Domain>\n</Xdmf>\n")
 
 
-def make_run(folder, name="billet", generations=1, stop=0, title="Billet <10 x 30> & dies", plane_state=2, bad_checks=False):
-    """A whole folder: fields, XDMF, history, summary, listing."""
+def make_run(folder, name="billet", generations=1, stop=0, title="Billet <10 x 30> & dies", plane_state=2, bad_checks=False,
+             cycle=False):
+    """A whole folder: fields, XDMF, history, summary, listing; with `cycle`, what lagacycle adds."""
     os.makedirs(folder, exist_ok=True)
     width, height, nsteps = 10.0, 15.0, 24
     straight = np.array([[[30., 0.], [14.5, 0.], [-1., 0.]]])
@@ -127,11 +128,46 @@ def make_run(folder, name="billet", generations=1, stop=0, title="Billet <10 x 3
         write_generation(os.path.join(folder, file), g, steps[0][3], topology, sides, steps, dies, plane_state, title)
         grids += [(step[1], file, step[0], len(material), len(topology)) for step in steps]
     write_xdmf(os.path.join(folder, name + ".xdmf"), grids)
+    if cycle:
+        write_cycle(folder, name, grids)
     write_history(folder, nsteps, height)
     write_summary(folder, name, title, generations, nsteps, stop, bad_checks)
     with open(os.path.join(folder, name + ".log"), "w", encoding="utf-8") as file:
         file.write("scene      made up\ncut: step 7  time 0.25  length 0.04 -> 0.02: 15 iterations (element 3 of billet)\nstep 7\n")
     return folder
+
+
+CYCLE_HEAD = ("generation [-],try [-],stop_step [-],stop_time [time],step [-],trigger,action,result,accepted,stage,"
+              "old_elements [-],new_elements [-],error_before [%],error_after [%],first_residual [-],iterations [-],"
+              "force_change [%],remdata [s],restart [s],reason")
+
+
+def write_cycle(folder, name, grids):
+    """cycle.csv of the generations in `grids` (as for write_xdmf), the second mesh after a refused try; facts of each mesh."""
+    first = {}
+    for time, file, step, _, elements in grids:
+        first.setdefault(int(file[-5:-3]), (step, time, elements))
+    rows = [CYCLE_HEAD]
+    for number, (step, time, elements) in first.items():
+        if number == 1:
+            continue
+        head, old, new = f"{step},{time!r},{step}", first[number - 1][2], elements
+        if number == 2:
+            rows.append(f"2,1,{head},times,old mesh,goes on,y,,{old},{old},20.,,,,,,,")
+            rows.append(f"2,1,{head},stress_error 0.2 (limit 0.1),as the deck says,refused,n,mesh,{old},,20.,"
+                        ",,,,,,an <angle> of 3")
+            rows.append(f"2,2,{head},stress_error 0.2 (limit 0.1),finer,goes on,y,,{old},{new},20.,7.25,0.0625,4,0.5,0.25,0.5,")
+        else:
+            rows.append(f"{number},1,{head},times,as the deck says,goes on,y,,{old},{new},9.,5.,0.03,3,-0.25,0.1,0.2,")
+        stem = os.path.join(folder, f"{name}.g{number:02d}")
+        with open(stem + ".start.h5.json", "w", encoding="utf-8") as file:
+            json.dump({"transfer": [{"name": "plastic_strain", "before": 200.0, "carried": 199.0, "after": 201.0,
+                                     "largest_before": 2.0, "largest_after": 1.875}]}, file)
+        with open(stem + ".restart.json", "w", encoding="utf-8") as file:
+            json.dump({"volume_before": 400.0, "volume_after": 402.0, "elastic_energy_before": 8.0, "elastic_energy_after": 7.0,
+                       "plastic_work_before": 0.0, "plastic_work_after": None}, file)
+    with open(os.path.join(folder, "cycle.csv"), "w", encoding="utf-8") as file:
+        file.write("\n".join(rows) + "\n")
 
 
 def write_history(folder, nsteps, height):

@@ -6,6 +6,7 @@ from .curves import energy_picture, force_picture, probes_picture, seconds_pictu
 from .picture import Picture
 from .pictures import MAIN_FIELDS, fields_of, fields_picture, generations_picture, known_field, mesh_picture, series_picture
 from .reader import Run
+from .remeshes import remesh_pictures
 from .scene_view import SceneView
 
 
@@ -16,7 +17,7 @@ def make_pictures(run: Run, fields: Sequence[str] = (), mirror: bool = False) ->
     chosen = [known_field(run, name) for name in dict.fromkeys(fields)]
     chosen = chosen or [name for name in names if name in MAIN_FIELDS] or names[:2]
     over_time = chosen if fields else [name for name in ("plastic_strain", "temperature") if name in names] or chosen[:1]
-    pictures = [mesh_picture(view), generations_picture(view), fields_picture(view, chosen),
+    pictures = [mesh_picture(view), generations_picture(view), *remesh_pictures(view), fields_picture(view, chosen),
                 fields_picture(view, [name for name in names if name not in chosen], "more", small=True)]
     pictures += [series_picture(view, name) for name in over_time]
     pictures += [force_picture(run), contact_picture(run), probes_picture(run), steps_picture(run), energy_picture(run),

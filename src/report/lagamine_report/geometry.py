@@ -76,6 +76,18 @@ def side_curves(x: np.ndarray, sides: np.ndarray, n: int = 8) -> np.ndarray:
     return np.einsum("pk,skd->spd", line3(np.linspace(-1, 1, n + 1)), x[sides])
 
 
+def element_curves(x: np.ndarray, topology: np.ndarray) -> np.ndarray:
+    """Points around every element (element, point, 2), counter-clockwise, not closed."""
+    return np.concatenate([side_curves(x, topology[:, side])[:, :-1] for side in SIDES], axis=1)
+
+
+def element_sizes(curves: np.ndarray) -> np.ndarray:
+    """Square roots of the areas inside closed chains of points (element, point, 2)."""
+    following = np.roll(curves, -1, axis=1)
+    twice = (curves[..., 0] * following[..., 1] - curves[..., 1] * following[..., 0]).sum(axis=1)
+    return np.sqrt(0.5 * np.abs(twice))
+
+
 def all_sides(topology: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
     """Sides of all elements, each once, and those of the outline (they belong to one element)."""
     sides = topology[:, SIDES].reshape(-1, 3)

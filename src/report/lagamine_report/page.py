@@ -1,10 +1,11 @@
 """The page: one HTML file with everything in it, which asks nothing of the network."""
-import html
 import os
 from typing import Dict, Iterable, List, Sequence, Tuple
 
+from .markup import Sections, escape, figure, table
 from .picture import Picture
 from .reader import Run
+from .remesh_section import remesh_section
 from .short import Check, checks, command
 from .tables import number
 from .words import brief
@@ -24,14 +25,12 @@ SECTIONS: List[Tuple[str, str, Sequence[str]]] = [
 LONGEST_LIST = 40
 
 
-def escape(value) -> str:
-    return html.escape(str(value), quote=True)
-
-
 def page(run: Run, pictures: Sequence[Picture], version: str) -> str:
     """The whole page as text."""
     judged = checks(run)
-    body = _sections(pictures) + _checks(judged) + _effects(run) + _notes(run) + _origin(run)
+    body = _sections(pictures)
+    body[1:1] = remesh_section(run, pictures)       # next to the shape, which is always there
+    body += _checks(judged) + _effects(run) + _notes(run) + _origin(run)
     links = "".join(f'<a href="#{anchor}">{escape(heading)}</a>' for anchor, heading, _ in body)
     sections = "\n".join(f'<section id="{anchor}">\n<h2>{escape(heading)}</h2>\n{content}\n</section>'
                          for anchor, heading, content in body)
@@ -108,7 +107,7 @@ def _alerts(run: Run, judged: Iterable[Check]) -> str:
     return '<div class="alerts" role="note">' + "".join(f"<p>{line}</p>" for line in lines) + "</div>"
 
 
-def _sections(pictures: Sequence[Picture]) -> List[Tuple[str, str, str]]:
+def _sections(pictures: Sequence[Picture]) -> Sections:
     """Pictures under their headings; a heading without pictures is left out."""
     by_name: Dict[str, Picture] = {picture.name: picture for picture in pictures}
     result = []
@@ -122,22 +121,7 @@ def _sections(pictures: Sequence[Picture]) -> List[Tuple[str, str, str]]:
     return result
 
 
-def figure(picture: Picture, heading: str) -> str:
-    return (f'<figure><img alt="{escape(picture.heading or heading)}: {escape(picture.caption)}" src="{picture.data_uri()}">'
-            f"<figcaption>{escape(picture.caption)}</figcaption></figure>")
-
-
-def table(head: Sequence[str], rows: Iterable[Tuple[str, Sequence[str]]]) -> str:
-    """Cells are HTML already; each row comes with its class."""
-    text = "".join(f"<th>{escape(cell)}</th>" for cell in head)
-    lines = [f"<table><thead><tr>{text}</tr></thead><tbody>"]
-    for look, cells in rows:
-        start = f'<tr class="{look}">' if look else "<tr>"
-        lines.append(start + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
-    return "\n".join(lines + ["</tbody></table>"])
-
-
-def _checks(judged: Sequence[Check]) -> List[Tuple[str, str, str]]:
+def _checks(judged: Sequence[Check]) -> Sections:
     if not judged:
         return []
     marks = {True: '<span class="good">✓ holds</span>', False: '<span class="bad">! warning</span>', None: ""}
@@ -147,7 +131,7 @@ def _checks(judged: Sequence[Check]) -> List[Tuple[str, str, str]]:
     return [("checks", "Checks", table(("check", "found", "allowed", "", "what to do"), rows))]
 
 
-def _effects(run: Run) -> List[Tuple[str, str, str]]:
+def _effects(run: Run) -> Sections:
     if not run.summary["effects"]:
         return []
     rows = []
@@ -159,7 +143,7 @@ def _effects(run: Run) -> List[Tuple[str, str, str]]:
     return [("effects", "Effects", table(("effect", "", "why", "adds", "cost"), rows))]
 
 
-def _notes(run: Run) -> List[Tuple[str, str, str]]:
+def _notes(run: Run) -> Sections:
     parts = []
     for kind, heading in (("warnings", "Warnings"), ("cuts", "Steps that were cut")):
         lines = run.notes[kind]
@@ -176,7 +160,7 @@ def _notes(run: Run) -> List[Tuple[str, str, str]]:
     return [("notes", "From the listing", "\n".join(parts))]
 
 
-def _origin(run: Run) -> List[Tuple[str, str, str]]:
+def _origin(run: Run) -> Sections:
     s = run.summary
     rows = [("", ("deck", f"<code>{escape(s['deck'])}</code>")),
             ("", ("SHA-256 of the deck", f"<code>{escape(s.get('deck_sha256', 'not told'))}</code>")),

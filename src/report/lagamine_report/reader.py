@@ -8,6 +8,7 @@ from typing import Dict, List, Optional, Tuple
 import h5py
 import numpy as np
 
+from .cycle import read_cycle
 from .errors import ReportError
 from .tables import read_history, read_notes, read_summary
 
@@ -65,6 +66,7 @@ class Run:
         self.name = os.path.splitext(os.path.basename(self.summary["deck"]))[0]
         self.history = read_history(os.path.join(folder, "history.csv"))
         self.notes = read_notes(os.path.join(folder, self.name + ".log"))
+        self.tries = read_cycle(folder, self.name)
         self.generations = [read_generation(path) for path in self._generation_files()]
         self.steps = [step for generation in self.generations for step in generation.steps]
         if not self.steps:

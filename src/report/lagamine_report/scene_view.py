@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
 
-from .geometry import Triangles, all_sides, die_body, die_curve, side_curves
+from .geometry import Triangles, all_sides, die_body, die_curve, element_curves, side_curves
 from .reader import Generation, Run, Step
 from .style import BODIES, DIE_FILL, DIE_LINE, INK, POSITIVE, SIGNED, SOFT
 from .words import NOT_NEGATIVE
@@ -89,8 +89,7 @@ class SceneView:
         if fill:
             bodies = [group for group in generation.groups if group.connectivity.shape[1] == 8 and group.elem not in ("BFORC", "CENTR")]
             for k, group in enumerate(bodies):
-                around = group.connectivity[:, [0, 4, 1, 5, 2, 6, 3, 7]]
-                curved = np.concatenate([side_curves(x, around[:, [i, i + 1, (i + 2) % 8]])[:, :-1] for i in (0, 2, 4, 6)], axis=1)
+                curved = element_curves(x, group.connectivity)
                 for sign in (1, -1) if self.mirror else (1,):
                     axes.add_collection(PolyCollection(curved * np.array([sign, 1]), facecolors=BODIES[k % len(BODIES)],
                                                        edgecolors="none", zorder=1))

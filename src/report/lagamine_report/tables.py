@@ -42,14 +42,20 @@ def missing_or(error: OSError) -> str:
     return "missing" if isinstance(error, FileNotFoundError) else f"cannot be read: {error.strerror or error}"
 
 
-def read_summary(path: str) -> Dict[str, Any]:
-    """The object in summary.json, with the entries that the page cannot do without."""
+def read_object(path: str) -> Dict[str, Any]:
+    """The object in a JSON file."""
     try:
-        summary = json.loads(read_text(path))
+        found = json.loads(read_text(path))
     except ValueError as error:
         raise ReportError(f"{path}: damaged: not JSON: {error}") from error
-    if not isinstance(summary, dict):
+    if not isinstance(found, dict):
         raise ReportError(f"{path}: damaged: an object was expected")
+    return found
+
+
+def read_summary(path: str) -> Dict[str, Any]:
+    """The object in summary.json, with the entries that the page cannot do without."""
+    summary = read_object(path)
     for name in ("deck", "status"):
         if not isinstance(summary.get(name), str):
             raise ReportError(f"{path}: damaged: '{name}' is missing or not a text")

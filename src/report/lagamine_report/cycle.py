@@ -1,0 +1,102 @@
+"""The tries of a cycle: cycle.csv, and what the remesher and the restart tell of every new mesh."""
+import csv
+import math
+import os
+from dataclasses import dataclass, field
+from typing import Any, Dict, List
+
+from .errors import ReportError
+from .tables import number, read_object, read_text
+
+WHOLE = ("generation", "try", "step")
+NUMBERS = ("stop_time", "old_elements", "new_elements", "error_before", "error_after", "first_residual", "iterations",
+           "force_change", "remdata", "restart")
+TEXTS = ("trigger", "action", "accepted", "stage", "reason")
+KEEPS_OLD = "old mesh"
+# What the restart balances: name in NAME.gNN.restart.json, without `_before` and `_after`, and in words.
+BALANCES = {"volume": "volume", "elastic_energy": "elastic energy", "plastic_work": "plastic work of the run"}
+
+
+@dataclass
+class Change:
+    """A quantity on the old mesh and on the new one: its whole, and its largest value where that is told."""
+
+    name: str
+    before: float
+    after: float
+    largest_before: float = math.nan
+    largest_after: float = math.nan
+    balance: bool = False
+
+    @property
+    def percent(self) -> float:
+        return 100 * (self.after - self.before) / abs(self.before) if self.before else math.nan
+
+
+@dataclass
+class Try:
+    """A row of cycle.csv. `numbers` are NaN where the cell is empty."""
+
+    generation: int
+    number: int
+    step: int
+    numbers: Dict[str, float]
+    texts: Dict[str, str]
+    changes: List[Change] = field(default_factory=list)
+
+    @property
+    def refused(self) -> bool:
+        return self.texts["accepted"] != "y"
+
+    @property
+    def keeps_old(self) -> bool:
+        """Was it decided that the old mesh goes on?"""
+        return self.texts["action"] == KEEPS_OLD
+
+
+def read_cycle(folder: str, name: str) -> List[Try]:
+    """All tries in the order of the table; none where the run is no cycle's."""
+    path = os.path.join(folder, "cycle.csv")
+    if not os.path.exists(path):
+        return []
+    rows = list(csv.reader(read_text(path).splitlines()))
+    titles = [title.partition(" [")[0].strip() for title in rows[0]] if rows else []
+    for title in WHOLE + NUMBERS + TEXTS:
+        if title not in titles:
+            raise ReportError(f"{path}: damaged: no column '{title}'")
+    tries = []
+    for line, row in enumerate(rows[1:], start=2):
+        if len(row) != len(titles):
+            raise ReportError(f"{path}:{line}: damaged: {len(row)} cells, {len(titles)} expected")
+        cells = dict(zip(titles, row))
+        try:
+            whole = [int(cells[title]) for title in WHOLE]
+            numbers = {title: float(cells[title] or "nan") for title in NUMBERS}
+        except ValueError as error:
+            raise ReportError(f"{path}:{line}: damaged: {error}") from error
+        tries.append(Try(*whole, numbers, {title: cells[title] for title in TEXTS}))
+    for row in new_meshes(tries):
+        row.changes = read_changes(os.path.join(folder, f"{name}.g{row.generation:02d}"))
+    return tries
+
+
+def new_meshes(tries: List[Try]) -> List[Try]:
+    """The accepted try of every new mesh."""
+    return list({row.generation: row for row in tries if not row.refused and not row.keeps_old}.values())
+
+
+def read_changes(stem: str) -> List[Change]:
+    """What changed from mesh to mesh: balances of the restart, then the fields that were carried; of files that are there."""
+    changes = []
+    if os.path.exists(f"{stem}.restart.json"):
+        facts = read_object(f"{stem}.restart.json")
+        changes = [Change(words, number(facts.get(f"{name}_before")), number(facts.get(f"{name}_after")), balance=True)
+                   for name, words in BALANCES.items() if f"{name}_before" in facts]
+    path = f"{stem}.start.h5.json"
+    if not os.path.exists(path):
+        return changes
+    rows: Any = read_object(path).get("transfer", [])
+    if not isinstance(rows, list) or not all(isinstance(row, dict) and isinstance(row.get("name"), str) for row in rows):
+        raise ReportError(f"{path}: damaged: 'transfer' is not a list of named rows")
+    return changes + [Change(row["name"], *(number(row.get(key)) for key in ("before", "after", "largest_before", "largest_after")))
+                      for row in rows]

@@ -1,0 +1,26 @@
+"""Pieces of the page: escaped text, tables, figures."""
+import html
+from typing import Iterable, List, Sequence, Tuple
+
+from .picture import Picture
+
+Sections = List[Tuple[str, str, str]]    # anchor, heading, content
+
+
+def escape(value) -> str:
+    return html.escape(str(value), quote=True)
+
+
+def figure(picture: Picture, heading: str) -> str:
+    return (f'<figure><img alt="{escape(picture.heading or heading)}: {escape(picture.caption)}" src="{picture.data_uri()}">'
+            f"<figcaption>{escape(picture.caption)}</figcaption></figure>")
+
+
+def table(head: Sequence[str], rows: Iterable[Tuple[str, Sequence[str]]]) -> str:
+    """Cells are HTML already; each row comes with its class."""
+    text = "".join(f"<th>{escape(cell)}</th>" for cell in head)
+    lines = [f"<table><thead><tr>{text}</tr></thead><tbody>"]
+    for look, cells in rows:
+        start = f'<tr class="{look}">' if look else "<tr>"
+        lines.append(start + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
+    return "\n".join(lines + ["</tbody></table>"])
