@@ -39,6 +39,8 @@ FOLDING, PLAIN, CCX = "folding", "no side contact", "CAX8R"
 # The cost of the search: dies of the same shape in pieces few and many, and what contact may take of the run with many.
 DOMED = {"die of 2 parabolas": 2, "die of 2000 parabolas": 2000}
 DOMED_MESH, MANY, CONTACT_TARGET = "24x36", "die of 2000 parabolas", 0.05
+# The cost of friction: both faces on one Coulomb law, without and with it.
+SLIDING = {"PHI 0 on all faces": 0.0, "PHI 0.1 on all faces": 0.1}
 
 
 def deck_without_side_contact():
@@ -62,6 +64,18 @@ def deck_with_domed_die(pieces):
     text, count = re.subn(r"(?m)^   SEGM .*\n", lambda _: rows, text)
     if count != 1:
         sys.exit(f"bench: {DECK} has {count} rows SEGM, one was expected")
+    return text
+
+
+def deck_with_friction(phi):
+    """The deck with one Coulomb law on both faces."""
+    with open(DECK, encoding="utf-8") as deck:
+        text = deck.read()
+    for card, new in ((r"^CNT2D  billet 3  upper -3 stick", "CNT2D  billet 3  upper -3 rough"), (r"^LAW    stick.*\n(?: .*\n)*", ""),
+                      (r"PHI 0\.5", f"PHI {phi:g}")):
+        text, count = re.subn("(?m)" + card, new, text)
+        if count != 1:
+            sys.exit(f"bench: {DECK} has {count} times '{card}', once was expected")
     return text
 
 
@@ -154,10 +168,12 @@ def measure(options, folder):
         if mesh in options.ccx_meshes:
             jobs[CCX] = lambda mesh=mesh: run_ccx(mesh, folder)
         if mesh == DOMED_MESH:
-            for name, pieces in DOMED.items():
-                path = os.path.join(folder, f"domed{pieces}.lag")
+            decks = {name: deck_with_domed_die(pieces) for name, pieces in DOMED.items()}
+            decks.update((name, deck_with_friction(phi)) for name, phi in SLIDING.items())
+            for k, (name, text) in enumerate(decks.items()):
+                path = os.path.join(folder, f"scene{k}.lag")
                 with open(path, "w", encoding="utf-8") as file:
-                    file.write(deck_with_domed_die(pieces))
+                    file.write(text)
                 jobs[name] = lambda path=path, mesh=mesh: run_lagamine(path, mesh, folder)
         rows = {name: [] for name in jobs}
         for repetition in range(options.repeat):
@@ -254,6 +270,12 @@ def targets(results):
             share = row["shares"]["contact"]
             lines.append(f"| contact <= {100 * CONTACT_TARGET:g} % of the run | {mesh}, {name}: {100 * share:.2f} % | "
                          f"{verdict(share, CONTACT_TARGET)} |")
+    free, rough = (results.get((DOMED_MESH, name)) for name in SLIDING)
+    if free and rough:
+        cost = [1e6 * row["seconds"]["contact"] / row["evaluations"] for row in (free, rough)]
+        lines.append(f"| what friction costs: contact in an evaluation | {DOMED_MESH}, PHI 0 to 0.1: {cost[0]:.0f} to {cost[1]:.0f} us | |")
+        lines.append(f"| the same, of the whole run | {100 * (cost[1] - cost[0]) * 1e-6 * rough['evaluations'] / rough['total']:.2f} % | |")
+        lines.append(f"| the same, iterations a step | {free['iterations'] / free['steps']:.1f} to {rough['iterations'] / rough['steps']:.1f} | |")
     for (mesh, name), row in results.items():
         ours = results.get((mesh, PLAIN))
         if name != CCX or not row or not ours:
