@@ -11,6 +11,7 @@ module contact_carry
   use shape_functions, only: line3
   use solution, only: solution_t
   use state_variables, only: find_variable, kind_contact => transfer_contact
+  use stretches, only: length_between, stretch_t
   use transfer_contact, only: carry_along
   use vectors, only: length_of
   use zone_mesh, only: new_mesh_t
@@ -93,7 +94,7 @@ contains
     real(wp), intent(in) :: x(:, :)
     type(row_t), intent(out) :: row
     real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: low, high, start
+    type(stretch_t) :: part
     integer :: side, number, e, p
 
     allocate (row%s(0), row%weight(0), row%point(0), row%element(0))
@@ -101,18 +102,19 @@ contains
     if (.not. run%from%xi > -1) call add_neighbour(scene, g, loop, x, run%from%side - 1, 1.0_wp, row)
     do side = run%from%side, run%to%side
       number = modulo(side - 1, size(loop%sides, 2)) + 1
-      low = -1
-      high = 1
-      if (side == run%from%side) low = run%from%xi
-      if (side == run%to%side) high = run%to%xi
-      start = row%length - arc_of(x(:, loop%sides(:, number)), -1.0_wp, low)
-      e = findloc(scene%groups(g)%connectivity(2, :), loop%sides(2, number), 1)
-      do p = 1, size(xi)
-        if (e == 0 .or. xi(p) < low .or. xi(p) > high) cycle
-        call add_point(start + arc_of(x(:, loop%sides(:, number)), -1.0_wp, xi(p)), &
-                       weight(p)*stretch_at(x(:, loop%sides(:, number)), xi(p), scene%plane_state == axisymmetric), p, e, row)
-      end do
-      row%length = row%length + arc_of(x(:, loop%sides(:, number)), low, high)
+      associate (nodes => x(:, loop%sides(:, number)))
+        part%points = nodes
+        part%range = [-1.0_wp, 1.0_wp]
+        if (side == run%from%side) part%range(1) = run%from%xi
+        if (side == run%to%side) part%range(2) = run%to%xi
+        e = findloc(scene%groups(g)%connectivity(2, :), loop%sides(2, number), 1)
+        do p = 1, size(xi)
+          if (e == 0 .or. xi(p) < part%range(1) .or. xi(p) > part%range(2)) cycle
+          call add_point(row%length + length_between(part, part%range(1), xi(p)), &
+                         weight(p)*stretch_at(nodes, xi(p), scene%plane_state == axisymmetric), p, e, row)
+        end do
+      end associate
+      row%length = row%length + length_between(part, part%range(1), part%range(2))
     end do
     if (.not. run%to%xi < 1) call add_neighbour(scene, g, loop, x, run%to%side + 1, -1.0_wp, row)
   end subroutine old_row
@@ -168,20 +170,6 @@ contains
       end do
     end associate
   end subroutine add_neighbours
-
-  !> Length of a side between two places, by Gauss's four points.
-  pure function arc_of(x, from, to) result(length)
-    real(wp), intent(in) :: x(2, 3), from, to
-    real(wp) :: length
-    real(wp), allocatable :: xi(:), weight(:)
-    integer :: p
-
-    call line_rule(4, xi, weight)
-    length = 0
-    do p = 1, size(xi)
-      length = length + 0.5_wp*(to - from)*weight(p)*stretch_at(x, 0.5_wp*(from + to + (to - from)*xi(p)), .false.)
-    end do
-  end function arc_of
 
   !> d(length)/d(xi), times the radius.
   pure function stretch_at(x, xi, round) result(stretch)

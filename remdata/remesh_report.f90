@@ -33,8 +33,10 @@ contains
     end do
     write (*, '(a)') '  shape: scaled Jacobian from '//to_text(facts%mesh%scaled_jacobian, 3)//', angles ' &
       //to_text(facts%mesh%least_angle, 3)//' to '//to_text(facts%mesh%largest_angle, 4)//' degrees'
+    write (*, '(a)') '  errors expected: '//to_text(facts%expected%mean, 3)//' times the limit in the mean, ' &
+      //to_text(facts%expected%worst, 3)//' at worst; '//to_text(facts%expected%elements, 3)//' times the elements it takes'
     if (facts%coarser > 1) write (*, '(a)') '  sizes '//to_text(facts%coarser, 3) &
-      //' times the wanted ones, for the limit on the number of elements: errors '//to_text(facts%coarser**2, 3)//' times'
+      //' times the wanted ones, for the limit on the number of elements'
     if (.not. allocated(facts%transfer%rows)) return   ! a first mesh
     write (*, '(a)') '  transfer by '//facts%transfer%method//':'
     do k = 1, size(facts%transfer%rows)
@@ -80,6 +82,9 @@ contains
     call json%add('largest_angle', facts%mesh%largest_angle)
     call json%add('off_contour', facts%mesh%off_contour)
     call json%add('coarser', facts%coarser)
+    call json%add('expected_error_mean', facts%expected%mean)
+    call json%add('expected_error_worst', facts%expected%worst)
+    call json%add('elements_over_wanted', facts%expected%elements)
     call json%end_object()
     call json%begin_array('transfer')
     if (allocated(facts%transfer%rows)) then

@@ -4,6 +4,7 @@
 !> same way, from contours that cards give, and no state. Whatever cannot be done ends in an error that
 !> names its stage; the old checkpoint is never touched.
 module remesh_scene
+  use block_mesh, only: polygon_area
   use contact_carry, only: carry_contacts
   use contact_ends, only: contact_end_t
   use contour_chain, only: chain_t
@@ -13,6 +14,7 @@ module remesh_scene
   use first_contours, only: contours_of_cards
   use exchange, only: read_bare_scene, read_checkpoint, read_deck_of_checkpoint, read_contact_ends, write_checkpoint
   use kinds, only: wp
+  use mesh_prediction, only: predict, prediction_t
   use new_mesh_check, only: mesh_check_t, check_new_mesh
   use new_scene, only: set_up_new_scene
   use part_contour, only: build_contours, contour_options_t, contour_report_t, contour_t
@@ -20,12 +22,11 @@ module remesh_scene
   use scene, only: is_solid, lacks_mesh, scene_t
   use size_field, only: need_t, old_mesh_t, set_up_sizes, size_field_t, size_limits_t, wanted_size
   use solution, only: solution_t, start_solution
-  use state_pieces, only: mesh_of, solid_pieces, state_pieces_t
+  use state_pieces, only: mesh_of, solid_pieces, state_pieces_t, store_states
   use text, only: to_text
   use transfer_api, only: transfer_options_t
-  use transfer_map, only: carry, transfer_map_t
-  use transfer_mesh, only: plant_mesh_trees, transfer_mesh_t
-  use transfer_nodes, only: shape_weights
+  use transfer_mesh, only: transfer_mesh_t
+  use transfer_nodes, only: carry_nodal
   use transfer_report, only: transfer_report_t
   use transfer_states, only: carry_states
   use zone_mesh, only: mesh_wish_t, mesh_zones, new_mesh_t
@@ -45,6 +46,8 @@ module remesh_scene
     type(transfer_report_t) :: transfer
     !> Sizes are so many times the wanted ones, for the limit on the number of elements.
     real(wp) :: coarser = 1.0_wp
+    !> The errors expected of the new mesh, over those its sizes were wanted for.
+    type(prediction_t) :: expected
   end type remesh_facts_t
 
   !> Errors of strain fall with the size to this power (8-node elements).
@@ -212,7 +215,7 @@ contains
     old%material = mesh%material
     allocate (old%wanted(size(mesh%material)))
     do e = 1, size(old%wanted)
-      old%wanted(e) = sqrt(area_of(old%nodes(:, old%connectivity(:, e))))
+      old%wanted(e) = sqrt(polygon_area(old%nodes(:, old%connectivity(1:4, e))))
     end do
     if (scene%remesh%estimate) then
       do e = 1, size(old%wanted)
@@ -222,16 +225,6 @@ contains
     end if
     call set_up_sizes(limits, needs, sizes, old)
   end subroutine wanted_sizes
-
-  !> Area of an element between its corners.
-  pure function area_of(x) result(area)
-    real(wp), intent(in) :: x(2, 8)
-    real(wp) :: area, a(2), b(2)
-
-    a = x(:, 3) - x(:, 1)
-    b = x(:, 4) - x(:, 2)
-    area = 0.5_wp*abs(a(1)*b(2) - a(2)*b(1))
-  end function area_of
 
   !> Mesh the zones; a mesh of bad shape is smoothed more, then made finer.
   subroutine make_mesh(scene, contours, plan, sizes, finer, mesh, facts, error)
@@ -259,6 +252,7 @@ contains
       call mesh_zones(chains, plan%points, plan%zones, sizes, wish, mesh, error)
       if (allocated(error)) return
       facts%coarser = mesh%division%factor
+      facts%expected = predict(mesh, sizes, strain_order)
       call check_new_mesh(contours, mesh, facts%mesh, error)
       if (.not. allocated(error)) return
     end do
@@ -304,8 +298,8 @@ contains
     type(state_pieces_t) :: from, to
     type(transfer_options_t) :: options
     type(transfer_mesh_t) :: mesh, target
-    type(transfer_map_t) :: map
     real(wp), allocatable :: values(:, :)
+    real(wp) :: farthest
     integer, allocatable :: material(:)
     integer :: k
 
@@ -319,23 +313,20 @@ contains
     end do
     call carry_states(from, to, options, report, error)
     if (allocated(error)) return
-    do k = 1, size(to%groups)
-      after%groups(to%groups(k)%place)%committed = to%groups(k)%values
-      after%groups(to%groups(k)%place)%trial = to%groups(k)%values
-    end do
+    call store_states(to, after)
 
     call mesh_of(from, mesh)
-    call plant_mesh_trees(mesh)
     call mesh_of(to, target)
     allocate (material(size(new%mesh%coordinates, 2)), source=0)
     do k = 1, size(target%material)
       material(target%connectivity(:, k)) = target%material(k)
     end do
-    call shape_weights(mesh, mesh%connectivity, new%mesh%coordinates, material, options%outside, map, error)
-    if (allocated(error)) return
     allocate (values(4, size(material)))
-    call carry(map, reshape([old%mesh%origin(1, :), old%mesh%origin(2, :), before%last_increment(1, :), &
-                             before%last_increment(2, :)], [4, size(old%mesh%origin, 2)], order=[2, 1]), values)
+    call carry_nodal(mesh%nodes, mesh%connectivity, mesh%material, &
+                     reshape([old%mesh%origin(1, :), old%mesh%origin(2, :), before%last_increment(1, :), &
+                              before%last_increment(2, :)], [4, size(old%mesh%origin, 2)], order=[2, 1]), &
+                     new%mesh%coordinates, material, options%outside, values, farthest, error)
+    if (allocated(error)) return
     new%mesh%origin = values(1:2, :)
     after%last_increment = values(3:4, :)
   end subroutine carry_solids
