@@ -10,9 +10,11 @@ module contact_carry
   use scene, only: axisymmetric, scene_t
   use shape_functions, only: line3
   use solution, only: solution_t
-  use state_variables, only: find_variable, kind_contact => transfer_contact
+  use state_variables, only: component_names, find_variable, kind_contact => transfer_contact
   use stretches, only: length_between, stretch_t
+  use text, only: string_t
   use transfer_contact, only: carry_along
+  use transfer_report, only: balance_t
   use vectors, only: length_of
   use zone_mesh, only: new_mesh_t
   implicit none
@@ -28,19 +30,22 @@ module contact_carry
 
 contains
 
-  !> Contact variables and status of all groups of the new solution; open where there was no run.
-  pure subroutine carry_contacts(old, from, contours, mesh, new, to)
+  !> Contact variables and status of all groups of the new solution; open where there was no run. What their integrals along all
+  !> runs are before and after is told.
+  pure subroutine carry_contacts(old, from, contours, mesh, new, to, rows)
     type(scene_t), intent(in) :: old, new
     type(solution_t), intent(in) :: from
     type(contour_t), intent(in) :: contours(:)
     type(new_mesh_t), intent(in) :: mesh
     type(solution_t), intent(inout) :: to
+    type(balance_t), allocatable, intent(out) :: rows(:)   !! [unit length, times the radius when axisymmetric]
     real(wp) :: x(2, size(old%mesh%coordinates, 2))
     type(row_t) :: row_old, row_new
     integer, allocatable :: carried(:)
     logical, allocatable :: conserved(:)
-    integer :: c, k, g
+    integer :: c, k, g, i
 
+    allocate (rows(0))
     x = old%mesh%coordinates + from%displacement
     do c = 1, size(contours)
       do k = 1, size(contours(c)%contacts)
@@ -49,6 +54,8 @@ contains
         call new_row(new, g, contours, c, k, mesh, row_new)
         call list_carried(old, g, carried, conserved)
         call carry_run(carried, conserved, row_old, row_new, from%groups(g)%committed, status_place(old, g), to%groups(g)%committed)
+        call add_integrals(old, g, carried(pack([(i, i=1, size(carried))], conserved)), row_old, from%groups(g)%committed, &
+                           row_new, to%groups(g)%committed, rows)
       end do
     end do
     do g = 1, size(to%groups)
@@ -271,5 +278,69 @@ contains
       after(status, row_new%point(p), row_new%element(p)) = before(status, row_old%point(nearest), row_old%element(nearest))
     end do
   end subroutine carry_run
+
+  !> Add what the variables of a run sum up to, each to the row of its name.
+  pure subroutine add_integrals(scene, g, components, row_old, before, row_new, after, rows)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g, components(:)
+    type(row_t), intent(in) :: row_old, row_new
+    real(wp), intent(in) :: before(:, :, :), after(:, :, :)
+    type(balance_t), allocatable, intent(inout) :: rows(:)
+    type(string_t), allocatable :: names(:)
+    type(balance_t) :: row
+    integer :: k, place
+
+    call component_names(scene%groups(g)%variables, names)
+    do k = 1, size(components)
+      associate (component => components(k))
+        row%name = 'contact '//names(component)%s
+        row%transfer = kind_contact
+        place = position_of(rows, row%name)
+        if (place > size(rows)) rows = [rows, row]
+        rows(place)%before = rows(place)%before + sum_along(row_old, before(component, :, :))
+        rows(place)%after = rows(place)%after + sum_along(row_new, after(component, :, :))
+        rows(place)%carried = rows(place)%after
+        rows(place)%limited = rows(place)%after
+        rows(place)%magnitude = rows(place)%magnitude + sum_along(row_old, abs(before(component, :, :)))
+        rows(place)%largest_before = max(rows(place)%largest_before, largest_along(row_old, before(component, :, :)))
+        rows(place)%largest_after = max(rows(place)%largest_after, largest_along(row_new, after(component, :, :)))
+      end associate
+    end do
+  end subroutine add_integrals
+
+  !> Row of a name, one more than there are when it is not among them.
+  pure function position_of(rows, name) result(place)
+    type(balance_t), intent(in) :: rows(:)
+    character(len=*), intent(in) :: name
+    integer :: place
+
+    do place = 1, size(rows)
+      if (rows(place)%name == name) return
+    end do
+  end function position_of
+
+  pure function sum_along(row, values) result(total)
+    type(row_t), intent(in) :: row
+    real(wp), intent(in) :: values(:, :)   !! (point, element)
+    real(wp) :: total
+    integer :: p
+
+    total = 0
+    do p = 1, size(row%s)
+      total = total + row%weight(p)*values(row%point(p), row%element(p))
+    end do
+  end function sum_along
+
+  pure function largest_along(row, values) result(largest)
+    type(row_t), intent(in) :: row
+    real(wp), intent(in) :: values(:, :)   !! (point, element)
+    real(wp) :: largest
+    integer :: p
+
+    largest = 0
+    do p = 1, size(row%s)
+      largest = max(largest, abs(values(row%point(p), row%element(p))))
+    end do
+  end function largest_along
 
 end module contact_carry

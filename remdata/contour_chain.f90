@@ -9,8 +9,8 @@ module contour_chain
   use vectors, only: length_of
   implicit none
   private
-  public :: chain_t, place_t, chain_of_loop, close_chain, point_on, turn_at, arc_at, place_at_arc, closest_place, list_nodes
-  public :: chain_length, largest_gap, joint_after, joint_point, joints_of_kind, size_of_chain
+  public :: chain_t, place_t, chain_of_loop, close_chain, point_on, turn_at, arc_at, place_at_arc, closest_place
+  public :: chain_length, largest_gap, joint_after, joint_point, size_of_chain
   public :: kind_mid, kind_end, kind_corner, kind_entry, kind_exit, kind_joint
 
   !> What a node of the contour is: middle or end of a parabola, an end where the tangent turns, a place where contact
@@ -68,16 +68,6 @@ contains
       end associate
     end do
   end subroutine close_chain
-
-  !> Stretches that begin with a joint of one of some kinds, in order.
-  pure function joints_of_kind(chain, kinds) result(joints)
-    type(chain_t), intent(in) :: chain
-    integer, intent(in) :: kinds(:)
-    integer, allocatable :: joints(:)
-    integer :: k
-
-    allocate (joints, source=pack([(k, k=1, size(chain%kinds))], [(any(chain%kinds(k) == kinds), k=1, size(chain%kinds))]))
-  end function joints_of_kind
 
   !> Where stretch k begins [length]: a node of the part where one of the two stretches that meet is a whole side's end.
   pure function joint_point(chain, k) result(point)
@@ -191,21 +181,6 @@ contains
       place = place_t(k, xi)
     end do
   end function closest_place
-
-  !> Nodes of a loop in their order with their kinds: end, middle, end, middle ... (the list of annex 2).
-  pure subroutine list_nodes(loop, chain, nodes, kinds)
-    type(loop_t), intent(in) :: loop
-    type(chain_t), intent(in) :: chain   !! of the loop alone
-    integer, allocatable, intent(out) :: nodes(:), kinds(:)
-    integer :: k, n
-
-    n = size(loop%sides, 2)
-    allocate (nodes(2*n), kinds(2*n))
-    do k = 1, n
-      nodes(2*k - 1:2*k) = loop%sides(1:2, k)
-      kinds(2*k - 1:2*k) = [chain%kinds(k), kind_mid]
-    end do
-  end subroutine list_nodes
 
   !> Widest gap between a stretch and the next [length].
   pure function largest_gap(chain) result(gap)

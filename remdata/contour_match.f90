@@ -12,7 +12,7 @@ module contour_match
   use vectors, only: length_of
   implicit none
   private
-  public :: place_of_old, old_of_place
+  public :: place_of_old
 
 contains
 
@@ -64,40 +64,5 @@ contains
       if (s <= along(contacts(k)%run%to)) run = k
     end do
   end function run_at
-
-  !> The old side a place of the contour comes from, and the place on it.
-  pure subroutine old_of_place(loop, chain, contacts, x, place, side, xi)
-    type(loop_t), intent(in) :: loop
-    type(chain_t), intent(in) :: chain
-    type(contact_t), intent(in) :: contacts(:)
-    real(wp), intent(in) :: x(:, :)              !! as above
-    type(place_t), intent(in) :: place
-    integer, intent(out) :: side
-    real(wp), intent(out) :: xi
-    type(stretch_t) :: old
-    real(wp) :: here, distance, least, point(2)
-    integer :: k, number
-
-    side = chain%stretches(place%stretch)%side
-    xi = place%xi
-    if (chain%stretches(place%stretch)%run == 0) return
-    point = point_on(chain, place)
-    least = huge(least)
-    associate (run => contacts(chain%stretches(place%stretch)%run)%run)
-      do k = run%from%side, run%to%side
-        number = modulo(k - 1, size(loop%sides, 2)) + 1
-        old%points = x(:, loop%sides(:, number))
-        old%range = [-1.0_wp, 1.0_wp]
-        if (k == run%from%side) old%range(1) = run%from%xi
-        if (k == run%to%side) old%range(2) = run%to%xi
-        here = closest_xi(old, point)
-        distance = length_of(point_at(old, here) - point)
-        if (.not. distance < least) cycle
-        least = distance
-        side = number
-        xi = here
-      end do
-    end associate
-  end subroutine old_of_place
 
 end module contour_match

@@ -6,7 +6,8 @@ module remesh_report
   use kinds, only: wp
   use remesh_scene, only: remesh_facts_t
   use run_version, only: version_text
-  use text, only: to_text
+  use text, only: string_t, to_text
+  use transfer_report, only: balance_t, in_words, report_lines
   implicit none
   private
   public :: print_facts, write_facts
@@ -17,6 +18,7 @@ contains
   subroutine print_facts(facts, seconds)
     type(remesh_facts_t), intent(in) :: facts
     real(wp), intent(in) :: seconds
+    type(string_t), allocatable :: lines(:)
     integer :: k, status
 
     write (*, '(a)', iostat=status) 'mesh '//to_text(facts%generation)//' at step '//to_text(facts%step)//', time ' &
@@ -38,12 +40,13 @@ contains
     if (facts%coarser > 1) write (*, '(a)') '  sizes '//to_text(facts%coarser, 3) &
       //' times the wanted ones, for the limit on the number of elements'
     if (.not. allocated(facts%transfer%rows)) return   ! a first mesh
-    write (*, '(a)') '  transfer by '//facts%transfer%method//':'
-    do k = 1, size(facts%transfer%rows)
-      associate (row => facts%transfer%rows(k))
-        write (*, '(a)') '    '//row%name//': integral '//to_text(row%before, 6)//' -> '//to_text(row%after, 6)//', largest ' &
-          //to_text(row%largest_before, 4)//' -> '//to_text(row%largest_after, 4)
-      end associate
+    call report_lines(facts%transfer, lines)
+    do k = 1, size(lines)
+      write (*, '(a)') '  '//lines(k)%s
+    end do
+    if (.not. allocated(facts%contacts)) return
+    do k = 1, size(facts%contacts)
+      write (*, '(a)') '  '//in_words(facts%contacts(k))
     end do
   end subroutine print_facts
 
@@ -55,7 +58,6 @@ contains
     type(error_t), allocatable, intent(in) :: failure
     type(error_t), allocatable, intent(out) :: error
     type(json_t) :: json
-    integer :: k
 
     call json%begin_object()
     call json%add('program', 'remdata')
@@ -87,23 +89,28 @@ contains
     call json%add('elements_over_wanted', facts%expected%elements)
     call json%end_object()
     call json%begin_array('transfer')
-    if (allocated(facts%transfer%rows)) then
-      do k = 1, size(facts%transfer%rows)
-        associate (row => facts%transfer%rows(k))
-          call json%begin_object()
-          call json%add('name', row%name)
-          call json%add('before', row%before)
-          call json%add('carried', row%carried)
-          call json%add('after', row%after)
-          call json%add('largest_before', row%largest_before)
-          call json%add('largest_after', row%largest_after)
-          call json%end_object()
-        end associate
-      end do
-    end if
+    if (allocated(facts%transfer%rows)) call add_rows(json, facts%transfer%rows)
+    if (allocated(facts%contacts)) call add_rows(json, facts%contacts)
     call json%end_array()
     call json%end_object()
     call json%write_file(path, error)
   end subroutine write_facts
+
+  subroutine add_rows(json, rows)
+    type(json_t), intent(inout) :: json
+    type(balance_t), intent(in) :: rows(:)
+    integer :: k
+
+    do k = 1, size(rows)
+      call json%begin_object()
+      call json%add('name', rows(k)%name)
+      call json%add('before', rows(k)%before)
+      call json%add('carried', rows(k)%carried)
+      call json%add('after', rows(k)%after)
+      call json%add('largest_before', rows(k)%largest_before)
+      call json%add('largest_after', rows(k)%largest_after)
+      call json%end_object()
+    end do
+  end subroutine add_rows
 
 end module remesh_report

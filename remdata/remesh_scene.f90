@@ -27,7 +27,7 @@ module remesh_scene
   use transfer_api, only: transfer_options_t
   use transfer_mesh, only: transfer_mesh_t
   use transfer_nodes, only: carry_nodal
-  use transfer_report, only: transfer_report_t
+  use transfer_report, only: balance_t, transfer_report_t
   use transfer_states, only: carry_states
   use zone_mesh, only: mesh_wish_t, mesh_zones, new_mesh_t
   use zone_plan, only: plan_t, plan_zones
@@ -44,6 +44,8 @@ module remesh_scene
     type(contour_report_t) :: contour
     type(mesh_check_t) :: mesh
     type(transfer_report_t) :: transfer
+    !> Integrals of contact along its runs.
+    type(balance_t), allocatable :: contacts(:)
     !> Sizes are so many times the wanted ones, for the limit on the number of elements.
     real(wp) :: coarser = 1.0_wp
     !> The errors expected of the new mesh, over those its sizes were wanted for.
@@ -130,7 +132,7 @@ contains
     call carry_solids(old, before, new, after, facts%transfer, error)
     if (allocated(error)) return
     facts%stage = 'contact'
-    call carry_contacts(old, before, contours, mesh, new, after)
+    call carry_contacts(old, before, contours, mesh, new, after, facts%contacts)
   end subroutine carry_state
 
   subroutine refuse_what_is_not_offered(scene, error)

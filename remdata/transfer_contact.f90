@@ -8,7 +8,7 @@ module transfer_contact
   use kinds, only: wp
   implicit none
   private
-  public :: carry_along, contact_force
+  public :: carry_along
 
 contains
 
@@ -85,24 +85,5 @@ contains
       weight(k) = kernel*(1/total + part)
     end do
   end subroutine line_weights
-
-  !> Force of contact on a die and its moment about the pilot: pressure along the inner normal of the die, friction along
-  !> the tangent, as contact elements store them (force x, force y, moment; per radian when the weights have the radius).
-  pure function contact_force(x, tangent, pressure, friction, weight, pilot) result(force)
-    real(wp), intent(in) :: x(:, :), tangent(:, :)         !! (2, n) places, unit tangents with the part on the left
-    real(wp), intent(in) :: pressure(:), friction(:)       !! (n) [stress]
-    real(wp), intent(in) :: weight(:)                      !! (n) [length, times the radius when axisymmetric]
-    real(wp), intent(in) :: pilot(2)
-    real(wp) :: force(3), f(2)
-    integer :: p
-
-    force = 0
-    do p = 1, size(weight)
-      ! to the right of the tangent is out of the part and into the die
-      f = weight(p)*(pressure(p)*[tangent(2, p), -tangent(1, p)] + friction(p)*tangent(:, p))
-      force(1:2) = force(1:2) + f
-      force(3) = force(3) + (x(1, p) - pilot(1))*f(2) - (x(2, p) - pilot(2))*f(1)
-    end do
-  end function contact_force
 
 end module transfer_contact

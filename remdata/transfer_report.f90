@@ -4,7 +4,7 @@ module transfer_report
   use text, only: string_t, to_text
   implicit none
   private
-  public :: balance_t, transfer_report_t, report_lines
+  public :: balance_t, transfer_report_t, report_lines, in_words
 
   !> One component of a variable in one material, over the volume (per unit thickness or per radian).
   type :: balance_t
@@ -61,6 +61,7 @@ lines(1)%s = 'transfer by '//report%method//': '//to_text(report%points_outside)
     end do
   end subroutine report_lines
 
+  !> One row: integrals before and after, ranges.
   pure function in_words(row) result(words)
     type(balance_t), intent(in) :: row
     character(len=:), allocatable :: words

@@ -3,6 +3,7 @@ module contour_cases
   use block_mesh, only: block_t, mesh_block
   use contact_contour, only: find_contact_ends
   use contact_ends, only: contact_end_t
+  use contour_chain, only: chain_t
   use dies, only: die_t, finish_die, present_die
   use kinds, only: wp
   use quadrature, only: line_rule
@@ -13,7 +14,7 @@ module contour_cases
   use vectors, only: length_of
   implicit none
   private
-  public :: begin_scene, add_block, join_nodes, add_contact, add_die, polyline, start, ends_of, touch, box, arc_side
+  public :: begin_scene, add_block, join_nodes, add_contact, add_die, polyline, start, ends_of, touch, box, arc_side, joints_of_kind
 
 contains
 
@@ -227,5 +228,15 @@ contains
       end associate
     end do
   end subroutine ends_of
+
+  !> Stretches that begin with a joint of one of some kinds, in order.
+  pure function joints_of_kind(chain, kinds) result(joints)
+    type(chain_t), intent(in) :: chain
+    integer, intent(in) :: kinds(:)
+    integer, allocatable :: joints(:)
+    integer :: k
+
+    allocate (joints, source=pack([(k, k=1, size(chain%kinds))], [(any(chain%kinds(k) == kinds), k=1, size(chain%kinds))]))
+  end function joints_of_kind
 
 end module contour_cases
