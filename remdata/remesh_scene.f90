@@ -7,8 +7,9 @@ module remesh_scene
   use block_mesh, only: polygon_area
   use contact_carry, only: carry_contacts
   use contact_ends, only: contact_end_t
+  use contact_stretches, only: placed_piece
   use contour_chain, only: chain_t
-  use contour_needs, only: geometry_wish_t, needs_of_chain
+  use contour_needs, only: geometry_wish_t, needs_of_chain, needs_of_die
   use dies, only: is_deformable
   use errors, only: error_t, exit_input, fail
   use first_contours, only: contours_of_cards
@@ -180,7 +181,7 @@ contains
     end do
   end function materials_of
 
-  !> Sizes by the error of the strains, by bends of the contour and by stretches of contact.
+  !> Sizes by the error of the strains, by bends of the contour and of the dies near it, and by stretches of contact.
   subroutine wanted_sizes(scene, solution, contours, first, sizes)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -194,7 +195,7 @@ contains
     type(geometry_wish_t) :: wish
     type(need_t), allocatable :: needs(:), more(:)
     real(wp) :: error
-    integer :: e, c
+    integer :: e, c, k
 
     if (scene%remesher%smallest > 0) limits%smallest = scene%remesher%smallest
     if (scene%remesher%largest > 0) limits%largest = scene%remesher%largest
@@ -203,6 +204,12 @@ contains
     allocate (needs(0))
     do c = 1, size(contours)
       call needs_of_chain(contours(c)%chain, wish, limits, more)
+      needs = [needs, more]
+    end do
+    do k = 1, size(scene%dies)
+      if (is_deformable(scene%dies(k))) cycle
+      call needs_of_die([(placed_piece(scene%dies(k), solution%pilots(:, k), c), c=1, size(scene%dies(k)%pieces, 3))], &
+                        wish, limits, more)
       needs = [needs, more]
     end do
     if (first) then
