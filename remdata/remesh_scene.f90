@@ -72,6 +72,7 @@ contains
     type(size_field_t) :: sizes
     type(new_mesh_t) :: mesh
     character(len=:), allocatable :: deck_path, deck_text
+    real(wp), allocatable :: moved(:, :)
     logical :: first
 
     facts%stage = 'checkpoint'
@@ -84,6 +85,7 @@ contains
     if (allocated(error)) return
     first = lacks_mesh(old)
     call take_options(options, old)
+    call set_back(old, before, moved)
     facts%step = before%step
     facts%time = before%time
     facts%generation = old%generation + 1
@@ -108,7 +110,7 @@ contains
     if (first) then
       new%mesh%origin = new%mesh%coordinates
     else
-      call carry_state(old, before, contours, mesh, new, after, facts, error)
+      call carry_state(old, before, moved, contours, mesh, new, after, facts, error)
       if (allocated(error)) return
     end if
     facts%stage = 'checkpoint'
@@ -117,10 +119,25 @@ contains
     facts%new_elements = count_elements(new)
   end subroutine remesh_checkpoint
 
+  !> With small strains the geometry is that of the start: bodies are meshed where they were, and what they have `moved` since is
+  !> carried over as other nodal fields are. Where they touch dies, they are meshed where they are.
+  pure subroutine set_back(scene, solution, moved)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    real(wp), allocatable, intent(out) :: moved(:, :)   !! (2, nnode) [length]
+
+    allocate (moved, mold=solution%displacement)
+    moved = 0
+    if (scene%finite .or. any(scene%groups%die > 0)) return
+    moved = solution%displacement
+    solution%displacement = 0
+  end subroutine set_back
+
   !> All that the old mesh knows: progress, state of the solids, contact.
-  subroutine carry_state(old, before, contours, mesh, new, after, facts, error)
+  subroutine carry_state(old, before, moved, contours, mesh, new, after, facts, error)
     type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
+    real(wp), intent(in) :: moved(:, :)
     type(contour_t), intent(in) :: contours(:)
     type(new_mesh_t), intent(in) :: mesh
     type(scene_t), intent(inout) :: new
@@ -130,7 +147,7 @@ contains
 
     facts%stage = 'transfer'
     call carry_progress(before, after)
-    call carry_solids(old, before, new, after, facts%transfer, error)
+    call carry_solids(old, before, moved, new, after, facts%transfer, error)
     if (allocated(error)) return
     facts%stage = 'contact'
     call carry_contacts(old, before, contours, mesh, new, after, facts%contacts)
@@ -296,10 +313,12 @@ contains
     after%unbalanced = .true.
   end subroutine carry_progress
 
-  !> State of the solids, and what belongs to nodes: origin of the matter and motion of the last step.
-  subroutine carry_solids(old, before, new, after, report, error)
+  !> State of the solids, and what belongs to nodes: origin of the matter, motion of the last step, and motion since the start
+  !> where the mesh does not go with it.
+  subroutine carry_solids(old, before, moved, new, after, report, error)
     type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
+    real(wp), intent(in) :: moved(:, :)
     type(scene_t), intent(inout) :: new
     type(solution_t), intent(inout) :: after
     type(transfer_report_t), intent(out) :: report
@@ -330,14 +349,15 @@ contains
     do k = 1, size(target%material)
       material(target%connectivity(:, k)) = target%material(k)
     end do
-    allocate (values(4, size(material)))
+    allocate (values(6, size(material)))
     call carry_nodal(mesh%nodes, mesh%connectivity, mesh%material, &
-                     reshape([old%mesh%origin(1, :), old%mesh%origin(2, :), before%last_increment(1, :), &
-                              before%last_increment(2, :)], [4, size(old%mesh%origin, 2)], order=[2, 1]), &
+                     reshape([transpose(old%mesh%origin), transpose(before%last_increment), transpose(moved)], &
+                             [6, size(moved, 2)], order=[2, 1]), &
                      new%mesh%coordinates, material, options%outside, values, farthest, error)
     if (allocated(error)) return
     new%mesh%origin = values(1:2, :)
     after%last_increment = values(3:4, :)
+    after%displacement = values(5:6, :)
   end subroutine carry_solids
 
 end module remesh_scene

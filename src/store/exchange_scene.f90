@@ -72,12 +72,15 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(hdf5_file_t) :: file
     type(string_t), allocatable :: names(:)
-    integer :: k, n
+    integer :: k, n, finite
 
     call open_checkpoint(path, file, error)
     if (allocated(error)) return
     scene%title = ''
     call file%read('mesh/plane_state', scene%plane_state)
+    finite = 1
+    call file%read('mesh/finite', finite)
+    scene%finite = finite == 1
     call file%read('mesh/generation', scene%generation)
     call file%read('mesh/coordinates', scene%mesh%coordinates)
     call file%read('mesh/origin', scene%mesh%origin)

@@ -54,6 +54,7 @@ contains
 
     call file%write('mesh/generation', scene%generation)
     call file%write('mesh/plane_state', scene%plane_state)
+    call file%write('mesh/finite', merge(1, 0, scene%finite))
     call file%write('mesh/coordinates', scene%mesh%coordinates)
     call file%write_attribute('mesh/coordinates', 'unit', 'length')
     call file%write('mesh/origin', scene%mesh%origin)
