@@ -6,8 +6,9 @@
 module remesh_scene
   use contact_carry, only: carry_contacts
   use contact_ends, only: contact_end_t
+  use contact_stretches, only: placed_piece
   use contour_chain, only: chain_t
-  use contour_needs, only: geometry_wish_t, needs_of_chain
+  use contour_needs, only: geometry_wish_t, needs_of_chain, needs_of_die
   use dies, only: is_deformable
   use errors, only: error_t, exit_input, fail
   use first_contours, only: contours_of_cards
@@ -29,7 +30,8 @@ module remesh_scene
   use transfer_report, only: transfer_report_t
   use transfer_states, only: carry_states
   use zone_mesh, only: mesh_wish_t, mesh_zones, new_mesh_t
-  use zone_plan, only: plan_t, plan_zones
+  use zone_plan, only: plan_zones
+  use zones, only: plan_t
   implicit none
   private
   public :: remesh_facts_t, remesh_checkpoint
@@ -175,7 +177,7 @@ contains
     end do
   end function materials_of
 
-  !> Sizes by the error of the strains, by bends of the contour and by stretches of contact.
+  !> Sizes by the error of the strains, by bends of the contour and of dies nearby, and by stretches of contact.
   subroutine wanted_sizes(scene, solution, contours, first, sizes)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -187,17 +189,22 @@ contains
     type(old_mesh_t) :: old
     type(size_limits_t) :: limits
     type(geometry_wish_t) :: wish
-    type(need_t), allocatable :: needs(:), more(:)
+    type(need_t), allocatable :: needs(:), bends(:), more(:)
     real(wp) :: error
-    integer :: e, c
+    integer :: e, c, d, k
 
     if (scene%remesher%smallest > 0) limits%smallest = scene%remesher%smallest
     if (scene%remesher%largest > 0) limits%largest = scene%remesher%largest
     wish%across = scene%remesher%across_contact
     wish%turn = scene%remesher%turn
-    allocate (needs(0))
+    allocate (needs(0), bends(0))
+    do d = 1, size(scene%dies)
+      call needs_of_die([(placed_piece(scene%dies(d), solution%pilots(:, d), k), k=1, size(scene%dies(d)%pieces, 3))], &
+                        wish, limits, more)
+      bends = [bends, more]
+    end do
     do c = 1, size(contours)
-      call needs_of_chain(contours(c)%chain, wish, limits, more)
+      call needs_of_chain(contours(c)%chain, wish, limits, more, bends)
       needs = [needs, more]
     end do
     if (first) then
