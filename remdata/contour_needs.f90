@@ -25,12 +25,13 @@ module contour_needs
 
 contains
 
-  !> Needs along a chain. Places that want the largest size or more are left out.
-  pure subroutine needs_of_chain(chain, wish, limits, needs)
+  !> Needs along a chain, where bends of dies nearby have their say too. Places that want the largest size or more are left out.
+  pure subroutine needs_of_chain(chain, wish, limits, needs, nearby)
     type(chain_t), intent(in) :: chain
     type(geometry_wish_t), intent(in) :: wish
     type(size_limits_t), intent(in) :: limits
     type(need_t), allocatable, intent(out) :: needs(:)
+    type(need_t), optional, intent(in) :: nearby(:)
     type(need_t) :: all((parts + 1)*size(chain%stretches))
     real(wp) :: contact(size(chain%stretches)), mean
     integer :: k, i, last
@@ -52,11 +53,18 @@ contains
         all(i:i + parts)%size = min(all(i:i + parts)%size, contact(k))
       end associate
     end do
+    if (present(nearby)) then
+      do i = 1, size(all)
+        do k = 1, size(nearby)
+          call limit_next(slope_of(limits%gradation), nearby(k), all(i))
+        end do
+      end do
+    end if
     call grade_along(slope_of(limits%gradation), all)
     call keep_needs(limits, all, needs)
   end subroutine needs_of_chain
 
-  !> Needs of the bends of a die. They count where the contour is near, for sizes grow with distance.
+  !> Needs of the bends of a die. They count where a contour is near, for sizes grow with distance.
   pure subroutine needs_of_die(pieces, wish, limits, needs)
     type(stretch_t), intent(in) :: pieces(:)   !! where the die stands
     type(geometry_wish_t), intent(in) :: wish

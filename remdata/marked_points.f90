@@ -14,7 +14,7 @@ module marked_points
   use text, only: to_text
   use transfer_mesh, only: plant_mesh_trees, set_up_mesh, transfer_mesh_t
   use vectors, only: length_of
-  use zone_marks, only: mark_crossing, mark_inside, mark_matter, zone_mark_t
+  use zone_marks, only: mark_corner, mark_crossing, mark_inside, mark_matter, zone_mark_t
   use zones, only: exact_point, on_chain, zone_point_t
   implicit none
   private
@@ -42,6 +42,7 @@ contains
       associate (mark => scene%remesher%marks(k))
         points(k)%name = mark%name
         points(k)%stays = mark%stays
+        points(k)%by_shape = mark%form == mark_corner
         alone = count([(any(scene%remesher%zones(z)%marks == k), z=1, size(scene%remesher%zones))]) == 1
         place = mark%x
         if (mark%die > 0) place = carried(mark, scene%dies(mark%die)%pilot, pilots(:, mark%die))

@@ -8,8 +8,7 @@ module new_scene
   use scene, only: is_solid, scene_t
   use zone_mesh, only: contour_side_t, new_mesh_t
   use zone_numbers, only: ends_of_side, middles_of_side, number_nodes, numbers_t
-  use zone_plan, only: plan_t
-  use zones, only: follows_contour
+  use zones, only: follows_contour, plan_t
   implicit none
   private
   public :: set_up_new_scene, middle_place

@@ -31,7 +31,8 @@ module remesh_scene
   use transfer_report, only: balance_t, transfer_report_t
   use transfer_states, only: carry_states
   use zone_mesh, only: mesh_wish_t, mesh_zones, new_mesh_t
-  use zone_plan, only: plan_t, plan_zones
+  use zone_plan, only: plan_zones
+  use zones, only: plan_t
   implicit none
   private
   public :: remesh_facts_t, remesh_checkpoint
@@ -198,7 +199,7 @@ contains
     end do
   end function materials_of
 
-  !> Sizes by the error of the strains, by bends of the contour and of the dies near it, and by stretches of contact.
+  !> Sizes by the error of the strains, by bends of the contour and of dies nearby, and by stretches of contact.
   subroutine wanted_sizes(scene, solution, contours, first, sizes)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -210,23 +211,23 @@ contains
     type(old_mesh_t) :: old
     type(size_limits_t) :: limits
     type(geometry_wish_t) :: wish
-    type(need_t), allocatable :: needs(:), more(:)
+    type(need_t), allocatable :: needs(:), bends(:), more(:)
     real(wp) :: error
-    integer :: e, c, k
+    integer :: e, c, d, k
 
     if (scene%remesher%smallest > 0) limits%smallest = scene%remesher%smallest
     if (scene%remesher%largest > 0) limits%largest = scene%remesher%largest
     wish%across = scene%remesher%across_contact
     wish%turn = scene%remesher%turn
-    allocate (needs(0))
-    do c = 1, size(contours)
-      call needs_of_chain(contours(c)%chain, wish, limits, more)
-      needs = [needs, more]
-    end do
-    do k = 1, size(scene%dies)
-      if (is_deformable(scene%dies(k))) cycle
-      call needs_of_die([(placed_piece(scene%dies(k), solution%pilots(:, k), c), c=1, size(scene%dies(k)%pieces, 3))], &
+    allocate (needs(0), bends(0))
+    do d = 1, size(scene%dies)
+      if (is_deformable(scene%dies(d))) cycle
+      call needs_of_die([(placed_piece(scene%dies(d), solution%pilots(:, d), k), k=1, size(scene%dies(d)%pieces, 3))], &
                         wish, limits, more)
+      bends = [bends, more]
+    end do
+    do c = 1, size(contours)
+      call needs_of_chain(contours(c)%chain, wish, limits, more, bends)
       needs = [needs, more]
     end do
     if (first) then

@@ -8,34 +8,25 @@
 !> ZONE cards take the place of the blocks: their points are found by what ZPNT cards say (marked_points), and a point is one
 !> point to all zones that name it. Sets of sides go with the contour alone.
 !>
-!> No quadrilateral has a corner of 180 degrees: where one corner of a body's only zone has become flat, the zone is a triangle to
-!> be divided into three, and the flat corner is a point of its long side.
+!> Zones with a corner that has become flat are divided (flat_corners).
 module zone_plan
-  use contour_chain, only: arc_at, chain_length, chain_t, kind_corner, kind_entry, kind_exit, place_at_arc, place_t, point_on, &
-                           turn_at
+  use block_mesh, only: polygon_area
+  use contour_chain, only: arc_at, chain_length, chain_t, kind_corner, kind_entry, kind_exit, place_t
   use contour_match, only: place_of_old
   use errors, only: error_t, exit_input, fail
-  use kinds, only: pi, wp
+  use flat_corners, only: divide_flat_zones
+  use kinds, only: wp
   use marked_points, only: find_points
   use mesh, only: find_side_set
   use part_contour, only: contour_t
   use remesher_options, only: has_zones
   use scene, only: is_solid, scene_t
   use text, only: to_text
-  use zones, only: as_found, follows_contour, zone_point_t, zone_t
+  use zones, only: follows_contour, plan_t, zone_point_t, zone_t
   implicit none
   private
-  public :: plan_t, plan_zones
+  public :: plan_zones
 
-  type :: plan_t
-    type(zone_point_t), allocatable :: points(:)
-    type(zone_t), allocatable :: zones(:)
-    !> Group of the scene each zone's elements are of, and its four sets of sides (0: none).
-    integer, allocatable :: group(:), sets(:, :)
-  end type plan_t
-
-  !> A corner where the contour turns by less is flat: 35 degrees, a scaled Jacobian of 0.57.
-  real(wp), parameter :: flat_turn = 35*pi/180
   !> A point lies in a corner that is nearer than this share of the contour.
   real(wp), parameter :: in_place = 1.0e-6_wp
   !> Free contour beside an end of contact, as a share of all, that makes it one of shape.
@@ -52,7 +43,6 @@ contains
     type(contour_t), intent(in) :: contours(:)
     type(plan_t), intent(out) :: plan
     type(error_t), allocatable, intent(out) :: error
-    integer :: z, k
 
     if (has_zones(scene%remesher)) then
       call zones_of_cards(scene, x, pilots, material, contours, plan, error)
@@ -60,11 +50,7 @@ contains
       call zones_of_blocks(scene, x, material, contours, plan, error)
     end if
     if (.not. allocated(error)) call refuse_same_places(contours, plan, error)
-    if (allocated(error) .or. has_zones(scene%remesher)) return
-    do z = 1, size(plan%zones)
-      k = flat_corner(contours, plan, z)
-      if (k > 0) call split_in_three(contours, z, k, plan)
-    end do
+    if (.not. allocated(error)) call divide_flat_zones(contours, plan)
   end subroutine plan_zones
 
   !> Zones as the cards give them.
@@ -75,7 +61,7 @@ contains
     type(contour_t), intent(in) :: contours(:)
     type(plan_t), intent(out) :: plan
     type(error_t), allocatable, intent(out) :: error
-    integer :: z
+    integer :: corners(4), z, k
 
     call find_points(scene, x, pilots, contours, plan%points, error)
     if (allocated(error)) return
@@ -87,6 +73,8 @@ contains
         plan%zones(z)%name = cards(z)%name
         plan%zones(z)%corners = cards(z)%marks
         plan%zones(z)%material = material(cards(z)%group)
+        corners = cards(z)%marks
+        if (polygon_area(reshape([(plan%points(corners(k))%x, k=1, 4)], [2, 4])) < 0) plan%zones(z)%corners = corners([1, 4, 3, 2])
       end do
     end associate
   end subroutine zones_of_cards
@@ -100,7 +88,6 @@ contains
     type(plan_t), intent(out) :: plan
     type(error_t), allocatable, intent(out) :: error
     integer :: point_of(size(x, 2)), sharing(size(x, 2)), corners(4), g, k, n, z
-    logical, allocatable :: by_shape(:)
 
     n = 0
     do g = 1, size(scene%groups)
@@ -125,115 +112,24 @@ contains
       sharing(corners) = sharing(corners) + 1
     end do
     point_of = 0
-    allocate (by_shape(0))
     do z = 1, n
       corners = corners_of(scene, plan%sets(:, z))
       do k = 1, 4
         if (point_of(corners(k)) == 0) then
           plan%points = [plan%points, point_at_node(contours, x, corners(k))]
-          by_shape = [by_shape, sharing(corners(k)) == 1 .and. plan%points(size(plan%points))%chain > 0]
+          associate (new => plan%points(size(plan%points)))
+            new%by_shape = sharing(corners(k)) == 1 .and. new%chain > 0
+          end associate
           point_of(corners(k)) = size(plan%points)
         end if
         plan%zones(z)%corners(k) = point_of(corners(k))
       end do
     end do
-    call go_by_shape(contours, by_shape, plan%points)
+    call go_by_shape(contours, plan%points)
     do z = 1, n
       call follow_contours(scene, contours, plan%sets(:, z), plan%zones(z))
     end do
   end subroutine zones_of_blocks
-
-  !> The corner of a zone with the contour on all sides that is nearly flat, 0 when there is none.
-  pure function flat_corner(contours, plan, z) result(corner)
-    type(contour_t), intent(in) :: contours(:)
-    type(plan_t), intent(in) :: plan
-    integer, intent(in) :: z
-    integer :: corner
-    real(wp) :: turn, least
-    integer :: k
-
-    corner = 0
-    if (any(plan%zones(z)%form /= follows_contour)) return
-    least = flat_turn
-    do k = 1, 4
-      associate (point => plan%points(plan%zones(z)%corners(k)))
-        turn = abs(turn_at(contours(point%chain)%chain, point%place%stretch))
-        if (point%place%xi > contours(point%chain)%chain%stretches(point%place%stretch)%range(1)) turn = 0
-      end associate
-      if (.not. turn < least) cycle
-      least = turn
-      corner = k
-    end do
-  end function flat_corner
-
-  !> Three zones around a point M inside: with B and C before and after the flat corner D, and A opposite, they are
-  !> (A, AB, M, CA), (B, D, M, AB), (C, CA, M, D). From AB to B and from C to CA it is half the shorter of the sides AB and CA, so
-  !> that in a flat disc only its rim is divided in this way; M stands opposite to A, a third of the way to D.
-  pure subroutine split_in_three(contours, z, flat, plan)
-    type(contour_t), intent(in) :: contours(:)
-    integer, intent(in) :: z, flat
-    type(plan_t), intent(inout) :: plan
-    type(zone_t) :: zone, parts(3)
-    integer :: a, b, c, d, ab, ca, m, k
-    real(wp) :: half
-
-    zone = plan%zones(z)
-    d = zone%corners(flat)
-    c = zone%corners(modulo(flat, 4) + 1)
-    a = zone%corners(modulo(flat + 1, 4) + 1)
-    b = zone%corners(modulo(flat + 2, 4) + 1)
-    half = 0.5_wp*min(way_between(contours, plan%points(a), plan%points(b)), way_between(contours, plan%points(c), plan%points(a)))
-    plan%points = [plan%points, moved_by(contours, plan%points(b), -half), moved_by(contours, plan%points(c), half)]
-    ab = size(plan%points) - 1
-    ca = size(plan%points)
-    plan%points = [plan%points, zone_point_t(x=(2*(placed(ab) + placed(ca) - placed(a)) + placed(d))/3)]
-    m = size(plan%points)
-    parts = zone
-    parts(1)%corners = [a, ab, m, ca]
-    parts(2)%corners = [b, d, m, ab]
-    parts(3)%corners = [c, ca, m, d]
-    do k = 1, 3
-      parts(k)%form = [follows_contour, as_found, as_found, follows_contour]
-    end do
-    plan%zones(z) = parts(1)
-    plan%zones = [plan%zones, parts(2:)]
-    plan%group = [plan%group, plan%group(z), plan%group(z)]
-    ! all sets of the zone are on the contour, and go with its sides
-    plan%sets(:, z) = 0
-    plan%sets = reshape([reshape(plan%sets, [size(plan%sets)]), spread(0, 1, 8)], [4, size(plan%sets, 2) + 2])
-
-  contains
-
-    pure function placed(p) result(x)
-      integer, intent(in) :: p
-      real(wp) :: x(2)
-
-      x = point_on(contours(plan%points(p)%chain)%chain, plan%points(p)%place)
-    end function placed
-
-  end subroutine split_in_three
-
-  !> Length of the contour from one point to another [length].
-  pure function way_between(contours, from, to) result(way)
-    type(contour_t), intent(in) :: contours(:)
-    type(zone_point_t), intent(in) :: from, to
-    real(wp) :: way
-
-    associate (chain => contours(from%chain)%chain)
-      way = modulo(arc_at(chain, to%place) - arc_at(chain, from%place), chain_length(chain))
-    end associate
-  end function way_between
-
-  !> The point so far along the contour from another one.
-  pure function moved_by(contours, from, way) result(point)
-    type(contour_t), intent(in) :: contours(:)
-    type(zone_point_t), intent(in) :: from
-    real(wp), intent(in) :: way   !! [length]
-    type(zone_point_t) :: point
-
-    point%chain = from%chain
-    point%place = place_at_arc(contours(from%chain)%chain, arc_at(contours(from%chain)%chain, from%place) + way)
-  end function moved_by
 
   !> First nodes of the four sides of a block.
   pure function corners_of(scene, sets) result(nodes)
@@ -266,15 +162,14 @@ contains
 
   !> Points that lie in a corner of the contour stay there; then the others go to the nearest corner, beginning or end of
   !> contact that none has taken.
-  pure subroutine go_by_shape(contours, by_shape, points)
+  pure subroutine go_by_shape(contours, points)
     type(contour_t), intent(in) :: contours(:)
-    logical, intent(in) :: by_shape(:)
     type(zone_point_t), intent(inout) :: points(:)
     logical :: settled(size(points))
     integer :: p, pass, joint(size(points))
     real(wp) :: way
 
-    settled = .not. by_shape
+    settled = .not. points%by_shape
     joint = 0
     do pass = 1, 2
       do p = 1, size(points)

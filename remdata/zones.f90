@@ -13,7 +13,7 @@ module zones
   use zone_marks, only: name_length
   implicit none
   private
-  public :: zone_point_t, zone_t, side_t, layout_t, lay_out, coordinates_of, on_chain, exact_point, arc_along
+  public :: zone_point_t, zone_t, plan_t, side_t, layout_t, lay_out, coordinates_of, on_chain, exact_point, arc_along
   public :: as_found, follows_contour, runs_straight, runs_curved
 
   !> What a side of a zone is: the contour where one zone has it and straight where two have it, or what the user says.
@@ -26,6 +26,8 @@ module zones
     real(wp) :: x(2) = 0.0_wp        !! [length], read inside only
     !> Unless the user wants a point where it is, it moves inside when lines are smoothed, and on a contour to a corner close by.
     logical :: stays = .false.
+    !> It is where the contour has a corner, not a place or a matter that was asked for.
+    logical :: by_shape = .false.
     !> As cards name it.
     character(len=name_length) :: name = ''
   end type zone_point_t
@@ -41,6 +43,14 @@ module zones
     !> As cards name it.
     character(len=name_length) :: name = ''
   end type zone_t
+
+  !> Zones of a scene on its contours.
+  type :: plan_t
+    type(zone_point_t), allocatable :: points(:)
+    type(zone_t), allocatable :: zones(:)
+    !> Group of the scene each zone's elements are of, and its four sets of sides (0: none).
+    integer, allocatable :: group(:), sets(:, :)
+  end type plan_t
 
   type :: side_t
     !> Corners, in the direction of the first zone.
