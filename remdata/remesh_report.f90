@@ -31,7 +31,7 @@ contains
           //to_text(limit%point(1))//', y = '//to_text(limit%point(2))
       end associate
     end do
-    write (*, '(a)') '  shape: scaled Jacobian from '//to_text(facts%mesh%scaled_jacobian, 3)//', angles ' &
+    write (*, '(a)') '  by '//facts%mesher//', shape: scaled Jacobian from '//to_text(facts%mesh%scaled_jacobian, 3)//', angles ' &
       //to_text(facts%mesh%least_angle, 3)//' to '//to_text(facts%mesh%largest_angle, 4)//' degrees'
     if (facts%coarser > 1) write (*, '(a)') '  sizes '//to_text(facts%coarser, 3) &
       //' times the wanted ones, for the limit on the number of elements: errors '//to_text(facts%coarser**2, 3)//' times'
@@ -75,6 +75,7 @@ contains
     call json%add('volume_error', facts%contour%volume_error)
     call json%end_object()
     call json%begin_object('mesh')
+    call json%add('mesher', facts%mesher)
     call json%add('scaled_jacobian', facts%mesh%scaled_jacobian)
     call json%add('least_angle', facts%mesh%least_angle)
     call json%add('largest_angle', facts%mesh%largest_angle)
