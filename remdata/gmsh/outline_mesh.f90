@@ -5,11 +5,12 @@
 module outline_mesh
   use block_mesh, only: polygon_area
   use body_outlines, only: divide_outlines, lay_out_outlines, outline_t
-  use contour_chain, only: chain_t, place_t
+  use contour_chain, only: chain_t, place_t, turn_at
   use errors, only: error_t
+  use flat_corners, only: open_flat_corners
   use gmsh_call, only: gmsh_t, mesh_outline
   use gmsh_files, only: quads_t, refuse_mesh
-  use kinds, only: wp
+  use kinds, only: pi, wp
   use mend_elements, only: mend
   use side_curves, only: curve_point, curve_t
   use side_middles, only: place_middle
@@ -25,6 +26,9 @@ module outline_mesh
   real(wp), parameter :: growth = 1.02_wp
   integer, parameter :: attempts = 8
 
+  !> No element has both its sides along a contour that turns by less between them: 35 degrees.
+  real(wp), parameter :: flat_turn = 35*pi/180
+
   !> The corners of the mesh while it grows. Points along the contours come first, side by side, then those inside body by body.
   type :: draft_t
     real(wp), allocatable :: x(:, :)         !! (2, nend) [length]
@@ -34,7 +38,9 @@ module outline_mesh
     integer, allocatable :: start(:)
     !> Point after each along its contour.
     integer, allocatable :: next(:)
+    !> Where each is, and whether the contour has no corner there.
     type(place_t), allocatable :: place(:)
+    logical, allocatable :: smooth(:)
   end type draft_t
 
 contains
@@ -100,6 +106,7 @@ contains
       if (allocated(error)) return
       call add_quads(quads, b, low, high, draft)
     end do
+    call open_flat_corners(draft%next, draft%smooth, draft%x, draft%corners, draft%zone)
   end subroutine make_corners
 
   !> Ends of elements along all sides.
@@ -113,7 +120,8 @@ contains
     integer :: s, k, n, node
 
     n = size(ends) - size(curves)
-    allocate (draft%x(2, n), draft%place(n), draft%next(n), draft%start(size(curves) + 1))
+    allocate (draft%x(2, n), draft%place(n), draft%next(n), draft%smooth(n), &
+              draft%start(size(curves) + 1))
     draft%start(1) = 1
     do s = 1, size(curves)
       draft%start(s + 1) = draft%start(s) + first(s + 1) - first(s) - 1
@@ -121,7 +129,11 @@ contains
         node = draft%start(s) + k - first(s)
         call curve_point(chains, curves(s), ends(k), draft%x(:, node), draft%place(node))
         draft%next(node) = node + 1
+        draft%smooth(node) = k > first(s)
       end do
+      associate (node => draft%start(s))
+        draft%smooth(node) = abs(turn_at(chains(curves(s)%chain), draft%place(node)%stretch)) <= flat_turn
+      end associate
     end do
     n = 1
     do s = 1, size(curves)
