@@ -15,6 +15,8 @@ module remesh_options
     integer :: transfer = -1
     !> Wanted sizes are divided by this.
     real(wp) :: finer = 1.0_wp
+    !> Longest time for Gmsh to make a mesh [s].
+    real(wp) :: limit = 300.0_wp
     !> Only tell what the checkpoint holds.
     logical :: about = .false.
     logical :: quiet = .false., help = .false., version = .false.
@@ -55,10 +57,17 @@ contains
         read (word, *, iostat=status) options%finer
         if (status /= 0 .or. .not. options%finer > 0) &
           call fail(error, exit_input, '--finer: expected a number above 0, found '''//word//'''')
+      case ('--limit')
+        call value_of('--limit', k, word, error)
+        if (allocated(error)) exit
+        read (word, *, iostat=status) options%limit
+        if (status /= 0 .or. .not. options%limit > 0) &
+          call fail(error, exit_input, '--limit: expected seconds above 0, found '''//word//'''')
       case default
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
           call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--quiet'), string_t('--out'), &
-                                    string_t('--transfer'), string_t('--finer'), string_t('--about')], 'remdata', error)
+                                    string_t('--transfer'), string_t('--finer'), string_t('--limit'), &
+                                    string_t('--about')], 'remdata', error)
         else if (allocated(options%checkpoint)) then
           call fail(error, exit_input, 'one checkpoint at a time: found '''//options%checkpoint//''' and '''//word//'''')
         else
@@ -84,12 +93,13 @@ contains
     character(len=*), parameter :: nl = new_line('a')
 
     text = 'remdata: a new mesh and the state on it, from a checkpoint of lagamine'//nl//nl// &
-           'remdata CHECKPOINT --out NEW [--transfer N] [--finer F] [--quiet]'//nl// &
+           'remdata CHECKPOINT --out NEW [--transfer N] [--finer F] [--limit SECONDS] [--quiet]'//nl// &
            'remdata --about CHECKPOINT'//nl// &
            'remdata --help | --version'//nl//nl// &
            '  --out NEW       checkpoint of the new mesh, for lagamine --resume; facts in NEW.json'//nl// &
            '  --transfer N    state transfer: 0 inverse distance, 1 moving least squares, 2 patches (default: the deck''s)'//nl// &
            '  --finer F       divide the wanted sizes of elements by F'//nl// &
+           '  --limit SECONDS longest time for Gmsh, where it makes the mesh (default 300)'//nl// &
            '  --about         check the file and print what it holds, a word and its value a line'//nl// &
            '  --quiet         print errors only'//nl//nl// &
            'Exit codes: 0 done, 2 input refused, 3 no mesh that is good enough, 5 the machine failed, 6 a check of our own failed'

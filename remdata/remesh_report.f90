@@ -33,7 +33,7 @@ contains
           //to_text(limit%point(1))//', y = '//to_text(limit%point(2))
       end associate
     end do
-    write (*, '(a)') '  shape: scaled Jacobian from '//to_text(facts%mesh%scaled_jacobian, 3)//', angles ' &
+    write (*, '(a)') '  by '//facts%mesher//', shape: scaled Jacobian from '//to_text(facts%mesh%scaled_jacobian, 3)//', angles ' &
       //to_text(facts%mesh%least_angle, 3)//' to '//to_text(facts%mesh%largest_angle, 4)//' degrees'
     write (*, '(a)') '  errors expected: '//to_text(facts%expected%mean, 3)//' times the limit in the mean, ' &
       //to_text(facts%expected%worst, 3)//' at worst; '//to_text(facts%expected%elements, 3)//' times the elements it takes'
@@ -79,6 +79,7 @@ contains
     call json%add('volume_error', facts%contour%volume_error)
     call json%end_object()
     call json%begin_object('mesh')
+    call json%add('mesher', facts%mesher)
     call json%add('scaled_jacobian', facts%mesh%scaled_jacobian)
     call json%add('least_angle', facts%mesh%least_angle)
     call json%add('largest_angle', facts%mesh%largest_angle)

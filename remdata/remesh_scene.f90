@@ -1,6 +1,6 @@
 !> The remesher's page: from the checkpoint of an old mesh to that of a new one.
 !>
-!> contour -> zones -> sizes -> mesh -> state -> checkpoint (annex 2; chapter 12); bodies without a mesh get their first one the
+!> contour -> sizes -> zones and mesh, or Gmsh's mesh -> state -> checkpoint (annex 2; chapter 12); bodies without a mesh get their first one the
 !> same way, from contours that cards give, and no state. Whatever cannot be done ends in an error that
 !> names its stage; the old checkpoint is never touched.
 module remesh_scene
@@ -14,12 +14,15 @@ module remesh_scene
   use errors, only: error_t, exit_input, fail
   use first_contours, only: contours_of_cards
   use exchange, only: read_bare_scene, read_checkpoint, read_deck_of_checkpoint, read_contact_ends, write_checkpoint
+  use gmsh_call, only: find_gmsh, gmsh_t
   use kinds, only: wp
   use mesh_prediction, only: predict, prediction_t
+  use mesh_without_zones, only: mesh_freely
   use new_mesh_check, only: mesh_check_t, check_new_mesh
   use new_scene, only: set_up_new_scene
   use part_contour, only: build_contours, contour_options_t, contour_report_t, contour_t
   use remesh_options, only: remesh_options_t
+  use remesher_options, only: as_it_comes, by_gmsh, has_zones, remesher_options_t
   use scene, only: is_solid, lacks_mesh, scene_t
   use size_field, only: need_t, old_mesh_t, set_up_sizes, size_field_t, size_limits_t, wanted_size
   use solution, only: solution_t, start_solution
@@ -45,6 +48,8 @@ module remesh_scene
     integer :: old_elements = 0, new_elements = 0
     type(contour_report_t) :: contour
     type(mesh_check_t) :: mesh
+    !> Who made the mesh.
+    character(len=:), allocatable :: mesher
     type(transfer_report_t) :: transfer
     !> Integrals of contact along its runs.
     type(balance_t), allocatable :: contacts(:)
@@ -77,6 +82,7 @@ contains
     logical :: first
 
     facts%stage = 'checkpoint'
+    facts%mesher = 'zones'
     call read_deck_of_checkpoint(options%checkpoint, deck_path, deck_text, error)
     if (.not. allocated(error)) call read_bare_scene(options%checkpoint, old, error)
     if (.not. allocated(error)) call start_solution(old, before)
@@ -99,11 +105,13 @@ contains
     end if
     if (allocated(error)) return
     facts%stage = 'mesh'
-    call plan_zones(old, old%mesh%coordinates + before%displacement, before%pilots, materials_of(old, before), &
-                    contours, plan, error)
-    if (allocated(error)) return
     call wanted_sizes(old, before, contours, first, sizes)
-    call make_mesh(old, contours, plan, sizes, options%finer, mesh, facts, error)
+    if (old%remesher%mesher /= by_gmsh) then
+      call plan_zones(old, old%mesh%coordinates + before%displacement, before%pilots, materials_of(old, before), &
+                      contours, plan, error)
+      if (.not. allocated(error)) call make_mesh(old, contours, plan, sizes, options%finer, mesh, facts, error)
+    end if
+    if (is_for_gmsh(old%remesher, error)) call make_free_mesh(old, before, contours, sizes, options, plan, mesh, facts, error)
     if (allocated(error)) return
     call set_up_new_scene(old, contours, plan, mesh, new, error)
     if (allocated(error)) return
@@ -284,6 +292,39 @@ contains
       if (.not. allocated(error)) return
     end do
   end subroutine make_mesh
+
+  !> Is a mesh without zones due: one that is asked for, or one in place of that which the user's zones would not have been?
+  pure function is_for_gmsh(remesher, error) result(yes)
+    type(remesher_options_t), intent(in) :: remesher
+    type(error_t), allocatable, intent(in) :: error   !! of the mesh by zones
+    logical :: yes
+
+    yes = remesher%mesher == by_gmsh .or. (allocated(error) .and. remesher%mesher == as_it_comes .and. .not. has_zones(remesher))
+  end function is_for_gmsh
+
+  !> A mesh without zones. Where there is no Gmsh, what was wrong with zones is what the user has to know.
+  subroutine make_free_mesh(old, before, contours, sizes, options, plan, mesh, facts, error)
+    type(scene_t), intent(in) :: old
+    type(solution_t), intent(in) :: before
+    type(contour_t), intent(in) :: contours(:)
+    type(size_field_t), intent(in) :: sizes
+    type(remesh_options_t), intent(in) :: options
+    type(plan_t), intent(out) :: plan
+    type(new_mesh_t), intent(out) :: mesh
+    type(remesh_facts_t), intent(inout) :: facts
+    type(error_t), allocatable, intent(inout) :: error
+    type(error_t), allocatable :: of_zones
+    type(gmsh_t) :: gmsh
+
+    call move_alloc(error, of_zones)
+    facts%mesher = 'gmsh'
+    call find_gmsh(options%out, options%limit, gmsh)
+    call mesh_freely(old, materials_of(old, before), contours, sizes, options%finer, gmsh, plan, mesh, facts%mesh, error)
+    if (allocated(mesh%zone)) facts%coarser = mesh%division%factor
+    if (gmsh%is_there .or. .not. allocated(of_zones)) return
+    of_zones%advice = error%advice
+    call move_alloc(of_zones, error)
+  end subroutine make_free_mesh
 
   !> Time, dies, work: what does not hang on the mesh.
   pure subroutine carry_progress(before, after)

@@ -15,7 +15,7 @@ module zone_divisions
   use zones, only: layout_t
   implicit none
   private
-  public :: division_t, division_wish_t, choose_divisions, is_forward
+  public :: division_t, division_wish_t, choose_divisions, is_forward, rounded_up
   public :: by_mean, by_largest
 
   !> Need of a zone: mean of mean and largest of its lines, or the largest.

@@ -13,13 +13,14 @@ module zone_plan
   use block_mesh, only: polygon_area
   use contour_chain, only: arc_at, chain_length, chain_t, kind_corner, kind_entry, kind_exit, place_t
   use contour_match, only: place_of_old
+  use derived_zones, only: one_zone
   use errors, only: error_t, exit_input, fail
   use flat_corners, only: divide_flat_zones
   use kinds, only: wp
   use marked_points, only: find_points
   use mesh, only: find_side_set
   use part_contour, only: contour_t
-  use remesher_options, only: has_zones
+  use remesher_options, only: has_contours, has_zones
   use scene, only: is_solid, scene_t
   use text, only: to_text
   use zones, only: follows_contour, plan_t, zone_point_t, zone_t
@@ -46,8 +47,10 @@ contains
 
     if (has_zones(scene%remesher)) then
       call zones_of_cards(scene, x, pilots, material, contours, plan, error)
-    else
+    else if (are_blocks(scene)) then
       call zones_of_blocks(scene, x, material, contours, plan, error)
+    else
+      call zone_of_corners(scene, material, contours, plan, error)
     end if
     if (.not. allocated(error)) call refuse_same_places(contours, plan, error)
     if (.not. allocated(error)) call divide_flat_zones(contours, plan)
@@ -79,6 +82,53 @@ contains
     end associate
   end subroutine zones_of_cards
 
+  !> Are all bodies blocks, with their four sides?
+  pure function are_blocks(scene) result(yes)
+    type(scene_t), intent(in) :: scene
+    logical :: yes
+    integer :: g, k
+
+    yes = .not. has_contours(scene%remesher)
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      do k = 1, 4
+        yes = yes .and. find_side_set(scene%mesh, scene%groups(g)%name//'.'//to_text(k)) > 0
+      end do
+    end do
+  end function are_blocks
+
+  !> The zone of a body that has four corners and is no block. They are marked by the sets of sides that meet there, if these are
+  !> four too.
+  pure subroutine zone_of_corners(scene, material, contours, plan, error)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: material(:)
+    type(contour_t), intent(in) :: contours(:)
+    type(plan_t), intent(out) :: plan
+    type(error_t), allocatable, intent(out) :: error
+    type(place_t), allocatable :: marked(:)
+    integer :: c, k, n
+
+    allocate (marked(0))
+    if (size(contours) == 1) then
+      associate (chain => contours(1)%chain, tags => contours(1)%tags)
+        n = size(chain%stretches)
+        do k = 1, n
+          associate (one => chain%stretches(modulo(k - 2, n) + 1)%side, other => chain%stretches(k)%side)
+            if (all(tags%on_set(:, one) .eqv. tags%on_set(:, other))) cycle
+          end associate
+          marked = [marked, place_t(k, chain%stretches(k)%range(1))]
+        end do
+      end associate
+    end if
+    if (size(marked) /= 4) marked = [place_t ::]
+    call one_zone([(contours(c)%chain, c=1, size(contours))], marked, plan%points, plan%zones, error)
+    if (allocated(error)) return
+    allocate (plan%group(1), source=findloc([(is_solid(scene%groups(k)), k=1, size(scene%groups))], .true., 1))
+    plan%zones%material = material(plan%group(1))
+    plan%zones(1)%form = follows_contour
+    allocate (plan%sets(4, 1), source=0)
+  end subroutine zone_of_corners
+
   !> Zones as blocks had them.
   pure subroutine zones_of_blocks(scene, x, material, contours, plan, error)
     type(scene_t), intent(in) :: scene
@@ -103,10 +153,6 @@ contains
       plan%zones(z)%material = material(g)
       do k = 1, 4
         plan%sets(k, z) = find_side_set(scene%mesh, scene%groups(g)%name//'.'//to_text(k))
-        if (plan%sets(k, z) > 0) cycle
-        call fail(error, exit_input, 'body '//scene%groups(g)%name//' is no BLOCK: it has no zone to be meshed by', &
-                  'give ZONE cards, or make the mesh of BLOCK cards')
-        return
       end do
       corners = corners_of(scene, plan%sets(:, z))
       sharing(corners) = sharing(corners) + 1

@@ -8,7 +8,7 @@ module cards_contours
   use mesh, only: side_set_t
   use mesh_parts, only: body_t, mesh_parts_t
   use piece_rows, only: ends_meet, piece_words, read_piece
-  use remesher_options, only: has_contours, has_zones
+  use remesher_options, only: has_contours
   use scene_draft, only: close_card, draft_t, head_location, words_of
   use text, only: string_t, to_text
   use zone_marks, only: contour_card_t
@@ -128,7 +128,7 @@ contains
     end do
   end subroutine append_body
 
-  !> The remesher makes the first mesh of all bodies or of none, by zones and to a size.
+  !> The remesher makes the first mesh of all bodies or of none, and to a size.
   subroutine refuse_half_contours(deck, draft, parts, diagnostics)
     type(deck_t), intent(in) :: deck
     type(draft_t), intent(in) :: draft
@@ -146,8 +146,6 @@ contains
     associate (where => head_location(deck%cards(i)))
       if (size(parts%bodies) > size(draft%scene%remesher%contours)) then
         call diagnostics%add(where, 'BODY', 'a deck has bodies by their contours or bodies with elements, not both')
-      else if (.not. has_zones(draft%scene%remesher)) then
-        call diagnostics%add(where, 'BODY', 'there is nothing to make its mesh by: expected ZONE cards')
       else if (.not. draft%scene%remesher%largest > 0) then
         call diagnostics%add(where, 'BODY', 'there is nothing to tell the size of its elements: expected a REMSH card with SIZE')
       end if

@@ -15,7 +15,9 @@ module remesher_rows
   public :: remesher_words, read_remesher_row, measure_own_mesh, complete_options
 
   !> In the order of `read_remesher_row`.
-  character(len=*), parameter :: remesher_words = 'STRAIN SIZE COUNT ACROSS TURN TRANSFER ACCEPT'
+  character(len=*), parameter :: remesher_words = 'STRAIN SIZE COUNT ACROSS TURN TRANSFER ACCEPT MESHER'
+  !> Meshers by their numbers, from 1.
+  character(len=*), parameter :: meshers = 'ZONES GMSH'
   !> Methods of transfer by their numbers, from 0.
   character(len=*), parameter :: methods = 'DIST MLS PATCH'
   !> Moving squares of degree 2 need 6 points, and some more not to be an interpolation.
@@ -30,6 +32,7 @@ contains
     type(cursor_t), intent(inout) :: cursor
     character(len=*), intent(in) :: word
     type(remesher_options_t), intent(inout) :: options
+    type(string_t), allocatable :: words(:)
     real(wp) :: degrees
 
     select case (word)
@@ -51,6 +54,9 @@ contains
     case ('ACCEPT')
       call cursor%integer('the largest number of iterations to equilibrium', options%most_iterations, lower=1)
       call cursor%real('the largest change of the force of a die', options%force_change, lower=0.0_wp, strict_lower=.true.)
+    case ('MESHER')
+      call words_of(meshers, words)
+      call cursor%name('who makes the mesh', words, options%mesher)
     end select
   end subroutine read_remesher_row
 

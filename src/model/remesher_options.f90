@@ -5,6 +5,10 @@ module remesher_options
   implicit none
   private
   public :: remesher_options_t, has_zones, has_contours
+  public :: as_it_comes, by_zones, by_gmsh
+
+  !> Who makes a mesh: zones, and Gmsh where they fail; zones alone; Gmsh alone.
+  integer, parameter :: as_it_comes = 0, by_zones = 1, by_gmsh = 2
 
   type :: remesher_options_t
     !> A REMSH card is there.
@@ -24,6 +28,8 @@ module remesher_options
     !> Limits of the restart: iterations, and change of the force of a die (share of the largest).
     integer :: most_iterations = 40
     real(wp) :: force_change = 0.25_wp
+    !> Who makes the mesh.
+    integer :: mesher = as_it_comes
     !> Zones that cards give, and the points they name; without them blocks are zones.
     type(zone_mark_t), allocatable :: marks(:)
     type(zone_card_t), allocatable :: zones(:)

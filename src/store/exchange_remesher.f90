@@ -3,7 +3,7 @@ module exchange_remesher
   use errors, only: exit_input
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
-  use remesher_options, only: has_contours, has_zones, remesher_options_t
+  use remesher_options, only: as_it_comes, has_contours, has_zones, remesher_options_t
   use text, only: string_t, to_text
   use zone_marks, only: contour_card_t, zone_card_t, zone_mark_t
   implicit none
@@ -24,6 +24,7 @@ contains
     call file%write('remesher/strain_error', remesher%strain_error)
     call file%write('remesher/count', [remesher%most_elements, remesher%across_contact])
     call file%write('remesher/turn', remesher%turn)
+    if (remesher%mesher /= as_it_comes) call file%write('remesher/mesher', remesher%mesher)
     if (has_zones(remesher)) call write_zones(file, remesher%marks, remesher%zones)
     if (has_contours(remesher)) call write_contours(file, remesher%contours)
   end subroutine write_remesher
@@ -56,6 +57,7 @@ contains
       remesher%across_contact = numbers(2)
     end if
     call file%read('remesher/turn', remesher%turn)
+    if (file%has('remesher/mesher')) call file%read('remesher/mesher', remesher%mesher)
     if (file%has('remesher/zones')) call read_zones(file, remesher)
     if (file%has('remesher/contours')) call read_contours(file, remesher%contours)
   end subroutine read_remesher

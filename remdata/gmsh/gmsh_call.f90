@@ -1,0 +1,127 @@
+!> Gmsh's mesh of one body, by the program `remdata_gmsh`: files out, a process, a file back.
+module gmsh_call
+  use arguments, only: argument
+  use child_process, only: ending_t, run_child
+  use errors, only: error_t, exit_no_convergence, fail
+  use gmsh_files, only: frame_t, quads_t, read_quads, write_script
+  use kinds, only: wp
+  use size_cells, only: cell_t
+  use system, only: directory_of, join_path, remove_file
+  use text, only: string_t, to_text
+  implicit none
+  private
+  public :: gmsh_t, find_gmsh, mesh_outline
+
+  !> How Gmsh is called.
+  type :: gmsh_t
+    character(len=:), allocatable :: program_name
+    !> Files are written beside this one.
+    character(len=:), allocatable :: beside
+    !> Longest time for a mesh [s].
+    real(wp) :: limit = 0.0_wp
+    !> When it was called last: it could be started; it took too long.
+    logical :: is_there = .true., late = .false.
+  end type gmsh_t
+
+contains
+
+  !> The program: the one that REMDATA_GMSH in the environment names, or the one beside this program.
+  subroutine find_gmsh(beside, limit, gmsh)
+    character(len=*), intent(in) :: beside
+    real(wp), intent(in) :: limit
+    type(gmsh_t), intent(out) :: gmsh
+    character(len=:), allocatable :: mine
+    integer :: length
+
+    gmsh%beside = beside
+    gmsh%limit = limit
+    call get_environment_variable('REMDATA_GMSH', length=length)
+    allocate (character(len=length) :: gmsh%program_name)
+    if (length > 0) then
+      call get_environment_variable('REMDATA_GMSH', gmsh%program_name)
+      return
+    end if
+    gmsh%program_name = 'remdata_gmsh'
+    call argument(0, mine)
+    if (index(mine, '/') > 0) gmsh%program_name = join_path(directory_of(mine), gmsh%program_name)
+    if (index(gmsh%program_name, '/') == 0 .and. index(mine, '/') > 0) gmsh%program_name = './'//gmsh%program_name
+  end subroutine find_gmsh
+
+  !> Quadrilaterals between points along the contours of a body.
+  subroutine mesh_outline(gmsh, points, first, cells, factor, quads, error)
+    type(gmsh_t), intent(inout) :: gmsh
+    real(wp), intent(in) :: points(:, :)      !! (2, n) [length]
+    integer, intent(in) :: first(:)           !! of each contour among the points, and one past the last
+    type(cell_t), intent(in) :: cells(:)
+    real(wp), intent(in) :: factor            !! sizes are so many times those of the cells
+    type(quads_t), intent(out) :: quads
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: late
+    type(ending_t) :: ending
+    type(frame_t) :: frame
+    type(string_t) :: words(3)
+    character(len=:), allocatable :: script, mesh, said
+
+    script = gmsh%beside//'.geo'
+    mesh = gmsh%beside//'.msh'
+    said = gmsh%beside//'.said'
+    frame%low = minval(points, 2)
+    frame%width = maxval(maxval(points, 2) - frame%low)
+    call remove_file(mesh, error)
+    if (.not. allocated(error)) call write_script(script, frame, points, first, cells, factor, error)
+    if (.not. allocated(error)) then
+      words(1)%s = gmsh%program_name
+      words(2)%s = script
+      words(3)%s = mesh
+      call run_child(words, said, gmsh%limit, ending)
+      call judge(gmsh, ending, said, error)
+    end if
+    if (.not. allocated(error)) call read_quads(mesh, frame, size(points, 2), quads, error)
+    call remove_file(script, late)
+    call remove_file(mesh, late)
+    call remove_file(said, late)
+    if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
+  end subroutine mesh_outline
+
+  !> One line for every way to end.
+  subroutine judge(gmsh, ending, said, error)
+    type(gmsh_t), intent(inout) :: gmsh
+    type(ending_t), intent(in) :: ending
+    character(len=*), intent(in) :: said
+    type(error_t), allocatable, intent(out) :: error
+    character(len=*), parameter :: advice = 'give ZONE cards, or other sizes of elements'
+
+    gmsh%is_there = ending%started
+    gmsh%late = ending%late
+    if (.not. ending%started) then
+      call fail(error, exit_no_convergence, "remdata: a contour without zones is meshed by Gmsh, and '"//gmsh%program_name &
+                //"' cannot be started", 'give ZONE cards, or install libgmsh-dev (Debian, Ubuntu) and build again')
+    else if (ending%late) then
+      call fail(error, exit_no_convergence, 'remdata: Gmsh gave no mesh in '//to_text(gmsh%limit)//' s', advice)
+    else if (ending%signal /= 0) then
+      call fail(error, exit_no_convergence, 'remdata: Gmsh crashed, signal '//to_text(ending%signal), advice)
+    else if (ending%code /= 0) then
+      call fail(error, exit_no_convergence, 'remdata: Gmsh made no mesh, exit code '//to_text(ending%code)//last_words(said), &
+                advice)
+    end if
+  end subroutine judge
+
+  !> The last line that is not empty, after a colon.
+  function last_words(said) result(words)
+    character(len=*), intent(in) :: said
+    character(len=:), allocatable :: words
+    character(len=200) :: line
+    integer :: unit, status
+
+    words = ''
+    open (newunit=unit, file=said, status='old', action='read', iostat=status)
+    if (status /= 0) return
+    do
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0) exit
+      if (line /= '') words = ': '//trim(line)
+    end do
+    close (unit, iostat=status)
+  end function last_words
+
+end module gmsh_call

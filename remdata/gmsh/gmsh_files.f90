@@ -1,0 +1,240 @@
+!> What goes to Gmsh and what comes back: a script of points, lines and sizes, and a mesh.
+!>
+!> The points along the contours are all given, one element a line: Gmsh adds none there. Coordinates are those of a body of unit
+!> size at the origin, for Gmsh's tolerances are absolute numbers. Formats: Gmsh reference manual, scripting language and
+!> MSH file format, version 2.
+module gmsh_files
+  use errors, only: error_t, exit_machine, exit_no_convergence, fail
+  use kinds, only: wp
+  use size_cells, only: cell_t
+  use text, only: to_text
+  implicit none
+  private
+  public :: frame_t, quads_t, write_script, read_quads, refuse_mesh
+
+  !> Where the unit body is.
+  type :: frame_t
+    real(wp) :: low(2) = 0.0_wp, width = 1.0_wp   !! [length]
+  end type frame_t
+
+  !> Quadrilaterals between given points and new ones, which are numbered after them.
+  type :: quads_t
+    real(wp), allocatable :: inside(:, :)   !! new points (2, n) [length]
+    integer, allocatable :: corners(:, :)   !! (4, nelem), either way round
+  end type quads_t
+
+  !> Frontal Delaunay triangles (J.-F. Remacle et al., Int. J. Num. Meth. Engng 94 (2013) 494-512) paired into quadrilaterals by
+  !> Blossom (ibid. 89 (2012) 1102-1119). Whatever a version has as default and a run may change is said.
+  character(len=*), parameter :: options(14) = [character(len=40) :: &
+    'Mesh.Algorithm = 6;', 'Mesh.RecombineAll = 1;', 'Mesh.RecombinationAlgorithm = 1;', 'Mesh.Smoothing = 10;', &
+    'Mesh.ElementOrder = 1;', 'Mesh.MeshSizeExtendFromBoundary = 0;', 'Mesh.MeshSizeFromPoints = 0;', &
+    'Mesh.MeshSizeFromCurvature = 0;', 'Mesh.RandomSeed = 1;', 'Mesh.RandomFactor = 1e-9;', 'Mesh.MaxNumThreads2D = 1;', &
+    'Mesh.MshFileVersion = 2.2;', 'Mesh.Binary = 0;', 'Mesh.SaveAll = 1;']
+  !> Types of elements in its files.
+  integer, parameter :: triangle = 2, quadrilateral = 3, point = 15
+
+contains
+
+  !> The script. The outer contour comes first, then holes; each has the body on its left.
+  subroutine write_script(path, frame, points, first, cells, factor, error)
+    character(len=*), intent(in) :: path
+    type(frame_t), intent(in) :: frame
+    real(wp), intent(in) :: points(:, :)      !! along the contours (2, n) [length]
+    integer, intent(in) :: first(:)           !! of each contour among the points, and one past the last
+    type(cell_t), intent(in) :: cells(:)
+    real(wp), intent(in) :: factor            !! sizes are so many times those of the cells
+    type(error_t), allocatable, intent(out) :: error
+    character(len=*), parameter :: form = '(*(a,g0,:))'
+    integer :: unit, status, k, c, next
+    real(wp) :: x(2), far(2)
+
+    open (newunit=unit, file=path, status='replace', action='write', iostat=status)
+    if (status == 0) write (unit, '(a)', iostat=status) options
+    do k = 1, size(points, 2)
+      x = (points(:, k) - frame%low)/frame%width
+      if (status == 0) write (unit, form, iostat=status) 'Point(', k, ') = {', x(1), ', ', x(2), ', 0};'
+    end do
+    do c = 1, size(first) - 1
+      do k = first(c), first(c + 1) - 1
+        next = merge(first(c), k + 1, k == first(c + 1) - 1)
+        if (status == 0) write (unit, form, iostat=status) 'Line(', k, ') = {', k, ', ', next, '};'
+      end do
+      if (status == 0) write (unit, form, iostat=status) 'Curve Loop(', c, ') = {', first(c), ':', first(c + 1) - 1, '};'
+    end do
+    if (status == 0) write (unit, form, iostat=status) 'Transfinite Curve {1:', size(points, 2), '} = 2;'
+    if (status == 0) write (unit, form, iostat=status) 'Plane Surface(1) = {1:', size(first) - 1, '};'
+    if (status == 0) write (unit, '(a)', iostat=status) 'View "sizes" {'
+    do k = 1, size(cells)
+      x = (cells(k)%low - frame%low)/frame%width
+      far = x + cells(k)%width/frame%width
+      associate (h => factor*cells(k)%sizes/frame%width)
+        if (status == 0) write (unit, form, iostat=status) 'SQ(', x(1), ', ', x(2), ', 0, ', far(1), ', ', x(2), ', 0, ', &
+          far(1), ', ', far(2), ', 0, ', x(1), ', ', far(2), ', 0){', h(1), ', ', h(2), ', ', h(3), ', ', h(4), '};'
+      end associate
+    end do
+    if (status == 0) write (unit, '(a)', iostat=status) '};'
+    if (status == 0) write (unit, '(a)', iostat=status) 'Field[1] = PostView;'
+    if (status == 0) write (unit, '(a)', iostat=status) 'Field[1].ViewIndex = 0;'
+    if (status == 0) write (unit, '(a)', iostat=status) 'Background Field = 1;'
+    if (status == 0) close (unit, iostat=status)
+    if (status /= 0) call fail(error, exit_machine, "cannot write '"//path//"'")
+  end subroutine write_script
+
+  !> The mesh between n given points. Whatever is not as it must be is told.
+  subroutine read_quads(path, frame, n, quads, error)
+    character(len=*), intent(in) :: path
+    type(frame_t), intent(in) :: frame
+    integer, intent(in) :: n
+    type(quads_t), intent(out) :: quads
+    type(error_t), allocatable, intent(out) :: error
+    real(wp), allocatable :: x(:, :)
+    integer :: unit, status
+
+    allocate (x(2, 0), quads%corners(4, 0))
+    open (newunit=unit, file=path, status='old', action='read', iostat=status)
+    if (status /= 0) then
+      call refuse_mesh('there is no mesh', error)
+      return
+    end if
+    call read_nodes(unit, x, error)
+    if (.not. allocated(error)) call read_elements(unit, n, x, quads, error)
+    close (unit, iostat=status)
+    if (allocated(error)) return
+    quads%inside = spread(frame%low, 2, size(quads%inside, 2)) + frame%width*quads%inside
+  end subroutine read_quads
+
+  !> Stand behind a line.
+  subroutine find_line(unit, wanted, status)
+    integer, intent(in) :: unit
+    character(len=*), intent(in) :: wanted
+    integer, intent(out) :: status
+    character(len=32) :: line
+
+    do
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0 .or. line == wanted) return
+    end do
+  end subroutine find_line
+
+  subroutine read_nodes(unit, x, error)
+    integer, intent(in) :: unit
+    real(wp), allocatable, intent(inout) :: x(:, :)   !! by number
+    type(error_t), allocatable, intent(out) :: error
+    integer :: status, n, k, number
+    real(wp) :: place(2)
+
+    n = 0
+    call find_line(unit, '$Nodes', status)
+    if (status == 0) read (unit, *, iostat=status) n
+    if (status /= 0 .or. n < 1) then
+      call refuse_mesh('it has no nodes', error)
+      return
+    end if
+    deallocate (x)
+    allocate (x(2, n))
+    do k = 1, n
+      read (unit, *, iostat=status) number, place
+      if (status == 0 .and. number >= 1 .and. number <= n .and. all(abs(place) < 2)) then
+        x(:, number) = place
+        cycle
+      end if
+      call refuse_mesh('row '//to_text(k)//' of its nodes is none', error)
+      return
+    end do
+  end subroutine read_nodes
+
+  !> Quadrilaterals, and which given point each number of the file is.
+  subroutine read_elements(unit, n, x, quads, error)
+    integer, intent(in) :: unit, n
+    real(wp), intent(in) :: x(:, :)
+    type(quads_t), intent(inout) :: quads
+    type(error_t), allocatable, intent(out) :: error
+    character(len=256) :: line
+    integer :: status, rows, k, head(3), row(32), nquad, triangles, length, known(size(x, 2))
+
+    rows = 0
+    call find_line(unit, '$Elements', status)
+    if (status == 0) read (unit, *, iostat=status) rows
+    if (status /= 0 .or. rows < 1) then
+      call refuse_mesh('it has no elements', error)
+      return
+    end if
+    deallocate (quads%corners)
+    allocate (quads%corners(4, rows))
+    known = 0
+    nquad = 0
+    triangles = 0
+    do k = 1, rows
+      head = 0
+      read (unit, '(a)', iostat=status) line
+      if (status == 0) read (line, *, iostat=status) head
+      length = 0
+      if (head(2) == point) length = 1
+      if (head(2) == quadrilateral) length = 4
+      length = length + 3 + head(3)
+      if (status == 0 .and. (head(3) < 2 .or. length > size(row))) status = 1
+      if (status == 0) read (line, *, iostat=status) row(:length)
+      if (status == 0) then
+        if (any(row(4 + head(3):length) < 1 .or. row(4 + head(3):length) > size(known))) status = 1
+        if (head(2) == point .and. (row(5) < 1 .or. row(5) > n)) status = 1
+      end if
+      if (status /= 0) then
+        call refuse_mesh('row '//to_text(k)//' of its elements is none', error)
+        return
+      end if
+      select case (head(2))
+      case (point)
+        known(row(length)) = row(5)
+      case (quadrilateral)
+        nquad = nquad + 1
+        quads%corners(:, nquad) = row(length - 3:length)
+      case (triangle)
+        triangles = triangles + 1
+      end select
+    end do
+    if (triangles > 0) then
+      call refuse_mesh('it has '//to_text(triangles)//' triangles', error)
+    else if (nquad == 0) then
+      call refuse_mesh('it has no quadrilaterals', error)
+    else if (count(known > 0) /= n) then
+      call refuse_mesh('it has not the points of the contour', error)
+    else
+      quads%corners = quads%corners(:, :nquad)
+      call number_inside(n, x, known, quads)
+    end if
+  end subroutine read_elements
+
+  !> Number the nodes that quadrilaterals have: given points as they are, then the others.
+  pure subroutine number_inside(n, x, known, quads)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: x(:, :)
+    integer, intent(inout) :: known(:)
+    type(quads_t), intent(inout) :: quads
+    integer :: e, k, last, list(size(known))
+
+    last = 0
+    do e = 1, size(quads%corners, 2)
+      do k = 1, 4
+        associate (node => quads%corners(k, e))
+          if (known(node) == 0) then
+            last = last + 1
+            known(node) = n + last
+            list(last) = node
+          end if
+          node = known(node)
+        end associate
+      end do
+    end do
+    quads%inside = x(:, list(:last))
+  end subroutine number_inside
+
+  !> Why a mesh is not taken, and what may be done.
+  pure subroutine refuse_mesh(why, error)
+    character(len=*), intent(in) :: why
+    type(error_t), allocatable, intent(out) :: error
+
+    call fail(error, exit_no_convergence, 'remdata: what Gmsh made is no mesh of the contour: '//why, &
+              'give ZONE cards, or other sizes of elements')
+  end subroutine refuse_mesh
+
+end module gmsh_files

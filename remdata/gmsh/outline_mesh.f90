@@ -1,0 +1,301 @@
+!> A mesh of 8-node quadrilaterals from contours and wanted sizes, without zones.
+!>
+!> Ends of elements are placed along the contours as for zones; what Gmsh makes between them are quadrilaterals of four nodes. The
+!> middle nodes of their sides are placed here: on the contour by its parabolas, halfway inside; then bad elements are mended.
+module outline_mesh
+  use block_mesh, only: polygon_area
+  use body_outlines, only: divide_outlines, lay_out_outlines, outline_t
+  use contour_chain, only: chain_t, place_t, turn_at
+  use errors, only: error_t
+  use opened_corners, only: open_flat_corners
+  use gmsh_call, only: gmsh_t, mesh_outline
+  use gmsh_files, only: quads_t, refuse_mesh
+  use kinds, only: pi, wp
+  use mend_elements, only: mend
+  use side_curves, only: curve_point, curve_t
+  use side_middles, only: place_middle
+  use size_cells, only: cell_t, cover
+  use size_field, only: size_field_t
+  use zone_mesh, only: mesh_wish_t, new_mesh_t
+  use zones, only: layout_t
+  implicit none
+  private
+  public :: mesh_outlines
+
+  !> A limited number of elements is met by growing sizes, a little more than by the square root, in so many attempts.
+  real(wp), parameter :: growth = 1.02_wp
+  integer, parameter :: attempts = 8
+
+  !> No element has both its sides along a contour that turns by less between them: 35 degrees.
+  real(wp), parameter :: flat_turn = 35*pi/180
+
+  !> The corners of the mesh while it grows. Points along the contours come first, side by side, then those inside body by body.
+  type :: draft_t
+    real(wp), allocatable :: x(:, :)         !! (2, nend) [length]
+    integer, allocatable :: corners(:, :)    !! (4, nelem) counter-clockwise
+    integer, allocatable :: zone(:)          !! (nelem)
+    !> Point each side of the layout begins with, and one past the last (nside + 1).
+    integer, allocatable :: start(:)
+    !> Point after each along its contour.
+    integer, allocatable :: next(:)
+    !> Where each is, and whether the contour has no corner there.
+    type(place_t), allocatable :: place(:)
+    logical, allocatable :: smooth(:)
+  end type draft_t
+
+contains
+
+  !> The mesh, or why there is none. `division%factor` of the mesh says what a limited number of elements cost.
+  subroutine mesh_outlines(chains, outlines, field, wish, gmsh, mesh, error)
+    type(chain_t), intent(in) :: chains(:)
+    type(outline_t), intent(in) :: outlines(:)
+    type(size_field_t), intent(in) :: field
+    type(mesh_wish_t), intent(in) :: wish
+    type(gmsh_t), intent(inout) :: gmsh
+    type(new_mesh_t), intent(out) :: mesh
+    type(error_t), allocatable, intent(out) :: error
+    type(curve_t), allocatable :: curves(:)
+    integer, allocatable :: first(:)
+    real(wp), allocatable :: ends(:)
+    type(draft_t) :: draft
+    real(wp) :: factor
+    integer :: attempt, k
+
+    call lay_out_outlines(chains, outlines, mesh%layout)
+    factor = 1/wish%division%refine
+    do attempt = 1, attempts
+      call divide_outlines(chains, outlines, mesh%layout, field, factor, curves, mesh%division, first, ends)
+      call make_corners(chains, outlines, field, mesh%layout, curves, factor, first, ends, gmsh, draft, error)
+      if (allocated(error)) return
+      if (size(draft%zone) <= wish%division%most_elements) exit
+      factor = growth*factor*sqrt(real(size(draft%zone), wp)/wish%division%most_elements)
+    end do
+    mesh%division%nelem = size(draft%zone)
+    call complete(chains, curves, first, ends, draft, mesh, error)
+    if (allocated(error) .or. .not. wish%least_sine > 0) return
+    associate (nend => size(draft%x, 2), n => size(draft%next))
+      call mend(mesh%connectivity, [(k > n, k=1, nend)], wish%least_sine, mesh%coordinates)
+    end associate
+  end subroutine mesh_outlines
+
+  !> Corners of all elements: along the contours, and by Gmsh body by body.
+  subroutine make_corners(chains, outlines, field, layout, curves, factor, first, ends, gmsh, draft, error)
+    type(chain_t), intent(in) :: chains(:)
+    type(outline_t), intent(in) :: outlines(:)
+    type(size_field_t), intent(in) :: field
+    type(layout_t), intent(in) :: layout
+    type(curve_t), intent(in) :: curves(:)
+    real(wp), intent(in) :: factor, ends(:)
+    integer, intent(in) :: first(:)
+    type(gmsh_t), intent(inout) :: gmsh
+    type(draft_t), intent(out) :: draft
+    type(error_t), allocatable, intent(out) :: error
+    type(quads_t) :: quads
+    type(cell_t), allocatable :: cells(:)
+    integer, allocatable :: begins(:)
+    integer :: b, low, high
+
+    call put_points(chains, layout, curves, first, ends, draft)
+    allocate (draft%corners(4, 0), draft%zone(0))
+    do b = 1, size(outlines)
+      call find_contours(layout, b, draft%start, begins)
+      low = begins(1)
+      high = begins(size(begins)) - 1
+      call cover(field, outlines(b)%material, minval(draft%x(:, low:high), 2), maxval(draft%x(:, low:high), 2), cells)
+      call mesh_outline(gmsh, draft%x(:, low:high), begins - low + 1, cells, factor, quads, error)
+      if (allocated(error)) return
+      call add_quads(quads, b, low, high, draft)
+    end do
+    call open_flat_corners(draft%next, draft%smooth, draft%x, draft%corners, draft%zone)
+  end subroutine make_corners
+
+  !> Ends of elements along all sides.
+  pure subroutine put_points(chains, layout, curves, first, ends, draft)
+    type(chain_t), intent(in) :: chains(:)
+    type(layout_t), intent(in) :: layout
+    type(curve_t), intent(in) :: curves(:)
+    integer, intent(in) :: first(:)
+    real(wp), intent(in) :: ends(:)
+    type(draft_t), intent(inout) :: draft
+    integer :: s, k, n, node
+
+    n = size(ends) - size(curves)
+    allocate (draft%x(2, n), draft%place(n), draft%next(n), draft%smooth(n), &
+              draft%start(size(curves) + 1))
+    draft%start(1) = 1
+    do s = 1, size(curves)
+      draft%start(s + 1) = draft%start(s) + first(s + 1) - first(s) - 1
+      do k = first(s), first(s + 1) - 2
+        node = draft%start(s) + k - first(s)
+        call curve_point(chains, curves(s), ends(k), draft%x(:, node), draft%place(node))
+        draft%next(node) = node + 1
+        draft%smooth(node) = k > first(s)
+      end do
+      associate (node => draft%start(s))
+        draft%smooth(node) = abs(turn_at(chains(curves(s)%chain), draft%place(node)%stretch)) <= flat_turn
+      end associate
+    end do
+    n = 1
+    do s = 1, size(curves)
+      ! the last side of a contour ends where its first one began
+      if (layout%sides(s)%chain /= layout%sides(n)%chain) n = s
+      draft%next(draft%start(s + 1) - 1) = merge(draft%start(n), draft%start(s + 1), closes(s))
+    end do
+
+  contains
+
+    pure function closes(side) result(yes)
+      integer, intent(in) :: side
+      logical :: yes
+
+      yes = side == size(curves)
+      if (.not. yes) yes = layout%sides(side + 1)%chain /= layout%sides(side)%chain
+    end function closes
+
+  end subroutine put_points
+
+  !> First point of each contour of a body, and one past its last.
+  pure subroutine find_contours(layout, body, start, begins)
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: body, start(:)
+    integer, allocatable, intent(out) :: begins(:)
+    integer :: s, chain
+
+    allocate (begins(0))
+    chain = 0
+    do s = 1, size(layout%sides)
+      if (layout%sides(s)%zones(1) == body .and. layout%sides(s)%chain /= chain) begins = [begins, start(s)]
+      if (layout%sides(s)%zones(1) == body) chain = layout%sides(s)%chain
+    end do
+    begins = [begins, start(findloc(layout%sides%zones(1), body, 1, back=.true.) + 1)]
+  end subroutine find_contours
+
+  !> Quadrilaterals between points `low` to `high` and new ones, counter-clockwise.
+  pure subroutine add_quads(quads, body, low, high, draft)
+    type(quads_t), intent(in) :: quads
+    integer, intent(in) :: body, low, high
+    type(draft_t), intent(inout) :: draft
+    real(wp), allocatable :: x(:, :)
+    integer, allocatable :: corners(:, :)
+    integer :: e, n, old
+
+    n = size(draft%x, 2)
+    allocate (x(2, n + size(quads%inside, 2)))
+    x(:, :n) = draft%x
+    x(:, n + 1:) = quads%inside
+    old = size(draft%corners, 2)
+    allocate (corners(4, old + size(quads%corners, 2)))
+    corners(:, :old) = draft%corners
+    corners(:, old + 1:) = merge(quads%corners + (low - 1), quads%corners + (n - high + low - 1), &
+                                 quads%corners <= high - low + 1)
+    do e = old + 1, size(corners, 2)
+      if (polygon_area(x(:, corners(:, e))) < 0) corners(:, e) = corners([1, 4, 3, 2], e)
+    end do
+    draft%zone = [draft%zone, spread(body, 1, size(quads%corners, 2))]
+    call move_alloc(x, draft%x)
+    call move_alloc(corners, draft%corners)
+  end subroutine add_quads
+
+  !> Middle nodes, places on the contour, sides along it; and whether the elements fill the contour.
+  pure subroutine complete(chains, curves, first, ends, draft, mesh, error)
+    type(chain_t), intent(in) :: chains(:)
+    type(curve_t), intent(in) :: curves(:)
+    integer, intent(in) :: first(:)
+    real(wp), intent(in) :: ends(:)
+    type(draft_t), intent(in) :: draft
+    type(new_mesh_t), intent(inout) :: mesh
+    type(error_t), allocatable, intent(out) :: error
+    integer :: nend, n, nnode, s, k, i, middle
+    logical :: fills
+
+    nend = size(draft%x, 2)
+    n = size(draft%next)
+    allocate (mesh%zone, source=draft%zone)
+    allocate (mesh%connectivity(8, size(draft%zone)), mesh%sides(n))
+    mesh%connectivity(1:4, :) = draft%corners
+    call number_middles(draft%next, nend, mesh%connectivity, mesh%sides%element, nnode, fills)
+    if (.not. fills) then
+      call refuse_mesh('its elements do not fill the contour', error)
+      return
+    end if
+    allocate (mesh%coordinates(2, nnode), mesh%chain(nnode), mesh%place(nnode))
+    mesh%coordinates(:, :nend) = draft%x
+    do i = 1, size(mesh%zone)
+      do k = 1, 4
+        mesh%coordinates(:, mesh%connectivity(4 + k, i)) = &
+          0.5_wp*(draft%x(:, mesh%connectivity(k, i)) + draft%x(:, mesh%connectivity(mod(k, 4) + 1, i)))
+      end do
+    end do
+    mesh%chain = 0
+    mesh%place(:n) = draft%place
+    do s = 1, size(curves)
+      do i = draft%start(s), draft%start(s + 1) - 1
+        k = first(s) + i - draft%start(s)
+        middle = nend + i
+        call place_middle(chains, curves(s), ends(k:k + 1), draft%x(:, [i, draft%next(i)]), mesh%coordinates(:, middle), &
+                          mesh%place(middle))
+        mesh%chain([i, middle]) = curves(s)%chain
+        mesh%sides(i)%nodes = [i, middle, draft%next(i)]
+        mesh%sides(i)%chain = curves(s)%chain
+        mesh%sides(i)%from = draft%place(i)
+        mesh%sides(i)%to = draft%place(draft%next(i))
+      end do
+    end do
+  end subroutine complete
+
+  !> Middle nodes: first those along the contour, in the order of its points, then the others as elements have them. The
+  !> elements fill the contour when each of its sides is that of one element, and every other side that of two, one on each hand.
+  pure subroutine number_middles(next, nend, connectivity, element, nnode, fills)
+    integer, intent(in) :: next(:), nend
+    integer, intent(inout) :: connectivity(:, :)   !! (8, nelem) corners in, middles out
+    integer, intent(out) :: element(:)             !! each side of the contour is of
+    integer, intent(out) :: nnode
+    logical, intent(out) :: fills
+    ! sides that begin at one node hang on one thread
+    integer :: latest(nend), before(4*size(connectivity, 2)), far(4*size(connectivity, 2)), number(4*size(connectivity, 2))
+    integer :: e, k, i, a, b, side, open_sides
+
+    element = 0
+    latest = 0
+    nnode = nend + size(next)
+    open_sides = 0
+    fills = .true.
+    do e = 1, size(connectivity, 2)
+      do k = 1, 4
+        a = connectivity(k, e)
+        b = connectivity(mod(k, 4) + 1, e)
+        if (a <= size(next)) then
+          if (next(a) == b) then
+            fills = fills .and. element(a) == 0
+            element(a) = e
+            connectivity(4 + k, e) = nend + a
+            cycle
+          end if
+        end if
+        side = 4*(e - 1) + k
+        far(side) = b
+        before(side) = latest(a)
+        latest(a) = side
+        i = latest(b)
+        do while (i > 0)
+          if (far(i) == a) exit
+          i = before(i)
+        end do
+        if (i == 0) then
+          nnode = nnode + 1
+          number(side) = nnode
+          open_sides = open_sides + 1
+        else
+          number(side) = number(i)
+          ! no third element has it
+          far(i) = 0
+          far(side) = 0
+          open_sides = open_sides - 1
+        end if
+        connectivity(4 + k, e) = number(side)
+      end do
+    end do
+    fills = fills .and. all(element > 0) .and. open_sides == 0
+  end subroutine number_middles
+
+end module outline_mesh
