@@ -11,7 +11,7 @@ module mesh_without_zones
   use scene, only: scene_t
   use size_field, only: size_field_t
   use zone_mesh, only: mesh_wish_t, new_mesh_t
-  use zone_plan, only: plan_t
+  use zones, only: plan_t
   implicit none
   private
   public :: mesh_freely
