@@ -24,6 +24,7 @@ contains
     call file%write('remesher/strain_error', remesher%strain_error)
     call file%write('remesher/count', [remesher%most_elements, remesher%across_contact])
     call file%write('remesher/turn', remesher%turn)
+    call file%write('remesher/tries', remesher%tries)
     if (has_zones(remesher)) call write_zones(file, remesher%marks, remesher%zones)
     if (has_contours(remesher)) call write_contours(file, remesher%contours)
   end subroutine write_remesher
@@ -56,6 +57,7 @@ contains
       remesher%across_contact = numbers(2)
     end if
     call file%read('remesher/turn', remesher%turn)
+    call file%read('remesher/tries', remesher%tries)
     if (file%has('remesher/zones')) call read_zones(file, remesher)
     if (file%has('remesher/contours')) call read_contours(file, remesher%contours)
   end subroutine read_remesher
