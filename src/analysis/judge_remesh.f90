@@ -4,7 +4,6 @@ module judge_remesh
   use acceptance, only: acceptance_t
   use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
-  use residual_place, only: least_shape
   use restore_balance, only: balance_t
   use scene, only: scene_t
   use solution, only: solution_t
@@ -16,6 +15,9 @@ module judge_remesh
 
   !> Elements of a smaller scaled Jacobian are distorted (the remesher makes none).
   real(wp), parameter :: bad_shape = 0.2_wp
+  !> Pressures that miss the force of a die by more than this share of the largest have been lost on the way. (Coarse meshes of a
+  !> strong gradient have been accepted at 0.13: Newton's method finds the rest.)
+  real(wp), parameter :: lost_pressure = 0.25_wp
 
   character(len=*), parameter :: advice_after_refusal = &
     'remesh again from the checkpoint of the old mesh with another transfer or finer elements'
@@ -70,13 +72,14 @@ contains
     type(string_t) :: lines(3)
 
     associate (accept => scene%remesher%accept)
-      lines(1)%s = '  first residual '//held(balance%first_residual, accept%first_residual)//', iterations ' &
+      lines(1)%s = '  first residual '//held(balance%place%relative, accept%first_residual)//', iterations ' &
                    //to_text(balance%iterations)//' (limit '//to_text(accept%iterations)//')'
       lines(2)%s = '  change of die force '//held(force_change(balance), accept%force_change)//', of elastic energy ' &
                    //held(energy_change(balance), accept%energy_change)//', of depth over the allowed ' &
                    //held(balance%depth_change, accept%depth_change)
     end associate
-    lines(3)%s = '  first residual: '//to_text(100*balance%place%at_contact, 3)//' % of its square at sides of contact'
+    lines(3)%s = '  least scaled Jacobian '//held(balance%shape, bad_shape)//'; first residual: ' &
+                 //to_text(100*balance%place%at_contact, 3)//' % of its square at sides of contact'
     if (balance%place%node > 0) lines(3)%s = lines(3)%s//', worst at node '//to_text(scene%mesh%labels(balance%place%node))
   end function limit_lines
 
@@ -89,6 +92,8 @@ contains
     character(len=:), allocatable :: what
 
     call find_fault(scene%remesher%accept, balance, what)
+    if (balance%shape < bad_shape) what = 'the scaled Jacobian of an element is '//to_text(balance%shape, 3)//', at least ' &
+                                          //to_text(bad_shape, 3)
     balance%refused = len(what) > 0
     if (.not. balance%refused) return
     balance%stage = stage_to_blame(scene, balance)
@@ -106,8 +111,8 @@ contains
     if (balance%depth_change > accept%depth_change) then
       what = 'sides lie '//to_text(balance%depth_change, 3)//' times the penetration allowed from where they bore their ' &
              //'pressure, at most '//to_text(accept%depth_change, 3)
-    else if (balance%first_residual > accept%first_residual) then
-      what = 'the first residual is '//to_text(balance%first_residual, 3)//' of the forces at work, at most ' &
+    else if (balance%place%relative > accept%first_residual) then
+      what = 'the first residual is '//to_text(balance%place%relative, 3)//' of the forces at dies, supports and loads, at most ' &
              //to_text(accept%first_residual, 3)
     else if (.not. balance%restored) then
       what = 'equilibrium is not restored'
@@ -121,18 +126,18 @@ contains
     end if
   end subroutine find_fault
 
-  !> The mesh, where the residual is worst around a distorted element; the contour, where it is not where it bore the pressures;
+  !> The mesh, where an element is distorted; the contour, where it is not where it bore the pressures;
   !> the transfer of contact, where the pressures do not make the forces of the dies any more; else that of the state.
   pure function stage_to_blame(scene, balance) result(stage)
     type(scene_t), intent(in) :: scene
     type(balance_t), intent(in) :: balance
     character(len=:), allocatable :: stage
 
-    if (least_shape(scene, scene%mesh%coordinates, balance%place%node) < bad_shape) then
+    if (balance%shape < bad_shape) then
       stage = 'mesh'
     else if (balance%depth_change > scene%remesher%accept%depth_change) then
       stage = 'contour'
-    else if (carried_change(balance) > scene%remesher%accept%force_change) then
+    else if (carried_change(balance) > lost_pressure) then
       stage = 'contact'
     else
       stage = 'transfer'

@@ -87,7 +87,7 @@ contains
 
     residual = 0
     if (allocated(outcome%residual)) residual = merge(outcome%residual, 0.0_wp, equations%dofs%equation > 0)
-    call place_residual(scene, equations%dofs, residual, place)
+    call place_residual(scene, equations%dofs, 0*residual, equations%magnitude, residual, place)
     x = scene%mesh%coordinates + solution%displacement
     shape = least_shape(scene, x, place%node)
     if (outcome%group > 0 .and. outcome%element > 0) then

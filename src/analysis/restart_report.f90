@@ -3,7 +3,7 @@ module restart_report
   use errors, only: error_t
   use history, only: circumference
   use dies, only: is_deformable
-  use judge_remesh, only: carried_change, energy_change, force_change
+  use judge_remesh, only: bad_shape, carried_change, energy_change, force_change
   use json_writer, only: json_t
   use restore_balance, only: balance_t
   use scene, only: scene_t
@@ -51,17 +51,19 @@ contains
     call json%add('generation', scene%generation)
     call json%add('remesh_refused', balance%refused)
     if (allocated(balance%stage)) call json%add('stage', balance%stage)
-    call json%add('first_residual', balance%first_residual)
+    call json%add('first_residual', balance%place%relative)
     call json%add('iterations', balance%iterations)
     call json%add('force_change', force_change(balance))
     call json%add('energy_change', energy_change(balance))
     call json%add('depth_change', balance%depth_change)
+    call json%add('least_scaled_jacobian', balance%shape)
     associate (accept => scene%remesher%accept)
       call json%add('first_residual_limit', accept%first_residual)
       call json%add('iterations_limit', accept%iterations)
       call json%add('force_change_limit', accept%force_change)
       call json%add('energy_change_limit', accept%energy_change)
       call json%add('depth_change_limit', accept%depth_change)
+      call json%add('least_scaled_jacobian_limit', bad_shape)
     end associate
     call json%add('residual_at_contact', balance%place%at_contact)
     if (balance%place%node > 0) call json%add('residual_node', scene%mesh%labels(balance%place%node))

@@ -14,7 +14,7 @@ module restore_balance
   use equations, only: equations_t, evaluate, external_forces
   use kinds, only: wp
   use newton, only: outcome_t, solve_step
-  use residual_place, only: place_residual, residual_place_t
+  use residual_place, only: least_shape, place_residual, residual_place_t
   use scene, only: scene_t
   use solution, only: solution_t
   use state_variables, only: find_variable
@@ -29,8 +29,11 @@ module restore_balance
     !> The remesh is refused, by the fault of this stage.
     logical :: refused = .false.
     character(len=:), allocatable :: stage
-    !> First residual over the forces at work, iterations in all, parts it took.
-    real(wp) :: first_residual = 0.0_wp
+    !> The first residual, and where it sits.
+    type(residual_place_t) :: place
+    !> Least scaled Jacobian of an element of the mesh.
+    real(wp) :: shape = 1.0_wp
+    !> Iterations in all, parts it took.
     integer :: iterations = 0, parts = 0
     !> Largest motion of a node over the size of the mesh.
     real(wp) :: motion = 0.0_wp
@@ -40,8 +43,6 @@ module restore_balance
     real(wp), allocatable :: pilot_before(:, :), pilot_carried(:, :), pilot_after(:, :)
     !> Largest change of the depth of a closed point in its die, over the penetration allowed there.
     real(wp) :: depth_change = 0.0_wp
-    !> Where the first residual sits.
-    type(residual_place_t) :: place
     !> Why Newton's method gave up; not allocated where it did not.
     character(len=:), allocatable :: reason
     !> Seconds on the wall.
@@ -66,6 +67,7 @@ contains
 
     started = wall_seconds()
     allocate (balance%pilot_before, source=solution%pilot_applied)
+    balance%shape = least_shape(scene, scene%mesh%coordinates)
     rest = 0
     call external_forces(scene, equations%dofs, solution%time, external)
     call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report)
@@ -76,14 +78,12 @@ contains
     if (report%status == block_done) call book_carried(scene, equations, balance%pilot_carried)
     rest = external - equations%force
     where (equations%dofs%equation == 0) rest = 0
-    call place_residual(scene, equations%dofs, rest, balance%place)
+    call place_residual(scene, equations%dofs, external, equations%magnitude, rest, balance%place)
     left = 1
     part = 1
     do while (left > 0)
       call solve_step(scene, equations, solution, 0.0_wp, outcome, (left - part)*rest)
       if (allocated(outcome%error)) return
-      if (balance%parts == 0 .and. balance%iterations == 0 .and. size(outcome%history) > 0) &
-        balance%first_residual = outcome%history(1)%force_norm
       balance%iterations = balance%iterations + outcome%iterations
       if (outcome%converged) then
         call accept_balance(scene, equations, outcome, solution, balance%after)
