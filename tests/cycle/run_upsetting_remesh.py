@@ -10,7 +10,7 @@ import os
 import sys
 
 sys.dont_write_bytecode = True
-from remeshed import ROOT, cycle, facts, jump, put_table, tries, value_at  # noqa: E402
+from remeshed import ROOT, cycle, facts, jump, put_table, tries, value_at, within_limits  # noqa: E402
 from support import DONE, Checks, history, run, said, summary  # noqa: E402
 
 DECK = os.path.join(ROOT, "decks", "upsetting_remesh", "upsetting_remesh.lag")
@@ -25,8 +25,9 @@ LARGEST_JUMP, LARGEST_DEVIATION, LARGEST_DRIFT = 0.02, 0.03, 0.001
 def main():
     checks = Checks()
     out, plain = checks.path("remeshed"), checks.path("plain")
-    code, words = cycle(DECK, out)
-    checks.that(code == DONE, "the cycle ends by itself", words)
+    result = cycle(DECK, out)
+    checks.that(result.returncode == DONE, "the cycle ends by itself", said(result))
+    within_limits(checks, out)
     rows, made_meshes = history(out), tries(out)
     rows["travel"] = [-u for u in rows["displacement_y_upper"]]
     checks.that(abs(rows["displacement_y_upper"][-1] + 0.85 * HALF_HEIGHT) < 1e-9, "85 % reached",
