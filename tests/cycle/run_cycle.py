@@ -19,8 +19,8 @@ for folder in ("runs", "report"):
     sys.path.insert(0, os.path.join(os.path.dirname(HERE), folder))
 from check_xdmf import check_folder  # noqa: E402
 from remeshed import CYCLE, cycle, tries, within_limits  # noqa: E402
-from support import (BIN, DONE, INPUT, LONGEST_RUN, MACHINE, NO_CONVERGENCE, SIGNAL, UPSETTING, Checks, add_cards, deck_text, history,  # noqa: E402
-                     result_differences, run, said, summary, with_h5py, write)
+from support import (BIN, DONE, INPUT, LONGEST_RUN, MACHINE, NO_CONVERGENCE, SIGNAL, UPSETTING, Checks, add_cards, deck_text,  # noqa: E402
+                     history, result_differences, run, said, summary, with_h5py, write)
 
 REMDATA = os.path.join(os.path.abspath(BIN), "remdata")
 LAGAMINE = os.path.join(os.path.abspath(BIN), "lagamine")
