@@ -75,7 +75,7 @@ contains
       lines(1)%s = '  first residual '//held(balance%place%relative, accept%first_residual)//', iterations ' &
                    //to_text(balance%iterations)//' (limit '//to_text(accept%iterations)//')'
       lines(2)%s = '  change of die force '//held(force_change(balance), accept%force_change)//', of elastic energy ' &
-                   //held(energy_change(balance), accept%energy_change)//', of depth over the allowed ' &
+                   //held(energy_change(balance), accept%energy_change)//', of depth ' &
                    //held(balance%depth_change, accept%depth_change)
     end associate
     lines(3)%s = '  least scaled Jacobian '//held(balance%shape, bad_shape)//'; first residual: ' &
@@ -109,8 +109,8 @@ contains
 
     what = ''
     if (balance%depth_change > accept%depth_change) then
-      what = 'sides lie '//to_text(balance%depth_change, 3)//' times the penetration allowed from where they bore their ' &
-             //'pressure, at most '//to_text(accept%depth_change, 3)
+      what = 'sides lie '//to_text(balance%depth_change, 3)//' times what contact allows from where they bore their pressure, ' &
+             //'at most '//to_text(accept%depth_change, 3)
     else if (balance%place%relative > accept%first_residual) then
       what = 'the first residual is '//to_text(balance%place%relative, 3)//' of the forces at dies, supports and loads, at most ' &
              //to_text(accept%first_residual, 3)

@@ -19,6 +19,7 @@ module restore_balance
   use solution, only: solution_t
   use state_variables, only: find_variable
   use system, only: wall_seconds
+  use vectors, only: length_of
   implicit none
   private
   public :: balance_t, restore_equilibrium
@@ -41,7 +42,7 @@ module restore_balance
     type(totals_t) :: before, after
     !> Force on each pilot before (as the old mesh had it), by the pressures that were carried, and after (3, ndie).
     real(wp), allocatable :: pilot_before(:, :), pilot_carried(:, :), pilot_after(:, :)
-    !> Largest change of the depth of a closed point in its die, over the penetration allowed there.
+    !> Largest change of the depth of a closed point in its die, over the penetration allowed there and a thousandth of the side.
     real(wp) :: depth_change = 0.0_wp
     !> Why Newton's method gave up; not allocated where it did not.
     character(len=:), allocatable :: reason
@@ -51,6 +52,9 @@ module restore_balance
 
   !> Parts smaller than this are not tried.
   real(wp), parameter :: smallest_part = 1.0_wp/64
+  !> Share of its length by which a side may miss a curved contour: a parabola misses an arc that turns by t by (t/2)**3/192 of its
+  !> length (fourth term of the series), so this is an arc of 66 degrees.
+  real(wp), parameter :: missed_by_parabola = 1.0e-3_wp
 
 contains
 
@@ -139,22 +143,28 @@ contains
     end do
   end subroutine book_carried
 
-  !> Depth found on the new contour against the depth that was carried, at closed points, over what the law of contact allows.
+  !> Depth found on the new contour against the depth that was carried, at closed points, over what contact allows and what a parabola
+  !> through three nodes may miss.
   pure function depth_change(scene, solution) result(change)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     real(wp) :: change
-    integer :: g, depth, status
+    real(wp) :: side, worst
+    integer :: g, e, depth, status
 
     change = 0
     do g = 1, size(scene%groups)
-      associate (group => scene%groups(g), state => solution%groups(g))
+      associate (group => scene%groups(g), state => solution%groups(g), x => scene%mesh%coordinates)
         if (group%die == 0 .or. group%material == 0) cycle
         depth = group%variables(find_variable(group%variables, 'penetration'))%first
         status = group%variables(find_variable(group%variables, 'contact_status'))%first
-        ! every contact law begins with the penetration it allows (contact_penalties)
-        change = max(change, maxval(merge(abs(state%trial(depth, :, :) - state%committed(depth, :, :)), 0.0_wp, &
-                                          nint(state%committed(status, :, :)) > 0))/scene%materials(group%material)%values(1))
+        do e = 1, size(group%connectivity, 2)
+          side = length_of(x(:, group%connectivity(3, e)) - x(:, group%connectivity(1, e)))
+          worst = maxval(merge(abs(state%trial(depth, :, e) - state%committed(depth, :, e)), 0.0_wp, &
+                               nint(state%committed(status, :, e)) > 0))
+          ! every contact law begins with the penetration it allows (contact_penalties)
+          change = max(change, worst/(scene%materials(group%material)%values(1) + missed_by_parabola*side))
+        end do
       end associate
     end do
   end function depth_change

@@ -83,7 +83,7 @@ contains
       case ('ENERGY')
         call positive('the largest change of the elastic energy', accept%energy_change)
       case ('DEPTH')
-        call positive('the largest change of a depth over the penetration allowed', accept%depth_change)
+        call positive('the largest change of a depth over what contact and sides allow', accept%depth_change)
       case ('STEP')
         call cursor%real('the least step on the new mesh over the least before it', accept%step_ratio, lower=0.0_wp, upper=1.0_wp)
       end select

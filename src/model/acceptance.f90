@@ -20,9 +20,10 @@ module acceptance
     integer :: iterations = 40
     !> Change of the force of a die over the largest on any, and of the elastic energy, which goes with the square of forces.
     real(wp) :: force_change = 0.1_wp, energy_change = 0.2_wp
-    !> Change of the depth at which points lie in a die, over the penetration the deck allows. Where contact ends a new side cuts the
-    !> corner by about that much (found: up to 1.3); five times as much is another contour than the one that bore the pressures.
-    real(wp) :: depth_change = 5.0_wp
+    !> Change of the depth at which points lie in a die, over the penetration the deck allows and a thousandth of the side. Where
+    !> contact ends a new side cuts the corner by about that much (found: up to 0.6); twice as much is another contour than the one
+    !> that bore the pressures.
+    real(wp) :: depth_change = 2.0_wp
     !> Least step on probation over the least before: four cuts in a row are forgiven (1/16), a fifth is not.
     real(wp) :: step_ratio = 0.05_wp
   end type acceptance_t

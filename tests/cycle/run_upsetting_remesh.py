@@ -57,6 +57,10 @@ def main():
                      f"{restart['first_residual']:.3f} | {restart['iterations']} | {100 * leap:+.2f} | {100 * change:+.4f} |")
     checks.that(drift < LARGEST_DRIFT, f"all remeshings together change the volume by less than {LARGEST_DRIFT:.1%}", f"{drift:.4%}")
 
+    unloaded = summary(out)["checks"]["volume_drift_unloaded"]
+    checks.that(abs(unloaded) < LARGEST_DRIFT, f"at the end the volume without elastic strain is kept to {LARGEST_DRIFT:.1%}",
+                f"{unloaded:.4%}")
+
     result = run([PLAIN, "--out", plain, "--threads", "1", "-p", "nx=24", "-p", "ny=36"])
     checks.that(result.returncode == DONE, "24 x 36 without remeshing: done", said(result))
     fine = history(plain)
