@@ -228,6 +228,7 @@ case $WAY in
   half) "$REAL" "$@"; head -c 20000 "$3" >"$3.cut"; mv "$3.cut" "$3"; exit 0 ;;
   old) cp "$1" "$3"; exit 0 ;;
   nothing) exit 0 ;;
+  full) trap '' XFSZ; ulimit -f 8; exec "$REAL" "$@" ;;
   *) echo "made to fail" >&2; exit "$WAY" ;;
 esac
 """
@@ -244,7 +245,7 @@ def remesher_fails_once(checks, deck):
     """However the remesher fails, another way is tried, and the cycle ends."""
     bad = "not a checkpoint"
     ways = {"crash": "signal 11", "hang": "no answer", "text": bad, "half": bad, "old": bad, "nothing": bad, "3": "exit code 3",
-            "5": "exit code 5", "6": "exit code 6"}
+            "5": "exit code 5", "6": "exit code 6", "full": "exit code 5"}
     for way, word in ways.items():
         out = checks.path("once-" + way)
         result = cycle(deck, out, "--limit", "2", **failing(checks, "once-" + way, way, 1))

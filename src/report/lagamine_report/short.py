@@ -113,10 +113,11 @@ def headline(run: Run) -> str:
 def short_lines(run: Run) -> List[str]:
     """The result in a few lines for a terminal; numbers in plain letters."""
     s = run.summary
+    wall = run.calls.wall if run.calls.number > 1 else number(s.get("wall_s"))
     lines = [run.title, headline(run),
              f"  time {brief(number(s.get('time')))} of {brief(number(s.get('end_time')))}, {s.get('steps', '?')} steps, "
              f"{s.get('iterations', '?')} iterations, {s.get('cutbacks', '?')} cutbacks, {s.get('remeshings', 0)} remeshings",
-             f"  {s.get('elements', '?')} elements, {s.get('dofs', '?')} equations, {brief(number(s.get('wall_s')), 3)} s"]
+             f"  {s.get('elements', '?')} elements, {s.get('dofs', '?')} equations, {brief(wall, 3)} s"]
     for die in run.die_names:
         for axis in "yx":
             force = run.history.get(f"force_{axis}_{die}")
