@@ -12,8 +12,8 @@ module residual_place
   type :: residual_place_t
     !> Node that bears most of it, 0 where there is none.
     integer :: node = 0
-    !> Its norm over that of the forces at the nodes of sides that face dies, at supports and at loads. (Over those at all nodes a loss
-    !> of all contact would look the smaller, the finer the mesh.)
+    !> Its norm over that of the forces at the nodes of sides that face dies, at supports and at loads. (Over those at all nodes a
+    !> loss of all contact would look the smaller, the finer the mesh.)
     real(wp) :: relative = 0.0_wp
     !> Share of its square at nodes of sides that face dies.
     real(wp) :: at_contact = 0.0_wp

@@ -143,8 +143,8 @@ contains
     end do
   end subroutine book_carried
 
-  !> Depth found on the new contour against the depth that was carried, at closed points, over what contact allows and what a parabola
-  !> through three nodes may miss.
+  !> Depth found on the new contour against the depth that was carried, at closed points, over what contact allows and what a
+  !> parabola through three nodes may miss.
   pure function depth_change(scene, solution) result(change)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution

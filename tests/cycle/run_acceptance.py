@@ -3,8 +3,8 @@
 
 usage: run_acceptance.py [-v] [-k]       -v prints every check, -k keeps the results
 
-The faults are made in the checkpoint of the first try, with a digest that fits. Tries after it are sound: the cycle ends, killed on its
-way or not.
+The faults are made in the checkpoint of the first try, with a digest that fits. Tries after it are sound: the cycle ends,
+killed on its way or not.
 """
 import math
 import os
@@ -14,7 +14,8 @@ import sys
 
 sys.dont_write_bytecode = True
 from remeshed import cycle, facts, tries, within_limits  # noqa: E402
-from support import BIN, DONE, NO_CONVERGENCE, UPSETTING, Checks, add_cards, deck_text, history, said, with_h5py, write  # noqa: E402
+from support import (BIN, DONE, NO_CONVERGENCE, UPSETTING, Checks, add_cards, deck_text, history, said, with_h5py,  # noqa: E402
+                     write)
 
 with_h5py()
 from run_cycle import kills  # noqa: E402
@@ -134,10 +135,10 @@ def refused_with_stage(checks, deck, fault, stage, phrase):
         return
     rows = tries(out)
     first = rows[0]
-    checks.that(first["accepted"] == "n" and first["stage"] == stage and phrase in first["reason"], f"{fault}: refused, stage {stage}",
-                (first["result"], first["stage"], first["reason"]))
-    checks.that(all(row["accepted"] == "y" for row in rows[1:]) and rows[1]["generation [-]"] == "2", f"{fault}: the next try is taken",
-                [(row["action"], row["accepted"]) for row in rows])
+    checks.that(first["accepted"] == "n" and first["stage"] == stage and phrase in first["reason"],
+                f"{fault}: refused, stage {stage}", (first["result"], first["stage"], first["reason"]))
+    checks.that(all(row["accepted"] == "y" for row in rows[1:]) and rows[1]["generation [-]"] == "2",
+                f"{fault}: the next try is taken", [(row["action"], row["accepted"]) for row in rows])
     within_limits(checks, out)
     steps = history(out)["step"]
     checks.that(steps == list(range(1, len(steps) + 1)), f"{fault}: one row of the history a step", steps)
@@ -152,12 +153,13 @@ def sound(checks, deck):
     """The same remesher without a fault: nothing is refused, so that what is refused above is so by its fault."""
     out = checks.path("sound")
     result = cycle(deck, out, **environment(checks, "none"))
-    checks.that(result.returncode == DONE and [row["accepted"] for row in tries(out)] == ["y", "y"], "without a fault: taken", said(result))
+    checks.that(result.returncode == DONE and [row["accepted"] for row in tries(out)] == ["y", "y"], "without a fault: taken",
+                said(result))
     within_limits(checks, out)
     told = facts(out, 2, "restart")
     die = told["forces"][0]
     change = math.dist(die["after"], die["before"]) / math.hypot(*die["before"])
-    checks.that(die["die"] == "upper" and abs(change - told["force_change"]) < 1e-9, "the change is that of the force of the die", die)
+    checks.that(die["die"] == "upper" and abs(change - told["force_change"]) < 1e-9, "the change is that of the die's force", die)
 
 
 def number_of_tries(checks, text):
@@ -168,8 +170,8 @@ def number_of_tries(checks, text):
         out = checks.path("few", "out")
         shutil.rmtree(out, ignore_errors=True)
         result = cycle(deck, out, *options)
-        checks.that(result.returncode == NO_CONVERGENCE and len(tries(out)) == number, f"TRIES 1 {' '.join(options)}: {number} made",
-                    said(result))
+        checks.that(result.returncode == NO_CONVERGENCE and len(tries(out)) == number,
+                    f"TRIES 1 {' '.join(options)}: {number} made", said(result))
 
 
 def main():

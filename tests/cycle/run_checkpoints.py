@@ -53,7 +53,7 @@ def other_hash(file):
 
 
 def sealed_not_a_number(checks, deck, out):
-    """A number that is none in a checkpoint whose digest is right: refused by the place it is in; the cycle goes on from the one before."""
+    """A number that is none in a checkpoint whose digest is right: refused by its place; the cycle goes on from the one before."""
     from sealed import alter  # pylint: disable=import-outside-toplevel
     folder, new = checks.path("sealed"), checks.path("new.h5")
     shutil.copytree(out, folder)
@@ -61,7 +61,8 @@ def sealed_not_a_number(checks, deck, out):
     alter(bad, not_a_number)
     phrase = "nodes/displacement: holds what is not a finite number"
     for result in (call("remdata", bad, "--out", new), run([deck, "--out", checks.path("no"), "--resume", bad, "--threads", "1"])):
-        checks.that(result.returncode == INPUT and bad in result.stderr and phrase in result.stderr, "sealed: refused by name", said(result))
+        checks.that(result.returncode == INPUT and bad in result.stderr and phrase in result.stderr, "sealed: refused by name",
+                    said(result))
     checks.that(not os.path.exists(new), "sealed: nothing is written")
     result = cycle(deck, folder)
     rows = tries(folder)
