@@ -335,6 +335,7 @@ contains
     after%step = before%step
     after%last_step = before%last_step
     after%next_step = before%next_step
+    after%probation = before%probation
     after%pilots = before%pilots
     after%last_pilot_increment = before%last_pilot_increment
     after%pilot_applied = before%pilot_applied

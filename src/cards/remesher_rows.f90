@@ -3,6 +3,7 @@
 !> Sizes and numbers that are not given follow the mesh of the deck itself, however often it has been remeshed since: whoever chose
 !> that mesh has said how fine it should be.
 module remesher_rows
+  use acceptance, only: acceptance_t
   use block_mesh, only: polygon_area
   use deck_cursor, only: cursor_t
   use kinds, only: pi, wp
@@ -15,11 +16,13 @@ module remesher_rows
   public :: remesher_words, read_remesher_row, measure_own_mesh, complete_options
 
   !> In the order of `read_remesher_row`.
-  character(len=*), parameter :: remesher_words = 'STRAIN SIZE COUNT ACROSS TURN TRANSFER ACCEPT MESHER'
+  character(len=*), parameter :: remesher_words = 'STRAIN SIZE COUNT ACROSS TURN TRANSFER ACCEPT TRIES MESHER'
   !> Meshers by their numbers, from 1.
   character(len=*), parameter :: meshers = 'ZONES GMSH'
   !> Methods of transfer by their numbers, from 0.
   character(len=*), parameter :: methods = 'DIST MLS PATCH'
+  !> Limits of ACCEPT.
+  character(len=*), parameter :: limits = 'RESIDUAL ITERATIONS FORCE ENERGY DEPTH STEP'
   !> Moving squares of degree 2 need 6 points, and some more not to be an interpolation.
   integer, parameter :: fewest_neighbours = 8, most_neighbours = 64
   !> Smallest and largest elements over those of the deck's own mesh, and how many times as many elements there may be.
@@ -52,13 +55,57 @@ contains
     case ('TRANSFER')
       call read_transfer(cursor, options)
     case ('ACCEPT')
-      call cursor%integer('the largest number of iterations to equilibrium', options%most_iterations, lower=1)
-      call cursor%real('the largest change of the force of a die', options%force_change, lower=0.0_wp, strict_lower=.true.)
+      call read_limits(cursor, options%accept)
+    case ('TRIES')
+      call cursor%integer('the number of other ways tried when a mesh is refused', options%tries, lower=0)
     case ('MESHER')
       call words_of(meshers, words)
       call cursor%name('who makes the mesh', words, options%mesher)
     end select
   end subroutine read_remesher_row
+
+  !> Limits of the restart by their words, each once.
+  subroutine read_limits(cursor, accept)
+    type(cursor_t), intent(inout) :: cursor
+    type(acceptance_t), intent(inout) :: accept
+    type(string_t), allocatable :: words(:)
+    logical, allocatable :: given(:)
+    integer :: k
+
+    call words_of(limits, words)
+    given = spread(.false., 1, size(words))
+    do
+      call cursor%name('one of '//limits, words, k)
+      if (k == 0) return
+      if (given(k)) call cursor%fail(words(k)%s//' is given twice')
+      given(k) = .true.
+      select case (words(k)%s)
+      case ('RESIDUAL')
+        call positive('the largest first residual over the forces at work', accept%first_residual)
+      case ('ITERATIONS')
+        call cursor%integer('the largest number of iterations to equilibrium', accept%iterations, lower=1)
+      case ('FORCE')
+        call positive('the largest change of the force of a die', accept%force_change)
+      case ('ENERGY')
+        call positive('the largest change of the elastic energy', accept%energy_change)
+      case ('DEPTH')
+        call positive('the largest change of a depth over what contact and sides allow', accept%depth_change)
+      case ('STEP')
+        call cursor%real('the least step on the new mesh over the least before it', accept%step_ratio, lower=0.0_wp, upper=1.0_wp)
+      end select
+      if (.not. cursor%more()) exit
+    end do
+
+  contains
+
+    subroutine positive(what, limit)
+      character(len=*), intent(in) :: what
+      real(wp), intent(inout) :: limit
+
+      call cursor%real(what, limit, lower=0.0_wp, strict_lower=.true.)
+    end subroutine positive
+
+  end subroutine read_limits
 
   !> A method, and its number if it has one.
   subroutine read_transfer(cursor, options)

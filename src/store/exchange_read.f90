@@ -1,5 +1,6 @@
 !> Reading the state of a checkpoint.
 module exchange_read
+  use acceptance, only: probation_t
   use contact_ends, only: contact_end_t
   use errors, only: error_t, exit_input
   use exchange_schema, only: group_place, open_checkpoint, read_matrix, read_triple, refuse_not_finite
@@ -49,6 +50,7 @@ contains
     solution%unbalanced = unbalanced == 1
     call file%read('progress/last_step', solution%last_step)
     call file%read('progress/next_step', solution%next_step)
+    call read_probation(file, solution%probation)
     call file%read('progress/iterations', solution%iterations)
     call file%read('progress/cutbacks', solution%cutbacks)
     call file%read('progress/external_work', solution%external_work)
@@ -81,6 +83,21 @@ contains
     if (scene%remesh%estimate) call read_estimate(file, scene, solution%estimate)
     call file%close(error)
   end subroutine read_checkpoint
+
+  subroutine read_probation(file, probation)
+    type(hdf5_file_t), intent(inout) :: file
+    type(probation_t), intent(inout) :: probation
+    real(wp), allocatable :: recent(:), steps(:)
+
+    call file%read('progress/recent_steps', recent)
+    call file%read('progress/probation', probation%left)
+    call file%read('progress/probation_steps', steps)
+    if (size(recent) /= size(probation%recent) .or. size(steps) /= 2) return
+    probation%recent = recent
+    probation%before = steps(1)
+    probation%least = steps(2)
+    call refuse_not_finite(file, 'progress/recent_steps', all(abs([recent, steps]) <= huge(1.0_wp)))
+  end subroutine read_probation
 
   subroutine read_dies(file, scene, solution)
     type(hdf5_file_t), intent(inout) :: file

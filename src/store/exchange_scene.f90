@@ -22,6 +22,8 @@ module exchange_scene
     !> State carried over to a new mesh, not yet in equilibrium.
     logical :: unbalanced = .false.
     integer :: transfer = 0
+    !> Steps the mesh is still on probation for, and other ways tried where it is refused.
+    integer :: probation = 0, tries = 0
     !> Estimated errors of stress and strain, negative where they were not asked for [-].
     real(wp) :: error_stress = -1.0_wp, error_strain = -1.0_wp
     type(string_t), allocatable :: triggers(:)
@@ -202,6 +204,8 @@ contains
     call file%read('progress/unbalanced', unbalanced)
     facts%unbalanced = unbalanced == 1
     facts%transfer = scene%remesher%transfer
+    facts%tries = scene%remesher%tries
+    call file%read('progress/probation', facts%probation)
     allocate (facts%triggers(0))
     if (file%has('estimate/stress')) then
       call file%read('estimate/stress', facts%error_stress)
