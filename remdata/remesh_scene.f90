@@ -1,7 +1,7 @@
 !> The remesher's page: from the checkpoint of an old mesh to that of a new one.
 !>
-!> contour -> sizes -> zones and mesh, or Gmsh's mesh -> state -> checkpoint (annex 2; chapter 12); bodies without a mesh get their first one the
-!> same way, from contours that cards give, and no state. Whatever cannot be done ends in an error that
+!> contour -> sizes -> zones -> mesh, or Gmsh's mesh -> state -> checkpoint (annex 2; chapter 12); bodies without a mesh get their
+!> first one the same way, from contours that cards give, and no state. Whatever cannot be done ends in an error that
 !> names its stage; the old checkpoint is never touched.
 module remesh_scene
   use contact_carry, only: carry_contacts

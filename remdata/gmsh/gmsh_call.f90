@@ -121,7 +121,7 @@ contains
       if (status /= 0) exit
       if (line /= '') words = ': '//trim(line)
     end do
-    close (unit, iostat=status)
+    close (unit)
   end function last_words
 
 end module gmsh_call
