@@ -301,6 +301,7 @@ contains
     call mesh_freely(old, materials_of(old, before), contours, sizes, options%finer, gmsh, plan, mesh, facts%mesh, error)
     if (allocated(mesh%zone)) facts%coarser = mesh%division%factor
     if (gmsh%is_there .or. .not. allocated(of_zones)) return
+    of_zones%code = error%code
     of_zones%advice = error%advice
     call move_alloc(of_zones, error)
   end subroutine make_free_mesh

@@ -67,6 +67,23 @@ REMSH
    SIZE 0.1 0.5
 END
 """
+# A disc as one block: its corners are flat, and zones can do no better.
+ROUND_BLOCK = HEAD + """BLOCK  disc PL8LS 4 metal
+   -1. -1.   1. -1.   1. 1.   -1. 1.
+   4 1.   4 1.
+   SIDE 1 ARC 0. 0.
+   SIDE 2 ARC 0. 0.
+   SIDE 3 ARC 0. 0.
+   SIDE 4 ARC 0. 0.
+FIXED  disc 1 XY
+MOVE   disc 3 Y down
+LIC    down
+   0. 0.   1. -0.02
+REMSH
+   TIMES 0.5
+   SIZE 0.2 0.4
+{more}END
+"""
 TWO_BLOCKS = HEAD + """BLOCK  one PL8LS 4 metal
    0. 0.   2. 0.   2. 2.   0. 2.
    3 1.   3 1.
@@ -181,7 +198,7 @@ def failures(checks, checkpoint):
 
 
 def shape(checks, name, checkpoint, area, contours, least=0.35):
-    """A mesh by Gmsh of a body: good elements, the whole area, a contour of so many loops."""
+    """A mesh by Gmsh of a body: good elements, the whole area (None: that of the old mesh), so many contours."""
     new = checks.path(name + ".new.h5")
     result, facts = remdata(checkpoint, new)
     if not os.path.exists(GMSH):
@@ -195,6 +212,7 @@ def shape(checks, name, checkpoint, area, contours, least=0.35):
     with h5py.File(new, "r") as file:
         groups = [g for g in file["groups"] if 8 in file[f"groups/{g}/connectivity"].shape]
         mesh.elements = np.vstack([Mesh.rows(file[f"groups/{g}/connectivity"][()], 8) for g in groups]) - 1
+    area = area or Mesh(checkpoint).volume(False)
     checks.that(mesh.jacobians().min() > 0.1, f"{name}: Jacobians", mesh.jacobians().min())
     checks.that(abs(mesh.volume(False) / area - 1) < 1e-3, f"{name}: area", (mesh.volume(False), area))
     sides = {}
@@ -217,7 +235,11 @@ def bodies(checks):
     shape(checks, "bracket", stop_of(checks, "bracket", BRACKET.format(more="")),
           12 * 3.2 + 4 * 6.8 + 4 - np.pi + np.pi * 1.6**2 / 2, 1)
     shape(checks, "discs", stop_of(checks, "discs", DISCS), 10 * np.pi, 2)
-    shape(checks, "ring", stop_of(checks, "ring", ring()), 8 * np.pi, 2)
+    shape(checks, "ring", stop_of(checks, "ring", ring()), None, 2)
+
+    shape(checks, "disc", stop_of(checks, "disc", ROUND_BLOCK.format(more="")), None, 1)
+    result, _ = remdata(stop_of(checks, "flat", ROUND_BLOCK.format(more="   MESHER ZONES\n")), checks.path("flat.h5"))
+    checks.that(result.returncode == NO_CONVERGENCE and "bad shape" in result.stderr, "a disc by zones alone: refused", said(result))
 
     # zones alone, where there are none: what is wrong with zones
     result, facts = remdata(stop_of(checks, "alone", BRACKET.format(more="   MESHER ZONES\n")), checks.path("alone.h5"))
