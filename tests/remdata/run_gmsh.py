@@ -241,6 +241,12 @@ def bodies(checks):
     result, _ = remdata(stop_of(checks, "flat", ROUND_BLOCK.format(more="   MESHER ZONES\n")), checks.path("flat.h5"))
     checks.that(result.returncode == NO_CONVERGENCE and "bad shape" in result.stderr, "a disc by zones alone: refused", said(result))
 
+    # a limited number of elements, and a file that says what it cost
+    result, facts = remdata(stop_of(checks, "few", BRACKET.format(more="   COUNT 60\n")), checks.path("few.h5"))
+    if os.path.exists(GMSH):
+        checks.that(result.returncode == DONE and 40 < facts["new_elements"] <= 60, "at most 60 elements", said(result))
+        checks.that(facts["mesh"]["coarser"] > 1.2, "at most 60 elements: told", facts["mesh"])
+
     # zones alone, where there are none: what is wrong with zones
     result, facts = remdata(stop_of(checks, "alone", BRACKET.format(more="   MESHER ZONES\n")), checks.path("alone.h5"))
     checks.that(result.returncode == INPUT and facts["stage"] == "mesh", "zones alone: refused", said(result))
