@@ -1,7 +1,7 @@
 !> The remesher's page: from the checkpoint of an old mesh to that of a new one.
 !>
-!> contour -> sizes -> zones and mesh, or Gmsh's mesh -> state -> checkpoint (annex 2; chapter 12); bodies without a mesh get their first one the
-!> same way, from contours that cards give, and no state. Whatever cannot be done ends in an error that
+!> contour -> sizes -> zones -> mesh, or Gmsh's mesh -> state -> checkpoint (annex 2; chapter 12); bodies without a mesh get their
+!> first one the same way, from contours that cards give, and no state. Whatever cannot be done ends in an error that
 !> names its stage; the old checkpoint is never touched.
 module remesh_scene
   use block_mesh, only: polygon_area
@@ -322,6 +322,7 @@ contains
     call mesh_freely(old, materials_of(old, before), contours, sizes, options%finer, gmsh, plan, mesh, facts%mesh, error)
     if (allocated(mesh%zone)) facts%coarser = mesh%division%factor
     if (gmsh%is_there .or. .not. allocated(of_zones)) return
+    of_zones%code = error%code
     of_zones%advice = error%advice
     call move_alloc(of_zones, error)
   end subroutine make_free_mesh

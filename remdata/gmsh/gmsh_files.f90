@@ -98,7 +98,7 @@ contains
     end if
     call read_nodes(unit, x, error)
     if (.not. allocated(error)) call read_elements(unit, n, x, quads, error)
-    close (unit, iostat=status)
+    close (unit)
     if (allocated(error)) return
     quads%inside = spread(frame%low, 2, size(quads%inside, 2)) + frame%width*quads%inside
   end subroutine read_quads

@@ -17,7 +17,7 @@ module mesh_without_zones
   public :: mesh_freely
 
   !> Other sizes give another mesh, when one is of bad shape or Gmsh fails on it: so many times finer.
-  real(wp), parameter :: finer_by(5) = [1.0_wp, 1.05_wp, 0.95_wp, 1.12_wp, 1.25_wp]
+  real(wp), parameter :: finer_by(4) = [1.0_wp, 1.05_wp, 1.12_wp, 1.25_wp]
   !> Elements are mended below this: nothing but their corners holds lines that follow no grid.
   real(wp), parameter :: least_sine = 0.6_wp
 

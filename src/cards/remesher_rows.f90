@@ -8,7 +8,7 @@ module remesher_rows
   use deck_cursor, only: cursor_t
   use kinds, only: pi, wp
   use mesh_parts, only: mesh_parts_t
-  use remesher_options, only: remesher_options_t
+  use remesher_options, only: by_gmsh, has_zones, remesher_options_t
   use scene_draft, only: own_mesh_t, words_of
   use text, only: string_t
   implicit none
@@ -61,6 +61,8 @@ contains
     case ('MESHER')
       call words_of(meshers, words)
       call cursor%name('who makes the mesh', words, options%mesher)
+      if (options%mesher == by_gmsh .and. has_zones(options)) &
+        call cursor%fail('ZONE cards and Gmsh exclude one another: leave out the one or the other')
     end select
   end subroutine read_remesher_row
 
