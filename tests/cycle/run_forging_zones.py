@@ -8,19 +8,14 @@ step on the new mesh from the straight line through the last two on the old one.
 from the elements of the new mesh.
 """
 import collections
-import csv
 import glob
-import json
 import math
 import os
-import subprocess
 import sys
 
 sys.dont_write_bytecode = True
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.dirname(os.path.dirname(HERE))
-sys.path.insert(0, os.path.join(os.path.dirname(HERE), "runs"))
-from support import BIN, DONE, LONGEST_RUN, NO_CONVERGENCE, Checks, history, run, said, summary, with_h5py  # noqa: E402
+from remeshed import ROOT, cycle, facts, jump, put_table, tries, value_at  # noqa: E402
+from support import DONE, NO_CONVERGENCE, Checks, history, run, said, summary, with_h5py  # noqa: E402
 
 with_h5py()
 import h5py  # noqa: E402
@@ -34,28 +29,6 @@ YOUNG, POISSON = 70000.0, 0.33
 STROKES = (1, 3, 4, 4.5, 5, 5.2, 5.4, 5.6)
 QUANTITIES = ("force_y_upper", "hub_top", "rim")
 LARGEST_JUMP, LARGEST_DEVIATION, LARGEST_DRIFT = 0.02, 0.03, 0.001
-
-
-def at_stroke(rows, name, stroke):
-    """A column of the history where the die has moved this far, straight between steps."""
-    travel, value = [-u for u in rows["displacement_y_upper"]], rows[name]
-    k = next(k for k, u in enumerate(travel) if u >= stroke - 1e-9)
-    share = (stroke - travel[k - 1]) / (travel[k] - travel[k - 1])
-    return value[k - 1] + share * (value[k] - value[k - 1])
-
-
-def jump(rows, step):
-    """Relative distance of the force after a step from the straight line before it."""
-    time, force = rows["time"], rows["force_y_upper"]
-    k = rows["step"].index(step)
-    line = force[k] + (force[k] - force[k - 1]) / (time[k] - time[k - 1]) * (time[k + 1] - time[k])
-    return force[k + 1] / line - 1
-
-
-def facts(out, generation, ending):
-    """What remdata (start.h5.json) or the restart (restart.json) said of a mesh."""
-    with open(glob.glob(os.path.join(out, f"*.g{generation:02d}.{ending}"))[0], encoding="utf-8") as file:
-        return json.load(file)
 
 
 def nodes_of(dataset, width):
@@ -84,19 +57,18 @@ def contact_on_contour(checks, out, generation):
 
 def new_meshes(checks, out, rows):
     """Rows of the table of meshes; every mesh checked."""
-    with open(os.path.join(out, "cycle.csv"), newline="", encoding="utf-8") as file:
-        tries = list(csv.DictReader(file))
-    checks.that(len(tries) >= 3, "a first mesh and at least two after it", len(tries))
-    checks.that(all(t["accepted"] == "y" for t in tries), "every new mesh is taken at the first try",
-                [t["reason"] for t in tries if t["accepted"] != "y"])
+    made_meshes = tries(out)
+    checks.that(len(made_meshes) >= 4, "a first mesh and at least three after it", len(made_meshes))
+    checks.that(all(t["accepted"] == "y" for t in made_meshes), "every new mesh is taken at the first try",
+                [t["reason"] for t in made_meshes if t["accepted"] != "y"])
     volume = summary(out)["initial_volume"]
     checks.that(abs(volume / (math.pi * RADIUS**2 * HEIGHT) - 1) < 1e-12, "the first mesh has the volume of the contour", volume)
     lines = ["| mesh | at mm | elements | sides of contact | scaled Jacobian | first residual | iterations | jump of force % | "
              "volume % |", "|---|---|---|---|---|---|---|---|---|"]
     drift = 0.0
-    for one in tries:
+    for one in made_meshes:
         generation, step = int(one["generation [-]"]), int(one["step [-]"])
-        made = facts(out, generation, "start.h5.json")
+        made = facts(out, generation, "start")
         sides = contact_on_contour(checks, out, generation)
         checks.that(abs(made["contour"]["volume_error"]) < 1e-12, f"mesh {generation}: the contour keeps the volume",
                     made["contour"]["volume_error"])
@@ -107,11 +79,11 @@ def new_meshes(checks, out, rows):
         if step == 0:
             lines.append(line.format(at=0) + " | | | |")
             continue
-        restart = facts(out, generation, "restart.json")
+        restart = facts(out, generation, "restart")
         k = rows["step"].index(step)
         change = restart["volume_before"] / (volume * (1 + rows["volume_drift"][k])) - 1
         drift += abs(change)
-        leap = jump(rows, step)
+        leap = jump(rows, "force_y_upper", step)
         checks.that(abs(leap) < LARGEST_JUMP, f"mesh {generation}: jump of the force below {LARGEST_JUMP:.0%}", f"{leap:.2%}")
         lines.append(line.format(at=f"{-rows['displacement_y_upper'][k]:.2f}") + f" {restart['first_residual']:.3f} | "
                      f"{restart['iterations']} | {100 * leap:+.2f} | {100 * change:+.4f} |")
@@ -120,26 +92,21 @@ def new_meshes(checks, out, rows):
     return lines
 
 
-def cycle(arguments):
-    """Run lagacycle to its end."""
-    return subprocess.run([os.path.join(os.path.abspath(BIN), "lagacycle"), *arguments, "--threads", "1"], text=True, check=False,
-                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=LONGEST_RUN)
-
-
 def no_first_mesh(checks):
     """Without a first mesh there is none to go on with: the cycle ends and says what is wrong."""
-    result = cycle([DECK, "--out", checks.path("none"), "-p", "line=40"])
-    checks.that(result.returncode == NO_CONVERGENCE, "zones that miss the part: the cycle ends", said(result))
-    checks.that("the contour does not cross x = 40" in result.stdout, "zones that miss the part: told", said(result))
+    code, words = cycle(DECK, checks.path("none"), "-p", "line=40")
+    checks.that(code == NO_CONVERGENCE, "zones that miss the part: the cycle ends", words)
+    checks.that("the contour does not cross x = 40" in words, "zones that miss the part: told", words)
 
 
 def main():
     checks = Checks()
     no_first_mesh(checks)
     out, plain = checks.path("zones"), checks.path("plain")
-    result = cycle([DECK, "--out", out])
-    checks.that(result.returncode == DONE, "the cycle ends by itself", result.stdout + result.stderr)
+    code, words = cycle(DECK, out)
+    checks.that(code == DONE, "the cycle ends by itself", words)
     rows = history(out)
+    rows["travel"] = [-u for u in rows["displacement_y_upper"]]
     checks.that(abs(rows["displacement_y_upper"][-1] + TRAVEL) < 1e-9, "the die is closed", rows["displacement_y_upper"][-1])
     lines = new_meshes(checks, out, rows)
 
@@ -154,12 +121,13 @@ def main():
     result = run([PLAIN, "--out", plain, "--threads", "1", "-p", "nx=48", "-p", "ny=24"])
     checks.that(result.returncode == DONE, "48 x 24 without remeshing: done", said(result))
     fine, fine_deep = history(plain), summary(plain)["checks"]
+    fine["travel"] = [-u for u in fine["displacement_y_upper"]]
     lines += ["", "| stroke mm | force kN | 48 x 24, one mesh, kN | % | hub mm | 48 x 24 | % | rim mm | 48 x 24 | % |",
               "|---|---|---|---|---|---|---|---|---|---|"]
     for stroke in STROKES:
         cells = [f"{stroke:g}"]
         for name in QUANTITIES:
-            here, there = at_stroke(rows, name, stroke), at_stroke(fine, name, stroke)
+            here, there = (value_at(r, name, "travel", stroke) for r in (rows, fine))
             checks.that(abs(here / there - 1) < LARGEST_DEVIATION, f"{name} at {stroke} mm within {LARGEST_DEVIATION:.0%}",
                         f"{here / there - 1:.2%}")
             unit, digits = (1000.0, 1) if name.startswith("force") else (1.0, 3)
@@ -171,10 +139,7 @@ def main():
         lines.append(f"| {words} | {deep[name]:.3f} | {fine_deep[name]:.3f} |")
     print("\n".join(lines))
     if "--write" in sys.argv:
-        with open(README, encoding="utf-8") as file:
-            head, _, tail = file.read().split(MARK)
-        with open(README, "w", encoding="utf-8") as file:
-            file.write(head + MARK + "\n" + "\n".join(lines) + "\n" + MARK + tail)
+        put_table(README, MARK, lines)
     checks.end()
 
 
