@@ -77,6 +77,21 @@ contains
     call json%add('largest_move', facts%contour%largest_move)
     call json%add('largest_shift', facts%contour%largest_shift)
     call json%add('volume_error', facts%contour%volume_error)
+    call json%add('pockets', facts%contour%pockets)
+    call json%begin_array('limits')
+    if (allocated(facts%contour%limits)) then
+      do k = 1, size(facts%contour%limits)
+        associate (limit => facts%contour%limits(k))
+          call json%begin_object()
+          call json%add('begins', limit%kind == kind_entry)
+          call json%add('x', limit%point(1))
+          call json%add('y', limit%point(2))
+          call json%add('depth', limit%depth)
+          call json%end_object()
+        end associate
+      end do
+    end if
+    call json%end_array()
     call json%end_object()
     call json%begin_object('mesh')
     call json%add('mesher', facts%mesher)

@@ -59,7 +59,7 @@ def contact_on_contour(checks, out, generation):
 def new_meshes(checks, out, rows, mesher):
     """Rows of the table of meshes; every mesh checked."""
     rows_of_cycle = tries(out)
-    checks.that(len(rows_of_cycle) >= 3, "a first mesh and at least two after it", len(rows_of_cycle))
+    checks.that(len(rows_of_cycle) >= 4, "a first mesh and at least three after it", len(rows_of_cycle))
     checks.that(all(t["accepted"] == "y" for t in rows_of_cycle), "every new mesh is taken at the first try",
                 [t["reason"] for t in rows_of_cycle if t["accepted"] != "y"])
     within_limits(checks, out)
