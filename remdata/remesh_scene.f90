@@ -11,11 +11,13 @@ module remesh_scene
   use dies, only: is_deformable
   use errors, only: error_t, exit_input, fail
   use first_contours, only: contours_of_cards
-  use exchange, only: read_bare_scene, read_checkpoint, read_deck_of_checkpoint, read_contact_ends, write_checkpoint
+  use exchange, only: open_checkpoint, read_bare_scene, read_contact_ends, read_deck_of_checkpoint, read_state, write_checkpoint
+  use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
-  use new_mesh_check, only: mesh_check_t, check_new_mesh
+  use new_mesh_check, only: check_new_mesh
   use new_scene, only: set_up_new_scene
-  use part_contour, only: build_contours, contour_options_t, contour_report_t, contour_t
+  use part_contour, only: build_contours, contour_options_t, contour_t
+  use remesh_facts, only: begin_task, end_task, remesh_facts_t
   use remesh_options, only: remesh_options_t
   use scene, only: is_solid, lacks_mesh, scene_t
   use size_field, only: need_t, old_mesh_t, set_up_sizes, size_field_t, size_limits_t, wanted_size
@@ -32,20 +34,7 @@ module remesh_scene
   use zone_plan, only: plan_t, plan_zones
   implicit none
   private
-  public :: remesh_facts_t, remesh_checkpoint
-
-  !> What was made, for the report.
-  type :: remesh_facts_t
-    character(len=:), allocatable :: stage
-    integer :: generation = 0, step = 0
-    real(wp) :: time = 0.0_wp
-    integer :: old_elements = 0, new_elements = 0
-    type(contour_report_t) :: contour
-    type(mesh_check_t) :: mesh
-    type(transfer_report_t) :: transfer
-    !> Sizes are so many times the wanted ones, for the limit on the number of elements.
-    real(wp) :: coarser = 1.0_wp
-  end type remesh_facts_t
+  public :: remesh_checkpoint
 
   !> Errors of strain fall with the size to this power (8-node elements).
   real(wp), parameter :: strain_order = 2.0_wp
@@ -68,12 +57,8 @@ contains
     character(len=:), allocatable :: deck_path, deck_text
     logical :: first
 
-    facts%stage = 'checkpoint'
-    call read_deck_of_checkpoint(options%checkpoint, deck_path, deck_text, error)
-    if (.not. allocated(error)) call read_bare_scene(options%checkpoint, old, error)
-    if (.not. allocated(error)) call start_solution(old, before)
-    if (.not. allocated(error)) call read_checkpoint(options%checkpoint, old, before, error)
-    if (.not. allocated(error)) call read_contact_ends(options%checkpoint, ends, error)
+    call begin_task(facts, 'checkpoint', 'read')
+    call read_all(options%checkpoint, deck_path, deck_text, old, before, ends, error)
     if (.not. allocated(error)) call refuse_what_is_not_offered(old, error)
     if (allocated(error)) return
     first = lacks_mesh(old)
@@ -82,18 +67,20 @@ contains
     facts%time = before%time
     facts%generation = old%generation + 1
 
-    facts%stage = 'contour'
+    call begin_task(facts, 'contour', 'contour')
     if (first) then
       call contours_of_cards(old, contours, facts%contour, error)
     else
       call build_contours(old, before, ends, contour_options_t(), contours, facts%contour, error)
     end if
     if (allocated(error)) return
-    facts%stage = 'mesh'
+    call begin_task(facts, 'mesh', 'zones')
     call plan_zones(old, old%mesh%coordinates + before%displacement, before%pilots, materials_of(old, before), &
                     contours, plan, error)
     if (allocated(error)) return
+    call begin_task(facts, 'mesh', 'sizes')
     call wanted_sizes(old, before, contours, first, sizes)
+    call begin_task(facts, 'mesh', 'mesh')
     call make_mesh(old, contours, plan, sizes, options%finer, mesh, facts, error)
     if (allocated(error)) return
     call set_up_new_scene(old, contours, plan, mesh, new, error)
@@ -105,11 +92,33 @@ contains
       call carry_state(old, before, contours, mesh, new, after, facts, error)
       if (allocated(error)) return
     end if
-    facts%stage = 'checkpoint'
+    call begin_task(facts, 'checkpoint', 'write')
     call write_checkpoint(options%out, deck_path, deck_text, new, after, [contact_end_t ::], error)
+    call end_task(facts)
     facts%old_elements = count_elements(old)
     facts%new_elements = count_elements(new)
   end subroutine remesh_checkpoint
+
+  !> All that the checkpoint holds; it is opened, and its digest compared, once.
+  subroutine read_all(path, deck_path, deck_text, scene, solution, ends, error)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable, intent(out) :: deck_path, deck_text
+    type(scene_t), intent(out) :: scene
+    type(solution_t), intent(out) :: solution
+    type(contact_end_t), allocatable, intent(out) :: ends(:)
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+    type(error_t), allocatable :: ignored
+
+    call open_checkpoint(path, file, error)
+    if (allocated(error)) return
+    call read_deck_of_checkpoint(file, deck_path, deck_text, error)
+    if (.not. allocated(error)) call read_bare_scene(file, scene, error)
+    if (.not. allocated(error)) call start_solution(scene, solution)
+    if (.not. allocated(error)) call read_state(file, scene, solution, error)
+    if (.not. allocated(error)) call read_contact_ends(file, ends, error)
+    call file%close(ignored)
+  end subroutine read_all
 
   !> All that the old mesh knows: progress, state of the solids, contact.
   subroutine carry_state(old, before, contours, mesh, new, after, facts, error)
@@ -122,11 +131,11 @@ contains
     type(remesh_facts_t), intent(inout) :: facts
     type(error_t), allocatable, intent(out) :: error
 
-    facts%stage = 'transfer'
+    call begin_task(facts, 'transfer', 'transfer')
     call carry_progress(before, after)
     call carry_solids(old, before, new, after, facts%transfer, error)
     if (allocated(error)) return
-    facts%stage = 'contact'
+    call begin_task(facts, 'contact', 'contact')
     call carry_contacts(old, before, contours, mesh, new, after)
   end subroutine carry_state
 

@@ -5,7 +5,8 @@ module run_deck
   use diagnostics, only: diagnostics_t
   use equations, only: equations_t
   use errors, only: error_t, exit_done, exit_input, exit_machine, exit_remesh, fail
-  use exchange, only: read_checkpoint, read_deck_of_checkpoint, read_remesh, write_checkpoint
+  use exchange, only: open_checkpoint, read_checkpoint, read_deck_of_checkpoint, read_remesh, write_checkpoint
+  use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use law_api, only: law_t
   use law_manual, only: law_card
@@ -123,19 +124,24 @@ contains
     character(len=*), intent(in) :: path, text
     type(remesh_t), allocatable, intent(out) :: remesh
     type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+    type(error_t), allocatable :: ignored
     character(len=:), allocatable :: old_path, old_text
 
-    call read_deck_of_checkpoint(path, old_path, old_text, error)
+    call open_checkpoint(path, file, error)
     if (allocated(error)) return
-    if (old_text /= text) then
-      call fail(error, exit_input, path//': made from another deck than the one given (it was '//old_path//')', &
-                'resume with the same deck and the same -p options')
-      return
+    call read_deck_of_checkpoint(file, old_path, old_text, error)
+    if (.not. allocated(error)) then
+      if (old_text == text) then
+        allocate (remesh)
+        call read_remesh(file, remesh, error)
+        if (remesh%generation == 1) deallocate (remesh)
+      else
+        call fail(error, exit_input, path//': made from another deck than the one given (it was '//old_path//')', &
+                  'resume with the same deck and the same -p options')
+      end if
     end if
-    allocate (remesh)
-    call read_remesh(path, remesh, error)
-    if (allocated(error)) return
-    if (remesh%generation == 1) deallocate (remesh)
+    call file%close(ignored)
   end subroutine read_mesh_of
 
   !> March, then write summary and listing whatever happened.
