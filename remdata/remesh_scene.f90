@@ -29,7 +29,7 @@ module remesh_scene
   use transfer_mesh, only: plant_mesh_trees, transfer_mesh_t
   use transfer_nodes, only: shape_weights
   use transfer_report, only: transfer_report_t
-  use transfer_states, only: carry_states
+  use transfer_states, only: carry_between
   use zone_mesh, only: mesh_wish_t, mesh_zones, new_mesh_t
   use zone_plan, only: plan_t, plan_zones
   implicit none
@@ -326,16 +326,16 @@ contains
     do k = 1, size(to%groups)
       allocate (to%groups(k)%values, source=after%groups(to%groups(k)%place)%committed)
     end do
-    call carry_states(from, to, options, report, error)
+    call mesh_of(from, mesh)
+    call plant_mesh_trees(mesh)
+    call mesh_of(to, target)
+    call carry_between(mesh, target, from, to, options, report, error)
     if (allocated(error)) return
     do k = 1, size(to%groups)
       after%groups(to%groups(k)%place)%committed = to%groups(k)%values
       after%groups(to%groups(k)%place)%trial = to%groups(k)%values
     end do
 
-    call mesh_of(from, mesh)
-    call plant_mesh_trees(mesh)
-    call mesh_of(to, target)
     allocate (material(size(new%mesh%coordinates, 2)), source=0)
     do k = 1, size(target%material)
       material(target%connectivity(:, k)) = target%material(k)

@@ -4,8 +4,8 @@
 usage: remdata_bench.py [--repeat N] [--most N] [--no-cycle] [--write]      about 6 minutes; --write renews the tables in
 tests/bench/README.md. --most: no mesh of more elements (a look while working).
 
-Every mesh is that of decks/upsetting_remesh, pressed in two steps or more on its sticking die, so that state, contact and errors
-are there; the new mesh has about as many elements. One thread; the least of N runs (3). Exit code 1 when a limit is passed.
+Every mesh is that of decks/upsetting_remesh after its first step or steps against the sticking die, so that state, contact and
+errors are there; the new mesh has about as many elements. One thread; the least of N runs (3). Exit code 1 when a limit is passed.
 """
 import argparse
 import csv
@@ -26,12 +26,12 @@ BEGIN, END = "<!-- remdata: written by remdata_bench.py --write -->", "<!-- remd
 RADIUS, HALF_HEIGHT = 10.0, 15.0
 # First meshes: 486, 1 944, 5 046, 12 558 and 50 142 elements. The cycle is that of the third, to half the height.
 MESHES = [(18, 27), (36, 54), (58, 87), (91, 138), (183, 274)]
-CYCLE, TRAVEL = (58, 87), 7.5
+CYCLE, TRAVEL, TIMES = (58, 87), 7.5, "0.15 0.3 0.45 0.6 0.75 0.9"
 LARGEST_EXPONENT, LARGEST_SHARE = 1.2, 0.05
 
 
-def deck(name, mesh, changes):
-    """The deck with other divisions and other lines; changes: first words of a line, what stands there instead."""
+def deck(path, mesh, changes):
+    """Write the deck with other divisions and other lines; changes: first words of a line, what stands there instead."""
     with open(os.path.join(ROOT, "decks", "upsetting_remesh", "upsetting_remesh.lag"), encoding="utf-8") as file:
         lines = file.read().splitlines()
     changes = {"PARAM  nx ": f"PARAM  nx {mesh[0]}", "PARAM  ny ": f"PARAM  ny {mesh[1]}", **changes}
@@ -40,10 +40,8 @@ def deck(name, mesh, changes):
         if len(places) != 1:
             sys.exit(f"the deck has {len(places)} lines that begin with '{start}'")
         lines[places[0]] = line
-    path = os.path.join(OUT, name + ".lag")
     with open(path, "w", encoding="utf-8") as file:
         file.write("\n".join(lines) + "\n")
-    return path
 
 
 def run(program, *words, code=0):
@@ -52,25 +50,23 @@ def run(program, *words, code=0):
     process = subprocess.Popen([os.path.join(BIN, program), *words], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                env={**os.environ, "OMP_NUM_THREADS": "1"})
     _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
     wall = time.perf_counter() - start
+    process.returncode = os.WEXITSTATUS(status) if os.WIFEXITED(status) else -os.WTERMSIG(status)
     if process.returncode != code:
         sys.exit(f"{program} {' '.join(words)}: exit code {process.returncode}, expected {code}")
     return wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 
 
-def measure(mesh, repeat):
-    """A checkpoint on this mesh, and remdata on it: least seconds of all tasks."""
-    size = RADIUS / mesh[0]
-    path = deck(f"mesh{mesh[0]}", mesh, {"STRAT ": "STRAT  0.005  1.E-5  0.005   5 3", "   ERROR ": "   TIMES 0.01",
-                                         "   SIZE ": f"   SIZE {0.5 * size} {size}"})
-    out = path[:-4]
+def measure(mesh, repeat, folder):
+    """A checkpoint on this mesh, and remdata on it: elements before and after, least seconds of all tasks and of the program."""
+    size, out = RADIUS / mesh[0], os.path.join(folder, f"mesh{mesh[0]}")
+    deck(out + ".lag", mesh, {"STRAT ": "STRAT  0.005  1.E-5  0.005   5 3", "   ERROR ": "   TIMES 0.005",
+                              "   SIZE ": f"   SIZE {0.5 * size} {size}"})
     shutil.rmtree(out, ignore_errors=True)
-    run("lagamine", path, "--out", out, "--quiet", "--threads", "1", code=4)
-    new = os.path.join(out, "new.h5")
-    best = None
+    run("lagamine", out + ".lag", "--out", out, "--quiet", "--threads", "1", code=4)
+    old, new, best = os.path.join(out, os.path.basename(out) + ".ckp.h5"), os.path.join(out, "new.h5"), None
     for _ in range(repeat):
-        wall, seconds, memory = run("remdata", os.path.join(out, os.path.basename(out) + ".ckp.h5"), "--out", new, "--quiet")
+        wall, seconds, memory = run("remdata", old, "--out", new, "--quiet")
         with open(new + ".json", encoding="utf-8") as file:
             facts = json.load(file)
         row = {**facts["seconds"], "wall": wall, "processor": seconds, "memory": memory}
@@ -86,7 +82,7 @@ def exponent(one, other, key):
 
 def growth(repeat, most):
     """Table of tasks, and whether the growth is within its limit."""
-    found = [measure(mesh, repeat) for mesh in MESHES if mesh[0] * mesh[1] <= most]
+    found = [measure(mesh, repeat, OUT) for mesh in MESHES if mesh[0] * mesh[1] <= most]
     tasks = list(found[0][2])
     names = {"wall": "wall", "processor": "processor", "memory": "memory MB"}
     lines = ["| elements | " + " | ".join(names.get(task, task) for task in tasks) + " |", "|---" * (len(tasks) + 1) + "|"]
@@ -105,11 +101,11 @@ def growth(repeat, most):
 
 def share_of_cycle():
     """Table of the cycle, and whether the share of the remesher is within its limit."""
-    size = RADIUS / CYCLE[0]
-    path = deck("cycle", CYCLE, {"PARAM  travel ": f"PARAM  travel {TRAVEL}", "   SIZE ": f"   SIZE {0.8 * size} {1.2 * size}"})
-    out = path[:-4]
+    size, out = RADIUS / CYCLE[0], os.path.join(OUT, "cycle")
+    deck(out + ".lag", CYCLE, {"PARAM  travel ": f"PARAM  travel {TRAVEL}", "   ERROR ": f"   TIMES {TIMES}",
+                               "   SIZE ": f"   SIZE {0.8 * size} {1.05 * size}"})
     shutil.rmtree(out, ignore_errors=True)
-    wall, seconds, _ = run("lagacycle", path, "--out", out, "--threads", "1")
+    wall, seconds, _ = run("lagacycle", out + ".lag", "--out", out, "--threads", "1")
     with open(os.path.join(out, "cycle.csv"), newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     elements = sum(int(row["new_elements [-]"]) for row in rows) / len(rows)
