@@ -310,8 +310,8 @@ contains
     real(wp), intent(in), contiguous :: place(:, :)   !! points (2, n) [length]
     real(wp), intent(in), contiguous :: blend(:, :)   !! bilinear shape functions of the corners there (4, n)
     real(wp), intent(out) :: value(nvalue, size(place, 2))
-    real(wp) :: coefficient(nvalue, nterm), centre(2), scale, t(nterm)
-    integer :: k, j, v, p
+    real(wp) :: coefficient(nvalue, nterm), centre(2), scale, t(nterm, size(place, 2))
+    integer :: k, i, v, p
 
     value = 0
     do k = 1, 4
@@ -320,9 +320,12 @@ contains
       centre = polynomials%centre(:, v)
       scale = polynomials%scale(v)
       do p = 1, size(place, 2)
-        t = blend(k, p)*terms((place(:, p) - centre)/scale)
-        do j = 1, nterm
-          value(:, p) = value(:, p) + coefficient(:, j)*t(j)
+        t(:, p) = blend(k, p)*terms((place(:, p) - centre)/scale)
+      end do
+      do p = 1, size(place, 2)
+        do i = 1, nvalue
+          value(i, p) = value(i, p) + coefficient(i, 1)*t(1, p) + coefficient(i, 2)*t(2, p) + coefficient(i, 3)*t(3, p) &
+                        + coefficient(i, 4)*t(4, p) + coefficient(i, 5)*t(5, p) + coefficient(i, 6)*t(6, p)
         end do
       end do
     end do

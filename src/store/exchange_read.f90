@@ -2,7 +2,7 @@
 module exchange_read
   use contact_ends, only: contact_end_t
   use errors, only: error_t, exit_input
-  use exchange_schema, only: group_place, open_checkpoint, read_matrix, read_triple, refuse_not_finite
+  use exchange_schema, only: group_place, read_matrix, read_triple, refuse_not_finite
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use pairs, only: pairs_t
@@ -11,7 +11,7 @@ module exchange_read
   use solution, only: solution_t
   implicit none
   private
-  public :: read_checkpoint, read_contact_ends, read_deck_of_checkpoint, read_state
+  public :: read_contact_ends, read_deck_of_checkpoint, read_state
 
 contains
 
@@ -27,21 +27,6 @@ contains
   end subroutine read_deck_of_checkpoint
 
   !> Take up the state of a checkpoint in a scene read from the same deck.
-  subroutine read_checkpoint(path, scene, solution, error)
-    character(len=*), intent(in) :: path
-    type(scene_t), intent(in) :: scene
-    type(solution_t), intent(inout) :: solution   !! started from the scene
-    type(error_t), allocatable, intent(out) :: error
-    type(hdf5_file_t) :: file
-    type(error_t), allocatable :: ignored
-
-    call open_checkpoint(path, file, error)
-    if (allocated(error)) return
-    call read_state(file, scene, solution, error)
-    call file%close(ignored)
-  end subroutine read_checkpoint
-
-  !> The same from an open checkpoint.
   subroutine read_state(file, scene, solution, error)
     type(hdf5_file_t), intent(inout) :: file
     type(scene_t), intent(in) :: scene
