@@ -82,7 +82,10 @@ def exponent(one, other, key):
 
 def growth(repeat, most):
     """Table of tasks, and whether the growth is within its limit."""
-    found = [measure(mesh, repeat, OUT) for mesh in MESHES if mesh[0] * mesh[1] <= most]
+    meshes = [mesh for mesh in MESHES if mesh[0] * mesh[1] <= most]
+    if len(meshes) < 2:
+        sys.exit("growth is seen on two meshes at least")
+    found = [measure(mesh, repeat, OUT) for mesh in meshes]
     tasks = list(found[0][2])
     names = {"wall": "wall", "processor": "processor", "memory": "memory MB"}
     lines = ["| elements | " + " | ".join(names.get(task, task) for task in tasks) + " |", "|---" * (len(tasks) + 1) + "|"]
@@ -103,11 +106,13 @@ def share_of_cycle():
     """Table of the cycle, and whether the share of the remesher is within its limit."""
     size, out = RADIUS / CYCLE[0], os.path.join(OUT, "cycle")
     deck(out + ".lag", CYCLE, {"PARAM  travel ": f"PARAM  travel {TRAVEL}", "   ERROR ": f"   TIMES {TIMES}",
-                               "   SIZE ": f"   SIZE {0.8 * size} {1.05 * size}"})
+                               "   LEAST ": f"   COUNT {CYCLE[0] * CYCLE[1]}", "   SIZE ": f"   SIZE {0.8 * size} {1.05 * size}"})
     shutil.rmtree(out, ignore_errors=True)
     wall, seconds, _ = run("lagacycle", out + ".lag", "--out", out, "--threads", "1")
     with open(os.path.join(out, "cycle.csv"), newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
+    if len(rows) < len(TIMES.split()) or any(row["accepted"] != "y" for row in rows):
+        sys.exit(f"{len(rows)} tries at a new mesh, not all of them good: {[row['reason'] for row in rows]}")
     elements = sum(int(row["new_elements [-]"]) for row in rows) / len(rows)
     remdata, restart = (sum(float(row[key] or 0) for row in rows) for key in ("remdata [s]", "restart [s]"))
     lines = ["| cycle | new meshes | elements | wall s | processor s | remdata s | restarts s | remdata's share % |",
@@ -135,6 +140,8 @@ def main():
     parser.add_argument("--no-cycle", action="store_true")
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
+    if options.write and (options.no_cycle or options.most < MESHES[-1][0] * MESHES[-1][1]):
+        parser.error("--write wants all meshes and the cycle")
     os.makedirs(OUT, exist_ok=True)
     parts = [growth(options.repeat, options.most)] + ([] if options.no_cycle else [share_of_cycle()])
     lines = [f"{time.strftime('%Y-%m-%d')}, {processor()}, one thread, the least of {options.repeat} runs of remdata; seconds."]
