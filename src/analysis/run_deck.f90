@@ -1,5 +1,6 @@
 !> `lagamine DECK`: from a deck to its results.
 module run_deck
+  use blas, only: keep_blas_to_one_thread
   use contact_ends, only: contact_end_t
   use deck_reader, only: deck_t, fingerprint_text, read_deck
   use diagnostics, only: diagnostics_t
@@ -22,7 +23,7 @@ module run_deck
   use scene_summary, only: scene_lines
   use solution, only: solution_t, start_solution
   use summary, only: run_facts_t, summary_lines, write_summary
-  use system, only: catch_signals, join_path, make_directory, single_thread_blas, wall_seconds
+  use system, only: catch_signals, join_path, make_directory, wall_seconds
   use text, only: nearest_word, string_t
   use threads, only: number_of_threads, set_threads
   use unknowns_summary, only: unknowns_lines
@@ -47,7 +48,7 @@ contains
 
     code = exit_done
     call catch_signals()
-    call single_thread_blas()
+    call keep_blas_to_one_thread()
     call set_threads(options%threads)
     call read_input(options, deck, scene, run%deck_text, at_rest, checkpoint, error)
     run%resume = allocated(options%resume) .and. .not. at_rest
