@@ -4,7 +4,7 @@ module remesh_report
   use errors, only: error_t
   use json_writer, only: json_t
   use kinds, only: wp
-  use remesh_scene, only: remesh_facts_t
+  use remesh_facts, only: remesh_facts_t
   use run_version, only: version_text
   use text, only: string_t, to_text
   use transfer_report, only: balance_t, in_words, report_lines
@@ -58,6 +58,7 @@ contains
     type(error_t), allocatable, intent(in) :: failure
     type(error_t), allocatable, intent(out) :: error
     type(json_t) :: json
+    integer :: k
 
     call json%begin_object()
     call json%add('program', 'remdata')
@@ -73,6 +74,11 @@ contains
     call json%add('old_elements', facts%old_elements)
     call json%add('new_elements', facts%new_elements)
     call json%add('wall_s', seconds)
+    call json%begin_object('seconds')
+    do k = 1, facts%timers%size()
+      call json%add(facts%timers%name(k), facts%timers%seconds(k))
+    end do
+    call json%end_object()
     call json%begin_object('contour')
     call json%add('largest_move', facts%contour%largest_move)
     call json%add('largest_shift', facts%contour%largest_shift)

@@ -33,15 +33,12 @@ module exchange_scene
 contains
 
   !> The mesh of a checkpoint, when it is not the deck's own: then only `generation` is read, and it is 1.
-  subroutine read_remesh(path, remesh, error)
-    character(len=*), intent(in) :: path
+  subroutine read_remesh(file, remesh, error)
+    type(hdf5_file_t), intent(inout) :: file
     type(remesh_t), intent(out) :: remesh
     type(error_t), allocatable, intent(out) :: error
-    type(hdf5_file_t) :: file
     integer :: k, n
 
-    call open_checkpoint(path, file, error)
-    if (allocated(error)) return
     call file%read('mesh/generation', remesh%generation)
     call file%read('progress/step', remesh%step)
     if (remesh%generation > 1) then
@@ -63,21 +60,18 @@ contains
         call file%read(group_place(k)//'/connectivity', remesh%groups(k)%connectivity)
       end do
     end if
-    call file%close(error)
+    call file%status(error)
   end subroutine read_remesh
 
   !> What a checkpoint tells of its scene without the deck: mesh, groups with the variables of their state, dies, remeshing. For
-  !> who knows no law; enough to read the state with `read_checkpoint` and to write it with `write_checkpoint`.
-  subroutine read_bare_scene(path, scene, error)
-    character(len=*), intent(in) :: path
+  !> who knows no law; enough to read the state with `read_state` and to write it with `write_checkpoint`.
+  subroutine read_bare_scene(file, scene, error)
+    type(hdf5_file_t), intent(inout) :: file
     type(scene_t), intent(out) :: scene
     type(error_t), allocatable, intent(out) :: error
-    type(hdf5_file_t) :: file
     type(string_t), allocatable :: names(:)
     integer :: k, n, finite
 
-    call open_checkpoint(path, file, error)
-    if (allocated(error)) return
     scene%title = ''
     call file%read('mesh/plane_state', scene%plane_state)
     finite = 1
@@ -117,7 +111,7 @@ contains
     do k = 1, n
       call read_bare_group(file, k, scene)
     end do
-    call file%close(error)
+    call file%status(error)
   end subroutine read_bare_scene
 
   subroutine read_die(file, die)
@@ -187,17 +181,21 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(hdf5_file_t) :: file
     type(scene_t) :: scene
+    type(error_t), allocatable :: ignored
     real(wp), allocatable :: values(:), limits(:)
     integer :: unbalanced, g
 
-    call read_bare_scene(path, scene, error)
+    call open_checkpoint(path, file, error)
     if (allocated(error)) return
+    call read_bare_scene(file, scene, error)
+    if (allocated(error)) then
+      call file%close(ignored)
+      return
+    end if
     facts%generation = scene%generation
     do g = 1, size(scene%groups)
       if (is_solid(scene%groups(g))) facts%elements = facts%elements + size(scene%groups(g)%connectivity, 2)
     end do
-    call open_checkpoint(path, file, error)
-    if (allocated(error)) return
     call file%read('progress/time', facts%time)
     call file%read('progress/step', facts%step)
     unbalanced = 0
