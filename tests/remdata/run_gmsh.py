@@ -188,8 +188,6 @@ def failures(checks, checkpoint):
     one("bad node", "printf '$Nodes\\n2\\n1 0 0 0\\n2 nan 0 0\\n' >$2\n", "row 2 of its nodes is none")
     one("cut short", "printf '$Nodes\\n1\\n1 0 0 0\\n$EndNodes\\n$Elements\\n2\\n1 15 2 0 1 1\\n' >$2\n",
         "row 2 of its elements is none")
-    one("triangles", "printf '$Nodes\\n3\\n1 0 0 0\\n2 1 0 0\\n3 0 1 0\\n$EndNodes\\n$Elements\\n1\\n1 2 2 0 1 1 2 3\\n' >$2\n",
-        "it has 1 triangles")
     one("another contour", "printf '$Nodes\\n4\\n1 0 0 0\\n2 1 0 0\\n3 1 1 0\\n4 0 1 0\\n$EndNodes\\n$Elements\\n1\\n"
         "1 3 2 0 1 1 2 3 4\\n' >$2\n", "it has not the points of the contour")
     if os.path.exists(GMSH):
