@@ -4,6 +4,7 @@
 !> size at the origin, for Gmsh's tolerances are absolute numbers. Formats: Gmsh reference manual, scripting language and
 !> MSH file format, version 2.
 module gmsh_files
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use errors, only: error_t, exit_machine, exit_no_convergence, fail
   use kinds, only: wp
   use size_cells, only: cell_t
@@ -134,12 +135,13 @@ contains
     allocate (x(2, n))
     do k = 1, n
       read (unit, *, iostat=status) number, place
-      if (status == 0 .and. number >= 1 .and. number <= n .and. all(abs(place) < 2)) then
-        x(:, number) = place
-        cycle
+      if (status == 0 .and. .not. all(ieee_is_finite(place))) status = 1
+      if (status == 0 .and. (number < 1 .or. number > n)) status = 1
+      if (status /= 0) then
+        call refuse_mesh('row '//to_text(k)//' of its nodes is none', error)
+        return
       end if
-      call refuse_mesh('row '//to_text(k)//' of its nodes is none', error)
-      return
+      x(:, number) = place
     end do
   end subroutine read_nodes
 
