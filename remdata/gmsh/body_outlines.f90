@@ -163,12 +163,13 @@ contains
   end subroutine corners_of
 
   !> Lengths from the start of side s of the layout to its ends of elements: ends(first(s)) ... ends(first(s + 1) - 1).
-  pure subroutine divide_outlines(chains, outlines, layout, field, factor, curves, division, first, ends)
+  pure subroutine divide_outlines(chains, outlines, layout, field, factor, all_even, curves, division, first, ends)
     type(chain_t), intent(in) :: chains(:)
     type(outline_t), intent(in) :: outlines(:)
     type(layout_t), intent(in) :: layout
     type(size_field_t), intent(in) :: field
     real(wp), intent(in) :: factor                 !! sizes are so many times the wanted ones
+    logical, intent(in) :: all_even                !! every side has an even number of elements, not only all of a body together
     type(curve_t), allocatable, intent(out) :: curves(:)
     type(division_t), intent(out) :: division
     integer, allocatable, intent(out) :: first(:)
@@ -183,13 +184,14 @@ contains
         call measure_density(chains, field, layout%zones(side%zones(1))%material, curves(s))
       end associate
       division%count(s) = sum(rounded_up(curves(s)%needs/factor))
+      if (all_even) division%count(s) = division%count(s) + mod(division%count(s), 2)
     end do
     do b = 1, size(outlines)
       do i = 1, size(outlines(b)%chains)
         associate (mine => layout%sides%chain == outlines(b)%chains(i))
           do while (sum(pack(division%count, mine)) < fewest)
             s = neediest(curves, division%count, mine)
-            division%count(s) = division%count(s) + 1
+            division%count(s) = division%count(s) + merge(2, 1, all_even)
           end do
         end associate
       end do
