@@ -170,7 +170,8 @@ contains
             if (nint(state%committed(status, p, e)) <= 0) cycle
             weight = abs(state%committed(pressure, p, e))*side
             force(group%die) = force(group%die) + weight
-            moment(group%die) = moment(group%die) + weight*abs(state%trial(depth, p, e) - state%committed(depth, p, e))/allowed
+            moment(group%die) = moment(group%die) &
+                                + weight*abs(state%trial(depth, p, e) - state%committed(depth, p, e))/allowed
           end do
         end do
       end associate
