@@ -144,8 +144,8 @@ contains
   end subroutine book_carried
 
   !> Depth found on the new contour against the depth that was carried, over what contact allows and what a parabola through three
-  !> nodes may miss: the mean over the pressures that a die bears, of the die where it is worst. (A single point may be far off where
-  !> contact ends: it bears next to nothing.)
+  !> nodes may miss: the mean over the pressures that a die bears, of the die where it is worst. (A single point may be far off
+  !> where contact ends: it bears next to nothing.)
   pure function depth_change(scene, solution) result(change)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
