@@ -109,7 +109,7 @@ contains
 
     what = ''
     if (balance%depth_change > accept%depth_change) then
-      what = 'sides lie '//to_text(balance%depth_change, 3)//' times what contact allows from where they bore their pressure, ' &
+      what = 'sides lie '//to_text(balance%depth_change, 3)//' times what is allowed from where they bore their pressure, ' &
              //'at most '//to_text(accept%depth_change, 3)
     else if (balance%place%relative > accept%first_residual) then
       what = 'the first residual is '//to_text(balance%place%relative, 3)//' of the forces at dies, supports and loads, at most ' &

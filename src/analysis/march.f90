@@ -42,7 +42,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(outcome_t) :: outcome
     real(wp) :: dt, length
-    logical :: give_up, on_probation
+    logical :: on_probation
     integer :: cuts
 
     cuts = 0
@@ -64,23 +64,8 @@ contains
       end if
 
       if (.not. outcome%converged) then
-        solution%cutbacks = solution%cutbacks + 1
-        call after_failure(scene, dt, solution%next_step, give_up)
-        call list_cut(run%listing, scene, solution, dt, solution%next_step, outcome)
-        cuts = cuts + 1
-        call note_cut(solution%probation, solution%next_step)
-        if (on_probation .and. is_too_short(scene, solution)) then
-          call refuse_mesh(scene, solution, outcome, run, error)
-          exit
-        end if
-        call answer_distress(scene, cuts, give_up, run%listing, solution)
-        if (mesh_is_due(solution)) then
-          if (on_probation) call pass_probation(scene, run%stem, run%listing, solution, error)
-          if (.not. allocated(error)) call save_all(scene, solution, run, error)
-          exit
-        end if
-        if (give_up) call stop_here(scene, solution, dt, outcome, run, error)
-        if (give_up .and. on_probation) call refuse_mesh(scene, solution, outcome, run, error)
+        call answer_failure(scene, dt, on_probation, outcome, cuts, solution, run, error)
+        if (mesh_is_due(solution)) exit
         cycle
       end if
 
@@ -102,6 +87,37 @@ contains
     end do
     call finish(scene, solution, run, error)
   end subroutine march_to_end
+
+  !> A step has failed: it is cut, a new mesh is asked for, the mesh is refused, or the run cannot go on.
+  subroutine answer_failure(scene, dt, on_probation, outcome, cuts, solution, run, error)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: dt
+    logical, intent(in) :: on_probation
+    type(outcome_t), intent(in) :: outcome
+    integer, intent(inout) :: cuts   !! one after the other
+    type(solution_t), intent(inout) :: solution
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+    logical :: give_up
+
+    solution%cutbacks = solution%cutbacks + 1
+    call after_failure(scene, dt, solution%next_step, give_up)
+    call list_cut(run%listing, scene, solution, dt, solution%next_step, outcome)
+    cuts = cuts + 1
+    call note_cut(solution%probation, solution%next_step)
+    if (on_probation .and. is_too_short(scene, solution)) then
+      call refuse_mesh(scene, solution, outcome, run, error)
+      return
+    end if
+    call answer_distress(scene, cuts, give_up, run%listing, solution)
+    if (mesh_is_due(solution)) then
+      if (on_probation) call pass_probation(scene, run%stem, run%listing, solution, error)
+      if (.not. allocated(error)) call save_all(scene, solution, run, error)
+    else if (give_up) then
+      call stop_here(scene, solution, dt, outcome, run, error)
+      if (on_probation) call refuse_mesh(scene, solution, outcome, run, error)
+    end if
+  end subroutine answer_failure
 
   !> Equations, the scene at rest, and files. A mesh that is refused has touched none of the results.
   subroutine start(scene, solution, run, error)

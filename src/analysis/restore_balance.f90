@@ -42,7 +42,7 @@ module restore_balance
     type(totals_t) :: before, after
     !> Force on each pilot before (as the old mesh had it), by the pressures that were carried, and after (3, ndie).
     real(wp), allocatable :: pilot_before(:, :), pilot_carried(:, :), pilot_after(:, :)
-    !> Largest change of the depth of a closed point in its die, over the penetration allowed there and a thousandth of the side.
+    !> Change of the depth in a die, in the mean of its pressures, over the penetration allowed and a thousandth of the side.
     real(wp) :: depth_change = 0.0_wp
     !> Why Newton's method gave up; not allocated where it did not.
     character(len=:), allocatable :: reason
@@ -143,30 +143,41 @@ contains
     end do
   end subroutine book_carried
 
-  !> Depth found on the new contour against the depth that was carried, at closed points, over what contact allows and what a
-  !> parabola through three nodes may miss.
+  !> Depth found on the new contour against the depth that was carried, over what contact allows and what a parabola through three
+  !> nodes may miss: the mean over the pressures that a die bears, of the die where it is worst. (A single point may be far off
+  !> where contact ends: it bears next to nothing.)
   pure function depth_change(scene, solution) result(change)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     real(wp) :: change
-    real(wp) :: side, worst
-    integer :: g, e, depth, status
+    real(wp), dimension(size(scene%dies)) :: moment, force
+    real(wp) :: weight, side, allowed
+    integer :: g, e, p, depth, pressure, status
 
-    change = 0
+    moment = 0
+    force = 0
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g), state => solution%groups(g), x => scene%mesh%coordinates)
         if (group%die == 0 .or. group%material == 0) cycle
         depth = group%variables(find_variable(group%variables, 'penetration'))%first
+        pressure = group%variables(find_variable(group%variables, 'pressure'))%first
         status = group%variables(find_variable(group%variables, 'contact_status'))%first
         do e = 1, size(group%connectivity, 2)
           side = length_of(x(:, group%connectivity(3, e)) - x(:, group%connectivity(1, e)))
-          worst = maxval(merge(abs(state%trial(depth, :, e) - state%committed(depth, :, e)), 0.0_wp, &
-                               nint(state%committed(status, :, e)) > 0))
           ! every contact law begins with the penetration it allows (contact_penalties)
-          change = max(change, worst/(scene%materials(group%material)%values(1) + missed_by_parabola*side))
+          allowed = scene%materials(group%material)%values(1) + missed_by_parabola*side
+          do p = 1, size(state%committed, 2)
+            if (nint(state%committed(status, p, e)) <= 0) cycle
+            weight = abs(state%committed(pressure, p, e))*side
+            force(group%die) = force(group%die) + weight
+            moment(group%die) = moment(group%die) &
+                                + weight*abs(state%trial(depth, p, e) - state%committed(depth, p, e))/allowed
+          end do
         end do
       end associate
     end do
+    change = 0
+    if (any(force > 0)) change = maxval(moment/max(force, tiny(1.0_wp)))
   end function depth_change
 
 end module restore_balance

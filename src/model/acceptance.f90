@@ -20,10 +20,9 @@ module acceptance
     integer :: iterations = 40
     !> Change of the force of a die over the largest on any, and of the elastic energy, which goes with the square of forces.
     real(wp) :: force_change = 0.1_wp, energy_change = 0.2_wp
-    !> Change of the depth at which points lie in a die, over the penetration the deck allows and a thousandth of the side. Where
-    !> contact ends a new side cuts the corner by about that much (found: up to 0.6); twice as much is another contour than the one
-    !> that bore the pressures.
-    real(wp) :: depth_change = 2.0_wp
+    !> Change of the depth in a die, in the mean of its pressures, over the penetration the deck allows and a thousandth of the side
+    !> (found: up to 0.3): above 1 the contour is another one than that which bore the pressures.
+    real(wp) :: depth_change = 1.0_wp
     !> Least step on probation over the least before: four cuts in a row are forgiven (1/16), a fifth is not.
     real(wp) :: step_ratio = 0.05_wp
   end type acceptance_t

@@ -177,7 +177,7 @@ def number_of_tries(checks, text):
 def main():
     checks = Checks()
     text = add_cards(deck_text(UPSETTING).replace("SAVE   20", "SAVE   3").replace("travel 9", "travel 4"),
-                     "CKPT 2\nREMSH\n   TIMES 0.1 0.25").replace("nx 12", "nx 3").replace("ny 18", "ny 4")
+                     "CKPT 2\nSTOP 0.35\nREMSH\n   TIMES 0.1 0.25").replace("nx 12", "nx 3").replace("ny 18", "ny 4")
     deck = write(checks.path("case.lag"), text)
     sound(checks, deck)
     for fault, (_, stage, phrase) in FAULTS.items():

@@ -171,6 +171,7 @@ def kills(checks, draw, deck, whole, number, seconds, **environment):
             hit = kill_one(draw, process, out, victim, wait)
             code = process.wait(timeout=LONGEST_RUN)
             if not hit:
+                seconds = 0.7 * seconds     # the machine is quicker than when they were measured
                 break
             hits[victim] += 1
             story.append(f"{victim} after {wait:.2f} s")
