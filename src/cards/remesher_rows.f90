@@ -136,18 +136,19 @@ contains
     real(wp) :: area
     integer :: b, e
 
-    area = 0
+    own%smallest = merge(huge(area), 0.0_wp, parts%sound .and. size(parts%bodies) > 0)
     if (parts%sound) then
       do b = 1, size(parts%bodies)
         associate (connectivity => parts%bodies(b)%connectivity)
           own%elements = own%elements + size(connectivity, 2)
           do e = 1, size(connectivity, 2)
-            area = area + abs(polygon_area(parts%coordinates(:, connectivity(1:4, e))))
+            area = abs(polygon_area(parts%coordinates(:, connectivity(1:4, e))))
+            own%smallest = min(own%smallest, sqrt(area))
+            own%largest = max(own%largest, sqrt(area))
           end do
         end associate
       end do
     end if
-    if (own%elements > 0) own%size = sqrt(area/own%elements)
   end function measure_own_mesh
 
   !> What was not given is taken from the deck's own mesh.
@@ -156,8 +157,8 @@ contains
     type(remesher_options_t), intent(inout) :: options
 
     if (.not. options%largest > 0) then
-      options%smallest = smallest_share*own%size
-      options%largest = largest_share*own%size
+      options%smallest = smallest_share*own%smallest
+      options%largest = largest_share*own%largest
     end if
     if (options%most_elements == 0) options%most_elements = growth*own%elements
   end subroutine complete_options
