@@ -21,7 +21,7 @@ with_h5py()
 from run_cycle import kills  # noqa: E402
 from sealed import alter, columns_of  # noqa: E402
 
-KILLS = 3
+KILLS = 2
 REMDATA = os.path.join(os.path.abspath(BIN), "remdata")
 # The remesher with a fault in the first mesh it makes; as ever, that mesh is there as a whole or not.
 FAULTY = """#!{python}
