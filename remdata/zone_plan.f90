@@ -11,6 +11,7 @@
 !> No quadrilateral has a corner of 180 degrees: where one corner of a body's only zone has become flat, the zone is a triangle to
 !> be divided into three, and the flat corner is a point of its long side.
 module zone_plan
+  use body_outlines, only: refuse_inner_sets
   use contour_chain, only: arc_at, chain_length, chain_t, kind_corner, kind_entry, kind_exit, place_at_arc, place_t, point_on, &
                            turn_at
   use contour_match, only: place_of_old
@@ -120,6 +121,8 @@ contains
     type(place_t), allocatable :: marked(:)
     integer :: c, k, n
 
+    call refuse_inner_sets(scene, contours, error)
+    if (allocated(error)) return
     allocate (marked(0))
     if (size(contours) == 1) then
       associate (chain => contours(1)%chain, tags => contours(1)%tags)
