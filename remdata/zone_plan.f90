@@ -11,6 +11,7 @@
 !> Zones with a corner that has become flat are divided (flat_corners).
 module zone_plan
   use block_mesh, only: polygon_area
+  use body_outlines, only: refuse_inner_sets
   use contour_chain, only: arc_at, chain_length, chain_t, kind_corner, kind_entry, kind_exit, place_t, turn_at
   use contour_match, only: place_of_old
   use derived_zones, only: one_zone
@@ -108,6 +109,8 @@ contains
     type(place_t), allocatable :: marked(:)
     integer :: c, k, n
 
+    call refuse_inner_sets(scene, contours, error)
+    if (allocated(error)) return
     allocate (marked(0))
     if (size(contours) == 1) then
       associate (chain => contours(1)%chain, tags => contours(1)%tags)

@@ -18,7 +18,7 @@ module body_outlines
   use zones, only: follows_contour, layout_t, side_t, zone_point_t
   implicit none
   private
-  public :: outline_t, find_outlines, lay_out_outlines, divide_outlines
+  public :: outline_t, find_outlines, refuse_inner_sets, lay_out_outlines, divide_outlines
 
   !> A body in one piece: its group in the scene, and its contours.
   type :: outline_t
@@ -42,6 +42,7 @@ contains
     integer :: body(size(contours)), c, n
 
     call refuse_shared_nodes(scene, error)
+    if (.not. allocated(error)) call refuse_inner_sets(scene, contours, error)
     if (allocated(error)) return
     do c = 1, size(contours)
       body(c) = contours(c)%loop%body
@@ -86,6 +87,26 @@ contains
       end do
     end do
   end subroutine refuse_shared_nodes
+
+  !> Sets of sides go with contours: one inside a body would be lost.
+  pure subroutine refuse_inner_sets(scene, contours, error)
+    type(scene_t), intent(in) :: scene
+    type(contour_t), intent(in) :: contours(:)
+    type(error_t), allocatable, intent(out) :: error
+    integer :: s, c, found
+
+    do s = 1, size(scene%mesh%sides)
+      found = 0
+      do c = 1, size(contours)
+        found = found + count(contours(c)%tags%on_set(s, :))
+      end do
+      if (found >= size(scene%mesh%sides(s)%nodes, 2)) cycle
+      call fail(error, exit_input, 'remdata: the sides '//scene%mesh%sides(s)%name &
+                //' lie inside a body: a new mesh has other ones there', &
+                'name sides on the contour, or make the mesh of BLOCK cards')
+      return
+    end do
+  end subroutine refuse_inner_sets
 
   !> Group of the body a contour goes around.
   pure function group_of(scene, loop, number) result(group)

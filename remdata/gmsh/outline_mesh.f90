@@ -7,7 +7,7 @@ module outline_mesh
   use body_outlines, only: divide_outlines, lay_out_outlines, outline_t
   use contour_chain, only: chain_t, place_t, turn_at
   use errors, only: error_t
-  use opened_corners, only: open_flat_corners
+  use flat_quads, only: open_flat_corners
   use gmsh_call, only: gmsh_t, mesh_outline
   use gmsh_files, only: quads_t, refuse_mesh
   use kinds, only: pi, wp

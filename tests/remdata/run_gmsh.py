@@ -267,6 +267,13 @@ def bodies(checks):
     result, _ = remdata(checks.path("bracket", "bracket.ckp.h5"), checks.path("none.h5"), REMDATA_GMSH=checks.path("none"))
     checks.that("corners cannot be meshed without zones" in result.stderr and "libgmsh-dev" in result.stderr,
                 "no zones and no Gmsh: told", result.stderr)
+    # sides inside a body have no place on another mesh, whoever makes it
+    for mesher in ("ZONES", "GMSH"):
+        name = f"inner sides, {mesher}"
+        text = ring().replace("SIDES  rim", "SIDES  inner\n   5 2\nSIDES  rim").replace("FIXED  rim XY", "FIXED  rim XY\nFIXED  inner X")
+        text = text.replace("   TIMES 0.5", f"   TIMES 0.5\n   MESHER {mesher}")
+        result, _ = remdata(stop_of(checks, f"inner_{mesher}", text), checks.path("inner.h5"))
+        checks.that(result.returncode == INPUT and "the sides inner lie inside a body" in result.stderr, name, said(result))
     # bodies that share sides are blocks, hence zones; Gmsh alone does not keep what is between them
     result, facts = remdata(stop_of(checks, "blocks", TWO_BLOCKS.format(more="")), checks.path("blocks.h5"))
     checks.that(result.returncode == DONE and facts["mesh"]["mesher"] == "zones", "joined blocks: by zones", said(result))
