@@ -72,7 +72,7 @@ contains
     type(string_t) :: lines(3)
 
     associate (accept => scene%remesher%accept)
-      lines(1)%s = '  first residual '//held(balance%place%relative, accept%first_residual)//', iterations ' &
+      lines(1)%s = '  first residual '//held(balance%first_residual, accept%first_residual)//', iterations ' &
                    //to_text(balance%iterations)//' (limit '//to_text(accept%iterations)//')'
       lines(2)%s = '  change of die force '//held(force_change(balance), accept%force_change)//', of elastic energy ' &
                    //held(energy_change(balance), accept%energy_change)//', of depth ' &
@@ -111,8 +111,8 @@ contains
     if (balance%depth_change > accept%depth_change) then
       what = 'sides lie '//to_text(balance%depth_change, 3)//' times what is allowed from where they bore their pressure, ' &
              //'at most '//to_text(accept%depth_change, 3)
-    else if (balance%place%relative > accept%first_residual) then
-      what = 'the first residual is '//to_text(balance%place%relative, 3)//' of the forces at dies, supports and loads, at most ' &
+    else if (balance%first_residual > accept%first_residual) then
+      what = 'the first residual is '//to_text(balance%first_residual, 3)//' of the stress, in the norm of energy, at most ' &
              //to_text(accept%first_residual, 3)
     else if (.not. balance%restored) then
       what = 'equilibrium is not restored'

@@ -124,7 +124,7 @@ contains
     integer :: k
 
     write (listing%unit, '(a)') 'mesh '//to_text(scene%generation)//'  after step '//to_text(solution%step)//'  time ' &
-      //to_text(solution%time)//'  first residual '//to_text(balance%place%relative, 3)//'  iterations ' &
+      //to_text(solution%time)//'  first residual '//to_text(balance%first_residual, 3)//'  iterations ' &
       //to_text(balance%iterations)//' in '//to_text(balance%parts)//' part'//trim(merge('s', ' ', balance%parts > 1)) &
       //'  motion/size '//to_text(balance%motion, 3)
     call list_iterations(listing, outcome)

@@ -51,7 +51,7 @@ contains
     call json%add('generation', scene%generation)
     call json%add('remesh_refused', balance%refused)
     if (allocated(balance%stage)) call json%add('stage', balance%stage)
-    call json%add('first_residual', balance%place%relative)
+    call json%add('first_residual', balance%first_residual)
     call json%add('iterations', balance%iterations)
     call json%add('force_change', force_change(balance))
     call json%add('energy_change', energy_change(balance))
@@ -65,6 +65,7 @@ contains
       call json%add('depth_change_limit', accept%depth_change)
       call json%add('least_scaled_jacobian_limit', bad_shape)
     end associate
+    call json%add('first_residual_over_forces', balance%place%relative)
     call json%add('residual_at_contact', balance%place%at_contact)
     if (balance%place%node > 0) call json%add('residual_node', scene%mesh%labels(balance%place%node))
     call json%add('carried_force_change', carried_change(balance))

@@ -11,8 +11,10 @@ module restore_balance
   use accept_step, only: accept_balance
   use dies, only: is_deformable
   use elem_api, only: block_done, report_t, totals_t
-  use equations, only: equations_t, evaluate, external_forces
+  use equations, only: equations_t, evaluate, external_forces, solve_correction
+  use errors, only: error_t
   use kinds, only: wp
+  use linear_solver, only: try_without_pivoting
   use newton, only: outcome_t, solve_step
   use residual_place, only: least_shape, place_residual, residual_place_t
   use scene, only: scene_t
@@ -30,7 +32,8 @@ module restore_balance
     !> The remesh is refused, by the fault of this stage.
     logical :: refused = .false.
     character(len=:), allocatable :: stage
-    !> The first residual, and where it sits.
+    !> The first residual: by the energy of the linear correction it asks for, and where it sits.
+    real(wp) :: first_residual = 0.0_wp
     type(residual_place_t) :: place
     !> Least scaled Jacobian of an element of the mesh.
     real(wp) :: shape = 1.0_wp
@@ -66,7 +69,7 @@ contains
     type(balance_t), intent(inout) :: balance   !! `before` is known
     type(outcome_t), intent(out) :: outcome
     real(wp), dimension(equations%dofs%ndof) :: external, rest
-    real(wp) :: left, part, started
+    real(wp) :: left, part, started, work
     type(report_t) :: report
 
     started = wall_seconds()
@@ -77,12 +80,13 @@ contains
     call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report)
     balance%depth_change = depth_change(scene, solution)
     call keep_pressures(scene, solution)
-    call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report)
+    call evaluate(scene, equations, solution, 0.0_wp, rest, .true., report)
     allocate (balance%pilot_carried, source=solution%pilot_applied)
     if (report%status == block_done) call book_carried(scene, equations, balance%pilot_carried)
     rest = external - equations%force
     where (equations%dofs%equation == 0) rest = 0
     call place_residual(scene, equations%dofs, external, equations%magnitude, rest, balance%place)
+    call work_of_correction(equations, rest, work)
     left = 1
     part = 1
     do while (left > 0)
@@ -100,12 +104,41 @@ contains
       end if
     end do
     balance%restored = .not. left > 0
+    balance%first_residual = relative_distance(work, max(balance%before%elastic_energy, balance%after%elastic_energy))
     if (allocated(outcome%reason)) balance%reason = outcome%reason
     balance%motion = maxval(abs(solution%displacement))/equations%size
     allocate (balance%pilot_after, source=solution%pilot_applied)
     if (balance%restored) solution%unbalanced = .false.
     balance%wall = wall_seconds() - started
   end subroutine restore_equilibrium
+
+  !> Twice the elastic energy of the linear correction that a residual asks for: r . K^-1 r.
+  subroutine work_of_correction(equations, residual, work)
+    type(equations_t), intent(inout) :: equations
+    real(wp), intent(in) :: residual(:)
+    real(wp), intent(out) :: work
+    real(wp) :: correction(size(residual))
+    type(error_t), allocatable :: error
+
+    work = 0
+    if (.not. any(abs(residual) > 0)) return
+    call try_without_pivoting(equations%solver)
+    call solve_correction(equations, residual, correction, error)
+    work = abs(dot_product(residual, correction))
+    ! what no linear correction removes is as large as it can be; Newton's method then tells more
+    if (allocated(error)) work = huge(work)
+  end subroutine work_of_correction
+
+  !> Distance from equilibrium in the norm of energy, as errors of the stress are measured (page on errors; Zienkiewicz and Zhu,
+  !> Int. J. Num. Meth. Eng. 24 (1987) 337-357): sqrt(r . K^-1 r/2 over the elastic energy). Unlike a norm of forces it does not
+  !> depend on how fine the mesh is, nor on how few nodes bear the load.
+  pure function relative_distance(work, energy) result(distance)
+    real(wp), intent(in) :: work, energy
+    real(wp) :: distance
+
+    distance = 0
+    if (work > 0) distance = sqrt(0.5_wp*min(work/max(energy, tiny(energy)), huge(energy)))
+  end function relative_distance
 
   !> The penalty of contact goes with the length of sides: at the depth that was kept, sides of another length bear another
   !> pressure. The multiplier takes the difference, so that every closed point begins with the pressure that was carried.

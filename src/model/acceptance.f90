@@ -23,8 +23,10 @@ module acceptance
     !> Change of the depth in a die, in the mean of its pressures, over the penetration the deck allows and a thousandth of the side
     !> (found: up to 0.3): above 1 the contour is another one than that which bore the pressures.
     real(wp) :: depth_change = 1.0_wp
-    !> Least step on probation over the least before: four cuts in a row are forgiven (1/16), a fifth is not.
-    real(wp) :: step_ratio = 0.05_wp
+    !> Least step on probation over the least before: seven cuts in a row are forgiven (1/128), an eighth is not. (The first step
+    !> returns to the yield surface what was carried past it, and finds the new points of contact; six cuts have been found on meshes
+    !> that went well.)
+    real(wp) :: step_ratio = 0.005_wp
   end type acceptance_t
 
   !> Lengths that the step strategy stood at: a step shortened to hit a time, or the moment when contact begins, tells nothing of
