@@ -58,6 +58,7 @@ contains
         one%stretches = stretch_of([i, k])
         if (may_touch(chains, on_die, one)) cycle
         call find_crossing(chains(one%chains(1)), chains(one%chains(2)), one, crossed)
+        if (crossed) crossed = .not. is_end_of_die(chains, on_die, one)
         if (crossed) laps = [laps, one]
       end do
     end do
@@ -100,6 +101,31 @@ contains
       end associate
     end do
   end function may_touch
+
+  !> One stretch goes on over the end of the deformable die that it follows: deep in the die, it leaves it across the side behind.
+  pure function is_end_of_die(chains, on_die, lap) result(yes)
+    type(chain_t), intent(in) :: chains(:)
+    integer, intent(in) :: on_die(:, :)
+    type(lap_t), intent(in) :: lap
+    logical :: yes
+    integer :: k, i, n, die, stretch, before
+
+    yes = .false.
+    do k = 1, 2
+      die = chains(lap%chains(k))%stretches(lap%stretches(k))%die
+      if (die == 0) cycle
+      associate (other => chains(lap%chains(3 - k)), on => on_die(:, lap%chains(3 - k)))
+        n = size(other%stretches)
+        do i = 0, 1
+          stretch = modulo(lap%stretches(3 - k) + i - 1, n) + 1
+          before = modulo(stretch - 2, n) + 1
+          if (on(other%stretches(stretch)%side) /= die .and. on(other%stretches(before)%side) /= die) cycle
+          yes = yes .or. length_of(joint_point(other, stretch) - lap%point) &
+                <= oblique*maxval(abs(chains(lap%chains(k))%stretches(lap%stretches(k))%depth))
+        end do
+      end associate
+    end do
+  end function is_end_of_die
 
   !> The first crossing of two stretches, if there is one besides a joint that they share.
   pure subroutine find_crossing(chain, other, lap, crossed)

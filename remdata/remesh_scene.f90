@@ -88,7 +88,6 @@ contains
     if (.not. allocated(error)) call start_solution(old, before)
     if (.not. allocated(error)) call read_checkpoint(options%checkpoint, old, before, error)
     if (.not. allocated(error)) call read_contact_ends(options%checkpoint, ends, error)
-    if (.not. allocated(error)) call refuse_what_is_not_offered(old, error)
     if (allocated(error)) return
     first = lacks_mesh(old)
     call take_options(options, old)
@@ -161,17 +160,6 @@ contains
     facts%stage = 'contact'
     call carry_contacts(old, before, contours, mesh, new, after, facts%contacts)
   end subroutine carry_state
-
-  subroutine refuse_what_is_not_offered(scene, error)
-    type(scene_t), intent(in) :: scene
-    type(error_t), allocatable, intent(inout) :: error
-    integer :: k
-
-    do k = 1, size(scene%dies)
-      if (is_deformable(scene%dies(k))) call fail(error, exit_input, 'remdata: DIE '//scene%dies(k)%name &
-                                        //' is made of sides: scenes with bodies that touch one another cannot be remeshed yet')
-    end do
-  end subroutine refuse_what_is_not_offered
 
   !> What the command line says in place of the deck.
   subroutine take_options(options, scene)
