@@ -18,7 +18,8 @@ module remesh_scene
   use kinds, only: wp
   use mesh_prediction, only: predict, prediction_t
   use mesh_without_zones, only: mesh_freely
-  use new_mesh_check, only: mesh_check_t, check_new_mesh
+  use new_mesh_check, only: check_new_mesh, check_shape, mesh_check_t
+  use pair_fit, only: find_feet, fit_pairs
   use new_scene, only: set_up_new_scene
   use part_contour, only: build_contours, contour_options_t, contour_report_t, contour_t
   use remesh_options, only: remesh_options_t
@@ -53,6 +54,8 @@ module remesh_scene
     type(transfer_report_t) :: transfer
     !> Integrals of contact along its runs.
     type(balance_t), allocatable :: contacts(:)
+    !> Largest way of a node to fit a die made of sides, over its side.
+    real(wp) :: fit = 0.0_wp
     !> Sizes are so many times the wanted ones, for the limit on the number of elements.
     real(wp) :: coarser = 1.0_wp
     !> The errors expected of the new mesh, over those its sizes were wanted for.
@@ -114,6 +117,9 @@ contains
     if (allocated(error)) return
     call set_up_new_scene(old, contours, plan, mesh, new, error)
     if (allocated(error)) return
+    call fit_pairs(contours, mesh, new, facts%fit)
+    if (facts%fit > 0) call check_shape(mesh, facts%mesh, error)
+    if (allocated(error)) return
     call start_solution(new, after)
     if (first) then
       new%mesh%origin = new%mesh%coordinates
@@ -159,6 +165,7 @@ contains
     if (allocated(error)) return
     facts%stage = 'contact'
     call carry_contacts(old, before, contours, mesh, new, after, facts%contacts)
+    call find_feet(new, after)
   end subroutine carry_state
 
   !> What the command line says in place of the deck.
