@@ -80,7 +80,8 @@ contains
         balance%first_residual = outcome%history(1)%force_norm
       balance%iterations = balance%iterations + outcome%iterations
       if (outcome%converged) then
-        call accept_balance(scene, equations, outcome, solution, balance%after)
+        call accept_balance(scene, equations, outcome, solution, balance%after, outcome%error)
+        if (allocated(outcome%error)) return
         balance%parts = balance%parts + 1
         left = left - part
         part = min(2*part, left)
