@@ -9,6 +9,7 @@
 !> the yield surface the first step of the march returns, while the dies move on.
 module restore_balance
   use accept_step, only: accept_balance
+  use bookkeeping, only: pressed_on
   use elem_api, only: report_t, totals_t
   use equations, only: equations_t, evaluate, external_forces
   use kinds, only: wp
@@ -39,6 +40,8 @@ module restore_balance
     type(totals_t) :: before, after
     !> Force on each pilot before (as the old mesh had it) and after (3, ndie).
     real(wp), allocatable :: pilot_before(:, :), pilot_after(:, :)
+    !> What presses on each die made of sides, sizes added up (ndie).
+    real(wp), allocatable :: pressed(:)
     character(len=:), allocatable :: reason
     !> Seconds on the wall.
     real(wp) :: wall = 0.0_wp
@@ -61,6 +64,7 @@ contains
     real(wp), dimension(equations%dofs%ndof) :: external, rest
     real(wp) :: left, part, started
     type(report_t) :: report
+    integer :: k
 
     started = wall_seconds()
     allocate (balance%pilot_before, source=solution%pilot_applied)
@@ -94,6 +98,10 @@ contains
     if (allocated(outcome%reason)) balance%reason = outcome%reason
     balance%motion = maxval(abs(solution%displacement))/equations%size
     allocate (balance%pilot_after, source=solution%pilot_applied)
+    allocate (balance%pressed(size(scene%dies)))
+    do k = 1, size(balance%pressed)
+      balance%pressed(k) = pressed_on(scene, equations, k)
+    end do
     if (balance%restored) solution%unbalanced = .false.
     balance%wall = wall_seconds() - started
   end subroutine restore_equilibrium
@@ -119,7 +127,7 @@ contains
     end do
   end subroutine keep_pressures
 
-  !> Change of the force of a die over the largest force on any: the worst.
+  !> Change of the force of a die over the largest force on any, or what presses on one: the worst.
   pure function force_change(balance) result(change)
     type(balance_t), intent(in) :: balance
     real(wp) :: change
@@ -127,7 +135,7 @@ contains
     integer :: k
 
     change = 0
-    largest = 0
+    largest = maxval([0.0_wp, balance%pressed])
     do k = 1, size(balance%pilot_before, 2)
       largest = max(largest, length_of(balance%pilot_before(1:2, k)))
       change = max(change, length_of(balance%pilot_after(1:2, k) - balance%pilot_before(1:2, k)))
