@@ -158,6 +158,8 @@ contains
     do k = 1, size(new%dies)
       associate (die => new%dies(k))
         if (.not. is_deformable(die)) cycle
+        ! a scene without a mesh has no sides: its deck finds them on the first one
+        if (size(die%nodes, 2) == 0) cycle
         call gather_sides(old%mesh%sides, old%dies(k)%nodes(2, :), new%mesh%sides, sides)
         call chain_of_sides(sides, die%nodes)
         if (size(die%nodes, 2) == 0 .or. size(die%nodes, 2) < size(sides, 2)) then
