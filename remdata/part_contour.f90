@@ -135,7 +135,7 @@ contains
     report%largest_shift = maxval([0.0_wp, abs(contours%shift)])
     report%largest_move = maxval([0.0_wp, contours%largest_move])
     report%volume_error = maxval([0.0_wp, abs(contours%volume_after - contours%volume_before)/abs(contours%volume_before)])
-    call refuse_laps(contours, report%laps, error)
+    call refuse_laps(scene, contours, report%laps, error)
   end subroutine build_contours
 
   !> Nodes that loops pass more than once: where two of them touch they must not come apart.
@@ -322,22 +322,28 @@ contains
   end subroutine list_limits
 
   !> A contour that crosses itself or another one cannot be meshed.
-  subroutine refuse_laps(contours, laps, error)
+  subroutine refuse_laps(scene, contours, laps, error)
+    type(scene_t), intent(in) :: scene
     type(contour_t), intent(in) :: contours(:)
     type(lap_t), allocatable, intent(inout) :: laps(:)
     type(error_t), allocatable, intent(out) :: error
     type(chain_t) :: chains(size(contours))
     integer, allocatable :: on_die(:, :)
-    integer :: k, i
+    logical, allocatable :: faces(:, :, :)
+    integer :: k, i, g
 
     allocate (on_die(maxval([1, (size(contours(k)%loop%sides, 2), k=1, size(contours))]), size(contours)), source=0)
+    allocate (faces(size(scene%dies), size(on_die, 1), size(contours)), source=.false.)
     do k = 1, size(contours)
       chains(k) = contours(k)%chain
       do i = 1, size(contours(k)%loop%sides, 2)
         on_die(i, k) = findloc(contours(k)%tags%on_die(:, i), .true., 1)
+        do g = 1, size(scene%groups)
+          if (scene%groups(g)%die > 0 .and. contours(k)%tags%on_group(g, i)) faces(scene%groups(g)%die, i, k) = .true.
+        end do
       end do
     end do
-    call find_laps(chains, on_die, laps)
+    call find_laps(chains, on_die, faces, laps)
     if (size(laps) == 0) return
     call fail(error, exit_no_convergence, 'the contour has '//to_text(size(laps))//' lap'//trim(merge('s', ' ', size(laps) > 1)) &
               //', the first at x = '//to_text(laps(1)%point(1))//', y = '//to_text(laps(1)%point(2)), &
