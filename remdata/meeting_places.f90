@@ -1,7 +1,7 @@
 !> Places of a contour where contact with another body begins or ends: the pressure jumps there, and a node is wanted.
 !>
-!> The body that faces a die made of sides has its own nodes there: entries and exits of its contour. The body whose sides the die is
-!> made of carries the same pressure, from the feet of these places on.
+!> The body that faces a die made of sides has its own nodes there: entries and exits of its contour. The body whose sides
+!> the die is made of carries the same pressure, from the feet of these places on.
 module meeting_places
   use boundary_sides, only: loop_t
   use contact_runs, only: spot_t

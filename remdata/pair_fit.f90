@@ -3,7 +3,7 @@
 !> The contour of a body in contact with a die made of sides follows the old sides of that die at the depth d = p/AKP (annex 2). The
 !> die's own sides are new too: other parabolas through points of the old ones, which they leave between these points by a share
 !> of what a side is bent. Nodes in contact are moved along the normal by that much, so that each is as deep in the new sides
-!> as it was to be in the old ones. A node where contact meets another side of its body, or another die, stays on that: it moves along it.
+!> as it was to be in the old ones. A node where contact meets another side of its body, or another die, moves along that.
 module pair_fit
   use contact_knots, only: find_knot
   use contact_stretches, only: knot_t, placed_piece
