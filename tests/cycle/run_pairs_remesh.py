@@ -45,10 +45,10 @@ def remeshed(checks, name, text, count, largest_residual=SMALL_RESIDUAL, largest
     made = [t for t in made if t["accepted"] == "y"]
     for one in made:
         generation = int(one["generation [-]"])
-        start, restart = facts(out, generation, "start"), facts(out, generation, "restart")
-        where = f"{name}: mesh {generation}"
+        start, where = facts(out, generation, "start"), f"{name}: mesh {generation}"
         if start["old_elements"] == 0:
             continue
+        restart = facts(out, generation, "restart")
         checks.that(restart["first_residual"] < largest_residual, f"{where}: first residual below {largest_residual}",
                     restart["first_residual"])
         checks.that(restart["force_change"] < largest_change, f"{where}: equilibrium changes the force by less than {largest_change:.0%}",
@@ -218,9 +218,28 @@ def patch(checks):
             action_and_reaction(checks, f"patch-{state}", rows, "force_y_bed", "below")
 
 
+def contours(checks):
+    """Bodies without a mesh that face each other: their first meshes, and those after them."""
+    text = ("TITLE  Two rings of contours\nSTATE  AXISYM\nKINEM  LOG\n"
+            "BODY   ring PL8LS 9 m\n   SEGM 20. 0.   30. 0.\n   SEGM 30. 0.   30. 10.\n   SEGM 30. 10.   20. 10.\n   SEGM 20. 10.   20. 0.\n"
+            "BODY   hub PL8LS 9 m\n   SEGM 30. 0.   40. 0.\n   SEGM 40. 0.   40. 10.\n   SEGM 40. 10.   30. 10.\n   SEGM 30. 10.   30. 0.\n"
+            + "".join(f"ZPNT   {name}{k} CORNER {x} {y}\n" for name, inner, outer in (("r", 20, 30), ("h", 30, 40))
+                      for k, (x, y) in enumerate(((inner, 0), (outer, 0), (outer, 10), (inner, 10))))
+            + "ZONE   r ring\n   r0 r1 r2 r3\nZONE   h hub\n   h0 h1 h2 h3\n"
+            "LAW    m ELA\n   210000. 0.3\nLAW    c COUL2D\n   PENETR 1.E-3   PHI 0.1\nDIE    bore SIDES hub 4\nCNT2D  ring 2 bore -3 c\n"
+            "FIXED  hub 1 Y\nFIXED  ring 1 Y\nPRES2D ring 4 3 100. t\nLIC    t\n   0. 0.   1. 1.\n"
+            "STRAT  0.25 1.E-4 0.25   8 3\nSTOP   1.\nEND\n")
+    rows = remeshed(checks, "contours", add_cards(text, remesh("0.5 0.75", "1.5 3.")), 3)
+    if rows is None:
+        return
+    no_jumps(checks, "contours", rows, "force_x_bore")
+    # G. Lame: pressure 100 in the bore of one ring 20 to 40 is 100 (40**2/30**2 - 1)/(40**2/20**2 - 1) at 30
+    near(checks, rows["force_x_bore"][-1]/BORE, 100*(40**2/30**2 - 1)/(40**2/20**2 - 1), 0.01, "contours: Lame's pressure between the rings")
+
+
 def main():
     checks = Checks()
-    for case in (press_fit, drive_on, sliding, tool, rings, corner, patch):
+    for case in (press_fit, drive_on, sliding, tool, rings, corner, patch, contours):
         case(checks)
     checks.end()
 
