@@ -12,7 +12,7 @@ import sys
 
 sys.dont_write_bytecode = True
 from remeshed import ROOT, cycle, facts, jump, tries  # noqa: E402
-from support import DONE, Checks, add_cards, deck_text, history, run, said, write  # noqa: E402
+from support import DONE, Checks, add_cards, deck_text, history, run, said, summary, write  # noqa: E402
 
 FOLDER = os.path.join(ROOT, "decks", "press_fit")
 LAME = 210000*0.03/30*(40**2 - 30**2)*(30**2 - 20**2)/(2*30**2*(40**2 - 20**2))
@@ -54,11 +54,18 @@ def remeshed(checks, name, text, count, largest_residual=SMALL_RESIDUAL, largest
         checks.that(restart["force_change"] < largest_change, f"{where}: equilibrium changes the force by less than {largest_change:.0%}",
                     restart["force_change"])
         checks.that(start["mesh"]["pair_fit"] < 1e-2, f"{where}: nodes are fitted by less than 1 % of a side", start["mesh"]["pair_fit"])
-        change = restart["volume_after"]/restart["volume_before"] - 1
-        checks.that(abs(change) < VOLUME, f"{where}: equilibrium keeps the volume", change)
+        for change, what in ((restart["volume_after"]/restart["volume_before"] - 1, "equilibrium"),
+                             (restart["volume_before"]/volume_at(out, int(one["step [-]"])) - 1, "the mesh")):
+            checks.that(abs(change) < VOLUME, f"{where}: {what} keeps the volume", change)
     rows = history(out)
     rows["made at"] = [int(one["step [-]"]) for one in made if int(one["step [-]"]) > 1]
     return rows
+
+
+def volume_at(out, step):
+    """Volume of all bodies after a step."""
+    rows = history(out)
+    return summary(out)["initial_volume"]*(1 + rows["volume_drift"][rows["step"].index(step)])
 
 
 def plain(checks, name, text):
