@@ -188,6 +188,24 @@ def rings(checks):
     remeshed(checks, "rings", add_cards(text, remesh("1. 1.5", "2. 6.")), 2)
 
 
+def arcs(checks):
+    """A quarter of the same rings on few elements: parabolas through points of others leave them by as much as the bodies are deep in
+    each other. Without the fit the second mesh begins with a residual of 0.3."""
+    text = "TITLE  A quarter of a ring in a ring\nSTATE  PLSTN\nKINEM  LOG\n"
+    for name, inner, outer, n in (("inner", 20, 30.03, 6), ("outer", 30, 40, 4)):
+        text += (f"BLOCK  {name} PL8LS 9 m\n   {inner} 0. {outer} 0. 0. {outer} 0. {inner}\n   3 1. {n} 1.\n"
+                 f"   SIDE 2 ARC 0. 0.\n   SIDE 4 ARC 0. 0.\nFIXED  {name} 1 Y\nFIXED  {name} 3 X\n")
+    text += ("LAW    m ELA\n   210000. 0.3\nLAW    c COUL2D\n   PHI 0.   PENETR 1.E-3\nDIE    hub SIDES outer 4\nCNT2D  inner 2 hub -9 c\n"
+             "LIC    t\n   0. 0.   1. 0.   2. 1.\nPRES2D outer 2 3 20. t\nSTRAT  0.25 1.E-3 0.25   8 3\nSTOP   2.\nEND\n")
+    rows = remeshed(checks, "arcs", add_cards(text, remesh("1. 1.5", "4. 12.")), 2)
+    if rows is None:
+        return
+    no_jumps(checks, "arcs", rows, "force_x_hub")
+    # G. Lame, plane strain: the fit, and what 20 on the outside leaves at the radius 30
+    pressure = LAME/(1 - 0.3**2) + 20*40**2/(40**2 - 20**2)*(1 - 20**2/30**2)
+    near(checks, rows["force_x_hub"][-1], 30*pressure, 0.015, "arcs: Lame's pressure")
+
+
 def corner(checks):
     """A block in a corner between two bodies, and one on another that both face each other: forces as on the deck's meshes."""
     ends = "NORMS  FORCE 1.E-9 DISPL 1.E-8\nSTRAT  0.25 1.E-5 0.25   8 3\nSTOP   1.\nEND\n"
@@ -246,7 +264,7 @@ def contours(checks):
 
 def main():
     checks = Checks()
-    for case in (press_fit, drive_on, sliding, tool, rings, corner, patch, contours):
+    for case in (press_fit, drive_on, sliding, tool, rings, arcs, corner, patch, contours):
         case(checks)
     checks.end()
 
