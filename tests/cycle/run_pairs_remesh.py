@@ -197,7 +197,7 @@ def arcs(checks):
                  f"   SIDE 2 ARC 0. 0.\n   SIDE 4 ARC 0. 0.\nFIXED  {name} 1 Y\nFIXED  {name} 3 X\n")
     text += ("LAW    m ELA\n   210000. 0.3\nLAW    c COUL2D\n   PHI 0.   PENETR 1.E-3\nDIE    hub SIDES outer 4\nCNT2D  inner 2 hub -9 c\n"
              "LIC    t\n   0. 0.   1. 0.   2. 1.\nPRES2D outer 2 3 20. t\nSTRAT  0.25 1.E-3 0.25   8 3\nSTOP   2.\nEND\n")
-    rows = remeshed(checks, "arcs", add_cards(text, remesh("1. 1.5", "4. 12.")), 2)
+    rows = remeshed(checks, "arcs", add_cards(text, remesh("0.5 1.5", "4. 12.")), 2)
     if rows is None:
         return
     no_jumps(checks, "arcs", rows, "force_x_hub")
