@@ -19,7 +19,8 @@ module remesh_scene
   use kinds, only: wp
   use mesh_prediction, only: predict
   use mesh_without_zones, only: mesh_freely
-  use new_mesh_check, only: check_new_mesh
+  use new_mesh_check, only: check_new_mesh, check_shape, mesh_check_t
+  use pair_fit, only: find_feet, fit_pairs
   use new_scene, only: set_up_new_scene
   use part_contour, only: build_contours, contour_options_t, contour_t
   use remesh_facts, only: begin_task, end_task, remesh_facts_t
@@ -67,7 +68,6 @@ contains
     facts%mesher = 'zones'
     call begin_task(facts, 'checkpoint', 'read')
     call read_all(options%checkpoint, deck_path, deck_text, old, before, ends, error)
-    if (.not. allocated(error)) call refuse_what_is_not_offered(old, error)
     if (allocated(error)) return
     first = lacks_mesh(old)
     call take_options(options, old)
@@ -98,6 +98,9 @@ contains
     end if
     if (allocated(error)) return
     call set_up_new_scene(old, contours, plan, mesh, new, error)
+    if (allocated(error)) return
+    call fit_pairs(contours, mesh, new, facts%fit)
+    if (facts%fit > 0) call check_shape(mesh, facts%mesh, error)
     if (allocated(error)) return
     call start_solution(new, after)
     if (first) then
@@ -166,18 +169,8 @@ contains
     if (allocated(error)) return
     call begin_task(facts, 'contact', 'contact')
     call carry_contacts(old, before, contours, mesh, new, after, facts%contacts)
+    call find_feet(new, after)
   end subroutine carry_state
-
-  subroutine refuse_what_is_not_offered(scene, error)
-    type(scene_t), intent(in) :: scene
-    type(error_t), allocatable, intent(inout) :: error
-    integer :: k
-
-    do k = 1, size(scene%dies)
-      if (is_deformable(scene%dies(k))) call fail(error, exit_input, 'remdata: DIE '//scene%dies(k)%name &
-                                        //' is made of sides: scenes with bodies that touch one another cannot be remeshed yet')
-    end do
-  end subroutine refuse_what_is_not_offered
 
   !> What the command line says in place of the deck.
   subroutine take_options(options, scene)

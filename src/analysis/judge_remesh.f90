@@ -24,12 +24,12 @@ module judge_remesh
 
 contains
 
-  !> Change of the force of a die over the largest force on any: the worst.
+  !> Change of the force of a die over the largest force on any, or what presses on one made of sides: the worst.
   pure function force_change(balance) result(change)
     type(balance_t), intent(in) :: balance
     real(wp) :: change
 
-    change = worst_change(balance%pilot_before, balance%pilot_after)
+    change = worst_change(balance, balance%pilot_after)
   end function force_change
 
   !> The same of the forces that the carried pressures make, before anything moves.
@@ -37,20 +37,21 @@ contains
     type(balance_t), intent(in) :: balance
     real(wp) :: change
 
-    change = worst_change(balance%pilot_before, balance%pilot_carried)
+    change = worst_change(balance, balance%pilot_carried)
   end function carried_change
 
-  pure function worst_change(before, after) result(change)
-    real(wp), intent(in) :: before(:, :), after(:, :)   !! (3, ndie) [force]
+  pure function worst_change(balance, after) result(change)
+    type(balance_t), intent(in) :: balance
+    real(wp), intent(in) :: after(:, :)   !! (3, ndie) [force]
     real(wp) :: change
     real(wp) :: largest
     integer :: k
 
     change = 0
-    largest = 0
-    do k = 1, size(before, 2)
-      largest = max(largest, length_of(before(1:2, k)))
-      change = max(change, length_of(after(1:2, k) - before(1:2, k)))
+    largest = maxval([0.0_wp, balance%pressed])
+    do k = 1, size(after, 2)
+      largest = max(largest, length_of(balance%pilot_before(1:2, k)))
+      change = max(change, length_of(after(1:2, k) - balance%pilot_before(1:2, k)))
     end do
     if (largest > 0) change = change/largest
   end function worst_change
