@@ -6,12 +6,13 @@ module contour_assembly
   use boundary_sides, only: loop_t
   use contact_knots, only: section_t
   use contact_runs, only: along, run_t, spot_t
-  use contact_stretches, only: follow_die
+  use contact_stretches, only: follow_die, knot_t
   use contour_chain, only: chain_t, close_chain, kind_end, kind_entry, kind_exit, kind_joint
   use dies, only: die_t, is_deformable
   use kinds, only: wp
   use side_tags, only: same_tags, side_tags_t
   use stretches, only: cross, point_at, straight, stretch_t, tangent_at
+  use sunken_ends, only: find_tail, stretches_of_tail, tail_t
   use vectors, only: length_of
   implicit none
   private
@@ -62,6 +63,7 @@ contains
     type(chain_t), intent(out) :: chain
     type(draft_t) :: draft
     type(spot_t) :: here
+    type(tail_t) :: tail
     integer :: nside, k
 
     nside = size(loop%sides, 2)
@@ -72,7 +74,16 @@ contains
     draft%closed_gap = closed_gap*maxval(maxval(x(:, loop%sides(1, :)), 2) - minval(x(:, loop%sides(1, :)), 2))
     call mark_neighbours(nside, contacts)
     do k = 1, size(contacts)
-      call add_sides(loop, tags, x, places, here, contacts(k)%run%from, draft)
+      tail = tail_t()
+      if (contacts(k)%begins) &
+        call find_tail(loop, x, contacts(k)%die, contacts(k)%pilot, contacts(k)%run%from, -1, tail)
+      if (tail%there) tail%there = along(tail%out) > along(here) + crumb
+      if (tail%there) then
+        call add_sides(loop, tags, x, places, here, tail%out, draft)
+        call add_tail(contacts(k), tail, -1, nside, draft)
+      else
+        call add_sides(loop, tags, x, places, here, contacts(k)%run%from, draft)
+      end if
       if (contacts(k)%begins) then
         draft%pending = kind_entry
       else
@@ -82,7 +93,12 @@ contains
       call add_contact(contacts(k), k, draft)
       contacts(k)%next = draft%n + 1
       here = contacts(k)%run%to
-      if (contacts(k)%ends) draft%pending = kind_exit
+      if (.not. contacts(k)%ends) cycle
+      draft%pending = kind_exit
+      call find_tail(loop, x, contacts(k)%die, contacts(k)%pilot, here, 1, tail)
+      if (.not. tail%there .or. along(tail%out) > next_spot(contacts, k, nside) - crumb) cycle
+      call add_tail(contacts(k), tail, 1, nside, draft)
+      here = tail%out
     end do
     if (size(contacts) == 0) then
       call add_sides(loop, tags, x, places, here, spot_t(nside, 1.0_wp), draft)
@@ -97,6 +113,46 @@ contains
       call make_plain(tags, contacts(mod(k, size(contacts)) + 1)%first, chain)
     end do
   end subroutine assemble_chain
+
+  !> How far the free sides after a run may go: to the next run, or to where the walk ends.
+  pure function next_spot(contacts, k, nside) result(s)
+    type(contact_t), intent(in) :: contacts(:)
+    integer, intent(in) :: k, nside
+    real(wp) :: s
+
+    if (k < size(contacts)) then
+      s = along(contacts(k + 1)%run%from)
+    else
+      s = along(first_spot(contacts, nside))
+    end if
+  end function next_spot
+
+  !> The die on the way on which a side lies in it before a run (towards = -1) or after it.
+  pure subroutine add_tail(contact, tail, towards, nside, draft)
+    type(contact_t), intent(in) :: contact
+    type(tail_t), intent(in) :: tail
+    integer, intent(in) :: towards, nside
+    type(draft_t), intent(inout) :: draft
+    type(stretch_t), allocatable :: list(:)
+    type(knot_t) :: knots(2)
+    integer :: k
+
+    if (towards < 0) then
+      draft%pending = kind_joint
+      associate (section => contact%sections(1))
+        knots = [tail%knot, section%knots(1)]
+      end associate
+    else
+      associate (section => contact%sections(size(contact%sections)))
+        knots = [section%knots(size(section%knots)), tail%knot]
+      end associate
+    end if
+    call stretches_of_tail(contact%die, contact%pilot, contact%number, modulo(tail%out%side - 1, nside) + 1, knots, list)
+    do k = 1, size(list)
+      call add(list(k), draft)
+    end do
+    if (towards > 0) draft%pending = kind_joint
+  end subroutine add_tail
 
   !> The ends of a pocket are no corners, but sets may meet there.
   pure subroutine make_plain(tags, joint, chain)
