@@ -11,7 +11,7 @@ module remesh_scene
   use contour_chain, only: chain_t
   use contour_needs, only: geometry_wish_t, needs_of_chain, needs_of_die
   use dies, only: is_deformable
-  use errors, only: error_t, exit_input, fail
+  use errors, only: error_t
   use first_contours, only: contours_of_cards
   use exchange, only: open_checkpoint, read_bare_scene, read_contact_ends, read_deck_of_checkpoint, read_state, write_checkpoint
   use gmsh_call, only: find_gmsh, gmsh_t
@@ -19,7 +19,7 @@ module remesh_scene
   use kinds, only: wp
   use mesh_prediction, only: predict
   use mesh_without_zones, only: mesh_freely
-  use new_mesh_check, only: check_new_mesh, check_shape, mesh_check_t
+  use new_mesh_check, only: check_new_mesh, check_shape
   use pair_fit, only: find_feet, fit_pairs
   use new_scene, only: set_up_new_scene
   use part_contour, only: build_contours, contour_options_t, contour_t
