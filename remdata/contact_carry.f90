@@ -72,7 +72,7 @@ contains
     if (place > 0) place = scene%groups(g)%variables(place)%first
   end function status_place
 
-  !> Components that go along the contour; those of corners of dies inside sides, of the same names, find themselves anew.
+  !> Components that go along the contour, and the depth; those of corners of dies inside sides, of the same names, find themselves anew.
   pure subroutine list_carried(scene, g, carried, conserved)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g
@@ -84,7 +84,8 @@ contains
     do v = 1, size(scene%groups(g)%variables)
       associate (variable => scene%groups(g)%variables(v))
         if (find_variable(scene%groups(g)%variables, variable%name) < v) cycle
-        if (variable%transfer /= kind_contact) cycle
+        ! the depth is found anew on the contour, and held against what it was
+        if (variable%transfer /= kind_contact .and. variable%name /= 'penetration') cycle
         carried = [carried, (variable%first + i, i=0, variable%ncomp - 1)]
         ! forces and work are sums along the run, a slip is none
         conserved = [conserved, spread(variable%unit /= 'length', 1, variable%ncomp)]

@@ -18,7 +18,7 @@ module contact_knots
   use vectors, only: length_of
   implicit none
   private
-  public :: section_t, sections_of_run, point_of_spot, find_knot
+  public :: section_t, sections_of_run, point_of_spot, find_knot, way_between
 
   !> Part of a run on sides of one kind.
   type :: section_t

@@ -76,7 +76,7 @@ contains
     do k = 1, size(contacts)
       tail = tail_t()
       if (contacts(k)%begins) &
-        call find_tail(loop, x, contacts(k)%die, contacts(k)%pilot, contacts(k)%run%from, -1, tail)
+        call find_tail(loop, x, contacts(k)%die, contacts(k)%pilot, contacts(k)%run%from, first_knot(contacts(k)), -1, tail)
       if (tail%there) tail%there = along(tail%out) > along(here) + crumb
       if (tail%there) then
         call add_sides(loop, tags, x, places, here, tail%out, draft)
@@ -95,7 +95,7 @@ contains
       here = contacts(k)%run%to
       if (.not. contacts(k)%ends) cycle
       draft%pending = kind_exit
-      call find_tail(loop, x, contacts(k)%die, contacts(k)%pilot, here, 1, tail)
+      call find_tail(loop, x, contacts(k)%die, contacts(k)%pilot, here, last_knot(contacts(k)), 1, tail)
       if (.not. tail%there .or. along(tail%out) > next_spot(contacts, k, nside) - crumb) cycle
       call add_tail(contacts(k), tail, 1, nside, draft)
       here = tail%out
@@ -139,13 +139,9 @@ contains
 
     if (towards < 0) then
       draft%pending = kind_joint
-      associate (section => contact%sections(1))
-        knots = [tail%knot, section%knots(1)]
-      end associate
+      knots = [tail%knot, first_knot(contact)]
     else
-      associate (section => contact%sections(size(contact%sections)))
-        knots = [section%knots(size(section%knots)), tail%knot]
-      end associate
+      knots = [last_knot(contact), tail%knot]
     end if
     call stretches_of_tail(contact%die, contact%pilot, contact%number, modulo(tail%out%side - 1, nside) + 1, knots, list)
     do k = 1, size(list)
@@ -153,6 +149,22 @@ contains
     end do
     if (towards > 0) draft%pending = kind_joint
   end subroutine add_tail
+
+  pure function first_knot(contact) result(knot)
+    type(contact_t), intent(in) :: contact
+    type(knot_t) :: knot
+
+    knot = contact%sections(1)%knots(1)
+  end function first_knot
+
+  pure function last_knot(contact) result(knot)
+    type(contact_t), intent(in) :: contact
+    type(knot_t) :: knot
+
+    associate (section => contact%sections(size(contact%sections)))
+      knot = section%knots(size(section%knots))
+    end associate
+  end function last_knot
 
   !> The ends of a pocket are no corners, but sets may meet there.
   pure subroutine make_plain(tags, joint, chain)

@@ -85,6 +85,11 @@ module part_contour
   !> The chain is closed within this share of its size.
   real(wp), parameter :: closed_within = 1.0e-9_wp
 
+  !> The free sides are shifted so many times at most, until the volume is the old one to the first of these shares; it is kept when it
+  !> is so to the second.
+  integer, parameter :: most_shifts = 8
+  real(wp), parameter :: same_volume = 1.0e-14_wp, kept_volume = 1.0e-13_wp
+
 contains
 
   !> Corrected contours of all loops. `error` tells laps and meshes whose sides do not fit; the report is filled as far as it
@@ -242,6 +247,8 @@ contains
     real(wp) :: moved(2, size(x, 2))
     logical :: may_move(size(contour%loop%sides, 2)), round
     type(place_t) :: place
+    real(wp) :: shift, gain
+    logical :: moves
     integer :: k, i
 
     round = scene%plane_state == axisymmetric
@@ -258,10 +265,17 @@ contains
         end do
       end associate
     end do
-    call shift_sides(contour%loop, may_move, held, round, contour%volume_before - contour%volume_after, moved, &
-                     contour%shift, contour%restored)
-    call assemble_chain(contour%loop, contour%tags, moved, options%corner_turn, places, contour%contacts, contour%chain)
-    contour%volume_after = volume_inside(contour%chain, round)
+    ! where the contour follows a die beyond the end of contact, what it leaves of a side depends on where the side lies
+    do i = 1, most_shifts
+      gain = contour%volume_before - contour%volume_after
+      if (i > 1 .and. abs(gain) <= same_volume*abs(contour%volume_before)) exit
+      call shift_sides(contour%loop, may_move, held, round, gain, moved, shift, moves)
+      if (.not. moves) exit
+      contour%shift = contour%shift + shift
+      call assemble_chain(contour%loop, contour%tags, moved, options%corner_turn, places, contour%contacts, contour%chain)
+      contour%volume_after = volume_inside(contour%chain, round)
+    end do
+    contour%restored = abs(contour%volume_before - contour%volume_after) <= kept_volume*abs(contour%volume_before)
     do k = 1, size(may_move)
       do i = 1, 2
         place = closest_place(contour%chain, x(:, contour%loop%sides(i, k)))

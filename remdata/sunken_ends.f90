@@ -1,11 +1,11 @@
 !> Free sides that lie in a die beyond an end of contact.
 !>
-!> The solver looks at a side in its points only: between the last point in contact and the first one that is free, a coarse side may
-!> cut a round die. The points of a new mesh would find themselves in the die there, with pressures that nothing bore. So the
+!> The solver looks at a side in its points only: between the last point in contact and the first one that is free, a coarse side
+!> may cut a round die. The points of a new mesh would find themselves in the die there, with pressures that nothing bore. So the
 !> contour follows the die itself on that way, to where the old side comes out of it.
 module sunken_ends
   use boundary_sides, only: loop_t
-  use contact_knots, only: find_knot, point_of_spot
+  use contact_knots, only: find_knot, point_of_spot, way_between
   use contact_runs, only: spot_t
   use contact_stretches, only: follow_die, knot_t
   use dies, only: die_t, is_deformable
@@ -25,8 +25,9 @@ module sunken_ends
 
   !> Places of what is left of a side that are looked at.
   integer, parameter :: looks = 32
-  !> A side that is less deep than this share of itself does not cut a die: half a parabola's error on an arc of one degree.
-  real(wp), parameter :: shallow = 1.0e-7_wp
+  !> A side that cuts a die is as deep in it as the first share of itself, and no deeper than the second: beyond it is another wall
+  !> of the die that was met.
+  real(wp), parameter :: shallow = 1.0e-7_wp, deep = 0.1_wp
   !> What is left of a side in half sides, when it is nothing.
   real(wp), parameter :: nothing = 1.0e-6_wp
 
@@ -34,17 +35,18 @@ contains
 
   !> The way of the side in the die beyond a beginning (towards = -1) or an end (1) of contact, on the side it is on. None where the
   !> side does not come out of the die, or has no foot on it.
-  pure subroutine find_tail(loop, x, die, pilot, from, towards, tail)
+  pure subroutine find_tail(loop, x, die, pilot, from, end_knot, towards, tail)
     type(loop_t), intent(in) :: loop
     real(wp), intent(in) :: x(:, :)        !! nodes now (2, nnode) [length]
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: pilot(3)
     type(spot_t), intent(in) :: from       !! beginning or end of contact
+    type(knot_t), intent(in) :: end_knot   !! the die there
     integer, intent(in) :: towards
     type(tail_t), intent(out) :: tail
     type(spot_t) :: here
     type(knot_t) :: knot
-    real(wp) :: start, last, deepest, low, high
+    real(wp) :: start, last, deepest, low, high, length
     integer :: k
     logical :: sound
 
@@ -62,8 +64,8 @@ contains
       deepest = max(deepest, knot%depth)
       last = here%xi
     end do
-    if (k > looks .or. deepest <= shallow*length_of(point_of_spot(loop, x, spot_t(here%side, 1.0_wp)) &
-                                                    - point_of_spot(loop, x, spot_t(here%side, -1.0_wp)))) return
+    length = length_of(point_of_spot(loop, x, spot_t(here%side, 1.0_wp)) - point_of_spot(loop, x, spot_t(here%side, -1.0_wp)))
+    if (k > looks .or. deepest <= shallow*length .or. deepest > deep*length) return
     low = last
     high = here%xi
     do while (abs(high - low) > 4*eps)
@@ -78,6 +80,7 @@ contains
     end do
     call look(here, knot, sound)
     if (.not. sound .or. abs(towards - here%xi) <= nothing) return
+    if (.not. towards*way_between(die, end_knot, knot) > 0) return
     knot%depth = 0
     tail = tail_t(.true., here, knot)
 
