@@ -2,8 +2,8 @@
 !>
 !> No quadrilateral has a corner of 180 degrees. A zone whose corner D has become flat is a triangle ABC, and D a point of its long
 !> side BC. Around a point M inside, with new points on AB and CA, it becomes (A, AB, M, CA), (B, D, M, AB) and (C, CA, M, D).
-!> Zones beyond AB and CA are divided in two, from side to opposite side, as far as the contour. Sets of sides between blocks go with
-!> the parts of their sides; those on the contour go with it.
+!> Zones beyond AB and CA are divided in two, from side to opposite side, as far as the contour. Sets of sides between blocks go
+!> with the parts of their sides; those on the contour go with it.
 module flat_corners
   use contour_chain, only: arc_at, chain_length, chain_t, place_at_arc, place_t, point_on, turn_at
   use kinds, only: pi, wp

@@ -1,8 +1,8 @@
 !> How many elements each side gets.
 !>
 !> Sides opposite in a zone have one number, hence all sides of a class, from zone to zone. A side along contours or interfaces gets
-!> what it needs, the integral of 1/h, in each part between its breaks: there the geometry has its say, and contact. The need inside a
-!> zone is measured along its two sides and seven lines between them: the mean of their mean and of their largest, so that a
+!> what it needs, the integral of 1/h, in each part between its breaks: there the geometry has its say, and contact. The need inside
+!> a zone is measured along its two sides and seven lines between them: the mean of their mean and of their largest, so that a
 !> peak that touches one line alone counts half. The class takes the largest number of its sides and zones, rounded up.
 module zone_divisions
   use contour_chain, only: chain_t, place_t
