@@ -129,7 +129,7 @@ contains
     real(wp), intent(out) :: distances(:)    !! squares [length^2]
     integer, intent(out), optional :: tried
     integer :: waiting(deepest), top, node, near, far, i, looked
-    real(wp) :: d
+    real(wp) :: waiting_at(deepest), to_near, to_far, d
 
     found = 0
     looked = 0
@@ -139,26 +139,33 @@ contains
     if (tree%n > 0) then
       top = 1
       waiting(1) = 1
+      waiting_at(1) = 0
     end if
     do while (top > 0)
       node = waiting(top)
+      d = waiting_at(top)
       top = top - 1
       looked = looked + 1
-      if (distance_to(tree%node_boxes(:, node), point) > distances(size(distances))) cycle
+      if (d > distances(size(distances))) cycle
       if (tree%nodes(3, node) > 0) then
         near = node + 1
         far = tree%nodes(3, node)
-        if (distance_to(tree%node_boxes(:, far), point) < distance_to(tree%node_boxes(:, near), point)) then
-          near = far
-          far = node + 1
+        to_near = distance_to(tree%node_boxes(:, near), point)
+        to_far = distance_to(tree%node_boxes(:, far), point)
+        if (to_far < to_near) then
+          waiting(top + 1:top + 2) = [near, far]
+          waiting_at(top + 1:top + 2) = [to_near, to_far]
+        else
+          waiting(top + 1:top + 2) = [far, near]
+          waiting_at(top + 1:top + 2) = [to_far, to_near]
         end if
-        waiting(top + 1:top + 2) = [far, near]
         top = top + 2
         cycle
       end if
       do i = tree%nodes(1, node), tree%nodes(2, node)
         looked = looked + 1
         d = distance_to(tree%boxes(:, i), point)
+        if (d > distances(size(distances))) cycle
         call insert(tree%items(i), d, found, items, distances)
       end do
     end do

@@ -26,6 +26,8 @@ contains
     call say('unbalanced', to_text(merge(1, 0, facts%unbalanced)))
     call say('elements', to_text(facts%elements))
     call say('transfer', to_text(facts%transfer))
+    call say('probation', to_text(facts%probation))
+    call say('tries', to_text(facts%tries))
     if (facts%error_stress >= 0) call say('error_stress_pct', to_text(100*facts%error_stress, 4))
     if (facts%error_strain >= 0) call say('error_strain_pct', to_text(100*facts%error_strain, 4))
     why = ''

@@ -23,6 +23,8 @@ module contour_chain
     integer, allocatable :: kinds(:)
     !> Arc length from the start of the chain to the end of each stretch (0:n) [length].
     real(wp), allocatable :: arc(:)
+    !> Tangents that turn by more make a corner [radian].
+    real(wp) :: corner_turn = huge(1.0_wp)
   end type chain_t
 
   !> A place on a chain.
@@ -57,6 +59,7 @@ contains
     type(chain_t), intent(inout) :: chain
     integer :: k
 
+    chain%corner_turn = corner_turn
     if (allocated(chain%arc)) deallocate (chain%arc)
     allocate (chain%arc(0:size(chain%stretches)))
     chain%arc(0) = 0

@@ -20,8 +20,8 @@ module contour_needs
     integer :: across = 0
   end type geometry_wish_t
 
-  !> Parts of a stretch that are looked at.
-  integer, parameter :: parts = 4
+  !> Parts of a stretch that are looked at, more of one that is longer than as many of the largest elements, up to a limit.
+  integer, parameter :: parts = 4, most_parts = 400
 
 contains
 
@@ -32,13 +32,17 @@ contains
     type(size_limits_t), intent(in) :: limits
     type(need_t), allocatable, intent(out) :: needs(:)
     type(need_t), optional, intent(in) :: nearby(:)
-    type(need_t) :: all((parts + 1)*size(chain%stretches))
+    type(need_t), allocatable :: all(:)
     real(wp) :: contact(size(chain%stretches)), mean
-    integer :: k, i, last
+    integer :: number(size(chain%stretches)), k, i, last
 
+    do k = 1, size(number)
+      number(k) = max(parts, ceiling(min((chain%arc(k) - chain%arc(k - 1))/limits%largest, real(most_parts, wp))))
+    end do
+    allocate (all(sum(number + 1)))
     call sizes_of_contact(chain, wish, contact)
+    i = 1
     do k = 1, size(chain%stretches)
-      i = (parts + 1)*(k - 1) + 1
       last = merge(size(chain%stretches), k - 1, k == 1)
       associate (s => chain%stretches(k))
         all(i)%x = point_at(s, s%range(1))
@@ -49,9 +53,10 @@ contains
           all(i)%size = size_of_bend(mean, abs(turn_at(chain, k)), wish, limits)
           if (all(i)%size < limits%largest) all(i)%radius = 0.5_wp*mean
         end if
-        call needs_of_stretch(s, wish, limits, all(i + 1:i + parts))
-        all(i:i + parts)%size = min(all(i:i + parts)%size, contact(k))
+        call needs_of_stretch(s, wish, limits, all(i + 1:i + number(k)))
+        all(i:i + number(k))%size = min(all(i:i + number(k))%size, contact(k))
       end associate
+      i = i + number(k) + 1
     end do
     if (present(nearby)) then
       do i = 1, size(all)
@@ -100,12 +105,12 @@ contains
     type(stretch_t), intent(in) :: stretch
     type(geometry_wish_t), intent(in) :: wish
     type(size_limits_t), intent(in) :: limits
-    type(need_t), intent(out) :: needs(:)   !! (parts)
+    type(need_t), intent(out) :: needs(:)   !! one of each part
     real(wp) :: xi(2), before(2), after(2), length
     integer :: i
 
-    do i = 1, parts
-      xi = stretch%range(1) + (stretch%range(2) - stretch%range(1))*[i - 1, i]/parts
+    do i = 1, size(needs)
+      xi = stretch%range(1) + (stretch%range(2) - stretch%range(1))*[i - 1, i]/size(needs)
       before = tangent_at(stretch, xi(1))
       after = tangent_at(stretch, xi(2))
       length = length_between(stretch, xi(1), xi(2))

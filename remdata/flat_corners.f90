@@ -5,7 +5,7 @@
 !> Zones beyond AB and CA are divided in two, from side to opposite side, as far as the contour. Sets of sides between blocks go
 !> with the parts of their sides; those on the contour go with it.
 module flat_corners
-  use contour_chain, only: arc_at, chain_length, chain_t, place_at_arc, place_t, point_on, turn_at
+  use contour_chain, only: arc_at, chain_length, chain_t, joint_after, place_at_arc, place_t, point_on, turn_at
   use kinds, only: pi, wp
   use part_contour, only: contour_t
   use vectors, only: length_of
@@ -55,8 +55,7 @@ contains
       if (zone_beyond(plan, corners(k - 1:k)) > 0 .or. zone_beyond(plan, corners(k:k + 1)) > 0) cycle
       associate (point => plan%points(corners(k)))
         if (point%chain == 0 .or. point%stays) cycle
-        turn = abs(turn_at(contours(point%chain)%chain, point%place%stretch))
-        if (point%place%xi > contours(point%chain)%chain%stretches(point%place%stretch)%range(1)) turn = 0
+        turn = turn_of(contours(point%chain)%chain, point%place)
       end associate
       if (.not. turn < least) cycle
       if (any([leads_back(plan, z, corners(modulo(k + [1, 2] - 1, 4) + 1)), &
@@ -65,6 +64,22 @@ contains
       corner = k
     end do
   end function flat_corner
+
+  !> What the contour turns by at a place; nothing inside a stretch.
+  pure function turn_of(chain, place) result(turn)
+    type(chain_t), intent(in) :: chain
+    type(place_t), intent(in) :: place
+    real(wp) :: turn
+
+    turn = 0
+    associate (range => chain%stretches(place%stretch)%range)
+      if (.not. place%xi > range(1)) then
+        turn = abs(turn_at(chain, place%stretch))
+      else if (.not. place%xi < range(2)) then
+        turn = abs(turn_at(chain, joint_after(chain, place%stretch)))
+      end if
+    end associate
+  end function turn_of
 
   !> The zone on the other hand of a side that is walked from one point to another, 0 where there is none.
   pure function zone_beyond(plan, ends) result(beyond)

@@ -11,8 +11,8 @@ module locate_point
   private
   public :: place_t, locate, closest_in_element
 
-  !> Elements tried first; more of them only where none of these holds the point.
-  integer, parameter :: first_try = 8
+  !> Elements tried first, and then twice as many while none of these holds the point: inside a mesh one or two boxes hold it.
+  integer, parameter :: first_try = 2
   !> Iterations in an element; Newton needs about five.
   integer, parameter :: most_iterations = 40
   !> A step of the parent coordinates that moves nothing any more.

@@ -4,9 +4,10 @@ program remdata
   use checkpoint_words, only: print_about
   use errors, only: error_t, exit_done
   use kinds, only: wp
+  use remesh_facts, only: remesh_facts_t
   use remesh_options, only: read_remesh_options, remesh_options_t, remesh_usage
   use remesh_report, only: print_facts, write_facts
-  use remesh_scene, only: remesh_checkpoint, remesh_facts_t
+  use remesh_scene, only: remesh_checkpoint
   use run_version, only: version_text
   use system, only: program_stop, wall_seconds
   implicit none

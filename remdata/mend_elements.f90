@@ -2,8 +2,8 @@
 !>
 !> An element is as good as the smallest sine between its lines at its eight nodes (the Jacobian over the lengths of its
 !> columns); where it is folded, as the Jacobian itself over its area before, for beyond a right angle the sine grows again. A
-!> corner of a bad element goes where the worst element around it is best, by trial in eight directions; the middles of its
-!> sides follow by half. Elements that are good are not touched, and none becomes the new worst around.
+!> corner of a bad element goes where the worst element around it is best, by trial in eight directions; its sides keep
+!> their shape. Elements that are good are not touched, and none becomes the new worst around.
 module mend_elements
   use kinds, only: wp
   use graded_sizes, only: list_elements
@@ -100,19 +100,27 @@ contains
     end do
   end subroutine improve
 
-  !> Move a corner of an element, and the middles beside it by half.
+  !> Move a corner of an element; the sides beside it keep their shape, so that no middle leaves its place over the chord.
   pure subroutine shift(corner, step, cell)
     integer, intent(in) :: corner
     real(wp), intent(in) :: step(2)
     real(wp), intent(inout) :: cell(:, :)
+    real(wp) :: start(2), now(2), chord(2), bulge(2), share(2)
     integer :: k
 
-    cell(:, corner) = cell(:, corner) + step
+    start = cell(:, corner)
+    now = start + step
     do k = 0, 1
-      associate (middle => 5 + mod(corner + 3 - k, 4))
-        cell(:, middle) = cell(:, middle) + 0.5_wp*step
+      associate (middle => cell(:, 5 + mod(corner + 3 - k, 4)), end => cell(:, mod(corner + 2*k, 4) + 1))
+        chord = end - start
+        bulge = middle - 0.5_wp*(start + end)
+        ! along the chord and to its left, as shares of its length
+        share = [dot_product(bulge, chord), chord(1)*bulge(2) - chord(2)*bulge(1)]/dot_product(chord, chord)
+        chord = end - now
+        middle = 0.5_wp*(now + end) + share(1)*chord + share(2)*[-chord(2), chord(1)]
       end associate
     end do
+    cell(:, corner) = now
   end subroutine shift
 
   !> Smallest sine between the lines of an element at its nodes; below zero the Jacobian over a quarter of a unit of area.

@@ -92,7 +92,7 @@ contains
         mine(k) = contour%tags%on_set(set, contour%chain%stretches(place%stretch)%side)
       end associate
     end do
-    sides = all_nodes(pack([(k, k=1, size(mine))], mine))
+    sides = all_nodes(from_its_start(pack([(k, k=1, size(mine))], mine)))
 
   contains
 
@@ -114,6 +114,21 @@ contains
         next = findloc(list(1, :), list(3, next), 1)
       end do
     end function in_order
+
+    !> The list turned so that it begins where the set does, for a set that goes past the beginning of its contour.
+    pure function from_its_start(list) result(turned)
+      integer, intent(in) :: list(:)
+      integer :: turned(size(list)), i
+
+      turned = list
+      if (size(list) < 2) return
+      if (mesh%sides(list(size(list)))%nodes(3) /= mesh%sides(list(1))%nodes(1)) return
+      do i = 2, size(list)
+        if (mesh%sides(list(i - 1))%nodes(3) == mesh%sides(list(i))%nodes(1)) cycle
+        turned = cshift(list, i - 1)
+        return
+      end do
+    end function from_its_start
 
     pure function all_nodes(list) result(nodes)
       integer, intent(in) :: list(:)

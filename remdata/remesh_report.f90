@@ -5,7 +5,7 @@ module remesh_report
   use json_writer, only: json_t
   use kinds, only: wp
   use material_volumes, only: materials_kept_t
-  use remesh_scene, only: remesh_facts_t
+  use remesh_facts, only: remesh_facts_t
   use run_version, only: version_text
   use text, only: string_t, to_text
   use transfer_report, only: balance_t, in_words, report_lines
@@ -59,6 +59,7 @@ contains
     type(error_t), allocatable, intent(in) :: failure
     type(error_t), allocatable, intent(out) :: error
     type(json_t) :: json
+    integer :: k
 
     call json%begin_object()
     call json%add('program', 'remdata')
@@ -74,10 +75,30 @@ contains
     call json%add('old_elements', facts%old_elements)
     call json%add('new_elements', facts%new_elements)
     call json%add('wall_s', seconds)
+    call json%begin_object('seconds')
+    do k = 1, facts%timers%size()
+      call json%add(facts%timers%name(k), facts%timers%seconds(k))
+    end do
+    call json%end_object()
     call json%begin_object('contour')
     call json%add('largest_move', facts%contour%largest_move)
     call json%add('largest_shift', facts%contour%largest_shift)
     call json%add('volume_error', facts%contour%volume_error)
+    call json%add('pockets', facts%contour%pockets)
+    call json%begin_array('limits')
+    if (allocated(facts%contour%limits)) then
+      do k = 1, size(facts%contour%limits)
+        associate (limit => facts%contour%limits(k))
+          call json%begin_object()
+          call json%add('begins', limit%kind == kind_entry)
+          call json%add('x', limit%point(1))
+          call json%add('y', limit%point(2))
+          call json%add('depth', limit%depth)
+          call json%end_object()
+        end associate
+      end do
+    end if
+    call json%end_array()
     call json%end_object()
     call json%begin_object('mesh')
     call json%add('mesher', facts%mesher)

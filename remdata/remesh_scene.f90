@@ -1,7 +1,7 @@
 !> The remesher's page: from the checkpoint of an old mesh to that of a new one.
 !>
-!> contour -> sizes -> zones and mesh, or Gmsh's mesh -> state -> checkpoint (annex 2; chapter 12); bodies without a mesh get their first one the
-!> same way, from contours that cards give, and no state. Whatever cannot be done ends in an error that
+!> contour -> sizes -> zones -> mesh, or Gmsh's mesh -> state -> checkpoint (annex 2; chapter 12); bodies without a mesh get their
+!> first one the same way, from contours that cards give, and no state. Whatever cannot be done ends in an error that
 !> names its stage; the old checkpoint is never touched.
 module remesh_scene
   use block_mesh, only: polygon_area
@@ -13,16 +13,18 @@ module remesh_scene
   use dies, only: is_deformable
   use errors, only: error_t, exit_input, fail
   use first_contours, only: contours_of_cards
-  use exchange, only: read_bare_scene, read_checkpoint, read_deck_of_checkpoint, read_contact_ends, write_checkpoint
+  use exchange, only: open_checkpoint, read_bare_scene, read_contact_ends, read_deck_of_checkpoint, read_state, write_checkpoint
   use gmsh_call, only: find_gmsh, gmsh_t
+  use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use material_interfaces, only: interface_t, interfaces_of
-  use material_volumes, only: compare_materials, materials_kept_t
-  use mesh_prediction, only: predict, prediction_t
+  use material_volumes, only: compare_materials
+  use mesh_prediction, only: predict
   use mesh_without_zones, only: mesh_freely
-  use new_mesh_check, only: mesh_check_t, check_new_mesh
+  use new_mesh_check, only: check_new_mesh
   use new_scene, only: set_up_new_scene
-  use part_contour, only: build_contours, contour_options_t, contour_report_t, contour_t
+  use part_contour, only: build_contours, contour_options_t, contour_t
+  use remesh_facts, only: begin_task, end_task, remesh_facts_t
   use remesh_options, only: remesh_options_t
   use remesher_options, only: as_it_comes, by_gmsh, has_zones, remesher_options_t
   use scene, only: is_solid, lacks_mesh, scene_t
@@ -31,37 +33,16 @@ module remesh_scene
   use state_pieces, only: mesh_of, solid_pieces, state_pieces_t, store_states
   use text, only: to_text
   use transfer_api, only: transfer_options_t
-  use transfer_mesh, only: transfer_mesh_t
-  use transfer_nodes, only: carry_nodal
-  use transfer_report, only: balance_t, transfer_report_t
-  use transfer_states, only: carry_states
+  use transfer_mesh, only: plant_mesh_trees, transfer_mesh_t
+  use transfer_nodes, only: carry_at_nodes
+  use transfer_report, only: transfer_report_t
+  use transfer_states, only: carry_between
   use zone_mesh, only: mesh_wish_t, mesh_zones, new_mesh_t
   use zone_plan, only: plan_zones
   use zones, only: plan_t
   implicit none
   private
-  public :: remesh_facts_t, remesh_checkpoint
-
-  !> What was made, for the report.
-  type :: remesh_facts_t
-    character(len=:), allocatable :: stage
-    integer :: generation = 0, step = 0
-    real(wp) :: time = 0.0_wp
-    integer :: old_elements = 0, new_elements = 0
-    type(contour_report_t) :: contour
-    type(mesh_check_t) :: mesh
-    !> Materials that share sides.
-    type(materials_kept_t) :: materials
-    !> Who made the mesh.
-    character(len=:), allocatable :: mesher
-    type(transfer_report_t) :: transfer
-    !> Integrals of contact along its runs.
-    type(balance_t), allocatable :: contacts(:)
-    !> Sizes are so many times the wanted ones, for the limit on the number of elements.
-    real(wp) :: coarser = 1.0_wp
-    !> The errors expected of the new mesh, over those its sizes were wanted for.
-    type(prediction_t) :: expected
-  end type remesh_facts_t
+  public :: remesh_checkpoint
 
   !> Errors of strain fall with the size to this power (8-node elements).
   real(wp), parameter :: strain_order = 2.0_wp
@@ -86,13 +67,9 @@ contains
     real(wp), allocatable :: moved(:, :)
     logical :: first
 
-    facts%stage = 'checkpoint'
     facts%mesher = 'zones'
-    call read_deck_of_checkpoint(options%checkpoint, deck_path, deck_text, error)
-    if (.not. allocated(error)) call read_bare_scene(options%checkpoint, old, error)
-    if (.not. allocated(error)) call start_solution(old, before)
-    if (.not. allocated(error)) call read_checkpoint(options%checkpoint, old, before, error)
-    if (.not. allocated(error)) call read_contact_ends(options%checkpoint, ends, error)
+    call begin_task(facts, 'checkpoint', 'read')
+    call read_all(options%checkpoint, deck_path, deck_text, old, before, ends, error)
     if (.not. allocated(error)) call refuse_what_is_not_offered(old, error)
     if (allocated(error)) return
     first = lacks_mesh(old)
@@ -102,23 +79,27 @@ contains
     facts%time = before%time
     facts%generation = old%generation + 1
 
-    facts%stage = 'contour'
+    call begin_task(facts, 'contour', 'contour')
     if (first) then
       call contours_of_cards(old, contours, facts%contour, error)
     else
       call build_contours(old, before, ends, contour_options_t(), contours, facts%contour, error)
     end if
     if (allocated(error)) return
-    facts%stage = 'mesh'
+    call begin_task(facts, 'mesh', 'sizes')
     call interfaces_of(old, before, contours, interfaces)
     call wanted_sizes(old, before, contours, first, sizes)
     if (old%remesher%mesher /= by_gmsh) then
+      call begin_task(facts, 'mesh', 'zones')
       call plan_zones(old, old%mesh%coordinates + before%displacement, before%pilots, materials_of(old, before), &
                       contours, interfaces, plan, error)
+      call begin_task(facts, 'mesh', 'mesh')
       if (.not. allocated(error)) call make_mesh(old, before, contours, plan, sizes, options%finer, mesh, facts, error)
     end if
-    if (is_for_gmsh(old%remesher, size(interfaces) > 0, error)) &
+    if (is_for_gmsh(old%remesher, size(interfaces) > 0, error)) then
+      call begin_task(facts, 'mesh', 'gmsh')
       call make_free_mesh(old, before, contours, sizes, options, plan, mesh, facts, error)
+    end if
     if (allocated(error)) return
     call set_up_new_scene(old, contours, plan, mesh, new, error)
     if (allocated(error)) return
@@ -129,11 +110,33 @@ contains
       call carry_state(old, before, moved, contours, mesh, new, after, facts, error)
       if (allocated(error)) return
     end if
-    facts%stage = 'checkpoint'
+    call begin_task(facts, 'checkpoint', 'write')
     call write_checkpoint(options%out, deck_path, deck_text, new, after, [contact_end_t ::], error)
+    call end_task(facts)
     facts%old_elements = count_elements(old)
     facts%new_elements = count_elements(new)
   end subroutine remesh_checkpoint
+
+  !> All that the checkpoint holds; it is opened, and its digest compared, once.
+  subroutine read_all(path, deck_path, deck_text, scene, solution, ends, error)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable, intent(out) :: deck_path, deck_text
+    type(scene_t), intent(out) :: scene
+    type(solution_t), intent(out) :: solution
+    type(contact_end_t), allocatable, intent(out) :: ends(:)
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+    type(error_t), allocatable :: ignored
+
+    call open_checkpoint(path, file, error)
+    if (allocated(error)) return
+    call read_deck_of_checkpoint(file, deck_path, deck_text, error)
+    if (.not. allocated(error)) call read_bare_scene(file, scene, error)
+    if (.not. allocated(error)) call start_solution(scene, solution)
+    if (.not. allocated(error)) call read_state(file, scene, solution, error)
+    if (.not. allocated(error)) call read_contact_ends(file, ends, error)
+    call file%close(ignored)
+  end subroutine read_all
 
   !> With small strains the geometry is that of the start: bodies are meshed where they were, and what they have `moved` since is
   !> carried over as other nodal fields are. Where they touch dies, they are meshed where they are.
@@ -161,11 +164,11 @@ contains
     type(remesh_facts_t), intent(inout) :: facts
     type(error_t), allocatable, intent(out) :: error
 
-    facts%stage = 'transfer'
+    call begin_task(facts, 'transfer', 'transfer')
     call carry_progress(before, after)
     call carry_solids(old, before, moved, new, after, facts%transfer, error)
     if (allocated(error)) return
-    facts%stage = 'contact'
+    call begin_task(facts, 'contact', 'contact')
     call carry_contacts(old, before, contours, mesh, new, after, facts%contacts)
   end subroutine carry_state
 
@@ -333,6 +336,7 @@ contains
     call mesh_freely(old, materials_of(old, before), contours, sizes, options%finer, gmsh, plan, mesh, facts%mesh, error)
     if (allocated(mesh%zone)) facts%coarser = mesh%division%factor
     if (gmsh%is_there .or. .not. allocated(of_zones)) return
+    of_zones%code = error%code
     of_zones%advice = error%advice
     call move_alloc(of_zones, error)
   end subroutine make_free_mesh
@@ -346,6 +350,7 @@ contains
     after%step = before%step
     after%last_step = before%last_step
     after%next_step = before%next_step
+    after%probation = before%probation
     after%pilots = before%pilots
     after%last_pilot_increment = before%last_pilot_increment
     after%pilot_applied = before%pilot_applied
@@ -392,21 +397,21 @@ contains
     do k = 1, size(to%groups)
       allocate (to%groups(k)%values, source=after%groups(to%groups(k)%place)%committed)
     end do
-    call carry_states(from, to, options, report, error)
+    call mesh_of(from, mesh)
+    call plant_mesh_trees(mesh)
+    call mesh_of(to, target)
+    call carry_between(mesh, target, from, to, options, report, error)
     if (allocated(error)) return
     call store_states(to, after)
 
-    call mesh_of(from, mesh)
-    call mesh_of(to, target)
     allocate (material(size(new%mesh%coordinates, 2)), source=0)
     do k = 1, size(target%material)
       material(target%connectivity(:, k)) = target%material(k)
     end do
     allocate (values(6, size(material)))
-    call carry_nodal(mesh%nodes, mesh%connectivity, mesh%material, &
-                     reshape([transpose(old%mesh%origin), transpose(before%last_increment), transpose(moved)], &
-                             [6, size(moved, 2)], order=[2, 1]), &
-                     new%mesh%coordinates, material, options%outside, values, farthest, error)
+    call carry_at_nodes(mesh, reshape([transpose(old%mesh%origin), transpose(before%last_increment), transpose(moved)], &
+                                      [6, size(moved, 2)], order=[2, 1]), &
+                        new%mesh%coordinates, material, options%outside, values, farthest, error)
     if (allocated(error)) return
     new%mesh%origin = values(1:2, :)
     after%last_increment = values(3:4, :)

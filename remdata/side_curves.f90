@@ -13,7 +13,7 @@ module side_curves
                    side_t, zone_point_t, zone_t
   implicit none
   private
-  public :: curve_t, snap_to_corners, draw_side, curve_point, measure_density, divide_curve, shares_of, has_course
+  public :: curve_t, snap_to_joints, draw_side, curve_point, measure_density, divide_curve, shares_of, has_course
 
   type :: curve_t
     integer :: chain = 0
@@ -43,14 +43,15 @@ module side_curves
 
 contains
 
-  !> Zone points on a contour go to a corner of it that is so near that no element fits between, unless they are to stay.
-  pure subroutine snap_to_corners(chains, zones, field, points)
+  !> Zone points on a contour go to a corner of it, or to where contact begins or ends, that is so near that no element fits
+  !> between, unless they are to stay.
+  pure subroutine snap_to_joints(chains, zones, field, points)
     type(chain_t), intent(in) :: chains(:)
     type(zone_t), intent(in) :: zones(:)
     type(size_field_t), intent(in) :: field
     type(zone_point_t), intent(inout) :: points(:)
     real(wp) :: arc, apart, most
-    integer :: z, i, k
+    integer :: z, i, k, pass
 
     do z = 1, size(zones)
       do i = 1, 4
@@ -59,18 +60,21 @@ contains
           associate (chain => chains(point%chain))
             arc = arc_at(chain, point%place)
             most = least_share*size_at(field, zones(z)%material, on_chain(chain, point%place))
-            do k = 1, size(chain%stretches)
-              if (chain%kinds(k) /= kind_corner) cycle
-              apart = modulo(chain%arc(k - 1) - arc, chain_length(chain))
-              if (min(apart, chain_length(chain) - apart) > most) cycle
-              point%place = place_t(k, chain%stretches(k)%range(1))
-              exit
-            end do
+            look: do pass = 1, 2
+              do k = 1, size(chain%stretches)
+                if (pass == 1 .and. chain%kinds(k) /= kind_corner) cycle
+                if (pass == 2 .and. all(chain%kinds(k) /= [kind_entry, kind_exit])) cycle
+                apart = modulo(chain%arc(k - 1) - arc, chain_length(chain))
+                if (min(apart, chain_length(chain) - apart) > most) cycle
+                point%place = place_t(k, chain%stretches(k)%range(1))
+                exit look
+              end do
+            end do look
           end associate
         end associate
       end do
     end do
-  end subroutine snap_to_corners
+  end subroutine snap_to_joints
 
   !> The curve of a side, with its breaks.
   pure subroutine draw_side(chains, layout, side, field, curve)

@@ -9,7 +9,7 @@ module size_field
   use kinds, only: wp
   use locate_point, only: locate, location_t => place_t
   use shape_functions, only: quad4
-  use transfer_mesh, only: plant_mesh_trees, set_up_mesh, transfer_mesh_t
+  use transfer_mesh, only: plant_element_trees, set_up_mesh, transfer_mesh_t
   implicit none
   private
   public :: size_limits_t, need_t, size_field_t, old_mesh_t, wanted_size, set_up_sizes, size_at
@@ -80,7 +80,7 @@ contains
     if (.not. present(old)) return
     field%has_mesh = .true.
     call set_up_mesh(old%nodes, old%connectivity, old%material, spread(1, 1, size(old%material)), .false., field%mesh)
-    call plant_mesh_trees(field%mesh)
+    call plant_element_trees(field%mesh)
     call sizes_of_corners(limits, old, field%sizes)
     do i = 1, size(field%sizes)
       field%sizes(i) = min(field%sizes(i), size_by_needs(field, old%nodes(:, i)))

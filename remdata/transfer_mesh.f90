@@ -7,7 +7,7 @@ module transfer_mesh
   use shape_functions, only: quad8, quad8_side
   implicit none
   private
-  public :: transfer_mesh_t, set_up_mesh, plant_mesh_trees
+  public :: transfer_mesh_t, set_up_mesh, plant_element_trees, plant_mesh_trees
 
   type :: transfer_mesh_t
     !> Materials are numbered 1 ... nmaterial. Values go from points to points of the same number only.
@@ -69,22 +69,34 @@ contains
   !> Trees of points and of elements, one of each a material. Only the old mesh needs them.
   pure subroutine plant_mesh_trees(mesh)
     type(transfer_mesh_t), intent(inout) :: mesh
-    real(wp), allocatable :: boxes(:, :), point_boxes(:, :)
+    real(wp), allocatable :: boxes(:, :)
+    integer :: m, i
+
+    call plant_element_trees(mesh)
+    if (allocated(mesh%point_trees)) deallocate (mesh%point_trees)
+    allocate (boxes(4, size(mesh%volumes)), mesh%point_trees(mesh%nmaterial))
+    boxes(1:2, :) = mesh%points
+    boxes(3:4, :) = mesh%points
+    do m = 1, mesh%nmaterial
+      call plant_tree(boxes, pack([(i, i=1, size(mesh%volumes))], mesh%point_material == m), mesh%point_trees(m))
+    end do
+  end subroutine plant_mesh_trees
+
+  !> Trees of elements alone, to locate points by.
+  pure subroutine plant_element_trees(mesh)
+    type(transfer_mesh_t), intent(inout) :: mesh
+    real(wp), allocatable :: boxes(:, :)
     integer :: e, m, i
 
-    if (allocated(mesh%point_trees)) deallocate (mesh%point_trees, mesh%element_trees)
-    allocate (boxes(4, size(mesh%material)), point_boxes(4, size(mesh%volumes)))
-    allocate (mesh%point_trees(mesh%nmaterial), mesh%element_trees(mesh%nmaterial))
+    if (allocated(mesh%element_trees)) deallocate (mesh%element_trees)
+    allocate (boxes(4, size(mesh%material)), mesh%element_trees(mesh%nmaterial))
     do e = 1, size(mesh%material)
       boxes(:, e) = box_of(mesh%nodes(:, mesh%connectivity(:, e)))
     end do
-    point_boxes(1:2, :) = mesh%points
-    point_boxes(3:4, :) = mesh%points
     do m = 1, mesh%nmaterial
       call plant_tree(boxes, pack([(i, i=1, size(mesh%material))], mesh%material == m), mesh%element_trees(m))
-      call plant_tree(point_boxes, pack([(i, i=1, size(mesh%volumes))], mesh%point_material == m), mesh%point_trees(m))
     end do
-  end subroutine plant_mesh_trees
+  end subroutine plant_element_trees
 
   !> Box that holds an element with its bulging sides: a parabola stays in the triangle of its ends and of the point where the
   !> tangents at its ends meet, which is 2 middle - (first + last)/2.

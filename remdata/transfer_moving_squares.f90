@@ -118,7 +118,8 @@ contains
     real(wp) :: w
 
     w = 0
-    if (s < 1) w = 1 - 6*s**2 + 8*s**3 - 3*s**4
+    ! 1 - 6 s^2 + 8 s^3 - 3 s^4, never below 0 by round-off
+    if (s < 1) w = (1 - s)**3*(1 + 3*s)
   end function quartic
 
 end module transfer_moving_squares

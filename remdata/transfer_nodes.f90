@@ -11,7 +11,7 @@ module transfer_nodes
   use transfer_mesh, only: plant_mesh_trees, set_up_mesh, transfer_mesh_t
   implicit none
   private
-  public :: carry_nodal, shape_weights
+  public :: carry_nodal, carry_at_nodes, shape_weights
 
   !> Any rule will do: nodal fields do not look at integration points.
   integer, parameter :: any_rule = 4
@@ -31,17 +31,29 @@ contains
     real(wp), intent(out) :: farthest                !! new node outside the old mesh [length]
     type(error_t), allocatable, intent(out) :: error
     type(transfer_mesh_t) :: mesh
+
+    call set_up_mesh(nodes, connectivity, material, spread(any_rule, 1, size(material)), .false., mesh)
+    call plant_mesh_trees(mesh)
+    call carry_at_nodes(mesh, values, new_nodes, new_material, outside, new_values, farthest, error)
+  end subroutine carry_nodal
+
+  !> The same where the trees of the old mesh are planted already.
+  subroutine carry_at_nodes(mesh, values, new_nodes, new_material, outside, new_values, farthest, error)
+    type(transfer_mesh_t), intent(in) :: mesh
+    real(wp), intent(in) :: values(:, :), new_nodes(:, :)   !! as above
+    integer, intent(in) :: new_material(:)
+    real(wp), intent(in) :: outside
+    real(wp), intent(out) :: new_values(:, :), farthest
+    type(error_t), allocatable, intent(out) :: error
     type(transfer_map_t) :: map
 
     new_values = 0
     farthest = 0
-    call set_up_mesh(nodes, connectivity, material, spread(any_rule, 1, size(material)), .false., mesh)
-    call plant_mesh_trees(mesh)
     call shape_weights(mesh, mesh%connectivity, new_nodes, new_material, outside, map, error)
     if (allocated(error)) return
     call carry(map, values, new_values)
     if (size(map%outside) > 0) farthest = maxval(map%outside)
-  end subroutine carry_nodal
+  end subroutine carry_at_nodes
 
   !> Weights of the columns `places` (8, nelem) of the old elements: its connectivity, where values belong to nodes.
   subroutine shape_weights(mesh, places, points, material, outside, map, error)

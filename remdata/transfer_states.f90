@@ -22,7 +22,7 @@ module transfer_states
   use transfer_treatment, only: treat_materials
   implicit none
   private
-  public :: carry_states
+  public :: carry_between, carry_states
 
 contains
 
@@ -34,6 +34,21 @@ contains
     type(transfer_report_t), intent(out) :: report
     type(error_t), allocatable, intent(out) :: error
     type(transfer_mesh_t) :: from, to
+
+    call mesh_of(old, from)
+    call mesh_of(new, to)
+    call plant_mesh_trees(from)
+    call carry_between(from, to, old, new, options, report, error)
+  end subroutine carry_states
+
+  !> The same for who has the meshes already.
+  subroutine carry_between(from, to, old, new, options, report, error)
+    type(transfer_mesh_t), intent(in) :: from, to   !! of `old`, its trees planted, and of `new`
+    type(state_pieces_t), intent(in) :: old
+    type(state_pieces_t), intent(inout) :: new
+    type(transfer_options_t), intent(in) :: options
+    type(transfer_report_t), intent(out) :: report
+    type(error_t), allocatable, intent(out) :: error
     type(transfer_map_t) :: map
     type(transfer_t), allocatable :: methods(:)
     type(state_variable_t), allocatable :: variables(:)
@@ -47,9 +62,6 @@ contains
     end if
     call list_variables(old%groups, [character(len=8) :: transfer_scalar, transfer_tensor, transfer_fraction], variables, error)
     if (allocated(error)) return
-    call mesh_of(old, from)
-    call mesh_of(new, to)
-    call plant_mesh_trees(from)
     associate (method => methods(options%method + 1))
       report%method = method%name
       call method%weights(from, options, to%points, to%point_material, map, error)
@@ -63,6 +75,6 @@ contains
     call carry(map, before, after)
     call treat_materials(from, to, map, variables, options, before, after, report)
     call hand_out_states(old%groups, variables, after, new%groups)
-  end subroutine carry_states
+  end subroutine carry_between
 
 end module transfer_states

@@ -8,7 +8,7 @@ module zone_mesh
   use errors, only: error_t
   use kinds, only: wp
   use mend_elements, only: mend
-  use side_curves, only: curve_point, curve_t, draw_side, measure_density, snap_to_corners
+  use side_curves, only: curve_point, curve_t, draw_side, measure_density, snap_to_joints
   use side_middles, only: bend_lines, place_middle
   use size_field, only: size_field_t
   use zone_divisions, only: choose_divisions, division_t, division_wish_t
@@ -73,7 +73,7 @@ contains
     call lay_out(chains, points, zones, mesh%layout, error, paths)
     if (allocated(error)) return
     snapped = points
-    call snap_to_corners(chains, mesh%layout%zones, field, snapped)
+    call snap_to_joints(chains, mesh%layout%zones, field, snapped)
     call lay_out(chains, snapped, zones, mesh%layout, error, paths)
     if (allocated(error)) return
     associate (layout => mesh%layout, division => mesh%division)

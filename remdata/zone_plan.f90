@@ -12,7 +12,8 @@
 !> ends on the contour are the corners of zones there (interface_sides).
 module zone_plan
   use block_mesh, only: polygon_area
-  use contour_chain, only: arc_at, chain_length, chain_t, kind_corner, kind_entry, kind_exit, place_t
+  use body_outlines, only: refuse_inner_sets
+  use contour_chain, only: arc_at, chain_length, chain_t, kind_corner, kind_entry, kind_exit, place_t, turn_at
   use derived_zones, only: one_zone
   use errors, only: error_t, exit_input, fail
   use flat_corners, only: divide_flat_zones
@@ -113,6 +114,8 @@ contains
     type(place_t), allocatable :: marked(:)
     integer :: c, k, n
 
+    call refuse_inner_sets(scene, contours, error)
+    if (allocated(error)) return
     allocate (marked(0))
     if (size(contours) == 1) then
       associate (chain => contours(1)%chain, tags => contours(1)%tags)
@@ -244,10 +247,12 @@ contains
     here = arc_at(chain, from)
     least = huge(least)
     do k = 1, size(chain%stretches)
-      if (any(taken == k) .or. .not. (chain%kinds(k) == kind_corner .or. is_outer_end(chain, k))) cycle
       way = abs(chain%arc(k - 1) - here)
       way = min(way, chain_length(chain) - way)
-      if (.not. way < least) cycle
+      if (any(taken == k) .or. .not. way < least) cycle
+      ! where contact ends in a corner it is the corner that counts
+      if (.not. (chain%kinds(k) == kind_corner .or. is_outer_end(chain, k) .or. &
+                 (way <= in_place*chain_length(chain) .and. abs(turn_at(chain, k)) > chain%corner_turn))) cycle
       least = way
       joint = k
     end do

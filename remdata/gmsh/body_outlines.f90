@@ -18,7 +18,7 @@ module body_outlines
   use zones, only: follows_contour, layout_t, side_t, zone_point_t
   implicit none
   private
-  public :: outline_t, find_outlines, lay_out_outlines, divide_outlines
+  public :: outline_t, find_outlines, refuse_inner_sets, lay_out_outlines, divide_outlines
 
   !> A body in one piece: its group in the scene, and its contours.
   type :: outline_t
@@ -42,6 +42,7 @@ contains
     integer :: body(size(contours)), c, n
 
     call refuse_shared_nodes(scene, error)
+    if (.not. allocated(error)) call refuse_inner_sets(scene, contours, error)
     if (allocated(error)) return
     do c = 1, size(contours)
       body(c) = contours(c)%loop%body
@@ -86,6 +87,26 @@ contains
       end do
     end do
   end subroutine refuse_shared_nodes
+
+  !> Sets of sides go with contours: one inside a body would be lost.
+  pure subroutine refuse_inner_sets(scene, contours, error)
+    type(scene_t), intent(in) :: scene
+    type(contour_t), intent(in) :: contours(:)
+    type(error_t), allocatable, intent(out) :: error
+    integer :: s, c, found
+
+    do s = 1, size(scene%mesh%sides)
+      found = 0
+      do c = 1, size(contours)
+        found = found + count(contours(c)%tags%on_set(s, :))
+      end do
+      if (found >= size(scene%mesh%sides(s)%nodes, 2)) cycle
+      call fail(error, exit_input, 'remdata: the sides '//scene%mesh%sides(s)%name &
+                //' lie inside a body: a new mesh has other ones there', &
+                'name sides on the contour, or make the mesh of BLOCK cards')
+      return
+    end do
+  end subroutine refuse_inner_sets
 
   !> Group of the body a contour goes around.
   pure function group_of(scene, loop, number) result(group)
@@ -163,12 +184,13 @@ contains
   end subroutine corners_of
 
   !> Lengths from the start of side s of the layout to its ends of elements: ends(first(s)) ... ends(first(s + 1) - 1).
-  pure subroutine divide_outlines(chains, outlines, layout, field, factor, curves, division, first, ends)
+  pure subroutine divide_outlines(chains, outlines, layout, field, factor, all_even, curves, division, first, ends)
     type(chain_t), intent(in) :: chains(:)
     type(outline_t), intent(in) :: outlines(:)
     type(layout_t), intent(in) :: layout
     type(size_field_t), intent(in) :: field
     real(wp), intent(in) :: factor                 !! sizes are so many times the wanted ones
+    logical, intent(in) :: all_even                !! every side has an even number of elements, not only all of a body together
     type(curve_t), allocatable, intent(out) :: curves(:)
     type(division_t), intent(out) :: division
     integer, allocatable, intent(out) :: first(:)
@@ -183,13 +205,14 @@ contains
         call measure_density(chains, field, layout%zones(side%zones(1))%material, curves(s))
       end associate
       division%count(s) = sum(rounded_up(curves(s)%needs/factor))
+      if (all_even) division%count(s) = division%count(s) + mod(division%count(s), 2)
     end do
     do b = 1, size(outlines)
       do i = 1, size(outlines(b)%chains)
         associate (mine => layout%sides%chain == outlines(b)%chains(i))
           do while (sum(pack(division%count, mine)) < fewest)
             s = neediest(curves, division%count, mine)
-            division%count(s) = division%count(s) + 1
+            division%count(s) = division%count(s) + merge(2, 1, all_even)
           end do
         end associate
       end do

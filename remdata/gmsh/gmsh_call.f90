@@ -1,7 +1,7 @@
 !> Gmsh's mesh of one body, by the program `remdata_gmsh`: files out, a process, a file back.
 module gmsh_call
   use arguments, only: argument
-  use child_process, only: ending_t, run_child
+  use child_process, only: ending_t, own_process, run_child
   use errors, only: error_t, exit_no_convergence, fail
   use gmsh_files, only: frame_t, quads_t, read_quads, write_script
   use kinds, only: wp
@@ -15,8 +15,8 @@ module gmsh_call
   !> How Gmsh is called.
   type :: gmsh_t
     character(len=:), allocatable :: program_name
-    !> Files are written beside this one.
-    character(len=:), allocatable :: beside
+    !> Names of files begin so. They are this process's own: a child may outlive a parent that was killed.
+    character(len=:), allocatable :: stem
     !> Longest time for a mesh [s].
     real(wp) :: limit = 0.0_wp
     !> When it was called last: it could be started; it took too long.
@@ -27,13 +27,13 @@ contains
 
   !> The program: the one that REMDATA_GMSH in the environment names, or the one beside this program.
   subroutine find_gmsh(beside, limit, gmsh)
-    character(len=*), intent(in) :: beside
-    real(wp), intent(in) :: limit
+    character(len=*), intent(in) :: beside    !! files are written beside this one
+    real(wp), intent(in) :: limit             !! longest time for a mesh [s]
     type(gmsh_t), intent(out) :: gmsh
     character(len=:), allocatable :: mine
     integer :: length
 
-    gmsh%beside = beside
+    gmsh%stem = beside//'.'//to_text(own_process())
     gmsh%limit = limit
     call get_environment_variable('REMDATA_GMSH', length=length)
     allocate (character(len=length) :: gmsh%program_name)
@@ -62,9 +62,9 @@ contains
     type(string_t) :: words(3)
     character(len=:), allocatable :: script, mesh, said
 
-    script = gmsh%beside//'.geo'
-    mesh = gmsh%beside//'.msh'
-    said = gmsh%beside//'.said'
+    script = gmsh%stem//'.geo'
+    mesh = gmsh%stem//'.msh'
+    said = gmsh%stem//'.said'
     frame%low = minval(points, 2)
     frame%width = maxval(maxval(points, 2) - frame%low)
     call remove_file(mesh, error)
@@ -121,7 +121,7 @@ contains
       if (status /= 0) exit
       if (line /= '') words = ': '//trim(line)
     end do
-    close (unit, iostat=status)
+    close (unit)
   end function last_words
 
 end module gmsh_call

@@ -4,6 +4,7 @@
 !> size at the origin, for Gmsh's tolerances are absolute numbers. Formats: Gmsh reference manual, scripting language and
 !> MSH file format, version 2.
 module gmsh_files
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use errors, only: error_t, exit_machine, exit_no_convergence, fail
   use kinds, only: wp
   use size_cells, only: cell_t
@@ -17,10 +18,10 @@ module gmsh_files
     real(wp) :: low(2) = 0.0_wp, width = 1.0_wp   !! [length]
   end type frame_t
 
-  !> Quadrilaterals between given points and new ones, which are numbered after them.
+  !> Quadrilaterals, or triangles, between given points and new ones, which are numbered after them.
   type :: quads_t
     real(wp), allocatable :: inside(:, :)   !! new points (2, n) [length]
-    integer, allocatable :: corners(:, :)   !! (4, nelem), either way round
+    integer, allocatable :: corners(:, :)   !! (4, nelem), either way round; the fourth is 0 for a triangle
   end type quads_t
 
   !> Frontal Delaunay triangles (J.-F. Remacle et al., Int. J. Num. Meth. Engng 94 (2013) 494-512) paired into quadrilaterals by
@@ -30,7 +31,7 @@ module gmsh_files
     'Mesh.ElementOrder = 1;', 'Mesh.MeshSizeExtendFromBoundary = 0;', 'Mesh.MeshSizeFromPoints = 0;', &
     'Mesh.MeshSizeFromCurvature = 0;', 'Mesh.RandomSeed = 1;', 'Mesh.RandomFactor = 1e-9;', 'Mesh.MaxNumThreads2D = 1;', &
     'Mesh.MshFileVersion = 2.2;', 'Mesh.Binary = 0;', 'Mesh.SaveAll = 1;']
-  !> Types of elements in its files.
+  !> Types of elements in its files; one of type 2 or 3 has a corner more.
   integer, parameter :: triangle = 2, quadrilateral = 3, point = 15
 
 contains
@@ -98,7 +99,7 @@ contains
     end if
     call read_nodes(unit, x, error)
     if (.not. allocated(error)) call read_elements(unit, n, x, quads, error)
-    close (unit, iostat=status)
+    close (unit)
     if (allocated(error)) return
     quads%inside = spread(frame%low, 2, size(quads%inside, 2)) + frame%width*quads%inside
   end subroutine read_quads
@@ -134,23 +135,24 @@ contains
     allocate (x(2, n))
     do k = 1, n
       read (unit, *, iostat=status) number, place
-      if (status == 0 .and. number >= 1 .and. number <= n .and. all(abs(place) < 2)) then
-        x(:, number) = place
-        cycle
+      if (status == 0 .and. .not. all(ieee_is_finite(place))) status = 1
+      if (status == 0 .and. (number < 1 .or. number > n)) status = 1
+      if (status /= 0) then
+        call refuse_mesh('row '//to_text(k)//' of its nodes is none', error)
+        return
       end if
-      call refuse_mesh('row '//to_text(k)//' of its nodes is none', error)
-      return
+      x(:, number) = place
     end do
   end subroutine read_nodes
 
-  !> Quadrilaterals, and which given point each number of the file is.
+  !> Elements, and which given point each number of the file is.
   subroutine read_elements(unit, n, x, quads, error)
     integer, intent(in) :: unit, n
     real(wp), intent(in) :: x(:, :)
     type(quads_t), intent(inout) :: quads
     type(error_t), allocatable, intent(out) :: error
     character(len=256) :: line
-    integer :: status, rows, k, head(3), row(32), nquad, triangles, length, known(size(x, 2))
+    integer :: status, rows, k, head(3), row(32), ncell, length, known(size(x, 2))
 
     rows = 0
     call find_line(unit, '$Elements', status)
@@ -162,14 +164,14 @@ contains
     deallocate (quads%corners)
     allocate (quads%corners(4, rows))
     known = 0
-    nquad = 0
-    triangles = 0
+    ncell = 0
     do k = 1, rows
       head = 0
       read (unit, '(a)', iostat=status) line
       if (status == 0) read (line, *, iostat=status) head
       length = 0
       if (head(2) == point) length = 1
+      if (head(2) == triangle) length = 3
       if (head(2) == quadrilateral) length = 4
       length = length + 3 + head(3)
       if (status == 0 .and. (head(3) < 2 .or. length > size(row))) status = 1
@@ -185,21 +187,18 @@ contains
       select case (head(2))
       case (point)
         known(row(length)) = row(5)
-      case (quadrilateral)
-        nquad = nquad + 1
-        quads%corners(:, nquad) = row(length - 3:length)
-      case (triangle)
-        triangles = triangles + 1
+      case (quadrilateral, triangle)
+        ncell = ncell + 1
+        quads%corners(:, ncell) = 0
+        quads%corners(:head(2) + 1, ncell) = row(length - head(2):length)
       end select
     end do
-    if (triangles > 0) then
-      call refuse_mesh('it has '//to_text(triangles)//' triangles', error)
-    else if (nquad == 0) then
+    if (ncell == 0) then
       call refuse_mesh('it has no quadrilaterals', error)
     else if (count(known > 0) /= n) then
       call refuse_mesh('it has not the points of the contour', error)
     else
-      quads%corners = quads%corners(:, :nquad)
+      quads%corners = quads%corners(:, :ncell)
       call number_inside(n, x, known, quads)
     end if
   end subroutine read_elements
@@ -214,7 +213,7 @@ contains
 
     last = 0
     do e = 1, size(quads%corners, 2)
-      do k = 1, 4
+      do k = 1, count(quads%corners(:, e) > 0)
         associate (node => quads%corners(k, e))
           if (known(node) == 0) then
             last = last + 1

@@ -16,8 +16,10 @@ module mesh_without_zones
   private
   public :: mesh_freely
 
-  !> Other sizes give another mesh, when one is of bad shape or Gmsh fails on it: so many times finer.
-  real(wp), parameter :: finer_by(5) = [1.0_wp, 1.05_wp, 0.95_wp, 1.12_wp, 1.25_wp]
+  !> Other sizes give another mesh, when one is of bad shape, has triangles or Gmsh fails on it: so many times finer; and elements
+  !> twice as large, split, are quadrilaterals in any case.
+  real(wp), parameter :: finer_by(7) = [1.0_wp, 1.05_wp, 1.0_wp, 1.12_wp, 1.12_wp, 1.25_wp, 2.0_wp]
+  logical, parameter :: split(7) = [.false., .false., .true., .false., .true., .true., .true.]
   !> Elements are mended below this: nothing but their corners holds lines that follow no grid.
   real(wp), parameter :: least_sine = 0.6_wp
 
@@ -50,7 +52,7 @@ contains
     do attempt = 1, size(finer_by)
       if (allocated(error)) deallocate (error)
       wish%division%refine = finer*finer_by(attempt)
-      call mesh_outlines(chains, outlines, sizes, wish, gmsh, mesh, error)
+      call mesh_outlines(chains, outlines, sizes, wish, split(attempt), gmsh, mesh, error)
       if (.not. allocated(error)) call check_new_mesh(contours, mesh, check, error)
       if (.not. allocated(error) .or. .not. gmsh%is_there .or. gmsh%late) exit
     end do

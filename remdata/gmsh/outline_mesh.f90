@@ -7,7 +7,7 @@ module outline_mesh
   use body_outlines, only: divide_outlines, lay_out_outlines, outline_t
   use contour_chain, only: chain_t, place_t, turn_at
   use errors, only: error_t
-  use opened_corners, only: open_flat_corners
+  use flat_quads, only: open_flat_corners
   use gmsh_call, only: gmsh_t, mesh_outline
   use gmsh_files, only: quads_t, refuse_mesh
   use kinds, only: pi, wp
@@ -16,6 +16,8 @@ module outline_mesh
   use side_middles, only: place_middle
   use size_cells, only: cell_t, cover
   use size_field, only: size_field_t
+  use split_cells, only: split_into_quads
+  use text, only: to_text
   use zone_mesh, only: mesh_wish_t, new_mesh_t
   use zones, only: layout_t
   implicit none
@@ -46,11 +48,12 @@ module outline_mesh
 contains
 
   !> The mesh, or why there is none. `division%factor` of the mesh says what a limited number of elements cost.
-  subroutine mesh_outlines(chains, outlines, field, wish, gmsh, mesh, error)
+  subroutine mesh_outlines(chains, outlines, field, wish, split, gmsh, mesh, error)
     type(chain_t), intent(in) :: chains(:)
     type(outline_t), intent(in) :: outlines(:)
     type(size_field_t), intent(in) :: field
     type(mesh_wish_t), intent(in) :: wish
+    logical, intent(in) :: split              !! Gmsh's elements are twice as large, and split
     type(gmsh_t), intent(inout) :: gmsh
     type(new_mesh_t), intent(out) :: mesh
     type(error_t), allocatable, intent(out) :: error
@@ -64,8 +67,8 @@ contains
     call lay_out_outlines(chains, outlines, mesh%layout)
     factor = 1/wish%division%refine
     do attempt = 1, attempts
-      call divide_outlines(chains, outlines, mesh%layout, field, factor, curves, mesh%division, first, ends)
-      call make_corners(chains, outlines, field, mesh%layout, curves, factor, first, ends, gmsh, draft, error)
+      call divide_outlines(chains, outlines, mesh%layout, field, factor, split, curves, mesh%division, first, ends)
+      call make_corners(chains, outlines, field, mesh%layout, curves, factor, split, first, ends, gmsh, draft, error)
       if (allocated(error)) return
       if (size(draft%zone) <= wish%division%most_elements) exit
       factor = growth*factor*sqrt(real(size(draft%zone), wp)/wish%division%most_elements)
@@ -79,13 +82,14 @@ contains
   end subroutine mesh_outlines
 
   !> Corners of all elements: along the contours, and by Gmsh body by body.
-  subroutine make_corners(chains, outlines, field, layout, curves, factor, first, ends, gmsh, draft, error)
+  subroutine make_corners(chains, outlines, field, layout, curves, factor, split, first, ends, gmsh, draft, error)
     type(chain_t), intent(in) :: chains(:)
     type(outline_t), intent(in) :: outlines(:)
     type(size_field_t), intent(in) :: field
     type(layout_t), intent(in) :: layout
     type(curve_t), intent(in) :: curves(:)
     real(wp), intent(in) :: factor, ends(:)
+    logical, intent(in) :: split
     integer, intent(in) :: first(:)
     type(gmsh_t), intent(inout) :: gmsh
     type(draft_t), intent(out) :: draft
@@ -102,12 +106,26 @@ contains
       low = begins(1)
       high = begins(size(begins)) - 1
       call cover(field, outlines(b)%material, minval(draft%x(:, low:high), 2), maxval(draft%x(:, low:high), 2), cells)
-      call mesh_outline(gmsh, draft%x(:, low:high), begins - low + 1, cells, factor, quads, error)
+      if (split) then
+        call mesh_outline(gmsh, draft%x(:, low:high:2), (begins - low)/2 + 1, cells, 2*factor, quads, error)
+        if (.not. allocated(error)) &
+          call split_into_quads(draft%x(:, low:high:2), (draft%next(draft%next(low:high:2)) - low)/2 + 1, quads)
+      else
+        call mesh_outline(gmsh, draft%x(:, low:high), begins - low + 1, cells, factor, quads, error)
+        if (.not. allocated(error)) call refuse_triangles(quads, error)
+      end if
       if (allocated(error)) return
       call add_quads(quads, b, low, high, draft)
     end do
     call open_flat_corners(draft%next, draft%smooth, draft%x, draft%corners, draft%zone)
   end subroutine make_corners
+
+  pure subroutine refuse_triangles(quads, error)
+    type(quads_t), intent(in) :: quads
+    type(error_t), allocatable, intent(out) :: error
+
+    if (any(quads%corners == 0)) call refuse_mesh('it has '//to_text(count(quads%corners == 0))//' triangles', error)
+  end subroutine refuse_triangles
 
   !> Ends of elements along all sides.
   pure subroutine put_points(chains, layout, curves, first, ends, draft)

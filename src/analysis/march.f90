@@ -1,17 +1,20 @@
 !> The march in time: the page that reads like the method.
 module march
   use accept_step, only: accept
+  use acceptance, only: begin_probation, is_on_probation, note_cut, note_step
   use bookkeeping, only: measure_scene
   use contact_flow, only: update_flow_stress
   use equations, only: set_up
   use errors, only: error_t
   use estimator, only: set_up_estimator
   use history, only: open_history
+  use judge_remesh, only: limit_lines, refuse_remesh
   use kinds, only: eps, wp
-  use listing, only: list_balance, list_cut, list_event, list_note, list_step, show_progress
+  use listing, only: list_balance, list_cut, list_event, list_lines, list_note, list_step, show_progress
   use newton, only: outcome_t, solve_step
+  use probation, only: is_too_short, pass_probation, refuse_after_all
   use restart_report, only: write_restart
-  use restore_balance, only: refuse_remesh, restore_equilibrium
+  use restore_balance, only: restore_equilibrium
   use results, only: open_results, save_fields
   use run_record, only: run_t, record, save_all, at_end
   use run_stop, only: stop_here, finish
@@ -38,14 +41,16 @@ contains
     type(run_t), intent(inout) :: run
     type(error_t), allocatable, intent(out) :: error
     type(outcome_t) :: outcome
-    real(wp) :: dt
-    logical :: give_up
+    real(wp) :: dt, length
+    logical :: on_probation
     integer :: cuts
 
     cuts = 0
     call start(scene, solution, run, error)
     do while (.not. allocated(error) .and. solution%time < scene%strategy%end_time*(1 - 64*eps))
       dt = choose_step(scene, solution%time, solution%next_step)
+      length = min(solution%next_step, scene%strategy%largest_step)
+      on_probation = is_on_probation(solution%probation)
 
       call solve_step(scene, run%equations, solution, dt, outcome)
       do while (outcome%event < 1)
@@ -59,16 +64,8 @@ contains
       end if
 
       if (.not. outcome%converged) then
-        solution%cutbacks = solution%cutbacks + 1
-        call after_failure(scene, dt, solution%next_step, give_up)
-        call list_cut(run%listing, scene, solution, dt, solution%next_step, outcome)
-        cuts = cuts + 1
-        call answer_distress(scene, cuts, give_up, run%listing, solution)
-        if (mesh_is_due(solution)) then
-          call save_all(scene, solution, run, error)
-          exit
-        end if
-        if (give_up) call stop_here(scene, solution, dt, outcome, run, error)
+        call answer_failure(scene, dt, on_probation, outcome, cuts, solution, run, error)
+        if (mesh_is_due(solution)) exit
         cycle
       end if
 
@@ -76,17 +73,51 @@ contains
       call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
       if (allocated(error)) exit
       cuts = 0
+      call note_step(solution%probation, length)
       call estimate(scene, run%estimator, run%equations%timers, solution)
       call list_step(run%listing, solution, outcome, run%totals)
       ! at the end a new mesh would have nothing to do
       if (.not. at_end(scene, solution)) call look_at_mesh(scene, run%equations%timers, run%listing, solution)
       call tell_spurious_mode(scene, solution, run)
       call show_progress(run%listing, scene, solution, outcome%iterations)
+      if (on_probation) call judge_steps(scene, solution, outcome, run, error)
+      if (allocated(error)) exit
       call record(scene, solution, outcome, run, error)
       if (caught_signal() /= 0 .or. mesh_is_due(solution)) exit
     end do
     call finish(scene, solution, run, error)
   end subroutine march_to_end
+
+  !> A step has failed: it is cut, a new mesh is asked for, the mesh is refused, or the run cannot go on.
+  subroutine answer_failure(scene, dt, on_probation, outcome, cuts, solution, run, error)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: dt
+    logical, intent(in) :: on_probation
+    type(outcome_t), intent(in) :: outcome
+    integer, intent(inout) :: cuts   !! one after the other
+    type(solution_t), intent(inout) :: solution
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+    logical :: give_up
+
+    solution%cutbacks = solution%cutbacks + 1
+    call after_failure(scene, dt, solution%next_step, give_up)
+    call list_cut(run%listing, scene, solution, dt, solution%next_step, outcome)
+    cuts = cuts + 1
+    call note_cut(solution%probation, solution%next_step)
+    if (on_probation .and. is_too_short(scene, solution)) then
+      call refuse_mesh(scene, solution, outcome, run, error)
+      return
+    end if
+    call answer_distress(scene, cuts, give_up, run%listing, solution)
+    if (mesh_is_due(solution)) then
+      if (on_probation) call pass_probation(scene, run%stem, run%listing, solution, error)
+      if (.not. allocated(error)) call save_all(scene, solution, run, error)
+    else if (give_up) then
+      call stop_here(scene, solution, dt, outcome, run, error)
+      if (on_probation) call refuse_mesh(scene, solution, outcome, run, error)
+    end if
+  end subroutine answer_failure
 
   !> Equations, the scene at rest, and files. A mesh that is refused has touched none of the results.
   subroutine start(scene, solution, run, error)
@@ -137,11 +168,41 @@ contains
     end if
     run%totals = run%balance%after
     call list_balance(run%listing, scene, solution, run%balance, outcome)
+    call list_lines(run%listing, limit_lines(scene, run%balance))
     call refuse_remesh(scene, solution, run%balance, error)
+    run%mesh_refused = run%balance%refused
+    if (.not. run%mesh_refused) call begin_probation(solution%probation)
     if (run%balance%restored) call estimate_stress(scene, run%estimator, solution)
     call write_restart(run%stem//'.g'//two_digits(scene%generation)//'.restart.json', scene, solution, run%balance, late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
   end subroutine balance_new_mesh
+
+  !> A step on probation was accepted: is the mesh refused by it, or was it the last that is looked at?
+  subroutine judge_steps(scene, solution, outcome, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    type(outcome_t), intent(in) :: outcome
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+
+    if (is_too_short(scene, solution)) then
+      call refuse_mesh(scene, solution, outcome, run, error)
+    else if (.not. is_on_probation(solution%probation) .or. mesh_is_due(solution) .or. at_end(scene, solution)) then
+      call pass_probation(scene, run%stem, run%listing, solution, error)
+    end if
+  end subroutine judge_steps
+
+  !> The mesh is refused after all, with what the run cannot go on for if there is an error already.
+  subroutine refuse_mesh(scene, solution, outcome, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(outcome_t), intent(in) :: outcome
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(inout) :: error
+
+    run%mesh_refused = .true.
+    call refuse_after_all(scene, run%equations, solution, outcome, run%stem, error)
+  end subroutine refuse_mesh
 
   !> A note, once, when an element has moved in a way that its points do not see.
   subroutine tell_spurious_mode(scene, solution, run)

@@ -2,8 +2,10 @@
 module restart_report
   use errors, only: error_t
   use history, only: circumference
+  use dies, only: is_deformable
+  use judge_remesh, only: bad_shape, carried_change, energy_change, force_change
   use json_writer, only: json_t
-  use restore_balance, only: balance_t, force_change
+  use restore_balance, only: balance_t
   use scene, only: scene_t
   use solution, only: solution_t
   implicit none
@@ -51,9 +53,25 @@ contains
     if (allocated(balance%stage)) call json%add('stage', balance%stage)
     call json%add('first_residual', balance%first_residual)
     call json%add('iterations', balance%iterations)
+    call json%add('force_change', force_change(balance))
+    call json%add('energy_change', energy_change(balance))
+    call json%add('depth_change', balance%depth_change)
+    call json%add('least_scaled_jacobian', balance%shape)
+    associate (accept => scene%remesher%accept)
+      call json%add('first_residual_limit', accept%first_residual)
+      call json%add('iterations_limit', accept%iterations)
+      call json%add('force_change_limit', accept%force_change)
+      call json%add('energy_change_limit', accept%energy_change)
+      call json%add('depth_change_limit', accept%depth_change)
+      call json%add('least_scaled_jacobian_limit', bad_shape)
+    end associate
+    call json%add('first_residual_over_forces', balance%place%relative)
+    call json%add('residual_at_contact', balance%place%at_contact)
+    if (balance%place%node > 0) call json%add('residual_node', scene%mesh%labels(balance%place%node))
+    call json%add('carried_force_change', carried_change(balance))
     call json%add('parts', balance%parts)
     call json%add('motion_over_size', balance%motion)
-    call json%add('force_change', force_change(balance))
+    call add_forces(json, scene, balance)
     call json%add('volume_before', circumference(scene)*balance%before%volume)
     call json%add('volume_after', circumference(scene)*balance%after%volume)
     call json%add('elastic_energy_before', circumference(scene)*balance%before%elastic_energy)
@@ -63,5 +81,25 @@ contains
     if (scene%remesh%estimate) call json%add('error_stress_pct', 100*solution%estimate%stress)
     call json%add('wall_s', balance%wall)
   end subroutine add_facts
+
+  !> Force on each rigid die: as the old mesh had it, by the pressures that were carried, in the equilibrium restored.
+  subroutine add_forces(json, scene, balance)
+    type(json_t), intent(inout) :: json
+    type(scene_t), intent(in) :: scene
+    type(balance_t), intent(in) :: balance
+    integer :: k
+
+    call json%begin_array('forces')
+    do k = 1, size(scene%dies)
+      if (is_deformable(scene%dies(k))) cycle
+      call json%begin_object()
+      call json%add('die', scene%dies(k)%name)
+      call json%add('before', circumference(scene)*balance%pilot_before(1:2, k))
+      call json%add('carried', circumference(scene)*balance%pilot_carried(1:2, k))
+      call json%add('after', circumference(scene)*balance%pilot_after(1:2, k))
+      call json%end_object()
+    end do
+    call json%end_array()
+  end subroutine add_forces
 
 end module restart_report

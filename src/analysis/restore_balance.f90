@@ -9,20 +9,22 @@
 !> the yield surface the first step of the march returns, while the dies move on.
 module restore_balance
   use accept_step, only: accept_balance
-  use elem_api, only: report_t, totals_t
-  use equations, only: equations_t, evaluate, external_forces
+  use dies, only: is_deformable
+  use elem_api, only: block_done, report_t, totals_t
+  use equations, only: equations_t, evaluate, external_forces, solve_correction
+  use errors, only: error_t
   use kinds, only: wp
+  use linear_solver, only: try_without_pivoting
   use newton, only: outcome_t, solve_step
-  use errors, only: error_t, exit_no_convergence, fail
+  use residual_place, only: least_shape, place_residual, residual_place_t
   use scene, only: scene_t
   use solution, only: solution_t
   use state_variables, only: find_variable
   use system, only: wall_seconds
-  use text, only: to_text
   use vectors, only: length_of
   implicit none
   private
-  public :: balance_t, restore_equilibrium, refuse_remesh, force_change
+  public :: balance_t, restore_equilibrium
 
   !> What the restart tells of the remesh.
   type :: balance_t
@@ -30,15 +32,22 @@ module restore_balance
     !> The remesh is refused, by the fault of this stage.
     logical :: refused = .false.
     character(len=:), allocatable :: stage
-    !> First residual over the forces at work, iterations in all, parts it took.
+    !> The first residual: by the energy of the linear correction it asks for, and where it sits.
     real(wp) :: first_residual = 0.0_wp
+    type(residual_place_t) :: place
+    !> Least scaled Jacobian of an element of the mesh.
+    real(wp) :: shape = 1.0_wp
+    !> Iterations in all, parts it took.
     integer :: iterations = 0, parts = 0
     !> Largest motion of a node over the size of the mesh.
     real(wp) :: motion = 0.0_wp
     !> Volume, elastic energy and plastic work before and after.
     type(totals_t) :: before, after
-    !> Force on each pilot before (as the old mesh had it) and after (3, ndie).
-    real(wp), allocatable :: pilot_before(:, :), pilot_after(:, :)
+    !> Force on each pilot before (as the old mesh had it), by the pressures that were carried, and after (3, ndie).
+    real(wp), allocatable :: pilot_before(:, :), pilot_carried(:, :), pilot_after(:, :)
+    !> Change of the depth in a die, in the mean of its pressures, over the penetration allowed and a thousandth of the side.
+    real(wp) :: depth_change = 0.0_wp
+    !> Why Newton's method gave up; not allocated where it did not.
     character(len=:), allocatable :: reason
     !> Seconds on the wall.
     real(wp) :: wall = 0.0_wp
@@ -46,8 +55,9 @@ module restore_balance
 
   !> Parts smaller than this are not tried.
   real(wp), parameter :: smallest_part = 1.0_wp/64
-  !> A first residual above this share of the forces comes of contact that does not fit: stress alone does not carry that.
-  real(wp), parameter :: large_residual = 0.5_wp
+  !> Share of its length by which a side may miss a curved contour: a parabola misses an arc that turns by t by (t/2)**3/192 of its
+  !> length (fourth term of the series), so this is an arc of 66 degrees.
+  real(wp), parameter :: missed_by_parabola = 1.0e-3_wp
 
 contains
 
@@ -59,25 +69,29 @@ contains
     type(balance_t), intent(inout) :: balance   !! `before` is known
     type(outcome_t), intent(out) :: outcome
     real(wp), dimension(equations%dofs%ndof) :: external, rest
-    real(wp) :: left, part, started
+    real(wp) :: left, part, started, work
     type(report_t) :: report
 
     started = wall_seconds()
     allocate (balance%pilot_before, source=solution%pilot_applied)
+    balance%shape = least_shape(scene, scene%mesh%coordinates)
     rest = 0
     call external_forces(scene, equations%dofs, solution%time, external)
     call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report)
+    balance%depth_change = depth_change(scene, solution)
     call keep_pressures(scene, solution)
-    call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report)
+    call evaluate(scene, equations, solution, 0.0_wp, rest, .true., report)
+    allocate (balance%pilot_carried, source=solution%pilot_applied)
+    if (report%status == block_done) call book_carried(scene, equations, balance%pilot_carried)
     rest = external - equations%force
     where (equations%dofs%equation == 0) rest = 0
+    call place_residual(scene, equations%dofs, external, equations%magnitude, rest, balance%place)
+    call work_of_correction(equations, rest, work)
     left = 1
     part = 1
     do while (left > 0)
       call solve_step(scene, equations, solution, 0.0_wp, outcome, (left - part)*rest)
       if (allocated(outcome%error)) return
-      if (balance%parts == 0 .and. balance%iterations == 0 .and. size(outcome%history) > 0) &
-        balance%first_residual = outcome%history(1)%force_norm
       balance%iterations = balance%iterations + outcome%iterations
       if (outcome%converged) then
         call accept_balance(scene, equations, outcome, solution, balance%after)
@@ -90,12 +104,41 @@ contains
       end if
     end do
     balance%restored = .not. left > 0
+    balance%first_residual = relative_distance(work, max(balance%before%elastic_energy, balance%after%elastic_energy))
     if (allocated(outcome%reason)) balance%reason = outcome%reason
     balance%motion = maxval(abs(solution%displacement))/equations%size
     allocate (balance%pilot_after, source=solution%pilot_applied)
     if (balance%restored) solution%unbalanced = .false.
     balance%wall = wall_seconds() - started
   end subroutine restore_equilibrium
+
+  !> Twice the elastic energy of the linear correction that a residual asks for: r . K^-1 r.
+  subroutine work_of_correction(equations, residual, work)
+    type(equations_t), intent(inout) :: equations
+    real(wp), intent(in) :: residual(:)
+    real(wp), intent(out) :: work
+    real(wp) :: correction(size(residual))
+    type(error_t), allocatable :: error
+
+    work = 0
+    if (.not. any(abs(residual) > 0)) return
+    call try_without_pivoting(equations%solver)
+    call solve_correction(equations, residual, correction, error)
+    work = abs(dot_product(residual, correction))
+    ! what no linear correction removes is as large as it can be; Newton's method then tells more
+    if (allocated(error)) work = huge(work)
+  end subroutine work_of_correction
+
+  !> Distance from equilibrium in the norm of energy, as errors of the stress are measured (page on errors; Zienkiewicz and Zhu,
+  !> Int. J. Num. Meth. Eng. 24 (1987) 337-357): sqrt(r . K^-1 r/2 over the elastic energy). Unlike a norm of forces it does not
+  !> depend on how fine the mesh is, nor on how few nodes bear the load.
+  pure function relative_distance(work, energy) result(distance)
+    real(wp), intent(in) :: work, energy
+    real(wp) :: distance
+
+    distance = 0
+    if (work > 0) distance = sqrt(0.5_wp*min(work/max(energy, tiny(energy)), huge(energy)))
+  end function relative_distance
 
   !> The penalty of contact goes with the length of sides: at the depth that was kept, sides of another length bear another
   !> pressure. The multiplier takes the difference, so that every closed point begins with the pressure that was carried.
@@ -118,47 +161,56 @@ contains
     end do
   end subroutine keep_pressures
 
-  !> Change of the force of a die over the largest force on any: the worst.
-  pure function force_change(balance) result(change)
-    type(balance_t), intent(in) :: balance
-    real(wp) :: change
-    real(wp) :: largest
-    integer :: k
+  !> What the carried state does to the pilots of rigid dies; those of deformable dies stay as the old mesh had them.
+  pure subroutine book_carried(scene, equations, on_pilots)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(inout) :: on_pilots(:, :)   !! (3, ndie) [force]
+    integer :: k, c
 
-    change = 0
-    largest = 0
-    do k = 1, size(balance%pilot_before, 2)
-      largest = max(largest, length_of(balance%pilot_before(1:2, k)))
-      change = max(change, length_of(balance%pilot_after(1:2, k) - balance%pilot_before(1:2, k)))
+    do k = 1, size(on_pilots, 2)
+      if (is_deformable(scene%dies(k))) cycle
+      do c = 1, 3
+        if (equations%dofs%pilot(c, k) > 0) on_pilots(c, k) = equations%force(equations%dofs%pilot(c, k))
+      end do
     end do
-    if (largest > 0) change = change/largest
-  end function force_change
+  end subroutine book_carried
 
-  !> Chapter 12: slow convergence at the start tells that a remesh went wrong. Over a limit it is refused, with the stage to blame.
-  subroutine refuse_remesh(scene, solution, balance, error)
+  !> Depth found on the new contour against the depth that was carried, over what contact allows and what a parabola through three
+  !> nodes may miss: the mean over the pressures that a die bears, of the die where it is worst. (A single point may be far off
+  !> where contact ends: it bears next to nothing.)
+  pure function depth_change(scene, solution) result(change)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
-    type(balance_t), intent(inout) :: balance
-    type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: what
+    real(wp) :: change
+    real(wp), dimension(size(scene%dies)) :: moment, force
+    real(wp) :: weight, side, allowed
+    integer :: g, e, p, depth, pressure, status
 
-    what = ''
-    if (.not. balance%restored) then
-      what = 'equilibrium is not restored'
-      if (allocated(balance%reason)) what = what//' ('//balance%reason//')'
-      balance%stage = trim(merge('contact ', 'transfer', size(scene%dies) > 0 .and. balance%first_residual > large_residual))
-    else if (balance%iterations > scene%remesher%most_iterations) then
-      what = to_text(balance%iterations)//' iterations to equilibrium, at most '//to_text(scene%remesher%most_iterations)
-      balance%stage = 'transfer'
-    else if (force_change(balance) > scene%remesher%force_change) then
-      what = 'the force of a die changes by '//to_text(100*force_change(balance), 3)//' %, at most ' &
-             //to_text(100*scene%remesher%force_change, 3)//' %'
-      balance%stage = 'contact'
-    end if
-    balance%refused = len(what) > 0
-    if (balance%refused) call fail(error, exit_no_convergence, 'mesh '//to_text(scene%generation)//' refused at step ' &
-                                   //to_text(solution%step)//': '//what//'; stage to blame: '//balance%stage, &
-                                   'remesh again from the checkpoint of the old mesh with another transfer or finer elements')
-  end subroutine refuse_remesh
+    moment = 0
+    force = 0
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g), state => solution%groups(g), x => scene%mesh%coordinates)
+        if (group%die == 0 .or. group%material == 0) cycle
+        depth = group%variables(find_variable(group%variables, 'penetration'))%first
+        pressure = group%variables(find_variable(group%variables, 'pressure'))%first
+        status = group%variables(find_variable(group%variables, 'contact_status'))%first
+        do e = 1, size(group%connectivity, 2)
+          side = length_of(x(:, group%connectivity(3, e)) - x(:, group%connectivity(1, e)))
+          ! every contact law begins with the penetration it allows (contact_penalties)
+          allowed = scene%materials(group%material)%values(1) + missed_by_parabola*side
+          do p = 1, size(state%committed, 2)
+            if (nint(state%committed(status, p, e)) <= 0) cycle
+            weight = abs(state%committed(pressure, p, e))*side
+            force(group%die) = force(group%die) + weight
+            moment(group%die) = moment(group%die) &
+                                + weight*abs(state%trial(depth, p, e) - state%committed(depth, p, e))/allowed
+          end do
+        end do
+      end associate
+    end do
+    change = 0
+    if (any(force > 0)) change = maxval(moment/max(force, tiny(1.0_wp)))
+  end function depth_change
 
 end module restore_balance

@@ -1,11 +1,13 @@
 !> `lagamine DECK`: from a deck to its results.
 module run_deck
+  use blas, only: keep_blas_to_one_thread
   use contact_ends, only: contact_end_t
   use deck_reader, only: deck_t, fingerprint_text, read_deck
   use diagnostics, only: diagnostics_t
   use equations, only: equations_t
   use errors, only: error_t, exit_done, exit_input, exit_machine, exit_remesh, fail
-  use exchange, only: read_checkpoint, read_deck_of_checkpoint, read_remesh, write_checkpoint
+  use exchange, only: open_checkpoint, read_deck_of_checkpoint, read_remesh, read_state, write_checkpoint
+  use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use law_api, only: law_t
   use law_manual, only: law_card
@@ -21,7 +23,7 @@ module run_deck
   use scene_summary, only: scene_lines
   use solution, only: solution_t, start_solution
   use summary, only: run_facts_t, summary_lines, write_summary
-  use system, only: catch_signals, join_path, make_directory, single_thread_blas, wall_seconds
+  use system, only: catch_signals, join_path, make_directory, wall_seconds
   use text, only: nearest_word, string_t
   use threads, only: number_of_threads, set_threads
   use unknowns_summary, only: unknowns_lines
@@ -40,22 +42,26 @@ contains
     type(scene_t) :: scene
     type(solution_t) :: solution
     type(run_t) :: run
+    type(hdf5_file_t) :: checkpoint
+    type(error_t), allocatable :: ignored
     logical :: at_rest
 
     code = exit_done
     call catch_signals()
-    call single_thread_blas()
+    call keep_blas_to_one_thread()
     call set_threads(options%threads)
-    call read_input(options, deck, scene, run%deck_text, at_rest, error)
+    call read_input(options, deck, scene, run%deck_text, at_rest, checkpoint, error)
+    run%resume = allocated(options%resume) .and. .not. at_rest
+    if (.not. (allocated(error) .or. options%check)) then
+      call start_solution(scene, solution)
+      if (run%resume) call read_state(checkpoint, scene, solution, error)
+    end if
+    call checkpoint%close(ignored)
     if (allocated(error)) return
     if (options%check) then
       call print_check(scene, error)
       return
     end if
-    call start_solution(scene, solution)
-    run%resume = allocated(options%resume) .and. .not. at_rest
-    if (run%resume) call read_checkpoint(options%resume, scene, solution, error)
-    if (allocated(error)) return
     call make_directory(options%out, error)
     if (allocated(error)) return
     run%deck_path = options%deck
@@ -90,12 +96,13 @@ contains
   end subroutine ask_for_mesh
 
   !> Deck and scene, with all mistakes at once.
-  subroutine read_input(options, deck, scene, text, at_rest, error)
+  subroutine read_input(options, deck, scene, text, at_rest, checkpoint, error)
     type(run_options_t), intent(in) :: options
     type(deck_t), intent(out), target :: deck
     type(scene_t), intent(out) :: scene
     character(len=:), allocatable, intent(out) :: text
     logical, intent(out) :: at_rest   !! there is a new mesh, but no step has been made
+    type(hdf5_file_t), intent(inout) :: checkpoint   !! open afterwards, where one is resumed
     type(error_t), allocatable, intent(out) :: error
     type(diagnostics_t), target :: diagnostics
     type(remesh_t), allocatable :: remesh
@@ -106,7 +113,8 @@ contains
     sound = diagnostics%count() == 0
     if (sound .and. allocated(options%resume)) then
       call fingerprint_text(deck, text)
-      call read_mesh_of(options%resume, text, remesh, unfit)
+      call open_checkpoint(options%resume, checkpoint, unfit)
+      if (.not. allocated(unfit)) call read_mesh_of(checkpoint, text, remesh, unfit)
     end if
     ! A deck that could not be opened has no other mistakes.
     if (sound .or. size(deck%cards) > 0) call read_scene(deck, scene, diagnostics, remesh)
@@ -119,22 +127,22 @@ contains
   end subroutine read_input
 
   !> The mesh of a checkpoint, which must come from the same deck; not allocated when it is the deck's own.
-  subroutine read_mesh_of(path, text, remesh, error)
-    character(len=*), intent(in) :: path, text
+  subroutine read_mesh_of(file, text, remesh, error)
+    type(hdf5_file_t), intent(inout) :: file
+    character(len=*), intent(in) :: text
     type(remesh_t), allocatable, intent(out) :: remesh
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: old_path, old_text
 
-    call read_deck_of_checkpoint(path, old_path, old_text, error)
+    call read_deck_of_checkpoint(file, old_path, old_text, error)
     if (allocated(error)) return
     if (old_text /= text) then
-      call fail(error, exit_input, path//': made from another deck than the one given (it was '//old_path//')', &
+      call fail(error, exit_input, file%path()//': made from another deck than the one given (it was '//old_path//')', &
                 'resume with the same deck and the same -p options')
       return
     end if
     allocate (remesh)
-    call read_remesh(path, remesh, error)
-    if (allocated(error)) return
+    call read_remesh(file, remesh, error)
     if (remesh%generation == 1) deallocate (remesh)
   end subroutine read_mesh_of
 

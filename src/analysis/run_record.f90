@@ -38,6 +38,8 @@ module run_record
     type(totals_t) :: totals
     !> How the run got into equilibrium on a new mesh; not allocated where it did not have to.
     type(balance_t), allocatable :: balance
+    !> A new mesh was refused, at the restart or on probation.
+    logical :: mesh_refused = .false.
     !> The note on a spurious mode has been given.
     logical :: spurious_told = .false.
     integer :: exit_code = exit_done

@@ -79,7 +79,8 @@ contains
     if (allocated(error)) then
       run%exit_code = error%code
       run%stop_reason = error%message
-      if (error%code == exit_no_convergence .and. solution%step > 0 .and. .not. mesh_is_refused(run)) then
+      ! a mesh that is refused leaves what was saved
+      if (error%code == exit_no_convergence .and. solution%step > 0 .and. .not. run%mesh_refused) then
         call save_all(scene, solution, run, late)
       end if
     else if (mesh_is_due(solution)) then
@@ -91,14 +92,5 @@ contains
     end if
     call run%table%close(late)
   end subroutine finish
-
-  !> The new mesh was refused: what was there before it stays.
-  pure function mesh_is_refused(run) result(refused)
-    type(run_t), intent(in) :: run
-    logical :: refused
-
-    refused = .false.
-    if (allocated(run%balance)) refused = run%balance%refused
-  end function mesh_is_refused
 
 end module run_stop

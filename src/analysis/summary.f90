@@ -80,6 +80,7 @@ contains
     if (allocated(balance)) call add_restart(json, scene, solution, balance)
     call json%begin_object('checks')
     call json%add('volume_drift', totals%volume/solution%initial_volume - 1)
+    call json%add('volume_drift_unloaded', totals%unloaded_volume/solution%initial_volume - 1)
     call json%add('max_penetration', solution%worst_penetration)
     call json%add('max_penetration_over_allowed', solution%worst_penetration_ratio)
     call json%add('max_penetration_sampled', solution%worst_sample)
@@ -225,7 +226,8 @@ contains
     lines(2)%s = facts%status//': '//facts%stop_reason
     lines(3)%s = '  time '//to_text(solution%time)//' of '//to_text(scene%strategy%end_time)//', '//to_text(solution%step) &
                  //' steps, '//to_text(solution%iterations)//' iterations, '//to_text(solution%cutbacks)//' cutbacks'
-    lines(4)%s = '  volume drift '//to_text(100*(totals%volume/solution%initial_volume - 1), 3)//' %, energy imbalance ' &
+    lines(4)%s = '  volume drift '//to_text(100*(totals%volume/solution%initial_volume - 1), 3)//' % (without elastic strain ' &
+                 //to_text(100*(totals%unloaded_volume/solution%initial_volume - 1), 3)//' %), energy imbalance ' &
                  //to_text(100*energy_imbalance(solution, totals), 3)//' %, worst linear residual ' &
                  //to_text(solution%worst_linear_residual, 2)
     lines(5)%s = '  largest penetration '//to_text(solution%worst_penetration, 3)//', at most ' &

@@ -9,7 +9,7 @@ module child_process
   use text, only: string_t
   implicit none
   private
-  public :: ending_t, run_child
+  public :: ending_t, run_child, own_process
 
   !> How a child ended.
   type :: ending_t
@@ -36,6 +36,11 @@ module child_process
       import :: c_int
       integer(c_int) :: process
     end function c_fork
+
+    function c_getpid() bind(c, name='getpid') result(process)
+      import :: c_int
+      integer(c_int) :: process
+    end function c_getpid
 
     function c_execvp(file, words) bind(c, name='execvp') result(status)
       import :: c_char, c_int, c_ptr
@@ -120,6 +125,13 @@ contains
     ending%started = process > 0
     if (ending%started) call wait_for(process, limit, ending)
   end subroutine run_child
+
+  !> The number of this process, for names of files that no other one uses meanwhile.
+  function own_process() result(number)
+    integer :: number
+
+    number = int(c_getpid())
+  end function own_process
 
   !> The child's part: it never comes back. Should its parent be killed, the alarm ends it.
   subroutine become(program_name, words, said, seconds)

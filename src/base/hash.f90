@@ -2,8 +2,8 @@
 !> Source: FIPS 180-4, Secure Hash Standard, section 6.2.
 !>
 !> The 32-bit words live in the lower half of 64-bit integers and are cut back by `low` after each
-!> sum, so that no addition ever overflows. A word copied into both halves turns a rotation into
-!> one shift.
+!> sum. A word copied into both halves turns a rotation into one shift; the bits that this leaves
+!> above the word, two places or more below the sign, make no sum overflow, and are cut off with it.
 module hash
   use kinds, only: i8
   implicit none
@@ -97,7 +97,7 @@ contains
   pure subroutine compress(state, block)
     integer(i8), intent(inout) :: state(0:7)
     character(len=1), intent(in) :: block(64)
-    integer(i8) :: w(0:63), a, b, c, d, e, f, g, h, x, y, t1, t2
+    integer(i8) :: w(0:63), a, b, c, d, e, f, g, h, x, y
     integer :: t
 
     do t = 0, 15
@@ -108,22 +108,20 @@ contains
       y = both_halves(w(t - 2))
       x = ieor(ieor(shiftr(x, 7), shiftr(x, 18)), shiftr(w(t - 15), 3))
       y = ieor(ieor(shiftr(y, 17), shiftr(y, 19)), shiftr(w(t - 2), 10))
-      w(t) = iand(iand(x, low) + iand(y, low) + w(t - 7) + w(t - 16), low)
+      w(t) = iand(x + y + w(t - 7) + w(t - 16), low)
     end do
 
     a = state(0); b = state(1); c = state(2); d = state(3)
     e = state(4); f = state(5); g = state(6); h = state(7)
-    do t = 0, 63
-      x = both_halves(e)
-      y = both_halves(a)
-      x = ieor(ieor(shiftr(x, 6), shiftr(x, 11)), shiftr(x, 25))
-      y = ieor(ieor(shiftr(y, 2), shiftr(y, 13)), shiftr(y, 22))
-      t1 = h + iand(x, low) + ieor(g, iand(e, ieor(f, g))) + key(t) + w(t)
-      t2 = iand(y, low) + ior(iand(a, b), iand(c, ior(a, b)))
-      h = g; g = f; f = e
-      e = iand(d + t1, low)
-      d = c; c = b; b = a
-      a = iand(t1 + t2, low)
+    do t = 0, 63, 8   ! after eight rounds every word is back in its place
+      call turn(a, b, c, d, e, f, g, h, key(t) + w(t))
+      call turn(h, a, b, c, d, e, f, g, key(t + 1) + w(t + 1))
+      call turn(g, h, a, b, c, d, e, f, key(t + 2) + w(t + 2))
+      call turn(f, g, h, a, b, c, d, e, key(t + 3) + w(t + 3))
+      call turn(e, f, g, h, a, b, c, d, key(t + 4) + w(t + 4))
+      call turn(d, e, f, g, h, a, b, c, key(t + 5) + w(t + 5))
+      call turn(c, d, e, f, g, h, a, b, key(t + 6) + w(t + 6))
+      call turn(b, c, d, e, f, g, h, a, key(t + 7) + w(t + 7))
     end do
     state = iand(state + [a, b, c, d, e, f, g, h], low)
 
@@ -137,6 +135,20 @@ contains
     end function byte
 
   end subroutine compress
+
+  !> One round: `d` and `h` become the next round's e and a; the other words only change their names.
+  pure subroutine turn(a, b, c, d, e, f, g, h, added)
+    integer(i8), intent(in) :: a, b, c, e, f, g
+    integer(i8), intent(inout) :: d, h
+    integer(i8), intent(in) :: added   !! the round's constant and word of the message
+    integer(i8) :: x, y
+
+    x = both_halves(e)
+    y = both_halves(a)
+    h = h + added + ieor(ieor(shiftr(x, 6), shiftr(x, 11)), shiftr(x, 25)) + ieor(g, iand(e, ieor(f, g)))
+    d = iand(d + h, low)
+    h = iand(h + ieor(ieor(shiftr(y, 2), shiftr(y, 13)), shiftr(y, 22)) + ior(iand(a, b), iand(c, ior(a, b))), low)
+  end subroutine turn
 
   !> A 32-bit word written twice into 64 bits: shifting it to the right now rotates it.
   elemental function both_halves(word)

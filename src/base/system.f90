@@ -12,7 +12,7 @@ module system
   public :: file_exists, directory_exists, make_directory, rename_file, link_file, remove_file, flush_to_disk
   public :: split_path, base_name, directory_of, join_path
   public :: catch_signals, caught_signal, program_stop
-  public :: set_environment, single_thread_blas
+  public :: set_environment
 
   !> The numbers POSIX gives to the two requests to stop.
   integer(c_int), parameter :: signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, signal_file_size = 25
@@ -125,11 +125,6 @@ module system
       type(c_ptr), value :: address
       integer(c_size_t) :: length
     end function c_strlen
-
-    subroutine c_openblas_set_num_threads(n) bind(c, name='openblas_set_num_threads')
-      import :: c_int
-      integer(c_int), value :: n
-    end subroutine c_openblas_set_num_threads
   end interface
 
 contains
@@ -346,11 +341,6 @@ contains
     if (c_setenv(name//c_null_char, value//c_null_char, replace) /= 0) &
       call fail(error, exit_machine, 'cannot set the environment variable '//name//': '//reason())
   end subroutine set_environment
-
-  !> Keep OpenBLAS to one thread: ours are over elements and fronts, and sums must not depend on a number of threads.
-  subroutine single_thread_blas()
-    call c_openblas_set_num_threads(1_c_int)
-  end subroutine single_thread_blas
 
   !> End the program with an exit code and without a word, which `stop` cannot do in Fortran 2008.
   subroutine program_stop(code)

@@ -3,11 +3,12 @@
 !> Sizes and numbers that are not given follow the mesh of the deck itself, however often it has been remeshed since: whoever chose
 !> that mesh has said how fine it should be.
 module remesher_rows
+  use acceptance, only: acceptance_t
   use block_mesh, only: polygon_area
   use deck_cursor, only: cursor_t
   use kinds, only: pi, wp
   use mesh_parts, only: mesh_parts_t
-  use remesher_options, only: remesher_options_t
+  use remesher_options, only: by_gmsh, has_zones, remesher_options_t
   use scene_draft, only: own_mesh_t, words_of
   use text, only: string_t
   implicit none
@@ -15,11 +16,13 @@ module remesher_rows
   public :: remesher_words, read_remesher_row, measure_own_mesh, complete_options
 
   !> In the order of `read_remesher_row`.
-  character(len=*), parameter :: remesher_words = 'STRAIN SIZE COUNT ACROSS TURN TRANSFER ACCEPT MESHER'
+  character(len=*), parameter :: remesher_words = 'STRAIN SIZE COUNT ACROSS TURN TRANSFER ACCEPT TRIES MESHER'
   !> Meshers by their numbers, from 1.
   character(len=*), parameter :: meshers = 'ZONES GMSH'
   !> Methods of transfer by their numbers, from 0.
   character(len=*), parameter :: methods = 'DIST MLS PATCH'
+  !> Limits of ACCEPT.
+  character(len=*), parameter :: limits = 'RESIDUAL ITERATIONS FORCE ENERGY DEPTH STEP'
   !> Moving squares of degree 2 need 6 points, and some more not to be an interpolation.
   integer, parameter :: fewest_neighbours = 8, most_neighbours = 64
   !> Smallest and largest elements over those of the deck's own mesh, and how many times as many elements there may be.
@@ -52,13 +55,59 @@ contains
     case ('TRANSFER')
       call read_transfer(cursor, options)
     case ('ACCEPT')
-      call cursor%integer('the largest number of iterations to equilibrium', options%most_iterations, lower=1)
-      call cursor%real('the largest change of the force of a die', options%force_change, lower=0.0_wp, strict_lower=.true.)
+      call read_limits(cursor, options%accept)
+    case ('TRIES')
+      call cursor%integer('the number of other ways tried when a mesh is refused', options%tries, lower=0)
     case ('MESHER')
       call words_of(meshers, words)
       call cursor%name('who makes the mesh', words, options%mesher)
+      if (options%mesher == by_gmsh .and. has_zones(options)) &
+        call cursor%fail('ZONE cards and Gmsh exclude one another: leave out the one or the other')
     end select
   end subroutine read_remesher_row
+
+  !> Limits of the restart by their words, each once.
+  subroutine read_limits(cursor, accept)
+    type(cursor_t), intent(inout) :: cursor
+    type(acceptance_t), intent(inout) :: accept
+    type(string_t), allocatable :: words(:)
+    logical, allocatable :: given(:)
+    integer :: k
+
+    call words_of(limits, words)
+    given = spread(.false., 1, size(words))
+    do
+      call cursor%name('one of '//limits, words, k)
+      if (k == 0) return
+      if (given(k)) call cursor%fail(words(k)%s//' is given twice')
+      given(k) = .true.
+      select case (words(k)%s)
+      case ('RESIDUAL')
+        call positive('the largest first residual over the forces at work', accept%first_residual)
+      case ('ITERATIONS')
+        call cursor%integer('the largest number of iterations to equilibrium', accept%iterations, lower=1)
+      case ('FORCE')
+        call positive('the largest change of the force of a die', accept%force_change)
+      case ('ENERGY')
+        call positive('the largest change of the elastic energy', accept%energy_change)
+      case ('DEPTH')
+        call positive('the largest change of a depth over what contact and sides allow', accept%depth_change)
+      case ('STEP')
+        call cursor%real('the least step on the new mesh over the least before it', accept%step_ratio, lower=0.0_wp, upper=1.0_wp)
+      end select
+      if (.not. cursor%more()) exit
+    end do
+
+  contains
+
+    subroutine positive(what, limit)
+      character(len=*), intent(in) :: what
+      real(wp), intent(inout) :: limit
+
+      call cursor%real(what, limit, lower=0.0_wp, strict_lower=.true.)
+    end subroutine positive
+
+  end subroutine read_limits
 
   !> A method, and its number if it has one.
   subroutine read_transfer(cursor, options)
@@ -87,18 +136,19 @@ contains
     real(wp) :: area
     integer :: b, e
 
-    area = 0
+    own%smallest = merge(huge(area), 0.0_wp, parts%sound .and. size(parts%bodies) > 0)
     if (parts%sound) then
       do b = 1, size(parts%bodies)
         associate (connectivity => parts%bodies(b)%connectivity)
           own%elements = own%elements + size(connectivity, 2)
           do e = 1, size(connectivity, 2)
-            area = area + abs(polygon_area(parts%coordinates(:, connectivity(1:4, e))))
+            area = abs(polygon_area(parts%coordinates(:, connectivity(1:4, e))))
+            own%smallest = min(own%smallest, sqrt(area))
+            own%largest = max(own%largest, sqrt(area))
           end do
         end associate
       end do
     end if
-    if (own%elements > 0) own%size = sqrt(area/own%elements)
   end function measure_own_mesh
 
   !> What was not given is taken from the deck's own mesh.
@@ -107,8 +157,8 @@ contains
     type(remesher_options_t), intent(inout) :: options
 
     if (.not. options%largest > 0) then
-      options%smallest = smallest_share*own%size
-      options%largest = largest_share*own%size
+      options%smallest = smallest_share*own%smallest
+      options%largest = largest_share*own%largest
     end if
     if (options%most_elements == 0) options%most_elements = growth*own%elements
   end subroutine complete_options

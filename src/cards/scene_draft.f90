@@ -20,8 +20,8 @@ module scene_draft
   !> The mesh that the cards make, before any remesh took its place.
   type :: own_mesh_t
     integer :: elements = 0
-    !> Mean size of an element [length].
-    real(wp) :: size = 0.0_wp
+    !> Sizes of the smallest and the largest element [length].
+    real(wp) :: smallest = 0.0_wp, largest = 0.0_wp
   end type own_mesh_t
 
   type :: draft_t

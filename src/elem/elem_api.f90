@@ -59,6 +59,8 @@ module elem_api
   !> Sums over a group at an accepted instant (per radian when axisymmetric), and extremes.
   type :: totals_t
     real(wp) :: volume = 0.0_wp
+    !> What the volume would be without elastic strain.
+    real(wp) :: unloaded_volume = 0.0_wp
     real(wp) :: elastic_energy = 0.0_wp
     real(wp) :: plastic_work = 0.0_wp
     real(wp) :: friction_work = 0.0_wp
@@ -172,6 +174,7 @@ contains
     type(totals_t), intent(in) :: part
 
     sum%volume = sum%volume + part%volume
+    sum%unloaded_volume = sum%unloaded_volume + part%unloaded_volume
     sum%elastic_energy = sum%elastic_energy + part%elastic_energy
     sum%plastic_work = sum%plastic_work + part%plastic_work
     sum%friction_work = sum%friction_work + part%friction_work

@@ -238,7 +238,7 @@ contains
     end do
   end subroutine tangent_matrix
 
-  !> Volume and energies. Work densities are per stress-free volume, dv/J with J = exp(tr e). A law's `plastic_work` is what
+  !> Volumes and energies. Work densities are per stress-free volume, dv/J with J = exp(tr e). A law's `plastic_work` is what
   !> is dissipated, its `stored_work` what is kept beside the elastic energy and counted with it.
   subroutine measure(scene, group, law, section, x, state, before, totals)
     type(scene_t), intent(in) :: scene
@@ -274,8 +274,9 @@ contains
         strain = state(first_strain:first_history - 1, p, e)
         totals%elastic_energy = totals%elastic_energy &
                                 + 0.5_wp*dv*(dot_product(stress, strain) + stress(3)*strain(3))
-        if (k == 0) cycle
         if (scene%finite) dv = dv*exp(-strain(1) - strain(2) - strain(4))
+        totals%unloaded_volume = totals%unloaded_volume + dv
+        if (k == 0) cycle
         totals%plastic_work = totals%plastic_work + state(k, p, e)*dv
         if (kept > 0) totals%elastic_energy = totals%elastic_energy + state(kept, p, e)*dv
         totals%least_dissipation = min(totals%least_dissipation, state(k, p, e) - before(k, p, e))

@@ -190,9 +190,9 @@ contains
   !> Polynomials of all vertices from values at the 2 x 2 points.
   pure subroutine fit_patches(patches, coordinates, place, value, polynomials)
     type(patches_t), intent(in) :: patches
-    real(wp), intent(in) :: coordinates(:, :)    !! of all nodes (2, nnode) [length]
-    real(wp), intent(in) :: place(:, :, :)       !! points (2, 4, nelem) [length]
-    real(wp), intent(in) :: value(:, :, :)       !! (nvalue, 4, nelem)
+    real(wp), intent(in), contiguous :: coordinates(:, :)    !! of all nodes (2, nnode) [length]
+    real(wp), intent(in), contiguous :: place(:, :, :)       !! points (2, 4, nelem) [length]
+    real(wp), intent(in), contiguous :: value(:, :, :)       !! (nvalue, 4, nelem)
     type(polynomials_t), intent(out) :: polynomials
     real(wp) :: moments(nmoment), gram(nterm, nterm), right(nvalue, nterm), sums(nvalue), t(nterm), scale
     real(wp), allocatable :: points(:, :)   ! terms at the points of a patch
@@ -307,22 +307,27 @@ contains
     type(patches_t), intent(in) :: patches
     type(polynomials_t), intent(in) :: polynomials
     integer, intent(in) :: e
-    real(wp), intent(in) :: place(:, :)   !! points (2, n) [length]
-    real(wp), intent(in) :: blend(:, :)   !! bilinear shape functions of the corners there (4, n)
+    real(wp), intent(in), contiguous :: place(:, :)   !! points (2, n) [length]
+    real(wp), intent(in), contiguous :: blend(:, :)   !! bilinear shape functions of the corners there (4, n)
     real(wp), intent(out) :: value(nvalue, size(place, 2))
-    real(wp) :: t(nterm), sums(nvalue)
-    integer :: k, j, v, p
+    real(wp) :: coefficient(nvalue, nterm), centre(2), scale, t(nterm, size(place, 2))
+    integer :: k, i, v, p
 
-    do p = 1, size(place, 2)
-      sums = 0
-      do k = 1, 4
-        v = patches%vertex(k, e)
-        t = blend(k, p)*terms((place(:, p) - polynomials%centre(:, v))/polynomials%scale(v))
-        do j = 1, nterm
-          sums = sums + polynomials%coefficient(:nvalue, j, v)*t(j)
+    value = 0
+    do k = 1, 4
+      v = patches%vertex(k, e)
+      coefficient = polynomials%coefficient(:, :, v)
+      centre = polynomials%centre(:, v)
+      scale = polynomials%scale(v)
+      do p = 1, size(place, 2)
+        t(:, p) = blend(k, p)*terms((place(:, p) - centre)/scale)
+      end do
+      do p = 1, size(place, 2)
+        do i = 1, nvalue
+          value(i, p) = value(i, p) + coefficient(i, 1)*t(1, p) + coefficient(i, 2)*t(2, p) + coefficient(i, 3)*t(3, p) &
+                        + coefficient(i, 4)*t(4, p) + coefficient(i, 5)*t(5, p) + coefficient(i, 6)*t(6, p)
         end do
       end do
-      value(:, p) = sums
     end do
   end subroutine recover
 

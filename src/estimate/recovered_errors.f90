@@ -82,9 +82,9 @@ contains
     type(fields_t), intent(in) :: fields(:)          !! of all rules
     integer, intent(in) :: rule_of(:)                !! of each element, place in `fields` (nelem)
     real(wp), intent(in) :: section(3)               !! thickness (sections)
-    real(wp), intent(in) :: coordinates(:, :)        !! (2, nnode) [length]
+    real(wp), intent(in), contiguous :: coordinates(:, :)   !! (2, nnode) [length]
     integer, intent(in) :: connectivity(:, :)        !! (8, nelem)
-    real(wp), intent(in) :: value(:, :, :)           !! at own points (ncomp, up to 9, nelem)
+    real(wp), intent(in), contiguous :: value(:, :, :)      !! at own points (ncomp, up to 9, nelem)
     real(wp), intent(in) :: weights(:, :)            !! of the square of deviator and of pressure (2, nelem) [1/stress]
     real(wp), intent(out) :: missing(:, :), whole(:, :)   !! stress [energy], strain [volume] (2, nelem)
     real(wp), intent(out) :: volume(:)               !! (nelem)
@@ -129,7 +129,7 @@ contains
 
   !> Values at points from those at others.
   pure subroutine carry(from, weights, to)
-    real(wp), intent(in) :: from(:, :), weights(:, :)   !! (ncomp, nfrom), (nfrom, nto)
+    real(wp), intent(in), contiguous :: from(:, :), weights(:, :)   !! (ncomp, nfrom), (nfrom, nto)
     real(wp), intent(out) :: to(ncomp, size(weights, 2))
     integer :: p, q
 

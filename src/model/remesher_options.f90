@@ -1,5 +1,6 @@
 !> How a scene is remeshed: what REMSH cards ask of the remesher, and of the restart on a new mesh.
 module remesher_options
+  use acceptance, only: acceptance_t
   use kinds, only: pi, wp
   use zone_marks, only: contour_card_t, zone_card_t, zone_mark_t
   implicit none
@@ -25,11 +26,11 @@ module remesher_options
     !> Elements across a stretch of contact (0: as they come), angle a side of an element may turn by [radian].
     integer :: across_contact = 4
     real(wp) :: turn = pi/12
-    !> Limits of the restart: iterations, and change of the force of a die (share of the largest).
-    integer :: most_iterations = 40
-    real(wp) :: force_change = 0.25_wp
     !> Who makes the mesh.
     integer :: mesher = as_it_comes
+    !> When a mesh is refused, and other ways tried then.
+    type(acceptance_t) :: accept
+    integer :: tries = 4
     !> Zones that cards give, and the points they name; without them blocks are zones.
     type(zone_mark_t), allocatable :: marks(:)
     type(zone_card_t), allocatable :: zones(:)

@@ -1,5 +1,6 @@
 !> The state of a run at an accepted instant, and the trial state of the step under way.
 module solution
+  use acceptance, only: probation_t
   use kinds, only: wp
   use pairs, only: pairs_t, start_pairs
   use remeshing, only: estimate_t
@@ -34,6 +35,8 @@ module solution
     type(pairs_t), allocatable :: pairs(:)
     !> The state comes from another mesh (or from none): equilibrium has yet to be found.
     logical :: unbalanced = .false.
+    !> Lengths of late steps, and of those of a mesh that is new.
+    type(probation_t) :: probation
     !> Totals since the start.
     integer :: iterations = 0, cutbacks = 0
     !> Work done on the scene from outside, per radian when axisymmetric.

@@ -1,8 +1,9 @@
-!> Reading the state of a checkpoint.
+!> Reading the state of a checkpoint: from a file that `open_checkpoint` has found whole, once for all that is read from it.
 module exchange_read
+  use acceptance, only: probation_t
   use contact_ends, only: contact_end_t
   use errors, only: error_t, exit_input
-  use exchange_schema, only: group_place, open_checkpoint, read_matrix, read_triple, refuse_not_finite
+  use exchange_schema, only: group_place, read_matrix, read_triple, refuse_not_finite
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use pairs, only: pairs_t
@@ -11,37 +12,31 @@ module exchange_read
   use solution, only: solution_t
   implicit none
   private
-  public :: read_checkpoint, read_contact_ends, read_deck_of_checkpoint
+  public :: read_contact_ends, read_deck_of_checkpoint, read_state
 
 contains
 
-  !> The deck a checkpoint was made from, after schema and digest were found right.
-  subroutine read_deck_of_checkpoint(path, deck_path, deck_text, error)
-    character(len=*), intent(in) :: path
+  !> The deck a checkpoint was made from.
+  subroutine read_deck_of_checkpoint(file, deck_path, deck_text, error)
+    type(hdf5_file_t), intent(inout) :: file
     character(len=:), allocatable, intent(out) :: deck_path, deck_text
     type(error_t), allocatable, intent(out) :: error
-    type(hdf5_file_t) :: file
 
-    call open_checkpoint(path, file, error)
-    if (allocated(error)) return
     call file%read('deck/path', deck_path)
     call file%read('deck/text', deck_text)
-    call file%close(error)
+    call file%status(error)
   end subroutine read_deck_of_checkpoint
 
   !> Take up the state of a checkpoint in a scene read from the same deck.
-  subroutine read_checkpoint(path, scene, solution, error)
-    character(len=*), intent(in) :: path
+  subroutine read_state(file, scene, solution, error)
+    type(hdf5_file_t), intent(inout) :: file
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution   !! started from the scene
     type(error_t), allocatable, intent(out) :: error
-    type(hdf5_file_t) :: file
     real(wp), allocatable :: worst(:)
     real(wp) :: spurious(3)
     integer :: unbalanced
 
-    call open_checkpoint(path, file, error)
-    if (allocated(error)) return
     call file%read('progress/time', solution%time)
     call file%read('progress/step', solution%step)
     unbalanced = 0
@@ -49,6 +44,7 @@ contains
     solution%unbalanced = unbalanced == 1
     call file%read('progress/last_step', solution%last_step)
     call file%read('progress/next_step', solution%next_step)
+    call read_probation(file, solution%probation)
     call file%read('progress/iterations', solution%iterations)
     call file%read('progress/cutbacks', solution%cutbacks)
     call file%read('progress/external_work', solution%external_work)
@@ -79,8 +75,23 @@ contains
     call read_dies(file, scene, solution)
     call read_states(file, scene, solution)
     if (scene%remesh%estimate) call read_estimate(file, scene, solution%estimate)
-    call file%close(error)
-  end subroutine read_checkpoint
+    call file%status(error)
+  end subroutine read_state
+
+  subroutine read_probation(file, probation)
+    type(hdf5_file_t), intent(inout) :: file
+    type(probation_t), intent(inout) :: probation
+    real(wp), allocatable :: recent(:), steps(:)
+
+    call file%read('progress/recent_steps', recent)
+    call file%read('progress/probation', probation%left)
+    call file%read('progress/probation_steps', steps)
+    if (size(recent) /= size(probation%recent) .or. size(steps) /= 2) return
+    probation%recent = recent
+    probation%before = steps(1)
+    probation%least = steps(2)
+    call refuse_not_finite(file, 'progress/recent_steps', all(abs([recent, steps]) <= huge(1.0_wp)))
+  end subroutine read_probation
 
   subroutine read_dies(file, scene, solution)
     type(hdf5_file_t), intent(inout) :: file
@@ -161,18 +172,15 @@ contains
   end subroutine read_pairs
 
   !> Where contact begins and ends at the instant of a checkpoint.
-  subroutine read_contact_ends(path, ends, error)
-    character(len=*), intent(in) :: path
+  subroutine read_contact_ends(file, ends, error)
+    type(hdf5_file_t), intent(inout) :: file
     type(contact_end_t), allocatable, intent(out) :: ends(:)
     type(error_t), allocatable, intent(out) :: error
-    type(hdf5_file_t) :: file
     integer, allocatable :: begins(:), group(:), side(:), piece(:)
     real(wp), allocatable :: place(:), xi(:)
     integer :: n
 
     allocate (ends(0))
-    call open_checkpoint(path, file, error)
-    if (allocated(error)) return
     call file%read('contact_ends/begins', begins)
     call file%read('contact_ends/group', group)
     call file%read('contact_ends/side', side)
@@ -182,7 +190,7 @@ contains
     n = size(begins)
     if (any([size(group), size(side), size(place), size(piece), size(xi)] /= n)) &
       call file%record_error(exit_input, 'contact_ends: lists of unlike lengths')
-    call file%close(error)
+    call file%status(error)
     if (allocated(error)) return
     deallocate (ends)
     allocate (ends(n))

@@ -25,6 +25,7 @@ contains
     call file%write('remesher/count', [remesher%most_elements, remesher%across_contact])
     call file%write('remesher/turn', remesher%turn)
     if (remesher%mesher /= as_it_comes) call file%write('remesher/mesher', remesher%mesher)
+    call file%write('remesher/tries', remesher%tries)
     if (has_zones(remesher)) call write_zones(file, remesher%marks, remesher%zones)
     if (has_contours(remesher)) call write_contours(file, remesher%contours)
   end subroutine write_remesher
@@ -58,6 +59,7 @@ contains
     end if
     call file%read('remesher/turn', remesher%turn)
     if (file%has('remesher/mesher')) call file%read('remesher/mesher', remesher%mesher)
+    call file%read('remesher/tries', remesher%tries)
     if (file%has('remesher/zones')) call read_zones(file, remesher)
     if (file%has('remesher/contours')) call read_contours(file, remesher%contours)
   end subroutine read_remesher

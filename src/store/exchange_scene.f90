@@ -22,6 +22,8 @@ module exchange_scene
     !> State carried over to a new mesh, not yet in equilibrium.
     logical :: unbalanced = .false.
     integer :: transfer = 0
+    !> Steps the mesh is still on probation for, and other ways tried where it is refused.
+    integer :: probation = 0, tries = 0
     !> Estimated errors of stress and strain, negative where they were not asked for [-].
     real(wp) :: error_stress = -1.0_wp, error_strain = -1.0_wp
     type(string_t), allocatable :: triggers(:)
@@ -31,15 +33,12 @@ module exchange_scene
 contains
 
   !> The mesh of a checkpoint, when it is not the deck's own: then only `generation` is read, and it is 1.
-  subroutine read_remesh(path, remesh, error)
-    character(len=*), intent(in) :: path
+  subroutine read_remesh(file, remesh, error)
+    type(hdf5_file_t), intent(inout) :: file
     type(remesh_t), intent(out) :: remesh
     type(error_t), allocatable, intent(out) :: error
-    type(hdf5_file_t) :: file
     integer :: k, n
 
-    call open_checkpoint(path, file, error)
-    if (allocated(error)) return
     call file%read('mesh/generation', remesh%generation)
     call file%read('progress/step', remesh%step)
     if (remesh%generation > 1) then
@@ -61,21 +60,18 @@ contains
         call file%read(group_place(k)//'/connectivity', remesh%groups(k)%connectivity)
       end do
     end if
-    call file%close(error)
+    call file%status(error)
   end subroutine read_remesh
 
   !> What a checkpoint tells of its scene without the deck: mesh, groups with the variables of their state, dies, remeshing. For
-  !> who knows no law; enough to read the state with `read_checkpoint` and to write it with `write_checkpoint`.
-  subroutine read_bare_scene(path, scene, error)
-    character(len=*), intent(in) :: path
+  !> who knows no law; enough to read the state with `read_state` and to write it with `write_checkpoint`.
+  subroutine read_bare_scene(file, scene, error)
+    type(hdf5_file_t), intent(inout) :: file
     type(scene_t), intent(out) :: scene
     type(error_t), allocatable, intent(out) :: error
-    type(hdf5_file_t) :: file
     type(string_t), allocatable :: names(:)
     integer :: k, n, finite
 
-    call open_checkpoint(path, file, error)
-    if (allocated(error)) return
     scene%title = ''
     call file%read('mesh/plane_state', scene%plane_state)
     finite = 1
@@ -115,7 +111,7 @@ contains
     do k = 1, n
       call read_bare_group(file, k, scene)
     end do
-    call file%close(error)
+    call file%status(error)
   end subroutine read_bare_scene
 
   subroutine read_die(file, die)
@@ -185,23 +181,29 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(hdf5_file_t) :: file
     type(scene_t) :: scene
+    type(error_t), allocatable :: ignored
     real(wp), allocatable :: values(:), limits(:)
     integer :: unbalanced, g
 
-    call read_bare_scene(path, scene, error)
+    call open_checkpoint(path, file, error)
     if (allocated(error)) return
+    call read_bare_scene(file, scene, error)
+    if (allocated(error)) then
+      call file%close(ignored)
+      return
+    end if
     facts%generation = scene%generation
     do g = 1, size(scene%groups)
       if (is_solid(scene%groups(g))) facts%elements = facts%elements + size(scene%groups(g)%connectivity, 2)
     end do
-    call open_checkpoint(path, file, error)
-    if (allocated(error)) return
     call file%read('progress/time', facts%time)
     call file%read('progress/step', facts%step)
     unbalanced = 0
     call file%read('progress/unbalanced', unbalanced)
     facts%unbalanced = unbalanced == 1
     facts%transfer = scene%remesher%transfer
+    facts%tries = scene%remesher%tries
+    call file%read('progress/probation', facts%probation)
     allocate (facts%triggers(0))
     if (file%has('estimate/stress')) then
       call file%read('estimate/stress', facts%error_stress)

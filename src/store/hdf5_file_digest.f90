@@ -4,7 +4,7 @@ submodule(hdf5_file) hdf5_file_digest
   use, intrinsic :: iso_c_binding, only: c_loc, c_ptr
   use hdf5, only: h5_index_name_f, h5_iter_inc_f, h5aclose_f, h5aget_name_f, h5aget_num_attrs_f, h5aget_space_f, h5aget_type_f, &
     h5aopen_by_idx_f, h5aread_f, h5dclose_f, h5dget_space_f, h5dget_type_f, h5dopen_f, h5dread_f, h5g_dataset_f, h5g_group_f, &
-    h5gget_obj_info_idx_f, h5gn_members_f, h5oclose_f, h5oopen_f, h5sclose_f, h5sget_simple_extent_dims_f, &
+    h5gclose_f, h5gget_obj_info_idx_f, h5gn_members_f, h5gopen_f, h5sclose_f, h5sget_simple_extent_dims_f, &
     h5sget_simple_extent_ndims_f, h5tclose_f, h5tget_class_f, h5tget_size_f, hsize_t, size_t
   use errors, only: exit_input
   use hash, only: sha256
@@ -22,7 +22,7 @@ contains
     if (self%failed()) return
     lines = ''
     flag = 0
-    call add_group(self%id, '/', lines, flag)
+    call add_group(self%id, '/', '/', lines, flag)
     if (flag /= 0) then
       call self%record_error(exit_input, 'the file is damaged: not all of it can be read back')
     else
@@ -31,39 +31,40 @@ contains
   end procedure digest_of_file
 
   !> The lines of a group and of all below it. `flag` stays 0 while all can be read.
-  recursive subroutine add_group(file, path, lines, flag)
-    integer(hid_t), intent(in) :: file
-    character(len=*), intent(in) :: path
+  recursive subroutine add_group(parent, name, path, lines, flag)
+    integer(hid_t), intent(in) :: parent
+    character(len=*), intent(in) :: name   !! in the parent
+    character(len=*), intent(in) :: path   !! in the file
     character(len=:), allocatable, intent(inout) :: lines
     integer, intent(inout) :: flag
-    character(len=256) :: name
-    character(len=:), allocatable :: member
-    integer :: n, i, kind
+    integer(hid_t) :: group
+    character(len=256) :: member
+    integer :: n, i, kind, ignored
 
     lines = lines//'group '//path//new_line('a')
-    call add_attributes(file, path, lines, flag)
-    if (flag == 0) call h5gn_members_f(file, path, n, flag)
+    call h5gopen_f(parent, name, group, flag)
     if (flag /= 0) return
+    n = 0
+    call add_attributes(group, path, lines, flag)
+    if (flag == 0) call h5gn_members_f(group, '.', n, flag)
     do i = 1, n
-      call h5gget_obj_info_idx_f(file, path, i - 1, name, kind, flag)
-      if (flag /= 0) return
-      member = path//trim(name)
+      if (flag == 0) call h5gget_obj_info_idx_f(group, '.', i - 1, member, kind, flag)
+      if (flag /= 0) exit
       if (kind == h5g_group_f) then
-        call add_group(file, member//'/', lines, flag)
+        call add_group(group, trim(member), path//trim(member)//'/', lines, flag)
       else if (kind == h5g_dataset_f) then
-        call add_dataset(file, member, lines, flag)
-        if (flag == 0) call add_attributes(file, member, lines, flag)
+        call add_dataset(group, trim(member), path//trim(member), lines, flag)
       else
-        lines = lines//'other '//member//new_line('a')
+        lines = lines//'other '//path//trim(member)//new_line('a')
       end if
-      if (flag /= 0) return
     end do
+    call h5gclose_f(group, ignored)
   end subroutine add_group
 
-  !> The line of a dataset.
-  subroutine add_dataset(file, path, lines, flag)
-    integer(hid_t), intent(in) :: file
-    character(len=*), intent(in) :: path
+  !> The lines of a dataset and of its attributes.
+  subroutine add_dataset(group, name, path, lines, flag)
+    integer(hid_t), intent(in) :: group
+    character(len=*), intent(in) :: name, path
     character(len=:), allocatable, intent(inout) :: lines
     integer, intent(out) :: flag
     integer(hid_t) :: dataset, space, type
@@ -72,7 +73,7 @@ contains
     type(c_ptr) :: address
     integer :: ignored
 
-    call h5dopen_f(file, path, dataset, flag)
+    call h5dopen_f(group, name, dataset, flag)
     if (flag /= 0) return
     call h5dget_space_f(dataset, space, flag)
     call h5dget_type_f(dataset, type, flag)
@@ -82,27 +83,27 @@ contains
       call h5dread_f(dataset, type, address, flag)
     end if
     if (flag == 0) lines = lines//'dataset '//path//line//sha256(bytes)//new_line('a')
+    if (flag == 0) call add_attributes(dataset, path, lines, flag)
     call h5tclose_f(type, ignored)
     call h5sclose_f(space, ignored)
     call h5dclose_f(dataset, ignored)
   end subroutine add_dataset
 
   !> The lines of the attributes of an object.
-  subroutine add_attributes(file, path, lines, flag)
-    integer(hid_t), intent(in) :: file
+  subroutine add_attributes(object, path, lines, flag)
+    integer(hid_t), intent(in) :: object
     character(len=*), intent(in) :: path
     character(len=:), allocatable, intent(inout) :: lines
     integer, intent(inout) :: flag
-    integer(hid_t) :: object, attribute, space, type
+    integer(hid_t) :: attribute, space, type
     character(len=1), allocatable, target :: bytes(:)
     character(len=:), allocatable :: line
     character(len=256) :: name
     type(c_ptr) :: address
     integer :: n, i, ignored
 
-    if (flag == 0) call h5oopen_f(file, path, object, flag)
-    if (flag /= 0) return
-    call h5aget_num_attrs_f(object, n, flag)
+    n = 0
+    if (flag == 0) call h5aget_num_attrs_f(object, n, flag)
     do i = 1, n
       if (flag /= 0) exit
       call h5aopen_by_idx_f(object, '.', h5_index_name_f, h5_iter_inc_f, int(i - 1, hsize_t), attribute, flag)
@@ -122,7 +123,6 @@ contains
       call h5sclose_f(space, ignored)
       call h5aclose_f(attribute, ignored)
     end do
-    call h5oclose_f(object, ignored)
   end subroutine add_attributes
 
   !> Room for the bytes of an object of this extent and type, and both in words.

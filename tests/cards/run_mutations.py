@@ -33,6 +33,8 @@ def mutate(lines, draw):
         other = draw.randrange(len(lines))
         lines[at], lines[other] = lines[other], lines[at]
         return lines
+    if not fields:      # a line that earlier slips have emptied
+        return lines
     k = draw.randrange(len(fields))
     if kind == 3:
         del fields[k]

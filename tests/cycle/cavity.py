@@ -7,22 +7,11 @@ sides that turn back, and bays of air, count rightly. Between crossings of part 
 Gauss's rule with three points integrates exactly.
 """
 import numpy
+from parabolas import point, slope
 
 GAUSS = numpy.array([-numpy.sqrt(0.6), 0.0, numpy.sqrt(0.6)]), numpy.array([5.0, 8.0, 5.0]) / 9
 LOOKS = 16      # parts of a side between which crossings are looked for
 HALVINGS = 60
-
-
-def point(parabola, xi):
-    """Points at parent coordinates of a parabola through three points (3, 2)."""
-    xi = numpy.asarray(xi, dtype=float)[..., None]
-    return 0.5 * xi * (xi - 1) * parabola[0] + (1 - xi * xi) * parabola[1] + 0.5 * xi * (xi + 1) * parabola[2]
-
-
-def slope(parabola, xi):
-    """d point / d xi."""
-    xi = numpy.asarray(xi, dtype=float)[..., None]
-    return (xi - 0.5) * parabola[0] - 2 * xi * parabola[1] + (xi + 0.5) * parabola[2]
 
 
 def swept(parabola, first, last):

@@ -10,7 +10,7 @@ import glob
 import math
 import os
 
-from remeshed import ROOT, facts, jump, tries
+from remeshed import ROOT, facts, jump, tries, value_at, within_limits
 from support import history, summary, with_h5py
 
 with_h5py()
@@ -29,10 +29,7 @@ LARGEST_JUMP, LARGEST_DEVIATION, LARGEST_DRIFT = 0.02, 0.03, 0.001
 
 def at_stroke(rows, name, stroke):
     """A column of the history where the die has moved this far, straight between steps."""
-    travel, value = [-u for u in rows["displacement_y_upper"]], rows[name]
-    k = next(k for k, u in enumerate(travel) if u >= stroke - 1e-9)
-    share = (stroke - travel[k - 1]) / (travel[k] - travel[k - 1])
-    return value[k - 1] + share * (value[k] - value[k - 1])
+    return value_at(dict(rows, travel=[-u for u in rows["displacement_y_upper"]]), name, "travel", stroke)
 
 
 def nodes_of(dataset, width):
@@ -62,9 +59,10 @@ def contact_on_contour(checks, out, generation):
 def new_meshes(checks, out, rows, mesher):
     """Rows of the table of meshes; every mesh checked."""
     rows_of_cycle = tries(out)
-    checks.that(len(rows_of_cycle) >= 3, "a first mesh and at least two after it", len(rows_of_cycle))
+    checks.that(len(rows_of_cycle) >= 4, "a first mesh and at least three after it", len(rows_of_cycle))
     checks.that(all(t["accepted"] == "y" for t in rows_of_cycle), "every new mesh is taken at the first try",
                 [t["reason"] for t in rows_of_cycle if t["accepted"] != "y"])
+    within_limits(checks, out)
     volume = summary(out)["initial_volume"]
     checks.that(abs(volume / (math.pi * RADIUS**2 * HEIGHT) - 1) < 1e-12, "the first mesh has the volume of the contour", volume)
     lines = ["| mesh | at mm | elements | sides of contact | scaled Jacobian | first residual | iterations | jump of force % | "

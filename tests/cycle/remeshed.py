@@ -1,4 +1,4 @@
-"""What the tests of remeshed decks share: forces at places, jumps at remeshings, what the programs say of a mesh."""
+"""What the tests of cycles share: calls of lagacycle, its tries, what the programs say of a mesh, forces at places and jumps."""
 import csv
 import glob
 import json
@@ -9,20 +9,47 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, os.path.join(os.path.dirname(HERE), "runs"))
-from support import BIN  # noqa: E402
+from support import BIN, LONGEST_RUN  # noqa: E402
+
+CYCLE = os.path.join(os.path.abspath(BIN), "lagacycle")
+# What the restart tells with a limit, NAME_limit.
+LIMITED = ("first_residual", "iterations", "force_change", "energy_change", "depth_change")
 
 
-def cycle(deck, out, *options):
-    """lagacycle on one thread: its exit code and what it said."""
-    result = subprocess.run([os.path.join(os.path.abspath(BIN), "lagacycle"), deck, "--out", out, "--threads", "1", *options],
-                            text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
-    return result.returncode, result.stdout + result.stderr
+def cycle(deck, out, *options, **environment):
+    """One call of lagacycle, on one thread."""
+    return subprocess.run([CYCLE, deck, "--out", out, "--threads", "1", *options], text=True, stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=LONGEST_RUN, check=False,
+                          env=dict(os.environ, **environment))
 
 
 def tries(out):
-    """Rows of cycle.csv."""
-    with open(os.path.join(out, "cycle.csv"), newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    """Rows of cycle.csv, none where there is no such table."""
+    try:
+        with open(os.path.join(out, "cycle.csv"), newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+    except FileNotFoundError:
+        return []
+
+
+def within_limits(checks, out):
+    """What the restart on every accepted mesh found lies within the limits it tells, and so do the first steps on it."""
+    for one in tries(out):
+        generation = int(one["generation [-]"])
+        if one["accepted"] != "y" or not one["first_residual [-]"]:
+            continue
+        restart, steps = facts(out, generation, "restart"), facts(out, generation, "probation")
+        for name in LIMITED:
+            checks.that(restart[name] <= restart[name + "_limit"], f"mesh {generation}: {name} within its limit",
+                        (restart[name], restart[name + "_limit"]))
+        checks.that(restart["least_scaled_jacobian"] >= restart["least_scaled_jacobian_limit"], f"mesh {generation}: shape")
+        checks.that(steps["least_step_ratio"] >= steps["least_step_ratio_limit"] > 0 and not steps["remesh_refused"],
+                    f"mesh {generation}: its first steps", steps)
+        told = {"first_residual [-]": restart["first_residual"], "iterations [-]": restart["iterations"],
+                "force_change [%]": 100 * restart["force_change"], "energy_change [%]": 100 * restart["energy_change"],
+                "depth_change [-]": restart["depth_change"], "least_step_ratio [-]": steps["least_step_ratio"]}
+        wrong = [key for key, value in told.items() if abs(float(one[key]) - value) > 1e-3 * abs(value)]
+        checks.that(not wrong, f"mesh {generation}: cycle.csv tells the same", wrong)
 
 
 def value_at(rows, name, along, wanted):
@@ -40,8 +67,8 @@ def jump(rows, name, step):
 
 
 def facts(out, generation, kind):
-    """What remdata (start) or the restart said of a mesh."""
-    pattern = {"start": f"*.g{generation:02d}.start.h5.json", "restart": f"*.g{generation:02d}.restart.json"}[kind]
+    """What remdata (start), the restart or the first steps (probation) said of a mesh."""
+    pattern = f"*.g{generation:02d}.{kind}{'.h5' if kind == 'start' else ''}.json"
     with open(glob.glob(os.path.join(out, pattern))[0], encoding="utf-8") as file:
         return json.load(file)
 

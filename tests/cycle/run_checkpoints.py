@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "runs"))
+from remeshed import cycle, tries  # noqa: E402
 from support import BIN, DONE, INPUT, UPSETTING, Checks, add_cards, deck_text, run, said, with_h5py, write  # noqa: E402
 
 REMESH = 4
@@ -50,6 +50,24 @@ def not_a_number(file):
 
 def other_hash(file):
     file["mesh/coordinates"][0, 0] += 1e-9
+
+
+def sealed_not_a_number(checks, deck, out):
+    """A number that is none in a checkpoint whose digest is right: refused by its place; the cycle goes on from the one before."""
+    from sealed import alter  # pylint: disable=import-outside-toplevel
+    folder, new = checks.path("sealed"), checks.path("new.h5")
+    shutil.copytree(out, folder)
+    bad = os.path.join(folder, "case.ckp.h5")
+    alter(bad, not_a_number)
+    phrase = "nodes/displacement: holds what is not a finite number"
+    for result in (call("remdata", bad, "--out", new), run([deck, "--out", checks.path("no"), "--resume", bad, "--threads", "1"])):
+        checks.that(result.returncode == INPUT and bad in result.stderr and phrase in result.stderr, "sealed: refused by name",
+                    said(result))
+    checks.that(not os.path.exists(new), "sealed: nothing is written")
+    result = cycle(deck, folder)
+    rows = tries(folder)
+    checks.that(result.returncode == DONE and [row["action"] for row in rows[:3]] == ["as the deck says", "finer", "earlier"]
+                and all(phrase in row["reason"] for row in rows[:2]), "sealed: the mesh is made from the save before", said(result))
 
 
 def main():
@@ -97,6 +115,7 @@ def main():
             result = call("lagacycle", deck, "--out", folder, "--threads", "1")
             checks.that(result.returncode == INPUT and place in result.stderr and "--fresh" in result.stderr,
                         f"{what}: without one before, refused by name", said(result))
+    sealed_not_a_number(checks, deck, out)
     checks.end()
 
 

@@ -4,7 +4,6 @@ any way, and a mesh that the solver refuses, lead to another try or to a clear s
 
 usage: run_cycle.py [-v] [-k] [KILLS [SEED]]      -v prints every check, -k keeps the results; default 8 kills, seed 1
 """
-import csv
 import json
 import os
 import random
@@ -19,25 +18,17 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 for folder in ("runs", "report"):
     sys.path.insert(0, os.path.join(os.path.dirname(HERE), folder))
 from check_xdmf import check_folder  # noqa: E402
-from support import (BIN, DONE, INPUT, MACHINE, NO_CONVERGENCE, SIGNAL, UPSETTING, Checks, add_cards, deck_text, history,  # noqa: E402
-                     result_differences, run, said, summary, with_h5py, write)
+from remeshed import CYCLE, cycle, tries, within_limits  # noqa: E402
+from support import (BIN, DONE, INPUT, LONGEST_RUN, MACHINE, NO_CONVERGENCE, SIGNAL, UPSETTING, Checks, add_cards,  # noqa: E402
+                     deck_text, history, result_differences, run, said, summary, with_h5py, write)
 
-CYCLE = os.path.join(os.path.abspath(BIN), "lagacycle")
 REMDATA = os.path.join(os.path.abspath(BIN), "remdata")
 LAGAMINE = os.path.join(os.path.abspath(BIN), "lagamine")
 REMESH = 4
-LONGEST_CYCLE = 300  # seconds
 ACTIONS = ["as the deck says", "other transfer", "finer", "earlier", "old mesh"]
 STOPS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 # What is measured in seconds differs from run to run.
 CLOCKS = ("remdata [s]", "restart [s]")
-
-
-def go(deck, out, *options, **environment):
-    """One call of lagacycle."""
-    return subprocess.run([CYCLE, deck, "--out", out, "--threads", "1", *options], text=True, stdin=subprocess.DEVNULL,
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=LONGEST_CYCLE, check=False,
-                          env=dict(os.environ, **environment))
 
 
 def hear_signals():
@@ -50,15 +41,6 @@ def begin(deck, out, **environment):
     """A cycle that is not waited for. Its output goes nowhere: a program left behind by a kill would hold a pipe open."""
     return subprocess.Popen([CYCLE, deck, "--out", out, "--threads", "1"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                             stderr=subprocess.DEVNULL, env=dict(os.environ, **environment), preexec_fn=hear_signals)
-
-
-def tries(out):
-    """Rows of cycle.csv."""
-    try:
-        with open(os.path.join(out, "cycle.csv"), newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
-    except OSError:
-        return []
 
 
 def read_json(path):
@@ -88,7 +70,7 @@ def differences(first, second):
 
 def ends_the_same(checks, deck, out, whole, what, **environment):
     """The same command goes on to the results of the undisturbed cycle, and leaves no lock behind."""
-    result = go(deck, out, **environment)
+    result = cycle(deck, out, **environment)
     if checks.that(result.returncode == DONE, f"{what}: the same command goes on", said(result)):
         wrong = differences(whole, out)
         checks.that(not wrong, f"{what}: as in one go", "; ".join(wrong[:5]))
@@ -97,7 +79,7 @@ def ends_the_same(checks, deck, out, whole, what, **environment):
 
 def undisturbed(checks, deck, out):
     """The cycle ends, tells a line per mesh and a row per try, and has nothing to do when called again."""
-    result = go(deck, out)
+    result = cycle(deck, out)
     checks.that(result.returncode == DONE, "undisturbed: done", said(result))
     checks.that(result.stderr == "", "undisturbed: no word of errors", result.stderr)
     lines = result.stdout.splitlines()
@@ -110,8 +92,8 @@ def undisturbed(checks, deck, out):
         empty = [key for key in row if not row[key] and key not in ("stage", "reason")]
         checks.that(not empty, f"mesh {row['generation [-]']}: every column is filled", empty)
         told = read_json(os.path.join(out, f"case.g0{row['generation [-]']}.restart.json"))
-        checks.that(float(row["first_residual [-]"]) == told["first_residual"] > 0 and not told["remesh_refused"],
-                    f"mesh {row['generation [-]']}: the numbers of the restart", told)
+        checks.that(told["first_residual"] > 0 and not told["remesh_refused"], f"mesh {row['generation [-]']}: the restart", told)
+    within_limits(checks, out)
     told = summary(out)
     checks.that(told["remeshings"] == 2 and told["exit_code"] == 0 and told["restart"]["generation"] == 3,
                 "undisturbed: the summary tells of the last mesh", told.get("restart"))
@@ -123,16 +105,16 @@ def undisturbed(checks, deck, out):
     checks.that(page.returncode == DONE and os.path.getsize(checks.path("page.html")) > 10000, "undisturbed: lagareport's page",
                 page.stdout)
     times = {path: os.stat(path).st_mtime_ns for path in files_of(out)}
-    result = go(deck, out)
+    result = cycle(deck, out)
     checks.that(result.returncode == DONE and "nothing to do" in result.stdout, "again: says that there is nothing to do", said(result))
     checks.that({path: os.stat(path).st_mtime_ns for path in files_of(out)} == times, "again: touches no file")
     other = write(os.path.join(os.path.dirname(deck), "other", "case.lag"), deck_text(deck).replace("PHI 0.5", "PHI 0.4"))
-    result = go(other, out)
+    result = cycle(other, out)
     checks.that(result.returncode == INPUT and "another deck" in result.stderr, "another deck: refused", said(result))
     checks.that({path: os.stat(path).st_mtime_ns for path in files_of(out)} == times, "another deck: touches no file")
     copy = checks.path("fresh")
     shutil.copytree(out, copy)
-    result = go(deck, copy, "--fresh")
+    result = cycle(deck, copy, "--fresh")
     checks.that(result.returncode == DONE and "mesh 3" in result.stdout, "--fresh begins anew", said(result))
     checks.that(not differences(out, copy), "--fresh: as in one go", differences(out, copy)[:5])
 
@@ -187,8 +169,9 @@ def kills(checks, draw, deck, whole, number, seconds, **environment):
             wait = draw.uniform(0, seconds * (0.5 if victim == "remdata" else 1))
             process = begin(deck, out, **environment)
             hit = kill_one(draw, process, out, victim, wait)
-            code = process.wait(timeout=LONGEST_CYCLE)
+            code = process.wait(timeout=LONGEST_RUN)
             if not hit:
+                seconds = 0.7 * seconds     # the machine is quicker than when they were measured
                 break
             hits[victim] += 1
             story.append(f"{victim} after {wait:.2f} s")
@@ -206,11 +189,14 @@ def kills(checks, draw, deck, whole, number, seconds, **environment):
 def stops(checks, draw, deck, whole, seconds):
     """Stopped by a signal: exit code 128+n, and the same command goes on."""
     for number in STOPS:
-        out = checks.path(f"stop-{number}")
-        process = begin(deck, out)
-        time.sleep(draw.uniform(0.1, 0.6) * seconds)
-        process.send_signal(number)
-        code = process.wait(timeout=LONGEST_CYCLE)
+        out, wait, code = checks.path(f"stop-{number}"), draw.uniform(0.1, 0.6) * seconds, DONE
+        while code == DONE and wait > 0.05:     # a machine that is quicker now has ended before the signal
+            shutil.rmtree(out, ignore_errors=True)
+            process = begin(deck, out)
+            time.sleep(wait)
+            process.send_signal(number)
+            code = process.wait(timeout=LONGEST_RUN)
+            wait = 0.5 * wait
         checks.that(code == SIGNAL + number, f"signal {number}: exit code {SIGNAL + number}", code)
         ends_the_same(checks, deck, out, whole, f"signal {number}")
 
@@ -221,16 +207,16 @@ def two_at_once(checks, deck, whole):
     process = begin(deck, out)
     while not os.path.exists(os.path.join(out, "case.lock", "pid")) and process.poll() is None:
         time.sleep(0.001)
-    result = go(deck, out)
+    result = cycle(deck, out)
     checks.that(result.returncode == INPUT and "another lagacycle" in result.stderr, "two at once: refused", said(result))
-    checks.that(process.wait(timeout=LONGEST_CYCLE) == DONE, "two at once: the first one is done")
+    checks.that(process.wait(timeout=LONGEST_RUN) == DONE, "two at once: the first one is done")
     checks.that(not differences(whole, out), "two at once: as in one go", differences(whole, out)[:5])
     for number in ("999999", str(os.getpid()), ""):
         lock = os.path.join(out, "case.lock")
         os.mkdir(lock)
         write(os.path.join(lock, "pid"), number)
         write(os.path.join(lock, "machine"), os.uname().nodename)
-        result = go(deck, out)
+        result = cycle(deck, out)
         checks.that(result.returncode == DONE, f"a lock of process '{number}', no lagacycle: taken over", said(result))
 
 
@@ -246,6 +232,7 @@ case $WAY in
   half) "$REAL" "$@"; head -c 20000 "$3" >"$3.cut"; mv "$3.cut" "$3"; exit 0 ;;
   old) cp "$1" "$3"; exit 0 ;;
   nothing) exit 0 ;;
+  full) ulimit -f 8; exec "$REAL" "$@" ;;
   *) echo "made to fail" >&2; exit "$WAY" ;;
 esac
 """
@@ -262,10 +249,10 @@ def remesher_fails_once(checks, deck):
     """However the remesher fails, another way is tried, and the cycle ends."""
     bad = "not a checkpoint"
     ways = {"crash": "signal 11", "hang": "no answer", "text": bad, "half": bad, "old": bad, "nothing": bad, "3": "exit code 3",
-            "5": "exit code 5", "6": "exit code 6"}
+            "5": "exit code 5", "6": "exit code 6", "full": "signal 25"}
     for way, word in ways.items():
         out = checks.path("once-" + way)
-        result = go(deck, out, "--limit", "2", **failing(checks, "once-" + way, way, 1))
+        result = cycle(deck, out, "--limit", "2", **failing(checks, "once-" + way, way, 1))
         what = f"remdata fails once ({way})"
         checks.that(result.returncode == DONE, f"{what}: done", said(result))
         rows = tries(out)
@@ -284,7 +271,7 @@ def an_earlier_save(checks, draw, deck, seconds):
     os.chmod(script, 0o755)
     environment = {"REMDATA": script, "REAL": REMDATA}
     whole = checks.path("earlier")
-    result = go(deck, whole, **environment)
+    result = cycle(deck, whole, **environment)
     rows = tries(whole)
     checks.that(result.returncode == NO_CONVERGENCE or result.returncode == DONE, "an earlier save: ends", said(result))
     checks.that([row["action"] for row in rows[:3]] == [ACTIONS[0], "finer", "earlier"]
@@ -301,7 +288,7 @@ def all_ways_fail(checks, deck):
     """Every way in turn, then the old mesh for a while, then a clear stop; the checkpoint can be used."""
     out = checks.path("never")
     environment = failing(checks, "never", "3", 999)
-    result = go(deck, out, **environment)
+    result = cycle(deck, out, **environment)
     checks.that(result.returncode == NO_CONVERGENCE, "remdata never answers well: exit code 3", said(result))
     lines = result.stderr.splitlines()
     checks.that(len(lines) == 2 and "no new mesh is good enough at step" in lines[0] and "case.ckp.h5" in lines[1],
@@ -316,30 +303,31 @@ def all_ways_fail(checks, deck):
         calls = [line.split() for line in file]
     checks.that(["--finer" in call for call in calls[:3]] == [False, True, False] and calls[2][0].endswith("end.1.h5"),
                 "what remdata was told", calls)
-    again = go(deck, out, **environment)
+    again = cycle(deck, out, **environment)
     checks.that(again.returncode == NO_CONVERGENCE and tries(out) == rows, "the same command: the same stop", said(again))
     used = run([deck, "--out", out, "--resume", os.path.join(out, "case.ckp.h5"), "--threads", "1"])
     checks.that(used.returncode == DONE, "the checkpoint that is left can be used", said(used))
     shutil.rmtree(out)
-    result = go(deck, out, "--tries", "0", **failing(checks, "never-0", "crash", 999))
+    result = cycle(deck, out, "--tries", "0", **failing(checks, "never-0", "crash", 999))
     checks.that(result.returncode == NO_CONVERGENCE and len(tries(out)) == 1, "--tries 0: one way only", said(result))
     shutil.rmtree(out)
-    result = go(deck, out, **failing(checks, "killed", "137", 1))
+    result = cycle(deck, out, **failing(checks, "killed", "137", 1))
     checks.that(result.returncode == SIGNAL + 9 and not tries(out), "remdata killed from outside: no try, a stop", said(result))
 
 
 def solver_refuses(checks):
-    """The mesh of one element is so poor, and the deck so strict, that the solver refuses whatever is made of it: every way is tried, the old mesh goes on, and
-    nothing of its results is touched meanwhile: they are those of the solver alone, resumed at every stop."""
-    text = add_cards(deck_text(UPSETTING).replace("SAVE   20", "SAVE   3"), "CKPT 2\nREMSH\n   TIMES 0.3 0.6\n   ACCEPT 40 1.E-6")
-    deck = write(checks.path("poor", "case.lag"), text.replace("nx 12", "nx 1").replace("ny 18", "ny 1"))
+    """The deck is so strict that the solver refuses whatever is made: every way is tried, the old mesh goes on, and nothing of its
+    results is touched meanwhile: they are those of the solver alone, resumed at every stop."""
+    cards = "CKPT 2\nREMSH\n   TIMES 0.1 0.25\n   ACCEPT ITERATIONS 40 FORCE 1.E-6"
+    text = add_cards(deck_text(UPSETTING).replace("SAVE   20", "SAVE   3"), cards)
+    deck = write(checks.path("poor", "case.lag"), text.replace("nx 12", "nx 4").replace("ny 18", "ny 6"))
     alone, out = checks.path("poor", "alone"), checks.path("poor", "out")
     code, resume = REMESH, []
     while code == REMESH:
         code = run([deck, "--out", alone, "--threads", "1"] + resume).returncode
         resume = ["--resume", os.path.join(alone, "case.ckp.h5")]
     checks.that(code == DONE, "the old mesh can go on to the end", code)
-    result = go(deck, out)
+    result = cycle(deck, out)
     rows = tries(out)
     checks.that(result.returncode == NO_CONVERGENCE, "every mesh refused at restart: exit code 3", said(result))
     checks.that([row["action"] for row in rows] == ACTIONS + ACTIONS[:4], "every way is tried at both stops, the old mesh goes on once",
@@ -386,11 +374,11 @@ def no_step_from_it(checks, deck):
     script = write(checks.path("bin", "falling"), FALLING)
     os.chmod(script, 0o755)
     out = checks.path("no-step")
-    result = go(deck, out, LAGAMINE=script, REALSOLVER=LAGAMINE, ASK=REMDATA, FELL=checks.path("fell"))
+    result = cycle(deck, out, LAGAMINE=script, REALSOLVER=LAGAMINE, ASK=REMDATA, FELL=checks.path("fell"))
     rows = tries(out)
     checks.that(result.returncode == DONE, "no step from a new mesh: done in the end", said(result))
     checks.that([(row["action"], row["accepted"]) for row in rows]
-                == [(ACTIONS[0], "n"), ("finer", "y"), (ACTIONS[0], "y")] and "no step" in rows[0]["result"],
+                == [(ACTIONS[0], "n"), ("finer", "y"), (ACTIONS[0], "y")] and "on probation" in rows[0]["result"],
                 "no step from a new mesh: taken back, then finer elements", rows)
     steps = history(out)["step"]
     checks.that(steps == list(range(1, len(steps) + 1)), "no step from a new mesh: one row of the history a step", steps)
@@ -412,7 +400,7 @@ def full_disk(checks, deck, whole):
             what = f"room for {share:.1%} of the results"
             shutil.rmtree(out, ignore_errors=True)
             subprocess.run(["mount", "-o", f"remount,size={max(int(share * needed), 8)}k", disk], check=True)
-            result = go(deck, out)
+            result = cycle(deck, out)
             lines = result.stderr.splitlines()
             checks.that(result.returncode == MACHINE and 1 <= len(lines) <= 2, f"{what}: exit code 5, in a line", said(result))
             subprocess.run(["mount", "-o", f"remount,size={4 * needed}k", disk], check=True)
@@ -433,7 +421,7 @@ def main():
     undisturbed(checks, deck, whole)
     started = time.monotonic()
     shutil.rmtree(checks.path("fresh"))
-    go(deck, checks.path("fresh"))
+    cycle(deck, checks.path("fresh"))
     seconds = time.monotonic() - started
     kills(checks, draw, deck, whole, numbers[0], seconds)
     stops(checks, draw, deck, whole, seconds)

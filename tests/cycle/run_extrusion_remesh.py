@@ -9,7 +9,7 @@ import os
 import sys
 
 sys.dont_write_bytecode = True
-from remeshed import ROOT, cycle, facts, tries, value_at  # noqa: E402
+from remeshed import ROOT, cycle, facts, tries, value_at, within_limits  # noqa: E402
 from support import DONE, Checks, history, run, said, summary  # noqa: E402
 
 FOLDER = os.path.join(ROOT, "decks", "extrusion")
@@ -20,8 +20,9 @@ AT_A_PLACE, IN_THE_MEAN, LARGEST_DRIFT = 0.03, 0.01, 0.001
 def main():
     checks = Checks()
     out, plain = checks.path("remeshed"), checks.path("plain")
-    code, words = cycle(os.path.join(FOLDER, "extrusion_remesh.lag"), out)
-    checks.that(code == DONE, "the cycle ends by itself", words)
+    result = cycle(os.path.join(FOLDER, "extrusion_remesh.lag"), out)
+    checks.that(result.returncode == DONE, "the cycle ends by itself", said(result))
+    within_limits(checks, out)
     result = run([os.path.join(FOLDER, "extrusion_cone.lag"), "--out", plain, "--threads", "1"])
     checks.that(result.returncode == DONE, "one mesh: done", said(result))
     rows, fine, made = history(out), history(plain), tries(out)

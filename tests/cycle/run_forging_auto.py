@@ -25,8 +25,9 @@ GMSH = os.path.join(os.path.abspath(BIN), "remdata_gmsh")
 def refused(checks, name):
     """No Gmsh, no mesh: told with its stage, and with what to do."""
     out = checks.path(name)
-    code, told = cycle(DECK, out)
-    checks.that(code == NO_CONVERGENCE, f"{name}: the cycle ends", told)
+    result = cycle(DECK, out)
+    told = said(result) + result.stdout
+    checks.that(result.returncode == NO_CONVERGENCE, f"{name}: the cycle ends", told)
     checks.that("cannot be started" in told, f"{name}: told", told)
     rows = tries(out)
     checks.that(rows and all(row["stage"] == "mesh" and row["accepted"] == "n" for row in rows), f"{name}: stage mesh", rows)
@@ -48,8 +49,8 @@ def main():
     checks = Checks()
     if os.path.exists(GMSH):
         out = checks.path("auto")
-        code, told = cycle(DECK, out)
-        checks.that(code == DONE, "the cycle ends by itself", told)
+        result = cycle(DECK, out)
+        checks.that(result.returncode == DONE, "the cycle ends by itself", result.stdout + result.stderr)
         rows = history(out)
         lines = forging.new_meshes(checks, out, rows, "gmsh")
         forging.closed(checks, out, rows)

@@ -21,17 +21,19 @@ SAME = 1e-4  # what the reference gives again, on another machine too
 
 def no_first_mesh(checks):
     """Without a first mesh there is none to go on with: the cycle ends and says what is wrong."""
-    code, told = cycle(DECK, checks.path("none"), "-p", "line=40")
-    checks.that(code == NO_CONVERGENCE, "zones that miss the part: the cycle ends", told)
-    checks.that("the contour does not cross x = 40" in told, "zones that miss the part: told", told)
+    result = cycle(DECK, checks.path("none"), "-p", "line=40")
+    checks.that(result.returncode == NO_CONVERGENCE, "zones that miss the part: the cycle ends", said(result))
+    checks.that("the contour does not cross x = 40" in result.stdout, "zones that miss the part: told", said(result))
+    checks.that("no first mesh" in result.stderr and "ZPNT" in result.stderr and "old mesh" not in result.stderr,
+                "zones that miss the part: what to change", said(result))
 
 
 def main():
     checks = Checks()
     no_first_mesh(checks)
     out, plain = checks.path("zones"), checks.path("plain")
-    code, told = cycle(DECK, out)
-    checks.that(code == DONE, "the cycle ends by itself", told)
+    result = cycle(DECK, out)
+    checks.that(result.returncode == DONE, "the cycle ends by itself", result.stdout + result.stderr)
     rows = history(out)
     lines = forging.new_meshes(checks, out, rows, "zones")
     forging.closed(checks, out, rows)

@@ -189,8 +189,8 @@ def distance(point, p):
 def follow(checks, name, text, materials, axisymmetric, remeshings, sets=()):
     """A cycle, its meshes looked at; folder of the results."""
     out = checks.path(name)
-    code, words = cycle(write(checks.path(name + ".lag"), text), out)
-    checks.that(code == DONE, f"{name}: the cycle ends by itself", words)
+    result = cycle(write(checks.path(name + ".lag"), text), out)
+    checks.that(result.returncode == DONE, f"{name}: the cycle ends by itself", said(result))
     made = tries(out)
     checks.that(len(made) == remeshings and all(t["accepted"] == "y" for t in made),
                 f"{name}: {remeshings} new meshes, each taken at the first try", [t["reason"] for t in made])
@@ -239,8 +239,9 @@ def refusals(checks):
     }
     for name, (text, *words) in cases.items():
         out = checks.path("refused_" + name)
-        code, said_it = cycle(write(checks.path(name + ".lag"), text), out, "--tries", "0")
-        checks.that(code == NO_CONVERGENCE and all(word in said_it for word in words), f"{name}: refused in words", said_it)
+        result = cycle(write(checks.path(name + ".lag"), text), out, "--tries", "0")
+        told = result.stdout + result.stderr
+        checks.that(result.returncode == NO_CONVERGENCE and all(word in told for word in words), f"{name}: refused in words", told)
 
 
 def main():

@@ -10,7 +10,7 @@ import os
 import sys
 
 sys.dont_write_bytecode = True
-from remeshed import ROOT, cycle, facts, jump, put_table, tries, value_at  # noqa: E402
+from remeshed import ROOT, cycle, facts, jump, put_table, tries, value_at, within_limits  # noqa: E402
 from support import DONE, Checks, history, run, said, summary  # noqa: E402
 
 DECK = os.path.join(ROOT, "decks", "upsetting_remesh", "upsetting_remesh.lag")
@@ -25,8 +25,9 @@ LARGEST_JUMP, LARGEST_DEVIATION, LARGEST_DRIFT = 0.02, 0.03, 0.001
 def main():
     checks = Checks()
     out, plain = checks.path("remeshed"), checks.path("plain")
-    code, words = cycle(DECK, out)
-    checks.that(code == DONE, "the cycle ends by itself", words)
+    result = cycle(DECK, out)
+    checks.that(result.returncode == DONE, "the cycle ends by itself", said(result))
+    within_limits(checks, out)
     rows, made_meshes = history(out), tries(out)
     rows["travel"] = [-u for u in rows["displacement_y_upper"]]
     checks.that(abs(rows["displacement_y_upper"][-1] + 0.85 * HALF_HEIGHT) < 1e-9, "85 % reached",
@@ -55,6 +56,10 @@ def main():
                      f"{made['old_elements']} -> {made['new_elements']} | {made['mesh']['scaled_jacobian']:.2f} | "
                      f"{restart['first_residual']:.3f} | {restart['iterations']} | {100 * leap:+.2f} | {100 * change:+.4f} |")
     checks.that(drift < LARGEST_DRIFT, f"all remeshings together change the volume by less than {LARGEST_DRIFT:.1%}", f"{drift:.4%}")
+
+    unloaded = summary(out)["checks"]["volume_drift_unloaded"]
+    checks.that(abs(unloaded) < LARGEST_DRIFT, f"at the end the volume without elastic strain is kept to {LARGEST_DRIFT:.1%}",
+                f"{unloaded:.4%}")
 
     result = run([PLAIN, "--out", plain, "--threads", "1", "-p", "nx=24", "-p", "ny=36"])
     checks.that(result.returncode == DONE, "24 x 36 without remeshing: done", said(result))

@@ -188,6 +188,18 @@ class ReportTest(unittest.TestCase):
                       "Kept: volume +0.5 %, elastic energy −12.5 %, plastic work of the run – %",
                       "<td>equivalent plastic strain</td><td>200</td><td>201</td><td>+0.5</td><td>2</td><td>1.875</td>"):
             self.assertIn(words, text)
+        # limits over their columns, and what was found under them
+        self.assertIn("<td>limits (REMSH ACCEPT)</td><td></td><td></td><td>≤ 0.5</td><td>≤ 40</td><td>≤ 12.5</td><td>≤ 25</td>"
+                      "<td>≤ 2</td><td>≥ 0.0625</td>", text)
+        self.assertIn("<td>0.0625</td><td>4</td><td>0.5</td><td>0.375</td><td>0.75</td><td>0.125</td>", text)
+        # all calls of the solver, and the remesher's, count
+        for tile in ("<b>3.85 s</b><span>on the wall in 3 calls of lagamine, 2 threads", "<b>0.95 s</b><span>on the wall in 8 calls of",
+                     "<b>60.5 MB</b>"):
+            self.assertIn(tile, text)
+        # every mesh begins with the first volume, 400; the drift before it is -1e-4 times the time
+        by_meshes = 100 * sum(1e-4 * (g * 24 // 9) / 24 for g in range(1, 9))
+        self.assertIn(f"<td>volume drift by new meshes, in all</td><td>{by_meshes:.3g} %</td><td>0.1 %</td>", text)
+        self.assertIn("<td>volume drift, without elastic strain</td><td>0.0025 %</td><td>1 %</td>", text)
         self.assertEqual(1, text.count('<tr class="bad"><td>2</td>'))
         self.assertEqual(1, text.count("<b>the old mesh goes on</b>"))
         drawn = sorted(name for name in os.listdir(png) if name.startswith("remesh_"))
@@ -200,7 +212,7 @@ class ReportTest(unittest.TestCase):
         for name, damage in (("cycle.csv", lambda s: ""), ("cycle.csv", lambda s: s[:-9]),
                              ("cycle.csv", lambda s: s.replace("0.0625", "little")),
                              ("cycle.csv", lambda s: s.replace("trigger", "reason", 1)),
-                             ("billet.g02.restart.json", lambda s: s[:20]), ("billet.g02.start.h5.json", lambda s: "[]"),
+                             ("billet.g02.restart.json", lambda s: s[:20]), ("billet.g02.probation.json", lambda s: "[]"), ("billet.g02.start.h5.json", lambda s: "[]"),
                              ("billet.g02.start.h5.json", lambda s: s.replace('"name"', '"same"'))):
             folder = self.made(generations=2, cycle=True)
             path = os.path.join(folder, name)

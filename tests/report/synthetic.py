@@ -134,12 +134,15 @@ def make_run(folder, name="billet", generations=1, stop=0, title="Billet <10 x 3
     write_summary(folder, name, title, generations, nsteps, stop, bad_checks)
     with open(os.path.join(folder, name + ".log"), "w", encoding="utf-8") as file:
         file.write("scene      made up\ncut: step 7  time 0.25  length 0.04 -> 0.02: 15 iterations (element 3 of billet)\nstep 7\n")
+        if cycle:
+            for wall, memory in ((2.5, 30.25), (1.25, 60.5), (1e-1, 20)):
+                file.write(f"  1742 equations, 276 elements, 1 threads, {wall} s on the wall, 0.1846 s of processor, {memory} MB\n")
     return folder
 
 
 CYCLE_HEAD = ("generation [-],try [-],stop_step [-],stop_time [time],step [-],trigger,action,result,accepted,stage,"
               "old_elements [-],new_elements [-],error_before [%],error_after [%],first_residual [-],iterations [-],"
-              "force_change [%],remdata [s],restart [s],reason")
+              "force_change [%],energy_change [%],depth_change [-],least_step_ratio [-],remdata [s],restart [s],reason")
 
 
 def write_cycle(folder, name, grids):
@@ -153,19 +156,22 @@ def write_cycle(folder, name, grids):
             continue
         head, old, new = f"{step},{time!r},{step}", first[number - 1][2], elements
         if number == 2:
-            rows.append(f"2,1,{head},times,old mesh,goes on,y,,{old},{old},20.,,,,,,,")
+            rows.append(f"2,1,{head},times,old mesh,goes on,y,,{old},{old},20.,,,,,,,,,,")
             rows.append(f"2,1,{head},stress_error 0.2 (limit 0.1),as the deck says,refused,n,mesh,{old},,20.,"
-                        ",,,,,,an <angle> of 3")
-            rows.append(f"2,2,{head},stress_error 0.2 (limit 0.1),finer,goes on,y,,{old},{new},20.,7.25,0.0625,4,0.5,0.25,0.5,")
+                        ",,,,,,,,,an <angle> of 3")
+            rows.append(f"2,2,{head},stress_error 0.2 (limit 0.1),finer,goes on,y,,{old},{new},20.,7.25,0.0625,4,0.5,0.375,0.75,0.125,0.25,0.5,")
         else:
-            rows.append(f"{number},1,{head},times,as the deck says,goes on,y,,{old},{new},9.,5.,0.03,3,-0.25,0.1,0.2,")
+            rows.append(f"{number},1,{head},times,as the deck says,goes on,y,,{old},{new},9.,5.,0.03,3,-0.25,0.5,0.25,1.5,0.1,0.2,")
         stem = os.path.join(folder, f"{name}.g{number:02d}")
         with open(stem + ".start.h5.json", "w", encoding="utf-8") as file:
             json.dump({"transfer": [{"name": "plastic_strain", "before": 200.0, "carried": 199.0, "after": 201.0,
                                      "largest_before": 2.0, "largest_after": 1.875}]}, file)
         with open(stem + ".restart.json", "w", encoding="utf-8") as file:
             json.dump({"volume_before": 400.0, "volume_after": 402.0, "elastic_energy_before": 8.0, "elastic_energy_after": 7.0,
-                       "plastic_work_before": 0.0, "plastic_work_after": None}, file)
+                       "plastic_work_before": 0.0, "plastic_work_after": None, "first_residual_limit": 0.5, "iterations_limit": 40,
+                       "force_change_limit": 0.125, "energy_change_limit": 0.25, "depth_change_limit": 2.0}, file)
+        with open(stem + ".probation.json", "w", encoding="utf-8") as file:
+            json.dump({"least_step_ratio": 0.125, "least_step_ratio_limit": 0.0625}, file)
     with open(os.path.join(folder, "cycle.csv"), "w", encoding="utf-8") as file:
         file.write("\n".join(rows) + "\n")
 
@@ -197,12 +203,14 @@ def write_summary(folder, name, title, generations, nsteps, stop, bad):
                "status": "stopped" if stop else "done", "exit_code": stop,
                "stop_reason": "no convergence: step 25 from time 1" if stop else "end of the scene", "time": 1.0, "end_time": 1.0,
                "steps": nsteps, "iterations": 108, "cutbacks": 2, "remeshings": generations - 1, "wall_s": 1.5, "cpu_s": 1.4,
-               "peak_rss_mb": 24.5, "threads": 2, "dofs": 616, "elements": 96, "symmetric": False,
+               "peak_rss_mb": 24.5, "threads": 2, "dofs": 616, "elements": 96, "symmetric": False, "initial_volume": 400.0,
                "effects": {key: dict(zip(("on", "why", "adds", "calls", "wall_s"), row)) for key, row in effects.items()},
                "seconds": {"analysis": 0.01, "displacement": 0.11, "contact": 0.02, "factorisation": 0.9},
                "checks": {"volume_drift": 0.02 if bad else -1e-4, "max_penetration": 0.003 if bad else 0.001,
                           "allowed_penetration": 0.00125, "worst_linear_residual": 1e-8 if bad else 1e-14, "least_dissipation": 0.0,
                           "energy_imbalance": None if bad else 0.005},
                "energy": {"external_work": 2e6, "elastic": 4e4, "plastic": 1.86e6, "friction": 9e4}}
+    if not bad:
+        summary["checks"]["volume_drift_unloaded"] = 2.5e-5
     with open(os.path.join(folder, "summary.json"), "w", encoding="utf-8") as file:
         json.dump(summary, file, indent=2)

@@ -10,9 +10,10 @@ from .tables import number, read_object, read_text
 
 WHOLE = ("generation", "try", "step")
 NUMBERS = ("stop_time", "old_elements", "new_elements", "error_before", "error_after", "first_residual", "iterations",
-           "force_change", "remdata", "restart")
+           "force_change", "energy_change", "depth_change", "least_step_ratio", "remdata", "restart")
 TEXTS = ("trigger", "action", "accepted", "stage", "reason")
 KEEPS_OLD = "old mesh"
+LIMIT = "_limit"
 # What the restart balances: name in NAME.gNN.restart.json, without `_before` and `_after`, and in words.
 BALANCES = {"volume": "volume", "elastic_energy": "elastic energy", "plastic_work": "plastic work of the run"}
 
@@ -43,6 +44,10 @@ class Try:
     numbers: Dict[str, float]
     texts: Dict[str, str]
     changes: List[Change] = field(default_factory=list)
+    # What was found against what is allowed, as shares: of files that are there.
+    limits: Dict[str, float] = field(default_factory=dict)
+    # Volume as the mesh began; NaN where it is not told.
+    volume: float = math.nan
 
     @property
     def refused(self) -> bool:
@@ -76,7 +81,11 @@ def read_cycle(folder: str, name: str) -> List[Try]:
             raise ReportError(f"{path}:{line}: damaged: {error}") from error
         tries.append(Try(*whole, numbers, {title: cells[title] for title in TEXTS}))
     for row in new_meshes(tries):
-        row.changes = read_changes(os.path.join(folder, f"{name}.g{row.generation:02d}"))
+        stem = os.path.join(folder, f"{name}.g{row.generation:02d}")
+        restart, steps = optional_object(f"{stem}.restart.json"), optional_object(f"{stem}.probation.json")
+        row.limits = {key[:-len(LIMIT)]: number(value) for key, value in {**restart, **steps}.items() if key.endswith(LIMIT)}
+        row.volume = number(restart.get("volume_before"))
+        row.changes = read_changes(stem, restart)
     return tries
 
 
@@ -85,13 +94,15 @@ def new_meshes(tries: List[Try]) -> List[Try]:
     return list({row.generation: row for row in tries if not row.refused and not row.keeps_old}.values())
 
 
-def read_changes(stem: str) -> List[Change]:
+def optional_object(path: str) -> Dict[str, Any]:
+    """The object in a JSON file; empty where there is no such file."""
+    return read_object(path) if os.path.exists(path) else {}
+
+
+def read_changes(stem: str, restart: Dict[str, Any]) -> List[Change]:
     """What changed from mesh to mesh: balances of the restart, then the fields that were carried; of files that are there."""
-    changes = []
-    if os.path.exists(f"{stem}.restart.json"):
-        facts = read_object(f"{stem}.restart.json")
-        changes = [Change(words, number(facts.get(f"{name}_before")), number(facts.get(f"{name}_after")), balance=True)
-                   for name, words in BALANCES.items() if f"{name}_before" in facts]
+    changes = [Change(words, number(restart.get(f"{name}_before")), number(restart.get(f"{name}_after")), balance=True)
+               for name, words in BALANCES.items() if f"{name}_before" in restart]
     path = f"{stem}.start.h5.json"
     if not os.path.exists(path):
         return changes

@@ -1,4 +1,5 @@
 """The page: one HTML file with everything in it, which asks nothing of the network."""
+import math
 import os
 from typing import Dict, Iterable, List, Sequence, Tuple
 
@@ -90,11 +91,25 @@ def _tiles(run: Run) -> str:
     for field in ("plastic_strain", "mises"):
         if field in run.names(run.steps[-1], "node"):
             tiles.append((brief(float(run.nodal(run.steps[-1], field).max())), f"largest {field} at the nodes, at the end"))
-    tiles.append((f"{brief(number(s.get('wall_s')), 3)} s", f"on the wall, {escape(s.get('threads', '?'))} threads"))
-    if "peak_rss_mb" in s:
-        tiles.append((f"{brief(number(s['peak_rss_mb']), 3)} MB", "memory at its peak"))
+    tiles += _cost(run)
     return '<div class="tiles">' + "".join(f'<div class="tile"><b>{escape(value)}</b><span>{escape(word)}</span></div>'
                                            for value, word in tiles) + "</div>"
+
+
+def _cost(run: Run) -> List[Tuple[str, str]]:
+    """Seconds and memory. A run of several calls has those of the calls that ended: what was killed has told nothing."""
+    s, calls = run.summary, run.calls
+    threads = f"{escape(s.get('threads', '?'))} threads"
+    if calls.number < 2:
+        tiles = [(f"{brief(number(s.get('wall_s')), 3)} s", f"on the wall, {threads}")]
+        if "peak_rss_mb" in s:
+            tiles.append((f"{brief(number(s['peak_rss_mb']), 3)} MB", "memory at its peak"))
+        return tiles
+    remesher = [row.numbers["remdata"] for row in run.tries if not math.isnan(row.numbers["remdata"])]
+    tiles = [(f"{brief(calls.wall, 3)} s", f"on the wall in {calls.number} calls of lagamine, {threads}")]
+    if remesher:
+        tiles.append((f"{brief(sum(remesher), 3)} s", f"on the wall in {len(remesher)} calls of remdata"))
+    return tiles + [(f"{brief(calls.memory, 3)} MB", "memory of lagamine at its peak")]
 
 
 def _alerts(run: Run, judged: Iterable[Check]) -> str:

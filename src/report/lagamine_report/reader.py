@@ -10,7 +10,7 @@ import numpy as np
 
 from .cycle import read_cycle
 from .errors import ReportError
-from .tables import read_history, read_notes, read_summary
+from .tables import read_calls, read_history, read_notes, read_summary
 
 AXISYMMETRIC = 2
 
@@ -66,6 +66,7 @@ class Run:
         self.name = os.path.splitext(os.path.basename(self.summary["deck"]))[0]
         self.history = read_history(os.path.join(folder, "history.csv"))
         self.notes = read_notes(os.path.join(folder, self.name + ".log"))
+        self.calls = read_calls(os.path.join(folder, self.name + ".log"))
         self.tries = read_cycle(folder, self.name)
         self.generations = [read_generation(path) for path in self._generation_files()]
         self.steps = [step for generation in self.generations for step in generation.steps]

@@ -1,5 +1,5 @@
 """The page's section on remeshing: a row for every try, then old mesh, new mesh and what was kept."""
-from typing import Dict, List, Sequence
+from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 
@@ -11,8 +11,10 @@ from .remeshes import LAST_SHOWN, shown_remeshes
 from .words import brief, field_title
 
 NONE = "–"
-HEAD = ("mesh", "step", "time", "height", "why", "elements", "error of stress [%]", "first residual", "iterations",
-        "change of force [%]", "seconds")
+# Columns that are held to a limit: name in cycle.csv, in words, and what a share is shown in.
+LIMITED = (("first_residual", "first residual", 1), ("iterations", "iterations", 1), ("force_change", "change of force [%]", 100),
+           ("energy_change", "of energy [%]", 100), ("depth_change", "of depth", 1), ("least_step_ratio", "least step", 1))
+HEAD = ("mesh", "step", "time", "height", "why", "elements", "error of stress [%]", *(words for _, words, _ in LIMITED), "seconds")
 
 
 def remesh_section(run: Run, pictures: Sequence[Picture]) -> Sections:
@@ -22,7 +24,7 @@ def remesh_section(run: Run, pictures: Sequence[Picture]) -> Sections:
     made = new_meshes(run.tries)
     refused = sum(row.refused and not row.keeps_old for row in run.tries)
     parts = [f"<p>New meshes: {len(made)}; tries refused: {refused}. Height: of all bodies along y.</p>",
-             table(HEAD, [(look(row), cells(run, row)) for row in run.tries])]
+             table(HEAD, [*limits(made), *((look(row), cells(run, row)) for row in run.tries)])]
     shown = shown_remeshes(run)
     if len(shown) < len(made):
         parts.append(f"<p>Pictures of {len(shown)} of {len(made)} new meshes: "
@@ -61,8 +63,19 @@ def cells(run: Run, row: Try) -> List[str]:
     return [str(row.generation), str(row.step), shown_number(n["stop_time"]), shown_number(height(run, row)), why,
             f"{shown_number(n['old_elements'], 9)} → {shown_number(n['new_elements'], 9)}",
             f"{shown_number(n['error_before'], 3)} → {shown_number(n['error_after'], 3)}",
-            shown_number(n["first_residual"], 3), shown_number(n["iterations"], 9), shown_number(n["force_change"], 3),
-            shown_number(seconds, 3)]
+            *(shown_number(n[name], 3) for name, _, _ in LIMITED), shown_number(seconds, 3)]
+
+
+def limits(made: Sequence[Try]) -> List[Tuple[str, List[str]]]:
+    """A row of what is allowed, which is the deck's and the same for all meshes; none where the files do not tell."""
+    allowed: Dict[str, float] = {}
+    for row in made:
+        allowed.update(row.limits)
+    if not allowed:
+        return []
+    shown = [f"{'≥' if name == 'least_step_ratio' else '≤'} {shown_number(factor * allowed[name], 3)}" if name in allowed else NONE
+             for name, _, factor in LIMITED]
+    return [("off", ["", "", "", "", "limits (REMSH ACCEPT)", "", "", *shown, ""])]
 
 
 def height(run: Run, row: Try) -> float:

@@ -5,13 +5,14 @@ import sys
 from dataclasses import dataclass
 from typing import List, Optional, TextIO, Union
 
+from .cycle import new_meshes
 from .reader import Run
 from .tables import number
 from .words import brief
 
-# Above these the page warns: shares of the work and of the volume, what a sound linear solution leaves, and the share of an
+# Above these the page warns: shares of the work, of the volume and of what all remeshings change of it, what a sound linear solution leaves, and the share of an
 # element's strain that its points do not see.
-ENERGY_IMBALANCE, VOLUME_DRIFT, LINEAR_RESIDUAL, SPURIOUS_MODE = 0.02, 0.01, 1e-10, 0.9
+ENERGY_IMBALANCE, VOLUME_DRIFT, VOLUME_BY_MESHES, LINEAR_RESIDUAL, SPURIOUS_MODE = 0.02, 0.01, 0.001, 1e-10, 0.9
 # Signs of the page that not every terminal has.
 PLAIN = {0x2212: "-", 0x202F: None, 0x221E: "infinite", 0x2013: "-"}
 
@@ -49,7 +50,17 @@ def checks(run: Run) -> List[Check]:
                             "–" if allowed is None else brief(allowed, 3), good,
                             "ask for AUGMENT, or a smaller PENETR, in the contact law" if good is False else ""))
     within("energy_imbalance", "energy imbalance", ENERGY_IMBALANCE, percent, "take smaller steps (STRAT) and compare")
-    within("volume_drift", "volume drift", VOLUME_DRIFT, percent, "look for large elastic volume changes or distorted elements")
+    if "volume_drift_unloaded" in given:
+        within("volume_drift_unloaded", "volume drift, without elastic strain", VOLUME_DRIFT, percent,
+               "look for distorted elements, and for plastic laws that keep no volume")
+        result.append(Check("volume drift, with elastic strain", percent(values.get("volume_drift", math.nan)), "–", None))
+    else:
+        within("volume_drift", "volume drift", VOLUME_DRIFT, percent, "look for large elastic volume changes or distorted elements")
+    by_meshes = volume_by_meshes(run)
+    if math.isfinite(by_meshes):
+        good = abs(by_meshes) <= VOLUME_BY_MESHES
+        result.append(Check("volume drift by new meshes, in all", percent(by_meshes), percent(VOLUME_BY_MESHES), good,
+                            "" if good else "take smaller elements where the contour is round (REMSH SIZE, TURN)"))
     within("worst_linear_residual", "worst linear residual", LINEAR_RESIDUAL, lambda value: brief(value, 2),
            "the equations are badly scaled or nearly singular: look at the supports")
     within("spurious_mode", "strain unseen by the points of an element", SPURIOUS_MODE, percent,
@@ -60,11 +71,25 @@ def checks(run: Run) -> List[Check]:
         result.append(Check("least friction work of a step", brief(values["least_dissipation"], 3), "not negative", good,
                             "" if good else "friction gave energy back: report it with the deck"))
     known = {"max_penetration", "allowed_penetration", "energy_imbalance", "volume_drift", "worst_linear_residual",
-             "least_dissipation", "spurious_mode"}
+             "volume_drift_unloaded", "least_dissipation", "spurious_mode"}
     for name in given:
         if name not in known:
             result.append(Check(name.replace("_", " "), brief(values[name], 4), "–", None))
     return result
+
+
+def volume_by_meshes(run: Run) -> float:
+    """Sum over the remeshings of what each changed the volume by, as a share of the first volume; NaN where it is not told."""
+    first = number(run.summary.get("initial_volume"))
+    steps, drift = run.history.get("step"), run.history.get("volume_drift")
+    total, told = 0.0, False
+    for row in new_meshes(run.tries):
+        if steps is None or drift is None or math.isnan(row.volume) or math.isnan(first):
+            continue
+        at = drift.values[steps.values == row.step]
+        if len(at) == 1:
+            total, told = total + row.volume / first - (1 + float(at[0])), True
+    return total if told else math.nan
 
 
 def command(run: Run) -> str:
@@ -88,10 +113,11 @@ def headline(run: Run) -> str:
 def short_lines(run: Run) -> List[str]:
     """The result in a few lines for a terminal; numbers in plain letters."""
     s = run.summary
+    wall = run.calls.wall if run.calls.number > 1 else number(s.get("wall_s"))
     lines = [run.title, headline(run),
              f"  time {brief(number(s.get('time')))} of {brief(number(s.get('end_time')))}, {s.get('steps', '?')} steps, "
              f"{s.get('iterations', '?')} iterations, {s.get('cutbacks', '?')} cutbacks, {s.get('remeshings', 0)} remeshings",
-             f"  {s.get('elements', '?')} elements, {s.get('dofs', '?')} equations, {brief(number(s.get('wall_s')), 3)} s"]
+             f"  {s.get('elements', '?')} elements, {s.get('dofs', '?')} equations, {brief(wall, 3)} s"]
     for die in run.die_names:
         for axis in "yx":
             force = run.history.get(f"force_{axis}_{die}")

@@ -2,6 +2,7 @@
 import csv
 import json
 import math
+import re
 from dataclasses import dataclass
 from typing import Any, Dict, List
 
@@ -9,6 +10,9 @@ import numpy as np
 
 from .errors import ReportError
 
+# The line of the listing with which a call of the solver ends.
+REAL = r"([0-9.]+(?:[eE][-+]?[0-9]+)?)"
+CALL = re.compile(rf"  [0-9]+ equations, .* {REAL} s on the wall, .* {REAL} MB")
 
 @dataclass
 class Column:
@@ -97,6 +101,25 @@ def read_notes(path: str) -> Dict[str, List[str]]:
         elif "WARNING" in line or line.lower().startswith("warning:"):
             notes["warnings"].append(line.strip())
     return notes
+
+
+@dataclass
+class Calls:
+    """Calls of the solver that ended and said so in the listing: how many, their seconds on the wall, the largest memory in MB."""
+
+    number: int = 0
+    wall: float = 0.0
+    memory: float = 0.0
+
+
+def read_calls(path: str) -> Calls:
+    """From the listing, to which every call adds; one that was killed says nothing."""
+    calls = Calls()
+    for line in read_text(path).splitlines():
+        match = CALL.fullmatch(line)
+        if match:
+            calls = Calls(calls.number + 1, calls.wall + float(match.group(1)), max(calls.memory, float(match.group(2))))
+    return calls
 
 
 def number(value: Any) -> float:

@@ -17,7 +17,7 @@
 !>     |     |     |   ->   | |   |   | |      v and w go on to where they went
 !>     r --- a b c s        r a   b   c s
 !> ```
-module opened_corners
+module flat_quads
   use kinds, only: wp
   use vectors, only: length_of
   implicit none
@@ -176,4 +176,4 @@ contains
     end do
   end function quality
 
-end module opened_corners
+end module flat_quads

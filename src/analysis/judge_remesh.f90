@@ -1,0 +1,162 @@
+!> Whether a new mesh is good enough: what the restart on it found against the limits of REMSH ACCEPT, and which stage of the remesh
+!> is to blame where it is not.
+module judge_remesh
+  use acceptance, only: acceptance_t
+  use errors, only: error_t, exit_no_convergence, fail
+  use kinds, only: wp
+  use restore_balance, only: balance_t
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use text, only: string_t, to_text
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: advice_after_refusal, bad_shape, carried_change, energy_change, force_change, limit_lines, refuse_remesh
+
+  !> Elements of a smaller scaled Jacobian are distorted (the remesher makes none).
+  real(wp), parameter :: bad_shape = 0.2_wp
+  !> Pressures that miss the force of a die by more than this share of the largest have been lost on the way. (Coarse meshes of a
+  !> strong gradient have been accepted at 0.13: Newton's method finds the rest.)
+  real(wp), parameter :: lost_pressure = 0.25_wp
+
+  character(len=*), parameter :: advice_after_refusal = &
+    'remesh again from the checkpoint of the old mesh with another transfer or finer elements'
+
+contains
+
+  !> Change of the force of a die over the largest force on any: the worst.
+  pure function force_change(balance) result(change)
+    type(balance_t), intent(in) :: balance
+    real(wp) :: change
+
+    change = worst_change(balance%pilot_before, balance%pilot_after)
+  end function force_change
+
+  !> The same of the forces that the carried pressures make, before anything moves.
+  pure function carried_change(balance) result(change)
+    type(balance_t), intent(in) :: balance
+    real(wp) :: change
+
+    change = worst_change(balance%pilot_before, balance%pilot_carried)
+  end function carried_change
+
+  pure function worst_change(before, after) result(change)
+    real(wp), intent(in) :: before(:, :), after(:, :)   !! (3, ndie) [force]
+    real(wp) :: change
+    real(wp) :: largest
+    integer :: k
+
+    change = 0
+    largest = 0
+    do k = 1, size(before, 2)
+      largest = max(largest, length_of(before(1:2, k)))
+      change = max(change, length_of(after(1:2, k) - before(1:2, k)))
+    end do
+    if (largest > 0) change = change/largest
+  end function worst_change
+
+  !> Change of the elastic energy over what was carried.
+  pure function energy_change(balance) result(change)
+    type(balance_t), intent(in) :: balance
+    real(wp) :: change
+
+    change = 0
+    if (balance%before%elastic_energy > 0) &
+      change = abs(balance%after%elastic_energy - balance%before%elastic_energy)/balance%before%elastic_energy
+  end function energy_change
+
+  !> What was found, each with its limit.
+  function limit_lines(scene, balance) result(lines)
+    type(scene_t), intent(in) :: scene
+    type(balance_t), intent(in) :: balance
+    type(string_t) :: lines(3)
+
+    associate (accept => scene%remesher%accept)
+      lines(1)%s = '  first residual '//held(balance%first_residual, accept%first_residual)//', iterations ' &
+                   //to_text(balance%iterations)//' (limit '//to_text(accept%iterations)//')'
+      lines(2)%s = '  change of die force '//held(force_change(balance), accept%force_change)//', of elastic energy ' &
+                   //held(energy_change(balance), accept%energy_change)//', of depth ' &
+                   //held(balance%depth_change, accept%depth_change)
+    end associate
+    lines(3)%s = '  least scaled Jacobian '//held(balance%shape, bad_shape)//'; first residual: ' &
+                 //to_text(100*balance%place%at_contact, 3)//' % of its square at sides of contact'
+    if (balance%place%node > 0) lines(3)%s = lines(3)%s//', worst at node '//to_text(scene%mesh%labels(balance%place%node))
+  end function limit_lines
+
+  !> Over a limit a remesh is refused.
+  subroutine refuse_remesh(scene, solution, balance, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(balance_t), intent(inout) :: balance
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: what
+
+    call find_fault(scene%remesher%accept, balance, what)
+    if (balance%shape < bad_shape) what = 'the scaled Jacobian of an element is '//to_text(balance%shape, 3)//', at least ' &
+                                          //to_text(bad_shape, 3)
+    balance%refused = len(what) > 0
+    if (.not. balance%refused) return
+    balance%stage = stage_to_blame(scene, balance)
+    call fail(error, exit_no_convergence, 'mesh '//to_text(scene%generation)//' refused at step '//to_text(solution%step)//': ' &
+              //what//'; stage to blame: '//balance%stage, advice_after_refusal)
+  end subroutine refuse_remesh
+
+  !> The first limit that is passed, in words; empty when all hold.
+  pure subroutine find_fault(accept, balance, what)
+    type(acceptance_t), intent(in) :: accept
+    type(balance_t), intent(in) :: balance
+    character(len=:), allocatable, intent(out) :: what
+
+    what = ''
+    if (balance%depth_change > accept%depth_change) then
+      what = 'sides lie '//to_text(balance%depth_change, 3)//' times what is allowed from where they bore their pressure, ' &
+             //'at most '//to_text(accept%depth_change, 3)
+    else if (balance%first_residual > accept%first_residual) then
+      what = 'the first residual is '//to_text(balance%first_residual, 3)//' of the stress, in the norm of energy, at most ' &
+             //to_text(accept%first_residual, 3)
+    else if (.not. balance%restored) then
+      what = 'equilibrium is not restored'
+      if (allocated(balance%reason)) what = what//' ('//balance%reason//')'
+    else if (balance%iterations > accept%iterations) then
+      what = to_text(balance%iterations)//' iterations to equilibrium, at most '//to_text(accept%iterations)
+    else if (force_change(balance) > accept%force_change) then
+      what = 'the force of a die changes by '//percent(force_change(balance), accept%force_change)
+    else if (energy_change(balance) > accept%energy_change) then
+      what = 'the elastic energy changes by '//percent(energy_change(balance), accept%energy_change)
+    end if
+  end subroutine find_fault
+
+  !> The mesh, where an element is distorted; the contour, where it is not where it bore the pressures;
+  !> the transfer of contact, where the pressures do not make the forces of the dies any more; else that of the state.
+  pure function stage_to_blame(scene, balance) result(stage)
+    type(scene_t), intent(in) :: scene
+    type(balance_t), intent(in) :: balance
+    character(len=:), allocatable :: stage
+
+    if (balance%shape < bad_shape) then
+      stage = 'mesh'
+    else if (balance%depth_change > scene%remesher%accept%depth_change) then
+      stage = 'contour'
+    else if (carried_change(balance) > lost_pressure) then
+      stage = 'contact'
+    else
+      stage = 'transfer'
+    end if
+  end function stage_to_blame
+
+  !> `0.05 (limit 0.25)`.
+  pure function held(value, limit) result(s)
+    real(wp), intent(in) :: value, limit
+    character(len=:), allocatable :: s
+
+    s = to_text(value, 3)//' (limit '//to_text(limit, 3)//')'
+  end function held
+
+  pure function percent(value, limit) result(s)
+    real(wp), intent(in) :: value, limit
+    character(len=:), allocatable :: s
+
+    s = to_text(100*value, 3)//' %, at most '//to_text(100*limit, 3)//' %'
+  end function percent
+
+end module judge_remesh
