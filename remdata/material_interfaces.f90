@@ -85,8 +85,11 @@ contains
   pure subroutine list_sides(connectivity, material, nnode, sides, pairs)
     integer, intent(in) :: connectivity(:, :), material(:), nnode
     integer, allocatable, intent(out) :: sides(:, :), pairs(:, :)
-    integer :: first(2, nnode), list(3, 2*size(material)), both(2, 2*size(material)), e, k, n
+    integer, allocatable :: first(:, :), list(:, :), both(:, :)
+    integer :: e, k, n
 
+    ! no more sides than two an element are shared
+    allocate (first(2, nnode), list(3, 2*size(material)), both(2, 2*size(material)))
     first = 0
     n = 0
     do e = 1, size(material)
