@@ -6,12 +6,13 @@ module contour_assembly
   use boundary_sides, only: loop_t
   use contact_knots, only: section_t
   use contact_runs, only: along, run_t, spot_t
-  use contact_stretches, only: follow_die
+  use contact_stretches, only: follow_die, knot_t
   use contour_chain, only: chain_t, close_chain, kind_end, kind_entry, kind_exit, kind_joint
-  use dies, only: die_t
+  use dies, only: die_t, is_deformable
   use kinds, only: wp
   use side_tags, only: same_tags, side_tags_t
-  use stretches, only: point_at, straight, stretch_t
+  use stretches, only: cross, point_at, straight, stretch_t, tangent_at
+  use sunken_ends, only: find_tail, stretches_of_tail, tail_t
   use vectors, only: length_of
   implicit none
   private
@@ -43,20 +44,26 @@ module contour_assembly
 
   !> What is left of a side in half sides, when it is nothing.
   real(wp), parameter :: nothing = 1.0e-10_wp
+  !> No joint within a side leaves less than this of it, in half sides.
+  real(wp), parameter :: crumb = 1.0e-6_wp
+  !> Sides of another body that turn by less than this sine where they meet follow a curve.
+  real(wp), parameter :: edge = 0.1_wp
   !> Gaps wider than this share of the contour are closed by a straight stretch.
   real(wp), parameter :: closed_gap = 1.0e-10_wp
 
 contains
 
-  pure subroutine assemble_chain(loop, tags, x, corner_turn, contacts, chain)
+  pure subroutine assemble_chain(loop, tags, x, corner_turn, places, contacts, chain)
     type(loop_t), intent(in) :: loop
     type(side_tags_t), intent(in) :: tags
     real(wp), intent(in) :: x(:, :)                    !! nodes now (2, nnode) [length]
     real(wp), intent(in) :: corner_turn                !! [radian]
+    type(spot_t), intent(in) :: places(:)              !! of free sides where the chain is to have a joint
     type(contact_t), intent(inout) :: contacts(:)      !! in their order along the loop; where they stand is found here
     type(chain_t), intent(out) :: chain
     type(draft_t) :: draft
     type(spot_t) :: here
+    type(tail_t) :: tail
     integer :: nside, k
 
     nside = size(loop%sides, 2)
@@ -67,7 +74,16 @@ contains
     draft%closed_gap = closed_gap*maxval(maxval(x(:, loop%sides(1, :)), 2) - minval(x(:, loop%sides(1, :)), 2))
     call mark_neighbours(nside, contacts)
     do k = 1, size(contacts)
-      call add_sides(loop, tags, x, here, contacts(k)%run%from, draft)
+      tail = tail_t()
+      if (contacts(k)%begins) &
+        call find_tail(loop, x, contacts(k)%die, contacts(k)%pilot, contacts(k)%run%from, -1, tail)
+      if (tail%there) tail%there = along(tail%out) > along(here) + crumb
+      if (tail%there) then
+        call add_sides(loop, tags, x, places, here, tail%out, draft)
+        call add_tail(contacts(k), tail, -1, nside, draft)
+      else
+        call add_sides(loop, tags, x, places, here, contacts(k)%run%from, draft)
+      end if
       if (contacts(k)%begins) then
         draft%pending = kind_entry
       else
@@ -77,12 +93,17 @@ contains
       call add_contact(contacts(k), k, draft)
       contacts(k)%next = draft%n + 1
       here = contacts(k)%run%to
-      if (contacts(k)%ends) draft%pending = kind_exit
+      if (.not. contacts(k)%ends) cycle
+      draft%pending = kind_exit
+      call find_tail(loop, x, contacts(k)%die, contacts(k)%pilot, here, 1, tail)
+      if (.not. tail%there .or. along(tail%out) > next_spot(contacts, k, nside) - crumb) cycle
+      call add_tail(contacts(k), tail, 1, nside, draft)
+      here = tail%out
     end do
     if (size(contacts) == 0) then
-      call add_sides(loop, tags, x, here, spot_t(nside, 1.0_wp), draft)
+      call add_sides(loop, tags, x, places, here, spot_t(nside, 1.0_wp), draft)
     else
-      call add_sides(loop, tags, x, here, first_spot(contacts, nside), draft)
+      call add_sides(loop, tags, x, places, here, first_spot(contacts, nside), draft)
     end if
     call finish_chain(draft, corner_turn, chain)
     do k = 1, size(contacts)
@@ -92,6 +113,46 @@ contains
       call make_plain(tags, contacts(mod(k, size(contacts)) + 1)%first, chain)
     end do
   end subroutine assemble_chain
+
+  !> How far the free sides after a run may go: to the next run, or to where the walk ends.
+  pure function next_spot(contacts, k, nside) result(s)
+    type(contact_t), intent(in) :: contacts(:)
+    integer, intent(in) :: k, nside
+    real(wp) :: s
+
+    if (k < size(contacts)) then
+      s = along(contacts(k + 1)%run%from)
+    else
+      s = along(first_spot(contacts, nside))
+    end if
+  end function next_spot
+
+  !> The die on the way on which a side lies in it before a run (towards = -1) or after it.
+  pure subroutine add_tail(contact, tail, towards, nside, draft)
+    type(contact_t), intent(in) :: contact
+    type(tail_t), intent(in) :: tail
+    integer, intent(in) :: towards, nside
+    type(draft_t), intent(inout) :: draft
+    type(stretch_t), allocatable :: list(:)
+    type(knot_t) :: knots(2)
+    integer :: k
+
+    if (towards < 0) then
+      draft%pending = kind_joint
+      associate (section => contact%sections(1))
+        knots = [tail%knot, section%knots(1)]
+      end associate
+    else
+      associate (section => contact%sections(size(contact%sections)))
+        knots = [section%knots(size(section%knots)), tail%knot]
+      end associate
+    end if
+    call stretches_of_tail(contact%die, contact%pilot, contact%number, modulo(tail%out%side - 1, nside) + 1, knots, list)
+    do k = 1, size(list)
+      call add(list(k), draft)
+    end do
+    if (towards > 0) draft%pending = kind_joint
+  end subroutine add_tail
 
   !> The ends of a pocket are no corners, but sets may meet there.
   pure subroutine make_plain(tags, joint, chain)
@@ -135,13 +196,14 @@ contains
   end subroutine mark_neighbours
 
   !> Sides and parts of sides of the part between two places.
-  pure subroutine add_sides(loop, tags, x, from, to, draft)
+  pure subroutine add_sides(loop, tags, x, places, from, to, draft)
     type(loop_t), intent(in) :: loop
     type(side_tags_t), intent(in) :: tags
     real(wp), intent(in) :: x(:, :)
-    type(spot_t), intent(in) :: from, to
+    type(spot_t), intent(in) :: places(:), from, to
     type(draft_t), intent(inout) :: draft
     type(stretch_t) :: one
+    real(wp) :: last
     integer :: k, nside, before
 
     nside = size(loop%sides, 2)
@@ -156,7 +218,15 @@ contains
         draft%pending = kind_joint
       one%points = x(:, loop%sides(:, one%side))
       one%middle = loop%sides(2, one%side)
-      call add(one, draft)
+      last = one%range(2)
+      do
+        one%range(2) = minval([last, pack(places%xi, places%side == one%side .and. places%xi > one%range(1) + crumb &
+                                          .and. places%xi < last - crumb)])
+        call add(one, draft)
+        if (.not. one%range(2) < last) exit
+        one%range(1) = one%range(2)
+        draft%pending = kind_joint
+      end do
     end do
   end subroutine add_sides
 
@@ -172,6 +242,9 @@ contains
       call follow_die(contact%die, contact%pilot, contact%number, contact%sections(i)%knots, list)
       if (i > 1) draft%pending = kind_joint
       do k = 1, size(list)
+        if (k > 1 .and. is_deformable(contact%die)) then
+          if (bends(list(k - 1), list(k))) draft%pending = kind_joint
+        end if
         list(k)%side = contact%sections(i)%side
         list(k)%group = contact%run%group
         list(k)%run = number
@@ -179,6 +252,17 @@ contains
       end do
     end do
   end subroutine add_contact
+
+  !> Where sides of the other body meet in an edge no parabola fits both: a node is wanted.
+  pure function bends(before, after) result(yes)
+    type(stretch_t), intent(in) :: before, after
+    logical :: yes
+    real(wp) :: one(2), other(2)
+
+    one = tangent_at(before, before%range(2))
+    other = tangent_at(after, after%range(1))
+    yes = abs(cross(one, other)) > edge*length_of(one)*length_of(other)
+  end function bends
 
   !> Add a stretch, and a straight one before it where the contour would not be closed.
   pure subroutine add(one, draft)

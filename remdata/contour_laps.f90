@@ -1,7 +1,8 @@
 !> Where contours cross themselves or each other: laps that a new mesh would seal or tear.
 !>
 !> Stretches are looked at as chords; chords that cross are followed to the point where the curves do, by Newton's method. Where
-!> two bodies are in contact one lies in the other by the depth of contact: what follows a deformable die may cross that die.
+!> two bodies are in contact one lies in the other by the depth of contact: what follows a deformable die may cross that die, and so
+!> may sides that face it, where contact covers too little of a side to be a run.
 module contour_laps
   use contour_chain, only: chain_t, joint_after, joint_point, kind_entry, kind_exit
   use kinds, only: eps, wp
@@ -27,9 +28,10 @@ module contour_laps
 contains
 
   !> All crossings, in the order of chains and stretches.
-  pure subroutine find_laps(chains, on_die, laps)
+  pure subroutine find_laps(chains, on_die, faces, laps)
     type(chain_t), intent(in) :: chains(:)
     integer, intent(in) :: on_die(:, :)        !! deformable die that a side of a chain is a piece of, or 0 (nside, nchain)
+    logical, intent(in) :: faces(:, :, :)      !! a side has elements of contact with a die (ndie, nside, nchain)
     type(lap_t), allocatable, intent(out) :: laps(:)
     real(wp), allocatable :: boxes(:, :)
     integer, allocatable :: chain_of(:), stretch_of(:)
@@ -56,8 +58,9 @@ contains
         if (any(boxes(1:2, i) > boxes(3:4, k)) .or. any(boxes(1:2, k) > boxes(3:4, i))) cycle
         one%chains = chain_of([i, k])
         one%stretches = stretch_of([i, k])
-        if (may_touch(chains, on_die, one)) cycle
+        if (may_touch(chains, on_die, faces, one)) cycle
         call find_crossing(chains(one%chains(1)), chains(one%chains(2)), one, crossed)
+        if (crossed) crossed = .not. is_end_of_die(chains, on_die, one)
         if (crossed) laps = [laps, one]
       end do
     end do
@@ -83,10 +86,11 @@ contains
     end do
   end function chord_points
 
-  !> One stretch follows the deformable die that the other one is a side of.
-  pure function may_touch(chains, on_die, lap) result(may)
+  !> One stretch follows the deformable die that the other one is a side of, or is of a side that faces it.
+  pure function may_touch(chains, on_die, faces, lap) result(may)
     type(chain_t), intent(in) :: chains(:)
     integer, intent(in) :: on_die(:, :)
+    logical, intent(in) :: faces(:, :, :)
     type(lap_t), intent(in) :: lap
     logical :: may
     integer :: k, other
@@ -96,10 +100,36 @@ contains
       other = 3 - k
       associate (one => chains(lap%chains(k))%stretches(lap%stretches(k)), &
                  die => on_die(chains(lap%chains(other))%stretches(lap%stretches(other))%side, lap%chains(other)))
-        may = may .or. die > 0 .and. one%die == die
+        if (die == 0) cycle
+        may = may .or. one%die == die .or. faces(die, one%side, lap%chains(k))
       end associate
     end do
   end function may_touch
+
+  !> One stretch goes on over the end of the deformable die that it follows: deep in the die, it leaves it across the side behind.
+  pure function is_end_of_die(chains, on_die, lap) result(yes)
+    type(chain_t), intent(in) :: chains(:)
+    integer, intent(in) :: on_die(:, :)
+    type(lap_t), intent(in) :: lap
+    logical :: yes
+    integer :: k, i, n, die, stretch, before
+
+    yes = .false.
+    do k = 1, 2
+      die = chains(lap%chains(k))%stretches(lap%stretches(k))%die
+      if (die == 0) cycle
+      associate (other => chains(lap%chains(3 - k)), on => on_die(:, lap%chains(3 - k)))
+        n = size(other%stretches)
+        do i = 0, 1
+          stretch = modulo(lap%stretches(3 - k) + i - 1, n) + 1
+          before = modulo(stretch - 2, n) + 1
+          if (on(other%stretches(stretch)%side) /= die .and. on(other%stretches(before)%side) /= die) cycle
+          yes = yes .or. length_of(joint_point(other, stretch) - lap%point) &
+                <= oblique*maxval(abs(chains(lap%chains(k))%stretches(lap%stretches(k))%depth))
+        end do
+      end associate
+    end do
+  end function is_end_of_die
 
   !> The first crossing of two stretches, if there is one besides a joint that they share.
   pure subroutine find_crossing(chain, other, lap, crossed)

@@ -35,9 +35,10 @@ contains
     least = huge(least)
     do k = 1, size(chain%stretches)
       associate (one => chain%stretches(k))
-        if (one%run /= run .or. run == 0 .and. one%middle /= loop%sides(2, side)) cycle
+        if (one%run /= run .or. run == 0 .and. one%side /= side) cycle
         here = xi
-        if (run > 0) here = closest_xi(one, point)
+        ! a free side may follow the die on a part of its way
+        if (one%middle == 0) here = closest_xi(one, point)
         if (here < one%range(1) .or. here > one%range(2)) cycle
         distance = length_of(point_at(one, here) - point)
         if (.not. distance < least) cycle

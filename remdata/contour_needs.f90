@@ -159,7 +159,7 @@ contains
       end do
       do k = step, step + count - 1
         associate (one => mod(first + k - 1, n) + 1)
-          if (chain%stretches(one)%die > 0) contact(one) = length/wish%across
+          if (chain%stretches(one)%run > 0) contact(one) = length/wish%across
         end associate
       end do
       step = step + count
@@ -174,8 +174,16 @@ contains
       integer :: last
 
       last = merge(n, k - 1, k == 1)
-      yes = chain%stretches(k)%die /= chain%stretches(last)%die .or. chain%kinds(k) == kind_entry
+      yes = in_contact(chain%stretches(k)) /= in_contact(chain%stretches(last)) .or. chain%kinds(k) == kind_entry
     end function begins
+
+    !> The die a stretch bears on, 0 where it is free.
+    pure function in_contact(one) result(die)
+      type(stretch_t), intent(in) :: one
+      integer :: die
+
+      die = merge(one%die, 0, one%run > 0)
+    end function in_contact
 
   end subroutine sizes_of_contact
 

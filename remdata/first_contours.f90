@@ -20,6 +20,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(contour_options_t) :: options
     integer, allocatable :: no_dies(:, :)
+    logical, allocatable :: nothing(:, :, :)
     integer :: c, k, n, s
 
     associate (cards => scene%remesher%contours)
@@ -48,8 +49,9 @@ contains
         end associate
       end do
       allocate (no_dies(maxval([(size(cards(c)%row), c=1, size(cards))]), size(cards)), source=0)
+      allocate (nothing(size(scene%dies), size(no_dies, 1), size(cards)), source=.false.)
     end associate
-    call find_laps([(contours(c)%chain, c=1, size(contours))], no_dies, report%laps)
+    call find_laps([(contours(c)%chain, c=1, size(contours))], no_dies, nothing, report%laps)
     if (size(report%laps) == 0) return
     call fail(error, exit_input, 'contours of bodies cross at x = '//to_text(report%laps(1)%point(1))//', y = ' &
               //to_text(report%laps(1)%point(2)), 'mend the rows of the BODY cards there')

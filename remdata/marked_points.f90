@@ -34,16 +34,25 @@ contains
     type(zone_point_t), allocatable, intent(out) :: points(:)
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: place(2)
-    logical :: alone
-    integer :: k, z
+    logical :: alone, on(size(scene%groups), size(contours)), mine(size(contours))
+    integer :: k, z, c
 
     allocate (points(size(scene%remesher%marks)))
+    do c = 1, size(contours)
+      on(:, c) = bodies_at(scene, contours(c), c)
+    end do
     do k = 1, size(points)
       associate (mark => scene%remesher%marks(k))
         points(k)%name = mark%name
         points(k)%stays = mark%stays
         points(k)%by_shape = mark%form == mark_corner
         alone = count([(any(scene%remesher%zones(z)%marks == k), z=1, size(scene%remesher%zones))]) == 1
+        ! bodies may touch: a point is on the contours of the bodies whose zones have it
+        mine = .false.
+        do z = 1, size(scene%remesher%zones)
+          if (any(scene%remesher%zones(z)%marks == k)) mine = mine .or. on(scene%remesher%zones(z)%group, :)
+        end do
+        if (.not. any(mine)) mine = .true.
         place = mark%x
         if (mark%die > 0) place = carried(mark, scene%dies(mark%die)%pilot, pilots(:, mark%die))
         if (mark%form == mark_inside) then
@@ -51,19 +60,42 @@ contains
           if (mark%by_matter .and. size(x, 2) > 0) points(k)%x = matter_inside(scene, x, place)
           cycle
         else if (mark%form == mark_crossing) then
-          call find_crossing(contours, mark%axis, place(mark%axis), mark%pick, points(k), error)
+          call find_crossing(contours, mine, mark%axis, place(mark%axis), mark%pick, points(k), error)
         else if (mark%by_matter) then
-          call find_matter(scene%mesh%origin, x, contours, place, points(k))
+          call find_matter(scene%mesh%origin, x, contours, mine, place, points(k))
           if (mark%form /= mark_matter) &
             points(k)%place = nearest_joint(contours(points(k)%chain)%chain, points(k)%place, alone)
         else
-          call find_joint(contours, place, alone, points(k), error)
+          call find_joint(contours, mine, place, alone, points(k), error)
         end if
         if (allocated(error)) return
         points(k)%x = on_chain(contours(points(k)%chain)%chain, points(k)%place)
       end associate
     end do
   end subroutine find_points
+
+  !> Groups whose elements a contour goes along; that of its card when it has none yet.
+  pure function bodies_at(scene, contour, number) result(on)
+    type(scene_t), intent(in) :: scene
+    type(contour_t), intent(in) :: contour
+    integer, intent(in) :: number              !! among the contours
+    logical :: on(size(scene%groups))
+    integer :: g, last
+
+    on = .false.
+    if (size(contour%loop%sides, 2) == 0) then
+      on(scene%remesher%contours(number)%group) = .true.
+      return
+    end if
+    last = 0
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      associate (n => size(scene%groups(g)%connectivity, 2))
+        on(g) = any(contour%loop%element > last .and. contour%loop%element <= last + n)
+        last = last + n
+      end associate
+    end do
+  end function bodies_at
 
   !> Where a place that rides on a die is now. A line keeps its direction: it goes with the pilot, and does not turn with it.
   pure function carried(mark, start, now) result(place)
@@ -79,10 +111,11 @@ contains
   end function carried
 
   !> The matter of the contour that was nearest to a place at the start.
-  pure subroutine find_matter(origin, x, contours, start, point)
+  pure subroutine find_matter(origin, x, contours, mine, start, point)
     real(wp), intent(in) :: origin(:, :)   !! where the matter of each node was (2, nnode) [length]
     real(wp), intent(in) :: x(:, :)
     type(contour_t), intent(in) :: contours(:)
+    logical, intent(in) :: mine(:)           !! contours that count
     real(wp), intent(in) :: start(2)
     type(zone_point_t), intent(inout) :: point
     type(chain_t) :: before
@@ -93,6 +126,7 @@ contains
 
     least = huge(least)
     do c = 1, size(contours)
+      if (.not. mine(c)) cycle
       ! contours of bodies without a mesh are what they were
       first = size(contours(c)%loop%sides, 2) == 0
       before = contours(c)%chain
@@ -131,8 +165,9 @@ contains
   end function matter_inside
 
   !> The corner, beginning or end of contact nearest to a place.
-  pure subroutine find_joint(contours, target, alone, point, error)
+  pure subroutine find_joint(contours, mine, target, alone, point, error)
     type(contour_t), intent(in) :: contours(:)
+    logical, intent(in) :: mine(:)           !! contours that count
     real(wp), intent(in) :: target(2)
     logical, intent(in) :: alone             !! one zone has the point
     type(zone_point_t), intent(inout) :: point
@@ -143,6 +178,7 @@ contains
 
     least = huge(least)
     do c = 1, size(contours)
+      if (.not. mine(c)) cycle
       associate (chain => contours(c)%chain)
         do k = 1, size(chain%stretches)
           if (.not. is_joint(chain, k, alone)) cycle
@@ -200,8 +236,9 @@ contains
   end function nearest_joint
 
   !> Where contours cross the line on which a coordinate has a value: of all places the one outermost to one hand.
-  pure subroutine find_crossing(contours, axis, value, pick, point, error)
+  pure subroutine find_crossing(contours, mine, axis, value, pick, point, error)
     type(contour_t), intent(in) :: contours(:)
+    logical, intent(in) :: mine(:)           !! contours that count
     integer, intent(in) :: axis                !! 1: x, 2: y
     real(wp), intent(in) :: value              !! [length]
     integer, intent(in) :: pick                !! 1: largest other coordinate, -1: least
@@ -212,6 +249,7 @@ contains
 
     best = -huge(best)
     do c = 1, size(contours)
+      if (.not. mine(c)) cycle
       slack = same*size_of_chain(contours(c)%chain)
       do k = 1, size(contours(c)%chain%stretches)
         call cross_stretch(c, contours(c)%chain, k, axis, value, slack, pick, best, point)

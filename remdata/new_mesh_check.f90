@@ -11,7 +11,7 @@ module new_mesh_check
   use zone_mesh, only: new_mesh_t
   implicit none
   private
-  public :: mesh_check_t, check_new_mesh
+  public :: mesh_check_t, check_new_mesh, check_shape
 
   type :: mesh_check_t
     !> Worst of all elements.
@@ -33,16 +33,9 @@ contains
     type(new_mesh_t), intent(in) :: mesh
     type(mesh_check_t), intent(out) :: check
     type(error_t), allocatable, intent(out) :: error
-    real(wp), allocatable :: measures(:, :)
     real(wp) :: x(2, 3)
-    integer :: worst, k, i
+    integer :: k, i
 
-    allocate (measures(ncriteria, size(mesh%connectivity, 2)))
-    call mesh_shape(mesh%coordinates, mesh%connectivity, measures)
-    check%scaled_jacobian = minval(measures(scaled_jacobian, :))
-    check%least_angle = minval(measures(least_angle, :))
-    check%largest_angle = maxval(measures(largest_angle, :))
-    check%middle_share = maxval(measures(middle_share, :))
     do k = 1, size(mesh%sides)
       x = mesh%coordinates(:, mesh%sides(k)%nodes)
       do i = 1, 3
@@ -52,15 +45,32 @@ contains
         end associate
       end do
     end do
+    call check_shape(mesh, check, error)
+    if (.not. allocated(error) .and. check%off_contour > on_contour) &
+      call fail(error, exit_no_convergence, 'remdata: nodes lie off the contour by '//to_text(check%off_contour, 3) &
+                //' of their sides')
+  end subroutine check_new_mesh
+
+  !> Shape of the elements alone.
+  subroutine check_shape(mesh, check, error)
+    type(new_mesh_t), intent(in) :: mesh
+    type(mesh_check_t), intent(inout) :: check
+    type(error_t), allocatable, intent(out) :: error
+    real(wp), allocatable :: measures(:, :)
+    integer :: worst
+
+    allocate (measures(ncriteria, size(mesh%connectivity, 2)))
+    call mesh_shape(mesh%coordinates, mesh%connectivity, measures)
+    check%scaled_jacobian = minval(measures(scaled_jacobian, :))
+    check%least_angle = minval(measures(least_angle, :))
+    check%largest_angle = maxval(measures(largest_angle, :))
+    check%middle_share = maxval(measures(middle_share, :))
     if (check%scaled_jacobian < least_scaled_jacobian) then
       worst = minloc(measures(scaled_jacobian, :), 1)
       call refuse('scaled Jacobian '//to_text(check%scaled_jacobian, 3)//', at least '//to_text(least_scaled_jacobian), worst)
     else if (check%middle_share > largest_middle_share) then
       worst = maxloc(measures(middle_share, :), 1)
       call refuse('a middle node outside the middle third of its side', worst)
-    else if (check%off_contour > on_contour) then
-      call fail(error, exit_no_convergence, 'remdata: nodes lie off the contour by '//to_text(check%off_contour, 3) &
-                //' of their sides')
     end if
 
   contains
@@ -76,6 +86,6 @@ contains
                 'remesh earlier, or give zones that fit the shape better')
     end subroutine refuse
 
-  end subroutine check_new_mesh
+  end subroutine check_shape
 
 end module new_mesh_check

@@ -1,7 +1,9 @@
-!> The scene on the new mesh: groups, sets of sides and elements on sides as the deck has them.
+!> The scene on the new mesh: groups, sets of sides, elements on sides and dies made of sides as the deck has them.
 module new_scene
+  use cards_side_dies, only: chain_of_sides
   use contour_chain, only: arc_at, chain_length, chain_t, place_at_arc, place_t
-  use errors, only: error_t, exit_input, fail
+  use dies, only: is_deformable, place_on_nodes
+  use errors, only: error_t, exit_input, exit_no_convergence, fail
   use kinds, only: wp
   use mesh, only: side_set_t
   use part_contour, only: contour_t
@@ -40,10 +42,11 @@ contains
           n = count(mine)
           group%connectivity = reshape(pack(mesh%connectivity, spread(mine, 1, 8)), [8, n])
         else if (size(group%connectivity, 1) == 3) then
-          call gather_sides(old, g, new%mesh%sides, group%connectivity)
+          call gather_sides(old%mesh%sides, old%groups(g)%connectivity(2, :), new%mesh%sides, group%connectivity)
         end if
       end associate
     end do
+    call remake_dies(old, new, error)
     ! loads on the volume of a body have its elements
     do g = 1, size(old%groups)
       if (is_solid(old%groups(g)) .or. size(old%groups(g)%connectivity, 1) == 3) cycle
@@ -180,30 +183,56 @@ contains
     end associate
   end function middle_place
 
-  !> Elements on sides: those of all sets that the old group is made of, each side once.
-  pure subroutine gather_sides(old, g, sets, connectivity)
+  !> Dies made of sides of bodies, on the new ones.
+  subroutine remake_dies(old, new, error)
     type(scene_t), intent(in) :: old
-    integer, intent(in) :: g
-    type(side_set_t), intent(in) :: sets(:)
-    integer, allocatable, intent(out) :: connectivity(:, :)
+    type(scene_t), intent(inout) :: new
+    type(error_t), allocatable, intent(inout) :: error
+    integer, allocatable :: sides(:, :)
+    integer :: k
+
+    do k = 1, size(new%dies)
+      associate (die => new%dies(k))
+        if (.not. is_deformable(die)) cycle
+        ! a scene without a mesh has no sides: its deck finds them on the first one
+        if (size(die%nodes, 2) == 0) cycle
+        call gather_sides(old%mesh%sides, old%dies(k)%nodes(2, :), new%mesh%sides, sides)
+        call chain_of_sides(sides, die%nodes)
+        if (size(die%nodes, 2) == 0 .or. size(die%nodes, 2) < size(sides, 2)) then
+          call fail(error, exit_no_convergence, 'remdata: the sides of DIE '//die%name//' are no chain on the new mesh')
+          return
+        end if
+        if (allocated(die%pieces)) deallocate (die%pieces)
+        allocate (die%pieces(2, 3, size(die%nodes, 2)))
+        call place_on_nodes(new%mesh%coordinates, die)
+      end associate
+    end do
+  end subroutine remake_dies
+
+  !> Sides that stand for old ones: those of all sets that the old ones are made of, each side once.
+  pure subroutine gather_sides(old, middles, sets, sides)
+    type(side_set_t), intent(in) :: old(:)            !! sets of the old mesh
+    integer, intent(in) :: middles(:)                 !! middle nodes of the old sides
+    type(side_set_t), intent(in) :: sets(:)           !! the same of the new one
+    integer, allocatable, intent(out) :: sides(:, :)  !! (3, n)
     integer :: k, i, n
     logical :: part
 
     n = 0
-    allocate (connectivity(3, sum([(size(sets(k)%nodes, 2), k=1, size(sets))])))
+    allocate (sides(3, sum([(size(sets(k)%nodes, 2), k=1, size(sets))])))
     do k = 1, size(sets)
-      part = size(old%mesh%sides(k)%nodes, 2) > 0
-      do i = 1, size(old%mesh%sides(k)%nodes, 2)
-        part = part .and. any(old%groups(g)%connectivity(2, :) == old%mesh%sides(k)%nodes(2, i))
+      part = size(old(k)%nodes, 2) > 0
+      do i = 1, size(old(k)%nodes, 2)
+        part = part .and. any(middles == old(k)%nodes(2, i))
       end do
       if (.not. part) cycle
       do i = 1, size(sets(k)%nodes, 2)
-        if (any(connectivity(2, :n) == sets(k)%nodes(2, i))) cycle
+        if (any(sides(2, :n) == sets(k)%nodes(2, i))) cycle
         n = n + 1
-        connectivity(:, n) = sets(k)%nodes(:, i)
+        sides(:, n) = sets(k)%nodes(:, i)
       end do
     end do
-    connectivity = connectivity(:, :n)
+    sides = sides(:, :n)
   end subroutine gather_sides
 
 end module new_scene

@@ -8,7 +8,7 @@ module part_contour
   use contact_ends, only: contact_end_t
   use contact_gaps, only: close_gaps, mark_pockets
   use contact_knots, only: sections_of_run, section_t
-  use contact_runs, only: find_runs, run_t
+  use contact_runs, only: find_runs, run_t, spot_t
   use contour_assembly, only: assemble_chain, contact_t
   use contour_chain, only: chain_t, closest_place, joint_point, kind_entry, kind_exit, largest_gap, place_t, point_on, size_of_chain
   use contour_laps, only: find_laps, lap_t
@@ -16,6 +16,7 @@ module part_contour
   use dies, only: present_die
   use errors, only: error_t, exit_bug, exit_no_convergence, fail
   use kinds, only: pi, wp
+  use meeting_places, only: add_meeting_places
   use scene, only: axisymmetric, is_solid, scene_t
   use side_tags, only: find_tags, held_nodes, side_tags_t
   use solution, only: solution_t
@@ -100,6 +101,7 @@ contains
     integer, allocatable :: connectivity(:, :)
     real(wp) :: x(2, size(scene%mesh%coordinates, 2))
     logical :: closed(size(scene%groups)), held(size(x, 2))
+    type(spot_t), allocatable :: places(:)
     integer :: status, node, k, i
 
     x = scene%mesh%coordinates + solution%displacement
@@ -117,7 +119,13 @@ contains
       contours(k)%loop = loops(k)
       call find_tags(scene, loops(k), x, contours(k)%tags)
       call place_contacts(scene, solution, x, ends, closed, options, contours(k), report%backward_runs)
-      call correct(scene, x, held, options, contours(k))
+    end do
+    do k = 1, size(loops)
+      places = [spot_t ::]
+      do i = 1, size(loops)
+        call add_meeting_places(contours(i)%contacts, scene%dies, loops(k), places)
+      end do
+      call correct(scene, x, held, options, places, contours(k))
       call list_limits(k, contours(k), report%limits)
       report%pockets = report%pockets + count([(contours(k)%contacts(i)%run%pocket, i=1, size(contours(k)%contacts))])
       if (largest_gap(contours(k)%chain) > closed_within*size_of_chain(contours(k)%chain)) &
@@ -127,7 +135,7 @@ contains
     report%largest_shift = maxval([0.0_wp, abs(contours%shift)])
     report%largest_move = maxval([0.0_wp, contours%largest_move])
     report%volume_error = maxval([0.0_wp, abs(contours%volume_after - contours%volume_before)/abs(contours%volume_before)])
-    call refuse_laps(contours, report%laps, error)
+    call refuse_laps(scene, contours, report%laps, error)
   end subroutine build_contours
 
   !> Nodes that loops pass more than once: where two of them touch they must not come apart.
@@ -224,11 +232,12 @@ contains
   end subroutine place_contacts
 
   !> The chain, and the shift of the free sides that keeps the volume.
-  pure subroutine correct(scene, x, held, options, contour)
+  pure subroutine correct(scene, x, held, options, places, contour)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: x(:, :)
     logical, intent(in) :: held(:)   !! nodes that stay where they are
     type(contour_options_t), intent(in) :: options
+    type(spot_t), intent(in) :: places(:)   !! where contact with other bodies begins or ends
     type(contour_t), intent(inout) :: contour
     real(wp) :: moved(2, size(x, 2))
     logical :: may_move(size(contour%loop%sides, 2)), round
@@ -237,7 +246,7 @@ contains
 
     round = scene%plane_state == axisymmetric
     contour%volume_before = volume_of_loop(contour%loop, x, round)
-    call assemble_chain(contour%loop, contour%tags, x, options%corner_turn, contour%contacts, contour%chain)
+    call assemble_chain(contour%loop, contour%tags, x, options%corner_turn, places, contour%contacts, contour%chain)
     contour%volume_after = volume_inside(contour%chain, round)
     if (size(contour%contacts) == 0) return
     moved = x
@@ -251,7 +260,7 @@ contains
     end do
     call shift_sides(contour%loop, may_move, held, round, contour%volume_before - contour%volume_after, moved, &
                      contour%shift, contour%restored)
-    call assemble_chain(contour%loop, contour%tags, moved, options%corner_turn, contour%contacts, contour%chain)
+    call assemble_chain(contour%loop, contour%tags, moved, options%corner_turn, places, contour%contacts, contour%chain)
     contour%volume_after = volume_inside(contour%chain, round)
     do k = 1, size(may_move)
       do i = 1, 2
@@ -313,22 +322,28 @@ contains
   end subroutine list_limits
 
   !> A contour that crosses itself or another one cannot be meshed.
-  subroutine refuse_laps(contours, laps, error)
+  subroutine refuse_laps(scene, contours, laps, error)
+    type(scene_t), intent(in) :: scene
     type(contour_t), intent(in) :: contours(:)
     type(lap_t), allocatable, intent(inout) :: laps(:)
     type(error_t), allocatable, intent(out) :: error
     type(chain_t) :: chains(size(contours))
     integer, allocatable :: on_die(:, :)
-    integer :: k, i
+    logical, allocatable :: faces(:, :, :)
+    integer :: k, i, g
 
     allocate (on_die(maxval([1, (size(contours(k)%loop%sides, 2), k=1, size(contours))]), size(contours)), source=0)
+    allocate (faces(size(scene%dies), size(on_die, 1), size(contours)), source=.false.)
     do k = 1, size(contours)
       chains(k) = contours(k)%chain
       do i = 1, size(contours(k)%loop%sides, 2)
         on_die(i, k) = findloc(contours(k)%tags%on_die(:, i), .true., 1)
+        do g = 1, size(scene%groups)
+          if (scene%groups(g)%die > 0 .and. contours(k)%tags%on_group(g, i)) faces(scene%groups(g)%die, i, k) = .true.
+        end do
       end do
     end do
-    call find_laps(chains, on_die, laps)
+    call find_laps(chains, on_die, faces, laps)
     if (size(laps) == 0) return
     call fail(error, exit_no_convergence, 'the contour has '//to_text(size(laps))//' lap'//trim(merge('s', ' ', size(laps) > 1)) &
               //', the first at x = '//to_text(laps(1)%point(1))//', y = '//to_text(laps(1)%point(2)), &

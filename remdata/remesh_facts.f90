@@ -26,6 +26,8 @@ module remesh_facts
     type(transfer_report_t) :: transfer
     !> Integrals of contact along its runs.
     type(balance_t), allocatable :: contacts(:)
+    !> Largest way of a node to fit a die made of sides, over its side.
+    real(wp) :: fit = 0.0_wp
     !> Sizes are so many times the wanted ones, for the limit on the number of elements.
     real(wp) :: coarser = 1.0_wp
     !> The errors expected of the new mesh, over those its sizes were wanted for.

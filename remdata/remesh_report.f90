@@ -36,6 +36,8 @@ contains
     end do
     write (*, '(a)') '  by '//facts%mesher//', shape: scaled Jacobian from '//to_text(facts%mesh%scaled_jacobian, 3)//', angles ' &
       //to_text(facts%mesh%least_angle, 3)//' to '//to_text(facts%mesh%largest_angle, 4)//' degrees'
+    if (facts%fit > 0) write (*, '(a)') '  sides of bodies in contact fitted to each other: nodes moved by ' &
+      //to_text(facts%fit, 3)//' of a side at most'
     write (*, '(a)') '  errors expected: '//to_text(facts%expected%mean, 3)//' times the limit in the mean, ' &
       //to_text(facts%expected%worst, 3)//' at worst; '//to_text(facts%expected%elements, 3)//' times the elements it takes'
     if (facts%coarser > 1) write (*, '(a)') '  sizes '//to_text(facts%coarser, 3) &
@@ -107,6 +109,7 @@ contains
     call json%add('largest_angle', facts%mesh%largest_angle)
     call json%add('off_contour', facts%mesh%off_contour)
     call json%add('off_interface', facts%materials%off_interface)
+    call json%add('pair_fit', facts%fit)
     call json%add('coarser', facts%coarser)
     call json%add('expected_error_mean', facts%expected%mean)
     call json%add('expected_error_worst', facts%expected%worst)

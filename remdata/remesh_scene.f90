@@ -11,7 +11,7 @@ module remesh_scene
   use contour_chain, only: chain_t
   use contour_needs, only: geometry_wish_t, needs_of_chain, needs_of_die
   use dies, only: is_deformable
-  use errors, only: error_t, exit_input, fail
+  use errors, only: error_t
   use first_contours, only: contours_of_cards
   use exchange, only: open_checkpoint, read_bare_scene, read_contact_ends, read_deck_of_checkpoint, read_state, write_checkpoint
   use gmsh_call, only: find_gmsh, gmsh_t
@@ -21,7 +21,8 @@ module remesh_scene
   use material_volumes, only: compare_materials
   use mesh_prediction, only: predict
   use mesh_without_zones, only: mesh_freely
-  use new_mesh_check, only: check_new_mesh
+  use new_mesh_check, only: check_new_mesh, check_shape
+  use pair_fit, only: find_feet, fit_pairs
   use new_scene, only: set_up_new_scene
   use part_contour, only: build_contours, contour_options_t, contour_t
   use remesh_facts, only: begin_task, end_task, remesh_facts_t
@@ -70,7 +71,6 @@ contains
     facts%mesher = 'zones'
     call begin_task(facts, 'checkpoint', 'read')
     call read_all(options%checkpoint, deck_path, deck_text, old, before, ends, error)
-    if (.not. allocated(error)) call refuse_what_is_not_offered(old, error)
     if (allocated(error)) return
     first = lacks_mesh(old)
     call take_options(options, old)
@@ -102,6 +102,9 @@ contains
     end if
     if (allocated(error)) return
     call set_up_new_scene(old, contours, plan, mesh, new, error)
+    if (allocated(error)) return
+    call fit_pairs(contours, mesh, new, facts%fit)
+    if (facts%fit > 0) call check_shape(mesh, facts%mesh, error)
     if (allocated(error)) return
     call start_solution(new, after)
     if (first) then
@@ -170,18 +173,8 @@ contains
     if (allocated(error)) return
     call begin_task(facts, 'contact', 'contact')
     call carry_contacts(old, before, contours, mesh, new, after, facts%contacts)
+    call find_feet(new, after)
   end subroutine carry_state
-
-  subroutine refuse_what_is_not_offered(scene, error)
-    type(scene_t), intent(in) :: scene
-    type(error_t), allocatable, intent(inout) :: error
-    integer :: k
-
-    do k = 1, size(scene%dies)
-      if (is_deformable(scene%dies(k))) call fail(error, exit_input, 'remdata: DIE '//scene%dies(k)%name &
-                                        //' is made of sides: scenes with bodies that touch one another cannot be remeshed yet')
-    end do
-  end subroutine refuse_what_is_not_offered
 
   !> What the command line says in place of the deck.
   subroutine take_options(options, scene)

@@ -52,12 +52,13 @@ contains
 
   !> Commit an equilibrium restored at fixed time on a new mesh: no work is booked, no step counted, and the motion of the step
   !> before stays the one to go on with.
-  subroutine accept_balance(scene, equations, outcome, solution, totals)
+  subroutine accept_balance(scene, equations, outcome, solution, totals, error)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(outcome_t), intent(in) :: outcome
     type(solution_t), intent(inout) :: solution
     type(totals_t), intent(out) :: totals
+    type(error_t), allocatable, intent(out) :: error
     real(wp) :: work, increment(2, size(solution%last_increment, 2)), pilots(3, size(solution%pilots, 2)), section(3)
 
     work = solution%external_work
@@ -72,6 +73,7 @@ contains
     solution%last_pilot_increment = pilots
     solution%last_section_increment = section
     solution%iterations = solution%iterations + outcome%iterations
+    call book_deformable_dies(scene, equations, solution, error)
     call measure_scene(scene, equations, solution, totals)
     call commit(scene, equations, solution)
   end subroutine accept_balance

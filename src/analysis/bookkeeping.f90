@@ -14,7 +14,7 @@ module bookkeeping
   use vectors, only: length_of
   implicit none
   private
-  public :: book_deformable_dies, book_reactions, book_spurious_mode, book_work, measure_scene, sample_contacts
+  public :: book_deformable_dies, book_reactions, book_spurious_mode, book_work, measure_scene, pressed_on, sample_contacts
 
   !> Action and reaction of two bodies may differ by this share of the forces at their nodes: round-off of a sum.
   real(wp), parameter :: reaction_slack = 1.0e-10_wp
@@ -127,6 +127,28 @@ contains
       end if
     end do
   end subroutine book_deformable_dies
+
+  !> Sum of the forces of all sides on a deformable die, each by its size: what presses on a die whose force is none, as on a ring
+  !> all around. Zero for rigid dies.
+  pure function pressed_on(scene, equations, die) result(total)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: die
+    real(wp) :: total
+    integer :: g, e, m, n
+
+    total = 0
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%pairs == 0 .or. scene%groups(g)%die /= die) cycle
+      n = size(equations%dofs%groups(g)%nodes, 1)
+      do e = 1, size(equations%dofs%groups(g)%nodes, 2)
+        m = equations%pattern%force_start(g) + (e - 1)*size(equations%dofs%groups(g)%dof, 1)
+        associate (force => equations%buffers%force, side => size(scene%groups(g)%connectivity, 1))
+          total = total + length_of([sum(force(m + 1:m + side)), sum(force(m + n + 1:m + n + side))])
+        end associate
+      end do
+    end do
+  end function pressed_on
 
   !> Sums over all groups at the present displacement, from the trial state (equal to the committed one at rest).
   subroutine measure_scene(scene, equations, solution, totals)

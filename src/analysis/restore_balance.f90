@@ -9,6 +9,7 @@
 !> the yield surface the first step of the march returns, while the dies move on.
 module restore_balance
   use accept_step, only: accept_balance
+  use bookkeeping, only: pressed_on
   use dies, only: is_deformable
   use elem_api, only: block_done, report_t, totals_t
   use equations, only: equations_t, evaluate, external_forces, solve_correction
@@ -45,6 +46,8 @@ module restore_balance
     type(totals_t) :: before, after
     !> Force on each pilot before (as the old mesh had it), by the pressures that were carried, and after (3, ndie).
     real(wp), allocatable :: pilot_before(:, :), pilot_carried(:, :), pilot_after(:, :)
+    !> What presses on each die made of sides, sizes added up (ndie).
+    real(wp), allocatable :: pressed(:)
     !> Change of the depth in a die, in the mean of its pressures, over the penetration allowed and a thousandth of the side.
     real(wp) :: depth_change = 0.0_wp
     !> Why Newton's method gave up; not allocated where it did not.
@@ -71,6 +74,7 @@ contains
     real(wp), dimension(equations%dofs%ndof) :: external, rest
     real(wp) :: left, part, started, work
     type(report_t) :: report
+    integer :: k
 
     started = wall_seconds()
     allocate (balance%pilot_before, source=solution%pilot_applied)
@@ -94,7 +98,8 @@ contains
       if (allocated(outcome%error)) return
       balance%iterations = balance%iterations + outcome%iterations
       if (outcome%converged) then
-        call accept_balance(scene, equations, outcome, solution, balance%after)
+        call accept_balance(scene, equations, outcome, solution, balance%after, outcome%error)
+        if (allocated(outcome%error)) return
         balance%parts = balance%parts + 1
         left = left - part
         part = min(2*part, left)
@@ -108,6 +113,10 @@ contains
     if (allocated(outcome%reason)) balance%reason = outcome%reason
     balance%motion = maxval(abs(solution%displacement))/equations%size
     allocate (balance%pilot_after, source=solution%pilot_applied)
+    allocate (balance%pressed(size(scene%dies)))
+    do k = 1, size(balance%pressed)
+      balance%pressed(k) = pressed_on(scene, equations, k)
+    end do
     if (balance%restored) solution%unbalanced = .false.
     balance%wall = wall_seconds() - started
   end subroutine restore_equilibrium

@@ -83,7 +83,7 @@ contains
       given(k) = .true.
       select case (words(k)%s)
       case ('RESIDUAL')
-        call positive('the largest first residual over the forces at work', accept%first_residual)
+        call positive('the largest first residual, in the norm of energy', accept%first_residual)
       case ('ITERATIONS')
         call cursor%integer('the largest number of iterations to equilibrium', accept%iterations, lower=1)
       case ('FORCE')

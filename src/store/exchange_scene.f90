@@ -143,6 +143,7 @@ contains
       call file%read(place//'/npoint', group%npoint)
       call file%read(place//'/connectivity', group%connectivity)
       if (file%has(place//'/die_number')) call file%read(place//'/die_number', group%die)
+      if (file%has(place//'/pairs')) group%pairs = maxval([0, scene%groups%pairs]) + 1
       allocate (group%variables(0))
       if (file%has(place//'/material_number')) then
         call file%read(place//'/material_number', group%material)

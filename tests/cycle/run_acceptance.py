@@ -109,12 +109,12 @@ def no_strength(file):
 # The fault, the stage to blame, and what the row must tell.
 FAULTS = {
     "stress": (half_the_stress, "transfer", "the force of a die changes"),
-    "pressure": (no_pressure, "contact", "the first residual is"),
+    "pressure": (no_pressure, "contact", "the pressures carried over miss"),
     "die away": (die_off(0.1), "contour", "sides lie"),
     "corner": (flat_corner, "mesh", "scaled Jacobian"),
     "nan": (not_a_number, "checkpoint", "not a finite number"),
     "steps": (tiny_steps, "transfer", "its steps fall to"),
-    "strength": (no_strength, "transfer", "turned inside out"),
+    "strength": (no_strength, "transfer", "its steps fall to"),
     "none": (lambda file: None, "", ""),
 }
 

@@ -45,7 +45,7 @@ def begin(deck, out, **environment):
 
 def read_json(path):
     with open(path, encoding="utf-8") as file:
-        return {key: value for key, value in json.load(file).items() if key != "wall_s"}
+        return {key: value for key, value in json.load(file).items() if key not in ("wall_s", "seconds")}
 
 
 def differences(first, second):
