@@ -2,19 +2,22 @@
 !>
 !> No quadrilateral has a corner of 180 degrees. A zone whose corner D has become flat is a triangle ABC, and D a point of its long
 !> side BC. Around a point M inside, with new points on AB and CA, it becomes (A, AB, M, CA), (B, D, M, AB) and (C, CA, M, D).
-!> Zones beyond AB and CA are divided in two, from side to opposite side, as far as the contour.
+!> Zones beyond AB and CA are divided in two, from side to opposite side, as far as the contour. Sets of sides between blocks go
+!> with the parts of their sides; those on the contour go with it.
 module flat_corners
   use contour_chain, only: arc_at, chain_length, chain_t, joint_after, place_at_arc, place_t, point_on, turn_at
   use kinds, only: pi, wp
   use part_contour, only: contour_t
   use vectors, only: length_of
-  use zones, only: as_found, follows_contour, plan_t, zone_point_t, zone_t
+  use zones, only: as_found, plan_t, zone_point_t, zone_t
   implicit none
   private
   public :: divide_flat_zones
 
   !> A corner where the contour turns by less is flat: 35 degrees, a scaled Jacobian of 0.57.
   real(wp), parameter :: flat_turn = 35*pi/180
+  !> Zones that come of a division are divided again only where their elements would be refused: 12 degrees, 0.2.
+  real(wp), parameter :: useless_turn = 12*pi/180
   !> Places along the contour of which the one farthest out is taken.
   integer, parameter :: looks = 200
 
@@ -24,27 +27,29 @@ contains
   pure subroutine divide_flat_zones(contours, plan)
     type(contour_t), intent(in) :: contours(:)
     type(plan_t), intent(inout) :: plan
-    integer :: z, k
+    integer :: z, k, n
 
-    do z = 1, size(plan%zones)
-      k = flat_corner(contours, plan, z)
+    n = size(plan%zones)
+    z = 1
+    do while (z <= size(plan%zones))
+      k = flat_corner(contours, plan, z, merge(flat_turn, useless_turn, z <= n))
       if (k > 0) call split_in_three(contours, z, k, plan)
+      z = z + 1
     end do
   end subroutine divide_flat_zones
 
   !> The flattest corner of a zone that no other zone has, with the contour on both hands; 0 when none is flat.
-  pure function flat_corner(contours, plan, z) result(corner)
+  pure function flat_corner(contours, plan, z, flat) result(corner)
     type(contour_t), intent(in) :: contours(:)
     type(plan_t), intent(in) :: plan
     integer, intent(in) :: z
+    real(wp), intent(in) :: flat   !! turn of the contour below which a corner is [radian]
     integer :: corner
     real(wp) :: turn, least
     integer :: corners(0:5), k
 
     corner = 0
-    ! sets of sides between blocks are not to be cut
-    if (any(plan%sets(:, z) > 0) .and. any(plan%zones(z)%form /= follows_contour)) return
-    least = flat_turn
+    least = flat
     corners = plan%zones(z)%corners([4, 1, 2, 3, 4, 1])
     do k = 1, 4
       if (zone_beyond(plan, corners(k - 1:k)) > 0 .or. zone_beyond(plan, corners(k:k + 1)) > 0) cycle
@@ -129,9 +134,11 @@ contains
     integer, intent(in) :: z, flat
     type(plan_t), intent(inout) :: plan
     real(wp) :: half, ways(2)
-    integer :: corners(4), ab, ca, m
+    integer :: corners(4), sets(4), ab, ca, m
 
     corners = plan%zones(z)%corners(modulo(flat + [1, 2, 3, 4], 4) + 1)
+    sets = inner_sets(plan, z)
+    sets = sets(modulo(flat + [1, 2, 3, 4], 4) + 1)
     associate (a => corners(1), b => corners(2), d => corners(3), c => corners(4))
       if (plan%points(d)%by_shape) call go_farthest(contours, plan%points(b), plan%points(c), plan%points(d))
       ways = [way_of(contours, plan, [a, b]), way_of(contours, plan, [c, a])]
@@ -141,11 +148,10 @@ contains
       plan%points = [plan%points, zone_point_t(x=(2*(placed(ab) + placed(ca) - placed(a)) + placed(d))/3)]
       m = size(plan%points)
       plan%zones(z)%form = as_found
-      call add_zone(z, [b, d, m, ab], plan)
-      call add_zone(z, [c, ca, m, d], plan)
+      call add_zone(z, [b, d, m, ab], [0, 0, 0, sets(1)], plan)
+      call add_zone(z, [c, ca, m, d], [sets(4), 0, 0, 0], plan)
       plan%zones(z)%corners = [a, ab, m, ca]
-      ! the sets of sides of such a zone are on the contour, and go with its sides
-      plan%sets(:, z) = 0
+      plan%sets(:, z) = [sets(1), 0, 0, sets(4)]
     end associate
 
   contains
@@ -166,7 +172,7 @@ contains
     real(wp), intent(in) :: share
     type(plan_t), intent(inout) :: plan
     integer, intent(out) :: point
-    integer :: ends(2), far(2), z, here, next
+    integer :: ends(2), far(2), sets(4), z, here, next, first
 
     ends = side
     call add_point(contours, ends, share, plan, point)
@@ -175,10 +181,16 @@ contains
       z = zone_beyond(plan, ends)
       if (z == 0) return
       far = opposite(plan%zones(z), ends)
+      first = findloc(plan%zones(z)%corners, ends(2), 1)
+      sets = inner_sets(plan, z)
+      ! the zone before it is divided already, so that they share no side
+      sets(first) = plan%sets(first, z)
+      sets = sets(modulo(first + [0, 1, 2, 3] - 1, 4) + 1)
       call add_point(contours, far, share, plan, next)
       plan%zones(z)%form = as_found
-      call add_zone(z, [here, ends(1), far(1), next], plan)
+      call add_zone(z, [here, ends(1), far(1), next], [sets(1:3), 0], plan)
       plan%zones(z)%corners = [ends(2), here, next, far(2)]
+      plan%sets(:, z) = [sets(1), 0, sets(3), sets(4)]
       ends = far
       here = next
     end do
@@ -207,9 +219,22 @@ contains
     point = size(plan%points)
   end subroutine add_point
 
-  !> A zone like another one, between other points.
-  pure subroutine add_zone(like, corners, plan)
-    integer, intent(in) :: like, corners(4)
+  !> Sets of those sides of a zone that another zone shares, 0 for the others.
+  pure function inner_sets(plan, z) result(sets)
+    type(plan_t), intent(in) :: plan
+    integer, intent(in) :: z
+    integer :: sets(4)
+    integer :: k
+
+    sets = plan%sets(:, z)
+    do k = 1, 4
+      if (zone_beyond(plan, plan%zones(z)%corners([k, mod(k, 4) + 1])) == 0) sets(k) = 0
+    end do
+  end function inner_sets
+
+  !> A zone like another one, between other points, with other sets of sides.
+  pure subroutine add_zone(like, corners, sides, plan)
+    integer, intent(in) :: like, corners(4), sides(4)
     type(plan_t), intent(inout) :: plan
     type(zone_t) :: zone
     integer, allocatable :: sets(:, :)
@@ -220,6 +245,7 @@ contains
     plan%group = [plan%group, plan%group(like)]
     allocate (sets(4, size(plan%zones)), source=0)
     sets(:, :size(plan%sets, 2)) = plan%sets
+    sets(:, size(plan%zones)) = sides
     call move_alloc(sets, plan%sets)
   end subroutine add_zone
 

@@ -80,13 +80,15 @@ contains
     type(place_t) :: place
     integer :: k, z
 
+    allocate (sides(3, 0))
     do z = 1, size(plan%zones)
       do k = 1, 4
         if (plan%sets(k, z) /= set .or. plan%zones(z)%form(k) == follows_contour) cycle
-        sides = zone_side(mesh, z, k)
-        return
+        sides = reshape([sides, zone_side(mesh, z, k)], [3, size(sides, 2) + divisions(z, k)])
       end do
     end do
+    sides = in_order(sides)
+    if (size(sides) > 0) return
     do k = 1, size(mesh%sides)
       place = middle_place(contours, mesh%sides(k))
       associate (contour => contours(mesh%sides(k)%chain))
@@ -96,6 +98,25 @@ contains
     sides = all_nodes(from_its_start(pack([(k, k=1, size(mine))], mine)))
 
   contains
+
+    pure function divisions(z, k) result(n)
+      integer, intent(in) :: z, k
+      integer :: n
+
+      n = mesh%division%count(mesh%layout%zone_sides(k, z))
+    end function divisions
+
+    !> Parts of the side of a zone that was divided follow one another: from the node at which none ends.
+    pure function in_order(list) result(ordered)
+      integer, intent(in) :: list(:, :)
+      integer :: ordered(3, size(list, 2)), i, next
+
+      next = findloc([(any(list(3, :) == list(1, i)), i=1, size(list, 2))], .false., 1)
+      do i = 1, size(list, 2)
+        ordered(:, i) = list(:, next)
+        next = findloc(list(1, :), list(3, next), 1)
+      end do
+    end function in_order
 
     !> The list turned so that it begins where the set does, for a set that goes past the beginning of its contour.
     pure function from_its_start(list) result(turned)

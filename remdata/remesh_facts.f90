@@ -1,6 +1,7 @@
 !> What a remesh has made, how far it came, and where its time went: for the report.
 module remesh_facts
   use kinds, only: wp
+  use material_volumes, only: materials_kept_t
   use mesh_prediction, only: prediction_t
   use new_mesh_check, only: mesh_check_t
   use part_contour, only: contour_report_t
@@ -18,6 +19,8 @@ module remesh_facts
     integer :: old_elements = 0, new_elements = 0
     type(contour_report_t) :: contour
     type(mesh_check_t) :: mesh
+    !> Materials that share sides.
+    type(materials_kept_t) :: materials
     !> Who made the mesh.
     character(len=:), allocatable :: mesher
     type(transfer_report_t) :: transfer

@@ -4,6 +4,7 @@ module remesh_report
   use errors, only: error_t
   use json_writer, only: json_t
   use kinds, only: wp
+  use material_volumes, only: materials_kept_t
   use remesh_facts, only: remesh_facts_t
   use run_version, only: version_text
   use text, only: string_t, to_text
@@ -107,12 +108,16 @@ contains
     call json%add('least_angle', facts%mesh%least_angle)
     call json%add('largest_angle', facts%mesh%largest_angle)
     call json%add('off_contour', facts%mesh%off_contour)
+    call json%add('off_interface', facts%materials%off_interface)
     call json%add('pair_fit', facts%fit)
     call json%add('coarser', facts%coarser)
     call json%add('expected_error_mean', facts%expected%mean)
     call json%add('expected_error_worst', facts%expected%worst)
     call json%add('elements_over_wanted', facts%expected%elements)
     call json%end_object()
+    call json%begin_array('materials')
+    if (allocated(facts%materials%volumes)) call add_materials(json, facts%materials)
+    call json%end_array()
     call json%begin_array('transfer')
     if (allocated(facts%transfer%rows)) call add_rows(json, facts%transfer%rows)
     if (allocated(facts%contacts)) call add_rows(json, facts%contacts)
@@ -120,6 +125,21 @@ contains
     call json%end_object()
     call json%write_file(path, error)
   end subroutine write_facts
+
+  !> Volumes of materials that share sides, per unit thickness or per radian.
+  subroutine add_materials(json, kept)
+    type(json_t), intent(inout) :: json
+    type(materials_kept_t), intent(in) :: kept
+    integer :: k
+
+    do k = 1, size(kept%volumes)
+      call json%begin_object()
+      call json%add('name', kept%volumes(k)%name)
+      call json%add('volume_before', kept%volumes(k)%before)
+      call json%add('volume_after', kept%volumes(k)%after)
+      call json%end_object()
+    end do
+  end subroutine add_materials
 
   subroutine add_rows(json, rows)
     type(json_t), intent(inout) :: json

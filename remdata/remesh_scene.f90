@@ -17,6 +17,8 @@ module remesh_scene
   use gmsh_call, only: find_gmsh, gmsh_t
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
+  use material_interfaces, only: interface_t, interfaces_of
+  use material_volumes, only: compare_materials
   use mesh_prediction, only: predict
   use mesh_without_zones, only: mesh_freely
   use new_mesh_check, only: check_new_mesh, check_shape
@@ -58,6 +60,7 @@ contains
     type(solution_t) :: before, after
     type(contact_end_t), allocatable :: ends(:)
     type(contour_t), allocatable :: contours(:)
+    type(interface_t), allocatable :: interfaces(:)
     type(plan_t) :: plan
     type(size_field_t) :: sizes
     type(new_mesh_t) :: mesh
@@ -84,15 +87,16 @@ contains
     end if
     if (allocated(error)) return
     call begin_task(facts, 'mesh', 'sizes')
+    call interfaces_of(old, before, contours, interfaces)
     call wanted_sizes(old, before, contours, first, sizes)
     if (old%remesher%mesher /= by_gmsh) then
       call begin_task(facts, 'mesh', 'zones')
       call plan_zones(old, old%mesh%coordinates + before%displacement, before%pilots, materials_of(old, before), &
-                      contours, plan, error)
+                      contours, interfaces, plan, error)
       call begin_task(facts, 'mesh', 'mesh')
-      if (.not. allocated(error)) call make_mesh(old, contours, plan, sizes, options%finer, mesh, facts, error)
+      if (.not. allocated(error)) call make_mesh(old, before, contours, plan, sizes, options%finer, mesh, facts, error)
     end if
-    if (is_for_gmsh(old%remesher, error)) then
+    if (is_for_gmsh(old%remesher, size(interfaces) > 0, error)) then
       call begin_task(facts, 'mesh', 'gmsh')
       call make_free_mesh(old, before, contours, sizes, options, plan, mesh, facts, error)
     end if
@@ -261,8 +265,9 @@ contains
   end subroutine wanted_sizes
 
   !> Mesh the zones; a mesh of bad shape is smoothed more, then made finer.
-  subroutine make_mesh(scene, contours, plan, sizes, finer, mesh, facts, error)
+  subroutine make_mesh(scene, before, contours, plan, sizes, finer, mesh, facts, error)
     type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: before
     type(contour_t), intent(in) :: contours(:)
     type(plan_t), intent(in) :: plan
     type(size_field_t), intent(in) :: sizes
@@ -283,22 +288,25 @@ contains
       if (allocated(error)) deallocate (error)
       if (attempt == 2) wish%passes = 4*wish%passes
       if (attempt == 3) wish%division%refine = 1.5_wp*wish%division%refine
-      call mesh_zones(chains, plan%points, plan%zones, sizes, wish, mesh, error)
+      call mesh_zones(chains, plan%points, plan%zones, sizes, wish, mesh, error, plan%paths)
       if (allocated(error)) return
       facts%coarser = mesh%division%factor
       facts%expected = predict(mesh, sizes, strain_order)
       call check_new_mesh(contours, mesh, facts%mesh, error)
+      if (.not. allocated(error)) call compare_materials(scene, before, plan, mesh, facts%materials, error)
       if (.not. allocated(error)) return
     end do
   end subroutine make_mesh
 
   !> Is a mesh without zones due: one that is asked for, or one in place of that which the user's zones would not have been?
-  pure function is_for_gmsh(remesher, error) result(yes)
+  pure function is_for_gmsh(remesher, materials_share, error) result(yes)
     type(remesher_options_t), intent(in) :: remesher
+    logical, intent(in) :: materials_share            !! sides, which no mesh without zones keeps
     type(error_t), allocatable, intent(in) :: error   !! of the mesh by zones
     logical :: yes
 
-    yes = remesher%mesher == by_gmsh .or. (allocated(error) .and. remesher%mesher == as_it_comes .and. .not. has_zones(remesher))
+    yes = remesher%mesher == by_gmsh .or. (allocated(error) .and. remesher%mesher == as_it_comes .and. &
+                                           .not. (has_zones(remesher) .or. materials_share))
   end function is_for_gmsh
 
   !> A mesh without zones. Where there is no Gmsh, what was wrong with zones is what the user has to know.

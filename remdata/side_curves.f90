@@ -1,24 +1,26 @@
 !> The sides of zones as curves walked by length, and nodes along them where 1/h is shared out evenly.
 !>
 !> A side along the contour is broken where the contour has a corner, where contact begins or ends, and where another set of sides
-!> begins: these stay ends of elements.
+!> begins: these stay ends of elements. So is one along an interface where that has a corner.
 module side_curves
   use contour_chain, only: arc_at, chain_length, chain_t, joint_after, kind_corner, kind_entry, kind_exit, kind_joint, &
-                           place_at_arc, place_t
+                           place_at_arc, place_t, point_on
   use kinds, only: wp
   use size_field, only: size_at, size_field_t
   use stretches, only: length_between, point_at, straight, stretch_t, tangent_at, xi_at_length
   use vectors, only: length_of
-  use zones, only: arc_along, coordinates_of, exact_point, follows_contour, layout_t, on_chain, runs_curved, side_t, &
-                   zone_point_t, zone_t
+  use zones, only: arc_along, coordinates_of, exact_point, follows_contour, follows_interface, layout_t, on_chain, runs_curved, &
+                   side_t, zone_point_t, zone_t
   implicit none
   private
-  public :: curve_t, snap_to_joints, draw_side, curve_point, measure_density, divide_curve, shares_of
+  public :: curve_t, snap_to_joints, draw_side, curve_point, measure_density, divide_curve, shares_of, has_course
 
   type :: curve_t
     integer :: chain = 0
     !> Arc length on the chain where it begins [length].
     real(wp) :: start = 0.0_wp
+    !> Open chain along an interface, from the start to the end of the curve.
+    type(chain_t) :: path
     !> Straight line or parabola of a side inside.
     type(stretch_t) :: line
     real(wp) :: ends(2, 2) = 0.0_wp        !! [length]
@@ -95,11 +97,57 @@ contains
       call find_breaks(chains(side%chain), field, layout%zones(side%zones(1))%material, curve)
       return
     end if
+    if (side%form == follows_interface) then
+      call draw_path(layout%paths(side%path), field, layout%zones(side%zones(1))%material, curve)
+      return
+    end if
     curve%line = straight(curve%ends(:, 1), curve%ends(:, 2))
     if (side%form == runs_curved) curve%line%points(:, 2) = side%middle
     curve%length = length_between(curve%line, -1.0_wp, 1.0_wp)
     allocate (curve%breaks(0:1), source=[0.0_wp, curve%length])
   end subroutine draw_side
+
+  !> A path as the side walks it, with its corners as breaks.
+  pure subroutine draw_path(path, field, material, curve)
+    type(chain_t), intent(in) :: path
+    type(size_field_t), intent(in) :: field
+    integer, intent(in) :: material
+    type(curve_t), intent(inout) :: curve
+    real(wp) :: start(2)
+
+    curve%path = path
+    start = point_on(path, place_t(1, path%stretches(1)%range(1)))
+    if (length_of(start - curve%ends(:, 1)) > length_of(start - curve%ends(:, 2))) curve%path = turned(path)
+    curve%length = chain_length(curve%path)
+    call find_breaks(curve%path, field, material, curve)
+  end subroutine draw_path
+
+  !> An open chain walked backwards.
+  pure function turned(path) result(back)
+    type(chain_t), intent(in) :: path
+    type(chain_t) :: back
+    integer :: k, n
+
+    n = size(path%stretches)
+    allocate (back%stretches(n), back%kinds(n), back%arc(0:n))
+    do k = 1, n
+      back%stretches(k) = path%stretches(n + 1 - k)
+      back%stretches(k)%points = back%stretches(k)%points(:, [3, 2, 1])
+      back%stretches(k)%range = -back%stretches(k)%range([2, 1])
+      back%stretches(k)%depth = back%stretches(k)%depth([2, 1])
+    end do
+    back%kinds(1) = path%kinds(1)
+    back%kinds(2:) = path%kinds(n:2:-1)
+    back%arc = path%arc(n) - path%arc(n:0:-1)
+  end function turned
+
+  !> Whether the course of a curve is given by a mesh, so that each of its parts gets what it needs.
+  pure elemental function has_course(curve) result(yes)
+    type(curve_t), intent(in) :: curve
+    logical :: yes
+
+    yes = curve%chain > 0 .or. allocated(curve%path%stretches)
+  end function has_course
 
   !> Corners between the ends of the curve, then joints, entries and exits that are not too close to others.
   pure subroutine find_breaks(chain, field, material, curve)
@@ -138,6 +186,7 @@ contains
     real(wp), intent(in) :: s
     real(wp), intent(out) :: x(2)
     type(place_t), intent(out) :: place
+    type(place_t) :: along
 
     if (curve%chain > 0) then
       place = place_at_arc(chains(curve%chain), curve%start + s)
@@ -153,17 +202,21 @@ contains
       x = curve%ends(:, 1)
     else if (.not. s < curve%length) then
       x = curve%ends(:, 2)
+    else if (allocated(curve%path%stretches)) then
+      along = place_at_arc(curve%path, s)
+      x = on_chain(curve%path, along)
     else
       x = exact_point(curve%line, xi_at_length(curve%line, s))
     end if
   end subroutine curve_point
 
   !> Integrate 1/h along the curve by the trapezoidal rule, in steps of half the size that is wanted there.
-  pure subroutine measure_density(chains, field, material, curve)
+  pure subroutine measure_density(chains, field, material, curve, other)
     type(chain_t), intent(in) :: chains(:)
     type(size_field_t), intent(in) :: field
     integer, intent(in) :: material
     type(curve_t), intent(inout) :: curve
+    integer, optional, intent(in) :: other   !! material on the other hand: the smaller size of both counts
     real(wp), allocatable :: at(:), count(:)
     real(wp) :: h, h_next, s, step, part, x(2)
     type(place_t) :: place
@@ -175,7 +228,7 @@ contains
     count(0) = 0
     n = 0
     call curve_point(chains, curve, 0.0_wp, x, place)
-    h = size_at(field, material, x)
+    h = wanted(x)
     do p = 1, ubound(curve%breaks, 1)
       part = curve%breaks(p) - curve%breaks(p - 1)
       do
@@ -184,7 +237,7 @@ contains
         ! no crumb is left before the break
         if (s + 0.5_wp*step > curve%breaks(p)) s = curve%breaks(p)
         call curve_point(chains, curve, s, x, place)
-        h_next = size_at(field, material, x)
+        h_next = wanted(x)
         n = n + 1
         at(n) = s
         count(n) = count(n - 1) + 0.5_wp*(s - at(n - 1))*(1/h + 1/h_next)
@@ -195,6 +248,17 @@ contains
     end do
     allocate (curve%at(0:n), source=at(0:n))
     allocate (curve%count(0:n), source=count(0:n))
+
+  contains
+
+    pure function wanted(point) result(size)
+      real(wp), intent(in) :: point(2)
+      real(wp) :: size
+
+      size = size_at(field, material, point)
+      if (present(other)) size = min(size, size_at(field, other, point))
+    end function wanted
+
   end subroutine measure_density
 
   !> Elements of each part of n along the curve: by need, at least one.

@@ -1,14 +1,14 @@
 !> How many elements each side gets.
 !>
-!> Sides opposite in a zone have one number, hence all sides of a class, from zone to zone. A side along the contour gets what it
-!> needs, the integral of 1/h, in each part between its breaks: there the geometry has its say, and contact. The need inside a
-!> zone is measured along its two sides and seven lines between them: the mean of their mean and of their largest, so that a
+!> Sides opposite in a zone have one number, hence all sides of a class, from zone to zone. A side along contours or interfaces gets
+!> what it needs, the integral of 1/h, in each part between its breaks: there the geometry has its say, and contact. The need inside
+!> a zone is measured along its two sides and seven lines between them: the mean of their mean and of their largest, so that a
 !> peak that touches one line alone counts half. The class takes the largest number of its sides and zones, rounded up.
 module zone_divisions
   use contour_chain, only: chain_t, place_t
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
-  use side_curves, only: curve_point, curve_t
+  use side_curves, only: curve_point, curve_t, has_course
   use size_field, only: size_at, size_field_t
   use text, only: to_text
   use vectors, only: length_of
@@ -218,7 +218,7 @@ contains
 
     number = rounded_up(need/factor)
     do s = 1, size(curves)
-      if (curves(s)%chain == 0) cycle
+      if (.not. has_course(curves(s))) cycle
       number(group(s)) = max(number(group(s)), sum(rounded_up(curves(s)%needs/factor)))
     end do
     number = number(group)

@@ -15,7 +15,7 @@ module zone_mesh
   use zone_lines, only: find_movable, interpolate_zones, smooth_zones
   use zone_numbers, only: divisions_of, ends_of_side, ends_of_zone, middles_of_side, middles_of_zone, &
                           number_nodes, numbers_t
-  use zones, only: coordinates_of, layout_t, lay_out, runs_straight, zone_point_t, zone_t
+  use zones, only: coordinates_of, follows_interface, layout_t, lay_out, runs_straight, zone_point_t, zone_t
   implicit none
   private
   public :: mesh_wish_t, contour_side_t, new_mesh_t, mesh_zones
@@ -53,7 +53,7 @@ module zone_mesh
 contains
 
   !> The mesh, or why there can be none. `division%factor` of the mesh says what a limited number of elements cost.
-  pure subroutine mesh_zones(chains, points, zones, field, wish, mesh, error)
+  pure subroutine mesh_zones(chains, points, zones, field, wish, mesh, error, paths)
     type(chain_t), intent(in) :: chains(:)
     type(zone_point_t), intent(in) :: points(:)
     type(zone_t), intent(in) :: zones(:)
@@ -61,6 +61,7 @@ contains
     type(mesh_wish_t), intent(in) :: wish
     type(new_mesh_t), intent(out) :: mesh
     type(error_t), allocatable, intent(out) :: error
+    type(chain_t), optional, intent(in) :: paths(:)   !! of sides along interfaces
     type(curve_t), allocatable :: curves(:)
     type(numbers_t) :: numbers
     type(zone_point_t) :: snapped(size(points))
@@ -69,17 +70,23 @@ contains
     real(wp), allocatable :: ends(:)
     integer :: s
 
-    call lay_out(chains, points, zones, mesh%layout, error)
+    call lay_out(chains, points, zones, mesh%layout, error, paths)
     if (allocated(error)) return
     snapped = points
     call snap_to_joints(chains, mesh%layout%zones, field, snapped)
-    call lay_out(chains, snapped, zones, mesh%layout, error)
+    call lay_out(chains, snapped, zones, mesh%layout, error, paths)
     if (allocated(error)) return
     associate (layout => mesh%layout, division => mesh%division)
       allocate (curves(size(layout%sides)))
       do s = 1, size(curves)
         call draw_side(chains, layout, layout%sides(s), field, curves(s))
-        call measure_density(chains, field, layout%zones(layout%sides(s)%zones(1))%material, curves(s))
+        associate (beside => layout%sides(s)%zones)
+          if (layout%sides(s)%form == follows_interface) then
+            call measure_density(chains, field, layout%zones(beside(1))%material, curves(s), layout%zones(beside(2))%material)
+          else
+            call measure_density(chains, field, layout%zones(beside(1))%material, curves(s))
+          end if
+        end associate
       end do
       call choose_divisions(chains, layout, field, curves, wish%division, division, error)
       if (allocated(error)) return

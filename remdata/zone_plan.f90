@@ -8,21 +8,23 @@
 !> ZONE cards take the place of the blocks: their points are found by what ZPNT cards say (marked_points), and a point is one
 !> point to all zones that name it. Sets of sides go with the contour alone.
 !>
-!> Zones with a corner that has become flat are divided (flat_corners).
+!> Zones with a corner that has become flat are divided (flat_corners). Sides between two materials follow their interface, and its
+!> ends on the contour are the corners of zones there (interface_sides).
 module zone_plan
   use block_mesh, only: polygon_area
   use body_outlines, only: refuse_inner_sets
   use contour_chain, only: arc_at, chain_length, chain_t, kind_corner, kind_entry, kind_exit, place_t, turn_at
-  use contour_match, only: place_of_old
   use derived_zones, only: one_zone
   use errors, only: error_t, exit_input, fail
   use flat_corners, only: divide_flat_zones
+  use interface_sides, only: follow_interfaces
   use kinds, only: wp
   use marked_points, only: find_points
+  use material_interfaces, only: interface_t, node_on_contour
   use mesh, only: find_side_set
   use part_contour, only: contour_t
   use remesher_options, only: has_contours, has_zones
-  use scene, only: is_solid, scene_t
+  use scene, only: is_solid, lacks_mesh, scene_t
   use text, only: to_text
   use zones, only: follows_contour, plan_t, zone_point_t, zone_t
   implicit none
@@ -37,12 +39,13 @@ module zone_plan
 contains
 
   !> Zones of all solid groups.
-  pure subroutine plan_zones(scene, x, pilots, material, contours, plan, error)
+  pure subroutine plan_zones(scene, x, pilots, material, contours, interfaces, plan, error)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: x(:, :)               !! nodes now (2, nnode) [length]
     real(wp), intent(in) :: pilots(:, :)          !! of the dies now (3, ndie)
     integer, intent(in) :: material(:)            !! of each group of the scene, as sizes are asked for it (ngroup)
     type(contour_t), intent(in) :: contours(:)
+    type(interface_t), intent(in) :: interfaces(:)   !! between materials of the old mesh
     type(plan_t), intent(out) :: plan
     type(error_t), allocatable, intent(out) :: error
 
@@ -54,7 +57,9 @@ contains
       call zone_of_corners(scene, material, contours, plan, error)
     end if
     if (.not. allocated(error)) call refuse_same_places(contours, plan, error)
-    if (.not. allocated(error)) call divide_flat_zones(contours, plan)
+    if (allocated(error)) return
+    call divide_flat_zones(contours, plan)
+    if (.not. lacks_mesh(scene)) call follow_interfaces(scene, material, contours, interfaces, plan, error)
   end subroutine plan_zones
 
   !> Zones as the cards give them.
@@ -197,16 +202,9 @@ contains
     real(wp), intent(in) :: x(:, :)
     integer, intent(in) :: node
     type(zone_point_t) :: point
-    integer :: c, side
 
     point%x = x(:, node)
-    do c = 1, size(contours)
-      side = findloc(contours(c)%loop%sides(1, :), node, 1)
-      if (side == 0) cycle
-      point%chain = c
-      point%place = place_of_old(contours(c)%loop, contours(c)%chain, contours(c)%contacts, x, side, -1.0_wp)
-      return
-    end do
+    call node_on_contour(contours, x, node, point%chain, point%place)
   end function point_at_node
 
   !> Points that lie in a corner of the contour stay there; then the others go to the nearest corner, beginning or end of

@@ -2,7 +2,7 @@
 !>
 !> A side that two zones name by the same two corners is one side. A side of a single zone follows the contour; both zones and
 !> chains have the part on their left, so it runs forward along the chain from corner to corner. All of every chain must be
-!> followed once: then the zones fill the part.
+!> followed once: then the zones fill the part. A side between two materials follows the path their interface takes.
 module zones
   use block_mesh, only: polygon_area
   use contour_chain, only: arc_at, chain_length, chain_t, place_t
@@ -14,10 +14,10 @@ module zones
   implicit none
   private
   public :: zone_point_t, zone_t, plan_t, side_t, layout_t, lay_out, coordinates_of, on_chain, exact_point, arc_along
-  public :: as_found, follows_contour, runs_straight, runs_curved
+  public :: as_found, follows_contour, runs_straight, runs_curved, follows_interface
 
-  !> What a side of a zone is: the contour where one zone has it and straight where two have it, or what the user says.
-  integer, parameter :: as_found = 0, follows_contour = 1, runs_straight = 2, runs_curved = 3
+  !> What a side of a zone is: the contour where one zone has it and straight where two have it, or what is said of it.
+  integer, parameter :: as_found = 0, follows_contour = 1, runs_straight = 2, runs_curved = 3, follows_interface = 4
 
   !> A point where zones have corners: a place on a chain, or coordinates inside the part.
   type :: zone_point_t
@@ -40,6 +40,8 @@ module zones
     integer :: form(4) = as_found
     !> Where a curved side, a parabola, is halfway [length].
     real(wp) :: middle(2, 4) = 0.0_wp
+    !> Paths of sides along interfaces.
+    integer :: path(4) = 0
     !> As cards name it.
     character(len=name_length) :: name = ''
   end type zone_t
@@ -50,6 +52,8 @@ module zones
     type(zone_t), allocatable :: zones(:)
     !> Group of the scene each zone's elements are of, and its four sets of sides (0: none).
     integer, allocatable :: group(:), sets(:, :)
+    !> Open chains that sides between materials follow, from one corner to the next or back.
+    type(chain_t), allocatable :: paths(:)
   end type plan_t
 
   type :: side_t
@@ -57,6 +61,7 @@ module zones
     integer :: points(2) = 0
     integer :: form = as_found
     integer :: chain = 0             !! that it follows, else 0
+    integer :: path = 0              !! along an interface, else 0
     real(wp) :: middle(2) = 0.0_wp
     !> Zones on its left and on its right, 0 where there is none, and which of their sides it is.
     integer :: zones(2) = 0, local(2) = 0
@@ -71,6 +76,7 @@ module zones
     type(side_t), allocatable :: sides(:)
     integer, allocatable :: zone_sides(:, :)   !! (4, nzone)
     logical, allocatable :: point_moves(:)     !! (npoint)
+    type(chain_t), allocatable :: paths(:)
   end type layout_t
 
   !> Lengths along a chain that differ by less are one; zones that small against the square of their extent have no area.
@@ -79,14 +85,16 @@ module zones
 contains
 
   !> Find the sides, and refuse zones that do not fill the part.
-  pure subroutine lay_out(chains, points, zones, layout, error)
+  pure subroutine lay_out(chains, points, zones, layout, error, paths)
     type(chain_t), intent(in) :: chains(:)
     type(zone_point_t), intent(in) :: points(:)
     type(zone_t), intent(in) :: zones(:)
     type(layout_t), intent(out) :: layout
     type(error_t), allocatable, intent(out) :: error
+    type(chain_t), optional, intent(in) :: paths(:)   !! of sides along interfaces
     integer :: z
 
+    if (present(paths)) allocate (layout%paths, source=paths)
     allocate (layout%points, source=points)
     allocate (layout%zones, source=zones)
     do z = 1, size(zones)
@@ -193,6 +201,7 @@ contains
       zone%corners = zone%corners([1, 4, 3, 2])
       zone%form = zone%form([4, 3, 2, 1])
       zone%middle = zone%middle(:, [4, 3, 2, 1])
+      zone%path = zone%path([4, 3, 2, 1])
     end if
   end subroutine turn_left
 
@@ -237,6 +246,7 @@ contains
         if (layout%zones(z)%form(k) == as_found) cycle
         list(s)%form = layout%zones(z)%form(k)
         list(s)%middle = layout%zones(z)%middle(:, k)
+        list(s)%path = layout%zones(z)%path(k)
       end do
     end do
     allocate (layout%sides, source=list(:n))
