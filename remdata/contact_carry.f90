@@ -72,7 +72,8 @@ contains
     if (place > 0) place = scene%groups(g)%variables(place)%first
   end function status_place
 
-  !> Components that go along the contour, and the depth; those of corners of dies inside sides, of the same names, find themselves anew.
+  !> Components that go along the contour, and the depth; those of corners of dies inside sides, of the same names, find themselves
+  !> anew.
   pure subroutine list_carried(scene, g, carried, conserved)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g

@@ -85,8 +85,8 @@ module part_contour
   !> The chain is closed within this share of its size.
   real(wp), parameter :: closed_within = 1.0e-9_wp
 
-  !> The free sides are shifted so many times at most, until the volume is the old one to the first of these shares; it is kept when it
-  !> is so to the second.
+  !> The free sides are shifted so many times at most, until the volume is the old one to the first of these shares; it is kept
+  !> when it is so to the second.
   integer, parameter :: most_shifts = 8
   real(wp), parameter :: same_volume = 1.0e-14_wp, kept_volume = 1.0e-13_wp
 

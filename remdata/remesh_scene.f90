@@ -353,6 +353,7 @@ contains
     after%iterations = before%iterations
     after%cutbacks = before%cutbacks
     after%external_work = before%external_work
+    after%friction_work = before%friction_work
     after%initial_volume = before%initial_volume
     after%worst_linear_residual = before%worst_linear_residual
     after%worst_penetration = before%worst_penetration

@@ -44,6 +44,7 @@ contains
     solution%worst_penetration = max(solution%worst_penetration, totals%max_penetration)
     solution%worst_penetration_ratio = max(solution%worst_penetration_ratio, totals%penetration_ratio)
     solution%least_dissipation = min(solution%least_dissipation, totals%least_dissipation)
+    solution%friction_work = totals%friction_work
     call book_spurious_mode(scene, equations, solution)
     call sample_contacts(scene, solution)
     call check(solution, totals, error)

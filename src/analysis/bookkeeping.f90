@@ -170,6 +170,7 @@ contains
         call add_totals(totals, part)
       end associate
     end do
+    totals%friction_work = totals%friction_work + solution%friction_apart
   end subroutine measure_scene
 
   !> The motion of the step that the points of an element did not see: the worst of all steps is kept.

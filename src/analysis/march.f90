@@ -160,6 +160,9 @@ contains
     type(outcome_t) :: outcome
 
     allocate (run%balance)
+    ! what points of contact that are gone had borne is remembered apart
+    solution%friction_apart = solution%friction_work - run%totals%friction_work
+    run%totals%friction_work = solution%friction_work
     run%balance%before = run%totals
     call restore_equilibrium(scene, run%equations, solution, run%balance, outcome)
     if (allocated(outcome%error)) then

@@ -23,8 +23,8 @@ module acceptance
     !> (found: up to 0.3): above 1 the contour is another one than that which bore the pressures.
     real(wp) :: depth_change = 1.0_wp
     !> Least step on probation over the least before: seven cuts in a row are forgiven (1/128), an eighth is not. (The first step
-    !> returns to the yield surface what was carried past it, and finds the new points of contact; six cuts have been found on meshes
-    !> that went well.)
+    !> returns to the yield surface what was carried past it, and finds the new points of contact; six cuts have been found on
+    !> meshes that went well.)
     real(wp) :: step_ratio = 0.005_wp
   end type acceptance_t
 

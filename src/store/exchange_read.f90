@@ -33,7 +33,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution   !! started from the scene
     type(error_t), allocatable, intent(out) :: error
-    real(wp), allocatable :: worst(:)
+    real(wp), allocatable :: worst(:), friction(:)
     real(wp) :: spurious(3)
     integer :: unbalanced
 
@@ -48,6 +48,11 @@ contains
     call file%read('progress/iterations', solution%iterations)
     call file%read('progress/cutbacks', solution%cutbacks)
     call file%read('progress/external_work', solution%external_work)
+    call file%read('progress/friction_work', friction)
+    if (size(friction) == 2) then
+      solution%friction_work = friction(1)
+      solution%friction_apart = friction(2)
+    end if
     call file%read('progress/initial_volume', solution%initial_volume)
     call file%read('progress/force_floor', solution%force_floor)
     call file%read('progress/worst', worst)

@@ -110,6 +110,7 @@ contains
     call file%write('progress/iterations', solution%iterations)
     call file%write('progress/cutbacks', solution%cutbacks)
     call file%write('progress/external_work', solution%external_work)
+    call file%write('progress/friction_work', [solution%friction_work, solution%friction_apart])
     call file%write('progress/initial_volume', solution%initial_volume)
     call file%write('progress/force_floor', solution%force_floor)
     call file%write('progress/worst', [solution%worst_linear_residual, solution%worst_penetration, &
