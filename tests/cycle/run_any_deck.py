@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""Decks that know nothing of remeshing, remeshed half-way with the sizes that are taken when none are given.
+
+usage: run_any_deck.py [-v] [-k]
+
+Every kind of scene: small and large strains, all plane states, loads and imposed motions, rigid and deformable dies, one body and
+several. The end is that of the deck on its own mesh, within the error of that mesh (the finer of the two is nearer to the truth, so
+each deviation has a limit of its own); work of friction never falls.
+"""
+import os
+import re
+import sys
+
+sys.dont_write_bytecode = True
+from remeshed import ROOT, cycle, tries, within_limits  # noqa: E402
+from support import DONE, Checks, history, run, said  # noqa: E402
+
+# Deck, options, and how far each column may be from the deck's own at the end.
+DECKS = [
+    ("cook/cook", [], {"u_corner": 0.02, "elastic_energy": 0.02}),
+    ("elliptic_membrane/elliptic_membrane", [], {"elastic_energy": 0.001}),
+    ("thick_cylinder/thick_cylinder", ["nx=20"], {"u_inner": 0.003, "elastic_energy": 0.001}),
+    ("thick_cylinder/thick_cylinder_plastic", [], {"u_inner": 0.01, "plastic_work": 0.01}),
+    ("plastic_forming/disc", [], {"force_y_upper": 0.001, "plastic_work": 0.001}),
+    ("plastic_forming/tube", [], {"push": 0.001}),
+    ("thick_cylinder/plastic_expansion", [], {"force": 0.001}),
+    ("hertz/hertz", [], {"force_y_ball": 0.002, "peak_pressure": 0.005}),
+    ("incline/drag", [], {"force": 0.001, "slip_min": 0.01}),
+    ("ring/ring", [], {"force_y_upper": 0.01, "bore_mid": 0.01, "friction_work": 0.02}),
+    ("stamping/stretch", [], {"force_y_punch": 0.005, "pull": 0.005}),
+    ("stamping/draw", [], {"top": 0.001, "end_x": 0.001, "plastic_work": 0.01}),
+    ("press_fit/press_fit", [], {"push_force": 0.001, "friction_work": 0.002}),
+    ("upsetting_frictionless/upsetting_frictionless", [], {"force_y_upper": 0.0005, "radius": 0.0005}),
+]
+
+
+def with_remesh(deck, path):
+    """The deck with a new mesh at half its time."""
+    with open(deck, encoding="utf-8") as file:
+        text, count = re.subn(r"(?m)^END", "REMSH\n   TIMES 0.5\nEND", file.read())
+    if count != 1:
+        sys.exit(f"{deck} has {count} END cards")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def remeshed(checks, name, options, limits):
+    deck, short = os.path.join(ROOT, "decks", name + ".lag"), os.path.basename(name)
+    path, out, plain = checks.path(short + ".lag"), checks.path(short), checks.path(short + "-own")
+    words = [word for option in options for word in ("-p", option)]
+    with_remesh(deck, path)
+    result = run([deck, "--out", plain, "--threads", "1", *words])
+    if not checks.that(result.returncode == DONE, f"{short}: its own mesh", said(result)):
+        return
+    result = cycle(path, out, *words)
+    if not checks.that(result.returncode == DONE, f"{short}: remeshed", result.stdout + result.stderr):
+        return
+    made = tries(out)
+    checks.that(len(made) == 1 and made[0]["accepted"] == "y", f"{short}: one new mesh, at the first try", [t["reason"] for t in made])
+    within_limits(checks, out)
+    rows, own = history(out), history(plain)
+    for column, limit in limits.items():
+        off = rows[column][-1] / own[column][-1] - 1
+        checks.that(abs(off) < limit, f"{short}: {column} within {100 * limit:g} %", f"{100 * off:+.3f} %")
+    work = rows["friction_work"]
+    checks.that(all(after >= before - 1e-9 * abs(work[-1]) for before, after in zip(work, work[1:])),
+                f"{short}: work of friction never falls")
+
+
+def main():
+    checks = Checks()
+    for name, options, limits in DECKS:
+        remeshed(checks, name, options, limits)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
