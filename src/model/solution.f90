@@ -41,7 +41,8 @@ module solution
     integer :: iterations = 0, cutbacks = 0
     !> Work done on the scene from outside, per radian when axisymmetric.
     real(wp) :: external_work = 0.0_wp
-    !> Work of friction since the start, and the part of it that no point of the present mesh remembers, per radian when axisymmetric.
+    !> Work of friction since the start, and the part of it that no point of the present mesh remembers; per radian when
+    !> axisymmetric.
     real(wp) :: friction_work = 0.0_wp, friction_apart = 0.0_wp
     !> Volume at the start, for the drift; 0 before it is measured.
     real(wp) :: initial_volume = 0.0_wp
