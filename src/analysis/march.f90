@@ -176,6 +176,7 @@ contains
     run%mesh_refused = run%balance%refused
     if (.not. run%mesh_refused) call begin_probation(solution%probation)
     if (run%balance%restored) call estimate_stress(scene, run%estimator, solution)
+    solution%estimate%first_stress = solution%estimate%stress
     call write_restart(run%stem//'.g'//two_digits(scene%generation)//'.restart.json', scene, solution, run%balance, late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
   end subroutine balance_new_mesh

@@ -1,6 +1,8 @@
 !> Why a new mesh is due at an accepted instant: every limit of the card REMSH that is passed.
 !>
-!> Errors, shapes, contacts and distress wait until the mesh has made its least number of steps; times and strokes do not.
+!> Errors, shapes, contacts and distress wait until the mesh has made its least number of steps; times and strokes do not. Where a
+!> new mesh has itself an error or bad elements beyond the limit, another one would be no better: it is due when they are worse by
+!> half.
 module triggers
   use contact_quality, only: measure_misfit, misfit_t
   use kinds, only: eps, wp
@@ -12,6 +14,9 @@ module triggers
   private
   public :: find_triggers, distress_trigger, was_good, has_passed
 
+  !> What a new mesh began with grows to this multiple before another one is asked for.
+  real(wp), parameter :: worse = 1.5_wp
+
 contains
 
   !> All limits passed by the step just accepted.
@@ -19,12 +24,14 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(trigger_t), allocatable, intent(out) :: found(:)
+    real(wp) :: limit
     integer :: k
 
     allocate (found(0))
     if (was_good(scene, solution)) then
-      if (solution%estimate%stress > scene%remesh%stress_error) &
-        call add(found, 'stress_error', solution%estimate%stress, scene%remesh%stress_error)
+      limit = scene%remesh%stress_error
+      if (solution%estimate%first_stress > limit) limit = worse*solution%estimate%first_stress
+      if (solution%estimate%stress > limit) call add(found, 'stress_error', solution%estimate%stress, limit)
       if (any(abs(scene%remesh%shape) < never)) call find_bad_shapes(scene, solution, found)
       if (scene%remesh%contact < never) call find_misfits(scene, solution, found)
     end if
@@ -81,8 +88,8 @@ contains
     type(solution_t), intent(in) :: solution
     type(trigger_t), allocatable, intent(inout) :: found(:)
     type(shape_places_t) :: places
-    real(wp) :: measures(ncriteria), worst(ncriteria), x(2, size(scene%mesh%coordinates, 2)), share
-    integer :: group(ncriteria), element(ncriteria), g, e, k, n, nbad
+    real(wp) :: measures(ncriteria), worst(ncriteria), x(2, size(scene%mesh%coordinates, 2)), share, first, limit
+    integer :: group(ncriteria), element(ncriteria), g, e, k, n, nbad, nfirst
     logical :: bad(ncriteria)
 
     x = scene%mesh%coordinates
@@ -93,12 +100,18 @@ contains
     element = 0
     n = 0
     nbad = 0
+    nfirst = 0
     do g = 1, size(scene%groups)
       if (.not. is_solid(scene%groups(g))) cycle
       do e = 1, size(scene%groups(g)%connectivity, 2)
         measures = element_shape(places, x(:, scene%groups(g)%connectivity(:, e)))
         n = n + 1
         if (any(is_bad(measures, scene%remesh%shape))) nbad = nbad + 1
+        ! a new mesh lies where its nodes began
+        if (scene%generation > 1) then
+          if (any(is_bad(element_shape(places, scene%mesh%coordinates(:, scene%groups(g)%connectivity(:, e))), &
+                         scene%remesh%shape))) nfirst = nfirst + 1
+        end if
         bad = is_bad(measures, worst)
         where (bad)
           worst = measures
@@ -108,11 +121,14 @@ contains
       end do
     end do
     share = real(nbad, wp)/max(n, 1)
-    if (.not. share > scene%remesh%bad_share) return
+    first = real(nfirst, wp)/max(n, 1)
+    limit = scene%remesh%bad_share
+    if (first > limit) limit = worse*first
+    if (.not. share > limit) return
     do k = 1, ncriteria
       if (group(k) > 0) call add(found, trim(criterion_names(k)), worst(k), scene%remesh%shape(k), group(k), element(k))
     end do
-    if (scene%remesh%bad_share > 0) call add(found, 'bad_share', share, scene%remesh%bad_share)
+    if (limit > 0) call add(found, 'bad_share', share, limit)
   end subroutine find_bad_shapes
 
   !> Sides that cannot follow their die.

@@ -143,6 +143,7 @@ contains
     call file%read('estimate/stress', estimate%stress)
     call file%read('estimate/strain', estimate%strain)
     call file%read('remesh/last_stop', estimate%last_stop)
+    call file%read('remesh/first_stress', estimate%first_stress)
     last = 0
     do g = 1, size(scene%groups)
       if (.not. is_solid(scene%groups(g))) cycle

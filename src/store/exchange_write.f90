@@ -190,6 +190,7 @@ contains
       call file%write(group_place(g)//'/strain_sums', estimate%strain_sums(:, n:last))
     end do
     call file%write('remesh/last_stop', estimate%last_stop)
+    call file%write('remesh/first_stress', estimate%first_stress)
     if (size(estimate%triggers) == 0) return
     allocate (names(size(estimate%triggers)))
     do k = 1, size(names)

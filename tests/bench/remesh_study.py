@@ -28,7 +28,7 @@ HALF_HEIGHT = 15.0
 PLACES = [30 + 0.5 * k for k in range(61)]
 UNIFORM = [(6, 9), (9, 14), (12, 18), (16, 24), (24, 36), (32, 48)]
 # First mesh, smallest and largest size, error of stress that asks for a new mesh.
-REMESHED = [((8, 12), 0.8, 2.0, 0.1), ((10, 15), 0.6, 1.6, 0.1), ((12, 18), 0.5, 1.25, 0.1), ((12, 18), 0.25, 1.25, 0.07)]
+REMESHED = [((8, 12), 0.8, 2.0, 0.1), ((10, 15), 0.6, 1.6, 0.1), ((12, 18), 0.5, 1.25, 0.1), ((16, 24), 0.2, 1.0, 0.1)]
 
 
 def run(program, deck, out, *options):
