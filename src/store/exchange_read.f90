@@ -1,5 +1,6 @@
 !> Reading the state of a checkpoint: from a file that `open_checkpoint` has found whole, once for all that is read from it.
 module exchange_read
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use acceptance, only: probation_t
   use contact_ends, only: contact_end_t
   use errors, only: error_t, exit_input
@@ -75,8 +76,8 @@ contains
     call read_triple(file, 'section/position', solution%section)
     call read_triple(file, 'section/last_increment', solution%last_section_increment)
     call read_triple(file, 'section/applied', solution%section_applied)
-    call refuse_not_finite(file, 'progress', all(abs([solution%time, solution%last_step, solution%next_step, &
-                                                      solution%external_work, solution%initial_volume]) <= huge(1.0_wp)))
+    call refuse_not_finite(file, 'progress', all(ieee_is_finite([solution%time, solution%last_step, solution%next_step, &
+                                                      solution%external_work, solution%initial_volume])))
     call read_dies(file, scene, solution)
     call read_states(file, scene, solution)
     if (scene%remesh%estimate) call read_estimate(file, scene, solution%estimate)
@@ -95,7 +96,7 @@ contains
     probation%recent = recent
     probation%before = steps(1)
     probation%least = steps(2)
-    call refuse_not_finite(file, 'progress/recent_steps', all(abs([recent, steps]) <= huge(1.0_wp)))
+    call refuse_not_finite(file, 'progress/recent_steps', all(ieee_is_finite([recent, steps])))
   end subroutine read_probation
 
   subroutine read_dies(file, scene, solution)
@@ -125,7 +126,7 @@ contains
       if (all(shape(state) == shape(solution%groups(g)%committed))) then
         solution%groups(g)%committed = state
         solution%groups(g)%trial = state
-        call refuse_not_finite(file, group_place(g)//'/state', all(abs(state) <= huge(1.0_wp)))
+        call refuse_not_finite(file, group_place(g)//'/state', all(ieee_is_finite(state)))
       else
         call file%record_error(exit_input, group_place(g)//'/state: does not fit the deck''s group '//scene%groups(g)%name)
       end if

@@ -1,5 +1,6 @@
 !> The schema of the checkpoint: its version, the places of its datasets, and how a file is opened and read with care.
 module exchange_schema
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use errors, only: error_t, exit_input, fail
   use hdf5_atomic, only: open_verified
   use hdf5_file, only: hdf5_file_t
@@ -70,7 +71,7 @@ contains
 
     call file%read(place, values)
     if (size(values) == 3) triple = values
-    call refuse_not_finite(file, place, all(abs(values) <= huge(1.0_wp)))
+    call refuse_not_finite(file, place, all(ieee_is_finite(values)))
   end subroutine read_triple
 
   !> Read an array that must have the shape of the one it replaces.
@@ -89,12 +90,12 @@ contains
     end if
   end subroutine read_matrix
 
-  !> False for NaN too, which is not in any order.
+  !> False for NaN too. (A comparison with it would trap in a Debug build.)
   pure function all_finite(values) result(finite)
     real(wp), intent(in) :: values(:, :)
     logical :: finite
 
-    finite = all(abs(values) <= huge(1.0_wp))
+    finite = all(ieee_is_finite(values))
   end function all_finite
 
   !> A state that is not a number would spread through all that follows.
