@@ -9,6 +9,7 @@ module flat_corners
   use kinds, only: pi, wp
   use part_contour, only: contour_t
   use vectors, only: length_of
+  use zone_places, only: coordinates
   use zones, only: as_found, plan_t, zone_point_t, zone_t
   implicit none
   private
@@ -299,15 +300,5 @@ contains
       point%x = point_on(chain, point%place)
     end associate
   end subroutine go_farthest
-
-  !> Where a zone point is [length].
-  pure function coordinates(contours, point) result(x)
-    type(contour_t), intent(in) :: contours(:)
-    type(zone_point_t), intent(in) :: point
-    real(wp) :: x(2)
-
-    x = point%x
-    if (point%chain > 0) x = point_on(contours(point%chain)%chain, point%place)
-  end function coordinates
 
 end module flat_corners

@@ -12,7 +12,8 @@ module interface_sides
   use scene, only: is_solid, scene_t
   use text, only: to_text
   use vectors, only: length_of
-  use zones, only: follows_interface, on_chain, plan_t, zone_point_t
+  use zone_places, only: coordinates
+  use zones, only: follows_interface, plan_t, zone_point_t
   implicit none
   private
   public :: follow_interfaces
@@ -224,15 +225,5 @@ contains
     end do
     if (.not. allocated(path%stretches)) allocate (path%stretches(0))
   end subroutine draw_path
-
-  !> Where a zone point is [length].
-  pure function coordinates(contours, point) result(x)
-    type(contour_t), intent(in) :: contours(:)
-    type(zone_point_t), intent(in) :: point
-    real(wp) :: x(2)
-
-    x = point%x
-    if (point%chain > 0) x = on_chain(contours(point%chain)%chain, point%place)
-  end function coordinates
 
 end module interface_sides

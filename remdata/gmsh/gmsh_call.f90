@@ -3,9 +3,8 @@ module gmsh_call
   use arguments, only: argument
   use child_process, only: ending_t, own_process, run_child
   use errors, only: error_t, exit_no_convergence, fail
-  use gmsh_files, only: frame_t, quads_t, read_quads, write_script
+  use gmsh_files, only: cell_t, frame_t, quads_t, read_quads, write_script
   use kinds, only: wp
-  use size_cells, only: cell_t
   use system, only: directory_of, join_path, remove_file
   use text, only: string_t, to_text
   implicit none

@@ -7,11 +7,18 @@ module gmsh_files
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use errors, only: error_t, exit_machine, exit_no_convergence, fail
   use kinds, only: wp
-  use size_cells, only: cell_t
   use text, only: to_text
   implicit none
   private
-  public :: frame_t, quads_t, write_script, read_quads, refuse_mesh
+  public :: cell_t, frame_t, quads_t, write_script, read_quads, refuse_mesh
+
+  !> A square with wanted sizes of elements.
+  type :: cell_t
+    real(wp) :: low(2) = 0.0_wp, width = 0.0_wp   !! [length]
+    !> Sizes at the corners, counter-clockwise from `low` [length].
+    real(wp) :: sizes(4) = 0.0_wp
+    integer :: depth = 0
+  end type cell_t
 
   !> Where the unit body is.
   type :: frame_t

@@ -3,18 +3,12 @@
 !> A square around the body is cut into four, and these again, until none is larger than two elements there: bilinear between
 !> its corners the size is then met closely, since it grows slowly (gradation).
 module size_cells
+  use gmsh_files, only: cell_t
   use kinds, only: wp
   use size_field, only: size_at, size_field_t
   implicit none
   private
-  public :: cell_t, cover
-
-  type :: cell_t
-    real(wp) :: low(2) = 0.0_wp, width = 0.0_wp   !! [length]
-    !> Sizes at the corners, counter-clockwise from `low` [length].
-    real(wp) :: sizes(4) = 0.0_wp
-    integer :: depth = 0
-  end type cell_t
+  public :: cover
 
   !> A square is no wider than so many elements, and cut no more often than this.
   real(wp), parameter :: widest = 2.0_wp

@@ -9,12 +9,12 @@ module outline_mesh
   use errors, only: error_t
   use flat_quads, only: open_flat_corners
   use gmsh_call, only: gmsh_t, mesh_outline
-  use gmsh_files, only: quads_t, refuse_mesh
+  use gmsh_files, only: cell_t, quads_t, refuse_mesh
   use kinds, only: pi, wp
   use mend_elements, only: mend
   use side_curves, only: curve_point, curve_t
   use side_middles, only: place_middle
-  use size_cells, only: cell_t, cover
+  use size_cells, only: cover
   use size_field, only: size_field_t
   use split_cells, only: split_into_quads
   use text, only: to_text
