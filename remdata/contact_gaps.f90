@@ -7,7 +7,7 @@
 module contact_gaps
   use boundary_sides, only: loop_t
   use contact_knots, only: find_knot, point_of_spot
-  use contact_runs, only: along, run_t, same_spot, spot_t
+  use contact_runs, only: along, run_t, same_spot, spot_t, turn_back
   use contact_stretches, only: knot_t
   use dies, only: die_t, present_die
   use kinds, only: wp
@@ -34,7 +34,7 @@ contains
     type(run_t), allocatable, intent(inout) :: runs(:)    !! in their order along the loop
     logical :: stays(size(runs))
     type(run_t), allocatable :: list(:)
-    integer :: i, k, next, n, nside
+    integer :: i, next, n, nside
 
     if (size(runs) < 2) return
     n = size(runs)
@@ -50,11 +50,7 @@ contains
     if (.not. any(stays)) stays(n) = .true.
     allocate (list, source=pack(runs, stays))
     call move_alloc(list, runs)
-    do k = 1, size(runs)
-      if (runs(k)%from%side <= nside) cycle
-      runs(k)%from%side = runs(k)%from%side - nside
-      runs(k)%to%side = runs(k)%to%side - nside
-    end do
+    call turn_back(nside, runs)
   end subroutine close_gaps
 
   !> Mark runs that a pocket follows.
@@ -144,12 +140,19 @@ contains
     if (run%group == next%group) then
       if (last < until%side - merge(1, 0, until%xi <= -1)) return
       next%to%side = next%to%side + until%side - next%from%side
+      next%found(2)%side = next%found(2)%side + until%side - next%from%side
       next%from = run%from
+      next%found(1) = run%found(1)
       stays = .false.
     else if (last < until%side) then
       run%to = spot_t(last, 1.0_wp)
+      run%found(2) = run%to
       next%from = spot_t(modulo(last, nside) + 1, -1.0_wp)
-      if (next%from%side > next%to%side) next%to%side = next%to%side + nside
+      next%found(1) = next%from
+      if (next%from%side > next%to%side) then
+        next%to%side = next%to%side + nside
+        next%found(2)%side = next%found(2)%side + nside
+      end if
     end if
   end subroutine join_runs
 

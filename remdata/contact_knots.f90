@@ -2,13 +2,14 @@
 !>
 !> The depth of an old point of contact in its die is what carries its pressure, p = multiplier + AKP d, so the contour that
 !> runs through the old depths gives the old pressures back. Only integration points are asked: between them the old side
-!> bends away from the die. At its ends the run goes through the part's own point, so that nothing opens there.
+!> bends away from the die. At its ends the run goes through the part's own point, so that nothing opens there, and so it does where
+!> the solver found them when that is within it.
 !>
 !> Feet are searched between those of the ends, along the die, and must follow each other: a point that folded back over its
 !> neighbour gives no knot.
 module contact_knots
   use boundary_sides, only: loop_t
-  use contact_runs, only: run_t, spot_t
+  use contact_runs, only: along, run_t, spot_t
   use contact_stretches, only: knot_t, placed_piece
   use dies, only: die_t
   use kinds, only: eps, wp
@@ -18,7 +19,7 @@ module contact_knots
   use vectors, only: length_of
   implicit none
   private
-  public :: section_t, sections_of_run, point_of_spot, find_knot, way_between
+  public :: section_t, begin_at_point, sections_of_run, point_of_spot, find_knot, way_between
 
   !> Part of a run on sides of one kind.
   type :: section_t
@@ -34,6 +35,52 @@ module contact_knots
   real(wp), parameter :: same_knot = 1.0e-9_wp
 
 contains
+
+  !> Where a side dives into the die so steeply that a corner would be left at the first point in contact, a crumb behind the
+  !> beginning, or at the last one before the end, the run begins or ends in the point, and the corner with it.
+  pure subroutine begin_at_point(npoint, loop, x, die, pilot, least, turn, run)
+    integer, intent(in) :: npoint        !! rule of the group's points
+    type(loop_t), intent(in) :: loop
+    real(wp), intent(in) :: x(:, :)      !! nodes now (2, nnode) [length]
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: pilot(3)
+    real(wp), intent(in) :: least        !! crumb [sides]
+    real(wp), intent(in) :: turn         !! that makes a corner [radian]
+    type(run_t), intent(inout) :: run
+    type(spot_t) :: point
+    real(wp), allocatable :: xi(:), weight(:)
+
+    call line_rule(npoint, xi, weight)
+    point = run%from
+    point%xi = minval(xi, mask=xi > run%from%xi)
+    if (point%xi < min(1.0_wp, run%from%xi + 2*least)) then
+      if (is_steep(run%from, point)) run%from = point
+    end if
+    point = run%to
+    point%xi = maxval(xi, mask=xi < run%to%xi)
+    if (point%xi > max(-1.0_wp, run%to%xi - 2*least)) then
+      if (is_steep(run%to, point)) run%to = point
+    end if
+
+  contains
+
+    pure function is_steep(edge, inside) result(yes)
+      type(spot_t), intent(in) :: edge, inside
+      logical :: yes
+      type(knot_t) :: knots(2)
+      real(wp) :: ends(2, 2)
+      integer :: k
+      logical :: sound(2)
+
+      ends(:, 1) = point_of_spot(loop, x, edge)
+      ends(:, 2) = point_of_spot(loop, x, inside)
+      do k = 1, 2
+        call find_knot(die, pilot, ends(:, k), [1, size(die%pieces, 3)], .true., knots(k), sound(k))
+      end do
+      yes = all(sound) .and. knots(2)%depth - knots(1)%depth > sin(turn)*length_of(ends(:, 2) - ends(:, 1))
+    end function is_steep
+
+  end subroutine begin_at_point
 
   !> Sections of a run with their knots; none when the run goes backwards along the die.
   pure subroutine sections_of_run(run, npoint, loop, tags, x, die, pilot, sections)
@@ -118,28 +165,41 @@ contains
       type(spot_t), intent(in) :: first, last
       type(knot_t), intent(in) :: start, finish
       type(knot_t), allocatable, intent(out) :: knots(:)
-      type(knot_t) :: list((abs(npoint) + 1)*(last%side - first%side + 1) + 2), knot
+      type(knot_t) :: list((abs(npoint) + 1)*(last%side - first%side + 1) + 4)
       real(wp), allocatable :: xi(:), weight(:)
-      logical :: sound
       integer :: k, p, n
 
       call line_rule(npoint, xi, weight)
       n = 1
       list(1) = start
+      call follow(run%found(1), first, last, finish, list, n)
       do k = first%side, last%side
         do p = 1, size(xi)
-          if (k == first%side .and. xi(p) <= first%xi .or. k == last%side .and. xi(p) >= last%xi) cycle
-          call find_knot(die, pilot, point_of_spot(loop, x, spot_t(k, xi(p))), [start%piece, finish%piece], .true., knot, sound)
-          if (.not. sound) cycle
-          if (.not. (way_between(die, list(n), knot) > same_knot .and. way_between(die, knot, finish) > same_knot)) cycle
-          n = n + 1
-          list(n) = knot
+          call follow(spot_t(k, xi(p)), first, last, finish, list, n)
         end do
       end do
+      call follow(run%found(2), first, last, finish, list, n)
       n = n + 1
       list(n) = finish
       allocate (knots, source=list(:n))
     end subroutine list_knots
+
+    !> Add the foot of a place within a section, if it lies behind those before.
+    pure subroutine follow(spot, first, last, finish, list, n)
+      type(spot_t), intent(in) :: spot, first, last
+      type(knot_t), intent(in) :: finish
+      type(knot_t), intent(inout) :: list(:)
+      integer, intent(inout) :: n
+      type(knot_t) :: knot
+      logical :: sound
+
+      if (along(spot) <= along(first) .or. along(spot) >= along(last)) return
+      call find_knot(die, pilot, point_of_spot(loop, x, spot), [list(1)%piece, finish%piece], .true., knot, sound)
+      if (.not. sound) return
+      if (.not. (way_between(die, list(n), knot) > same_knot .and. way_between(die, knot, finish) > same_knot)) return
+      n = n + 1
+      list(n) = knot
+    end subroutine follow
 
   end subroutine sections_of_run
 

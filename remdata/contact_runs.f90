@@ -2,20 +2,20 @@
 !>
 !> The solver finds the ends group by group (contact_ends). Here they are put in their order along the loop and paired. On
 !> the axis a point of contact has no surface and is never found closed: a run whose last point before the axis is closed
-!> goes on to it. A run that begins or ends almost in a node where sets of sides meet does so in the node: no sliver is left
-!> for a mesh to resolve, and the contour is the same. Runs of two groups that overlap are cut in the middle of what they
-!> share, and one that lies inside another gives way. A run that covers less than a share of one side is left as it is: the
-!> part's own contour carries its pressure just as well, and no element would fit.
+!> goes on to it. A run that begins or ends almost in a node that new meshes have too does so in the node: no sliver is left
+!> for a mesh to resolve, and the contour goes through both places. Runs of two groups that overlap are cut in the middle of
+!> what they share, and one that lies inside another gives way. A run that covers less than a share of one side is left as it
+!> is: the part's own contour carries its pressure just as well, and no element would fit.
 module contact_runs
   use boundary_sides, only: loop_t
   use contact_ends, only: contact_end_t
   use kinds, only: wp
   use quadrature, only: line_rule
   use scene, only: group_t, scene_t
-  use side_tags, only: same_tags, side_tags_t
+  use side_tags, only: side_tags_t
   implicit none
   private
-  public :: spot_t, run_t, find_runs, along, same_spot
+  public :: spot_t, run_t, find_runs, along, same_spot, turn_back
 
   !> A place on a loop. Sides are counted on beyond the last one by a run across the start of the loop.
   type :: spot_t
@@ -28,6 +28,8 @@ module contact_runs
   type :: run_t
     integer :: group = 0
     type(spot_t) :: from, to
+    !> Where the solver found the two, which may be a crumb away.
+    type(spot_t) :: found(2)
     !> What follows is a pocket: contact with the same die goes on behind it (contact_gaps).
     logical :: pocket = .false.
   end type run_t
@@ -38,10 +40,11 @@ module contact_runs
 contains
 
   !> Runs of a loop in the order of their beginnings; only the last may go across the start of the loop.
-  pure subroutine find_runs(scene, loop, tags, ends, closed, least, runs)
+  pure subroutine find_runs(scene, loop, tags, lasting, ends, closed, least, runs)
     type(scene_t), intent(in) :: scene
     type(loop_t), intent(in) :: loop
     type(side_tags_t), intent(in) :: tags
+    logical, intent(in) :: lasting(:)            !! a new mesh has a node where the side ends, too (nside)
     type(contact_end_t), intent(in) :: ends(:)   !! of all groups
     logical, intent(in) :: closed(:)             !! for each group: some of its points are in contact
     real(wp), intent(in) :: least                !! shortest run that counts, in sides
@@ -59,7 +62,9 @@ contains
       if (n == before .and. all(tags%on_group(g, :)) .and. all(ends%group /= g)) then
         ! a ring of contact, without end
         n = n + 1
-        list(n) = run_t(g, spot_t(1, -1.0_wp), spot_t(size(loop%sides, 2), 1.0_wp))
+        list(n)%group = g
+        list(n)%from = spot_t(1, -1.0_wp)
+        list(n)%to = spot_t(size(loop%sides, 2), 1.0_wp)
       end if
       do k = before + 1, n
         call reach_axis(scene%groups(g), tags, size(loop%sides, 2), list(k))
@@ -67,7 +72,8 @@ contains
     end do
     call keep(along(list(:n)%to) - along(list(:n)%from) >= least, list, n)
     do k = 1, n
-      call snap(tags, size(loop%sides, 2), least, list(k))
+      list(k)%found = [list(k)%from, list(k)%to]
+      call snap(lasting, least, list(k))
     end do
     call sort_runs(list(:n))
     call part_overlaps(size(loop%sides, 2), list, n)
@@ -120,7 +126,9 @@ contains
       if (to%xi >= 1 - 2*same_place) to%xi = 1
       if (along(to) <= along(from)) cycle
       n = n + 1
-      list(n) = run_t(number, from, to)
+      list(n)%group = number
+      list(n)%from = from
+      list(n)%to = to
     end do
 
   contains
@@ -147,38 +155,45 @@ contains
     if (tags%on_axis(wrapped(run%from%side - 1, nside)) .and. .not. any(xi < run%from%xi .and. xi > -1)) run%from%xi = -1
   end subroutine reach_axis
 
-  !> Move ends of a run to nodes where sets meet, when they are nearer than `least`.
-  pure subroutine snap(tags, nside, least, run)
-    type(side_tags_t), intent(in) :: tags
-    integer, intent(in) :: nside
+  !> Move ends of a run to lasting nodes that are nearer than `least`.
+  pure subroutine snap(lasting, least, run)
+    logical, intent(in) :: lasting(:)
     real(wp), intent(in) :: least   !! [sides]
     type(run_t), intent(inout) :: run
 
-    if (run%from%xi > 1 - 2*least .and. is_meeting(run%from%side)) then
+    if (run%from%xi > 1 - 2*least .and. lasts(run%from%side)) then
       run%from = spot_t(run%from%side + 1, -1.0_wp, run%from%piece)
-    else if (run%from%xi < -1 + 2*least .and. is_meeting(run%from%side - 1)) then
+    else if (run%from%xi < -1 + 2*least .and. lasts(run%from%side - 1)) then
       run%from%xi = -1
     end if
-    if (run%to%xi < -1 + 2*least .and. is_meeting(run%to%side - 1)) then
+    if (run%to%xi < -1 + 2*least .and. lasts(run%to%side - 1)) then
       run%to = spot_t(run%to%side - 1, 1.0_wp, run%to%piece)
-    else if (run%to%xi > 1 - 2*least .and. is_meeting(run%to%side)) then
+    else if (run%to%xi > 1 - 2*least .and. lasts(run%to%side)) then
       run%to%xi = 1
     end if
-    if (run%from%side <= nside) return
-    run%from%side = run%from%side - nside
-    run%to%side = run%to%side - nside
+    call turn_back(size(lasting), run)
 
   contains
 
-    !> Sets meet where a side ends.
-    pure function is_meeting(side) result(yes)
+    pure function lasts(side) result(yes)
       integer, intent(in) :: side
       logical :: yes
 
-      yes = .not. same_tags(tags, wrapped(side, nside), wrapped(side + 1, nside))
-    end function is_meeting
+      yes = lasting(wrapped(side, size(lasting)))
+    end function lasts
 
   end subroutine snap
+
+  !> Count sides from the first one where a run begins beyond the last.
+  elemental subroutine turn_back(nside, run)
+    integer, intent(in) :: nside
+    type(run_t), intent(inout) :: run
+
+    if (run%from%side <= nside) return
+    run%from%side = run%from%side - nside
+    run%to%side = run%to%side - nside
+    run%found%side = run%found%side - nside
+  end subroutine turn_back
 
   !> Number of a side that is counted on around the loop.
   pure function wrapped(side, nside) result(k)
@@ -236,12 +251,7 @@ contains
       end do
     end do
     call keep(stays, list, n)
-    do k = 1, n
-      if (list(k)%from%side > nside) then
-        list(k)%from%side = list(k)%from%side - nside
-        list(k)%to%side = list(k)%to%side - nside
-      end if
-    end do
+    call turn_back(nside, list(:n))
     call sort_runs(list(:n))
 
   contains
@@ -262,7 +272,9 @@ contains
           end if
           middle = 0.5_wp*(begins + along(run%to))
           run%to = spot_at(middle)
+          run%found(2) = run%to
           next%from = spot_at(middle - turn)
+          next%found(1) = next%from
         end associate
       end do
     end subroutine part_two

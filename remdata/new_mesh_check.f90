@@ -1,6 +1,6 @@
 !> A new mesh is fit to be used, or refused with the reason.
 module new_mesh_check
-  use contour_chain, only: closest_place, point_on
+  use contour_chain, only: closest_place, joint_point, kind_entry, kind_exit, point_on, size_of_chain
   use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
   use mesh_quality, only: mesh_shape
@@ -18,6 +18,8 @@ module new_mesh_check
     real(wp) :: scaled_jacobian = 1.0_wp, least_angle = 90.0_wp, largest_angle = 90.0_wp, middle_share = 0.0_wp
     !> Largest distance of a node of the contour from it, over the length of its side.
     real(wp) :: off_contour = 0.0_wp
+    !> Largest distance from an end of contact to a node that is an end of sides, a share of the contour.
+    real(wp) :: off_ends = 0.0_wp
   end type mesh_check_t
 
   real(wp), parameter :: least_scaled_jacobian = 0.2_wp
@@ -45,11 +47,35 @@ contains
         end associate
       end do
     end do
+    check%off_ends = distance_of_ends(contours, mesh)
     call check_shape(mesh, check, error)
     if (.not. allocated(error) .and. check%off_contour > on_contour) &
       call fail(error, exit_no_convergence, 'remdata: nodes lie off the contour by '//to_text(check%off_contour, 3) &
                 //' of their sides')
   end subroutine check_new_mesh
+
+  pure function distance_of_ends(contours, mesh) result(farthest)
+    type(contour_t), intent(in) :: contours(:)
+    type(new_mesh_t), intent(in) :: mesh
+    real(wp) :: farthest
+    real(wp) :: point(2), nearest
+    integer :: c, k, i
+
+    farthest = 0
+    do c = 1, size(contours)
+      associate (chain => contours(c)%chain)
+        do k = 1, size(chain%stretches)
+          if (all(chain%kinds(k) /= [kind_entry, kind_exit])) cycle
+          point = joint_point(chain, k)
+          nearest = huge(nearest)
+          do i = 1, size(mesh%sides)
+            if (mesh%sides(i)%chain == c) nearest = min(nearest, length_of(mesh%coordinates(:, mesh%sides(i)%nodes(1)) - point))
+          end do
+          farthest = max(farthest, nearest/size_of_chain(chain))
+        end do
+      end associate
+    end do
+  end function distance_of_ends
 
   !> Shape of the elements alone.
   subroutine check_shape(mesh, check, error)

@@ -6,37 +6,24 @@
 module part_contour
   use boundary_sides, only: find_loops, loop_t, loops_found, shared_by_three
   use contact_ends, only: contact_end_t
-  use contact_gaps, only: close_gaps, mark_pockets
-  use contact_knots, only: sections_of_run, section_t
-  use contact_runs, only: find_runs, run_t, spot_t
+  use contact_knots, only: point_of_spot
+  use contact_placement, only: contour_options_t, place_contacts
+  use contact_runs, only: spot_t
   use contour_assembly, only: assemble_chain, contact_t
   use contour_chain, only: chain_t, closest_place, joint_point, kind_entry, kind_exit, largest_gap, place_t, point_on, size_of_chain
   use contour_laps, only: find_laps, lap_t
   use contour_volume, only: shift_sides, volume_inside, volume_of_loop
-  use dies, only: present_die
   use errors, only: error_t, exit_bug, exit_no_convergence, fail
-  use kinds, only: pi, wp
+  use kinds, only: wp
   use meeting_places, only: add_meeting_places
   use scene, only: axisymmetric, is_solid, scene_t
   use side_tags, only: find_tags, held_nodes, side_tags_t
   use solution, only: solution_t
-  use state_variables, only: find_variable
   use text, only: to_text
   use vectors, only: length_of
   implicit none
   private
   public :: contour_options_t, contour_t, contour_report_t, contact_limit_t, build_contours
-
-  type :: contour_options_t
-    !> Tangents that turn by more make a corner [radian].
-    real(wp) :: corner_turn = 20*pi/180
-    !> Contact over less of a side, in sides, is left as it is.
-    real(wp) :: least_contact = 0.05_wp
-    !> Gaps between two runs that are no wider than this share of a side are contact too: no mesh resolves them.
-    real(wp) :: narrow_gap = 0.01_wp
-    !> Gaps that are no wider than this share of a side, and no longer than some sides, are pockets: their ends are no limits.
-    real(wp) :: pocket_width = 0.1_wp, pocket_length = 2.0_wp
-  end type contour_options_t
 
   !> Where contact begins or ends.
   type :: contact_limit_t
@@ -76,6 +63,8 @@ module part_contour
     type(lap_t), allocatable :: laps(:)
     !> Largest shift and move of all contours; largest relative change of volume of one [length, length, -].
     real(wp) :: largest_shift = 0.0_wp, largest_move = 0.0_wp, volume_error = 0.0_wp
+    !> Largest distance from the contours to a place where the solver found an end of contact that is kept, a share of the contour.
+    real(wp) :: ends_off = 0.0_wp
     !> Pockets between runs, whose ends are not among the limits.
     integer :: pockets = 0
     !> Runs left out because they go backwards along their die.
@@ -105,7 +94,7 @@ contains
     type(loop_t), allocatable :: loops(:)
     integer, allocatable :: connectivity(:, :)
     real(wp) :: x(2, size(scene%mesh%coordinates, 2))
-    logical :: closed(size(scene%groups)), held(size(x, 2))
+    logical :: held(size(x, 2))
     type(spot_t), allocatable :: places(:)
     integer :: status, node, k, i
 
@@ -118,12 +107,12 @@ contains
                 trim(merge(' belongs to three elements       ', ' is walked alike by two elements ', status == shared_by_three)))
       return
     end if
-    call find_closed(scene, solution, closed)
     held = held_nodes(scene) .or. in_two_places(loops, size(x, 2))
     do k = 1, size(loops)
       contours(k)%loop = loops(k)
       call find_tags(scene, loops(k), x, contours(k)%tags)
-      call place_contacts(scene, solution, x, ends, closed, options, contours(k), report%backward_runs)
+      call place_contacts(scene, solution, x, ends, options, contours(k)%loop, contours(k)%tags, contours(k)%contacts, &
+                          report%backward_runs)
     end do
     do k = 1, size(loops)
       places = [spot_t ::]
@@ -132,6 +121,7 @@ contains
       end do
       call correct(scene, x, held, options, places, contours(k))
       call list_limits(k, contours(k), report%limits)
+      report%ends_off = max(report%ends_off, ends_off(contours(k), x)/size_of_chain(contours(k)%chain))
       report%pockets = report%pockets + count([(contours(k)%contacts(i)%run%pocket, i=1, size(contours(k)%contacts))])
       if (largest_gap(contours(k)%chain) > closed_within*size_of_chain(contours(k)%chain)) &
         call fail(error, exit_bug, 'contour '//to_text(k)//' is not closed')
@@ -179,63 +169,6 @@ contains
     end do
   end subroutine gather_solids
 
-  !> Groups with points in contact: their status is zero when open.
-  pure subroutine find_closed(scene, solution, closed)
-    type(scene_t), intent(in) :: scene
-    type(solution_t), intent(in) :: solution
-    logical, intent(out) :: closed(:)
-    integer :: g, place
-
-    closed = .false.
-    do g = 1, size(scene%groups)
-      associate (group => scene%groups(g))
-        if (group%die == 0) cycle
-        place = find_variable(group%variables, 'contact_status')
-        if (place > 0) closed(g) = any(nint(solution%groups(g)%committed(group%variables(place)%first, :, :)) /= 0)
-      end associate
-    end do
-  end subroutine find_closed
-
-  !> Runs of contact of a loop with the die's places they go through.
-  pure subroutine place_contacts(scene, solution, x, ends, closed, options, contour, backward)
-    type(scene_t), intent(in) :: scene
-    type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: x(:, :)
-    type(contact_end_t), intent(in) :: ends(:)
-    logical, intent(in) :: closed(:)
-    type(contour_options_t), intent(in) :: options
-    type(contour_t), intent(inout) :: contour
-    integer, intent(inout) :: backward
-    type(run_t), allocatable :: runs(:)
-    type(contact_t) :: one
-    type(section_t), allocatable :: sections(:)
-    type(contact_t), allocatable :: list(:)
-    integer :: k, n
-
-    call find_runs(scene, contour%loop, contour%tags, ends, closed, options%least_contact, runs)
-    call close_gaps(scene, solution, contour%loop, contour%tags, x, options%narrow_gap, runs)
-    call mark_pockets(scene, solution, contour%loop, x, options%pocket_width, options%pocket_length, runs)
-    allocate (list(size(runs)))
-    n = 0
-    do k = 1, size(runs)
-      one%run = runs(k)
-      one%number = scene%groups(runs(k)%group)%die
-      one%die = present_die(scene%dies(one%number), x)
-      one%pilot = solution%pilots(:, one%number)
-      call sections_of_run(runs(k), scene%groups(runs(k)%group)%npoint, contour%loop, contour%tags, x, one%die, one%pilot, sections)
-      if (size(sections) == 0) then
-        backward = backward + 1
-        cycle
-      end if
-      n = n + 1
-      list(n) = one
-      call move_alloc(sections, list(n)%sections)
-    end do
-    ! behind a run that is left out there is no pocket
-    if (n < size(runs)) list%run%pocket = .false.
-    allocate (contour%contacts, source=list(:n))
-  end subroutine place_contacts
-
   !> The chain, and the shift of the free sides that keeps the volume.
   pure subroutine correct(scene, x, held, options, places, contour)
     type(scene_t), intent(in) :: scene
@@ -260,7 +193,7 @@ contains
     may_move = .not. (contour%tags%on_axis .or. any(contour%tags%on_die, 1))
     do k = 1, size(contour%contacts)
       associate (run => contour%contacts(k)%run)
-        do i = run%from%side, run%to%side
+        do i = min(run%from%side, run%found(1)%side), max(run%to%side, run%found(2)%side)
           may_move(modulo(i - 1, size(may_move)) + 1) = .false.
         end do
       end associate
@@ -284,6 +217,26 @@ contains
       end do
     end do
   end subroutine correct
+
+  !> Largest distance from a contour to where the solver found ends of contact that are kept [length].
+  pure function ends_off(contour, x) result(off)
+    type(contour_t), intent(in) :: contour
+    real(wp), intent(in) :: x(:, :)
+    real(wp) :: off
+    real(wp) :: point(2)
+    integer :: k, i
+
+    off = 0
+    do k = 1, size(contour%contacts)
+      associate (contact => contour%contacts(k))
+        do i = 1, 2
+          if (.not. merge(contact%begins, contact%ends, i == 1)) cycle
+          point = point_of_spot(contour%loop, x, contact%run%found(i))
+          off = max(off, length_of(point_on(contour%chain, closest_place(contour%chain, point)) - point))
+        end do
+      end associate
+    end do
+  end function ends_off
 
   !> Beginnings and ends of contact of a contour, added to those before.
   pure subroutine list_limits(number, contour, limits)

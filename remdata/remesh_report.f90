@@ -86,6 +86,7 @@ contains
     call json%add('largest_move', facts%contour%largest_move)
     call json%add('largest_shift', facts%contour%largest_shift)
     call json%add('volume_error', facts%contour%volume_error)
+    call json%add('ends_off', facts%contour%ends_off)
     call json%add('pockets', facts%contour%pockets)
     call json%begin_array('limits')
     if (allocated(facts%contour%limits)) then
@@ -108,6 +109,7 @@ contains
     call json%add('least_angle', facts%mesh%least_angle)
     call json%add('largest_angle', facts%mesh%largest_angle)
     call json%add('off_contour', facts%mesh%off_contour)
+    call json%add('off_ends', facts%mesh%off_ends)
     call json%add('off_interface', facts%materials%off_interface)
     call json%add('pair_fit', facts%fit)
     call json%add('coarser', facts%coarser)

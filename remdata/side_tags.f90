@@ -7,9 +7,10 @@ module side_tags
   use dies, only: is_deformable
   use kinds, only: wp
   use scene, only: axisymmetric, scene_t
+  use stretches, only: cross, stretch_t, tangent_at
   implicit none
   private
-  public :: side_tags_t, find_tags, same_tags, held_nodes
+  public :: side_tags_t, find_tags, same_tags, held_nodes, lasting_ends
 
   !> Numbers are those of the scene's lists.
   type :: side_tags_t
@@ -80,6 +81,27 @@ contains
            all(tags%on_fixation(:, one) .eqv. tags%on_fixation(:, other)) .and. &
            all(tags%on_die(:, one) .eqv. tags%on_die(:, other)) .and. (tags%on_axis(one) .eqv. tags%on_axis(other))
   end function same_tags
+
+  !> Whether a new mesh has a node where each side ends, too: there the tags change, or the contour turns.
+  pure function lasting_ends(loop, tags, x, turn) result(lasting)
+    type(loop_t), intent(in) :: loop
+    type(side_tags_t), intent(in) :: tags
+    real(wp), intent(in) :: x(:, :)   !! nodes now (2, nnode) [length]
+    real(wp), intent(in) :: turn      !! of a corner [radian]
+    logical :: lasting(size(loop%sides, 2))
+    type(stretch_t) :: one, other
+    real(wp) :: before(2), after(2)
+    integer :: k, next
+
+    do k = 1, size(lasting)
+      next = mod(k, size(lasting)) + 1
+      one%points = x(:, loop%sides(:, k))
+      other%points = x(:, loop%sides(:, next))
+      before = tangent_at(one, 1.0_wp)
+      after = tangent_at(other, -1.0_wp)
+      lasting(k) = .not. same_tags(tags, k, next) .or. abs(atan2(cross(before, after), dot_product(before, after))) > turn
+    end do
+  end function lasting_ends
 
   !> Nodes that supports and imposed motions hold.
   pure function held_nodes(scene) result(held)

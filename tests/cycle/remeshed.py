@@ -12,6 +12,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(HERE), "runs"))
 from support import BIN, LONGEST_RUN  # noqa: E402
 
 CYCLE = os.path.join(os.path.abspath(BIN), "lagacycle")
+ON_CONTOUR = 1e-8     # distances from the contour, of its size
 # What the restart tells with a limit, NAME_limit.
 LIMITED = ("first_residual", "iterations", "force_change", "energy_change", "depth_change")
 
@@ -33,12 +34,16 @@ def tries(out):
 
 
 def within_limits(checks, out):
-    """What the restart on every accepted mesh found lies within the limits it tells, and so do the first steps on it."""
+    """What the restart on every accepted mesh found lies within the limits it tells, and so do the first steps on it; the contour
+    it was made of goes through all ends of contact, which are nodes of the mesh."""
     for one in tries(out):
         generation = int(one["generation [-]"])
         if one["accepted"] != "y" or not one["first_residual [-]"]:
             continue
         restart, steps = facts(out, generation, "restart"), facts(out, generation, "probation")
+        made = facts(out, generation, "start")
+        checks.that(max(made["contour"]["ends_off"], made["mesh"]["off_ends"]) < ON_CONTOUR, f"mesh {generation}: ends of contact",
+                    (made["contour"]["ends_off"], made["mesh"]["off_ends"]))
         for name in LIMITED:
             checks.that(restart[name] <= restart[name + "_limit"], f"mesh {generation}: {name} within its limit",
                         (restart[name], restart[name + "_limit"]))

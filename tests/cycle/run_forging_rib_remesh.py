@@ -14,7 +14,7 @@ import os
 import sys
 
 sys.dont_write_bytecode = True
-from remeshed import ROOT, cycle, facts, jump, put_table, tries, value_at  # noqa: E402
+from remeshed import ON_CONTOUR, ROOT, cycle, facts, jump, put_table, tries, value_at  # noqa: E402
 from support import DONE, Checks, history, summary, with_h5py  # noqa: E402
 
 with_h5py()
@@ -32,8 +32,7 @@ TANGENT = math.tan(math.pi / 4 - DRAFT / 2)       # length of a fillet of radius
 MOUTH = 28.5 + 1.5 * TANGENT                      # where the fillet towards the flash ends
 FULL = 0.98
 LARGEST_JUMP, LARGEST_DEVIATION, LARGEST_DRIFT = 0.02, 0.03, 0.001
-ON_CONTOUR = 1e-8                                 # of the size of the part
-CRUMB, GAP = 0.1, 0.01                            # 5 % of a side, in its parent coordinate; width of gaps, share of a side
+CRUMB, GAP = 0.05, 0.01                           # shares of a side: ends so near to a node go there; width of gaps
 ON_AXIS = 1e-9
 SAMPLES = numpy.linspace(-1, 1, 21)
 AT_POINTS = slice(None, None, 10)                 # of these, where CNT2D has its three points
@@ -88,15 +87,17 @@ def die_volume():
 
 
 def instants(out):
-    """Every saved instant in order: generation, nodes now, elements, sides of contact, pilot, pressures (side, point)."""
+    """Every saved instant in order: generation, nodes now, elements, sides of contact, the penetration allowed for each, pilot,
+    pressures (side, point)."""
     for path in sorted(glob.glob(os.path.join(out, "*.g[0-9][0-9].h5"))):
         with h5py.File(path, "r") as file:
             start = rows(file["mesh/coordinates"], 2)
             elements, contact = rows(file["mesh/groups/1/connectivity"], 8), rows(file["mesh/groups/2/connectivity"], 3)
+        allowed = PENETR * numpy.hypot(*(start[contact[:, 2]] - start[contact[:, 0]]).T)
         for instant in sorted(glob.glob(os.path.join(path[:-3], "*.h5"))):
             with h5py.File(instant, "r") as file:
                 nodes = start + file["node/displacement"][()][:, :2]
-                yield int(path[-5:-3]), nodes, elements, contact, file["pilots"][0], file["points/2/state"][()][:, :, 0]
+                yield int(path[-5:-3]), nodes, elements, contact, allowed, file["pilots"][0], file["points/2/state"][()][:, :, 0]
 
 
 def pieces_of_die(out):
@@ -112,7 +113,7 @@ def filling(checks, out):
     off = closed / die_volume() - 1
     checks.that(abs(off) < 1e-4, "closed cavity: arcs within 1e-3 mm keep the volume of circles", off)
     lines, stroke = ["| stroke mm | cavity mm³ | part in it mm³ | full % |", "|---|---|---|---|"], -1.0
-    for _, nodes, elements, _, pilot, _ in instants(out):
+    for _, nodes, elements, _, _, pilot, _ in instants(out):
         if abs(HEIGHT - pilot[1] - stroke) < 1e-9:
             continue
         stroke, die = HEIGHT - pilot[1], Graph(pieces + pilot[:2])
@@ -126,14 +127,13 @@ def filling(checks, out):
 def true_contact(checks, out):
     """At all saved instants: contact on the boundary alone, pressure only where the part touches, and nothing deeper than allowed."""
     pieces, worst = pieces_of_die(out), {"gap": -1.0, "depth": -1.0, "between": -1.0}
-    for generation, nodes, elements, contact, pilot, pressure in instants(out):
+    for generation, nodes, elements, contact, allowed, pilot, pressure in instants(out):
         outside = {frozenset(map(tuple, side)) for side in boundary(nodes, elements)}
         sides = nodes[contact]
         checks.that(all(frozenset(map(tuple, side)) in outside for side in sides), f"mesh {generation}: contact lies on the boundary")
         points = numpy.array([point(side, SAMPLES) for side in sides])
         apart = signed_distance(pieces + pilot[:2], points.reshape(-1, 2)).reshape(points.shape[:2])
-        allowed = PENETR * numpy.hypot(*(sides[:, 2] - sides[:, 0]).T)[:, None]
-        at_points, closed = apart[:, AT_POINTS] / allowed, pressure > 0
+        at_points, closed = apart[:, AT_POINTS] / allowed[:, None], pressure > 0
         at_points[points[:, AT_POINTS, 0] < ON_AXIS * MOUTH] = 0.0    # no force acts on the axis: nothing holds a point there
         if numpy.any(closed):
             worst["gap"] = max(worst["gap"], numpy.max(at_points[closed]))
@@ -145,12 +145,19 @@ def true_contact(checks, out):
     return worst
 
 
+def length(side):
+    """Of the chord of a side or of sides."""
+    return numpy.hypot(*(side[..., 2, :] - side[..., 0, :]).T)
+
+
 def ends_of_contact(checks, out, generation):
     """Where contact began and ended on the old mesh lies on the contour of the new one; cells of the table: how many ends, their
-    largest distance over the size of the part, how many more in gaps.
+    largest distance from the corrected contour over the size of the part, that of those which are nodes from the new sides, how
+    many more in gaps.
 
-    remdata tells the ends it keeps. One that is less than 5 % of a side past a node is that node, at its depth in the die: it may be
-    off by what penetration is allowed. Ends it does not keep are those of gaps narrower than 1 % of a side, which are contact too."""
+    The corrected contour goes through all ends, and new meshes have nodes where it begins and ceases to follow the die. One that is
+    less than 5 % of a side beside a corner or a point in contact has its node there: the new side may be off the end itself by what
+    penetration is allowed. Ends that are not kept are those of gaps narrower than 1 % of a side, which are contact too."""
     names = [glob.glob(os.path.join(out, f"*.g{g:02d}.{kind}.h5"))[0] for g, kind in ((generation - 1, "end"), (generation, "start"))]
     with h5py.File(names[0], "r") as old, h5py.File(names[1], "r") as new:
         nodes = old["mesh/coordinates"][()] + old["nodes/displacement"][()]
@@ -159,27 +166,32 @@ def ends_of_contact(checks, out, generation):
         sides, places = old["contact_ends/side"][()] - 1, old["contact_ends/place"][()]
         begins = old["contact_ends/begins"][()] != 0
     size = numpy.max(numpy.ptp(nodes, axis=0))
-    told = facts(out, generation, "start")["contour"]
-    kept = [(limit["begins"], numpy.array([limit["x"], limit["y"]])) for limit in told["limits"]]
+    told = facts(out, generation, "start")
+    kept = [(limit["begins"], numpy.array([limit["x"], limit["y"]])) for limit in told["contour"]["limits"]]
     found = numpy.array([point(contact[side], place) for side, place in zip(sides, places)])
     off = abs(signed_distance(contour, found))
-    off_kept = abs(signed_distance(contour, numpy.array([x for _, x in kept])))
-    checks.that(max(off_kept) < ON_CONTOUR * size, f"mesh {generation}: the ends of contact that are kept lie on the contour", off_kept)
+    checks.that(told["contour"]["ends_off"] < ON_CONTOUR, f"mesh {generation}: the corrected contour goes through the ends of contact",
+                told["contour"]["ends_off"])
+    for _, x in kept:
+        checks.that(numpy.min(numpy.hypot(*(contour[:, 0] - x).T)) < ON_CONTOUR * size, f"mesh {generation}: a node where the contour "
+                    "begins or ceases to follow the die", x)
     outer, exact = 0, 0.0
-    for k, (side, place, first) in enumerate(zip(sides, places, begins)):
-        length = numpy.hypot(*(contact[side][2] - contact[side][0]))
-        near = [numpy.hypot(*(x - found[k])) for begin, x in kept if begin == first]
-        crumb = place > 1 - CRUMB if first else place < -1 + CRUMB
-        if near and min(near) < (CRUMB * length if crumb else ON_CONTOUR * size):
+    for k, (side, first) in enumerate(zip(sides, begins)):
+        near = min([numpy.hypot(*(x - found[k])) for begin, x in kept if begin == first], default=numpy.inf)
+        if near < ON_CONTOUR * size:
             outer += 1
-            bound = PENETR * length if crumb and min(near) > ON_CONTOUR * size else ON_CONTOUR * size
             exact = max(exact, off[k] / size)
-            checks.that(off[k] < bound, f"mesh {generation}: an end of contact lies on the contour", (found[k], off[k], bound))
+            checks.that(off[k] < ON_CONTOUR * size, f"mesh {generation}: an end of contact lies on the contour", (found[k], off[k]))
+        elif near < CRUMB * length(contact[side]):
+            outer += 1
+            checks.that(off[k] < PENETR * length(contact[side]), f"mesh {generation}: an end beside a node lies on the contour but for "
+                        "what penetration is allowed", (found[k], off[k]))
         else:
-            checks.that(off[k] < GAP * length, f"mesh {generation}: the end of a gap in contact is within 1 % of its side of the contour",
-                        (found[k], off[k], length))
+            new = contour[numpy.argmin(numpy.hypot(*(contour[:, 1] - found[k]).T))]
+            checks.that(off[k] < GAP * length(new), f"mesh {generation}: the end of a gap in contact is within 1 % of the side of "
+                        "the contour", (found[k], off[k], length(new)))
     checks.that(outer == len(kept), f"mesh {generation}: every end that is kept is one of the old mesh", (outer, kept, found))
-    return f"{outer} | {exact:.0e} | {len(sides) - outer}"
+    return f"{outer} | {told['contour']['ends_off']:.0e} | {exact:.0e} | {len(sides) - outer}"
 
 
 def new_meshes(checks, out, rows):
@@ -188,8 +200,9 @@ def new_meshes(checks, out, rows):
     checks.that(len(made) >= 5, "at least five new meshes", len(made))
     checks.that(all(one["accepted"] == "y" for one in made), "every new mesh is taken at the first try",
                 [one["reason"] for one in made if one["accepted"] != "y"])
-    lines = ["| mesh | at mm | why | elements | scaled Jacobian | ends of contact | off the contour, of the size | ends of gaps | first "
-             "residual | iterations | jump of force % | volume % |", "|---|---|---|---|---|---|---|---|---|---|---|---|"]
+    lines = ["| mesh | at mm | why | elements | scaled Jacobian | ends of contact | off the contour, of the size | nodes off the "
+             "new sides | ends of gaps | first residual | iterations | jump of force % | volume % |",
+             "|---|---|---|---|---|---|---|---|---|---|---|---|---|"]
     initial, drift = summary(out)["initial_volume"], 0.0
     for one in made:
         generation, k = int(one["generation [-]"]), rows["step"].index(int(one["step [-]"]))
