@@ -14,7 +14,7 @@ import os
 import sys
 
 sys.dont_write_bytecode = True
-from remeshed import ON_CONTOUR, ROOT, cycle, facts, jump, put_table, tries, value_at  # noqa: E402
+from remeshed import ON_CONTOUR, ROOT, cycle, facts, jump, put_table, tries, value_at, within_limits  # noqa: E402
 from support import DONE, Checks, history, summary, with_h5py  # noqa: E402
 
 with_h5py()
@@ -245,6 +245,7 @@ def main():
     rows = history(out)
     rows["travel"] = [-u for u in rows["displacement_y_upper"]]
     checks.that(abs(rows["travel"][-1] - TRAVEL) < 1e-9, "the die has come to its end", rows["travel"][-1])
+    within_limits(checks, out)
     lines = new_meshes(checks, out, rows) + [""] + filling(checks, out) + [""] + against_one_mesh(checks, rows)
     worst, deep = true_contact(checks, out), summary(out)["checks"]
     checks.that(deep["max_penetration_over_allowed"] < 1 + 1e-6, "the solver too: no point deeper than allowed, in any step",

@@ -11,7 +11,7 @@ import os
 import sys
 
 sys.dont_write_bytecode = True
-from remeshed import ROOT, cycle, facts, jump, tries  # noqa: E402
+from remeshed import ROOT, cycle, facts, jump, tries, within_limits  # noqa: E402
 from support import DONE, Checks, add_cards, deck_text, history, run, said, summary, write  # noqa: E402
 
 FOLDER = os.path.join(ROOT, "decks", "press_fit")
@@ -42,6 +42,7 @@ def remeshed(checks, name, text, count, largest_residual=SMALL_RESIDUAL, largest
     made = tries(out)
     checks.that(len(made) == count and all(t["accepted"] == "y" for t in made), f"{name}: {count} new meshes, each at the first try",
                 [t["reason"] for t in made])
+    within_limits(checks, out)
     made = [t for t in made if t["accepted"] == "y"]
     for one in made:
         generation = int(one["generation [-]"])

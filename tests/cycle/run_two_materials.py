@@ -12,7 +12,7 @@ import os
 import sys
 
 sys.dont_write_bytecode = True
-from remeshed import cycle, facts, tries, value_at  # noqa: E402
+from remeshed import cycle, facts, tries, value_at, within_limits  # noqa: E402
 from support import DONE, NO_CONVERGENCE, Checks, history, run, said, with_h5py, write  # noqa: E402
 
 with_h5py()
@@ -194,6 +194,7 @@ def follow(checks, name, text, materials, axisymmetric, remeshings, sets=()):
     made = tries(out)
     checks.that(len(made) == remeshings and all(t["accepted"] == "y" for t in made),
                 f"{name}: {remeshings} new meshes, each taken at the first try", [t["reason"] for t in made])
+    within_limits(checks, out)
     for g in range(2, 2 + remeshings):
         old = Mesh(os.path.join(out, f"{name}.g{g - 1:02d}.end.h5"), materials, axisymmetric)
         new = Mesh(os.path.join(out, f"{name}.g{g:02d}.start.h5"), materials, axisymmetric)
