@@ -7,7 +7,7 @@
 module contact_gaps
   use boundary_sides, only: loop_t
   use contact_knots, only: find_knot, point_of_spot
-  use contact_runs, only: along, run_t, same_spot, spot_t, turn_back
+  use contact_runs, only: along, run_t, same_spot, sort_runs, spot_t, turn_back
   use contact_stretches, only: knot_t
   use dies, only: die_t, present_die
   use kinds, only: wp
@@ -32,25 +32,29 @@ contains
     real(wp), intent(in) :: x(:, :)                       !! nodes now (2, nnode) [length]
     real(wp), intent(in) :: widest                        !! gap that is closed, share of the side
     type(run_t), allocatable, intent(inout) :: runs(:)    !! in their order along the loop
-    logical :: stays(size(runs))
+    integer :: into(size(runs)), i, next, n, nside
+    logical :: stays
     type(run_t), allocatable :: list(:)
-    integer :: i, next, n, nside
 
     if (size(runs) < 2) return
     n = size(runs)
     nside = size(loop%sides, 2)
-    stays = .true.
+    into = 0
     do i = 1, n
+      ! the run that has taken the next one's place, if that was joined already
       next = mod(i, n) + 1
+      do while (into(next) > 0)
+        next = into(next)
+      end do
       if (next == i .or. scene%groups(runs(i)%group)%die /= scene%groups(runs(next)%group)%die) cycle
       if (.not. is_narrow(scene, solution, loop, x, widest, runs(i), begins_after(runs(i), runs(next), nside))) cycle
-      call join_runs(tags, nside, runs(i), runs(next), stays(i))
+      call join_runs(tags, nside, runs(i), runs(next), stays)
+      if (.not. stays) into(i) = next
     end do
-    ! a run that was joined to the one after it has given that its beginning
-    if (.not. any(stays)) stays(n) = .true.
-    allocate (list, source=pack(runs, stays))
+    allocate (list, source=pack(runs, into == 0))
     call move_alloc(list, runs)
     call turn_back(nside, runs)
+    call sort_runs(runs)
   end subroutine close_gaps
 
   !> Mark runs that a pocket follows.
@@ -122,10 +126,11 @@ contains
     type(side_tags_t), intent(in) :: tags
     integer, intent(in) :: nside
     type(run_t), intent(inout) :: run, next
-    logical, intent(inout) :: stays
+    logical, intent(out) :: stays   !! the first one
     type(spot_t) :: until
     integer :: k, last, side
 
+    stays = .true.
     until = begins_after(run, next, nside)
     last = run%to%side
     do k = run%to%side + 1, until%side

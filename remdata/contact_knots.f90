@@ -2,8 +2,8 @@
 !>
 !> The depth of an old point of contact in its die is what carries its pressure, p = multiplier + AKP d, so the contour that
 !> runs through the old depths gives the old pressures back. Only integration points are asked: between them the old side
-!> bends away from the die. At its ends the run goes through the part's own point, so that nothing opens there, and so it does where
-!> the solver found them when that is within it.
+!> bends away from the die. At its ends the run goes through the part's own point, so that nothing opens there; so it does where the
+!> solver found an end that was moved outwards (contact_runs).
 !>
 !> Feet are searched between those of the ends, along the die, and must follow each other: a point that folded back over its
 !> neighbour gives no knot.
@@ -38,7 +38,8 @@ contains
 
   !> Where a side dives into the die so steeply that a corner would be left at the first point in contact, a crumb behind the
   !> beginning, or at the last one before the end, the run begins or ends in the point, and the corner with it.
-  pure subroutine begin_at_point(npoint, loop, x, die, pilot, least, turn, run)
+  !> Ends that are shared with another run stay, and so does a run that nothing much would be left of.
+  pure subroutine begin_at_point(npoint, loop, x, die, pilot, least, turn, shared, run)
     integer, intent(in) :: npoint        !! rule of the group's points
     type(loop_t), intent(in) :: loop
     real(wp), intent(in) :: x(:, :)      !! nodes now (2, nnode) [length]
@@ -46,21 +47,25 @@ contains
     real(wp), intent(in) :: pilot(3)
     real(wp), intent(in) :: least        !! crumb [sides]
     real(wp), intent(in) :: turn         !! that makes a corner [radian]
+    logical, intent(in) :: shared(2)
     type(run_t), intent(inout) :: run
+    type(run_t) :: moved
     type(spot_t) :: point
     real(wp), allocatable :: xi(:), weight(:)
 
     call line_rule(npoint, xi, weight)
+    moved = run
     point = run%from
     point%xi = minval(xi, mask=xi > run%from%xi)
-    if (point%xi < min(1.0_wp, run%from%xi + 2*least)) then
-      if (is_steep(run%from, point)) run%from = point
+    if (point%xi < min(1.0_wp, run%from%xi + 2*least) .and. .not. shared(1)) then
+      if (is_steep(run%from, point)) moved%from = point
     end if
     point = run%to
     point%xi = maxval(xi, mask=xi < run%to%xi)
-    if (point%xi > max(-1.0_wp, run%to%xi - 2*least)) then
-      if (is_steep(run%to, point)) run%to = point
+    if (point%xi > max(-1.0_wp, run%to%xi - 2*least) .and. .not. shared(2)) then
+      if (is_steep(run%to, point)) moved%to = point
     end if
+    if (along(moved%to) - along(moved%from) >= least) run = moved
 
   contains
 

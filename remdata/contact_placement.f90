@@ -4,7 +4,7 @@ module contact_placement
   use contact_ends, only: contact_end_t
   use contact_gaps, only: close_gaps, mark_pockets
   use contact_knots, only: begin_at_point, section_t, sections_of_run
-  use contact_runs, only: find_runs, run_t
+  use contact_runs, only: find_runs, is_shared, run_t
   use contour_assembly, only: contact_t
   use dies, only: present_die
   use kinds, only: pi, wp
@@ -27,7 +27,8 @@ module contact_placement
     real(wp) :: pocket_width = 0.1_wp, pocket_length = 2.0_wp
   end type contour_options_t
 
-  !> Old sides that turn by less than a corner may leave one on the die: nodes are lasting from this share of the turn on.
+  !> Old sides that turn by less than a corner may leave one on the die: nodes are lasting, and sides steep, from this share of the
+  !> turn on.
   real(wp), parameter :: lasting_share = 0.5_wp
 
 contains
@@ -63,7 +64,8 @@ contains
       one%die = present_die(scene%dies(one%number), x)
       one%pilot = solution%pilots(:, one%number)
       associate (npoint => scene%groups(runs(k)%group)%npoint)
-        call begin_at_point(npoint, loop, x, one%die, one%pilot, options%least_contact, turn, one%run)
+        call begin_at_point(npoint, loop, x, one%die, one%pilot, options%least_contact, turn, &
+                            [is_shared(runs, k, 1, size(loop%sides, 2)), is_shared(runs, k, 2, size(loop%sides, 2))], one%run)
         call sections_of_run(one%run, npoint, loop, tags, x, one%die, one%pilot, sections)
       end associate
       if (size(sections) == 0) then

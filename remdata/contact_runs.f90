@@ -3,9 +3,10 @@
 !> The solver finds the ends group by group (contact_ends). Here they are put in their order along the loop and paired. On
 !> the axis a point of contact has no surface and is never found closed: a run whose last point before the axis is closed
 !> goes on to it. A run that begins or ends almost in a node that new meshes have too does so in the node: no sliver is left
-!> for a mesh to resolve, and the contour goes through both places. Runs of two groups that overlap are cut in the middle of
-!> what they share, and one that lies inside another gives way. A run that covers less than a share of one side is left as it
-!> is: the part's own contour carries its pressure just as well, and no element would fit.
+!> for a mesh to resolve, and the side it was found on is kept still (part_contour), so that the contour goes through both
+!> places. Runs of two groups that overlap are cut in the middle of what they share, and one that lies inside another gives way.
+!> A run that covers less than a share of one side is left as it is: the part's own contour carries its pressure just as well,
+!> and no element would fit.
 module contact_runs
   use boundary_sides, only: loop_t
   use contact_ends, only: contact_end_t
@@ -15,7 +16,7 @@ module contact_runs
   use side_tags, only: side_tags_t
   implicit none
   private
-  public :: spot_t, run_t, find_runs, along, same_spot, turn_back
+  public :: spot_t, run_t, find_runs, along, same_spot, sort_runs, turn_back, is_shared
 
   !> A place on a loop. Sides are counted on beyond the last one by a run across the start of the loop.
   type :: spot_t
@@ -96,6 +97,25 @@ contains
     same = abs(along(one) - along(other)) <= same_place
   end function same_spot
 
+  !> Another run ends where one begins (which = 1), or begins where it ends (2), or a pocket is between them.
+  pure function is_shared(runs, k, which, nside) result(shared)
+    type(run_t), intent(in) :: runs(:)   !! in their order along the loop
+    integer, intent(in) :: k, which, nside
+    logical :: shared
+    real(wp) :: apart
+    integer :: i
+
+    if (which == 1) then
+      shared = runs(modulo(k - 2, size(runs)) + 1)%pocket
+    else
+      shared = runs(k)%pocket
+    end if
+    do i = 1, size(runs)
+      apart = merge(along(runs(k)%from) - along(runs(i)%to), along(runs(i)%from) - along(runs(k)%to), which == 1)
+      shared = shared .or. abs(modulo(apart + 0.5_wp, real(nside, wp)) - 0.5_wp) <= same_place
+    end do
+  end function is_shared
+
   !> Runs of one group: each beginning goes with the end that follows it around the loop.
   pure subroutine pair_ends(group, number, side_at, nside, ends, list, n)
     type(group_t), intent(in) :: group
@@ -120,7 +140,7 @@ contains
         to = spot
       end do
       if (to%side == 0) cycle
-      if (from%xi >= 1 - 2*same_place) from = spot_t(mod(from%side, nside) + 1, -1.0_wp, from%piece)
+      if (from%xi >= 1 - 2*same_place) from = spot_t(from%side + 1, -1.0_wp, from%piece)
       if (to%xi <= -1 + 2*same_place) to = spot_t(to%side - 1, 1.0_wp, to%piece)
       if (from%xi <= -1 + 2*same_place) from%xi = -1
       if (to%xi >= 1 - 2*same_place) to%xi = 1
@@ -129,6 +149,7 @@ contains
       list(n)%group = number
       list(n)%from = from
       list(n)%to = to
+      call turn_back(nside, list(n))
     end do
 
   contains

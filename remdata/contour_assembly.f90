@@ -5,7 +5,7 @@
 module contour_assembly
   use boundary_sides, only: loop_t
   use contact_knots, only: section_t
-  use contact_runs, only: along, run_t, spot_t
+  use contact_runs, only: along, is_shared, run_t, spot_t
   use contact_stretches, only: follow_die, knot_t
   use contour_chain, only: chain_t, close_chain, kind_end, kind_entry, kind_exit, kind_joint
   use dies, only: die_t, is_deformable
@@ -192,18 +192,11 @@ contains
   pure subroutine mark_neighbours(nside, contacts)
     integer, intent(in) :: nside
     type(contact_t), intent(inout) :: contacts(:)
-    integer :: i, k
+    integer :: k
 
-    do i = 1, size(contacts)
-      if (contacts(i)%run%pocket) then
-        contacts(i)%ends = .false.
-        contacts(mod(i, size(contacts)) + 1)%begins = .false.
-      end if
-      do k = 1, size(contacts)
-        if (abs(modulo(along(contacts(i)%run%to) - along(contacts(k)%run%from) + 0.5_wp, real(nside, wp)) - 0.5_wp) > nothing) cycle
-        contacts(i)%ends = .false.
-        contacts(k)%begins = .false.
-      end do
+    do k = 1, size(contacts)
+      contacts(k)%begins = .not. is_shared(contacts%run, k, 1, nside)
+      contacts(k)%ends = .not. is_shared(contacts%run, k, 2, nside)
     end do
   end subroutine mark_neighbours
 

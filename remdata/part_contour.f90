@@ -64,7 +64,7 @@ module part_contour
     !> Largest shift and move of all contours; largest relative change of volume of one [length, length, -].
     real(wp) :: largest_shift = 0.0_wp, largest_move = 0.0_wp, volume_error = 0.0_wp
     !> Largest distance from the contours to a place where the solver found an end of contact that is kept, a share of the contour.
-    real(wp) :: ends_off = 0.0_wp
+    real(wp) :: off_ends = 0.0_wp
     !> Pockets between runs, whose ends are not among the limits.
     integer :: pockets = 0
     !> Runs left out because they go backwards along their die.
@@ -121,7 +121,7 @@ contains
       end do
       call correct(scene, x, held, options, places, contours(k))
       call list_limits(k, contours(k), report%limits)
-      report%ends_off = max(report%ends_off, ends_off(contours(k), x)/size_of_chain(contours(k)%chain))
+      report%off_ends = max(report%off_ends, off_ends(contours(k), x)/size_of_chain(contours(k)%chain))
       report%pockets = report%pockets + count([(contours(k)%contacts(i)%run%pocket, i=1, size(contours(k)%contacts))])
       if (largest_gap(contours(k)%chain) > closed_within*size_of_chain(contours(k)%chain)) &
         call fail(error, exit_bug, 'contour '//to_text(k)//' is not closed')
@@ -219,7 +219,7 @@ contains
   end subroutine correct
 
   !> Largest distance from a contour to where the solver found ends of contact that are kept [length].
-  pure function ends_off(contour, x) result(off)
+  pure function off_ends(contour, x) result(off)
     type(contour_t), intent(in) :: contour
     real(wp), intent(in) :: x(:, :)
     real(wp) :: off
@@ -236,7 +236,7 @@ contains
         end do
       end associate
     end do
-  end function ends_off
+  end function off_ends
 
   !> Beginnings and ends of contact of a contour, added to those before.
   pure subroutine list_limits(number, contour, limits)

@@ -36,7 +36,7 @@ contains
     end do
     write (*, '(a)') '  by '//facts%mesher//', shape: scaled Jacobian from '//to_text(facts%mesh%scaled_jacobian, 3)//', angles ' &
       //to_text(facts%mesh%least_angle, 3)//' to '//to_text(facts%mesh%largest_angle, 4)//' degrees'
-    if (facts%fit > 0) write (*, '(a)') '  nodes in contact fitted to the depth that bears the pressure: moved by ' &
+    if (facts%fit > 0) write (*, '(a)') '  sides of bodies in contact fitted to each other: nodes moved by ' &
       //to_text(facts%fit, 3)//' of a side at most'
     write (*, '(a)') '  errors expected: '//to_text(facts%expected%mean, 3)//' times the limit in the mean, ' &
       //to_text(facts%expected%worst, 3)//' at worst; '//to_text(facts%expected%elements, 3)//' times the elements it takes'
@@ -86,7 +86,7 @@ contains
     call json%add('largest_move', facts%contour%largest_move)
     call json%add('largest_shift', facts%contour%largest_shift)
     call json%add('volume_error', facts%contour%volume_error)
-    call json%add('ends_off', facts%contour%ends_off)
+    call json%add('off_ends', facts%contour%off_ends)
     call json%add('pockets', facts%contour%pockets)
     call json%begin_array('limits')
     if (allocated(facts%contour%limits)) then
@@ -111,7 +111,7 @@ contains
     call json%add('off_contour', facts%mesh%off_contour)
     call json%add('off_ends', facts%mesh%off_ends)
     call json%add('off_interface', facts%materials%off_interface)
-    call json%add('contact_fit', facts%fit)
+    call json%add('pair_fit', facts%fit)
     call json%add('coarser', facts%coarser)
     call json%add('expected_error_mean', facts%expected%mean)
     call json%add('expected_error_worst', facts%expected%worst)

@@ -7,11 +7,9 @@ module remesh_scene
   use block_mesh, only: polygon_area
   use contact_carry, only: carry_contacts
   use contact_ends, only: contact_end_t
-  use contact_fit, only: find_feet, fit_contacts
   use contact_stretches, only: placed_piece
   use contour_chain, only: chain_t
   use contour_needs, only: geometry_wish_t, needs_of_chain, needs_of_die
-  use depth_shares, only: shares_of_depth
   use dies, only: is_deformable
   use errors, only: error_t
   use first_contours, only: contours_of_cards
@@ -24,6 +22,7 @@ module remesh_scene
   use mesh_prediction, only: predict
   use mesh_without_zones, only: mesh_freely
   use new_mesh_check, only: check_new_mesh, check_shape
+  use pair_fit, only: find_feet, fit_pairs
   use new_scene, only: set_up_new_scene
   use part_contour, only: build_contours, contour_options_t, contour_t
   use remesh_facts, only: begin_task, end_task, remesh_facts_t
@@ -104,8 +103,7 @@ contains
     if (allocated(error)) return
     call set_up_new_scene(old, contours, plan, mesh, new, error)
     if (allocated(error)) return
-    call fit_contacts(contours, shares_of_depth(old, old%mesh%coordinates + before%displacement, contours, mesh), mesh, new, &
-                      facts%fit)
+    call fit_pairs(contours, mesh, new, facts%fit)
     if (facts%fit > 0) call check_shape(mesh, facts%mesh, error)
     if (allocated(error)) return
     call start_solution(new, after)

@@ -150,7 +150,8 @@ contains
   end function relative_distance
 
   !> The penalty of contact goes with the length of sides: at the depth that was kept, sides of another length bear another
-  !> pressure. The multiplier takes the difference, so that every closed point begins with the pressure that was carried.
+  !> pressure. The multiplier takes the difference, so that every point begins with the pressure that was carried, be it closed or
+  !> one that lies between closed and open ones of the old mesh.
   subroutine keep_pressures(scene, solution)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
@@ -162,7 +163,7 @@ contains
         pressure = group%variables(find_variable(group%variables, 'pressure'))%first
         multiplier = group%variables(find_variable(group%variables, 'augmentation'))%first
         status = group%variables(find_variable(group%variables, 'contact_status'))%first
-        where (nint(state%committed(status, :, :)) > 0)
+        where (nint(state%committed(status, :, :)) > 0 .or. state%committed(pressure, :, :) > 0)
           state%committed(multiplier, :, :) = state%committed(multiplier, :, :) + state%committed(pressure, :, :) &
                                               - state%trial(pressure, :, :)
         end where
@@ -207,7 +208,7 @@ contains
         do e = 1, size(group%connectivity, 2)
           side = length_of(x(:, group%connectivity(3, e)) - x(:, group%connectivity(1, e)))
           ! every contact law begins with the penetration it allows (contact_penalties)
-          allowed = scene%materials(group%material)%values(1) + missed_by_parabola*side
+          allowed = (scene%materials(group%material)%values(1) + missed_by_parabola)*side
           do p = 1, size(state%committed, 2)
             if (nint(state%committed(status, p, e)) <= 0) cycle
             weight = abs(state%committed(pressure, p, e))*side

@@ -2,7 +2,6 @@
 module cards_sides
   use card_places, only: numbers_after_name, read_sides
   use cards_laws, only: read_material
-  use contact_penalties, only: borne_by_depth
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
@@ -61,7 +60,6 @@ contains
       call draft%elems(group%elem_id)%variables(law_of_material(draft%laws(law), draft%scene%materials(group%material)), &
                                                        draft%scene%plane_state, group%variables)
       group%amplitude = modulus_behind(draft, group%connectivity)
-      group%penalty_of_sides = borne_by_depth(draft%scene%materials(group%material))
       call append_group(draft, group, cursor%where())
     end do
   end subroutine read_contacts

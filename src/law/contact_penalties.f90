@@ -2,10 +2,9 @@
 module contact_penalties
   use kinds, only: wp
   use law_api, only: parameter, parameter_t
-  use materials, only: material_t
   implicit none
   private
-  public :: penalty_parameters, borne_by_depth
+  public :: penalty_parameters
 
 contains
 
@@ -21,13 +20,5 @@ contains
     list(4) = parameter('AUGMENT', '-', 'largest number of augmentations in a step', &
                         lower=0.0_wp, upper=50.0_wp, default=0.0_wp)
   end function penalty_parameters
-
-  !> The depth alone bears the pressure, with a penalty that follows the length of the sides: no AKP, no AUGMENT.
-  pure function borne_by_depth(material) result(yes)
-    type(material_t), intent(in) :: material
-    logical :: yes
-
-    yes = .not. (material%values(2) > 0 .or. material%values(4) > 0)
-  end function borne_by_depth
 
 end module contact_penalties

@@ -45,8 +45,6 @@ module scene
     integer :: pairs = 0
     integer :: multiplier = 0
     real(wp) :: amplitude = 0.0_wp
-    !> Contact: the depth alone bears the pressure, by a penalty that follows the length of the sides.
-    logical :: penalty_of_sides = .false.
     !> Direction of a force on the volume: 1 = x, 2 = y; 0 where unused.
     integer :: direction = 0
     !> Temperature given to the body: amplitude times multiplier; multiplier 0 where none is.

@@ -133,7 +133,7 @@ contains
     type(material_t), allocatable :: more(:)
     integer, allocatable :: components(:)
     real(wp), allocatable :: initial(:)
-    integer :: v, yes
+    integer :: v
 
     if (.not. allocated(scene%materials)) allocate (scene%materials(0))
     place = group_place(k)
@@ -143,10 +143,6 @@ contains
       call file%read(place//'/npoint', group%npoint)
       call file%read(place//'/connectivity', group%connectivity)
       if (file%has(place//'/die_number')) call file%read(place//'/die_number', group%die)
-      if (file%has(place//'/penalty_of_sides')) then
-        call file%read(place//'/penalty_of_sides', yes)
-        group%penalty_of_sides = yes /= 0
-      end if
       if (file%has(place//'/pairs')) group%pairs = maxval([0, scene%groups%pairs]) + 1
       allocate (group%variables(0))
       if (file%has(place//'/material_number')) then

@@ -12,7 +12,7 @@ module exchange_schema
            schema_version, set_place
 
   !> Raised whenever a dataset changes its name, shape or meaning.
-  integer, parameter :: schema_version = 6
+  integer, parameter :: schema_version = 5
   character(len=*), parameter :: schema_name = 'lagamine checkpoint'
 
 contains

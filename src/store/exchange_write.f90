@@ -145,7 +145,6 @@ contains
         if (group%die > 0) then
           call file%write(place//'/die', scene%dies(group%die)%name)
           call file%write(place//'/die_number', group%die)
-          call file%write(place//'/penalty_of_sides', merge(1, 0, group%penalty_of_sides))
         end if
         if (group%material > 0) then
           call file%write(place//'/material', scene%materials(group%material)%name)

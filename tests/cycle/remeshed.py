@@ -42,8 +42,8 @@ def within_limits(checks, out):
             continue
         restart, steps = facts(out, generation, "restart"), facts(out, generation, "probation")
         made = facts(out, generation, "start")
-        checks.that(max(made["contour"]["ends_off"], made["mesh"]["off_ends"]) < ON_CONTOUR, f"mesh {generation}: ends of contact",
-                    (made["contour"]["ends_off"], made["mesh"]["off_ends"]))
+        checks.that(max(made["contour"]["off_ends"], made["mesh"]["off_ends"]) < ON_CONTOUR, f"mesh {generation}: ends of contact",
+                    (made["contour"]["off_ends"], made["mesh"]["off_ends"]))
         for name in LIMITED:
             checks.that(restart[name] <= restart[name + "_limit"], f"mesh {generation}: {name} within its limit",
                         (restart[name], restart[name + "_limit"]))

@@ -170,8 +170,8 @@ def ends_of_contact(checks, out, generation):
     kept = [(limit["begins"], numpy.array([limit["x"], limit["y"]])) for limit in told["contour"]["limits"]]
     found = numpy.array([point(contact[side], place) for side, place in zip(sides, places)])
     off = abs(signed_distance(contour, found))
-    checks.that(told["contour"]["ends_off"] < ON_CONTOUR, f"mesh {generation}: the corrected contour goes through the ends of contact",
-                told["contour"]["ends_off"])
+    checks.that(told["contour"]["off_ends"] < ON_CONTOUR, f"mesh {generation}: the corrected contour goes through the ends of contact",
+                told["contour"]["off_ends"])
     for _, x in kept:
         checks.that(numpy.min(numpy.hypot(*(contour[:, 0] - x).T)) < ON_CONTOUR * size, f"mesh {generation}: a node where the contour "
                     "begins or ceases to follow the die", x)
@@ -191,7 +191,7 @@ def ends_of_contact(checks, out, generation):
             checks.that(off[k] < GAP * length(new), f"mesh {generation}: the end of a gap in contact is within 1 % of the side of "
                         "the contour", (found[k], off[k], length(new)))
     checks.that(outer == len(kept), f"mesh {generation}: every end that is kept is one of the old mesh", (outer, kept, found))
-    return f"{outer} | {told['contour']['ends_off']:.0e} | {exact:.0e} | {len(sides) - outer}"
+    return f"{outer} | {told['contour']['off_ends']:.0e} | {exact:.0e} | {len(sides) - outer}"
 
 
 def new_meshes(checks, out, rows):

@@ -54,7 +54,7 @@ def remeshed(checks, name, text, count, largest_residual=SMALL_RESIDUAL, largest
                     restart["first_residual"])
         checks.that(restart["force_change"] < largest_change, f"{where}: equilibrium changes the force by less than {largest_change:.0%}",
                     restart["force_change"])
-        checks.that(start["mesh"]["contact_fit"] < 1e-2, f"{where}: nodes are fitted by less than 1 % of a side", start["mesh"]["contact_fit"])
+        checks.that(start["mesh"]["pair_fit"] < 1e-2, f"{where}: nodes are fitted by less than 1 % of a side", start["mesh"]["pair_fit"])
         for change, what in ((restart["volume_after"]/restart["volume_before"] - 1, "equilibrium"),
                              (restart["volume_before"]/volume_at(out, int(one["step [-]"])) - 1, "the mesh")):
             checks.that(abs(change) < VOLUME, f"{where}: {what} keeps the volume", change)

@@ -1,12 +1,10 @@
-!> Nodes in contact, fitted so that their depth carries the pressure on the new sides.
+!> Bodies that touch one another, fitted on their new meshes.
 !>
-!> The contour follows the die at the depth that carried the pressure on the old mesh, p = multiplier + AKP d (annex 2). Where AKP
-!> comes of PENETR it goes with the length of the side, so on a longer new side a node lies deeper, on a shorter one less deep
-!> (depth_shares). And the sides of a deformable die are new too: other parabolas through points of the old ones, which they leave
-!> between these points by a share of what a side is bent. Nodes inside contact are moved along the normal by both, so that each is
-!> as deep in the new sides as is wanted. A node where contact meets another side of its body, or another die, moves along that,
-!> and stays on a rigid die where it is.
-module contact_fit
+!> The contour of a body in contact with a die made of sides follows the old sides of that die at the depth d = p/AKP (annex 2). The
+!> die's own sides are new too: other parabolas through points of the old ones, which they leave between these points by a share
+!> of what a side is bent. Nodes in contact are moved along the normal by that much, so that each is as deep in the new sides
+!> as it was to be in the old ones. A node where contact meets another side of its body, or another die, moves along that.
+module pair_fit
   use contact_knots, only: find_knot
   use contact_stretches, only: knot_t, placed_piece
   use contour_assembly, only: contact_t
@@ -24,23 +22,23 @@ module contact_fit
   use zone_mesh, only: new_mesh_t
   implicit none
   private
-  public :: fit_contacts, find_feet, moved_onto
+  public :: fit_pairs, find_feet, moved_onto
 
   !> Sine of the least angle between contact and a side along which a node of both may move.
   real(wp), parameter :: least_sine = 0.3_wp
 
 contains
 
-  !> Move the nodes in contact; `scene` has the new mesh and its dies.
-  pure subroutine fit_contacts(contours, share, mesh, scene, largest)
+  !> Move the nodes in contact with dies made of sides; `scene` has the new mesh and its dies.
+  pure subroutine fit_pairs(contours, mesh, scene, largest)
     type(contour_t), intent(in) :: contours(:)
-    real(wp), intent(in) :: share(:, :)   !! of the old depth that is wanted of the nodes of sides (3, nside)
     type(new_mesh_t), intent(inout) :: mesh
     type(scene_t), intent(inout) :: scene
     real(wp), intent(out) :: largest   !! way of a node over the length of its side
     integer :: run(size(mesh%sides)), k, c, i
 
     largest = 0
+    if (.not. any(is_deformable(scene%dies))) return
     do k = 1, size(mesh%sides)
       associate (place => middle_place(contours, mesh%sides(k)))
         run(k) = contours(mesh%sides(k)%chain)%chain%stretches(place%stretch)%run
@@ -49,7 +47,8 @@ contains
     do c = 1, size(contours)
       do i = 1, size(contours(c)%contacts)
         associate (contact => contours(c)%contacts(i))
-          call fit_run(contact, mesh%sides%chain == c .and. run == i, share, scene%dies(contact%number), mesh, largest)
+          if (.not. is_deformable(scene%dies(contact%number))) cycle
+          call fit_run(contact, mesh%sides%chain == c .and. run == i, scene%dies(contact%number), mesh, largest)
         end associate
         do k = 1, size(scene%dies)
           if (is_deformable(scene%dies(k))) call place_on_nodes(mesh%coordinates, scene%dies(k))
@@ -57,13 +56,12 @@ contains
       end do
     end do
     scene%mesh%coordinates = mesh%coordinates
-  end subroutine fit_contacts
+  end subroutine fit_pairs
 
   !> The nodes of one run of contact.
-  pure subroutine fit_run(contact, mine, share, die, mesh, largest)
+  pure subroutine fit_run(contact, mine, die, mesh, largest)
     type(contact_t), intent(in) :: contact
     logical, intent(in) :: mine(:)     !! sides of the run
-    real(wp), intent(in) :: share(:, :)
     type(die_t), intent(in) :: die     !! on its new sides
     type(new_mesh_t), intent(inout) :: mesh
     real(wp), intent(inout) :: largest
@@ -82,8 +80,7 @@ contains
           if (i == 3 .and. other > 0) then
             if (mine(other)) cycle
           end if
-          if (.not. is_deformable(die) .and. .not. abs(share(i, k) - 1) > 0) cycle
-          call miss(contact, die, share(i, k), mesh%coordinates(:, node), normal, missing, over)
+          call miss(contact, die, mesh%coordinates(:, node), normal, missing, over)
           if (.not. over) cycle
           way = missing*normal
           if (other > 0) then
@@ -127,12 +124,10 @@ contains
     if (abs(rate) >= least_sine) way = (missing/rate)*beside/length_of(beside)
   end function moved_onto
 
-  !> Depth that is wanted of a point by what it has in the old sides of a die, and that it lacks in the new ones, where it lies over
-  !> both; their inner normal. A gap is not made wider.
-  pure subroutine miss(contact, die, share, point, normal, missing, over)
+  !> Depth that a point has on the old sides of a die and lacks on the new ones, where it lies over both; their inner normal.
+  pure subroutine miss(contact, die, point, normal, missing, over)
     type(contact_t), intent(in) :: contact
     type(die_t), intent(in) :: die
-    real(wp), intent(in) :: share
     real(wp), intent(in) :: point(2)
     real(wp), intent(out) :: normal(2), missing
     logical, intent(out) :: over
@@ -149,7 +144,7 @@ contains
     piece = placed_piece(die, contact%pilot, after%piece)
     normal = tangent_at(piece, after%xi)
     normal = [normal(2), -normal(1)]/length_of(normal)
-    missing = merge(share, min(share, 1.0_wp), before%depth > 0)*before%depth - after%depth
+    missing = before%depth - after%depth
   end subroutine miss
 
   !> Where closed points stand on the new sides of their die: what tells a run that goes on where each came from.
@@ -186,4 +181,4 @@ contains
     end do
   end subroutine find_feet
 
-end module contact_fit
+end module pair_fit
