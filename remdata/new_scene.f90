@@ -49,7 +49,8 @@ contains
     call remake_dies(old, new, error)
     ! loads on the volume of a body have its elements
     do g = 1, size(old%groups)
-      if (is_solid(old%groups(g)) .or. size(old%groups(g)%connectivity, 1) == 3) cycle
+      ! springs of dies have no nodes
+      if (is_solid(old%groups(g)) .or. any(size(old%groups(g)%connectivity, 1) == [0, 3])) cycle
       do e = 1, size(old%groups)
         if (.not. is_solid(old%groups(e))) cycle
         if (.not. same_elements(old%groups(e)%connectivity, old%groups(g)%connectivity)) cycle

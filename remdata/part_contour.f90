@@ -15,6 +15,7 @@ module part_contour
   use contour_volume, only: shift_sides, volume_inside, volume_of_loop
   use errors, only: error_t, exit_bug, exit_no_convergence, fail
   use kinds, only: wp
+  use loose_nodes, only: hold_nodes
   use meeting_places, only: add_meeting_places
   use scene, only: axisymmetric, is_solid, scene_t
   use side_tags, only: find_tags, held_nodes, side_tags_t
@@ -93,12 +94,14 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(loop_t), allocatable :: loops(:)
     integer, allocatable :: connectivity(:, :)
-    real(wp) :: x(2, size(scene%mesh%coordinates, 2))
+    real(wp) :: x(2, size(scene%mesh%coordinates, 2)), sunk(2, size(scene%mesh%coordinates, 2))
     logical :: held(size(x, 2))
     type(spot_t), allocatable :: places(:)
     integer :: status, node, k, i
 
-    x = scene%mesh%coordinates + solution%displacement
+    sunk = scene%mesh%coordinates + solution%displacement
+    x = sunk
+    call hold_nodes(scene, solution, x)
     call gather_solids(scene, connectivity)
     call find_loops(connectivity, size(x, 2), loops, status, node)
     allocate (contours(size(loops)), report%limits(0), report%laps(0))
@@ -119,7 +122,7 @@ contains
       do i = 1, size(loops)
         call add_meeting_places(contours(i)%contacts, scene%dies, loops(k), places)
       end do
-      call correct(scene, x, held, options, places, contours(k))
+      call correct(scene, x, sunk, held, options, places, contours(k))
       call list_limits(k, contours(k), report%limits)
       report%off_ends = max(report%off_ends, off_ends(contours(k), x)/size_of_chain(contours(k)%chain))
       report%pockets = report%pockets + count([(contours(k)%contacts(i)%run%pocket, i=1, size(contours(k)%contacts))])
@@ -170,9 +173,9 @@ contains
   end subroutine gather_solids
 
   !> The chain, and the shift of the free sides that keeps the volume.
-  pure subroutine correct(scene, x, held, options, places, contour)
+  pure subroutine correct(scene, x, sunk, held, options, places, contour)
     type(scene_t), intent(in) :: scene
-    real(wp), intent(in) :: x(:, :)
+    real(wp), intent(in) :: x(:, :), sunk(:, :)   !! nodes now, and where loose ones are (2, nnode) [length]
     logical, intent(in) :: held(:)   !! nodes that stay where they are
     type(contour_options_t), intent(in) :: options
     type(spot_t), intent(in) :: places(:)   !! where contact with other bodies begins or ends
@@ -185,7 +188,7 @@ contains
     integer :: k, i
 
     round = scene%plane_state == axisymmetric
-    contour%volume_before = volume_of_loop(contour%loop, x, round)
+    contour%volume_before = volume_of_loop(contour%loop, sunk, round)
     call assemble_chain(contour%loop, contour%tags, x, options%corner_turn, places, contour%contacts, contour%chain)
     contour%volume_after = volume_inside(contour%chain, round)
     if (size(contour%contacts) == 0) return

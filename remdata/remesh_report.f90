@@ -13,6 +13,9 @@ module remesh_report
   private
   public :: print_facts, write_facts
 
+  !> Ends of contact farther from any node, as a share of the contour, have none.
+  real(wp), parameter :: without_node = 1.0e-8_wp
+
 contains
 
   !> A few lines on the terminal.
@@ -36,6 +39,8 @@ contains
     end do
     write (*, '(a)') '  by '//facts%mesher//', shape: scaled Jacobian from '//to_text(facts%mesh%scaled_jacobian, 3)//', angles ' &
       //to_text(facts%mesh%least_angle, 3)//' to '//to_text(facts%mesh%largest_angle, 4)//' degrees'
+    if (facts%mesh%off_ends > without_node) write (*, '(a)') '  an end of contact has no node: the next one is ' &
+      //to_text(facts%mesh%off_ends, 3)//' of the contour away, too close to it for another element'
     if (facts%fit > 0) write (*, '(a)') '  sides of bodies in contact fitted to each other: nodes moved by ' &
       //to_text(facts%fit, 3)//' of a side at most'
     write (*, '(a)') '  errors expected: '//to_text(facts%expected%mean, 3)//' times the limit in the mean, ' &

@@ -78,6 +78,8 @@ contains
 
     started = wall_seconds()
     allocate (balance%pilot_before, source=solution%pilot_applied)
+    ! what is never restored has changed nothing
+    balance%after = balance%before
     balance%shape = least_shape(scene, scene%mesh%coordinates)
     rest = 0
     call external_forces(scene, equations%dofs, solution%time, external)

@@ -13,7 +13,7 @@ import sys
 
 sys.dont_write_bytecode = True
 from remeshed import ROOT, cycle, facts, tries, within_limits  # noqa: E402
-from support import DONE, Checks, history, run, said  # noqa: E402
+from support import DONE, Checks, history, run, said, write  # noqa: E402
 
 # Deck, options, and how far each column may be from the deck's own at the end.
 DECKS = [
@@ -32,6 +32,30 @@ DECKS = [
     ("press_fit/press_fit", [], {"push_force": 0.001, "friction_work": 0.002}),
     ("upsetting_frictionless/upsetting_frictionless", [], {"force_y_upper": 0.0005, "radius": 0.0005}),
 ]
+# A die that a spring holds: an element without nodes.
+SPRING = """TITLE  Block under a die that a spring holds sideways
+STATE  PLSTN
+KINEM  LOG
+BLOCK  block PL8LS 4 rubber
+   0. 0.   4. 0.   4. 4.   0. 4.
+   4 1.   4 1.
+LAW    rubber ELA
+   1000. 0.3
+LAW    film COUL2D
+   PENETR 1.E-3   PHI 0.
+DIE    upper PILOT 0. 4.
+   SEGM   6. 4.   -1. 4.
+CNT2D  block 3 upper -3 film
+FIXED  block 1 Y
+FIXED  block 4 X
+LIC    press
+   0. 0.   1. -0.1
+MOVE   upper Y press
+FREE   upper X
+SPRNG  upper X 10.
+STRAT  0.1 1.E-3 0.1   4 3
+END
+"""
 # How far the forces of dies that the new mesh bears before it is in balance may be from those of the old one.
 CARRIED = 0.05
 
@@ -46,8 +70,8 @@ def with_remesh(deck, path):
         file.write(text)
 
 
-def remeshed(checks, name, options, limits):
-    deck, short = os.path.join(ROOT, "decks", name + ".lag"), os.path.basename(name)
+def remeshed(checks, deck, options, limits):
+    short = os.path.splitext(os.path.basename(deck))[0]
     path, out, plain = checks.path(short + ".lag"), checks.path(short), checks.path(short + "-own")
     words = [word for option in options for word in ("-p", option)]
     with_remesh(deck, path)
@@ -74,7 +98,8 @@ def remeshed(checks, name, options, limits):
 def main():
     checks = Checks()
     for name, options, limits in DECKS:
-        remeshed(checks, name, options, limits)
+        remeshed(checks, os.path.join(ROOT, "decks", name + ".lag"), options, limits)
+    remeshed(checks, write(checks.path("decks", "spring.lag"), SPRING), [], {"force_y_upper": 0.001, "elastic_energy": 0.001})
     checks.end()
 
 

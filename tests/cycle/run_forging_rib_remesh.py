@@ -157,7 +157,8 @@ def ends_of_contact(checks, out, generation):
 
     The corrected contour goes through all ends, and new meshes have nodes where it begins and ceases to follow the die. One that is
     less than 5 % of a side beside a corner or a point in contact has its node there: the new side may be off the end itself by what
-    penetration is allowed. Ends that are not kept are those of gaps narrower than 1 % of a side, which are contact too."""
+    penetration is allowed. On the axis nothing holds a node of the old mesh: the end is no deeper in the die than is allowed, wherever
+    that has sunk. Ends that are not kept are those of gaps narrower than 1 % of a side, which are contact too."""
     names = [glob.glob(os.path.join(out, f"*.g{g:02d}.{kind}.h5"))[0] for g, kind in ((generation - 1, "end"), (generation, "start"))]
     with h5py.File(names[0], "r") as old, h5py.File(names[1], "r") as new:
         nodes = old["mesh/coordinates"][()] + old["nodes/displacement"][()]
@@ -167,7 +168,8 @@ def ends_of_contact(checks, out, generation):
         begins = old["contact_ends/begins"][()] != 0
     size = numpy.max(numpy.ptp(nodes, axis=0))
     told = facts(out, generation, "start")
-    kept = [(limit["begins"], numpy.array([limit["x"], limit["y"]])) for limit in told["contour"]["limits"]]
+    limits = told["contour"]["limits"]
+    kept = [(limit["begins"], numpy.array([limit["x"], limit["y"]])) for limit in limits]
     found = numpy.array([point(contact[side], place) for side, place in zip(sides, places)])
     off = abs(signed_distance(contour, found))
     checks.that(told["contour"]["off_ends"] < ON_CONTOUR, f"mesh {generation}: the corrected contour goes through the ends of contact",
@@ -182,6 +184,11 @@ def ends_of_contact(checks, out, generation):
             outer += 1
             exact = max(exact, off[k] / size)
             checks.that(off[k] < ON_CONTOUR * size, f"mesh {generation}: an end of contact lies on the contour", (found[k], off[k]))
+        elif found[k][0] < ON_AXIS * size:
+            axial = [limit["depth"] for limit in limits if limit["begins"] == first and limit["x"] < ON_AXIS * size]
+            outer += len(axial)
+            checks.that(len(axial) == 1 and abs(axial[0]) < PENETR * length(contact[side]),
+                        f"mesh {generation}: contact that ends on the axis is no deeper there than allowed", (found[k], axial))
         elif near < CRUMB * length(contact[side]):
             outer += 1
             checks.that(off[k] < PENETR * length(contact[side]), f"mesh {generation}: an end beside a node lies on the contour but for "
