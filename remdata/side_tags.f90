@@ -4,10 +4,10 @@
 !> stretches that stand for a side (`stretch_t%side`).
 module side_tags
   use boundary_sides, only: loop_t
+  use contour_chain, only: chain_of_loop, chain_t, joint_after, kind_corner
   use dies, only: is_deformable
   use kinds, only: wp
   use scene, only: axisymmetric, scene_t
-  use stretches, only: cross, stretch_t, tangent_at
   implicit none
   private
   public :: side_tags_t, find_tags, same_tags, held_nodes, lasting_ends
@@ -89,17 +89,13 @@ contains
     real(wp), intent(in) :: x(:, :)   !! nodes now (2, nnode) [length]
     real(wp), intent(in) :: turn      !! of a corner [radian]
     logical :: lasting(size(loop%sides, 2))
-    type(stretch_t) :: one, other
-    real(wp) :: before(2), after(2)
+    type(chain_t) :: chain
     integer :: k, next
 
+    chain = chain_of_loop(loop, x, turn)
     do k = 1, size(lasting)
-      next = mod(k, size(lasting)) + 1
-      one%points = x(:, loop%sides(:, k))
-      other%points = x(:, loop%sides(:, next))
-      before = tangent_at(one, 1.0_wp)
-      after = tangent_at(other, -1.0_wp)
-      lasting(k) = .not. same_tags(tags, k, next) .or. abs(atan2(cross(before, after), dot_product(before, after))) > turn
+      next = joint_after(chain, k)
+      lasting(k) = chain%kinds(next) == kind_corner .or. .not. same_tags(tags, k, next)
     end do
   end function lasting_ends
 

@@ -75,9 +75,10 @@ contains
     associate (accept => scene%remesher%accept)
       lines(1)%s = '  first residual '//held(balance%first_residual, accept%first_residual)//', iterations ' &
                    //to_text(balance%iterations)//' (limit '//to_text(accept%iterations)//')'
-      lines(2)%s = '  change of die force '//held(force_change(balance), accept%force_change)//', of elastic energy ' &
-                   //held(energy_change(balance), accept%energy_change)//', of depth ' &
-                   //held(balance%depth_change, accept%depth_change)
+      lines(2)%s = '  equilibrium is not restored; change'
+      if (balance%restored) lines(2)%s = '  change of die force '//held(force_change(balance), accept%force_change) &
+                                         //', of elastic energy '//held(energy_change(balance), accept%energy_change)//','
+      lines(2)%s = lines(2)%s//' of depth '//held(balance%depth_change, accept%depth_change)
     end associate
     lines(3)%s = '  least scaled Jacobian '//held(balance%shape, bad_shape)//'; first residual: ' &
                  //to_text(100*balance%place%at_contact, 3)//' % of its square at sides of contact'

@@ -53,8 +53,11 @@ contains
     if (allocated(balance%stage)) call json%add('stage', balance%stage)
     call json%add('first_residual', balance%first_residual)
     call json%add('iterations', balance%iterations)
-    call json%add('force_change', force_change(balance))
-    call json%add('energy_change', energy_change(balance))
+    ! what restoring it changes is known when it is restored
+    if (balance%restored) then
+      call json%add('force_change', force_change(balance))
+      call json%add('energy_change', energy_change(balance))
+    end if
     call json%add('depth_change', balance%depth_change)
     call json%add('least_scaled_jacobian', balance%shape)
     associate (accept => scene%remesher%accept)

@@ -78,7 +78,7 @@ contains
 
     started = wall_seconds()
     allocate (balance%pilot_before, source=solution%pilot_applied)
-    ! what is never restored has changed nothing
+    ! until a part is in equilibrium the state is what was carried
     balance%after = balance%before
     balance%shape = least_shape(scene, scene%mesh%coordinates)
     rest = 0

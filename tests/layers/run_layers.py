@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Check the floors of the house: who may `use` whom, one module a file, no cycles, files of a readable length.
+"""Check the floors of the house: who may `use` whom, one module a file, no cycles, files of a readable length, nothing strange at
+the top.
 
 usage: run_layers.py [ROOT] | --selftest
 ROOT is the project's folder (default: LAGAMINE_SOURCE, else two folders up). Reads src/**/*.f90 and remdata/**/*.f90.
 """
 import collections
+import fnmatch
 import os
 import re
 import sys
@@ -44,6 +46,9 @@ NOT_FOR_REMDATA = {
 EXTERNAL = {"iso_fortran_env", "iso_c_binding", "ieee_arithmetic", "ieee_exceptions", "ieee_features", "omp_lib", "hdf5"}
 
 LONGEST_FILE = 800
+
+# What stands at the top of the tree, beside files with a dot and what .gitignore names.
+TOP = {"CMakeLists.txt", "LICENSE", "README.md", "decks", "remdata", "src", "tests"}
 
 MODULE = re.compile(r"\s*module\s+(?!procedure\b|subroutine\b|function\b)(\w+)\s*(?:!.*)?$", re.I)
 SUBMODULE = re.compile(r"\s*submodule\s*\(\s*(\w+)\s*(?::\s*(\w+)\s*)?\)\s*(\w+)\s*(?:!.*)?$", re.I)
@@ -161,7 +166,19 @@ class Tree:
                 visit(name, [name])
         self.checks += 1
 
+    def check_top(self):
+        """Runs and tests leave nothing of theirs beside the sources."""
+        ignored = []
+        if os.path.exists(os.path.join(self.root, ".gitignore")):
+            with open(os.path.join(self.root, ".gitignore"), encoding="utf-8") as file:
+                ignored = [line.strip().rstrip("/") for line in file if line.strip()]
+        for name in sorted(os.listdir(self.root)):
+            if name.startswith(".") or any(fnmatch.fnmatch(name, pattern) for pattern in ignored):
+                continue
+            self.check(name in TOP, name, 1, "stands at the top of the tree, where only " + ", ".join(sorted(TOP)) + " do")
+
     def run(self):
+        self.check_top()
         self.check_arrows()
         self.check_cycles()
         return self.errors
@@ -263,6 +280,8 @@ CASES = [
     ("no implicit none",
      {"src/base/bad.f90": "module bad\n  private\ncontains\n  subroutine a()\n  implicit none\n  end\nend module bad\n"},
      "module bad has no `implicit none`"),
+    ("results at the top", {"upsetting/history.csv": "", ".gitignore": "build/\nout/\n", "out/a": ""},
+     "upsetting:1: stands at the top of the tree"),
     ("long file", {"src/base/bad.f90": module("bad") + "\n" * 800}, "src/base/bad.f90:804: longer than 800 lines"),
 ]
 
