@@ -42,6 +42,13 @@ NOT_FOR_REMDATA = {
     "law": "REMDATA knows no law",
 }
 
+# Rooms of remdata from top to bottom: a room may use itself and what is below. The driver stands in remdata/ itself.
+ROOMS = ["remdata", *(f"remdata/{room}" for room in ("transfer", "free_mesh", "plan", "mesh", "sizes", "contour", "contact",
+                                                     "old_mesh", "curves"))]
+
+# What stands in remdata/ itself: the driver and what it reads and reports.
+DRIVER = {"main", "remesh_scene", "remesh_options", "remesh_facts", "remesh_report", "checkpoint_words"}
+
 # Modules that come from the compiler or a library.
 EXTERNAL = {"iso_fortran_env", "iso_c_binding", "ieee_arithmetic", "ieee_exceptions", "ieee_features", "omp_lib", "hdf5"}
 
@@ -111,15 +118,19 @@ class Tree:
             return
         kind, name, line, parent = found[0]
         parts = file.split("/")
-        folder = "remdata" if parts[0] == "remdata" else parts[1] if len(parts) > 2 else "main"
         stem = parts[-1][:-len(".f90")]
+        if parts[0] == "remdata":
+            folder = "remdata" if len(parts) == 2 else f"remdata/{parts[1]}"
+            self.check(len(parts) > 2 or stem in DRIVER, file, line, "only the driver stands in remdata/ itself, not in a room")
+        else:
+            folder = parts[1] if len(parts) > 2 else "main"
         if kind == "program":
             self.check(parts[1:] == ["main.f90"], file, line, "a program stands in main.f90 and nowhere else")
         else:
             self.check(name == stem, file, line, f"{kind} {name} in {stem}.f90: the names must be the same")
             self.check(parts != ["src", parts[-1]], file, line, "modules stand in a folder of src/, not beside main.f90")
-        if folder not in ("remdata", *FLOORS):
-            self.check(False, file, line, f"folder src/{folder} is not in the table of floors (tests/layers)")
+        if folder not in (*ROOMS, *FLOORS):
+            self.check(False, file, line, f"folder {'/'.join(parts[:2])} is not in the table of floors (tests/layers)")
         # A submodule stands in its module's scope and inherits both.
         if kind != "submodule":
             self.check("implicit none" in seen, file, line, f"{kind} {name} has no `implicit none`")
@@ -188,9 +199,11 @@ def why_not(folder, target):
     """Why a folder may not use this module; empty where it may."""
     if folder == target.folder:
         return ""
-    if target.folder == "remdata":
+    if folder in ROOMS and target.folder in ROOMS:
+        return f"{target.folder} is above {folder}" if ROOMS.index(folder) > ROOMS.index(target.folder) else ""
+    if target.folder in ROOMS:
         return "nothing in src stands on remdata"
-    if folder == "remdata":
+    if folder in ROOMS:
         return NOT_FOR_REMDATA.get(target.folder, "")
     if folder not in FLOORS or target.folder not in FLOORS:
         return "a folder without a floor"
@@ -204,10 +217,10 @@ def why_not(folder, target):
 
 def report(tree):
     """The table of arrows, then what is wrong."""
-    order = ["remdata", *FLOORS]
+    order = [*ROOMS, *FLOORS]
     for start in sorted({a for a, _ in tree.arrows}, key=lambda f: order.index(f) if f in order else len(order)):
         ends = sorted((b for a, b in tree.arrows if a == start), key=lambda f: order.index(f) if f in order else len(order))
-        print(f"{start:>11} -> " + ", ".join(f"{end} {tree.arrows[start, end]}" for end in ends))
+        print(f"{start:>17} -> " + ", ".join(f"{end} {tree.arrows[start, end]}" for end in ends))
     for error in tree.errors:
         print(error)
 
@@ -231,7 +244,9 @@ GOOD = {"src/main.f90": "program lagamine\n  use run\n  implicit none\nend progr
         "src/model/mesh.f90": module("mesh", "kinds"),
         "src/base/kinds.f90": module("kinds"),
         "remdata/main.f90": "program remdata\n  use zones\n  implicit none\nend program remdata\n",
-        "remdata/zones.f90": module("zones", "mesh", "files")}
+        "remdata/remesh_scene.f90": module("remesh_scene", "zones"),
+        "remdata/mesh/zones.f90": module("zones", "mesh", "files", "chains"),
+        "remdata/curves/chains.f90": module("chains")}
 CASES = [
     ("good tree", {}, None),
     ("upward arrow", {"src/base/bad.f90": module("bad", "kinds", "mesh")},
@@ -247,9 +262,14 @@ CASES = [
     ("model on a deck", {"src/model/bad.f90": module("bad", "cards_read")}, "the model knows no deck"),
     ("model on files", {"src/model/bad.f90": module("bad", "files")}, "store is above model"),
     ("files on a deck", {"src/store/bad.f90": module("bad", "cards_read")}, "files of results know no deck"),
-    ("remdata on a law", {"remdata/bad.f90": module("bad", "law_api")},
-     "remdata/bad.f90:2: remdata may not use law_api of law"),
-    ("remdata on analysis", {"remdata/bad.f90": module("bad", "run")}, "REMDATA runs no analysis"),
+    ("remdata on a law", {"remdata/mesh/bad.f90": module("bad", "law_api")},
+     "remdata/mesh/bad.f90:2: remdata/mesh may not use law_api of law"),
+    ("remdata on analysis", {"remdata/curves/bad.f90": module("bad", "run")}, "REMDATA runs no analysis"),
+    ("room on a higher room", {"remdata/curves/bad.f90": module("bad", "zones")},
+     "remdata/curves/bad.f90:2: remdata/curves may not use zones of remdata/mesh: remdata/mesh is above remdata/curves"),
+    ("room on the driver", {"remdata/mesh/bad.f90": module("bad", "remesh_scene")}, "remdata is above remdata/mesh"),
+    ("beside the driver", {"remdata/bad.f90": module("bad")}, "only the driver stands in remdata/ itself"),
+    ("unknown room", {"remdata/attic/bad.f90": module("bad")}, "folder remdata/attic is not in the table"),
     ("src on remdata", {"src/analysis/bad.f90": module("bad", "zones")}, "nothing in src stands on remdata"),
     ("submodule's arrow", {"src/base/bad.f90": "submodule(kinds) bad\n  use mesh\nend submodule bad\n"},
      "src/base/bad.f90:2: base may not use mesh"),
