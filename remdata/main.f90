@@ -1,7 +1,7 @@
 !> The remesher: arguments -> new mesh and state -> exit code.
 program remdata
   use, intrinsic :: iso_fortran_env, only: error_unit
-  use checkpoint_words, only: print_about
+  use checkpoint_summary, only: print_about
   use errors, only: error_t, exit_done
   use kinds, only: wp
   use remesh_facts, only: remesh_facts_t

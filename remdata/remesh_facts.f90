@@ -1,4 +1,4 @@
-!> What a remesh has made, how far it came, and where its time went: for the report.
+!> Results of a remesh, the stage it reached and the time each task took: for the report.
 module remesh_facts
   use kinds, only: wp
   use material_volumes, only: materials_kept_t
@@ -6,13 +6,13 @@ module remesh_facts
   use new_mesh_check, only: mesh_check_t
   use part_contour, only: contour_report_t
   use timers, only: ledger_t
-  use transfer_report, only: balance_t, transfer_report_t
+  use transfer_report, only: carried_quantity_t, transfer_report_t
   implicit none
   private
   public :: remesh_facts_t, begin_task, end_task
 
   type :: remesh_facts_t
-    !> What is to blame if this is the end: checkpoint, contour, mesh, transfer, contact.
+    !> Stage responsible for a failure that follows: checkpoint, contour, mesh, transfer, contact.
     character(len=:), allocatable :: stage
     integer :: generation = 0, step = 0
     real(wp) :: time = 0.0_wp
@@ -21,29 +21,29 @@ module remesh_facts
     type(mesh_check_t) :: mesh
     !> Materials that share sides.
     type(materials_kept_t) :: materials
-    !> Who made the mesh.
+    !> Mesher that made the mesh.
     character(len=:), allocatable :: mesher
     type(transfer_report_t) :: transfer
-    !> Integrals of contact along its runs.
-    type(balance_t), allocatable :: contacts(:)
-    !> Largest way of a node to fit a die made of sides, over its side.
+    !> Integrals of contact variables over the contact intervals.
+    type(carried_quantity_t), allocatable :: contacts(:)
+    !> Largest displacement of a node to fit a die made of sides, divided by the length of its side.
     real(wp) :: fit = 0.0_wp
-    !> Sizes are so many times the wanted ones, for the limit on the number of elements.
+    !> Ratio of the element sizes used to the requested ones, to respect the limit on the number of elements.
     real(wp) :: coarser = 1.0_wp
-    !> The errors expected of the new mesh, over those its sizes were wanted for.
+    !> Errors expected of the new mesh, divided by those its sizes were computed for.
     type(prediction_t) :: expected
     !> Seconds of the tasks, in their order.
     type(ledger_t) :: timers
-    !> The task at hand; 0: none.
+    !> The current task; 0: none.
     integer :: task = 0
   end type remesh_facts_t
 
 contains
 
-  !> The time from now on is that of a task; the one before has ended.
+  !> Start the timer of a task, after that of the previous one was stopped.
   subroutine begin_task(facts, stage, task)
     type(remesh_facts_t), intent(inout) :: facts
-    character(len=*), intent(in) :: stage   !! to blame for a failure
+    character(len=*), intent(in) :: stage   !! responsible for a failure
     character(len=*), intent(in) :: task
 
     call end_task(facts)

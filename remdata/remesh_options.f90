@@ -13,11 +13,11 @@ module remesh_options
     character(len=:), allocatable :: checkpoint, out
     !> Method of state transfer in place of the deck's (-1: the deck's).
     integer :: transfer = -1
-    !> Wanted sizes are divided by this.
+    !> The requested sizes are divided by this factor.
     real(wp) :: finer = 1.0_wp
-    !> Longest time for Gmsh to make a mesh [s].
+    !> Time limit for Gmsh to make a mesh [s].
     real(wp) :: limit = 300.0_wp
-    !> Only tell what the checkpoint holds.
+    !> Only print the contents of the checkpoint.
     logical :: about = .false.
     logical :: quiet = .false., help = .false., version = .false.
   end type remesh_options_t

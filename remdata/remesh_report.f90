@@ -1,6 +1,6 @@
-!> What a remesh says of itself: lines for people, a JSON file for the cycle and the report.
+!> Report of a remesh: lines for the terminal, a JSON file for the cycle and the report.
 module remesh_report
-  use contour_chain, only: kind_entry
+  use boundary_curves, only: kind_entry
   use errors, only: error_t
   use json_writer, only: json_t
   use kinds, only: wp
@@ -8,12 +8,12 @@ module remesh_report
   use remesh_facts, only: remesh_facts_t
   use run_version, only: version_text
   use text, only: string_t, to_text
-  use transfer_report, only: balance_t, in_words, report_lines
+  use transfer_report, only: carried_quantity_t, in_words, report_lines
   implicit none
   private
   public :: print_facts, write_facts
 
-  !> Ends of contact farther from any node, as a share of the contour, have none.
+  !> An end of contact has no node when the nearest one is farther than this share of the contour.
   real(wp), parameter :: without_node = 1.0e-8_wp
 
 contains
@@ -39,14 +39,14 @@ contains
     end do
     write (*, '(a)') '  by '//facts%mesher//', shape: scaled Jacobian from '//to_text(facts%mesh%scaled_jacobian, 3)//', angles ' &
       //to_text(facts%mesh%least_angle, 3)//' to '//to_text(facts%mesh%largest_angle, 4)//' degrees'
-    if (facts%mesh%off_ends > without_node) write (*, '(a)') '  an end of contact has no node: the next one is ' &
+    if (facts%mesh%off_ends > without_node) write (*, '(a)') '  an end of contact has no node: the nearest one is ' &
       //to_text(facts%mesh%off_ends, 3)//' of the contour away, too close to it for another element'
     if (facts%fit > 0) write (*, '(a)') '  sides of bodies in contact fitted to each other: nodes moved by ' &
       //to_text(facts%fit, 3)//' of a side at most'
     write (*, '(a)') '  errors expected: '//to_text(facts%expected%mean, 3)//' times the limit in the mean, ' &
       //to_text(facts%expected%worst, 3)//' at worst; '//to_text(facts%expected%elements, 3)//' times the elements it takes'
     if (facts%coarser > 1) write (*, '(a)') '  sizes '//to_text(facts%coarser, 3) &
-      //' times the wanted ones, for the limit on the number of elements'
+      //' times the requested ones, for the limit on the number of elements'
     if (.not. allocated(facts%transfer%rows)) return   ! a first mesh
     call report_lines(facts%transfer, lines)
     do k = 1, size(lines)
@@ -58,7 +58,7 @@ contains
     end do
   end subroutine print_facts
 
-  !> The file; `failure` is what ended the remesh, if something did.
+  !> The JSON file; `failure` is the error that ended the remesh, if there was one.
   subroutine write_facts(path, facts, seconds, failure, error)
     character(len=*), intent(in) :: path
     type(remesh_facts_t), intent(in) :: facts
@@ -92,7 +92,7 @@ contains
     call json%add('largest_shift', facts%contour%largest_shift)
     call json%add('volume_error', facts%contour%volume_error)
     call json%add('off_ends', facts%contour%off_ends)
-    call json%add('pockets', facts%contour%pockets)
+    call json%add('small_gaps', facts%contour%small_gaps)
     call json%begin_array('limits')
     if (allocated(facts%contour%limits)) then
       do k = 1, size(facts%contour%limits)
@@ -150,7 +150,7 @@ contains
 
   subroutine add_rows(json, rows)
     type(json_t), intent(inout) :: json
-    type(balance_t), intent(in) :: rows(:)
+    type(carried_quantity_t), intent(in) :: rows(:)
     integer :: k
 
     do k = 1, size(rows)

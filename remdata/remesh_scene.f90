@@ -1,44 +1,44 @@
-!> The remesher's page: from the checkpoint of an old mesh to that of a new one.
+!> The remesher's algorithm: from the checkpoint of an old mesh to that of a new one.
 !>
-!> contour -> sizes -> zones -> mesh, or Gmsh's mesh -> state -> checkpoint (annex 2; chapter 12); bodies without a mesh get their
-!> first one the same way, from contours that cards give, and no state. Whatever cannot be done ends in an error that
-!> names its stage; the old checkpoint is never touched.
+!> contour -> sizes -> zones -> mesh, or Gmsh's mesh -> state -> checkpoint (annex 2; chapter 12). Bodies without a mesh get their
+!> first one in the same way, from the contours of their cards and without state. A failure ends in an error that names its stage;
+!> the old checkpoint is never modified.
 module remesh_scene
+  use arcs_on_die, only: placed_piece
   use block_mesh, only: polygon_area
+  use boundary_curves, only: boundary_curve_t
   use contact_carry, only: carry_contacts
   use contact_ends, only: contact_end_t
-  use contact_stretches, only: placed_piece
-  use contour_chain, only: chain_t
-  use contour_needs, only: geometry_wish_t, needs_of_chain, needs_of_die
+  use contour_needs, only: geometry_settings_t, needs_of_boundary, needs_of_die
   use dies, only: is_deformable
   use errors, only: error_t
-  use first_contours, only: contours_of_cards
   use exchange, only: open_checkpoint, read_bare_scene, read_contact_ends, read_deck_of_checkpoint, read_state, write_checkpoint
+  use first_contours, only: contours_of_cards
   use gmsh_call, only: find_gmsh, gmsh_t
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use material_interfaces, only: interface_t, interfaces_of
   use material_volumes, only: compare_materials
   use mesh_prediction, only: predict
-  use mesh_without_zones, only: mesh_freely
+  use mesh_without_zones, only: make_mesh_without_zones
   use new_mesh_check, only: check_new_mesh, check_shape
-  use pair_fit, only: find_feet, fit_pairs
   use new_scene, only: set_up_new_scene
+  use pair_fit, only: fit_pairs, update_closest_points
   use part_contour, only: build_contours, contour_options_t, contour_t
   use remesh_facts, only: begin_task, end_task, remesh_facts_t
   use remesh_options, only: remesh_options_t
   use remesher_options, only: as_it_comes, by_gmsh, has_zones, remesher_options_t
   use scene, only: is_solid, lacks_mesh, scene_t
-  use size_field, only: need_t, old_mesh_t, set_up_sizes, size_field_t, size_limits_t, wanted_size
+  use size_field, only: need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t
   use solution, only: solution_t, start_solution
   use state_pieces, only: mesh_of, solid_pieces, state_pieces_t, store_states
   use text, only: to_text
   use transfer_api, only: transfer_options_t
-  use transfer_mesh, only: plant_mesh_trees, transfer_mesh_t
+  use transfer_mesh, only: build_mesh_trees, transfer_mesh_t
   use transfer_nodes, only: carry_at_nodes
   use transfer_report, only: transfer_report_t
-  use transfer_states, only: carry_between
-  use zone_mesh, only: mesh_wish_t, mesh_zones, new_mesh_t
+  use transfer_states, only: carry_states
+  use zone_mesh, only: mesh_settings_t, mesh_zones, new_mesh_t
   use zone_plan, only: plan_zones
   use zones, only: plan_t
   implicit none
@@ -73,8 +73,8 @@ contains
     call read_all(options%checkpoint, deck_path, deck_text, old, before, ends, error)
     if (allocated(error)) return
     first = lacks_mesh(old)
-    call take_options(options, old)
-    call set_back(old, before, moved)
+    call apply_options(options, old)
+    call reset_to_start(old, before, moved)
     facts%step = before%step
     facts%time = before%time
     facts%generation = old%generation + 1
@@ -88,7 +88,7 @@ contains
     if (allocated(error)) return
     call begin_task(facts, 'mesh', 'sizes')
     call interfaces_of(old, before, contours, interfaces)
-    call wanted_sizes(old, before, contours, first, sizes)
+    call requested_sizes(old, before, contours, first, sizes)
     if (old%remesher%mesher /= by_gmsh) then
       call begin_task(facts, 'mesh', 'zones')
       call plan_zones(old, old%mesh%coordinates + before%displacement, before%pilots, materials_of(old, before), &
@@ -96,7 +96,7 @@ contains
       call begin_task(facts, 'mesh', 'mesh')
       if (.not. allocated(error)) call make_mesh(old, before, contours, plan, sizes, options%finer, mesh, facts, error)
     end if
-    if (is_for_gmsh(old%remesher, size(interfaces) > 0, error)) then
+    if (uses_gmsh(old%remesher, size(interfaces) > 0, error)) then
       call begin_task(facts, 'mesh', 'gmsh')
       call make_free_mesh(old, before, contours, sizes, options, plan, mesh, facts, error)
     end if
@@ -120,7 +120,7 @@ contains
     facts%new_elements = count_elements(new)
   end subroutine remesh_checkpoint
 
-  !> All that the checkpoint holds; it is opened, and its digest compared, once.
+  !> Read the whole checkpoint; it is opened, and its digest compared, once.
   subroutine read_all(path, deck_path, deck_text, scene, solution, ends, error)
     character(len=*), intent(in) :: path
     character(len=:), allocatable, intent(out) :: deck_path, deck_text
@@ -141,9 +141,9 @@ contains
     call file%close(ignored)
   end subroutine read_all
 
-  !> With small strains the geometry is that of the start: bodies are meshed where they were, and what they have `moved` since is
-  !> carried over as other nodal fields are. Where they touch dies, they are meshed where they are.
-  pure subroutine set_back(scene, solution, moved)
+  !> With small strains the geometry is that of the start: bodies are meshed in their initial position, and their displacements
+  !> `moved` are transferred as other nodal fields. Bodies in contact with dies are meshed in their present position.
+  pure subroutine reset_to_start(scene, solution, moved)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
     real(wp), allocatable, intent(out) :: moved(:, :)   !! (2, nnode) [length]
@@ -153,9 +153,9 @@ contains
     if (scene%finite .or. any(scene%groups%die > 0)) return
     moved = solution%displacement
     solution%displacement = 0
-  end subroutine set_back
+  end subroutine reset_to_start
 
-  !> All that the old mesh knows: progress, state of the solids, contact.
+  !> Transfer everything from the old mesh: progress, state of the solids, contact.
   subroutine carry_state(old, before, moved, contours, mesh, new, after, facts, error)
     type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
@@ -173,16 +173,16 @@ contains
     if (allocated(error)) return
     call begin_task(facts, 'contact', 'contact')
     call carry_contacts(old, before, contours, mesh, new, after, facts%contacts)
-    call find_feet(new, after)
+    call update_closest_points(new, after)
   end subroutine carry_state
 
-  !> What the command line says in place of the deck.
-  subroutine take_options(options, scene)
+  !> Command line options that replace those of the deck.
+  subroutine apply_options(options, scene)
     type(remesh_options_t), intent(in) :: options
     type(scene_t), intent(inout) :: scene
 
     if (options%transfer >= 0) scene%remesher%transfer = options%transfer
-  end subroutine take_options
+  end subroutine apply_options
 
   pure function count_elements(scene) result(n)
     type(scene_t), intent(in) :: scene
@@ -195,7 +195,7 @@ contains
     end do
   end function count_elements
 
-  !> Numbers of materials as the transfer sees them, by group of the scene.
+  !> Numbers of materials used by the transfer, for each group of the scene.
   pure function materials_of(scene, solution) result(material)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -206,39 +206,39 @@ contains
     material = 0
     call solid_pieces(scene, pieces, solution)
     do k = 1, size(pieces%groups)
-      material(pieces%groups(k)%place) = pieces%groups(k)%material
+      material(pieces%groups(k)%scene_group) = pieces%groups(k)%material
     end do
   end function materials_of
 
-  !> Sizes by the error of the strains, by bends of the contour and of dies nearby, and by stretches of contact.
-  subroutine wanted_sizes(scene, solution, contours, first, sizes)
+  !> Sizes by the error of the strains, by the curvature of the contour and of nearby dies, and by contact intervals.
+  subroutine requested_sizes(scene, solution, contours, first, sizes)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(contour_t), intent(in) :: contours(:)
-    logical, intent(in) :: first                !! there is no mesh yet: largest elements but where the geometry wants smaller ones
+    logical, intent(in) :: first   !! there is no mesh yet: largest elements except where the geometry requires smaller ones
     type(size_field_t), intent(out) :: sizes
     type(state_pieces_t) :: pieces
     type(transfer_mesh_t) :: mesh
     type(old_mesh_t) :: old
     type(size_limits_t) :: limits
-    type(geometry_wish_t) :: wish
+    type(geometry_settings_t) :: settings
     type(need_t), allocatable :: needs(:), bends(:), more(:)
     real(wp) :: error
     integer :: e, c, d, k
 
     if (scene%remesher%smallest > 0) limits%smallest = scene%remesher%smallest
     if (scene%remesher%largest > 0) limits%largest = scene%remesher%largest
-    wish%across = scene%remesher%across_contact
-    wish%turn = scene%remesher%turn
+    settings%across = scene%remesher%across_contact
+    settings%turn = scene%remesher%turn
     allocate (needs(0), bends(0))
     do d = 1, size(scene%dies)
       if (is_deformable(scene%dies(d))) cycle
       call needs_of_die([(placed_piece(scene%dies(d), solution%pilots(:, d), k), k=1, size(scene%dies(d)%pieces, 3))], &
-                        wish, limits, more)
+                        settings, limits, more)
       bends = [bends, more]
     end do
     do c = 1, size(contours)
-      call needs_of_chain(contours(c)%chain, wish, limits, more, bends)
+      call needs_of_boundary(contours(c)%boundary, settings, limits, more, bends)
       needs = [needs, more]
     end do
     if (first) then
@@ -251,20 +251,20 @@ contains
     old%nodes = mesh%nodes
     old%connectivity = mesh%connectivity
     old%material = mesh%material
-    allocate (old%wanted(size(mesh%material)))
-    do e = 1, size(old%wanted)
-      old%wanted(e) = sqrt(polygon_area(old%nodes(:, old%connectivity(1:4, e))))
+    allocate (old%requested(size(mesh%material)))
+    do e = 1, size(old%requested)
+      old%requested(e) = sqrt(polygon_area(old%nodes(:, old%connectivity(1:4, e))))
     end do
     if (scene%remesh%estimate) then
-      do e = 1, size(old%wanted)
+      do e = 1, size(old%requested)
         error = solution%estimate%strain_of(e)
-        old%wanted(e) = wanted_size(old%wanted(e), error, scene%remesher%strain_error, strain_order)
+        old%requested(e) = requested_size(old%requested(e), error, scene%remesher%strain_error, strain_order)
       end do
     end if
     call set_up_sizes(limits, needs, sizes, old)
-  end subroutine wanted_sizes
+  end subroutine requested_sizes
 
-  !> Mesh the zones; a mesh of bad shape is smoothed more, then made finer.
+  !> Mesh the zones; a mesh of bad shape is smoothed with more passes, then refined.
   subroutine make_mesh(scene, before, contours, plan, sizes, finer, mesh, facts, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: before
@@ -275,20 +275,20 @@ contains
     type(new_mesh_t), intent(out) :: mesh
     type(remesh_facts_t), intent(inout) :: facts
     type(error_t), allocatable, intent(out) :: error
-    type(mesh_wish_t) :: wish
-    type(chain_t) :: chains(size(contours))
+    type(mesh_settings_t) :: settings
+    type(boundary_curve_t) :: boundaries(size(contours))
     integer :: attempt, c
 
     do c = 1, size(contours)
-      chains(c) = contours(c)%chain
+      boundaries(c) = contours(c)%boundary
     end do
-    wish%division%refine = finer
-    if (scene%remesher%most_elements > 0) wish%division%most_elements = scene%remesher%most_elements
+    settings%division%refine = finer
+    if (scene%remesher%most_elements > 0) settings%division%most_elements = scene%remesher%most_elements
     do attempt = 1, attempts
       if (allocated(error)) deallocate (error)
-      if (attempt == 2) wish%passes = 4*wish%passes
-      if (attempt == 3) wish%division%refine = 1.5_wp*wish%division%refine
-      call mesh_zones(chains, plan%points, plan%zones, sizes, wish, mesh, error, plan%paths)
+      if (attempt == 2) settings%passes = 4*settings%passes
+      if (attempt == 3) settings%division%refine = 1.5_wp*settings%division%refine
+      call mesh_zones(boundaries, plan%points, plan%zones, sizes, settings, mesh, error, plan%paths)
       if (allocated(error)) return
       facts%coarser = mesh%division%factor
       facts%expected = predict(mesh, sizes, strain_order)
@@ -298,8 +298,8 @@ contains
     end do
   end subroutine make_mesh
 
-  !> Is a mesh without zones due: one that is asked for, or one in place of that which the user's zones would not have been?
-  pure function is_for_gmsh(remesher, materials_share, error) result(yes)
+  !> Is a mesh without zones needed: because it is requested, or because zones that the user did not give failed?
+  pure function uses_gmsh(remesher, materials_share, error) result(yes)
     type(remesher_options_t), intent(in) :: remesher
     logical, intent(in) :: materials_share            !! sides, which no mesh without zones keeps
     type(error_t), allocatable, intent(in) :: error   !! of the mesh by zones
@@ -307,9 +307,9 @@ contains
 
     yes = remesher%mesher == by_gmsh .or. (allocated(error) .and. remesher%mesher == as_it_comes .and. &
                                            .not. (has_zones(remesher) .or. materials_share))
-  end function is_for_gmsh
+  end function uses_gmsh
 
-  !> A mesh without zones. Where there is no Gmsh, what was wrong with zones is what the user has to know.
+  !> A mesh without zones. Where Gmsh is not available, the error of the zones is the one to report.
   subroutine make_free_mesh(old, before, contours, sizes, options, plan, mesh, facts, error)
     type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
@@ -320,21 +320,22 @@ contains
     type(new_mesh_t), intent(out) :: mesh
     type(remesh_facts_t), intent(inout) :: facts
     type(error_t), allocatable, intent(inout) :: error
-    type(error_t), allocatable :: of_zones
+    type(error_t), allocatable :: zone_error
     type(gmsh_t) :: gmsh
 
-    call move_alloc(error, of_zones)
+    call move_alloc(error, zone_error)
     facts%mesher = 'gmsh'
     call find_gmsh(options%out, options%limit, gmsh)
-    call mesh_freely(old, materials_of(old, before), contours, sizes, options%finer, gmsh, plan, mesh, facts%mesh, error)
+    call make_mesh_without_zones(old, materials_of(old, before), contours, sizes, options%finer, gmsh, plan, mesh, facts%mesh, &
+                                 error)
     if (allocated(mesh%zone)) facts%coarser = mesh%division%factor
-    if (gmsh%is_there .or. .not. allocated(of_zones)) return
-    of_zones%code = error%code
-    of_zones%advice = error%advice
-    call move_alloc(of_zones, error)
+    if (gmsh%available .or. .not. allocated(zone_error)) return
+    zone_error%code = error%code
+    zone_error%advice = error%advice
+    call move_alloc(zone_error, error)
   end subroutine make_free_mesh
 
-  !> Time, dies, work: what does not hang on the mesh.
+  !> Time, dies, work: quantities that do not depend on the mesh.
   pure subroutine carry_progress(before, after)
     type(solution_t), intent(in) :: before
     type(solution_t), intent(inout) :: after
@@ -365,8 +366,8 @@ contains
     after%unbalanced = .true.
   end subroutine carry_progress
 
-  !> State of the solids, and what belongs to nodes: origin of the matter, motion of the last step, and motion since the start
-  !> where the mesh does not go with it.
+  !> State of the solids and nodal fields: initial position of the material points, displacement of the last step, and displacement
+  !> since the start where the mesh is not updated.
   subroutine carry_solids(old, before, moved, new, after, report, error)
     type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
@@ -389,12 +390,12 @@ contains
     call solid_pieces(old, from, before)
     call solid_pieces(new, to)
     do k = 1, size(to%groups)
-      allocate (to%groups(k)%values, source=after%groups(to%groups(k)%place)%committed)
+      allocate (to%groups(k)%values, source=after%groups(to%groups(k)%scene_group)%committed)
     end do
     call mesh_of(from, mesh)
-    call plant_mesh_trees(mesh)
+    call build_mesh_trees(mesh)
     call mesh_of(to, target)
-    call carry_between(mesh, target, from, to, options, report, error)
+    call carry_states(mesh, target, from, to, options, report, error)
     if (allocated(error)) return
     call store_states(to, after)
 

@@ -1,69 +1,69 @@
-!> Places of the old loop on its corrected contour, and back: what was on a side is found again where contact replaced it.
+!> Positions of points of the old loop on the corrected contour: points of a side are located where contact replaced it.
 !>
-!> On free sides xi is the same on both. Inside a run of contact a place belongs to the closest one of that run, never to a
-!> wall across a thin part.
+!> On free sides xi is the same on both. Inside a contact interval a point is mapped to the closest position in that interval, never
+!> to the opposite face of a thin part.
 module contour_match
+  use arcs, only: arc_t, closest_xi, point_at
+  use boundary_curves, only: boundary_curve_t, point_on, position_t
   use boundary_sides, only: loop_t
-  use contact_runs, only: along, spot_t
+  use contact_intervals, only: along, side_point_t
   use contour_assembly, only: contact_t
-  use contour_chain, only: chain_t, place_t, point_on
   use kinds, only: wp
-  use stretches, only: closest_xi, point_at, stretch_t
   use vectors, only: length_of
   implicit none
   private
-  public :: place_of_old
+  public :: position_of_side_point
 
 contains
 
-  !> Where a place on an old side has gone.
-  pure function place_of_old(loop, chain, contacts, x, side, xi) result(place)
+  !> Position of a point of an old side on the corrected contour.
+  pure function position_of_side_point(loop, boundary, contacts, x, side, xi) result(position)
     type(loop_t), intent(in) :: loop
-    type(chain_t), intent(in) :: chain           !! corrected
-    type(contact_t), intent(in) :: contacts(:)
-    real(wp), intent(in) :: x(:, :)              !! nodes before the correction (2, nnode) [length]
-    integer, intent(in) :: side                  !! of the loop
+    type(boundary_curve_t), intent(in) :: boundary   !! corrected
+    type(contact_t), intent(in) :: contacts(:)       !! (ncontact)
+    real(wp), intent(in) :: x(:, :)                  !! nodes before the correction (2, nnode) [length]
+    integer, intent(in) :: side                      !! of the loop
     real(wp), intent(in) :: xi
-    type(place_t) :: place
-    type(stretch_t) :: old
+    type(position_t) :: position
+    type(arc_t) :: old
     real(wp) :: here, distance, least, point(2)
-    integer :: k, run
+    integer :: k, interval
 
-    run = run_at(loop, contacts, side, xi)
+    interval = interval_at(loop, contacts, side, xi)
     old%points = x(:, loop%sides(:, side))
     point = point_at(old, xi)
     least = huge(least)
-    do k = 1, size(chain%stretches)
-      associate (one => chain%stretches(k))
-        if (one%run /= run .or. run == 0 .and. one%side /= side) cycle
+    do k = 1, size(boundary%arcs)
+      associate (one => boundary%arcs(k))
+        if (one%interval /= interval .or. interval == 0 .and. one%side /= side) cycle
         here = xi
-        ! a free side may follow the die on a part of its way
+        ! a free side may follow the die over a part of its length
         if (one%middle == 0) here = closest_xi(one, point)
         if (here < one%range(1) .or. here > one%range(2)) cycle
         distance = length_of(point_at(one, here) - point)
         if (.not. distance < least) cycle
         least = distance
-        place = place_t(k, here)
+        position = position_t(k, here)
       end associate
     end do
-  end function place_of_old
+  end function position_of_side_point
 
-  !> Run of contact that a place on an old side is in, 0 for none.
-  pure function run_at(loop, contacts, side, xi) result(run)
+  !> Contact interval that contains a point of an old side, 0 for none.
+  pure function interval_at(loop, contacts, side, xi) result(interval)
     type(loop_t), intent(in) :: loop
     type(contact_t), intent(in) :: contacts(:)
     integer, intent(in) :: side
     real(wp), intent(in) :: xi
-    integer :: run
+    integer :: interval
     integer :: k
     real(wp) :: s
 
-    run = 0
+    interval = 0
     do k = 1, size(contacts)
-      s = along(spot_t(side, xi))
-      if (s < along(contacts(k)%run%from)) s = s + size(loop%sides, 2)
-      if (s <= along(contacts(k)%run%to)) run = k
+      s = along(side_point_t(side, xi))
+      if (s < along(contacts(k)%interval%from)) s = s + size(loop%sides, 2)
+      if (s <= along(contacts(k)%interval%to)) interval = k
     end do
-  end function run_at
+  end function interval_at
 
 end module contour_match

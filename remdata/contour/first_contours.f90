@@ -1,6 +1,6 @@
 !> Contours of bodies that have no mesh yet, from their BODY cards.
 module first_contours
-  use contour_chain, only: close_chain, kind_end, kind_joint
+  use boundary_curves, only: close_boundary, kind_end, kind_joint
   use contour_laps, only: find_laps, lap_t
   use errors, only: error_t, exit_input, fail
   use part_contour, only: contour_options_t, contour_report_t, contour_t
@@ -15,29 +15,29 @@ contains
   !> One contour for each body; its rows are the sets of sides NAME.1, NAME.2 ...
   pure subroutine contours_of_cards(scene, contours, report, error)
     type(scene_t), intent(in) :: scene
-    type(contour_t), allocatable, intent(out) :: contours(:)
+    type(contour_t), allocatable, intent(out) :: contours(:)   !! (ncontour)
     type(contour_report_t), intent(out) :: report
     type(error_t), allocatable, intent(out) :: error
     type(contour_options_t) :: options
     integer, allocatable :: no_dies(:, :)
-    logical, allocatable :: nothing(:, :, :)
+    logical, allocatable :: no_faces(:, :, :)
     integer :: c, k, n, s
 
     associate (cards => scene%remesher%contours)
       allocate (contours(size(cards)), report%limits(0))
       do c = 1, size(cards)
         n = size(cards(c)%row)
-        associate (chain => contours(c)%chain, tags => contours(c)%tags)
+        associate (boundary => contours(c)%boundary, tags => contours(c)%tags)
           allocate (contours(c)%loop%sides(3, 0), contours(c)%loop%element(0), contours(c)%contacts(0))
-          allocate (chain%stretches(n), chain%kinds(n))
+          allocate (boundary%arcs(n), boundary%kinds(n))
           do k = 1, n
-            chain%stretches(k)%points = cards(c)%pieces(:, :, k)
-            chain%stretches(k)%middle = k
-            chain%stretches(k)%side = k
+            boundary%arcs(k)%points = cards(c)%pieces(:, :, k)
+            boundary%arcs(k)%middle = k
+            boundary%arcs(k)%side = k
             ! a node stands where one side of the body ends and the next begins
-            chain%kinds(k) = merge(kind_end, kind_joint, cards(c)%row(k) == cards(c)%row(modulo(k - 2, n) + 1))
+            boundary%kinds(k) = merge(kind_end, kind_joint, cards(c)%row(k) == cards(c)%row(modulo(k - 2, n) + 1))
           end do
-          call close_chain(options%corner_turn, chain)
+          call close_boundary(options%corner_turn, boundary)
           allocate (tags%on_set(size(scene%mesh%sides), n), tags%on_group(size(scene%groups), n), &
                     tags%on_fixation(size(scene%fixations), n), tags%on_die(size(scene%dies), n), source=.false.)
           allocate (tags%on_axis(n), source=.false.)
@@ -49,12 +49,12 @@ contains
         end associate
       end do
       allocate (no_dies(maxval([(size(cards(c)%row), c=1, size(cards))]), size(cards)), source=0)
-      allocate (nothing(size(scene%dies), size(no_dies, 1), size(cards)), source=.false.)
+      allocate (no_faces(size(scene%dies), size(no_dies, 1), size(cards)), source=.false.)
     end associate
-    call find_laps([(contours(c)%chain, c=1, size(contours))], no_dies, nothing, report%laps)
+    call find_laps([(contours(c)%boundary, c=1, size(contours))], no_dies, no_faces, report%laps)
     if (size(report%laps) == 0) return
     call fail(error, exit_input, 'contours of bodies cross at x = '//to_text(report%laps(1)%point(1))//', y = ' &
-              //to_text(report%laps(1)%point(2)), 'mend the rows of the BODY cards there')
+              //to_text(report%laps(1)%point(2)), 'correct the rows of the BODY cards there')
   end subroutine contours_of_cards
 
 end module first_contours

@@ -1,9 +1,9 @@
 !> Sides of quadrilaterals that belong to one element only, ordered into closed loops.
 !>
-!> A side is known by its middle node: on the contour that node belongs to a single PL8LS (annex 2, section 2). The side
-!> that comes next is found by turning around the end node through the elements that meet there, from side to side, until one
-!> is met that nothing shares: no coordinate is asked, so that bodies, holes and rings come apart even where two of them
-!> touch in a node. Elements run counter-clockwise, hence loops have the part on their left.
+!> A side is identified by its middle node: on the contour that node belongs to a single PL8LS (annex 2, section 2). The next side
+!> is found by turning around the end node through the adjacent elements, from side to side, until one is met that is not shared. No
+!> coordinate is used, so that bodies, holes and rings are separated even where two of them touch in a node. Elements are numbered
+!> counter-clockwise, hence loops have the part on their left.
 module boundary_sides
   use shape_functions, only: quad8_side
   implicit none
@@ -11,7 +11,7 @@ module boundary_sides
   public :: loop_t, find_loops
   public :: loops_found, shared_by_three, sides_disagree
 
-  !> One closed walk around a part, the part on its left.
+  !> One closed loop around a part, with the part on its left.
   type :: loop_t
     !> Nodes (3, nside): first end, middle, second end; a side begins where the one before it ends.
     integer, allocatable :: sides(:, :)
@@ -21,19 +21,19 @@ module boundary_sides
     integer :: body = 0
   end type loop_t
 
-  !> What `find_loops` answers.
+  !> Status of `find_loops`.
   integer, parameter :: loops_found = 0, shared_by_three = 1, sides_disagree = 2
 
 contains
 
-  !> All loops. Each begins at the lowest number among its end nodes, and they come in the order of these numbers, whatever
-  !> the order of the elements; where a loop meets that node twice it begins with the lower middle node.
+  !> All loops. Each begins at the lowest number among its end nodes, and they are sorted by these numbers, independently of the
+  !> order of the elements; where a loop passes that node twice it begins with the lower middle node.
   pure subroutine find_loops(connectivity, nnode, loops, status, node)
     integer, intent(in) :: connectivity(:, :)   !! nodes of the elements (8, nelem), in the order of `quad8`
     integer, intent(in) :: nnode
-    type(loop_t), allocatable, intent(out) :: loops(:)
-    integer, intent(out) :: status              !! `loops_found`, or the reason why there are none
-    integer, intent(out) :: node                !! middle node at fault, else 0
+    type(loop_t), allocatable, intent(out) :: loops(:)   !! (nloop)
+    integer, intent(out) :: status                       !! `loops_found`, or the reason of the failure
+    integer, intent(out) :: node                         !! middle node at fault, else 0
     integer :: owner(2, nnode), body(size(connectivity, 2))
     integer, allocatable :: starts(:), order(:)
     logical :: walked(nnode)
@@ -74,7 +74,7 @@ contains
           status = shared_by_three
           return
         else if (owner(1, node) > 0) then
-          ! two elements walk the side they share in opposite ways
+          ! adjacent elements traverse the side they share in opposite directions
           ends = ends_of(connectivity, 4*(e - 1) + k)
           other = ends_of(connectivity, owner(1, node))
           if (any(ends /= other([2, 1]))) then
@@ -150,29 +150,29 @@ contains
     end do
   end subroutine number_bodies
 
-  !> Middle nodes of the contour by the number of the end they begin at, then by their own: two sorts by counting.
+  !> Middle nodes of the contour sorted by the first end of their side, then by their own number: two counting sorts.
   pure subroutine list_starts(connectivity, owner, starts, order)
     integer, intent(in) :: connectivity(:, :), owner(:, :)
     integer, allocatable, intent(out) :: starts(:), order(:)
-    integer :: place(size(owner, 2) + 1), node, first, n
+    integer :: offset(size(owner, 2) + 1), node, first, n
 
-    place = 0
+    offset = 0
     n = 0
     do node = 1, size(owner, 2)
       if (owner(1, node) == 0 .or. owner(2, node) > 0) cycle
       first = first_of(node)
-      place(first + 1) = place(first + 1) + 1
+      offset(first + 1) = offset(first + 1) + 1
       n = n + 1
     end do
-    do node = 2, size(place)
-      place(node) = place(node) + place(node - 1)
+    do node = 2, size(offset)
+      offset(node) = offset(node) + offset(node - 1)
     end do
     allocate (order(n), starts(n))
     do node = 1, size(owner, 2)
       if (owner(1, node) == 0 .or. owner(2, node) > 0) cycle
       first = first_of(node)
-      place(first) = place(first) + 1
-      order(place(first)) = node
+      offset(first) = offset(first) + 1
+      order(offset(first)) = node
     end do
 
   contains

@@ -1,15 +1,15 @@
-!> A tree of boxes: which of many are nearest to a point. Points are boxes without a size.
+!> A tree of boxes to find the nearest of many to a point. Points are boxes of zero size.
 !>
-!> A k-d tree cut at the median (J.L. Bentley, Commun. ACM 18 (1975) 509-517), each node with the box of all that hangs below it:
-!> n log n to plant, log n a search, on graded meshes too. Ties are broken by the number of the item, so answers depend on nothing
-!> but the items.
+!> A k-d tree split at the median (J.L. Bentley, Commun. ACM 18 (1975) 509-517), each node with the box of all items below it: built
+!> in n log n, searched in log n, on graded meshes too. Ties are broken by the number of the item, so that answers depend on the
+!> items only.
 module box_tree
   use kinds, only: wp
   implicit none
   private
-  public :: box_tree_t, plant_tree, nearest_items, insert
+  public :: box_tree_t, build_tree, nearest_items, insert
 
-  !> Most items of a leaf, and depth that no tree reaches (halves of 2^31 items).
+  !> Largest number of items of a leaf, and largest depth of a tree (halves of 2^31 items).
   integer, parameter :: leaf = 8, deepest = 64
 
   type :: box_tree_t
@@ -24,10 +24,10 @@ module box_tree
 
 contains
 
-  !> Plant the tree of some of the boxes.
-  pure subroutine plant_tree(boxes, members, tree)
-    real(wp), intent(in) :: boxes(:, :)  !! (4, any)
-    integer, intent(in) :: members(:)
+  !> Build the tree of some of the boxes.
+  pure subroutine build_tree(boxes, members, tree)
+    real(wp), intent(in) :: boxes(:, :)   !! (4, nbox) least x, y, largest x, y [length]
+    integer, intent(in) :: members(:)     !! (n) boxes of the tree
     type(box_tree_t), intent(out) :: tree
     integer :: used, i
 
@@ -40,9 +40,9 @@ contains
     do i = 1, tree%n
       tree%boxes(:, i) = boxes(:, tree%items(i))
     end do
-  end subroutine plant_tree
+  end subroutine build_tree
 
-  !> One node with all below it.
+  !> Build one node and all below it.
   pure recursive subroutine grow(boxes, first, last, tree, used)
     real(wp), intent(in) :: boxes(:, :)
     integer, intent(in) :: first, last
@@ -75,7 +75,7 @@ contains
     call grow(boxes, middle + 1, last, tree, used)
   end subroutine grow
 
-  !> Bring the item that sorting would put at `middle` there, the lesser ones before it.
+  !> Partition so that the item at `middle` is the one sorting would put there, smaller ones before it.
   !> Source: C.A.R. Hoare, Algorithm 65: FIND, Commun. ACM 4 (1961) 321.
   pure subroutine part_at(boxes, axis, first, last, middle, items)
     real(wp), intent(in) :: boxes(:, :)
@@ -119,20 +119,20 @@ contains
 
   end subroutine part_at
 
-  !> The items nearest to a point, nearest first; of items as near the one of the lower number. `found` is less than the size of
-  !> `items` only where the tree has no more. `tried` counts nodes and items looked at.
+  !> The items nearest to a point, nearest first; of equally near ones the one of the lower number first. `found` is less than the
+  !> size of `items` only where the tree has no more. `tried` counts the nodes and items visited.
   pure subroutine nearest_items(tree, point, found, items, distances, tried)
     type(box_tree_t), intent(in) :: tree
-    real(wp), intent(in) :: point(2)
+    real(wp), intent(in) :: point(2)   !! [length]
     integer, intent(out) :: found
-    integer, intent(out) :: items(:)         !! as many as wanted
-    real(wp), intent(out) :: distances(:)    !! squares [length^2]
+    integer, intent(out) :: items(:)        !! (n) as many as requested
+    real(wp), intent(out) :: distances(:)   !! (n) squares [length^2]
     integer, intent(out), optional :: tried
-    integer :: waiting(deepest), top, node, near, far, i, looked
+    integer :: waiting(deepest), top, node, near, far, i, visited
     real(wp) :: waiting_at(deepest), to_near, to_far, d
 
     found = 0
-    looked = 0
+    visited = 0
     items = 0
     distances = huge(1.0_wp)
     top = 0
@@ -145,7 +145,7 @@ contains
       node = waiting(top)
       d = waiting_at(top)
       top = top - 1
-      looked = looked + 1
+      visited = visited + 1
       if (d > distances(size(distances))) cycle
       if (tree%nodes(3, node) > 0) then
         near = node + 1
@@ -163,36 +163,36 @@ contains
         cycle
       end if
       do i = tree%nodes(1, node), tree%nodes(2, node)
-        looked = looked + 1
+        visited = visited + 1
         d = distance_to(tree%boxes(:, i), point)
         if (d > distances(size(distances))) cycle
         call insert(tree%items(i), d, found, items, distances)
       end do
     end do
-    if (present(tried)) tried = looked
+    if (present(tried)) tried = visited
   end subroutine nearest_items
 
-  !> Put an item at its place in the list of the nearest, where it belongs there.
+  !> Insert an item into the list of the nearest, if it is nearer than the last one.
   pure subroutine insert(item, distance, found, items, distances)
     integer, intent(in) :: item
     real(wp), intent(in) :: distance
-    integer, intent(inout) :: found, items(:)
-    real(wp), intent(inout) :: distances(:)
-    integer :: place
+    integer, intent(inout) :: found, items(:)   !! (n)
+    real(wp), intent(inout) :: distances(:)     !! (n) squares [length^2]
+    integer :: slot
 
     if (found == size(items)) then
       if (.not. nearer(distance, item, distances(found), items(found))) return
       found = found - 1
     end if
-    place = found
-    do while (place > 0)
-      if (.not. nearer(distance, item, distances(place), items(place))) exit
-      items(place + 1) = items(place)
-      distances(place + 1) = distances(place)
-      place = place - 1
+    slot = found
+    do while (slot > 0)
+      if (.not. nearer(distance, item, distances(slot), items(slot))) exit
+      items(slot + 1) = items(slot)
+      distances(slot + 1) = distances(slot)
+      slot = slot - 1
     end do
-    items(place + 1) = item
-    distances(place + 1) = distance
+    items(slot + 1) = item
+    distances(slot + 1) = distance
     found = found + 1
   end subroutine insert
 

@@ -1,41 +1,41 @@
-!> Volume inside closed chains by Green's formula, and the shift of free sides that restores it.
+!> Volume inside closed boundary curves by Green's formula, and the displacement of free sides that restores it.
 !>
 !> Plane: A = 1/2 of the integral of x dy - y dx [area]; axisymmetric: V = 1/2 of the integral of r**2 dy, per radian
 !> [volume]. On a parabola the integrands are of degree 3 and 5 in xi, for which Gauss's four points are exact (degree 7); at
 !> a depth the range is halved until the sum no longer changes. Loops around holes count negative.
 module contour_volume
+  use arcs, only: arc_t, point_at, tangent_at
+  use boundary_curves, only: boundary_curve_t
   use boundary_sides, only: loop_t
-  use contour_chain, only: chain_t
   use kinds, only: eps, wp
   use quadrature, only: line_rule
-  use stretches, only: point_at, stretch_t, tangent_at
   use vectors, only: length_of
   implicit none
   private
   public :: volume_inside, volume_of_loop, shift_sides
 
-  !> Gauss's rule on halves and on the whole agree to this share of a stretch times its arm.
+  !> Gauss's rule on the halves and on the whole agree to this share of the arc length times its lever arm.
   real(wp), parameter :: accuracy = 16*eps
   integer, parameter :: most_halvings = 12
-  !> Volumes that differ by less than this share are the same.
+  !> Volumes that differ by less than this share are equal.
   real(wp), parameter :: round_off = 64*eps
-  !> Corners sharper than 30 degrees stay: 1 + cos(150 degrees).
+  !> Nodes at corners sharper than 30 degrees are fixed: 1 + cos(150 degrees).
   real(wp), parameter :: sharpest = 0.134_wp
 
 contains
 
-  !> Volume inside a chain.
-  pure function volume_inside(chain, axisymmetric) result(volume)
-    type(chain_t), intent(in) :: chain
+  !> Volume inside a boundary curve.
+  pure function volume_inside(boundary, axisymmetric) result(volume)
+    type(boundary_curve_t), intent(in) :: boundary
     logical, intent(in) :: axisymmetric
     real(wp) :: volume
     real(wp) :: origin(2)
     integer :: k
 
-    origin = point_at(chain%stretches(1), chain%stretches(1)%range(1))
+    origin = point_at(boundary%arcs(1), boundary%arcs(1)%range(1))
     volume = 0
-    do k = 1, size(chain%stretches)
-      volume = volume + below(chain%stretches(k), axisymmetric, origin)
+    do k = 1, size(boundary%arcs)
+      volume = volume + below(boundary%arcs(k), axisymmetric, origin)
     end do
   end function volume_inside
 
@@ -45,7 +45,7 @@ contains
     real(wp), intent(in) :: coordinates(:, :)   !! (2, nnode) [length]
     logical, intent(in) :: axisymmetric
     real(wp) :: volume
-    type(stretch_t) :: side
+    type(arc_t) :: side
     integer :: k
 
     volume = 0
@@ -55,9 +55,9 @@ contains
     end do
   end function volume_of_loop
 
-  !> What a stretch adds; areas are taken about `origin` to keep their digits.
-  pure function below(stretch, axisymmetric, origin) result(part)
-    type(stretch_t), intent(in) :: stretch
+  !> Contribution of an arc; areas are taken about `origin` to avoid cancellation.
+  pure function below(arc, axisymmetric, origin) result(part)
+    type(arc_t), intent(in) :: arc
     logical, intent(in) :: axisymmetric
     real(wp), intent(in) :: origin(2)
     real(wp) :: part
@@ -65,15 +65,15 @@ contains
     real(wp) :: unit, t(2)
 
     call line_rule(4, x, w)
-    t = tangent_at(stretch, stretch%range(1))
-    unit = length_of(t)*(stretch%range(2) - stretch%range(1))
+    t = tangent_at(arc, arc%range(1))
+    unit = length_of(t)*(arc%range(2) - arc%range(1))
     if (axisymmetric) then
-      unit = unit*maxval(stretch%points(1, :)**2)
+      unit = unit*maxval(arc%points(1, :)**2)
     else
-      unit = unit*max(length_of(stretch%points(:, 1) - origin), length_of(stretch%points(:, 3) - origin))
+      unit = unit*max(length_of(arc%points(:, 1) - origin), length_of(arc%points(:, 3) - origin))
     end if
-    part = by_rule(stretch%range(1), stretch%range(2))
-    if (any(abs(stretch%depth) > 0)) part = measured(stretch%range(1), stretch%range(2), part, most_halvings)
+    part = by_rule(arc%range(1), arc%range(2))
+    if (any(abs(arc%depth) > 0)) part = measured(arc%range(1), arc%range(2), part, most_halvings)
 
   contains
 
@@ -100,8 +100,8 @@ contains
       sum = 0
       do i = 1, size(x)
         xi = 0.5_wp*(a + b) + 0.5_wp*(b - a)*x(i)
-        p = point_at(stretch, xi)
-        t = tangent_at(stretch, xi)
+        p = point_at(arc, xi)
+        t = tangent_at(arc, xi)
         if (axisymmetric) then
           sum = sum + 0.25_wp*(b - a)*w(i)*p(1)**2*t(2)
         else
@@ -113,36 +113,36 @@ contains
 
   end function below
 
-  !> Move free sides along their normals by one distance so that the loop gains a volume. A node moves when all sides of the
-  !> loop it belongs to may; where two sides meet at an angle it moves so that both do. The secant's rule finds the distance:
-  !> the volume is a polynomial in it, of degree 2 in the plane and 3 around an axis.
+  !> Move free sides along their normals by one distance so that the loop gains a volume. A node moves if all sides of the loop that
+  !> it belongs to may; at a corner it moves so that both sides do. The distance is found by the secant method: the volume is a
+  !> polynomial in it, of degree 2 in the plane and 3 around an axis.
   pure subroutine shift_sides(loop, may_move, held, axisymmetric, gain, coordinates, shift, restored)
     type(loop_t), intent(in) :: loop
-    logical, intent(in) :: may_move(:)                !! for each side of the loop
-    logical, intent(in) :: held(:)                    !! for each node: it stays whatever its sides do
+    logical, intent(in) :: may_move(:)   !! (nside) of the loop
+    logical, intent(in) :: held(:)       !! (nnode) fixed whatever the sides of the node do
     logical, intent(in) :: axisymmetric
-    real(wp), intent(in) :: gain                      !! wanted, as `volume_of_loop`
-    real(wp), intent(inout) :: coordinates(:, :)      !! (2, nnode) [length]
-    real(wp), intent(out) :: shift                    !! outwards [length]
-    logical, intent(out) :: restored                  !! the loop gained what was wanted; else nothing has moved
-    real(wp) :: before(2, size(coordinates, 2)), ways(2, size(coordinates, 2))
+    real(wp), intent(in) :: gain                   !! required, as `volume_of_loop`
+    real(wp), intent(inout) :: coordinates(:, :)   !! (2, nnode) [length]
+    real(wp), intent(out) :: shift                 !! outwards [length]
+    logical, intent(out) :: restored               !! the loop gained the required volume; else nothing has moved
+    real(wp) :: before(2, size(coordinates, 2)), displacements(2, size(coordinates, 2))
     real(wp) :: start, excess, last_excess, last_shift, step, surface
     integer :: iteration
     integer, parameter :: most_iterations = 30
 
     shift = 0
     before = coordinates
-    call normals_of_nodes(loop, coordinates, may_move, held, ways, surface)
+    call normals_of_nodes(loop, coordinates, may_move, held, displacements, surface)
     start = volume_of_loop(loop, coordinates, axisymmetric)
     last_shift = 0
     last_excess = -gain
     restored = abs(gain) <= round_off*abs(start)
     if (restored .or. .not. surface > 0) return
-    ! the first guess moves a plane surface; around an axis the volume of a thin layer is measured with it
+    ! the first guess is exact for a plane surface; around an axis it measures the volume of a thin layer
     step = merge(sign(eps**0.5_wp*surface, gain), gain/surface, axisymmetric)
     do iteration = 1, most_iterations
       shift = last_shift + step
-      coordinates = before + shift*ways
+      coordinates = before + shift*displacements
       excess = volume_of_loop(loop, coordinates, axisymmetric) - start - gain
       restored = abs(excess) <= round_off*abs(start)
       if (restored .or. .not. abs(excess - last_excess) > 0) exit
@@ -155,39 +155,39 @@ contains
     shift = 0
   end subroutine shift_sides
 
-  !> Where nodes go when all free sides move by one, and the length of these sides [length].
-  pure subroutine normals_of_nodes(loop, coordinates, may_move, held, ways, surface)
+  !> Displacement of nodes for a unit displacement of all free sides, and the length of these sides [length].
+  pure subroutine normals_of_nodes(loop, coordinates, may_move, held, displacements, surface)
     type(loop_t), intent(in) :: loop
     real(wp), intent(in) :: coordinates(:, :)
     logical, intent(in) :: may_move(:), held(:)
-    real(wp), intent(out) :: ways(:, :), surface
-    type(stretch_t) :: side, next
+    real(wp), intent(out) :: displacements(:, :), surface
+    type(arc_t) :: side, next
     real(wp) :: one(2), other(2)
     integer :: k, after
 
-    ways = 0
+    displacements = 0
     surface = 0
     do k = 1, size(loop%sides, 2)
       if (.not. may_move(k)) cycle
       side%points = coordinates(:, loop%sides(:, k))
       surface = surface + length_of(side%points(:, 3) - side%points(:, 1))
-      ways(:, loop%sides(2, k)) = outward(side, 0.0_wp)
+      displacements(:, loop%sides(2, k)) = outward(side, 0.0_wp)
       after = mod(k, size(loop%sides, 2)) + 1
       if (.not. may_move(after)) cycle
       next%points = coordinates(:, loop%sides(:, after))
       one = outward(side, 1.0_wp)
       other = outward(next, -1.0_wp)
       ! at a corner both sides move by one: the sum of the normals over one plus the cosine between them
-      if (1 + dot_product(one, other) > sharpest) ways(:, loop%sides(3, k)) = (one + other)/(1 + dot_product(one, other))
+      if (1 + dot_product(one, other) > sharpest) displacements(:, loop%sides(3, k)) = (one + other)/(1 + dot_product(one, other))
     end do
     do k = 1, size(held)
-      if (held(k)) ways(:, k) = 0
+      if (held(k)) displacements(:, k) = 0
     end do
   end subroutine normals_of_nodes
 
-  !> Unit normal away from the part, at the right of the walk.
+  !> Outward unit normal, to the right of the arc.
   pure function outward(side, xi) result(n)
-    type(stretch_t), intent(in) :: side
+    type(arc_t), intent(in) :: side
     real(wp), intent(in) :: xi
     real(wp) :: n(2)
     real(wp) :: t(2)

@@ -1,20 +1,20 @@
-!> Quadrilaterals with a flat corner on the contour are made to be none.
+!> Quadrilaterals with a flat corner on the contour are replaced.
 !>
-!> Where two sides of an element follow one another along a smooth contour, its corner between them has 180 degrees whatever is done
-!> to its other nodes. With a neighbour it forms a hexagon, which another one of its long diagonals divides as well:
+!> Where two consecutive sides of an element lie on a smooth contour, its corner between them has 180 degrees for any position
+!> of its other nodes. With a neighbour it forms a hexagon, which another one of its long diagonals divides as well:
 !> ```
 !>     d --- q         d --- q
-!>     |  \  |         |     |       b is smooth: the element a b c d gives its side c d, or d a,
-!>     a    \ p   ->   a     p       for one from b across, the one whose worse half is the better one
+!>     |  \  |         |     |       b is smooth: the element a b c d replaces its side c d, or d a,
+!>     a    \ p   ->   a     p       by one from b, whichever gives the better worse half
 !>      \   /           \  / /
 !>       b-c             b--c
 !> ```
-!> Where this only makes the next corner flat, a round corner of a part that is meshed like a sharp one, three nodes more lie
+!> Where this only makes the next corner flat, as at a round corner of a part, a layer of three nodes is inserted
 !> between the contour and d:
 !> ```
 !>     v --- d --- w        v --- d --- w
 !>     |     |     |        | m --m-- m |      m are new, the middle one between b and d;
-!>     |     |     |   ->   | |   |   | |      v and w go on to where they went
+!>     |     |     |   ->   | |   |   | |      v and w keep their other sides
 !>     r --- a b c s        r a   b   c s
 !> ```
 module flat_quads
@@ -24,17 +24,17 @@ module flat_quads
   private
   public :: open_flat_corners
 
-  !> A half with a smaller sine at a corner is not worth a swap.
+  !> Halves with a smaller sine at a corner are not accepted.
   real(wp), parameter :: least_sine = 0.3_wp
 
 contains
 
   pure subroutine open_flat_corners(next, smooth, x, corners, zone)
-    integer, intent(in) :: next(:)              !! point after each along its contour; points of contours come first
-    logical, intent(in) :: smooth(:)            !! the contour has no corner at this point
-    real(wp), allocatable, intent(inout) :: x(:, :)         !! (2, nend) [length]
-    integer, allocatable, intent(inout) :: corners(:, :)    !! (4, nelem) counter-clockwise
-    integer, allocatable, intent(inout) :: zone(:)          !! (nelem)
+    integer, intent(in) :: next(:)  !! (npoint) next point along the contour of each; points of contours come first
+    logical, intent(in) :: smooth(:)                       !! (npoint) the contour has no corner at this point
+    real(wp), allocatable, intent(inout) :: x(:, :)        !! (2, nend) [length]
+    integer, allocatable, intent(inout) :: corners(:, :)   !! (4, nelem) counter-clockwise
+    integer, allocatable, intent(inout) :: zone(:)         !! (nelem)
     integer :: e, k
     logical :: swapped
 
@@ -48,7 +48,7 @@ contains
     end do
   end subroutine open_flat_corners
 
-  !> Do two sides of an element run along the contour, smoothly from one to the other?
+  !> Are two sides of an element consecutive on a smooth contour?
   pure function is_flat(next, smooth, before, node, after) result(flat)
     integer, intent(in) :: next(:)
     logical, intent(in) :: smooth(:)
@@ -60,7 +60,7 @@ contains
     flat = next(before) == node .and. next(node) == after .and. smooth(node)
   end function is_flat
 
-  !> Give element e, flat at its corner k, another side: the better of two, if either is good enough.
+  !> Exchange a side of element e, flat at its corner k, with the better of two neighbours, if either is good enough.
   pure subroutine swap_side(next, smooth, x, e, k, corners, swapped)
     integer, intent(in) :: next(:)
     logical, intent(in) :: smooth(:)
@@ -68,7 +68,7 @@ contains
     integer, intent(in) :: e, k
     integer, intent(inout) :: corners(:, :)
     logical, intent(out) :: swapped
-    integer :: a, b, c, d, p, q, other, best_other, halves(4, 2), best(4, 2), way
+    integer :: a, b, c, d, p, q, other, best_other, halves(4, 2), best(4, 2), option
     real(wp) :: worst, best_worst
 
     a = corners(modulo(k - 2, 4) + 1, e)
@@ -77,8 +77,8 @@ contains
     d = corners(mod(k + 1, 4) + 1, e)
     best_worst = least_sine
     best_other = 0
-    do way = 1, 2
-      if (way == 1) then
+    do option = 1, 2
+      if (option == 1) then
         call element_across(corners, c, d, other, p, q)
         halves = reshape([a, b, q, d, b, c, p, q], [4, 2])
       else
@@ -98,7 +98,7 @@ contains
     corners(:, best_other) = best(:, 2)
   end subroutine swap_side
 
-  !> Three nodes and three elements more, for an element whose corner opposite to the flat one is inside.
+  !> Insert three nodes and three elements in an element whose corner opposite to the flat one is inside.
   pure subroutine add_layer(ncontour, e, k, x, corners, zone)
     integer, intent(in) :: ncontour, e, k
     real(wp), allocatable, intent(inout) :: x(:, :)
@@ -135,8 +135,8 @@ contains
     zone = [zone, spread(zone(e), 1, 3)]
   end subroutine add_layer
 
-  !> The element that has the side from `first` to `second` the other way round, and its two nodes after `first`; 0 where there
-  !> is none.
+  !> The element that has the side from `first` to `second` in the opposite direction, and its two nodes after `first`; 0 where
+  !> there is none.
   pure subroutine element_across(corners, first, second, element, p, q)
     integer, intent(in) :: corners(:, :), first, second
     integer, intent(out) :: element, p, q
@@ -156,7 +156,7 @@ contains
     end do
   end subroutine element_across
 
-  !> Smallest sine at the corners of an element; none at a flat one.
+  !> Smallest sine at the corners of an element; 0 at a flat one.
   pure function quality(next, smooth, x, nodes) result(least)
     integer, intent(in) :: next(:), nodes(4)
     logical, intent(in) :: smooth(:)

@@ -1,105 +1,105 @@
-!> A mesh of 8-node quadrilaterals from contours and wanted sizes, without zones.
+!> A mesh of 8-node quadrilaterals from contours and requested sizes, without zones.
 !>
-!> Ends of elements are placed along the contours as for zones; what Gmsh makes between them are quadrilaterals of four nodes. The
-!> middle nodes of their sides are placed here: on the contour by its parabolas, halfway inside; then bad elements are mended.
+!> Ends of elements are placed along the contours as for zones; Gmsh makes quadrilaterals of four nodes between them. The middle
+!> nodes of their sides are placed here: on the contour by its parabolas, halfway inside; then bad elements are untangled.
 module outline_mesh
   use block_mesh, only: polygon_area
   use body_outlines, only: divide_outlines, lay_out_outlines, outline_t
-  use contour_chain, only: chain_t, place_t, turn_at
+  use boundary_curves, only: boundary_curve_t, position_t, turn_at
   use errors, only: error_t
   use flat_quads, only: open_flat_corners
   use gmsh_call, only: gmsh_t, mesh_outline
   use gmsh_files, only: cell_t, quads_t, refuse_mesh
   use kinds, only: pi, wp
-  use mend_elements, only: mend
   use side_curves, only: curve_point, curve_t
   use side_middles, only: place_middle
   use size_cells, only: cover
   use size_field, only: size_field_t
   use split_cells, only: split_into_quads
   use text, only: to_text
-  use zone_mesh, only: mesh_wish_t, new_mesh_t
-  use zones, only: layout_t
+  use untangle_elements, only: untangle
+  use zone_mesh, only: mesh_settings_t, new_mesh_t
+  use zones, only: zone_layout_t
   implicit none
   private
   public :: mesh_outlines
 
-  !> A limited number of elements is met by growing sizes, a little more than by the square root, in so many attempts.
+  !> The limit on the number of elements is met by increasing the sizes, by a little more than the square root, in several attempts.
   real(wp), parameter :: growth = 1.02_wp
   integer, parameter :: attempts = 8
 
   !> No element has both its sides along a contour that turns by less between them: 35 degrees.
   real(wp), parameter :: flat_turn = 35*pi/180
 
-  !> The corners of the mesh while it grows. Points along the contours come first, side by side, then those inside body by body.
-  type :: draft_t
-    real(wp), allocatable :: x(:, :)         !! (2, nend) [length]
-    integer, allocatable :: corners(:, :)    !! (4, nelem) counter-clockwise
-    integer, allocatable :: zone(:)          !! (nelem)
+  !> The corners of the mesh under construction. Points along the contours come first, side by side, then those inside body by body.
+  type :: corner_mesh_t
+    real(wp), allocatable :: x(:, :)        !! (2, nend) [length]
+    integer, allocatable :: corners(:, :)   !! (4, nelem) counter-clockwise
+    integer, allocatable :: zone(:)         !! (nelem)
     !> Point each side of the layout begins with, and one past the last (nside + 1).
     integer, allocatable :: start(:)
     !> Point after each along its contour.
     integer, allocatable :: next(:)
-    !> Where each is, and whether the contour has no corner there.
-    type(place_t), allocatable :: place(:)
+    !> Position of each, and whether the contour has no corner there.
+    type(position_t), allocatable :: position(:)
     logical, allocatable :: smooth(:)
-  end type draft_t
+  end type corner_mesh_t
 
 contains
 
-  !> The mesh, or why there is none. `division%factor` of the mesh says what a limited number of elements cost.
-  subroutine mesh_outlines(chains, outlines, field, wish, split, gmsh, mesh, error)
-    type(chain_t), intent(in) :: chains(:)
-    type(outline_t), intent(in) :: outlines(:)
+  !> The mesh, or the reason of the failure. `division%factor` of the mesh is the effect of a limited number of elements.
+  subroutine mesh_outlines(boundaries, outlines, field, settings, split, gmsh, mesh, error)
+    type(boundary_curve_t), intent(in) :: boundaries(:)   !! (nboundary)
+    type(outline_t), intent(in) :: outlines(:)            !! (nbody)
     type(size_field_t), intent(in) :: field
-    type(mesh_wish_t), intent(in) :: wish
-    logical, intent(in) :: split              !! Gmsh's elements are twice as large, and split
+    type(mesh_settings_t), intent(in) :: settings
+    logical, intent(in) :: split   !! Gmsh's elements are twice as large, and split
     type(gmsh_t), intent(inout) :: gmsh
     type(new_mesh_t), intent(out) :: mesh
     type(error_t), allocatable, intent(out) :: error
     type(curve_t), allocatable :: curves(:)
     integer, allocatable :: first(:)
     real(wp), allocatable :: ends(:)
-    type(draft_t) :: draft
+    type(corner_mesh_t) :: draft
     real(wp) :: factor
     integer :: attempt, k
 
-    call lay_out_outlines(chains, outlines, mesh%layout)
-    factor = 1/wish%division%refine
+    call lay_out_outlines(boundaries, outlines, mesh%layout)
+    factor = 1/settings%division%refine
     do attempt = 1, attempts
-      call divide_outlines(chains, outlines, mesh%layout, field, factor, split, curves, mesh%division, first, ends)
-      call make_corners(chains, outlines, field, mesh%layout, curves, factor, split, first, ends, gmsh, draft, error)
+      call divide_outlines(boundaries, outlines, mesh%layout, field, factor, split, curves, mesh%division, first, ends)
+      call make_corners(boundaries, outlines, field, mesh%layout, curves, factor, split, first, ends, gmsh, draft, error)
       if (allocated(error)) return
-      if (size(draft%zone) <= wish%division%most_elements) exit
-      factor = growth*factor*sqrt(real(size(draft%zone), wp)/wish%division%most_elements)
+      if (size(draft%zone) <= settings%division%most_elements) exit
+      factor = growth*factor*sqrt(real(size(draft%zone), wp)/settings%division%most_elements)
     end do
     mesh%division%nelem = size(draft%zone)
-    call complete(chains, curves, first, ends, draft, mesh, error)
-    if (allocated(error) .or. .not. wish%least_sine > 0) return
+    call complete(boundaries, curves, first, ends, draft, mesh, error)
+    if (allocated(error) .or. .not. settings%least_sine > 0) return
     associate (nend => size(draft%x, 2), n => size(draft%next))
-      call mend(mesh%connectivity, [(k > n, k=1, nend)], wish%least_sine, mesh%coordinates)
+      call untangle(mesh%connectivity, [(k > n, k=1, nend)], settings%least_sine, mesh%coordinates)
     end associate
   end subroutine mesh_outlines
 
   !> Corners of all elements: along the contours, and by Gmsh body by body.
-  subroutine make_corners(chains, outlines, field, layout, curves, factor, split, first, ends, gmsh, draft, error)
-    type(chain_t), intent(in) :: chains(:)
+  subroutine make_corners(boundaries, outlines, field, layout, curves, factor, split, first, ends, gmsh, draft, error)
+    type(boundary_curve_t), intent(in) :: boundaries(:)
     type(outline_t), intent(in) :: outlines(:)
     type(size_field_t), intent(in) :: field
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     type(curve_t), intent(in) :: curves(:)
     real(wp), intent(in) :: factor, ends(:)
     logical, intent(in) :: split
     integer, intent(in) :: first(:)
     type(gmsh_t), intent(inout) :: gmsh
-    type(draft_t), intent(out) :: draft
+    type(corner_mesh_t), intent(out) :: draft
     type(error_t), allocatable, intent(out) :: error
     type(quads_t) :: quads
     type(cell_t), allocatable :: cells(:)
     integer, allocatable :: begins(:)
     integer :: b, low, high
 
-    call put_points(chains, layout, curves, first, ends, draft)
+    call put_points(boundaries, layout, curves, first, ends, draft)
     allocate (draft%corners(4, 0), draft%zone(0))
     do b = 1, size(outlines)
       call find_contours(layout, b, draft%start, begins)
@@ -128,35 +128,35 @@ contains
   end subroutine refuse_triangles
 
   !> Ends of elements along all sides.
-  pure subroutine put_points(chains, layout, curves, first, ends, draft)
-    type(chain_t), intent(in) :: chains(:)
-    type(layout_t), intent(in) :: layout
+  pure subroutine put_points(boundaries, layout, curves, first, ends, draft)
+    type(boundary_curve_t), intent(in) :: boundaries(:)
+    type(zone_layout_t), intent(in) :: layout
     type(curve_t), intent(in) :: curves(:)
     integer, intent(in) :: first(:)
     real(wp), intent(in) :: ends(:)
-    type(draft_t), intent(inout) :: draft
+    type(corner_mesh_t), intent(inout) :: draft
     integer :: s, k, n, node
 
     n = size(ends) - size(curves)
-    allocate (draft%x(2, n), draft%place(n), draft%next(n), draft%smooth(n), &
+    allocate (draft%x(2, n), draft%position(n), draft%next(n), draft%smooth(n), &
               draft%start(size(curves) + 1))
     draft%start(1) = 1
     do s = 1, size(curves)
       draft%start(s + 1) = draft%start(s) + first(s + 1) - first(s) - 1
       do k = first(s), first(s + 1) - 2
         node = draft%start(s) + k - first(s)
-        call curve_point(chains, curves(s), ends(k), draft%x(:, node), draft%place(node))
+        call curve_point(boundaries, curves(s), ends(k), draft%x(:, node), draft%position(node))
         draft%next(node) = node + 1
         draft%smooth(node) = k > first(s)
       end do
       associate (node => draft%start(s))
-        draft%smooth(node) = abs(turn_at(chains(curves(s)%chain), draft%place(node)%stretch)) <= flat_turn
+        draft%smooth(node) = abs(turn_at(boundaries(curves(s)%boundary), draft%position(node)%arc)) <= flat_turn
       end associate
     end do
     n = 1
     do s = 1, size(curves)
       ! the last side of a contour ends where its first one began
-      if (layout%sides(s)%chain /= layout%sides(n)%chain) n = s
+      if (layout%sides(s)%boundary /= layout%sides(n)%boundary) n = s
       draft%next(draft%start(s + 1) - 1) = merge(draft%start(n), draft%start(s + 1), closes(s))
     end do
 
@@ -167,23 +167,23 @@ contains
       logical :: yes
 
       yes = side == size(curves)
-      if (.not. yes) yes = layout%sides(side + 1)%chain /= layout%sides(side)%chain
+      if (.not. yes) yes = layout%sides(side + 1)%boundary /= layout%sides(side)%boundary
     end function closes
 
   end subroutine put_points
 
   !> First point of each contour of a body, and one past its last.
   pure subroutine find_contours(layout, body, start, begins)
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     integer, intent(in) :: body, start(:)
     integer, allocatable, intent(out) :: begins(:)
-    integer :: s, chain
+    integer :: s, boundary
 
     allocate (begins(0))
-    chain = 0
+    boundary = 0
     do s = 1, size(layout%sides)
-      if (layout%sides(s)%zones(1) == body .and. layout%sides(s)%chain /= chain) begins = [begins, start(s)]
-      if (layout%sides(s)%zones(1) == body) chain = layout%sides(s)%chain
+      if (layout%sides(s)%zones(1) == body .and. layout%sides(s)%boundary /= boundary) begins = [begins, start(s)]
+      if (layout%sides(s)%zones(1) == body) boundary = layout%sides(s)%boundary
     end do
     begins = [begins, start(findloc(layout%sides%zones(1), body, 1, back=.true.) + 1)]
   end subroutine find_contours
@@ -192,7 +192,7 @@ contains
   pure subroutine add_quads(quads, body, low, high, draft)
     type(quads_t), intent(in) :: quads
     integer, intent(in) :: body, low, high
-    type(draft_t), intent(inout) :: draft
+    type(corner_mesh_t), intent(inout) :: draft
     real(wp), allocatable :: x(:, :)
     integer, allocatable :: corners(:, :)
     integer :: e, n, old
@@ -214,13 +214,13 @@ contains
     call move_alloc(corners, draft%corners)
   end subroutine add_quads
 
-  !> Middle nodes, places on the contour, sides along it; and whether the elements fill the contour.
-  pure subroutine complete(chains, curves, first, ends, draft, mesh, error)
-    type(chain_t), intent(in) :: chains(:)
+  !> Middle nodes, positions on the contour, sides along it; and whether the elements fill the contour.
+  pure subroutine complete(boundaries, curves, first, ends, draft, mesh, error)
+    type(boundary_curve_t), intent(in) :: boundaries(:)
     type(curve_t), intent(in) :: curves(:)
     integer, intent(in) :: first(:)
     real(wp), intent(in) :: ends(:)
-    type(draft_t), intent(in) :: draft
+    type(corner_mesh_t), intent(in) :: draft
     type(new_mesh_t), intent(inout) :: mesh
     type(error_t), allocatable, intent(out) :: error
     integer :: nend, n, nnode, s, k, i, middle
@@ -236,7 +236,7 @@ contains
       call refuse_mesh('its elements do not fill the contour', error)
       return
     end if
-    allocate (mesh%coordinates(2, nnode), mesh%chain(nnode), mesh%place(nnode))
+    allocate (mesh%coordinates(2, nnode), mesh%boundary(nnode), mesh%position(nnode))
     mesh%coordinates(:, :nend) = draft%x
     do i = 1, size(mesh%zone)
       do k = 1, 4
@@ -244,32 +244,32 @@ contains
           0.5_wp*(draft%x(:, mesh%connectivity(k, i)) + draft%x(:, mesh%connectivity(mod(k, 4) + 1, i)))
       end do
     end do
-    mesh%chain = 0
-    mesh%place(:n) = draft%place
+    mesh%boundary = 0
+    mesh%position(:n) = draft%position
     do s = 1, size(curves)
       do i = draft%start(s), draft%start(s + 1) - 1
         k = first(s) + i - draft%start(s)
         middle = nend + i
-        call place_middle(chains, curves(s), ends(k:k + 1), draft%x(:, [i, draft%next(i)]), mesh%coordinates(:, middle), &
-                          mesh%place(middle))
-        mesh%chain([i, middle]) = curves(s)%chain
+        call place_middle(boundaries, curves(s), ends(k:k + 1), draft%x(:, [i, draft%next(i)]), mesh%coordinates(:, middle), &
+                          mesh%position(middle))
+        mesh%boundary([i, middle]) = curves(s)%boundary
         mesh%sides(i)%nodes = [i, middle, draft%next(i)]
-        mesh%sides(i)%chain = curves(s)%chain
-        mesh%sides(i)%from = draft%place(i)
-        mesh%sides(i)%to = draft%place(draft%next(i))
+        mesh%sides(i)%boundary = curves(s)%boundary
+        mesh%sides(i)%from = draft%position(i)
+        mesh%sides(i)%to = draft%position(draft%next(i))
       end do
     end do
   end subroutine complete
 
   !> Middle nodes: first those along the contour, in the order of its points, then the others as elements have them. The
-  !> elements fill the contour when each of its sides is that of one element, and every other side that of two, one on each hand.
+  !> elements fill the contour when each of its sides belongs to one element, and every other side to two, one on each side.
   pure subroutine number_middles(next, nend, connectivity, element, nnode, fills)
     integer, intent(in) :: next(:), nend
     integer, intent(inout) :: connectivity(:, :)   !! (8, nelem) corners in, middles out
-    integer, intent(out) :: element(:)             !! each side of the contour is of
+    integer, intent(out) :: element(:)             !! (nside) element of each side of the contour
     integer, intent(out) :: nnode
     logical, intent(out) :: fills
-    ! sides that begin at one node hang on one thread
+    ! sides that begin at one node form a linked list
     integer :: latest(nend), before(4*size(connectivity, 2)), far(4*size(connectivity, 2)), number(4*size(connectivity, 2))
     integer :: e, k, i, a, b, side, open_sides
 

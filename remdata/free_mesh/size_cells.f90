@@ -1,7 +1,7 @@
-!> Squares that carry the wanted sizes of elements, for a mesher that asks for them between given points.
+!> Squares that carry the requested element sizes, for a mesher that evaluates them between given points.
 !>
-!> A square around the body is cut into four, and these again, until none is larger than two elements there: bilinear between
-!> its corners the size is then met closely, since it grows slowly (gradation).
+!> A square around the body is divided into four, recursively, until none is larger than two elements there: bilinear between
+!> its corners the size is then accurate, since it grows slowly (gradation).
 module size_cells
   use gmsh_files, only: cell_t
   use kinds, only: wp
@@ -10,10 +10,10 @@ module size_cells
   private
   public :: cover
 
-  !> A square is no wider than so many elements, and cut no more often than this.
+  !> Largest width of a square in elements, and largest depth of the recursion.
   real(wp), parameter :: widest = 2.0_wp
   integer, parameter :: deepest = 14
-  !> The square reaches beyond the body by this share.
+  !> Margin of the square around the body, as a share of its size.
   real(wp), parameter :: margin = 0.01_wp
 
 contains
@@ -22,8 +22,8 @@ contains
   pure subroutine cover(field, material, low, high, cells)
     type(size_field_t), intent(in) :: field
     integer, intent(in) :: material
-    real(wp), intent(in) :: low(2), high(2)   !! [length]
-    type(cell_t), allocatable, intent(out) :: cells(:)
+    real(wp), intent(in) :: low(2), high(2)              !! [length]
+    type(cell_t), allocatable, intent(out) :: cells(:)   !! (ncell)
     type(cell_t) :: cell, open_cells(4*deepest + 1)
     type(cell_t), allocatable :: more(:)
     real(wp) :: corner(2)

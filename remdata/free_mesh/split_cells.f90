@@ -1,7 +1,7 @@
 !> Triangles and quadrilaterals between every other point of the contours, split into quadrilaterals between all of them.
 !>
 !> A triangle becomes three quadrilaterals, a quadrilateral four, around a new node in its middle and between new ones halfway along
-!> its sides; on the contour these are the points left out. So every mesh becomes one of quadrilaterals alone, if less regular.
+!> its sides; on the contour these are the omitted points. So every mesh becomes one of quadrilaterals only, if less regular.
 module split_cells
   use gmsh_files, only: quads_t
   use kinds, only: wp
@@ -11,10 +11,10 @@ module split_cells
 
 contains
 
-  !> Points along the contours are 1, 3, 5 ... after the split, those left out 2, 4, 6 ...
+  !> Points along the contours are 1, 3, 5 ... after the split, the omitted ones 2, 4, 6 ...
   pure subroutine split_into_quads(points, next, quads)
-    real(wp), intent(in) :: points(:, :)       !! every other point along the contours (2, n) [length]
-    integer, intent(in) :: next(:)             !! the one after each of these along its contour (n)
+    real(wp), intent(in) :: points(:, :)   !! every other point along the contours (2, n) [length]
+    integer, intent(in) :: next(:)         !! the one after each of these along its contour (n)
     type(quads_t), intent(inout) :: quads
     type(quads_t) :: parts
     real(wp) :: x(2, size(points, 2) + size(quads%inside, 2))
@@ -54,7 +54,7 @@ contains
     quads = parts
   end subroutine split_into_quads
 
-  !> The point of the contour that was left out between two, 0 for a side inside.
+  !> The omitted point of the contour between two points, 0 for a side inside.
   pure function left_out(next, ends) result(point)
     integer, intent(in) :: next(:), ends(2)
     integer :: point
@@ -67,11 +67,11 @@ contains
 
   !> Sides of all cells, each numbered once.
   pure subroutine number_sides(corners, nnode, sides, ends)
-    integer, intent(in) :: corners(:, :)                 !! (4, ncell), the fourth 0 for triangles
+    integer, intent(in) :: corners(:, :)   !! (4, ncell), the fourth 0 for triangles
     integer, intent(in) :: nnode
-    integer, intent(out) :: sides(:, :)                  !! (4, ncell)
-    integer, allocatable, intent(out) :: ends(:, :)      !! (2, nside)
-    ! sides with the same lower node hang on one thread
+    integer, intent(out) :: sides(:, :)               !! (4, ncell)
+    integer, allocatable, intent(out) :: ends(:, :)   !! (2, nside)
+    ! sides with the same lower node form a linked list
     integer :: latest(nnode), before(4*size(corners, 2)), list(2, 4*size(corners, 2)), pair(2), e, k, m, n, s
 
     sides = 0

@@ -13,17 +13,17 @@ module grid_lines
   private
   public :: interpolate_inside, smooth_inside, relaxed
 
-  !> A grid of so few divisions is not made coarser, and gets so many times the passes of the others.
+  !> Grids with so few divisions are not coarsened, and get so many times the passes of the others.
   integer, parameter :: coarsest = 6, coarse_passes = 8
   !> Control of one line over the next: sizes up to a ratio of three.
   real(wp), parameter :: strongest = 1.0_wp
 
 contains
 
-  !> Fill the inside from the sides, each point at the crossing of the lines that join like shares of opposite sides.
+  !> Fill the inside from the sides, each point at the intersection of the lines that join equal shares of opposite sides.
   !> Sources: W.J. Gordon, C.A. Hall, Int. J. Num. Meth. Engng 7 (1973) 461-477; B.K. Soni, AIAA 85-1526 (crossing).
   pure subroutine interpolate_inside(x)
-    real(wp), intent(inout) :: x(:, 0:, 0:)   !! (2, 0:n, 0:m) sides are given [length]
+    real(wp), intent(inout) :: x(:, 0:, 0:)   !! (2, 0:n, 0:m) coordinates, those of the sides given [length]
     real(wp) :: a(0:ubound(x, 2), 2), b(0:ubound(x, 3), 2), s, t
     integer :: i, j, n, m
 
@@ -60,7 +60,7 @@ contains
 
   !> Smooth the inside of a grid that was interpolated.
   pure recursive subroutine smooth_inside(log_density, passes, x)
-    real(wp), intent(in) :: log_density(0:, 0:)   !! (0:n, 0:m)
+    real(wp), intent(in) :: log_density(0:, 0:)   !! (0:n, 0:m) logarithm of 1/h [-]
     integer, intent(in) :: passes                 !! on each grid
     real(wp), intent(inout) :: x(:, 0:, 0:)       !! (2, 0:n, 0:m) [length]
     real(wp), allocatable :: coarse(:, :, :), before(:, :, :), density(:, :)
@@ -74,9 +74,9 @@ contains
       allocate (coarse(2, 0:half(1), 0:half(2)), before(2, 0:half(1), 0:half(2)), density(0:half(1), 0:half(2)))
       do j = 0, half(2)
         do i = 0, half(1)
-          before(:, i, j) = [sampled(x(1, :, :), spot(i, half(1), n(1)), spot(j, half(2), n(2))), &
-                             sampled(x(2, :, :), spot(i, half(1), n(1)), spot(j, half(2), n(2)))]
-          density(i, j) = sampled(log_density, spot(i, half(1), n(1)), spot(j, half(2), n(2)))
+          before(:, i, j) = [sampled(x(1, :, :), scaled_index(i, half(1), n(1)), scaled_index(j, half(2), n(2))), &
+                             sampled(x(2, :, :), scaled_index(i, half(1), n(1)), scaled_index(j, half(2), n(2)))]
+          density(i, j) = sampled(log_density, scaled_index(i, half(1), n(1)), scaled_index(j, half(2), n(2)))
         end do
       end do
       call interpolate_inside(before)
@@ -85,8 +85,8 @@ contains
       coarse = coarse - before
       do j = 1, n(2) - 1
         do i = 1, n(1) - 1
-          x(:, i, j) = x(:, i, j) + [sampled(coarse(1, :, :), spot(i, n(1), half(1)), spot(j, n(2), half(2))), &
-                                     sampled(coarse(2, :, :), spot(i, n(1), half(1)), spot(j, n(2), half(2)))]
+          x(:, i, j) = x(:, i, j) + [sampled(coarse(1, :, :), scaled_index(i, n(1), half(1)), scaled_index(j, n(2), half(2))), &
+                                     sampled(coarse(2, :, :), scaled_index(i, n(1), half(1)), scaled_index(j, n(2), half(2)))]
         end do
       end do
     end if
@@ -101,13 +101,13 @@ contains
     end do
   end subroutine smooth_inside
 
-  !> Place on a grid of `there` divisions of line i of a grid of `here` divisions.
-  pure function spot(i, here, there) result(place)
+  !> Line i of a grid of `here` divisions in a grid of `there` divisions.
+  pure function scaled_index(i, here, there) result(scaled)
     integer, intent(in) :: i, here, there
-    real(wp) :: place
+    real(wp) :: scaled
 
-    place = real(i, wp)*there/here
-  end function spot
+    scaled = real(i, wp)*there/here
+  end function scaled_index
 
   !> Bilinear value between the points of a grid.
   pure function sampled(value, a, b) result(v)
@@ -123,7 +123,7 @@ contains
     v = (1 - t)*((1 - s)*value(i, j) + s*value(i + 1, j)) + t*((1 - s)*value(i, j + 1) + s*value(i + 1, j + 1))
   end function sampled
 
-  !> Where a point belongs among its eight neighbours, these and itself row by row.
+  !> Position of a point relative to its eight neighbours, given row by row with itself.
   pure function relaxed(x, p, q) result(new)
     real(wp), intent(in) :: x(2, 9)   !! [length]
     real(wp), intent(in) :: p, q      !! control along the rows and across them

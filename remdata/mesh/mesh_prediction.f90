@@ -1,7 +1,7 @@
-!> The error a mesh is expected to have, from its sizes over the wanted ones.
+!> The error expected of a mesh, from its sizes relative to the requested ones.
 !>
-!> Where an element has the size that is wanted its error is the limit; it goes with the size to the power p. Zones cannot follow
-!> every size, and the number of elements may be limited: this is what both cost.
+!> An element of the requested size has an error equal to the limit; the error varies with the size to the power p. Zones cannot
+!> follow every size, and the number of elements may be limited: the prediction shows the effect of both.
 module mesh_prediction
   use block_mesh, only: polygon_area
   use kinds, only: wp
@@ -14,7 +14,7 @@ module mesh_prediction
   type :: prediction_t
     !> Error over its limit: square mean over the area, and of the worst element.
     real(wp) :: mean = 0.0_wp, worst = 0.0_wp
-    !> Elements per element that sizes as wanted would take: above 1 where zones waste some.
+    !> Elements divided by the number that the requested sizes would need: above 1 where zones need more.
     real(wp) :: elements = 0.0_wp
   end type prediction_t
 
@@ -25,15 +25,15 @@ contains
     type(size_field_t), intent(in) :: field
     real(wp), intent(in) :: order
     type(prediction_t) :: prediction
-    real(wp) :: x(2, 4), area, total, wanted, ratio
+    real(wp) :: x(2, 4), area, total, requested, ratio
     integer :: e
 
     total = 0
     do e = 1, size(mesh%zone)
       x = mesh%coordinates(:, mesh%connectivity(1:4, e))
       area = polygon_area(x)
-      wanted = size_at(field, mesh%layout%zones(mesh%zone(e))%material, 0.25_wp*sum(x, 2))
-      ratio = sqrt(max(area, 0.0_wp))/wanted
+      requested = size_at(field, mesh%layout%zones(mesh%zone(e))%material, 0.25_wp*sum(x, 2))
+      ratio = sqrt(max(area, 0.0_wp))/requested
       prediction%mean = prediction%mean + area*ratio**(2*order)
       prediction%worst = max(prediction%worst, ratio**order)
       prediction%elements = prediction%elements + ratio**2

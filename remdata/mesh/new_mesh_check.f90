@@ -1,6 +1,6 @@
-!> A new mesh is fit to be used, or refused with the reason.
+!> Acceptance of a new mesh: shape of the elements, distance to the contour, nodes at the ends of contact.
 module new_mesh_check
-  use contour_chain, only: closest_place, joint_point, kind_entry, kind_exit, point_on, size_of_chain
+  use boundary_curves, only: closest_position, joint_point, kind_entry, kind_exit, point_on, size_of_boundary
   use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
   use mesh_quality, only: mesh_shape
@@ -31,7 +31,7 @@ module new_mesh_check
 contains
 
   subroutine check_new_mesh(contours, mesh, check, error)
-    type(contour_t), intent(in) :: contours(:)
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
     type(new_mesh_t), intent(in) :: mesh
     type(mesh_check_t), intent(out) :: check
     type(error_t), allocatable, intent(out) :: error
@@ -41,8 +41,8 @@ contains
     do k = 1, size(mesh%sides)
       x = mesh%coordinates(:, mesh%sides(k)%nodes)
       do i = 1, 3
-        associate (chain => contours(mesh%sides(k)%chain)%chain)
-          check%off_contour = max(check%off_contour, length_of(point_on(chain, closest_place(chain, x(:, i))) - x(:, i)) &
+        associate (boundary => contours(mesh%sides(k)%boundary)%boundary)
+          check%off_contour = max(check%off_contour, length_of(point_on(boundary, closest_position(boundary, x(:, i))) - x(:, i)) &
                                   /length_of(x(:, 3) - x(:, 1)))
         end associate
       end do
@@ -63,15 +63,15 @@ contains
 
     farthest = 0
     do c = 1, size(contours)
-      associate (chain => contours(c)%chain)
-        do k = 1, size(chain%stretches)
-          if (all(chain%kinds(k) /= [kind_entry, kind_exit])) cycle
-          point = joint_point(chain, k)
+      associate (boundary => contours(c)%boundary)
+        do k = 1, size(boundary%arcs)
+          if (all(boundary%kinds(k) /= [kind_entry, kind_exit])) cycle
+          point = joint_point(boundary, k)
           nearest = huge(nearest)
           do i = 1, size(mesh%sides)
-            if (mesh%sides(i)%chain == c) nearest = min(nearest, length_of(mesh%coordinates(:, mesh%sides(i)%nodes(1)) - point))
+            if (mesh%sides(i)%boundary == c) nearest = min(nearest, length_of(mesh%coordinates(:, mesh%sides(i)%nodes(1)) - point))
           end do
-          farthest = max(farthest, nearest/size_of_chain(chain))
+          farthest = max(farthest, nearest/size_of_boundary(boundary))
         end do
       end associate
     end do

@@ -1,7 +1,7 @@
 !> The scene on the new mesh: groups, sets of sides, elements on sides and dies made of sides as the deck has them.
 module new_scene
+  use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, position_at_arc_length, position_t
   use cards_side_dies, only: chain_of_sides
-  use contour_chain, only: arc_at, chain_length, chain_t, place_at_arc, place_t
   use dies, only: is_deformable, place_on_nodes
   use errors, only: error_t, exit_input, exit_no_convergence, fail
   use kinds, only: wp
@@ -9,23 +9,23 @@ module new_scene
   use part_contour, only: contour_t
   use scene, only: is_solid, scene_t
   use zone_mesh, only: contour_side_t, new_mesh_t
-  use zone_numbers, only: ends_of_side, middles_of_side, number_nodes, numbers_t
+  use zone_node_numbers, only: ends_of_side, middles_of_side, node_numbers_t, number_nodes
   use zones, only: follows_contour, plan_t
   implicit none
   private
-  public :: set_up_new_scene, middle_place
+  public :: set_up_new_scene, middle_position
 
 contains
 
-  !> Everything of the old scene that does not hang on nodes, with the new mesh. `origin` is left to the transfer.
+  !> Everything of the old scene that does not depend on nodes, with the new mesh. `origin` is set by the transfer.
   subroutine set_up_new_scene(old, contours, plan, mesh, new, error)
     type(scene_t), intent(in) :: old
-    type(contour_t), intent(in) :: contours(:)
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
     type(plan_t), intent(in) :: plan
     type(new_mesh_t), intent(in) :: mesh
     type(scene_t), intent(out) :: new
     type(error_t), allocatable, intent(out) :: error
-    logical :: mine(size(mesh%zone))
+    logical :: selected(size(mesh%zone))
     integer :: g, e, k, n
 
     new = old
@@ -38,9 +38,9 @@ contains
     do g = 1, size(old%groups)
       associate (group => new%groups(g))
         if (is_solid(group)) then
-          mine = plan%group(mesh%zone) == g
-          n = count(mine)
-          group%connectivity = reshape(pack(mesh%connectivity, spread(mine, 1, 8)), [8, n])
+          selected = plan%group(mesh%zone) == g
+          n = count(selected)
+          group%connectivity = reshape(pack(mesh%connectivity, spread(selected, 1, 8)), [8, n])
         else if (size(group%connectivity, 1) == 3) then
           call gather_sides(old%mesh%sides, old%groups(g)%connectivity(2, :), new%mesh%sides, group%connectivity)
         end if
@@ -58,7 +58,7 @@ contains
         exit
       end do
       if (e > size(old%groups)) call fail(error, exit_input, 'remdata: the elements of '//old%groups(g)%name &
-                                          //' are those of no body')
+                                          //' belong to no body')
     end do
   end subroutine set_up_new_scene
 
@@ -70,15 +70,15 @@ contains
     if (same) same = all(a == b)
   end function same_elements
 
-  !> Sides of a set: those between zones, or the contour sides that stand for sides of the old set: sets go with the matter.
+  !> Sides of a set: those between zones, or the contour sides that replace sides of the old set: sets follow the material.
   pure function new_set(contours, plan, mesh, set) result(sides)
     type(contour_t), intent(in) :: contours(:)
     type(plan_t), intent(in) :: plan
     type(new_mesh_t), intent(in) :: mesh
     integer, intent(in) :: set
     integer, allocatable :: sides(:, :)
-    logical :: mine(size(mesh%sides))
-    type(place_t) :: place
+    logical :: selected(size(mesh%sides))
+    type(position_t) :: position
     integer :: k, z
 
     allocate (sides(3, 0))
@@ -91,12 +91,12 @@ contains
     sides = in_order(sides)
     if (size(sides) > 0) return
     do k = 1, size(mesh%sides)
-      place = middle_place(contours, mesh%sides(k))
-      associate (contour => contours(mesh%sides(k)%chain))
-        mine(k) = contour%tags%on_set(set, contour%chain%stretches(place%stretch)%side)
+      position = middle_position(contours, mesh%sides(k))
+      associate (contour => contours(mesh%sides(k)%boundary))
+        selected(k) = contour%tags%on_set(set, contour%boundary%arcs(position%arc)%side)
       end associate
     end do
-    sides = all_nodes(from_its_start(pack([(k, k=1, size(mine))], mine)))
+    sides = all_nodes(from_its_start(pack([(k, k=1, size(selected))], selected)))
 
   contains
 
@@ -107,7 +107,7 @@ contains
       n = mesh%division%count(mesh%layout%zone_sides(k, z))
     end function divisions
 
-    !> Parts of the side of a zone that was divided follow one another: from the node at which none ends.
+    !> Parts of a divided zone side in sequence: from the node at which none ends.
     pure function in_order(list) result(ordered)
       integer, intent(in) :: list(:, :)
       integer :: ordered(3, size(list, 2)), i, next
@@ -119,7 +119,7 @@ contains
       end do
     end function in_order
 
-    !> The list turned so that it begins where the set does, for a set that goes past the beginning of its contour.
+    !> The list rotated so that it begins where the set does, for a set across the start of its contour.
     pure function from_its_start(list) result(turned)
       integer, intent(in) :: list(:)
       integer :: turned(size(list)), i
@@ -150,7 +150,7 @@ contains
     type(new_mesh_t), intent(in) :: mesh
     integer, intent(in) :: z, k
     integer, allocatable :: sides(:, :)
-    type(numbers_t) :: numbers
+    type(node_numbers_t) :: numbers
     integer, allocatable :: ends(:), middles(:)
     integer :: s, n
 
@@ -169,22 +169,22 @@ contains
     sides(3, :) = ends(2:)
   end function zone_side
 
-  !> Half way along a contour side.
-  pure function middle_place(contours, side) result(place)
-    type(contour_t), intent(in) :: contours(:)
+  !> Position at half the length of a contour side.
+  pure function middle_position(contours, side) result(position)
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
     type(contour_side_t), intent(in) :: side
-    type(place_t) :: place
+    type(position_t) :: position
     real(wp) :: from, to
 
-    associate (chain => contours(side%chain)%chain)
-      from = arc_at(chain, side%from)
-      to = arc_at(chain, side%to)
-      if (.not. to > from) to = to + chain_length(chain)
-      place = place_at_arc(chain, 0.5_wp*(from + to))
+    associate (boundary => contours(side%boundary)%boundary)
+      from = arc_length_at(boundary, side%from)
+      to = arc_length_at(boundary, side%to)
+      if (.not. to > from) to = to + boundary_length(boundary)
+      position = position_at_arc_length(boundary, 0.5_wp*(from + to))
     end associate
-  end function middle_place
+  end function middle_position
 
-  !> Dies made of sides of bodies, on the new ones.
+  !> Dies made of sides of bodies, on the new sides.
   subroutine remake_dies(old, new, error)
     type(scene_t), intent(in) :: old
     type(scene_t), intent(inout) :: new
@@ -200,7 +200,7 @@ contains
         call gather_sides(old%mesh%sides, old%dies(k)%nodes(2, :), new%mesh%sides, sides)
         call chain_of_sides(sides, die%nodes)
         if (size(die%nodes, 2) == 0 .or. size(die%nodes, 2) < size(sides, 2)) then
-          call fail(error, exit_no_convergence, 'remdata: the sides of DIE '//die%name//' are no chain on the new mesh')
+          call fail(error, exit_no_convergence, 'remdata: the sides of DIE '//die%name//' do not form one curve on the new mesh')
           return
         end if
         if (allocated(die%pieces)) deallocate (die%pieces)
@@ -210,12 +210,12 @@ contains
     end do
   end subroutine remake_dies
 
-  !> Sides that stand for old ones: those of all sets that the old ones are made of, each side once.
+  !> Sides that replace old ones: those of all sets that the old ones belong to, each side once.
   pure subroutine gather_sides(old, middles, sets, sides)
-    type(side_set_t), intent(in) :: old(:)            !! sets of the old mesh
-    integer, intent(in) :: middles(:)                 !! middle nodes of the old sides
-    type(side_set_t), intent(in) :: sets(:)           !! the same of the new one
-    integer, allocatable, intent(out) :: sides(:, :)  !! (3, n)
+    type(side_set_t), intent(in) :: old(:)             !! sets of the old mesh
+    integer, intent(in) :: middles(:)                  !! middle nodes of the old sides
+    type(side_set_t), intent(in) :: sets(:)            !! the same of the new one
+    integer, allocatable, intent(out) :: sides(:, :)   !! (3, n)
     integer :: k, i, n
     logical :: part
 

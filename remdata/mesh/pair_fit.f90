@@ -1,28 +1,29 @@
-!> Bodies that touch one another, fitted on their new meshes.
+!> Contact sides of bodies in contact with each other, fitted on their new meshes.
 !>
 !> The contour of a body in contact with a die made of sides follows the old sides of that die at the depth d = p/AKP (annex 2). The
-!> die's own sides are new too: other parabolas through points of the old ones, which they leave between these points by a share
-!> of what a side is bent. Nodes in contact are moved along the normal by that much, so that each is as deep in the new sides
-!> as it was to be in the old ones. A node where contact meets another side of its body, or another die, moves along that.
+!> die's own sides are new too: other parabolas through points of the old ones, from which they deviate between these points by a
+!> share of the curvature of a side. Nodes in contact are moved along the normal by this deviation, so that each has the depth in
+!> the new sides that it had in the old ones. A node at the joint with another side of its body, or another die, moves along that
+!> side.
 module pair_fit
-  use contact_knots, only: find_knot
-  use contact_stretches, only: knot_t, placed_piece
+  use arcs, only: arc_t, tangent_at
+  use arcs_on_die, only: closest_point_t, placed_piece
   use contour_assembly, only: contact_t
+  use die_closest_points, only: find_closest_point
   use dies, only: die_t, is_deformable, place_on_nodes
   use kinds, only: wp
-  use new_scene, only: middle_place
+  use new_scene, only: middle_position
   use part_contour, only: contour_t
   use quadrature, only: line_rule
   use scene, only: scene_t
   use shape_functions, only: line3
   use solution, only: solution_t
   use state_variables, only: find_variable
-  use stretches, only: stretch_t, tangent_at
   use vectors, only: length_of
   use zone_mesh, only: new_mesh_t
   implicit none
   private
-  public :: fit_pairs, find_feet, moved_onto
+  public :: fit_pairs, update_closest_points, moved_onto
 
   !> Sine of the least angle between contact and a side along which a node of both may move.
   real(wp), parameter :: least_sine = 0.3_wp
@@ -31,24 +32,24 @@ contains
 
   !> Move the nodes in contact with dies made of sides; `scene` has the new mesh and its dies.
   pure subroutine fit_pairs(contours, mesh, scene, largest)
-    type(contour_t), intent(in) :: contours(:)
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
     type(new_mesh_t), intent(inout) :: mesh
     type(scene_t), intent(inout) :: scene
-    real(wp), intent(out) :: largest   !! way of a node over the length of its side
-    integer :: run(size(mesh%sides)), k, c, i
+    real(wp), intent(out) :: largest   !! displacement of a node divided by the length of its side
+    integer :: interval(size(mesh%sides)), k, c, i
 
     largest = 0
     if (.not. any(is_deformable(scene%dies))) return
     do k = 1, size(mesh%sides)
-      associate (place => middle_place(contours, mesh%sides(k)))
-        run(k) = contours(mesh%sides(k)%chain)%chain%stretches(place%stretch)%run
+      associate (position => middle_position(contours, mesh%sides(k)))
+        interval(k) = contours(mesh%sides(k)%boundary)%boundary%arcs(position%arc)%interval
       end associate
     end do
     do c = 1, size(contours)
       do i = 1, size(contours(c)%contacts)
         associate (contact => contours(c)%contacts(i))
           if (.not. is_deformable(scene%dies(contact%number))) cycle
-          call fit_run(contact, mesh%sides%chain == c .and. run == i, scene%dies(contact%number), mesh, largest)
+          call fit_interval(contact, mesh%sides%boundary == c .and. interval == i, scene%dies(contact%number), mesh, largest)
         end associate
         do k = 1, size(scene%dies)
           if (is_deformable(scene%dies(k))) call place_on_nodes(mesh%coordinates, scene%dies(k))
@@ -58,19 +59,19 @@ contains
     scene%mesh%coordinates = mesh%coordinates
   end subroutine fit_pairs
 
-  !> The nodes of one run of contact.
-  pure subroutine fit_run(contact, mine, die, mesh, largest)
+  !> The nodes of one contact interval.
+  pure subroutine fit_interval(contact, in_interval, die, mesh, largest)
     type(contact_t), intent(in) :: contact
-    logical, intent(in) :: mine(:)     !! sides of the run
-    type(die_t), intent(in) :: die     !! on its new sides
+    logical, intent(in) :: in_interval(:)   !! sides of the interval (nside)
+    type(die_t), intent(in) :: die          !! on its new sides
     type(new_mesh_t), intent(inout) :: mesh
     real(wp), intent(inout) :: largest
-    real(wp) :: normal(2), way(2), beside(2), missing
+    real(wp) :: normal(2), displacement(2), beside(2), missing
     integer :: k, i, other
     logical :: over
 
-    do k = 1, size(mine)
-      if (.not. mine(k)) cycle
+    do k = 1, size(in_interval)
+      if (.not. in_interval(k)) cycle
       do i = 1, 3
         associate (node => mesh%sides(k)%nodes(i))
           other = 0
@@ -78,27 +79,27 @@ contains
           if (i == 3) other = side_with(mesh, 1, node)
           ! the end of a side is moved with the side that it begins
           if (i == 3 .and. other > 0) then
-            if (mine(other)) cycle
+            if (in_interval(other)) cycle
           end if
-          call miss(contact, die, mesh%coordinates(:, node), normal, missing, over)
+          call find_missing_depth(contact, die, mesh%coordinates(:, node), normal, missing, over)
           if (.not. over) cycle
-          way = missing*normal
+          displacement = missing*normal
           if (other > 0) then
-            if (.not. mine(other)) then
+            if (.not. in_interval(other)) then
               associate (nodes => mesh%sides(other)%nodes)
                 beside = mesh%coordinates(:, nodes(3)) - mesh%coordinates(:, nodes(1))
               end associate
-              way = moved_onto(normal, missing, beside)
+              displacement = moved_onto(normal, missing, beside)
             end if
           end if
-          mesh%coordinates(:, node) = mesh%coordinates(:, node) + way
+          mesh%coordinates(:, node) = mesh%coordinates(:, node) + displacement
           associate (nodes => mesh%sides(k)%nodes)
-            largest = max(largest, length_of(way)/length_of(mesh%coordinates(:, nodes(3)) - mesh%coordinates(:, nodes(1))))
+            largest = max(largest, length_of(displacement)/length_of(mesh%coordinates(:, nodes(3)) - mesh%coordinates(:, nodes(1))))
           end associate
         end associate
       end do
     end do
-  end subroutine fit_run
+  end subroutine fit_interval
 
   !> Side of the contour that has a node as its first or last one, 0 for none.
   pure function side_with(mesh, which, node) result(side)
@@ -111,50 +112,50 @@ contains
     end do
   end function side_with
 
-  !> The way that takes a point along another side until it has gone so far along a normal; along the normal itself where the
-  !> other side runs nearly across it.
-  pure function moved_onto(normal, missing, beside) result(way)
-    real(wp), intent(in) :: normal(2), missing   !! [-, length]
-    real(wp), intent(in) :: beside(2)            !! direction of the other side
-    real(wp) :: way(2)
+  !> Displacement of a point along another side that has a given component along a normal; along the normal itself where the other
+  !> side is nearly perpendicular to it.
+  pure function moved_onto(normal, missing, beside) result(displacement)
+    real(wp), intent(in) :: normal(2), missing   !! unit vector [-]; component along it [length]
+    real(wp), intent(in) :: beside(2)            !! direction of the other side [length]
+    real(wp) :: displacement(2)
     real(wp) :: rate
 
-    way = missing*normal
+    displacement = missing*normal
     rate = dot_product(beside, normal)/length_of(beside)
-    if (abs(rate) >= least_sine) way = (missing/rate)*beside/length_of(beside)
+    if (abs(rate) >= least_sine) displacement = (missing/rate)*beside/length_of(beside)
   end function moved_onto
 
-  !> Depth that a point has on the old sides of a die and lacks on the new ones, where it lies over both; their inner normal.
-  pure subroutine miss(contact, die, point, normal, missing, over)
+  !> Depth of a point in the old sides of a die minus that in the new ones, where it projects on both; their inner normal.
+  pure subroutine find_missing_depth(contact, die, point, normal, missing, over)
     type(contact_t), intent(in) :: contact
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: point(2)
     real(wp), intent(out) :: normal(2), missing
     logical, intent(out) :: over
-    type(knot_t) :: before, after
-    type(stretch_t) :: piece
-    logical :: sound
+    type(closest_point_t) :: before, after
+    type(arc_t) :: piece
+    logical :: projected
 
     normal = 0
     missing = 0
-    call find_knot(contact%die, contact%pilot, point, [1, size(contact%die%pieces, 3)], .true., before, over)
-    call find_knot(die, contact%pilot, point, [1, size(die%pieces, 3)], .true., after, sound)
-    over = over .and. sound
+    call find_closest_point(contact%die, contact%pilot, point, [1, size(contact%die%pieces, 3)], .true., before, over)
+    call find_closest_point(die, contact%pilot, point, [1, size(die%pieces, 3)], .true., after, projected)
+    over = over .and. projected
     if (.not. over) return
     piece = placed_piece(die, contact%pilot, after%piece)
     normal = tangent_at(piece, after%xi)
     normal = [normal(2), -normal(1)]/length_of(normal)
     missing = before%depth - after%depth
-  end subroutine miss
+  end subroutine find_missing_depth
 
-  !> Where closed points stand on the new sides of their die: what tells a run that goes on where each came from.
-  pure subroutine find_feet(scene, solution)
+  !> Closest points of contact points on the new sides of their die: from them the solver measures the slip of the next step.
+  pure subroutine update_closest_points(scene, solution)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: phi(3), dphi(3), still(3)
-    type(knot_t) :: knot
-    integer :: g, e, p, status, piece, place
+    type(closest_point_t) :: closest
+    integer :: g, e, p, status, piece_row, xi_row
     logical :: over
 
     still = 0
@@ -162,23 +163,23 @@ contains
       associate (group => scene%groups(g))
         if (group%pairs == 0) cycle
         status = group%variables(find_variable(group%variables, 'contact_status'))%first
-        piece = group%variables(find_variable(group%variables, 'die_piece'))%first
-        place = group%variables(find_variable(group%variables, 'die_xi'))%first
+        piece_row = group%variables(find_variable(group%variables, 'die_piece'))%first
+        xi_row = group%variables(find_variable(group%variables, 'die_xi'))%first
         call line_rule(group%npoint, xi, weight)
         associate (die => scene%dies(group%die), state => solution%groups(g)%committed)
           do e = 1, size(group%connectivity, 2)
             do p = 1, size(xi)
               if (nint(state(status, p, e)) == 0) cycle
               call line3(xi(p), phi, dphi)
-              call find_knot(die, still, matmul(scene%mesh%coordinates(:, group%connectivity(:, e)), phi), &
-                             [1, size(die%pieces, 3)], .true., knot, over)
-              state([piece, place], p, e) = [real(knot%piece, wp), min(max(knot%xi, -1.0_wp), 1.0_wp)]
+              call find_closest_point(die, still, matmul(scene%mesh%coordinates(:, group%connectivity(:, e)), phi), &
+                             [1, size(die%pieces, 3)], .true., closest, over)
+              state([piece_row, xi_row], p, e) = [real(closest%piece, wp), min(max(closest%xi, -1.0_wp), 1.0_wp)]
             end do
           end do
         end associate
         solution%groups(g)%trial = solution%groups(g)%committed
       end associate
     end do
-  end subroutine find_feet
+  end subroutine update_closest_points
 
 end module pair_fit

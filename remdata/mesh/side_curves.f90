@@ -1,30 +1,30 @@
-!> The sides of zones as curves walked by length, and nodes along them where 1/h is shared out evenly.
+!> The sides of zones as curves parametrised by arc length, and nodes along them that equidistribute 1/h.
 !>
-!> A side along the contour is broken where the contour has a corner, where contact begins or ends, and where another set of sides
-!> begins: these stay ends of elements. So is one along an interface where that has a corner.
+!> A side along the contour has breaks at corners of the contour, where contact begins or ends, and where another set of sides
+!> begins: these are ends of elements. A side along an interface has breaks at corners of the interface.
 module side_curves
-  use contour_chain, only: arc_at, chain_length, chain_t, joint_after, kind_corner, kind_entry, kind_exit, kind_joint, &
-                           place_at_arc, place_t, point_on
+  use arcs, only: arc_t, exact_point, length_between, point_at, straight, tangent_at, xi_at_length
+  use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, joint_after, kind_corner, kind_entry, kind_exit, &
+                             kind_joint, point_on, position_at_arc_length, position_t
   use kinds, only: wp
   use size_field, only: size_at, size_field_t
-  use stretches, only: length_between, point_at, straight, stretch_t, tangent_at, xi_at_length
   use vectors, only: length_of
-  use zones, only: arc_along, coordinates_of, exact_point, follows_contour, follows_interface, layout_t, on_chain, runs_curved, &
-                   side_t, zone_point_t, zone_t
+  use zones, only: coordinates_of, follows_contour, follows_interface, on_boundary, runs_curved, side_arc_lengths, zone_layout_t, &
+                   zone_point_t, zone_side_t, zone_t
   implicit none
   private
   public :: curve_t, snap_to_joints, draw_side, curve_point, measure_density, divide_curve, shares_of, has_course
 
   type :: curve_t
-    integer :: chain = 0
-    !> Arc length on the chain where it begins [length].
+    integer :: boundary = 0
+    !> Arc length on the boundary curve where it begins [length].
     real(wp) :: start = 0.0_wp
-    !> Open chain along an interface, from the start to the end of the curve.
-    type(chain_t) :: path
+    !> Open curve along an interface, from the start to the end of the side.
+    type(boundary_curve_t) :: path
     !> Straight line or parabola of a side inside.
-    type(stretch_t) :: line
-    real(wp) :: ends(2, 2) = 0.0_wp        !! [length]
-    real(wp) :: length = 0.0_wp            !! [length]
+    type(arc_t) :: line
+    real(wp) :: ends(2, 2) = 0.0_wp   !! [length]
+    real(wp) :: length = 0.0_wp       !! [length]
     !> Lengths where elements must end, both ends of the curve among them (0:npart).
     real(wp), allocatable :: breaks(:)
     !> Integral of 1/h: at lengths `at`, with breaks among them, `count` elements from the start.
@@ -33,43 +33,43 @@ module side_curves
     real(wp), allocatable :: needs(:)
   end type curve_t
 
-  !> Breaks that are closer than this share of a chain are one, and so are an entry and a corner.
+  !> Breaks closer than this share of a boundary curve coincide, and so do an entry and a corner.
   real(wp), parameter :: same = 1.0e-9_wp
   !> No zone point beside a corner, and no entry or exit beside another break, leaves an element shorter than this share of the
-  !> wanted size.
+  !> requested size.
   real(wp), parameter :: least_share = 0.1_wp
-  !> 1/h is looked at twice in an element, and no less and no more often along a part than this.
+  !> Bounds of the number of steps along a part in which 1/h is integrated; two steps per element otherwise.
   integer, parameter :: fewest = 8, most = 4000
 
 contains
 
-  !> Zone points on a contour go to a corner of it, or to where contact begins or ends, that is so near that no element fits
-  !> between, unless they are to stay.
-  pure subroutine snap_to_joints(chains, zones, field, points)
-    type(chain_t), intent(in) :: chains(:)
-    type(zone_t), intent(in) :: zones(:)
+  !> Zone points on a contour are moved to a corner of it, or to an end of contact, that is so near that no element fits
+  !> between, unless they are fixed.
+  pure subroutine snap_to_joints(boundaries, zones, field, points)
+    type(boundary_curve_t), intent(in) :: boundaries(:)   !! (nboundary)
+    type(zone_t), intent(in) :: zones(:)                  !! (nzone)
     type(size_field_t), intent(in) :: field
-    type(zone_point_t), intent(inout) :: points(:)
-    real(wp) :: arc, apart, most
+    type(zone_point_t), intent(inout) :: points(:)   !! (npoint)
+    real(wp) :: arc_length, apart, most
     integer :: z, i, k, pass
 
     do z = 1, size(zones)
       do i = 1, 4
         associate (point => points(zones(z)%corners(i)))
-          if (point%chain == 0 .or. point%stays) cycle
-          associate (chain => chains(point%chain))
-            arc = arc_at(chain, point%place)
-            most = least_share*size_at(field, zones(z)%material, on_chain(chain, point%place))
-            look: do pass = 1, 2
-              do k = 1, size(chain%stretches)
-                if (pass == 1 .and. chain%kinds(k) /= kind_corner) cycle
-                if (pass == 2 .and. all(chain%kinds(k) /= [kind_entry, kind_exit])) cycle
-                apart = modulo(chain%arc(k - 1) - arc, chain_length(chain))
-                if (min(apart, chain_length(chain) - apart) > most) cycle
-                point%place = place_t(k, chain%stretches(k)%range(1))
-                exit look
+          if (point%boundary == 0 .or. point%stays) cycle
+          associate (boundary => boundaries(point%boundary))
+            arc_length = arc_length_at(boundary, point%position)
+            most = least_share*size_at(field, zones(z)%material, on_boundary(boundary, point%position))
+            search: do pass = 1, 2
+              do k = 1, size(boundary%arcs)
+                if (pass == 1 .and. boundary%kinds(k) /= kind_corner) cycle
+                if (pass == 2 .and. all(boundary%kinds(k) /= [kind_entry, kind_exit])) cycle
+                apart = modulo(boundary%arc_length(k - 1) - arc_length, boundary_length(boundary))
+                if (min(apart, boundary_length(boundary) - apart) > most) cycle
+                point%position = position_t(k, boundary%arcs(k)%range(1))
+                exit search
               end do
-            end do look
+            end do search
           end associate
         end associate
       end do
@@ -77,24 +77,24 @@ contains
   end subroutine snap_to_joints
 
   !> The curve of a side, with its breaks.
-  pure subroutine draw_side(chains, layout, side, field, curve)
-    type(chain_t), intent(in) :: chains(:)
-    type(layout_t), intent(in) :: layout
-    type(side_t), intent(in) :: side
+  pure subroutine draw_side(boundaries, layout, side, field, curve)
+    type(boundary_curve_t), intent(in) :: boundaries(:)   !! (nboundary)
+    type(zone_layout_t), intent(in) :: layout
+    type(zone_side_t), intent(in) :: side
     type(size_field_t), intent(in) :: field
     type(curve_t), intent(out) :: curve
-    real(wp) :: arc(2)
+    real(wp) :: arc_length(2)
     integer :: i
 
     do i = 1, 2
-      curve%ends(:, i) = coordinates_of(chains, layout%points(side%points(i)))
+      curve%ends(:, i) = coordinates_of(boundaries, layout%points(side%points(i)))
     end do
     if (side%form == follows_contour) then
-      curve%chain = side%chain
-      arc = arc_along(chains, layout, side)
-      curve%start = arc(1)
-      curve%length = arc(2) - arc(1)
-      call find_breaks(chains(side%chain), field, layout%zones(side%zones(1))%material, curve)
+      curve%boundary = side%boundary
+      arc_length = side_arc_lengths(boundaries, layout, side)
+      curve%start = arc_length(1)
+      curve%length = arc_length(2) - arc_length(1)
+      call find_breaks(boundaries(side%boundary), field, layout%zones(side%zones(1))%material, curve)
       return
     end if
     if (side%form == follows_interface) then
@@ -107,68 +107,68 @@ contains
     allocate (curve%breaks(0:1), source=[0.0_wp, curve%length])
   end subroutine draw_side
 
-  !> A path as the side walks it, with its corners as breaks.
+  !> A path in the direction of the side, with its corners as breaks.
   pure subroutine draw_path(path, field, material, curve)
-    type(chain_t), intent(in) :: path
+    type(boundary_curve_t), intent(in) :: path
     type(size_field_t), intent(in) :: field
     integer, intent(in) :: material
     type(curve_t), intent(inout) :: curve
     real(wp) :: start(2)
 
     curve%path = path
-    start = point_on(path, place_t(1, path%stretches(1)%range(1)))
-    if (length_of(start - curve%ends(:, 1)) > length_of(start - curve%ends(:, 2))) curve%path = turned(path)
-    curve%length = chain_length(curve%path)
+    start = point_on(path, position_t(1, path%arcs(1)%range(1)))
+    if (length_of(start - curve%ends(:, 1)) > length_of(start - curve%ends(:, 2))) curve%path = reversed(path)
+    curve%length = boundary_length(curve%path)
     call find_breaks(curve%path, field, material, curve)
   end subroutine draw_path
 
-  !> An open chain walked backwards.
-  pure function turned(path) result(back)
-    type(chain_t), intent(in) :: path
-    type(chain_t) :: back
+  !> An open curve in the opposite direction.
+  pure function reversed(path) result(back)
+    type(boundary_curve_t), intent(in) :: path
+    type(boundary_curve_t) :: back
     integer :: k, n
 
-    n = size(path%stretches)
-    allocate (back%stretches(n), back%kinds(n), back%arc(0:n))
+    n = size(path%arcs)
+    allocate (back%arcs(n), back%kinds(n), back%arc_length(0:n))
     do k = 1, n
-      back%stretches(k) = path%stretches(n + 1 - k)
-      back%stretches(k)%points = back%stretches(k)%points(:, [3, 2, 1])
-      back%stretches(k)%range = -back%stretches(k)%range([2, 1])
-      back%stretches(k)%depth = back%stretches(k)%depth([2, 1])
+      back%arcs(k) = path%arcs(n + 1 - k)
+      back%arcs(k)%points = back%arcs(k)%points(:, [3, 2, 1])
+      back%arcs(k)%range = -back%arcs(k)%range([2, 1])
+      back%arcs(k)%depth = back%arcs(k)%depth([2, 1])
     end do
     back%kinds(1) = path%kinds(1)
     back%kinds(2:) = path%kinds(n:2:-1)
-    back%arc = path%arc(n) - path%arc(n:0:-1)
-  end function turned
+    back%arc_length = path%arc_length(n) - path%arc_length(n:0:-1)
+  end function reversed
 
-  !> Whether the course of a curve is given by a mesh, so that each of its parts gets what it needs.
+  !> Whether a curve follows a contour or an interface, so that each of its parts gets the elements it needs.
   pure elemental function has_course(curve) result(yes)
     type(curve_t), intent(in) :: curve
     logical :: yes
 
-    yes = curve%chain > 0 .or. allocated(curve%path%stretches)
+    yes = curve%boundary > 0 .or. allocated(curve%path%arcs)
   end function has_course
 
   !> Corners between the ends of the curve, then joints, entries and exits that are not too close to others.
-  pure subroutine find_breaks(chain, field, material, curve)
-    type(chain_t), intent(in) :: chain
+  pure subroutine find_breaks(boundary, field, material, curve)
+    type(boundary_curve_t), intent(in) :: boundary
     type(size_field_t), intent(in) :: field
     integer, intent(in) :: material
     type(curve_t), intent(inout) :: curve
-    real(wp) :: found(0:size(chain%stretches) + 1), s, apart
+    real(wp) :: found(0:size(boundary%arcs) + 1), s, apart
     integer :: k, n, pass, i
 
     found(0:1) = [0.0_wp, curve%length]
     n = 1
     do pass = 1, 2
-      do k = 1, size(chain%stretches)
-        if (pass == 1 .and. chain%kinds(k) /= kind_corner) cycle
-        if (pass == 2 .and. all(chain%kinds(k) /= [kind_joint, kind_entry, kind_exit])) cycle
-        s = modulo(chain%arc(k - 1) - curve%start, chain_length(chain))
+      do k = 1, size(boundary%arcs)
+        if (pass == 1 .and. boundary%kinds(k) /= kind_corner) cycle
+        if (pass == 2 .and. all(boundary%kinds(k) /= [kind_joint, kind_entry, kind_exit])) cycle
+        s = modulo(boundary%arc_length(k - 1) - curve%start, boundary_length(boundary))
         if (s >= curve%length) cycle
-        apart = same*chain_length(chain)
+        apart = same*boundary_length(boundary)
         if (pass == 2) apart = max(apart, least_share*size_at(field, material, &
-                                                              point_at(chain%stretches(k), chain%stretches(k)%range(1))))
+                                                              point_at(boundary%arcs(k), boundary%arcs(k)%range(1))))
         if (minval(abs(found(:n) - s)) <= apart) cycle
         i = count(found(:n) < s)
         found(i + 1:n + 1) = found(i:n)
@@ -179,47 +179,48 @@ contains
     allocate (curve%breaks(0:n), source=found(0:n))
   end subroutine find_breaks
 
-  !> Point at a length from the start [length]; on a chain also its place. The ends are exactly those of the side.
-  pure subroutine curve_point(chains, curve, s, x, place)
-    type(chain_t), intent(in) :: chains(:)
+  !> Point at an arc length from the start [length]; on a contour also its position. The ends are exactly those of the side.
+  pure subroutine curve_point(boundaries, curve, s, x, position)
+    type(boundary_curve_t), intent(in) :: boundaries(:)   !! (nboundary)
     type(curve_t), intent(in) :: curve
     real(wp), intent(in) :: s
-    real(wp), intent(out) :: x(2)
-    type(place_t), intent(out) :: place
-    type(place_t) :: along
+    real(wp), intent(out) :: x(2)   !! [length]
+    type(position_t), intent(out) :: position
+    type(position_t) :: along
 
-    if (curve%chain > 0) then
-      place = place_at_arc(chains(curve%chain), curve%start + s)
-      ! a break is the start of a stretch, not the last bit of the one before
-      associate (chain => chains(curve%chain))
-        if (abs(chain%arc(place%stretch) - modulo(curve%start + s, chain_length(chain))) <= same*chain_length(chain)) then
-          place%stretch = joint_after(chain, place%stretch)
-          place%xi = chain%stretches(place%stretch)%range(1)
+    if (curve%boundary > 0) then
+      position = position_at_arc_length(boundaries(curve%boundary), curve%start + s)
+      ! a break is the start of an arc, not the end of the previous one
+      associate (boundary => boundaries(curve%boundary))
+        if (abs(boundary%arc_length(position%arc) - modulo(curve%start + s, boundary_length(boundary))) &
+            <= same*boundary_length(boundary)) then
+          position%arc = joint_after(boundary, position%arc)
+          position%xi = boundary%arcs(position%arc)%range(1)
         end if
       end associate
-      x = on_chain(chains(curve%chain), place)
+      x = on_boundary(boundaries(curve%boundary), position)
     else if (.not. s > 0) then
       x = curve%ends(:, 1)
     else if (.not. s < curve%length) then
       x = curve%ends(:, 2)
-    else if (allocated(curve%path%stretches)) then
-      along = place_at_arc(curve%path, s)
-      x = on_chain(curve%path, along)
+    else if (allocated(curve%path%arcs)) then
+      along = position_at_arc_length(curve%path, s)
+      x = on_boundary(curve%path, along)
     else
       x = exact_point(curve%line, xi_at_length(curve%line, s))
     end if
   end subroutine curve_point
 
-  !> Integrate 1/h along the curve by the trapezoidal rule, in steps of half the size that is wanted there.
-  pure subroutine measure_density(chains, field, material, curve, other)
-    type(chain_t), intent(in) :: chains(:)
+  !> Integrate 1/h along the curve by the trapezoidal rule, in steps of half the requested size.
+  pure subroutine measure_density(boundaries, field, material, curve, other)
+    type(boundary_curve_t), intent(in) :: boundaries(:)   !! (nboundary)
     type(size_field_t), intent(in) :: field
     integer, intent(in) :: material
     type(curve_t), intent(inout) :: curve
-    integer, optional, intent(in) :: other   !! material on the other hand: the smaller size of both counts
+    integer, optional, intent(in) :: other   !! material on the other side: the smaller size of both is used
     real(wp), allocatable :: at(:), count(:)
     real(wp) :: h, h_next, s, step, part, x(2)
-    type(place_t) :: place
+    type(position_t) :: position
     integer :: p, n
 
     n = (most + 1)*ubound(curve%breaks, 1)
@@ -227,17 +228,17 @@ contains
     at(0) = 0
     count(0) = 0
     n = 0
-    call curve_point(chains, curve, 0.0_wp, x, place)
-    h = wanted(x)
+    call curve_point(boundaries, curve, 0.0_wp, x, position)
+    h = requested(x)
     do p = 1, ubound(curve%breaks, 1)
       part = curve%breaks(p) - curve%breaks(p - 1)
       do
         step = min(max(0.5_wp*h, part/most), part/fewest)
         s = at(n) + step
-        ! no crumb is left before the break
+        ! no short step is left before the break
         if (s + 0.5_wp*step > curve%breaks(p)) s = curve%breaks(p)
-        call curve_point(chains, curve, s, x, place)
-        h_next = wanted(x)
+        call curve_point(boundaries, curve, s, x, position)
+        h_next = requested(x)
         n = n + 1
         at(n) = s
         count(n) = count(n - 1) + 0.5_wp*(s - at(n - 1))*(1/h + 1/h_next)
@@ -251,20 +252,20 @@ contains
 
   contains
 
-    pure function wanted(point) result(size)
+    pure function requested(point) result(size)
       real(wp), intent(in) :: point(2)
       real(wp) :: size
 
       size = size_at(field, material, point)
       if (present(other)) size = min(size, size_at(field, other, point))
-    end function wanted
+    end function requested
 
   end subroutine measure_density
 
   !> Elements of each part of n along the curve: by need, at least one.
   pure function shares_of(curve, n) result(shares)
     type(curve_t), intent(in) :: curve
-    integer, intent(in) :: n              !! not less than there are parts
+    integer, intent(in) :: n   !! not less than there are parts
     integer :: shares(size(curve%needs))
     integer :: k, p
 
@@ -278,8 +279,8 @@ contains
   !> Lengths of the n + 1 ends of n elements (0:n).
   pure subroutine divide_curve(curve, n, ends)
     type(curve_t), intent(in) :: curve
-    integer, intent(in) :: n                !! not less than there are parts
-    real(wp), intent(out) :: ends(0:)
+    integer, intent(in) :: n            !! not less than there are parts
+    real(wp), intent(out) :: ends(0:)   !! (0:n) [length]
     integer :: shares(size(curve%needs)), p, k, i
     real(wp) :: from
 
@@ -297,7 +298,7 @@ contains
     end do
   end subroutine divide_curve
 
-  !> Length at a number of elements from the start: straight between those where it was looked at.
+  !> Arc length at a number of elements from the start: linear between the steps of the integration.
   pure function length_at(curve, n) result(s)
     type(curve_t), intent(in) :: curve
     real(wp), intent(in) :: n

@@ -1,9 +1,9 @@
-!> Middle nodes: on the contour for sides along it, halfway elsewhere, and bent with the contour close to it.
+!> Middle nodes: on the contour for sides along it, at midpoints elsewhere, and curved like the contour close to it.
 !>
-!> A bulge that the contour has and the next line has not would eat up a thin element (its Jacobian is positive only while the
-!> bulge is less than the thickness), so the lines beside take a share that fades with the distance.
+!> Where the contour is curved and the next grid line is straight, a thin element would be inverted (its Jacobian is positive only
+!> while the bulge is less than the thickness), so the adjacent lines take a share of the bulge that decreases with the distance.
 module side_middles
-  use contour_chain, only: chain_t, place_t
+  use boundary_curves, only: boundary_curve_t, position_t
   use kinds, only: wp
   use side_curves, only: curve_point, curve_t
   use vectors, only: length_of
@@ -11,32 +11,32 @@ module side_middles
   private
   public :: place_middle, bend_lines
 
-  !> The middle node of a parabola belongs in the middle third of its chord; halvings that find its half.
+  !> The middle node of a parabola must lie in the middle third of its chord; bisections to find its half.
   real(wp), parameter :: third = 1.0_wp/3
   integer, parameter :: halvings = 50
-  !> Bulges fade over so many lengths of their side.
+  !> Bulges decrease to zero over so many lengths of their side.
   real(wp), parameter :: reach = 2.0_wp
 
 contains
 
   !> Middle node of a side from length s(1) to s(2) of a curve: at half the length, or over half the chord where half the length
   !> is outside its middle third.
-  pure subroutine place_middle(chains, curve, s, ends, x, place)
-    type(chain_t), intent(in) :: chains(:)
+  pure subroutine place_middle(boundaries, curve, s, ends, x, position)
+    type(boundary_curve_t), intent(in) :: boundaries(:)   !! (nboundary)
     type(curve_t), intent(in) :: curve
     real(wp), intent(in) :: s(2)         !! [length]
     real(wp), intent(in) :: ends(2, 2)   !! [length]
     real(wp), intent(out) :: x(2)        !! [length]
-    type(place_t), intent(out) :: place
+    type(position_t), intent(out) :: position
     real(wp) :: low, high
     integer :: halving
 
-    call curve_point(chains, curve, 0.5_wp*(s(1) + s(2)), x, place)
+    call curve_point(boundaries, curve, 0.5_wp*(s(1) + s(2)), x, position)
     if (share(x) > third .and. share(x) < 1 - third) return
     low = s(1)
     high = s(2)
     do halving = 1, halvings
-      call curve_point(chains, curve, 0.5_wp*(low + high), x, place)
+      call curve_point(boundaries, curve, 0.5_wp*(low + high), x, position)
       if (share(x) > 0.5_wp) then
         high = 0.5_wp*(low + high)
       else
@@ -46,7 +46,7 @@ contains
 
   contains
 
-    !> Where a point is over the chord, from 0 to 1.
+    !> Projection of a point on the chord, from 0 to 1.
     pure function share(point) result(t)
       real(wp), intent(in) :: point(2)
       real(wp) :: t
@@ -58,13 +58,13 @@ contains
 
   end subroutine place_middle
 
-  !> Middle nodes of a zone, those on curved sides excepted, which are in place.
+  !> Middle nodes of a zone, except those on curved sides, which are placed already.
   pure subroutine bend_lines(grid, along, across, straight, x)
-    integer, intent(in) :: grid(0:, 0:)      !! (0:n, 0:m) ends
-    integer, intent(in) :: along(1:, 0:)     !! (n, 0:m) middles
-    integer, intent(in) :: across(0:, 1:)    !! (0:n, m) middles
-    logical, intent(in) :: straight(4)       !! sides
-    real(wp), intent(inout) :: x(:, :)       !! (2, nnode) [length]
+    integer, intent(in) :: grid(0:, 0:)     !! (0:n, 0:m) ends
+    integer, intent(in) :: along(1:, 0:)    !! (n, 0:m) middles
+    integer, intent(in) :: across(0:, 1:)   !! (0:n, m) middles
+    logical, intent(in) :: straight(4)      !! sides
+    real(wp), intent(inout) :: x(:, :)      !! (2, nnode) [length]
     integer :: i, j, n, m
 
     n = ubound(grid, 1)
@@ -109,7 +109,7 @@ contains
     end do
   end subroutine bend_stack
 
-  !> A vector turned to the left by a right angle.
+  !> A vector rotated to the left by a right angle.
   pure function left_of(v) result(n)
     real(wp), intent(in) :: v(2)
     real(wp) :: n(2)

@@ -1,81 +1,76 @@
-!> How many elements each side gets.
+!> Number of elements on each side of a zone.
 !>
-!> Sides opposite in a zone have one number, hence all sides of a class, from zone to zone. A side along contours or interfaces gets
-!> what it needs, the integral of 1/h, in each part between its breaks: there the geometry has its say, and contact. The need inside
-!> a zone is measured along its two sides and seven lines between them: the mean of their mean and of their largest, so that a
-!> peak that touches one line alone counts half. The class takes the largest number of its sides and zones, rounded up.
+!> Opposite sides of a zone have the same number, hence all sides of a class, from zone to zone. A side along contours or interfaces
+!> gets what it needs, the integral of 1/h, in each part between its breaks, as the geometry and contact require. The need inside a
+!> zone is measured along its two sides and seven lines between them: the mean of their mean and of their largest, so that a peak on
+!> one line alone counts half. The class takes the largest number of its sides and zones, rounded up.
 module zone_divisions
-  use contour_chain, only: chain_t, place_t
+  use boundary_curves, only: boundary_curve_t, position_t
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
   use side_curves, only: curve_point, curve_t, has_course
   use size_field, only: size_at, size_field_t
   use text, only: to_text
   use vectors, only: length_of
-  use zones, only: layout_t
+  use zones, only: zone_layout_t
   implicit none
   private
-  public :: division_t, division_wish_t, choose_divisions, is_forward, rounded_up
-  public :: by_mean, by_largest
+  public :: division_t, division_settings_t, choose_divisions, is_forward, rounded_up
 
-  !> Need of a zone: mean of mean and largest of its lines, or the largest.
-  integer, parameter :: by_mean = 1, by_largest = 2
-
-  type :: division_wish_t
-    integer :: rule = by_mean
-    !> All wanted sizes are divided by this.
+  type :: division_settings_t
+    !> All requested sizes are divided by this factor.
     real(wp) :: refine = 1.0_wp
     integer :: most_elements = 1000000
-  end type division_wish_t
+  end type division_settings_t
 
   type :: division_t
     integer, allocatable :: count(:)   !! elements along each side (nside)
     integer :: nelem = 0
-    !> Sizes are so many times the wanted ones: refined below 1, above 1 to keep within the number of elements.
+    !> Ratio of the sizes to the requested ones: below 1 refined, above 1 to respect the limit on the number of elements.
     real(wp) :: factor = 1.0_wp
   end type division_t
 
   !> Steps along a line between two sides, and lines.
   integer, parameter :: steps = 32, lines = 7
-  !> Share of an element that is given away in rounding up.
+  !> Share of an element that is dropped in rounding up.
   real(wp), parameter :: spared = 0.1_wp
-  !> Elements along a part of a side, that no mesh will have.
+  !> Upper bound of the elements along a part of a side.
   real(wp), parameter :: most_along = 1.0e6_wp
-  !> Halvings of the factor on sizes: closer than any whole number of elements can show.
+  !> Bisections of the factor on sizes, enough to determine the numbers of elements.
   integer, parameter :: halvings = 40
 
 contains
 
-  pure subroutine choose_divisions(chains, layout, field, curves, wish, division, error)
-    type(chain_t), intent(in) :: chains(:)
-    type(layout_t), intent(in) :: layout
+  pure subroutine choose_divisions(boundaries, layout, field, curves, settings, division, error)
+    type(boundary_curve_t), intent(in) :: boundaries(:)   !! (nboundary)
+    type(zone_layout_t), intent(in) :: layout
     type(size_field_t), intent(in) :: field
-    type(curve_t), intent(in) :: curves(:)              !! of the sides, their density measured
-    type(division_wish_t), intent(in) :: wish
+    type(curve_t), intent(in) :: curves(:)   !! (nside) of the sides, with their density
+    type(division_settings_t), intent(in) :: settings
     type(division_t), intent(out) :: division
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: need(size(curves)), low, high, factor
     integer :: group(size(curves)), fewest, halving
 
     call find_classes(layout, group)
-    call find_needs(chains, layout, field, curves, wish%rule, group, need)
+    call find_needs(boundaries, layout, field, curves, group, need)
     fewest = elements(layout, numbers(curves, group, need, most_along**2))
-    if (fewest > wish%most_elements) then
+    if (fewest > settings%most_elements) then
       call fail(error, exit_input, 'the zones take '//to_text(fewest)//' elements at least, more than the ' &
-                //to_text(wish%most_elements)//' allowed', 'allow more elements, or give fewer zones')
+                //to_text(settings%most_elements)//' allowed', 'allow more elements, or give fewer zones')
       return
     end if
-    low = 1/wish%refine
+    low = 1/settings%refine
     factor = low
-    if (elements(layout, numbers(curves, group, need, low)) > wish%most_elements) then
+    if (elements(layout, numbers(curves, group, need, low)) > settings%most_elements) then
       high = 2*low
-      do while (elements(layout, numbers(curves, group, need, high)) > wish%most_elements)
+      do while (elements(layout, numbers(curves, group, need, high)) > settings%most_elements)
         low = high
         high = 2*high
       end do
       do halving = 1, halvings
         factor = 0.5_wp*(low + high)
-        if (elements(layout, numbers(curves, group, need, factor)) > wish%most_elements) then
+        if (elements(layout, numbers(curves, group, need, factor)) > settings%most_elements) then
           low = factor
         else
           high = factor
@@ -89,9 +84,9 @@ contains
     division%factor = factor
   end subroutine choose_divisions
 
-  !> Whether a side of a zone runs as the zone walks it.
+  !> Whether a side of a zone has the direction of the zone.
   pure function is_forward(layout, zone, k) result(forward)
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     integer, intent(in) :: zone, k
     logical :: forward
 
@@ -100,7 +95,7 @@ contains
 
   !> Classes of opposite sides, each by its lowest side.
   pure subroutine find_classes(layout, group)
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     integer, intent(out) :: group(:)
     integer :: z, k, s, roots(2)
 
@@ -129,26 +124,25 @@ contains
 
   end subroutine find_classes
 
-  !> Need of each class inside its zones; it stands at the class's lowest side.
-  pure subroutine find_needs(chains, layout, field, curves, rule, group, need)
-    type(chain_t), intent(in) :: chains(:)
-    type(layout_t), intent(in) :: layout
+  !> Need of each class inside its zones, stored at the class's lowest side.
+  pure subroutine find_needs(boundaries, layout, field, curves, group, need)
+    type(boundary_curve_t), intent(in) :: boundaries(:)
+    type(zone_layout_t), intent(in) :: layout
     type(size_field_t), intent(in) :: field
     type(curve_t), intent(in) :: curves(:)
-    integer, intent(in) :: rule, group(:)
+    integer, intent(in) :: group(:)
     real(wp), intent(out) :: need(:)
     real(wp) :: line(lines + 2, 2), one
     integer :: z, k, s
 
     need = 0
     do z = 1, size(layout%zones)
-      call measure_inside(chains, layout, field, curves, z, line)
+      call measure_inside(boundaries, layout, field, curves, z, line)
       do k = 1, 2
         do s = 1, 2
           line(lines + s, k) = sum(curves(layout%zone_sides(k + 2*(s - 1), z))%needs)
         end do
-        one = maxval(line(:, k))
-        if (rule == by_mean) one = 0.5_wp*(one + sum(line(:, k))/size(line, 1))
+        one = 0.5_wp*(maxval(line(:, k)) + sum(line(:, k))/size(line, 1))
         s = group(layout%zone_sides(k, z))
         need(s) = max(need(s), one)
       end do
@@ -156,24 +150,24 @@ contains
   end subroutine find_needs
 
   !> Integral of 1/h along lines between sides 1 and 3 (first column), and between 4 and 2 (second).
-  pure subroutine measure_inside(chains, layout, field, curves, zone, line)
-    type(chain_t), intent(in) :: chains(:)
-    type(layout_t), intent(in) :: layout
+  pure subroutine measure_inside(boundaries, layout, field, curves, zone, line)
+    type(boundary_curve_t), intent(in) :: boundaries(:)
+    type(zone_layout_t), intent(in) :: layout
     type(size_field_t), intent(in) :: field
     type(curve_t), intent(in) :: curves(:)
     integer, intent(in) :: zone
     real(wp), intent(out) :: line(:, :)
     real(wp) :: c(2, 0:steps, 4), x(2), last(2), h, last_h, s, t
-    type(place_t) :: place
+    type(position_t) :: position
     integer :: i, j, k, side
 
-    ! the four sides as Coons' patch has them: 1 and 3 from left to right, 4 and 2 upwards
+    ! the four sides as in Coons' patch: 1 and 3 from left to right, 4 and 2 upwards
     do k = 1, 4
       side = layout%zone_sides(k, zone)
       do i = 0, steps
         j = i
         if (is_forward(layout, zone, k) .neqv. k <= 2) j = steps - i
-        call curve_point(chains, curves(side), curves(side)%length*j/steps, c(:, i, k), place)
+        call curve_point(boundaries, curves(side), curves(side)%length*j/steps, c(:, i, k), position)
       end do
     end do
     line = 0
@@ -208,7 +202,7 @@ contains
 
   end subroutine measure_inside
 
-  !> Number of each side when sizes are so many times the wanted ones.
+  !> Number of elements of each side for a ratio of the sizes to the requested ones.
   pure function numbers(curves, group, need, factor) result(number)
     type(curve_t), intent(in) :: curves(:)
     integer, intent(in) :: group(:)
@@ -224,7 +218,7 @@ contains
     number = number(group)
   end function numbers
 
-  !> At least one; a number that no mesh can have stays one that can be counted.
+  !> At least one, and bounded so that it is an integer.
   pure elemental function rounded_up(need) result(n)
     real(wp), intent(in) :: need
     integer :: n
@@ -232,9 +226,9 @@ contains
     n = max(1, ceiling(min(need, most_along) - spared))
   end function rounded_up
 
-  !> Elements of all zones, at most the largest number there is.
+  !> Elements of all zones, at most the largest integer.
   pure function elements(layout, number) result(total)
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     integer, intent(in) :: number(:)
     integer :: total
     real(wp) :: sum_of_all

@@ -1,15 +1,15 @@
 !> Smoothing of the ends of elements of all zones.
 !>
-!> Each zone first by itself, from a coarse grid to its own; then all together, where the sides between zones move too and
-!> lose the bends that lines would have there, and corners of zones inside go to the middle of the ends of elements next to
-!> them, weighted by the density between. Contours and sides between materials stay.
+!> First each zone by itself, from a coarse grid to its own; then all together: the sides between zones move too, so that grid lines
+!> are smooth across them, and corners of zones inside move to the mean of the adjacent ends of elements, weighted by the density.
+!> Contours and sides between materials are fixed.
 module zone_lines
   use grid_lines, only: interpolate_inside, relaxed, smooth_inside
   use kinds, only: wp
   use size_field, only: size_at, size_field_t
   use zone_divisions, only: division_t
-  use zone_numbers, only: ends_of_side, ends_of_zone, numbers_t, row_beside
-  use zones, only: layout_t
+  use zone_node_numbers, only: ends_of_side, ends_of_zone, node_numbers_t, row_beside
+  use zones, only: zone_layout_t
   implicit none
   private
   public :: interpolate_zones, smooth_zones, find_movable
@@ -18,9 +18,9 @@ contains
 
   !> Ends of elements inside zones, from those on the sides.
   pure subroutine interpolate_zones(layout, division, numbers, x)
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     type(division_t), intent(in) :: division
-    type(numbers_t), intent(in) :: numbers
+    type(node_numbers_t), intent(in) :: numbers
     real(wp), intent(inout) :: x(:, :)   !! (2, nnode) [length]
     integer, allocatable :: grid(:, :)
     real(wp), allocatable :: inside(:, :, :)
@@ -35,9 +35,9 @@ contains
   end subroutine interpolate_zones
 
   pure subroutine smooth_zones(layout, division, numbers, field, passes, x)
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     type(division_t), intent(in) :: division
-    type(numbers_t), intent(in) :: numbers
+    type(node_numbers_t), intent(in) :: numbers
     type(size_field_t), intent(in) :: field
     integer, intent(in) :: passes
     real(wp), intent(inout) :: x(:, :)   !! (2, nnode) [length]
@@ -82,9 +82,9 @@ contains
 
   !> Ends of elements that may move: inside zones and sides, and zone points, as far as these move.
   pure subroutine find_movable(layout, division, numbers, may_move)
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     type(division_t), intent(in) :: division
-    type(numbers_t), intent(in) :: numbers
+    type(node_numbers_t), intent(in) :: numbers
     logical, allocatable, intent(out) :: may_move(:)   !! (nend)
     integer :: p, s
 
@@ -112,11 +112,11 @@ contains
     end do
   end subroutine list_inside
 
-  !> The points inside sides that move: the row to the right of the side, the side, the row to its left.
+  !> The points inside sides that may move: the row to the right of the side, the side, the row to its left.
   pure subroutine list_between(layout, division, numbers, around, n)
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     type(division_t), intent(in) :: division
-    type(numbers_t), intent(in) :: numbers
+    type(node_numbers_t), intent(in) :: numbers
     integer, intent(inout) :: around(:, :), n
     integer, allocatable :: grid(:, :), rows(:, :)
     integer :: s, k, m
@@ -142,9 +142,9 @@ contains
 
   !> Pairs of a zone point that moves and the end of element next to it on each of its sides (2, n), point by point.
   pure subroutine list_next(layout, division, numbers, next)
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     type(division_t), intent(in) :: division
-    type(numbers_t), intent(in) :: numbers
+    type(node_numbers_t), intent(in) :: numbers
     integer, allocatable, intent(out) :: next(:, :)
     integer :: list(2, 2*size(layout%sides)), s, i, k, n
     integer, allocatable :: nodes(:)

@@ -1,16 +1,16 @@
-!> What the deck says of each side of a loop: the sets it is in, the elements and supports on it, whether it may move.
+!> Tags of each side of a loop: the sets it belongs to, the elements and supports on it, whether it may move.
 !>
-!> A side is known by its middle node. A new mesh makes the same sets, contact elements, pressures and supports again on the
-!> stretches that stand for a side (`stretch_t%side`).
+!> A side is identified by its middle node. A new mesh creates the same sets, contact elements, pressures and supports on the arcs
+!> that replace a side (`arc_t%side`).
 module side_tags
+  use boundary_curves, only: boundary_curve_t, boundary_of_loop, joint_after, kind_corner
   use boundary_sides, only: loop_t
-  use contour_chain, only: chain_of_loop, chain_t, joint_after, kind_corner
   use dies, only: is_deformable
   use kinds, only: wp
   use scene, only: axisymmetric, scene_t
   implicit none
   private
-  public :: side_tags_t, find_tags, same_tags, held_nodes, lasting_ends
+  public :: side_tags_t, find_tags, same_tags, held_nodes, kept_corners
 
   !> Numbers are those of the scene's lists.
   type :: side_tags_t
@@ -21,7 +21,7 @@ module side_tags
     logical, allocatable :: on_axis(:)          !! (nside)
   end type side_tags_t
 
-  !> A radius below this share of the largest one is the axis.
+  !> A radius below this share of the largest one is zero.
   real(wp), parameter :: no_radius = 1.0e-9_wp
 
 contains
@@ -82,24 +82,24 @@ contains
            all(tags%on_die(:, one) .eqv. tags%on_die(:, other)) .and. (tags%on_axis(one) .eqv. tags%on_axis(other))
   end function same_tags
 
-  !> Whether a new mesh has a node where each side ends, too: there the tags change, or the contour turns.
-  pure function lasting_ends(loop, tags, x, turn) result(lasting)
+  !> Kept corners: whether a new mesh has a node where each side ends, too, because the tags change there or the contour turns.
+  pure function kept_corners(loop, tags, x, turn) result(kept)
     type(loop_t), intent(in) :: loop
     type(side_tags_t), intent(in) :: tags
     real(wp), intent(in) :: x(:, :)   !! nodes now (2, nnode) [length]
     real(wp), intent(in) :: turn      !! of a corner [radian]
-    logical :: lasting(size(loop%sides, 2))
-    type(chain_t) :: chain
+    logical :: kept(size(loop%sides, 2))
+    type(boundary_curve_t) :: boundary
     integer :: k, next
 
-    chain = chain_of_loop(loop, x, turn)
-    do k = 1, size(lasting)
-      next = joint_after(chain, k)
-      lasting(k) = chain%kinds(next) == kind_corner .or. .not. same_tags(tags, k, next)
+    boundary = boundary_of_loop(loop, x, turn)
+    do k = 1, size(kept)
+      next = joint_after(boundary, k)
+      kept(k) = boundary%kinds(next) == kind_corner .or. .not. same_tags(tags, k, next)
     end do
-  end function lasting_ends
+  end function kept_corners
 
-  !> Nodes that supports and imposed motions hold.
+  !> Nodes with supports and imposed motions.
   pure function held_nodes(scene) result(held)
     type(scene_t), intent(in) :: scene
     logical :: held(size(scene%mesh%coordinates, 2))

@@ -1,4 +1,4 @@
-!> The elements of matter of a scene with their state, and that state as one table (component, point) of all groups.
+!> The solid elements of a scene with their state, and that state as one table (component, point) of all groups.
 module state_pieces
   use errors, only: error_t, exit_bug, fail
   use kinds, only: wp
@@ -11,29 +11,29 @@ module state_pieces
   private
   public :: state_group_t, state_pieces_t, solid_pieces, store_states, mesh_of, list_variables, gather_states, hand_out_states
 
-  !> Elements of one declared state.
+  !> Elements with the same state variables.
   type :: state_group_t
-    !> Values go from and to groups of the same number (one material, one body).
+    !> Values are exchanged between groups of the same number (one material, one body).
     integer :: material = 0
     !> Points of an element.
     integer :: npoint = 0
     integer, allocatable :: connectivity(:, :)   !! (8, nelem)
     type(state_variable_t), allocatable :: variables(:)
-    real(wp), allocatable :: values(:, :, :)     !! (component, point, element)
-    !> Place of the group in its scene.
-    integer :: place = 0
+    real(wp), allocatable :: values(:, :, :)   !! (component, point, element)
+    !> Number of the group in its scene.
+    integer :: scene_group = 0
   end type state_group_t
 
   type :: state_pieces_t
-    real(wp), allocatable :: nodes(:, :)         !! (2, nnode), where they are now [length]
+    real(wp), allocatable :: nodes(:, :)   !! (2, nnode), where they are now [length]
     logical :: axisymmetric = .false.
     type(state_group_t), allocatable :: groups(:)
   end type state_pieces_t
 
 contains
 
-  !> Solid groups of a scene where it stands at the start or, with a solution, now. Groups of one material that share nodes have one
-  !> number, the place of the first of them: bodies of one material that only touch do not mix.
+  !> Solid groups of a scene in its initial position or, with a solution, its present one. Groups of one material that share nodes
+  !> have one number, that of the first of them: bodies of one material that only touch are kept apart.
   pure subroutine solid_pieces(scene, pieces, solution)
     type(scene_t), intent(in) :: scene
     type(state_pieces_t), intent(out) :: pieces
@@ -54,7 +54,7 @@ contains
       if (.not. is_solid(scene%groups(g))) cycle
       k = k + 1
       associate (group => pieces%groups(k))
-        group%place = g
+        group%scene_group = g
         group%material = k
         group%npoint = scene%groups(g)%npoint
         allocate (group%connectivity, source=scene%groups(g)%connectivity)
@@ -66,7 +66,7 @@ contains
       touched = .false.
       call touch(pieces%groups(k)%connectivity, touched)
       do other = 1, k - 1
-        if (scene%groups(pieces%groups(k)%place)%material /= scene%groups(pieces%groups(other)%place)%material) cycle
+        if (scene%groups(pieces%groups(k)%scene_group)%material /= scene%groups(pieces%groups(other)%scene_group)%material) cycle
         if (.not. touches(pieces%groups(other)%connectivity, touched)) cycle
         low = min(pieces%groups(k)%material, pieces%groups(other)%material)
         high = max(pieces%groups(k)%material, pieces%groups(other)%material)
@@ -106,7 +106,7 @@ contains
     integer :: k
 
     do k = 1, size(pieces%groups)
-      associate (state => solution%groups(pieces%groups(k)%place))
+      associate (state => solution%groups(pieces%groups(k)%scene_group))
         state%committed = pieces%groups(k)%values
         state%trial = pieces%groups(k)%values
       end associate
@@ -138,9 +138,9 @@ contains
 
   !> Variables of all groups of some kinds, each name once, with its first row in a table of them all.
   pure subroutine list_variables(groups, kinds_taken, variables, error)
-    type(state_group_t), intent(in) :: groups(:)
-    character(len=*), intent(in) :: kinds_taken(:)
-    type(state_variable_t), allocatable, intent(out) :: variables(:)
+    type(state_group_t), intent(in) :: groups(:)                       !! (ngroup)
+    character(len=*), intent(in) :: kinds_taken(:)                     !! (nkind)
+    type(state_variable_t), allocatable, intent(out) :: variables(:)   !! (nvariable)
     type(error_t), allocatable, intent(out) :: error
     type(state_variable_t), allocatable :: list(:)
     integer :: g, v, k, n, most
@@ -174,13 +174,13 @@ contains
 
   !> Put the groups' values of the listed variables into one table (component, point); zero where a group has no such variable.
   pure subroutine gather_states(groups, variables, table)
-    type(state_group_t), intent(in) :: groups(:)
-    type(state_variable_t), intent(in) :: variables(:)
-    real(wp), intent(out) :: table(:, :)
-    integer :: g, v, k, e, from, last, place
+    type(state_group_t), intent(in) :: groups(:)         !! (ngroup)
+    type(state_variable_t), intent(in) :: variables(:)   !! (nvariable)
+    real(wp), intent(out) :: table(:, :)                 !! (component, point) [unit of each component]
+    integer :: g, v, k, e, from, last, offset
 
     table = 0
-    place = 0
+    offset = 0
     do g = 1, size(groups)
       do v = 1, size(variables)
         k = find_variable(groups(g)%variables, variables(v)%name)
@@ -188,24 +188,25 @@ contains
         from = groups(g)%variables(k)%first
         last = variables(v)%ncomp - 1
         do e = 1, size(groups(g)%values, 3)
-          associate (points => table(:, place + (e - 1)*groups(g)%npoint + 1:place + e*groups(g)%npoint))
+          associate (points => table(:, offset + (e - 1)*groups(g)%npoint + 1:offset + e*groups(g)%npoint))
             points(variables(v)%first:variables(v)%first + last, :) = groups(g)%values(from:from + last, :, e)
           end associate
         end do
       end do
-      place = place + groups(g)%npoint*size(groups(g)%connectivity, 2)
+      offset = offset + groups(g)%npoint*size(groups(g)%connectivity, 2)
     end do
   end subroutine gather_states
 
-  !> States of the groups from the table; what is not in the list, or in no old group of the number, starts at its declared value.
+  !> States of the groups from the table; a variable that is not in the list, or in no old group of the number, gets its declared
+  !> initial value.
   pure subroutine hand_out_states(old, variables, table, groups)
-    type(state_group_t), intent(in) :: old(:)
-    type(state_variable_t), intent(in) :: variables(:)
-    real(wp), intent(in) :: table(:, :)
-    type(state_group_t), intent(inout) :: groups(:)
-    integer :: g, v, k, e, from, last, place, n
+    type(state_group_t), intent(in) :: old(:)            !! (ngroup)
+    type(state_variable_t), intent(in) :: variables(:)   !! (nvariable)
+    real(wp), intent(in) :: table(:, :)                  !! (component, point) [unit of each component]
+    type(state_group_t), intent(inout) :: groups(:)      !! (ngroup)
+    integer :: g, v, k, e, from, last, offset, n
 
-    place = 0
+    offset = 0
     do g = 1, size(groups)
       n = size(groups(g)%connectivity, 2)
       if (allocated(groups(g)%values)) deallocate (groups(g)%values)
@@ -222,11 +223,11 @@ contains
           end if
           do e = 1, n
             groups(g)%values(from:from + last, :, e) = table(variables(k)%first:variables(k)%first + last, &
-                                                             place + (e - 1)*npoint + 1:place + e*npoint)
+                                                             offset + (e - 1)*npoint + 1:offset + e*npoint)
           end do
         end associate
       end do
-      place = place + groups(g)%npoint*n
+      offset = offset + groups(g)%npoint*n
     end do
   end subroutine hand_out_states
 

@@ -1,37 +1,36 @@
-!> A mesh as the state transfer sees it: elements, integration points with their volumes, and trees to find them by, all of them
-!> by material.
+!> A mesh for the state transfer: elements, integration points with their volumes, and search trees, all of them by material.
 module transfer_mesh
-  use box_tree, only: box_tree_t, plant_tree
+  use box_tree, only: box_tree_t, build_tree
   use kinds, only: wp
   use quadrature, only: square_rule
   use shape_functions, only: quad8, quad8_side
   implicit none
   private
-  public :: transfer_mesh_t, set_up_mesh, plant_element_trees, plant_mesh_trees
+  public :: transfer_mesh_t, set_up_mesh, build_element_trees, build_mesh_trees
 
   type :: transfer_mesh_t
-    !> Materials are numbered 1 ... nmaterial. Values go from points to points of the same number only.
+    !> Materials are numbered 1 ... nmaterial. Values are transferred between points of the same number only.
     integer :: nmaterial = 0
     !> Points of element e are first_point(e) ... first_point(e + 1) - 1 (nelem + 1).
     integer, allocatable :: first_point(:)
-    real(wp), allocatable :: nodes(:, :)         !! (2, nnode), where they are now [length]
-    integer, allocatable :: connectivity(:, :)   !! (8, nelem)
-    integer, allocatable :: material(:)          !! (nelem)
-    real(wp), allocatable :: points(:, :)        !! (2, n) [length]
-    real(wp), allocatable :: volumes(:)          !! (n), per unit thickness, or per radian [length^2 or length^3]
-    integer, allocatable :: point_material(:)    !! (n)
-    integer, allocatable :: point_element(:)     !! (n)
-    type(box_tree_t), allocatable :: point_trees(:), element_trees(:)  !! (nmaterial), where they were planted
+    real(wp), allocatable :: nodes(:, :)                                !! (2, nnode), where they are now [length]
+    integer, allocatable :: connectivity(:, :)                          !! (8, nelem)
+    integer, allocatable :: material(:)                                 !! (nelem)
+    real(wp), allocatable :: points(:, :)                               !! (2, n) [length]
+    real(wp), allocatable :: volumes(:)  !! (n), per unit thickness, or per radian [length^2 or length^3]
+    integer, allocatable :: point_material(:)                           !! (n)
+    integer, allocatable :: point_element(:)                            !! (n)
+    type(box_tree_t), allocatable :: point_trees(:), element_trees(:)   !! (nmaterial), where they were built
   end type transfer_mesh_t
 
 contains
 
-  !> Points and volumes of 8-node elements, each with the Gauss rule of so many points.
+  !> Points and volumes of 8-node elements, each with its own Gauss rule.
   pure subroutine set_up_mesh(nodes, connectivity, material, npoint, axisymmetric, mesh)
-    real(wp), intent(in) :: nodes(:, :)
-    integer, intent(in) :: connectivity(:, :), material(:)
-    integer, intent(in) :: npoint(:)             !! (nelem)
-    logical, intent(in) :: axisymmetric          !! the radius is x
+    real(wp), intent(in) :: nodes(:, :)                      !! (2, nnode) coordinates [length]
+    integer, intent(in) :: connectivity(:, :), material(:)   !! (8, nelem); (nelem)
+    integer, intent(in) :: npoint(:)                         !! (nelem)
+    logical, intent(in) :: axisymmetric                      !! the radius is x
     type(transfer_mesh_t), intent(out) :: mesh
     real(wp), allocatable :: xi(:, :), weight(:)
     real(wp) :: phi(8), dphi(2, 8), x(2, 8), jacobian(2, 2)
@@ -66,24 +65,24 @@ contains
     end do
   end subroutine set_up_mesh
 
-  !> Trees of points and of elements, one of each a material. Only the old mesh needs them.
-  pure subroutine plant_mesh_trees(mesh)
+  !> Trees of points and of elements, one of each per material. Only the old mesh needs them.
+  pure subroutine build_mesh_trees(mesh)
     type(transfer_mesh_t), intent(inout) :: mesh
     real(wp), allocatable :: boxes(:, :)
     integer :: m, i
 
-    call plant_element_trees(mesh)
+    call build_element_trees(mesh)
     if (allocated(mesh%point_trees)) deallocate (mesh%point_trees)
     allocate (boxes(4, size(mesh%volumes)), mesh%point_trees(mesh%nmaterial))
     boxes(1:2, :) = mesh%points
     boxes(3:4, :) = mesh%points
     do m = 1, mesh%nmaterial
-      call plant_tree(boxes, pack([(i, i=1, size(mesh%volumes))], mesh%point_material == m), mesh%point_trees(m))
+      call build_tree(boxes, pack([(i, i=1, size(mesh%volumes))], mesh%point_material == m), mesh%point_trees(m))
     end do
-  end subroutine plant_mesh_trees
+  end subroutine build_mesh_trees
 
   !> Trees of elements alone, to locate points by.
-  pure subroutine plant_element_trees(mesh)
+  pure subroutine build_element_trees(mesh)
     type(transfer_mesh_t), intent(inout) :: mesh
     real(wp), allocatable :: boxes(:, :)
     integer :: e, m, i
@@ -94,12 +93,12 @@ contains
       boxes(:, e) = box_of(mesh%nodes(:, mesh%connectivity(:, e)))
     end do
     do m = 1, mesh%nmaterial
-      call plant_tree(boxes, pack([(i, i=1, size(mesh%material))], mesh%material == m), mesh%element_trees(m))
+      call build_tree(boxes, pack([(i, i=1, size(mesh%material))], mesh%material == m), mesh%element_trees(m))
     end do
-  end subroutine plant_element_trees
+  end subroutine build_element_trees
 
-  !> Box that holds an element with its bulging sides: a parabola stays in the triangle of its ends and of the point where the
-  !> tangents at its ends meet, which is 2 middle - (first + last)/2.
+  !> Box that contains an element with curved sides: a parabola lies in the triangle of its ends and the intersection of the
+  !> tangents at its ends, which is 2 middle - (first + last)/2.
   pure function box_of(x) result(box)
     real(wp), intent(in) :: x(2, 8)
     real(wp) :: box(4), tip(2)

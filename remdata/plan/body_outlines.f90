@@ -1,11 +1,11 @@
-!> Bodies that are meshed by their contours alone: what bounds each of them, and where its elements end along the contours.
+!> Bodies that are meshed from their contours alone: their boundaries, and the ends of elements along their contours.
 !>
 !> Contours are divided as the sides of zones are: from corner to corner, with an end of an element where contact begins or ends
-!> and where another set of sides begins. A body's contours together get an even number of elements: an odd one bounds no
-!> quadrilaterals, for each has four sides and each side inside belongs to two.
+!> and where another set of sides begins. The contours of a body together get an even number of elements: an odd number bounds no
+!> mesh of quadrilaterals, since each has four sides and each inner side belongs to two.
 module body_outlines
+  use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, kind_corner, position_at_arc_length, turn_at
   use boundary_sides, only: loop_t
-  use contour_chain, only: arc_at, chain_length, chain_t, kind_corner, place_at_arc, turn_at
   use contour_divisions, only: divide_sides
   use contour_volume, only: volume_inside
   use errors, only: error_t, exit_input, fail
@@ -15,7 +15,7 @@ module body_outlines
   use side_curves, only: curve_t, draw_side, measure_density
   use size_field, only: size_field_t
   use zone_divisions, only: division_t, rounded_up
-  use zones, only: follows_contour, layout_t, side_t, zone_point_t
+  use zones, only: follows_contour, zone_layout_t, zone_point_t, zone_side_t
   implicit none
   private
   public :: outline_t, find_outlines, refuse_inner_sets, lay_out_outlines, divide_outlines
@@ -24,7 +24,7 @@ module body_outlines
   type :: outline_t
     integer :: group = 0, material = 0
     !> The outer contour, then the holes.
-    integer, allocatable :: chains(:)
+    integer, allocatable :: boundaries(:)
   end type outline_t
 
   !> A contour has no fewer elements than this.
@@ -32,12 +32,12 @@ module body_outlines
 
 contains
 
-  !> All bodies. Where two of them share sides, nothing but zones can say where one ends and the other begins.
+  !> All bodies. Where two of them share sides, only zones can separate them.
   pure subroutine find_outlines(scene, material, contours, outlines, error)
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: material(:)             !! of each group of the scene, as sizes are asked for it (ngroup)
-    type(contour_t), intent(in) :: contours(:)
-    type(outline_t), allocatable, intent(out) :: outlines(:)
+    integer, intent(in) :: material(:)                         !! of each group of the scene, as for the sizes (ngroup)
+    type(contour_t), intent(in) :: contours(:)                 !! (ncontour)
+    type(outline_t), allocatable, intent(out) :: outlines(:)   !! (nbody)
     type(error_t), allocatable, intent(out) :: error
     integer :: body(size(contours)), c, n
 
@@ -51,14 +51,14 @@ contains
     n = maxval(body)
     allocate (outlines(n))
     do n = 1, size(outlines)
-      allocate (outlines(n)%chains(0))
+      allocate (outlines(n)%boundaries(0))
     end do
     do c = 1, size(contours)
       associate (outline => outlines(body(c)))
-        if (volume_inside(contours(c)%chain, .false.) > 0) then
-          outline%chains = [c, outline%chains]
+        if (volume_inside(contours(c)%boundary, .false.) > 0) then
+          outline%boundaries = [c, outline%boundaries]
         else
-          outline%chains = [outline%chains, c]
+          outline%boundaries = [outline%boundaries, c]
         end if
         outline%group = group_of(scene, contours(c)%loop, c)
         outline%material = material(outline%group)
@@ -88,10 +88,10 @@ contains
     end do
   end subroutine refuse_shared_nodes
 
-  !> Sets of sides go with contours: one inside a body would be lost.
+  !> Sets of sides are kept along contours only: one inside a body would be lost.
   pure subroutine refuse_inner_sets(scene, contours, error)
     type(scene_t), intent(in) :: scene
-    type(contour_t), intent(in) :: contours(:)
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
     type(error_t), allocatable, intent(out) :: error
     integer :: s, c, found
 
@@ -102,13 +102,13 @@ contains
       end do
       if (found >= size(scene%mesh%sides(s)%nodes, 2)) cycle
       call fail(error, exit_input, 'remdata: the sides '//scene%mesh%sides(s)%name &
-                //' lie inside a body: a new mesh has other ones there', &
+                //' lie inside a body: a new mesh does not keep them', &
                 'name sides on the contour, or make the mesh of BLOCK cards')
       return
     end do
   end subroutine refuse_inner_sets
 
-  !> Group of the body a contour goes around.
+  !> Group of the body inside a contour.
   pure function group_of(scene, loop, number) result(group)
     type(scene_t), intent(in) :: scene
     type(loop_t), intent(in) :: loop
@@ -128,12 +128,12 @@ contains
     end do
   end function group_of
 
-  !> A body is a zone whose sides, any number of them, run along its contours from corner to corner.
-  pure subroutine lay_out_outlines(chains, outlines, layout)
-    type(chain_t), intent(in) :: chains(:)
-    type(outline_t), intent(in) :: outlines(:)
-    type(layout_t), intent(out) :: layout
-    type(side_t) :: side
+  !> A body is treated as a zone with any number of sides, along its contours from corner to corner.
+  pure subroutine lay_out_outlines(boundaries, outlines, layout)
+    type(boundary_curve_t), intent(in) :: boundaries(:)   !! (nboundary)
+    type(outline_t), intent(in) :: outlines(:)            !! (nbody)
+    type(zone_layout_t), intent(out) :: layout
+    type(zone_side_t) :: side
     type(zone_point_t), allocatable :: points(:)
     integer :: b, i, k, first
 
@@ -142,9 +142,9 @@ contains
     do b = 1, size(outlines)
       layout%zones(b)%material = outlines(b)%material
       side%zones(1) = b
-      do i = 1, size(outlines(b)%chains)
-        side%chain = outlines(b)%chains(i)
-        call corners_of(chains(side%chain), side%chain, points)
+      do i = 1, size(outlines(b)%boundaries)
+        side%boundary = outlines(b)%boundaries(i)
+        call corners_of(boundaries(side%boundary), side%boundary, points)
         first = size(layout%points)
         layout%points = [layout%points, points]
         do k = 1, size(points)
@@ -156,9 +156,9 @@ contains
     allocate (layout%point_moves(size(layout%points)), source=.false.)
   end subroutine lay_out_outlines
 
-  !> Corners of a contour in their order, and as many other points as it takes to have two.
-  pure subroutine corners_of(chain, number, points)
-    type(chain_t), intent(in) :: chain
+  !> Corners of a contour in their order; a contour with less than two gets other points.
+  pure subroutine corners_of(boundary, number, points)
+    type(boundary_curve_t), intent(in) :: boundary
     integer, intent(in) :: number
     type(zone_point_t), allocatable, intent(out) :: points(:)
     type(contour_options_t) :: options
@@ -166,52 +166,52 @@ contains
     integer :: k
 
     allocate (points(0))
-    point%chain = number
-    do k = 1, size(chain%stretches)
-      if (chain%kinds(k) /= kind_corner .and. .not. abs(turn_at(chain, k)) > options%corner_turn) cycle
-      point%place%stretch = k
-      point%place%xi = chain%stretches(k)%range(1)
+    point%boundary = number
+    do k = 1, size(boundary%arcs)
+      if (boundary%kinds(k) /= kind_corner .and. .not. abs(turn_at(boundary, k)) > options%corner_turn) cycle
+      point%position%arc = k
+      point%position%xi = boundary%arcs(k)%range(1)
       points = [points, point]
     end do
     if (size(points) == 0) then
-      point%place%stretch = 1
-      point%place%xi = chain%stretches(1)%range(1)
+      point%position%arc = 1
+      point%position%xi = boundary%arcs(1)%range(1)
       points = [point]
     end if
     if (size(points) > 1) return
-    point%place = place_at_arc(chain, arc_at(chain, point%place) + 0.5_wp*chain_length(chain))
+    point%position = position_at_arc_length(boundary, arc_length_at(boundary, point%position) + 0.5_wp*boundary_length(boundary))
     points = [points, point]
   end subroutine corners_of
 
   !> Lengths from the start of side s of the layout to its ends of elements: ends(first(s)) ... ends(first(s + 1) - 1).
-  pure subroutine divide_outlines(chains, outlines, layout, field, factor, all_even, curves, division, first, ends)
-    type(chain_t), intent(in) :: chains(:)
-    type(outline_t), intent(in) :: outlines(:)
-    type(layout_t), intent(in) :: layout
+  pure subroutine divide_outlines(boundaries, outlines, layout, field, factor, all_even, curves, division, first, ends)
+    type(boundary_curve_t), intent(in) :: boundaries(:)   !! (nboundary)
+    type(outline_t), intent(in) :: outlines(:)            !! (nbody)
+    type(zone_layout_t), intent(in) :: layout
     type(size_field_t), intent(in) :: field
-    real(wp), intent(in) :: factor                 !! sizes are so many times the wanted ones
-    logical, intent(in) :: all_even                !! every side has an even number of elements, not only all of a body together
-    type(curve_t), allocatable, intent(out) :: curves(:)
+    real(wp), intent(in) :: factor                         !! ratio of the sizes to the requested ones
+    logical, intent(in) :: all_even  !! every side has an even number of elements, not only all of a body together
+    type(curve_t), allocatable, intent(out) :: curves(:)   !! (nside)
     type(division_t), intent(out) :: division
-    integer, allocatable, intent(out) :: first(:)
-    real(wp), allocatable, intent(out) :: ends(:)
+    integer, allocatable, intent(out) :: first(:)   !! (nside + 1)
+    real(wp), allocatable, intent(out) :: ends(:)   !! (first(nside + 1) - 1) [length]
     integer :: s, b, i
 
     allocate (curves(size(layout%sides)), division%count(size(layout%sides)), first(size(layout%sides) + 1))
     division%factor = factor
     do s = 1, size(curves)
       associate (side => layout%sides(s))
-        call draw_side(chains, layout, side, field, curves(s))
-        call measure_density(chains, field, layout%zones(side%zones(1))%material, curves(s))
+        call draw_side(boundaries, layout, side, field, curves(s))
+        call measure_density(boundaries, field, layout%zones(side%zones(1))%material, curves(s))
       end associate
       division%count(s) = sum(rounded_up(curves(s)%needs/factor))
       if (all_even) division%count(s) = division%count(s) + mod(division%count(s), 2)
     end do
     do b = 1, size(outlines)
-      do i = 1, size(outlines(b)%chains)
-        associate (mine => layout%sides%chain == outlines(b)%chains(i))
-          do while (sum(pack(division%count, mine)) < fewest)
-            s = neediest(curves, division%count, mine)
+      do i = 1, size(outlines(b)%boundaries)
+        associate (of_contour => layout%sides%boundary == outlines(b)%boundaries(i))
+          do while (sum(pack(division%count, of_contour)) < fewest)
+            s = neediest(curves, division%count, of_contour)
             division%count(s) = division%count(s) + merge(2, 1, all_even)
           end do
         end associate
@@ -223,7 +223,7 @@ contains
     call divide_sides(layout, curves, division, field%limits%gradation, first, ends)
   end subroutine divide_outlines
 
-  !> The side that needs one more element most.
+  !> The side with the largest need per element.
   pure function neediest(curves, count, among) result(most)
     type(curve_t), intent(in) :: curves(:)
     integer, intent(in) :: count(:)

@@ -1,6 +1,6 @@
-!> Zones for a part of which none were given.
+!> Zones of a part without ZONE cards or blocks.
 module derived_zones
-  use contour_chain, only: arc_at, chain_t, kind_corner, place_at_arc, place_t
+  use boundary_curves, only: arc_length_at, boundary_curve_t, kind_corner, position_at_arc_length, position_t
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
   use text, only: to_text
@@ -11,31 +11,31 @@ module derived_zones
 
 contains
 
-  !> The zone of a part that has one contour and four corners: those that are marked, else the corners of the chain.
-  pure subroutine one_zone(chains, marked, points, zones, error)
-    type(chain_t), intent(in) :: chains(:)
-    type(place_t), intent(in) :: marked(:)                      !! on the first chain, in any order; none: its corners
+  !> The zone of a part that has one contour and four corners: those that are marked, else the corners of the boundary curve.
+  pure subroutine one_zone(boundaries, marked, points, zones, error)
+    type(boundary_curve_t), intent(in) :: boundaries(:)         !! (nboundary)
+    type(position_t), intent(in) :: marked(:)                   !! (n) on the first boundary curve, in any order; none: its corners
     type(zone_point_t), allocatable, intent(out) :: points(:)   !! (4)
     type(zone_t), allocatable, intent(out) :: zones(:)          !! (1)
     type(error_t), allocatable, intent(out) :: error
-    real(wp), allocatable :: arcs(:)
+    real(wp), allocatable :: lengths(:)
     integer :: k, n
 
-    if (size(chains) /= 1) then
-      call fail(error, exit_input, 'a part with '//to_text(size(chains))//' contours cannot be meshed without zones', &
+    if (size(boundaries) /= 1) then
+      call fail(error, exit_input, 'a part with '//to_text(size(boundaries))//' contours cannot be meshed without zones', &
                 'give zones, or one contour with four corners')
       return
     end if
-    associate (chain => chains(1))
+    associate (boundary => boundaries(1))
       if (size(marked) > 0) then
-        allocate (arcs(size(marked)))
+        allocate (lengths(size(marked)))
         do k = 1, size(marked)
-          arcs(k) = arc_at(chain, marked(k))
+          lengths(k) = arc_length_at(boundary, marked(k))
         end do
       else
-        arcs = pack(chain%arc(:ubound(chain%arc, 1) - 1), chain%kinds == kind_corner)
+        lengths = pack(boundary%arc_length(:ubound(boundary%arc_length, 1) - 1), boundary%kinds == kind_corner)
       end if
-      n = size(arcs)
+      n = size(lengths)
       if (n /= 4) then
         call fail(error, exit_input, 'a contour with '//to_text(n)//' corners cannot be meshed without zones, expected four', &
                   'mark four corners of the contour, or give zones')
@@ -43,9 +43,9 @@ contains
       end if
       allocate (points(4), zones(1))
       do k = 1, 4
-        points(k)%chain = 1
-        points(k)%place = place_at_arc(chain, minval(arcs))
-        arcs(minloc(arcs, 1)) = huge(1.0_wp)
+        points(k)%boundary = 1
+        points(k)%position = position_at_arc_length(boundary, minval(lengths))
+        lengths(minloc(lengths, 1)) = huge(1.0_wp)
       end do
       zones(1)%corners = [1, 2, 3, 4]
     end associate

@@ -2,14 +2,15 @@
 !>
 !> No quadrilateral has a corner of 180 degrees. A zone whose corner D has become flat is a triangle ABC, and D a point of its long
 !> side BC. Around a point M inside, with new points on AB and CA, it becomes (A, AB, M, CA), (B, D, M, AB) and (C, CA, M, D).
-!> Zones beyond AB and CA are divided in two, from side to opposite side, as far as the contour. Sets of sides between blocks go
-!> with the parts of their sides; those on the contour go with it.
+!> Zones beyond AB and CA are divided in two, from side to opposite side, up to the contour. Sets of sides between blocks are kept
+!> on the parts of their sides; those on the contour follow the contour.
 module flat_corners
-  use contour_chain, only: arc_at, chain_length, chain_t, joint_after, place_at_arc, place_t, point_on, turn_at
+  use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, joint_after, point_on, position_at_arc_length, &
+                             position_t, turn_at
   use kinds, only: pi, wp
   use part_contour, only: contour_t
   use vectors, only: length_of
-  use zone_places, only: coordinates
+  use zone_point_coordinates, only: coordinates
   use zones, only: as_found, plan_t, zone_point_t, zone_t
   implicit none
   private
@@ -17,16 +18,16 @@ module flat_corners
 
   !> A corner where the contour turns by less is flat: 35 degrees, a scaled Jacobian of 0.57.
   real(wp), parameter :: flat_turn = 35*pi/180
-  !> Zones that come of a division are divided again only where their elements would be refused: 12 degrees, 0.2.
+  !> Zones created by a division are divided again only where their elements would be refused: 12 degrees, 0.2.
   real(wp), parameter :: useless_turn = 12*pi/180
-  !> Places along the contour of which the one farthest out is taken.
-  integer, parameter :: looks = 200
+  !> Samples along the contour, of which the one farthest out is taken.
+  integer, parameter :: samples = 200
 
 contains
 
   !> Divide the zones of a plan, counter-clockwise, that have flat corners.
   pure subroutine divide_flat_zones(contours, plan)
-    type(contour_t), intent(in) :: contours(:)
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
     type(plan_t), intent(inout) :: plan
     integer :: z, k, n
 
@@ -39,7 +40,7 @@ contains
     end do
   end subroutine divide_flat_zones
 
-  !> The flattest corner of a zone that no other zone has, with the contour on both hands; 0 when none is flat.
+  !> The flattest corner of a zone that no other zone shares, with the contour on either side; 0 when none is flat.
   pure function flat_corner(contours, plan, z, flat) result(corner)
     type(contour_t), intent(in) :: contours(:)
     type(plan_t), intent(in) :: plan
@@ -55,8 +56,8 @@ contains
     do k = 1, 4
       if (zone_beyond(plan, corners(k - 1:k)) > 0 .or. zone_beyond(plan, corners(k:k + 1)) > 0) cycle
       associate (point => plan%points(corners(k)))
-        if (point%chain == 0 .or. point%stays) cycle
-        turn = turn_of(contours(point%chain)%chain, point%place)
+        if (point%boundary == 0 .or. point%stays) cycle
+        turn = turn_of(contours(point%boundary)%boundary, point%position)
       end associate
       if (.not. turn < least) cycle
       if (any([leads_back(plan, z, corners(modulo(k + [1, 2] - 1, 4) + 1)), &
@@ -66,23 +67,23 @@ contains
     end do
   end function flat_corner
 
-  !> What the contour turns by at a place; nothing inside a stretch.
-  pure function turn_of(chain, place) result(turn)
-    type(chain_t), intent(in) :: chain
-    type(place_t), intent(in) :: place
+  !> Angle the contour turns by at a position; zero inside an arc.
+  pure function turn_of(boundary, position) result(turn)
+    type(boundary_curve_t), intent(in) :: boundary
+    type(position_t), intent(in) :: position
     real(wp) :: turn
 
     turn = 0
-    associate (range => chain%stretches(place%stretch)%range)
-      if (.not. place%xi > range(1)) then
-        turn = abs(turn_at(chain, place%stretch))
-      else if (.not. place%xi < range(2)) then
-        turn = abs(turn_at(chain, joint_after(chain, place%stretch)))
+    associate (range => boundary%arcs(position%arc)%range)
+      if (.not. position%xi > range(1)) then
+        turn = abs(turn_at(boundary, position%arc))
+      else if (.not. position%xi < range(2)) then
+        turn = abs(turn_at(boundary, joint_after(boundary, position%arc)))
       end if
     end associate
   end function turn_of
 
-  !> The zone on the other hand of a side that is walked from one point to another, 0 where there is none.
+  !> The zone on the other side of a zone side from one point to another, 0 where there is none.
   pure function zone_beyond(plan, ends) result(beyond)
     type(plan_t), intent(in) :: plan
     integer, intent(in) :: ends(2)
@@ -99,7 +100,7 @@ contains
     beyond = 0
   end function zone_beyond
 
-  !> Whether zones divided from side to opposite side, beginning beyond one of this zone's sides, come back to it.
+  !> Whether zones divided from side to opposite side, beginning beyond one of this zone's sides, lead back to it.
   pure function leads_back(plan, zone, side) result(back)
     type(plan_t), intent(in) :: plan
     integer, intent(in) :: zone, side(2)
@@ -117,7 +118,7 @@ contains
     back = .true.
   end function leads_back
 
-  !> The side of the zone beyond that lies opposite, as that zone walks it.
+  !> The opposite side in the adjacent zone, in the direction of that zone.
   pure function opposite(zone, ends) result(side)
     type(zone_t), intent(in) :: zone
     integer, intent(in) :: ends(2)
@@ -128,24 +129,24 @@ contains
     side = zone%corners(modulo(k + [1, 2] - 1, 4) + 1)
   end function opposite
 
-  !> From AB to B and from C to CA it is half the shorter of the sides AB and CA, so that in a flat disc only its rim is divided in
-  !> this way; M stands opposite to A, a third of the way to D.
+  !> The distances from AB to B and from C to CA are half the shorter of the sides AB and CA, so that in a flat disc only the rim is
+  !> divided in this way; M is opposite to A, at a third of the distance to D.
   pure subroutine split_in_three(contours, z, flat, plan)
     type(contour_t), intent(in) :: contours(:)
     integer, intent(in) :: z, flat
     type(plan_t), intent(inout) :: plan
-    real(wp) :: half, ways(2)
+    real(wp) :: half, lengths(2)
     integer :: corners(4), sets(4), ab, ca, m
 
     corners = plan%zones(z)%corners(modulo(flat + [1, 2, 3, 4], 4) + 1)
     sets = inner_sets(plan, z)
     sets = sets(modulo(flat + [1, 2, 3, 4], 4) + 1)
     associate (a => corners(1), b => corners(2), d => corners(3), c => corners(4))
-      if (plan%points(d)%by_shape) call go_farthest(contours, plan%points(b), plan%points(c), plan%points(d))
-      ways = [way_of(contours, plan, [a, b]), way_of(contours, plan, [c, a])]
-      half = 0.5_wp*minval(ways)
-      call divide_side(contours, [a, b], 1 - half/ways(1), plan, ab)
-      call divide_side(contours, [c, a], half/ways(2), plan, ca)
+      if (plan%points(d)%by_shape) call move_to_farthest(contours, plan%points(b), plan%points(c), plan%points(d))
+      lengths = [length_of_side(contours, plan, [a, b]), length_of_side(contours, plan, [c, a])]
+      half = 0.5_wp*minval(lengths)
+      call divide_side(contours, [a, b], 1 - half/lengths(1), plan, ab)
+      call divide_side(contours, [c, a], half/lengths(2), plan, ca)
       plan%points = [plan%points, zone_point_t(x=(2*(placed(ab) + placed(ca) - placed(a)) + placed(d))/3)]
       m = size(plan%points)
       plan%zones(z)%form = as_found
@@ -166,7 +167,7 @@ contains
 
   end subroutine split_in_three
 
-  !> A point on a side, at a share of its way; the zones beyond are divided there and at the same share of their opposite sides.
+  !> A point on a side, at a share of its length; the zones beyond are divided there and at the same share of their opposite sides.
   pure subroutine divide_side(contours, side, share, plan, point)
     type(contour_t), intent(in) :: contours(:)
     integer, intent(in) :: side(2)
@@ -184,7 +185,7 @@ contains
       far = opposite(plan%zones(z), ends)
       first = findloc(plan%zones(z)%corners, ends(2), 1)
       sets = inner_sets(plan, z)
-      ! the zone before it is divided already, so that they share no side
+      ! the previous zone is divided already, so that they share no side
       sets(first) = plan%sets(first, z)
       sets = sets(modulo(first + [0, 1, 2, 3] - 1, 4) + 1)
       call add_point(contours, far, share, plan, next)
@@ -209,10 +210,11 @@ contains
       if (zone_beyond(plan, side) > 0) then
         new%x = (1 - share)*coordinates(contours, from) + share*coordinates(contours, to)
       else
-        new%chain = from%chain
-        associate (chain => contours(new%chain)%chain)
-          new%place = place_at_arc(chain, arc_at(chain, from%place) + share*way_along(chain, from%place, to%place))
-          new%x = point_on(chain, new%place)
+        new%boundary = from%boundary
+        associate (boundary => contours(new%boundary)%boundary)
+          new%position = position_at_arc_length(boundary, arc_length_at(boundary, from%position) &
+                                                + share*length_along(boundary, from%position, to%position))
+          new%x = point_on(boundary, new%position)
         end associate
       end if
     end associate
@@ -233,7 +235,7 @@ contains
     end do
   end function inner_sets
 
-  !> A zone like another one, between other points, with other sets of sides.
+  !> Copy a zone with other corners and other sets of sides.
   pure subroutine add_zone(like, corners, sides, plan)
     integer, intent(in) :: like, corners(4), sides(4)
     type(plan_t), intent(inout) :: plan
@@ -251,54 +253,54 @@ contains
   end subroutine add_zone
 
   !> Length of a side: along the contour, or straight where two zones share it [length].
-  pure function way_of(contours, plan, side) result(way)
+  pure function length_of_side(contours, plan, side) result(length)
     type(contour_t), intent(in) :: contours(:)
     type(plan_t), intent(in) :: plan
     integer, intent(in) :: side(2)
-    real(wp) :: way
+    real(wp) :: length
 
     associate (from => plan%points(side(1)), to => plan%points(side(2)))
       if (zone_beyond(plan, side) > 0) then
-        way = length_of(coordinates(contours, to) - coordinates(contours, from))
+        length = length_of(coordinates(contours, to) - coordinates(contours, from))
       else
-        way = way_along(contours(from%chain)%chain, from%place, to%place)
+        length = length_along(contours(from%boundary)%boundary, from%position, to%position)
       end if
     end associate
-  end function way_of
+  end function length_of_side
 
-  !> Length of the contour from one place to another [length].
-  pure function way_along(chain, from, to) result(way)
-    type(chain_t), intent(in) :: chain
-    type(place_t), intent(in) :: from, to
-    real(wp) :: way
+  !> Length of the contour from one position to another [length].
+  pure function length_along(boundary, from, to) result(length)
+    type(boundary_curve_t), intent(in) :: boundary
+    type(position_t), intent(in) :: from, to
+    real(wp) :: length
 
-    way = modulo(arc_at(chain, to) - arc_at(chain, from), chain_length(chain))
-  end function way_along
+    length = modulo(arc_length_at(boundary, to) - arc_length_at(boundary, from), boundary_length(boundary))
+  end function length_along
 
   !> The point of the contour from one point to another that is farthest out from the line between them.
-  pure subroutine go_farthest(contours, from, to, point)
+  pure subroutine move_to_farthest(contours, from, to, point)
     type(contour_t), intent(in) :: contours(:)
     type(zone_point_t), intent(in) :: from, to
     type(zone_point_t), intent(inout) :: point
-    type(place_t) :: place
-    real(wp) :: start(2), line(2), arm(2), way, out, farthest
+    type(position_t) :: position
+    real(wp) :: start(2), line(2), arm(2), length, out, farthest
     integer :: k
 
-    associate (chain => contours(point%chain)%chain)
-      start = point_on(chain, from%place)
-      line = point_on(chain, to%place) - start
-      way = way_along(chain, from%place, to%place)
+    associate (boundary => contours(point%boundary)%boundary)
+      start = point_on(boundary, from%position)
+      line = point_on(boundary, to%position) - start
+      length = length_along(boundary, from%position, to%position)
       farthest = 0
-      do k = 1, looks - 1
-        place = place_at_arc(chain, arc_at(chain, from%place) + way*k/looks)
-        arm = point_on(chain, place) - start
+      do k = 1, samples - 1
+        position = position_at_arc_length(boundary, arc_length_at(boundary, from%position) + length*k/samples)
+        arm = point_on(boundary, position) - start
         out = line(2)*arm(1) - line(1)*arm(2)   ! to the right, where the part is not
         if (.not. out > farthest) cycle
         farthest = out
-        point%place = place
+        point%position = position
       end do
-      point%x = point_on(chain, point%place)
+      point%x = point_on(boundary, point%position)
     end associate
-  end subroutine go_farthest
+  end subroutine move_to_farthest
 
 end module flat_corners

@@ -1,26 +1,27 @@
-!> Points of zones on the present contours, from what ZPNT cards say of them.
+!> Zone points on the present contours, as defined by ZPNT cards.
 module marked_points
-  use contour_chain, only: arc_at, chain_length, chain_of_loop, chain_t, closest_place, joint_after, kind_corner, kind_entry, &
-                           kind_exit, place_t, point_on, size_of_chain, turn_at
-  use contour_match, only: place_of_old
-  use contour_places, only: xi_at_coordinate
+  use arc_coordinates, only: crossings_of_arc, most_crossings
+  use arcs, only: exact_point
+  use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, boundary_of_loop, closest_position, joint_after, &
+                             kind_corner, kind_entry, kind_exit, point_on, position_t, size_of_boundary, turn_at
+  use contour_match, only: position_of_side_point
   use errors, only: error_t, exit_input, fail
   use kinds, only: pi, wp
-  use locate_point, only: locate, location_t => place_t
+  use locate_point, only: element_location_t, locate
   use part_contour, only: contour_t
   use scene, only: is_solid, scene_t
   use shape_functions, only: quad8
-  use stretches, only: turning_places
   use text, only: to_text
-  use transfer_mesh, only: plant_mesh_trees, set_up_mesh, transfer_mesh_t
+  use transfer_mesh, only: build_mesh_trees, set_up_mesh, transfer_mesh_t
   use vectors, only: length_of
   use zone_marks, only: mark_corner, mark_crossing, mark_inside, mark_matter, zone_mark_t
-  use zones, only: exact_point, on_chain, zone_point_t
+  use zones, only: on_boundary, zone_point_t
   implicit none
   private
   public :: find_points
 
-  !> A line that misses the contour by this share of its size passes its end: symmetry lines are met in spite of round-off.
+  !> A line that misses the contour by less than this share of its size passes through its end: symmetry lines meet it in spite of
+  !> round-off.
   real(wp), parameter :: same = 1.0e-9_wp
 
 contains
@@ -28,13 +29,13 @@ contains
   !> The points of all ZPNT cards.
   pure subroutine find_points(scene, x, pilots, contours, points, error)
     type(scene_t), intent(in) :: scene
-    real(wp), intent(in) :: x(:, :)                 !! nodes now (2, nnode) [length]
-    real(wp), intent(in) :: pilots(:, :)            !! of the dies now (3, ndie)
-    type(contour_t), intent(in) :: contours(:)
-    type(zone_point_t), allocatable, intent(out) :: points(:)
+    real(wp), intent(in) :: x(:, :)                             !! nodes now (2, nnode) [length]
+    real(wp), intent(in) :: pilots(:, :)                        !! (3, ndie) x, y, angle of the dies now [length and radian]
+    type(contour_t), intent(in) :: contours(:)                  !! (ncontour)
+    type(zone_point_t), allocatable, intent(out) :: points(:)   !! (npoint)
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: place(2)
-    logical :: alone, on(size(scene%groups), size(contours)), mine(size(contours))
+    real(wp) :: coordinates(2)
+    logical :: alone, on(size(scene%groups), size(contours)), eligible(size(contours))
     integer :: k, z, c
 
     allocate (points(size(scene%remesher%marks)))
@@ -48,37 +49,37 @@ contains
         points(k)%by_shape = mark%form == mark_corner
         alone = count([(any(scene%remesher%zones(z)%marks == k), z=1, size(scene%remesher%zones))]) == 1
         ! bodies may touch: a point is on the contours of the bodies whose zones have it
-        mine = .false.
+        eligible = .false.
         do z = 1, size(scene%remesher%zones)
-          if (any(scene%remesher%zones(z)%marks == k)) mine = mine .or. on(scene%remesher%zones(z)%group, :)
+          if (any(scene%remesher%zones(z)%marks == k)) eligible = eligible .or. on(scene%remesher%zones(z)%group, :)
         end do
-        if (.not. any(mine)) mine = .true.
-        place = mark%x
-        if (mark%die > 0) place = carried(mark, scene%dies(mark%die)%pilot, pilots(:, mark%die))
+        if (.not. any(eligible)) eligible = .true.
+        coordinates = mark%x
+        if (mark%die > 0) coordinates = carried(mark, scene%dies(mark%die)%pilot, pilots(:, mark%die))
         if (mark%form == mark_inside) then
-          points(k)%x = place
-          if (mark%by_matter .and. size(x, 2) > 0) points(k)%x = matter_inside(scene, x, place)
+          points(k)%x = coordinates
+          if (mark%by_matter .and. size(x, 2) > 0) points(k)%x = material_point_inside(scene, x, coordinates)
           cycle
         else if (mark%form == mark_crossing) then
-          call find_crossing(contours, mine, mark%axis, place(mark%axis), mark%pick, points(k), error)
+          call find_crossing(contours, eligible, mark%axis, coordinates(mark%axis), mark%pick, points(k), error)
         else if (mark%by_matter) then
-          call find_matter(scene%mesh%origin, x, contours, mine, place, points(k))
+          call find_material_point(scene%mesh%origin, x, contours, eligible, coordinates, points(k))
           if (mark%form /= mark_matter) &
-            points(k)%place = nearest_joint(contours(points(k)%chain)%chain, points(k)%place, alone)
+            points(k)%position = nearest_joint(contours(points(k)%boundary)%boundary, points(k)%position, alone)
         else
-          call find_joint(contours, mine, place, alone, points(k), error)
+          call find_joint(contours, eligible, coordinates, alone, points(k), error)
         end if
         if (allocated(error)) return
-        points(k)%x = on_chain(contours(points(k)%chain)%chain, points(k)%place)
+        points(k)%x = on_boundary(contours(points(k)%boundary)%boundary, points(k)%position)
       end associate
     end do
   end subroutine find_points
 
-  !> Groups whose elements a contour goes along; that of its card when it has none yet.
+  !> Groups whose elements are inside a contour; that of its card when it has none yet.
   pure function bodies_at(scene, contour, number) result(on)
     type(scene_t), intent(in) :: scene
     type(contour_t), intent(in) :: contour
-    integer, intent(in) :: number              !! among the contours
+    integer, intent(in) :: number   !! among the contours
     logical :: on(size(scene%groups))
     integer :: g, last
 
@@ -97,58 +98,59 @@ contains
     end do
   end function bodies_at
 
-  !> Where a place that rides on a die is now. A line keeps its direction: it goes with the pilot, and does not turn with it.
-  pure function carried(mark, start, now) result(place)
+  !> Present coordinates of a point that moves with a die. A line keeps its direction: it is translated with the pilot, not rotated.
+  pure function carried(mark, start, now) result(coordinates)
     type(zone_mark_t), intent(in) :: mark
     real(wp), intent(in) :: start(3), now(3)
-    real(wp) :: place(2), arm(2), c, s
+    real(wp) :: coordinates(2), arm(2), c, s
 
     arm = mark%x - start(1:2)
     c = cos(now(3) - start(3))
     s = sin(now(3) - start(3))
     if (mark%form /= mark_crossing) arm = [c*arm(1) - s*arm(2), s*arm(1) + c*arm(2)]
-    place = now(1:2) + arm
+    coordinates = now(1:2) + arm
   end function carried
 
-  !> The matter of the contour that was nearest to a place at the start.
-  pure subroutine find_matter(origin, x, contours, mine, start, point)
-    real(wp), intent(in) :: origin(:, :)   !! where the matter of each node was (2, nnode) [length]
+  !> The material point of the contour that was initially nearest to a point.
+  pure subroutine find_material_point(origin, x, contours, eligible, start, point)
+    real(wp), intent(in) :: origin(:, :)   !! initial coordinates of the material point at each node (2, nnode) [length]
     real(wp), intent(in) :: x(:, :)
     type(contour_t), intent(in) :: contours(:)
-    logical, intent(in) :: mine(:)           !! contours that count
+    logical, intent(in) :: eligible(:)   !! contours that are searched (ncontour)
     real(wp), intent(in) :: start(2)
     type(zone_point_t), intent(inout) :: point
-    type(chain_t) :: before
-    type(place_t) :: place
+    type(boundary_curve_t) :: before
+    type(position_t) :: position
     real(wp) :: distance, least
     logical :: first
     integer :: c
 
     least = huge(least)
     do c = 1, size(contours)
-      if (.not. mine(c)) cycle
-      ! contours of bodies without a mesh are what they were
+      if (.not. eligible(c)) cycle
+      ! contours of bodies without a mesh have not changed
       first = size(contours(c)%loop%sides, 2) == 0
-      before = contours(c)%chain
-      if (.not. first) before = chain_of_loop(contours(c)%loop, origin, pi)
-      place = closest_place(before, start)
-      distance = length_of(point_on(before, place) - start)
+      before = contours(c)%boundary
+      if (.not. first) before = boundary_of_loop(contours(c)%loop, origin, pi)
+      position = closest_position(before, start)
+      distance = length_of(point_on(before, position) - start)
       if (.not. distance < least) cycle
       least = distance
-      point%chain = c
-      point%place = place
+      point%boundary = c
+      point%position = position
       if (.not. first) &
-        point%place = place_of_old(contours(c)%loop, contours(c)%chain, contours(c)%contacts, x, place%stretch, place%xi)
+        point%position = position_of_side_point(contours(c)%loop, contours(c)%boundary, contours(c)%contacts, x, position%arc, &
+                                                position%xi)
     end do
-  end subroutine find_matter
+  end subroutine find_material_point
 
-  !> Where matter from inside the part is now: in the element it was in, by the shape functions.
-  pure function matter_inside(scene, x, start) result(now)
+  !> Present coordinates of a material point inside the part: in its element, by the shape functions.
+  pure function material_point_inside(scene, x, start) result(now)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: x(:, :), start(2)
     real(wp) :: now(2), phi(8), dphi(2, 8)
     type(transfer_mesh_t) :: mesh
-    type(location_t) :: place
+    type(element_location_t) :: location
     integer, allocatable :: nodes(:)
     integer :: g, n
 
@@ -158,90 +160,90 @@ contains
     end do
     n = size(nodes)/8
     call set_up_mesh(scene%mesh%origin, reshape(nodes, [8, n]), spread(1, 1, n), spread(4, 1, n), .false., mesh)
-    call plant_mesh_trees(mesh)
-    call locate(mesh, 1, start, 0.0_wp, place)
-    call quad8(place%xi(1), place%xi(2), phi, dphi)
-    now = matmul(x(:, mesh%connectivity(:, place%element)), phi)
-  end function matter_inside
+    call build_mesh_trees(mesh)
+    call locate(mesh, 1, start, 0.0_wp, location)
+    call quad8(location%xi(1), location%xi(2), phi, dphi)
+    now = matmul(x(:, mesh%connectivity(:, location%element)), phi)
+  end function material_point_inside
 
-  !> The corner, beginning or end of contact nearest to a place.
-  pure subroutine find_joint(contours, mine, target, alone, point, error)
+  !> The corner, beginning or end of contact nearest to a point.
+  pure subroutine find_joint(contours, eligible, target, alone, point, error)
     type(contour_t), intent(in) :: contours(:)
-    logical, intent(in) :: mine(:)           !! contours that count
+    logical, intent(in) :: eligible(:)   !! contours that are searched (ncontour)
     real(wp), intent(in) :: target(2)
-    logical, intent(in) :: alone             !! one zone has the point
+    logical, intent(in) :: alone   !! one zone has the point
     type(zone_point_t), intent(inout) :: point
     type(error_t), allocatable, intent(out) :: error
-    type(place_t) :: place
+    type(position_t) :: position
     real(wp) :: distance, least
     integer :: c, k
 
     least = huge(least)
     do c = 1, size(contours)
-      if (.not. mine(c)) cycle
-      associate (chain => contours(c)%chain)
-        do k = 1, size(chain%stretches)
-          if (.not. is_joint(chain, k, alone)) cycle
-          place = place_t(k, chain%stretches(k)%range(1))
-          distance = length_of(point_on(chain, place) - target)
+      if (.not. eligible(c)) cycle
+      associate (boundary => contours(c)%boundary)
+        do k = 1, size(boundary%arcs)
+          if (.not. is_joint(boundary, k, alone)) cycle
+          position = position_t(k, boundary%arcs(k)%range(1))
+          distance = length_of(point_on(boundary, position) - target)
           if (.not. distance < least) cycle
           least = distance
-          point%chain = c
-          point%place = place
+          point%boundary = c
+          point%position = position
         end do
       end associate
     end do
-    if (point%chain == 0) &
-      call fail(error, exit_input, 'ZPNT '//trim(point%name)//': the contour has no corner, and contact begins and ends nowhere', &
+    if (point%boundary == 0) &
+      call fail(error, exit_input, 'ZPNT '//trim(point%name)//': the contour has no corner and no end of contact', &
                 'name the point by MATTER or ON')
   end subroutine find_joint
 
-  !> Places where zones may have a corner: where contact begins or ends, and corners. One zone alone fills no re-entrant corner.
-  pure function is_joint(chain, k, alone) result(yes)
-    type(chain_t), intent(in) :: chain
-    integer, intent(in) :: k           !! stretch that begins there
-    logical, intent(in) :: alone       !! one zone has the corner
+  !> Joints where zones may have a corner: ends of contact and corners. A single zone fills no re-entrant corner.
+  pure function is_joint(boundary, k, alone) result(yes)
+    type(boundary_curve_t), intent(in) :: boundary
+    integer, intent(in) :: k       !! arc that begins there
+    logical, intent(in) :: alone   !! one zone has the corner
     logical :: yes
 
-    select case (chain%kinds(k))
+    select case (boundary%kinds(k))
     case (kind_entry, kind_exit)
       yes = .true.
     case (kind_corner)
-      yes = .not. alone .or. turn_at(chain, k) > 0
+      yes = .not. alone .or. turn_at(boundary, k) > 0
     case default
       yes = .false.
     end select
   end function is_joint
 
-  !> The corner, beginning or end of contact nearest along the chain; the place itself where there is none.
-  pure function nearest_joint(chain, from, alone) result(place)
-    type(chain_t), intent(in) :: chain
-    type(place_t), intent(in) :: from
+  !> The corner, beginning or end of contact nearest along the boundary curve; the position itself where there is none.
+  pure function nearest_joint(boundary, from, alone) result(position)
+    type(boundary_curve_t), intent(in) :: boundary
+    type(position_t), intent(in) :: from
     logical, intent(in) :: alone
-    type(place_t) :: place
-    real(wp) :: here, way, least
+    type(position_t) :: position
+    real(wp) :: here, distance, least
     integer :: k
 
-    place = from
-    here = arc_at(chain, from)
+    position = from
+    here = arc_length_at(boundary, from)
     least = huge(least)
-    do k = 1, size(chain%stretches)
-      if (.not. is_joint(chain, k, alone)) cycle
-      way = abs(chain%arc(k - 1) - here)
-      way = min(way, chain_length(chain) - way)
-      if (.not. way < least) cycle
-      least = way
-      place = place_t(k, chain%stretches(k)%range(1))
+    do k = 1, size(boundary%arcs)
+      if (.not. is_joint(boundary, k, alone)) cycle
+      distance = abs(boundary%arc_length(k - 1) - here)
+      distance = min(distance, boundary_length(boundary) - distance)
+      if (.not. distance < least) cycle
+      least = distance
+      position = position_t(k, boundary%arcs(k)%range(1))
     end do
   end function nearest_joint
 
-  !> Where contours cross the line on which a coordinate has a value: of all places the one outermost to one hand.
-  pure subroutine find_crossing(contours, mine, axis, value, pick, point, error)
+  !> Where contours cross the line on which a coordinate has a value: the outermost crossing in one direction.
+  pure subroutine find_crossing(contours, eligible, axis, value, pick, point, error)
     type(contour_t), intent(in) :: contours(:)
-    logical, intent(in) :: mine(:)           !! contours that count
-    integer, intent(in) :: axis                !! 1: x, 2: y
-    real(wp), intent(in) :: value              !! [length]
-    integer, intent(in) :: pick                !! 1: largest other coordinate, -1: least
+    logical, intent(in) :: eligible(:)   !! contours that are searched (ncontour)
+    integer, intent(in) :: axis          !! 1: x, 2: y
+    real(wp), intent(in) :: value        !! [length]
+    integer, intent(in) :: pick          !! 1: largest other coordinate, -1: least
     type(zone_point_t), intent(inout) :: point
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: best, slack
@@ -249,55 +251,39 @@ contains
 
     best = -huge(best)
     do c = 1, size(contours)
-      if (.not. mine(c)) cycle
-      slack = same*size_of_chain(contours(c)%chain)
-      do k = 1, size(contours(c)%chain%stretches)
-        call cross_stretch(c, contours(c)%chain, k, axis, value, slack, pick, best, point)
+      if (.not. eligible(c)) cycle
+      slack = same*size_of_boundary(contours(c)%boundary)
+      do k = 1, size(contours(c)%boundary%arcs)
+        call cross_arc(c, contours(c)%boundary, k, axis, value, slack, pick, best, point)
       end do
     end do
-    if (point%chain == 0) call fail(error, exit_input, 'ZPNT '//trim(point%name)//': the contour does not cross '// &
+    if (point%boundary == 0) call fail(error, exit_input, 'ZPNT '//trim(point%name)//': the contour does not cross '// &
                                     merge('x', 'y', axis == 1)//' = '//to_text(value), 'give a line that the part lies on')
   end subroutine find_crossing
 
-  !> Crossings of one stretch, between the places where its coordinate turns back.
-  pure subroutine cross_stretch(number, chain, k, axis, value, slack, pick, best, point)
+  !> Crossings of one arc with the line.
+  pure subroutine cross_arc(number, boundary, k, axis, value, slack, pick, best, point)
     integer, intent(in) :: number, k, axis, pick
-    type(chain_t), intent(in) :: chain
+    type(boundary_curve_t), intent(in) :: boundary
     real(wp), intent(in) :: value, slack
     real(wp), intent(inout) :: best
     type(zone_point_t), intent(inout) :: point
-    real(wp) :: turns(3), knots(5), crossings(8), ends(2, 2), x(2), low, high
-    integer :: n, i, found
+    real(wp) :: crossings(most_crossings), x(2)
+    integer :: i, n
 
-    associate (one => chain%stretches(k))
-      call turning_places(one, axis, n, turns)
-      knots(1) = one%range(1)
-      knots(2:n + 1) = turns(:n)
-      knots(n + 2) = one%range(2)
-      found = 0
-      do i = 1, n + 1
-        ends(:, 1) = exact_point(one, knots(i))
-        ends(:, 2) = exact_point(one, knots(i + 1))
-        low = minval(ends(axis, :))
-        high = maxval(ends(axis, :))
-        if (value < low - slack .or. value > high + slack) cycle
-        ! a stretch that lies on the line counts by its ends
-        crossings(found + 1:found + 2) = knots(i:i + 1)
-        if (high - low > slack) &
-          crossings(found + 1:found + 2) = xi_at_coordinate(one, axis, min(max(value, low), high), knots(i), knots(i + 1))
-        found = found + 2
-      end do
-      do i = 1, found
+    associate (one => boundary%arcs(k))
+      call crossings_of_arc(one, axis, value, slack, n, crossings)
+      do i = 1, n
         x = exact_point(one, crossings(i))
         if (.not. pick*x(3 - axis) > best) cycle
         best = pick*x(3 - axis)
-        point%chain = number
-        point%place = place_t(k, crossings(i))
+        point%boundary = number
+        point%position = position_t(k, crossings(i))
         if (crossings(i) < one%range(2)) cycle
-        point%place%stretch = joint_after(chain, k)
-        point%place%xi = chain%stretches(point%place%stretch)%range(1)
+        point%position%arc = joint_after(boundary, k)
+        point%position%xi = boundary%arcs(point%position%arc)%range(1)
       end do
     end associate
-  end subroutine cross_stretch
+  end subroutine cross_arc
 
 end module marked_points

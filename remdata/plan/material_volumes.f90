@@ -1,6 +1,6 @@
-!> A new mesh keeps every material: its volume, and the interfaces it has with others.
+!> Check that a new mesh keeps the volume of every material and the interfaces between materials.
 module material_volumes
-  use contour_chain, only: chain_length, closest_place, point_on
+  use boundary_curves, only: boundary_length, closest_position, point_on
   use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
   use scene, only: scene_t
@@ -10,11 +10,11 @@ module material_volumes
   use transfer_mesh, only: set_up_mesh, transfer_mesh_t
   use vectors, only: length_of
   use zone_mesh, only: new_mesh_t
-  use zone_numbers, only: ends_of_side, middles_of_side, number_nodes, numbers_t
+  use zone_node_numbers, only: ends_of_side, middles_of_side, node_numbers_t, number_nodes
   use zones, only: plan_t
   implicit none
   private
-  public :: material_volume_t, materials_kept_t, compare_materials, volumes_of, off_interfaces
+  public :: material_volume_t, materials_kept_t, compare_materials, off_interfaces
 
   !> A material by the name of its first body: bodies of one material that share nodes count as one.
   type :: material_volume_t
@@ -23,16 +23,16 @@ module material_volumes
     real(wp) :: before = 0.0_wp, after = 0.0_wp
   end type material_volume_t
 
-  !> What a new mesh keeps of them.
+  !> Changes of the materials by a new mesh.
   type :: materials_kept_t
     type(material_volume_t), allocatable :: volumes(:)
-    !> Farthest that a node of an interface is off, over the length of its side of a zone.
+    !> Largest distance of a node of an interface from it, divided by the length of its path.
     real(wp) :: off_interface = 0.0_wp
   end type materials_kept_t
 
-  !> Share of its volume that a material may gain or lose.
+  !> Relative change of volume that is allowed for a material.
   real(wp), parameter :: largest_change = 1.0e-3_wp
-  !> Nodes lie on the interface within this share of its length.
+  !> Tolerance of nodes on the interface, as a share of its length.
   real(wp), parameter :: on_interface = 1.0e-9_wp
   !> Exact for the volume of 8-node elements, around an axis too: degree 5 in each direction.
   integer, parameter :: rule = 9
@@ -41,9 +41,9 @@ contains
 
   !> Volume of each material.
   pure function volumes_of(nodes, connectivity, material, nmaterial, axisymmetric) result(volumes)
-    real(wp), intent(in) :: nodes(:, :)          !! (2, nnode) [length]
-    integer, intent(in) :: connectivity(:, :)    !! (8, nelem)
-    integer, intent(in) :: material(:)           !! (nelem)
+    real(wp), intent(in) :: nodes(:, :)         !! (2, nnode) [length]
+    integer, intent(in) :: connectivity(:, :)   !! (8, nelem)
+    integer, intent(in) :: material(:)          !! (nelem)
     integer, intent(in) :: nmaterial
     logical, intent(in) :: axisymmetric
     real(wp) :: volumes(nmaterial)
@@ -58,7 +58,7 @@ contains
   pure function off_interfaces(mesh) result(worst)
     type(new_mesh_t), intent(in) :: mesh
     real(wp) :: worst
-    type(numbers_t) :: numbers
+    type(node_numbers_t) :: numbers
     integer, allocatable :: nodes(:)
     integer :: s, k
 
@@ -70,17 +70,17 @@ contains
       associate (path => mesh%layout%paths(mesh%layout%sides(s)%path))
         do k = 1, size(nodes)
           associate (x => mesh%coordinates(:, nodes(k)))
-            worst = max(worst, length_of(point_on(path, closest_place(path, x)) - x)/chain_length(path))
+            worst = max(worst, length_of(point_on(path, closest_position(path, x)) - x)/boundary_length(path))
           end associate
         end do
       end associate
     end do
   end function off_interfaces
 
-  !> Volumes in both meshes, where materials share sides. A mesh is refused in which one has lost its interface, or too much of
-  !> its volume.
+  !> Volumes in both meshes, where materials share sides. A mesh is refused in which a material has lost its interface, or too much
+  !> of its volume.
   subroutine compare_materials(scene, solution, plan, mesh, kept, error)
-    type(scene_t), intent(in) :: scene           !! old
+    type(scene_t), intent(in) :: scene   !! old
     type(solution_t), intent(in) :: solution
     type(plan_t), intent(in) :: plan
     type(new_mesh_t), intent(in) :: mesh
@@ -89,7 +89,7 @@ contains
     type(state_pieces_t) :: pieces
     type(transfer_mesh_t) :: old
     real(wp), allocatable :: before(:), after(:)
-    logical, allocatable :: there(:)
+    logical, allocatable :: used(:)
     integer :: k, m
 
     allocate (kept%volumes(0))
@@ -98,23 +98,23 @@ contains
     call mesh_of(pieces, old)
     before = volumes_of(old%nodes, old%connectivity, old%material, old%nmaterial, pieces%axisymmetric)
     after = volumes_of(mesh%coordinates, mesh%connectivity, plan%zones(mesh%zone)%material, old%nmaterial, pieces%axisymmetric)
-    there = before > 0
+    used = before > 0
     deallocate (kept%volumes)
-    allocate (kept%volumes(count(there)))
+    allocate (kept%volumes(count(used)))
     k = 0
     do m = 1, old%nmaterial
-      if (.not. there(m)) cycle
+      if (.not. used(m)) cycle
       k = k + 1
-      ! the number of a material is the place of its first body
-      kept%volumes(k)%name = scene%groups(pieces%groups(m)%place)%name
+      ! the number of a material is that of its first body
+      kept%volumes(k)%name = scene%groups(pieces%groups(m)%scene_group)%name
       kept%volumes(k)%before = before(m)
       kept%volumes(k)%after = after(m)
     end do
     kept%off_interface = off_interfaces(mesh)
-    call judge(kept, error)
+    call check_volumes(kept, error)
   end subroutine compare_materials
 
-  subroutine judge(kept, error)
+  subroutine check_volumes(kept, error)
     type(materials_kept_t), intent(in) :: kept
     type(error_t), allocatable, intent(out) :: error
     integer :: k
@@ -134,6 +134,6 @@ contains
         return
       end associate
     end do
-  end subroutine judge
+  end subroutine check_volumes
 
 end module material_volumes

@@ -1,19 +1,20 @@
 !> Zones of a scene on its corrected contours: where their corners go.
 !>
-!> The blocks of a deck are its zones: four sets of sides each, `name.1` to `name.4`, which every remesh makes again. A corner
-!> of one zone alone goes by shape: to the corner of the contour, or the place where contact begins or ends, nearest to it. When
-!> a side folds onto a die the old corner lies flat there, and the new one is where contact ends. A corner that several zones
-!> share on the contour goes with the matter; one inside moves with it, and smoothing may move it on.
+!> The blocks of a deck are its zones: four sets of sides each, `name.1` to `name.4`, which every remesh creates again. A corner of
+!> a single zone is located by shape: at the corner of the contour, or the beginning or end of contact, nearest to it. When a side
+!> folds onto a die the old corner lies flat there, and the new one is where contact ends. A corner that several zones share on the
+!> contour follows the material point; one inside moves with it, and smoothing may move it further.
 !>
-!> ZONE cards take the place of the blocks: their points are found by what ZPNT cards say (marked_points), and a point is one
-!> point to all zones that name it. Sets of sides go with the contour alone.
+!> ZONE cards replace the blocks: their points are defined by ZPNT cards (marked_points), and all zones that name a point share it.
+!> Sets of sides are kept along the contour only.
 !>
 !> Zones with a corner that has become flat are divided (flat_corners). Sides between two materials follow their interface, and its
 !> ends on the contour are the corners of zones there (interface_sides).
 module zone_plan
   use block_mesh, only: polygon_area
   use body_outlines, only: refuse_inner_sets
-  use contour_chain, only: arc_at, chain_length, chain_t, kind_corner, kind_entry, kind_exit, place_t, turn_at
+  use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, kind_corner, kind_entry, kind_exit, position_t, &
+                             turn_at
   use derived_zones, only: one_zone
   use errors, only: error_t, exit_input, fail
   use flat_corners, only: divide_flat_zones
@@ -31,9 +32,9 @@ module zone_plan
   private
   public :: plan_zones
 
-  !> A point lies in a corner that is nearer than this share of the contour.
-  real(wp), parameter :: in_place = 1.0e-6_wp
-  !> Free contour beside an end of contact, as a share of all, that makes it one of shape.
+  !> A point coincides with a corner that is nearer than this share of the contour.
+  real(wp), parameter :: coincidence_tolerance = 1.0e-6_wp
+  !> Share of the contour that must be free beside an end of contact for a corner of a zone to be located there.
   real(wp), parameter :: free_share = 0.1_wp
 
 contains
@@ -41,11 +42,11 @@ contains
   !> Zones of all solid groups.
   pure subroutine plan_zones(scene, x, pilots, material, contours, interfaces, plan, error)
     type(scene_t), intent(in) :: scene
-    real(wp), intent(in) :: x(:, :)               !! nodes now (2, nnode) [length]
-    real(wp), intent(in) :: pilots(:, :)          !! of the dies now (3, ndie)
-    integer, intent(in) :: material(:)            !! of each group of the scene, as sizes are asked for it (ngroup)
-    type(contour_t), intent(in) :: contours(:)
-    type(interface_t), intent(in) :: interfaces(:)   !! between materials of the old mesh
+    real(wp), intent(in) :: x(:, :)                  !! nodes now (2, nnode) [length]
+    real(wp), intent(in) :: pilots(:, :)             !! (3, ndie) x, y, angle of the dies now [length and radian]
+    integer, intent(in) :: material(:)               !! of each group of the scene, as for the sizes (ngroup)
+    type(contour_t), intent(in) :: contours(:)       !! (ncontour)
+    type(interface_t), intent(in) :: interfaces(:)   !! (ninterface) between materials of the old mesh
     type(plan_t), intent(out) :: plan
     type(error_t), allocatable, intent(out) :: error
 
@@ -56,7 +57,7 @@ contains
     else
       call zone_of_corners(scene, material, contours, plan, error)
     end if
-    if (.not. allocated(error)) call refuse_same_places(contours, plan, error)
+    if (.not. allocated(error)) call refuse_coincident_points(contours, plan, error)
     if (allocated(error)) return
     call divide_flat_zones(contours, plan)
     if (.not. lacks_mesh(scene)) call follow_interfaces(scene, material, contours, interfaces, plan, error)
@@ -111,25 +112,25 @@ contains
     type(contour_t), intent(in) :: contours(:)
     type(plan_t), intent(out) :: plan
     type(error_t), allocatable, intent(out) :: error
-    type(place_t), allocatable :: marked(:)
+    type(position_t), allocatable :: marked(:)
     integer :: c, k, n
 
     call refuse_inner_sets(scene, contours, error)
     if (allocated(error)) return
     allocate (marked(0))
     if (size(contours) == 1) then
-      associate (chain => contours(1)%chain, tags => contours(1)%tags)
-        n = size(chain%stretches)
+      associate (boundary => contours(1)%boundary, tags => contours(1)%tags)
+        n = size(boundary%arcs)
         do k = 1, n
-          associate (one => chain%stretches(modulo(k - 2, n) + 1)%side, other => chain%stretches(k)%side)
+          associate (one => boundary%arcs(modulo(k - 2, n) + 1)%side, other => boundary%arcs(k)%side)
             if (all(tags%on_set(:, one) .eqv. tags%on_set(:, other))) cycle
           end associate
-          marked = [marked, place_t(k, chain%stretches(k)%range(1))]
+          marked = [marked, position_t(k, boundary%arcs(k)%range(1))]
         end do
       end associate
     end if
-    if (size(marked) /= 4) marked = [place_t ::]
-    call one_zone([(contours(c)%chain, c=1, size(contours))], marked, plan%points, plan%zones, error)
+    if (size(marked) /= 4) marked = [position_t ::]
+    call one_zone([(contours(c)%boundary, c=1, size(contours))], marked, plan%points, plan%zones, error)
     if (allocated(error)) return
     allocate (plan%group(1), source=findloc([(is_solid(scene%groups(k)), k=1, size(scene%groups))], .true., 1))
     plan%zones%material = material(plan%group(1))
@@ -172,14 +173,14 @@ contains
         if (point_of(corners(k)) == 0) then
           plan%points = [plan%points, point_at_node(contours, x, corners(k))]
           associate (new => plan%points(size(plan%points)))
-            new%by_shape = sharing(corners(k)) == 1 .and. new%chain > 0
+            new%by_shape = sharing(corners(k)) == 1 .and. new%boundary > 0
           end associate
           point_of(corners(k)) = size(plan%points)
         end if
         plan%zones(z)%corners(k) = point_of(corners(k))
       end do
     end do
-    call go_by_shape(contours, plan%points)
+    call assign_by_shape(contours, plan%points)
     do z = 1, n
       call follow_contours(scene, contours, plan%sets(:, z), plan%zones(z))
     end do
@@ -196,7 +197,7 @@ contains
     end do
   end function corners_of
 
-  !> Where a corner of a zone has gone with the matter.
+  !> Present position of a corner of a zone that follows the material.
   pure function point_at_node(contours, x, node) result(point)
     type(contour_t), intent(in) :: contours(:)
     real(wp), intent(in) :: x(:, :)
@@ -204,78 +205,80 @@ contains
     type(zone_point_t) :: point
 
     point%x = x(:, node)
-    call node_on_contour(contours, x, node, point%chain, point%place)
+    call node_on_contour(contours, x, node, point%boundary, point%position)
   end function point_at_node
 
-  !> Points that lie in a corner of the contour stay there; then the others go to the nearest corner, beginning or end of
-  !> contact that none has taken.
-  pure subroutine go_by_shape(contours, points)
+  !> Points in a corner of the contour stay there; the others are moved to the nearest corner, beginning or end of contact that is
+  !> not taken.
+  pure subroutine assign_by_shape(contours, points)
     type(contour_t), intent(in) :: contours(:)
     type(zone_point_t), intent(inout) :: points(:)
-    logical :: settled(size(points))
+    logical :: assigned(size(points))
     integer :: p, pass, joint(size(points))
-    real(wp) :: way
+    real(wp) :: distance
 
-    settled = .not. points%by_shape
+    assigned = .not. points%by_shape
     joint = 0
     do pass = 1, 2
       do p = 1, size(points)
-        if (settled(p)) cycle
-        call free_joint(contours(points(p)%chain)%chain, points(p)%place, &
-                           pack(joint, points%chain == points(p)%chain .and. joint > 0), joint(p), way)
-        if (joint(p) == 0 .or. (pass == 1 .and. way > in_place*chain_length(contours(points(p)%chain)%chain))) then
+        if (assigned(p)) cycle
+        call free_joint(contours(points(p)%boundary)%boundary, points(p)%position, &
+                           pack(joint, points%boundary == points(p)%boundary .and. joint > 0), joint(p), distance)
+        if (joint(p) == 0 .or. (pass == 1 &
+                                .and. distance > coincidence_tolerance*boundary_length(contours(points(p)%boundary)%boundary))) then
           joint(p) = 0
           cycle
         end if
-        points(p)%place = place_t(joint(p), contours(points(p)%chain)%chain%stretches(joint(p))%range(1))
-        settled(p) = .true.
+        points(p)%position = position_t(joint(p), contours(points(p)%boundary)%boundary%arcs(joint(p))%range(1))
+        assigned(p) = .true.
       end do
     end do
-  end subroutine go_by_shape
+  end subroutine assign_by_shape
 
-  !> The corner, beginning or end of contact nearest along the chain that is not taken; 0 when there is none.
-  pure subroutine free_joint(chain, from, taken, joint, least)
-    type(chain_t), intent(in) :: chain
-    type(place_t), intent(in) :: from
+  !> The nearest corner, beginning or end of contact along the boundary curve that is not taken; 0 when there is none.
+  pure subroutine free_joint(boundary, from, taken, joint, least)
+    type(boundary_curve_t), intent(in) :: boundary
+    type(position_t), intent(in) :: from
     integer, intent(in) :: taken(:)
     integer, intent(out) :: joint
     real(wp), intent(out) :: least
-    real(wp) :: here, way
+    real(wp) :: here, distance
     integer :: k
 
     joint = 0
-    here = arc_at(chain, from)
+    here = arc_length_at(boundary, from)
     least = huge(least)
-    do k = 1, size(chain%stretches)
-      way = abs(chain%arc(k - 1) - here)
-      way = min(way, chain_length(chain) - way)
-      if (any(taken == k) .or. .not. way < least) cycle
-      ! where contact ends in a corner it is the corner that counts
-      if (.not. (chain%kinds(k) == kind_corner .or. is_outer_end(chain, k) .or. &
-                 (way <= in_place*chain_length(chain) .and. abs(turn_at(chain, k)) > chain%corner_turn))) cycle
-      least = way
+    do k = 1, size(boundary%arcs)
+      distance = abs(boundary%arc_length(k - 1) - here)
+      distance = min(distance, boundary_length(boundary) - distance)
+      if (any(taken == k) .or. .not. distance < least) cycle
+      ! where contact ends in a corner the corner is used
+      if (.not. (boundary%kinds(k) == kind_corner .or. is_outer_end(boundary, k) .or. &
+                 (distance <= coincidence_tolerance*boundary_length(boundary) &
+                  .and. abs(turn_at(boundary, k)) > boundary%corner_turn))) cycle
+      least = distance
       joint = k
     end do
   end subroutine free_joint
 
-  !> Does contact begin or end there for a good part of the contour? Gaps within a stretch of contact are no end of it.
-  pure function is_outer_end(chain, joint) result(outer)
-    type(chain_t), intent(in) :: chain
+  !> Does contact begin or end there for a large part of the contour? Gaps within contact are not considered.
+  pure function is_outer_end(boundary, joint) result(outer)
+    type(boundary_curve_t), intent(in) :: boundary
     integer, intent(in) :: joint
     logical :: outer
-    real(wp) :: way
+    real(wp) :: distance
     integer :: k, i, n
 
     outer = .false.
-    if (all(chain%kinds(joint) /= [kind_entry, kind_exit])) return
-    n = size(chain%stretches)
-    way = 0
+    if (all(boundary%kinds(joint) /= [kind_entry, kind_exit])) return
+    n = size(boundary%arcs)
+    distance = 0
     do i = 1, n
-      k = merge(modulo(joint + i - 2, n) + 1, modulo(joint - i - 1, n) + 1, chain%kinds(joint) == kind_exit)
-      if (chain%stretches(k)%run > 0) exit
-      way = way + chain%arc(k) - chain%arc(k - 1)
+      k = merge(modulo(joint + i - 2, n) + 1, modulo(joint - i - 1, n) + 1, boundary%kinds(joint) == kind_exit)
+      if (boundary%arcs(k)%interval > 0) exit
+      distance = distance + boundary%arc_length(k) - boundary%arc_length(k - 1)
     end do
-    outer = way > free_share*chain_length(chain)
+    outer = distance > free_share*boundary_length(boundary)
   end function is_outer_end
 
   !> Sides of a zone that the contour forms: those whose old sides are on it.
@@ -293,8 +296,8 @@ contains
     end do
   end subroutine follow_contours
 
-  !> Two corners may not come to lie in one place.
-  pure subroutine refuse_same_places(contours, plan, error)
+  !> Two corners of zones may not coincide.
+  pure subroutine refuse_coincident_points(contours, plan, error)
     type(contour_t), intent(in) :: contours(:)
     type(plan_t), intent(in) :: plan
     type(error_t), allocatable, intent(out) :: error
@@ -303,9 +306,10 @@ contains
     do k = 2, size(plan%points)
       do i = 1, k - 1
         associate (a => plan%points(i), b => plan%points(k))
-          if (a%chain == 0 .or. a%chain /= b%chain) cycle
-          if (abs(arc_at(contours(a%chain)%chain, a%place) - arc_at(contours(b%chain)%chain, b%place)) > 0) cycle
-          call fail(error, exit_input, 'two corners of zones'//names_of(a, b)//' meet at x = '//to_text(a%x(1)) &
+          if (a%boundary == 0 .or. a%boundary /= b%boundary) cycle
+          if (abs(arc_length_at(contours(a%boundary)%boundary, a%position) &
+                  - arc_length_at(contours(b%boundary)%boundary, b%position)) > 0) cycle
+          call fail(error, exit_input, 'two corners of zones'//names_of(a, b)//' coincide at x = '//to_text(a%x(1)) &
                     //', y = '//to_text(a%x(2))//': the contour has lost a corner there', &
                     'give zones that fit the new shape, or remesh earlier')
           return
@@ -323,6 +327,6 @@ contains
       if (a%name /= '') names = ' ('//trim(a%name)//', '//trim(b%name)//')'
     end function names_of
 
-  end subroutine refuse_same_places
+  end subroutine refuse_coincident_points
 
 end module zone_plan

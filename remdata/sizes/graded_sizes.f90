@@ -1,7 +1,7 @@
-!> Sizes at the nodes of a mesh, none larger than its neighbours allow.
+!> Sizes at the nodes of a mesh, each limited by its neighbours.
 !>
 !> h(j) <= h(i) + slope |x(j) - x(i)| between all corners of an element. Nodes are settled from the smallest size up, as in the
-!> search of shortest ways (E.W. Dijkstra, Numer. Math. 1 (1959) 269-271), so that each is settled once: n log n.
+!> shortest path search (E.W. Dijkstra, Numer. Math. 1 (1959) 269-271), so that each is settled once: n log n.
 module graded_sizes
   use kinds, only: wp
   use vectors, only: length_of
@@ -9,11 +9,11 @@ module graded_sizes
   private
   public :: grade, slope_of, list_elements
 
-  !> Nodes that wait, the smallest size on top of a binary heap.
+  !> Binary heap of the nodes that are not settled, the smallest size on top.
   type :: heap_t
     integer :: n = 0
-    integer, allocatable :: nodes(:)   !! (nnode) the first n wait
-    integer, allocatable :: spot(:)    !! (nnode) where a node is in the heap
+    integer, allocatable :: nodes(:)   !! (nnode) the first n are in the heap
+    integer, allocatable :: slot(:)    !! (nnode) index of a node in the heap
   end type heap_t
 
 contains
@@ -28,10 +28,10 @@ contains
   end function slope_of
 
   pure subroutine grade(nodes, connectivity, slope, sizes)
-    real(wp), intent(in) :: nodes(:, :)          !! (2, nnode) [length]
-    integer, intent(in) :: connectivity(:, :)    !! (4 at least, nelem) corners first
+    real(wp), intent(in) :: nodes(:, :)         !! (2, nnode) [length]
+    integer, intent(in) :: connectivity(:, :)   !! (n, nelem) corners first, n at least 4
     real(wp), intent(in) :: slope
-    real(wp), intent(inout) :: sizes(:)          !! (nnode) [length]; those of other nodes than corners stay
+    real(wp), intent(inout) :: sizes(:)   !! (nnode) [length]; those of other nodes than corners stay
     integer, allocatable :: first(:), around(:)
     type(heap_t) :: heap
     real(wp) :: most
@@ -39,11 +39,11 @@ contains
 
     allocate (first(size(sizes) + 1), around(4*size(connectivity, 2)))
     call list_elements(connectivity, first, around)
-    allocate (heap%nodes(size(sizes)), heap%spot(size(sizes)))
+    allocate (heap%nodes(size(sizes)), heap%slot(size(sizes)))
     do node = 1, size(sizes)
       heap%n = heap%n + 1
       heap%nodes(heap%n) = node
-      heap%spot(node) = heap%n
+      heap%slot(node) = heap%n
       call rise(sizes, heap, heap%n)
     end do
     do i = 1, size(sizes)
@@ -52,11 +52,11 @@ contains
         e = around(j)
         do k = 1, 4
           other = connectivity(k, e)
-          if (heap%spot(other) == 0) cycle
+          if (heap%slot(other) == 0) cycle
           most = sizes(node) + slope*length_of(nodes(:, other) - nodes(:, node))
           if (.not. sizes(other) > most) cycle
           sizes(other) = most
-          call rise(sizes, heap, heap%spot(other))
+          call rise(sizes, heap, heap%slot(other))
         end do
       end do
     end do
@@ -64,8 +64,8 @@ contains
 
   !> Elements at each corner node: those of node i are around(first(i)) ... around(first(i + 1) - 1).
   pure subroutine list_elements(connectivity, first, around)
-    integer, intent(in) :: connectivity(:, :)
-    integer, intent(out) :: first(:), around(:)
+    integer, intent(in) :: connectivity(:, :)     !! (n, nelem) corners first
+    integer, intent(out) :: first(:), around(:)   !! (nnode + 1); (4*nelem)
     integer :: e, k, i
 
     first = 0
@@ -92,11 +92,11 @@ contains
     integer :: i, child
 
     node = heap%nodes(1)
-    heap%spot(node) = 0
+    heap%slot(node) = 0
     heap%nodes(1) = heap%nodes(heap%n)
     heap%n = heap%n - 1
     if (heap%n == 0) return
-    heap%spot(heap%nodes(1)) = 1
+    heap%slot(heap%nodes(1)) = 1
     i = 1
     do
       child = 2*i
@@ -129,7 +129,7 @@ contains
     integer, intent(in) :: i, j
 
     heap%nodes([i, j]) = heap%nodes([j, i])
-    heap%spot(heap%nodes([i, j])) = [i, j]
+    heap%slot(heap%nodes([i, j])) = [i, j]
   end subroutine swap
 
   pure function before(sizes, a, b) result(is_before)

@@ -1,70 +1,70 @@
-!> The size of element that is wanted at a point.
+!> The requested element size at a point.
 !>
-!> On the old mesh: from the error of each of its elements, h (limit/error)^(1/p), as values at its corners; around points of need
-!> (a bend of the contour, a contact): the size there, growing with the distance. Between smallest and largest, and from one
-!> element to the next by no more than the gradation.
+!> On the old mesh: from the error of each of its elements, h (limit/error)^(1/p), as values at its corners; around points
+!> with a size requirement (a bend of the contour, contact): the required size, growing with the distance. Limited by the smallest
+!> and largest size, and from one element to the next by the gradation.
 module size_field
-  use box_tree, only: box_tree_t, nearest_items, plant_tree
+  use box_tree, only: box_tree_t, build_tree, nearest_items
   use graded_sizes, only: grade, slope_of
   use kinds, only: wp
-  use locate_point, only: locate, location_t => place_t
+  use locate_point, only: element_location_t, locate
   use shape_functions, only: quad4
-  use transfer_mesh, only: plant_element_trees, set_up_mesh, transfer_mesh_t
+  use transfer_mesh, only: build_element_trees, set_up_mesh, transfer_mesh_t
   implicit none
   private
-  public :: size_limits_t, need_t, size_field_t, old_mesh_t, wanted_size, set_up_sizes, size_at
+  public :: size_limits_t, need_t, size_field_t, old_mesh_t, requested_size, set_up_sizes, size_at
 
   type :: size_limits_t
-    real(wp) :: smallest = 0.0_wp        !! [length]
+    real(wp) :: smallest = 0.0_wp              !! [length]
     real(wp) :: largest = sqrt(huge(1.0_wp))   !! [length]
     !> Largest ratio of an element to its neighbour.
     real(wp) :: gradation = 1.5_wp
   end type size_limits_t
 
-  !> A point where the geometry asks for a size.
+  !> A point where the geometry requires a size.
   type :: need_t
-    real(wp) :: x(2) = 0.0_wp       !! [length]
-    real(wp) :: size = 0.0_wp       !! [length]
-    !> So far around the point the size holds; from there it grows [length].
+    real(wp) :: x(2) = 0.0_wp   !! [length]
+    real(wp) :: size = 0.0_wp   !! [length]
+    !> The size holds within this radius; it grows from there on [length].
     real(wp) :: radius = 0.0_wp
   end type need_t
 
-  !> The mesh before, and the size wanted in place of each of its elements.
+  !> The previous mesh, and the size requested in place of each of its elements.
   type :: old_mesh_t
     real(wp), allocatable :: nodes(:, :)         !! (2, nnode) where they are now [length]
     integer, allocatable :: connectivity(:, :)   !! (8, nelem)
     integer, allocatable :: material(:)          !! (nelem) from 1
-    real(wp), allocatable :: wanted(:)           !! (nelem) [length]
+    real(wp), allocatable :: requested(:)        !! (nelem) [length]
   end type old_mesh_t
 
   type :: size_field_t
     type(size_limits_t) :: limits
     logical :: has_mesh = .false.
     type(transfer_mesh_t) :: mesh
-    real(wp), allocatable :: sizes(:)            !! (nnode) at corners of the old mesh [length]
+    real(wp), allocatable :: sizes(:)   !! (nnode) at corners of the old mesh [length]
     type(need_t), allocatable :: needs(:)
     type(box_tree_t) :: need_tree
   end type size_field_t
 
-  !> As many of the nearest needs are asked: both neighbours on a contour and on the one it lies on, with one to spare.
+  !> Number of nearest requirements evaluated: both neighbours on a contour and on the one it lies on, and one more.
   integer, parameter :: asked = 6
 
 contains
 
-  !> Size at which the error becomes its limit when it goes with size to the power `order`; any size where there is no error.
-  pure elemental function wanted_size(size_now, error, limit, order) result(wanted)
+  !> Size at which the error equals its limit when it varies with size to the power `order`; unlimited where there is no error.
+  pure elemental function requested_size(size_now, error, limit, order) result(requested)
     real(wp), intent(in) :: size_now   !! [length]
     real(wp), intent(in) :: error, limit, order
-    real(wp) :: wanted
+    real(wp) :: requested
 
-    wanted = huge(1.0_wp)
-    if (error > 0) wanted = size_now*exp(min(log(limit/error)/order, 0.25_wp*log(huge(1.0_wp))))
-  end function wanted_size
+    requested = huge(1.0_wp)
+    if (error > 0) requested = size_now*exp(min(log(limit/error)/order, 0.25_wp*log(huge(1.0_wp))))
+  end function requested_size
 
-  !> The field of an old mesh and of needs; for a first mesh there is no old one.
+  !> The size field of an old mesh and of size requirements; for a first mesh there is no old one.
   pure subroutine set_up_sizes(limits, needs, field, old)
     type(size_limits_t), intent(in) :: limits
-    type(need_t), intent(in) :: needs(:)
+    type(need_t), intent(in) :: needs(:)   !! (nneed)
     type(size_field_t), intent(out) :: field
     type(old_mesh_t), intent(in), optional :: old
     real(wp), allocatable :: boxes(:, :)
@@ -76,11 +76,11 @@ contains
     do i = 1, size(needs)
       boxes(:, i) = needs(i)%x([1, 2, 1, 2])
     end do
-    call plant_tree(boxes, [(i, i=1, size(needs))], field%need_tree)
+    call build_tree(boxes, [(i, i=1, size(needs))], field%need_tree)
     if (.not. present(old)) return
     field%has_mesh = .true.
     call set_up_mesh(old%nodes, old%connectivity, old%material, spread(1, 1, size(old%material)), .false., field%mesh)
-    call plant_element_trees(field%mesh)
+    call build_element_trees(field%mesh)
     call sizes_of_corners(limits, old, field%sizes)
     do i = 1, size(field%sizes)
       field%sizes(i) = min(field%sizes(i), size_by_needs(field, old%nodes(:, i)))
@@ -88,47 +88,47 @@ contains
     call grade(old%nodes, old%connectivity, slope_of(limits%gradation), field%sizes)
   end subroutine set_up_sizes
 
-  !> Geometric mean of the sizes wanted around a corner.
+  !> Geometric mean of the sizes requested around a corner.
   pure subroutine sizes_of_corners(limits, old, sizes)
     type(size_limits_t), intent(in) :: limits
     type(old_mesh_t), intent(in) :: old
     real(wp), allocatable, intent(out) :: sizes(:)
-    integer, allocatable :: meeting(:)
+    integer, allocatable :: valence(:)
     integer :: e
 
-    allocate (sizes(size(old%nodes, 2)), meeting(size(old%nodes, 2)))
+    allocate (sizes(size(old%nodes, 2)), valence(size(old%nodes, 2)))
     sizes = 0
-    meeting = 0
-    do e = 1, size(old%wanted)
+    valence = 0
+    do e = 1, size(old%requested)
       associate (corners => old%connectivity(1:4, e))
-        sizes(corners) = sizes(corners) + log(within(limits, old%wanted(e)))
-        meeting(corners) = meeting(corners) + 1
+        sizes(corners) = sizes(corners) + log(within(limits, old%requested(e)))
+        valence(corners) = valence(corners) + 1
       end associate
     end do
-    sizes = merge(exp(sizes/max(meeting, 1)), limits%largest, meeting > 0)
+    sizes = merge(exp(sizes/max(valence, 1)), limits%largest, valence > 0)
   end subroutine sizes_of_corners
 
-  !> Size wanted at a point of a material [length].
+  !> Size requested at a point of a material [length].
   pure function size_at(field, material, x) result(h)
     type(size_field_t), intent(in) :: field
     integer, intent(in) :: material
-    real(wp), intent(in) :: x(2)
+    real(wp), intent(in) :: x(2)   !! [length]
     real(wp) :: h
-    type(location_t) :: place
+    type(element_location_t) :: location
     real(wp) :: phi(4)
 
     h = size_by_needs(field, x)
     if (field%has_mesh) then
-      call locate(field%mesh, material, x, 0.0_wp, place)
-      if (place%element > 0) then
-        call quad4(place%xi(1), place%xi(2), phi)
-        h = min(h, dot_product(phi, field%sizes(field%mesh%connectivity(1:4, place%element))))
+      call locate(field%mesh, material, x, 0.0_wp, location)
+      if (location%element > 0) then
+        call quad4(location%xi(1), location%xi(2), phi)
+        h = min(h, dot_product(phi, field%sizes(field%mesh%connectivity(1:4, location%element))))
       end if
     end if
     h = within(field%limits, h)
   end function size_at
 
-  !> Smallest size the nearest needs allow.
+  !> Smallest size allowed by the nearest requirements.
   pure function size_by_needs(field, x) result(h)
     type(size_field_t), intent(in) :: field
     real(wp), intent(in) :: x(2)

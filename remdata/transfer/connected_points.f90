@@ -1,8 +1,8 @@
-!> The integration points nearest to a place that hang together with it: those across a slit or a closed fold of the same
-!> material are near, but their values have nothing to do with it.
+!> The nearest integration points that are connected with a point through elements: points across a slit or a closed fold of the
+!> same material are near, but their values are independent.
 !>
-!> A point counts where its element is reached from the element that holds the place in few steps from element to element over
-!> common nodes. On meshes without slits the nearest points are all reached.
+!> A point is connected if its element is reached from the element that contains the target in few steps from element to element
+!> over common nodes. On meshes without slits the nearest points are all reached.
 module connected_points
   use box_tree, only: insert, nearest_items
   use kinds, only: wp
@@ -12,9 +12,9 @@ module connected_points
   private
   public :: nearest_connected
 
-  !> Steps from element to element: the 64 nearest points of a grid with 2 x 2 points in an element are within 3.
+  !> Largest number of steps from element to element: the 64 nearest points of a grid with 2 x 2 points in an element are within 3.
   integer, parameter :: most_steps = 4
-  !> Room for the elements reached: 81 in a grid.
+  !> Largest number of elements reached: 81 in a grid.
   integer, parameter :: most_elements = 160
   !> Searches, the second for twice as many points as the first. Where these are not enough, because many small elements lie on the
   !> other side, all points of the elements reached are compared.
@@ -26,12 +26,12 @@ contains
   pure subroutine nearest_connected(mesh, nodes, element, point, found, items, squares)
     type(transfer_mesh_t), intent(in) :: mesh
     type(patch_nodes_t), intent(in) :: nodes
-    integer, intent(in) :: element            !! that holds the place
-    real(wp), intent(in) :: point(2)
+    integer, intent(in) :: element     !! that contains the point
+    real(wp), intent(in) :: point(2)   !! [length]
     integer, intent(out) :: found
-    integer, intent(out) :: items(:)          !! as many as wanted
-    real(wp), intent(out) :: squares(:)       !! of the distances [length^2]
-    integer :: near(size(items)*2**(searches - 1)), elements(most_elements), n, steps, wanted, got, search, k, p
+    integer, intent(out) :: items(:)      !! (n) as many as requested
+    real(wp), intent(out) :: squares(:)   !! (n) of the distances [length^2]
+    integer :: near(size(items)*2**(searches - 1)), elements(most_elements), n, steps, requested, got, search, k, p
     real(wp) :: distances(size(near))
     logical :: reached
 
@@ -39,9 +39,9 @@ contains
     elements(1) = element
     n = 1
     steps = 0
-    wanted = size(items)
+    requested = size(items)
     do search = 1, searches
-      call nearest_items(mesh%point_trees(mesh%material(element)), point, got, near(:wanted), distances(:wanted))
+      call nearest_items(mesh%point_trees(mesh%material(element)), point, got, near(:requested), distances(:requested))
       found = 0
       items = 0
       squares = huge(1.0_wp)
@@ -56,8 +56,8 @@ contains
         call insert(near(k), distances(k), found, items, squares)
         if (found == size(items)) return
       end do
-      if (got < wanted) return
-      wanted = 2*wanted
+      if (got < requested) return
+      requested = 2*requested
     end do
     found = 0
     items = 0

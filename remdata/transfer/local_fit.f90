@@ -2,7 +2,7 @@
 !>
 !> Coordinates are local: (x - centre)/size. The matrix of the terms at the points is split into Q R by Gram and Schmidt, twice
 !> (L. Giraud, J. Langou, M. Rozloznik, Comput. Math. Appl. 50 (2005) 1069-1075). Where the points do not determine all terms
-!> the fit says so, and the caller takes more points or fewer terms.
+!> the fit reports it, and the caller takes more points or fewer terms.
 module local_fit
   use kinds, only: wp
   implicit none
@@ -14,8 +14,8 @@ module local_fit
   !> Sine of the angle between the values of a term and those of the terms before it below which it is not determined: one layer
   !> of points gives 0, a regular grid 0.7, two layers with a bend of a hundredth 0.01.
   real(wp), parameter :: least_angle = 0.02_wp
-  !> Largest sum of absolute weights of a good fit: what a wrong value can become. Inside a mesh it is below 2, at a corner 4;
-  !> points all to one side of the new one would give much more.
+  !> Largest sum of absolute weights of a good fit, the amplification of an error of the values. Inside a mesh it is below 2, at a
+  !> corner 4; with points all to one side of the new one it is much larger.
   real(wp), parameter :: most_amplified = 6.0_wp
 
 contains
@@ -28,9 +28,9 @@ contains
     n = (degree + 1)*(degree + 2)/2
   end function terms_of
 
-  !> 1, x, y, x^2, xy, y^2 at a local place.
+  !> 1, x, y, x^2, xy, y^2 at a point in local coordinates.
   pure function terms_at(x) result(terms)
-    real(wp), intent(in) :: x(2)
+    real(wp), intent(in) :: x(2)   !! local coordinates [-]
     real(wp) :: terms(max_terms)
 
     terms = [1.0_wp, x(1), x(2), x(1)**2, x(1)*x(2), x(2)**2]
@@ -38,10 +38,10 @@ contains
 
   !> Coefficients of the terms as weights of the values: coefficient t = sum over p of fit(t, p) value(p).
   pure subroutine fit_polynomial(x, weight, nterm, fit, determined)
-    real(wp), intent(in) :: x(:, :)         !! (2, n), local
-    real(wp), intent(in) :: weight(:)       !! (n), not negative
+    real(wp), intent(in) :: x(:, :)     !! (2, n) local coordinates [-]
+    real(wp), intent(in) :: weight(:)   !! (n) not negative [-]
     integer, intent(in) :: nterm
-    real(wp), intent(out) :: fit(:, :)      !! (max_terms, n); terms not asked for are 0
+    real(wp), intent(out) :: fit(:, :)   !! (max_terms, n) weights of the values [-]; terms not requested are 0
     logical, intent(out) :: determined
     real(wp) :: q(size(x, 2), nterm), r(nterm, nterm), terms(max_terms), root(size(x, 2)), before, part
     integer :: p, t, s, pass, n

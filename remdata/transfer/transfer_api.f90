@@ -1,4 +1,4 @@
-!> The transfer family: how values at the integration points of a mesh go to the points of another one.
+!> The transfer family: methods that carry values at the integration points of a mesh to the points of another one.
 module transfer_api
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
@@ -10,20 +10,20 @@ module transfer_api
   public :: transfer_t, transfer_options_t, transfer_weights_i, check_materials
   public :: limit_none, limit_material, limit_sources
 
-  !> What keeps a value in range: nothing, the range of its material in the old mesh, or that of the old points it is made from.
+  !> Limits of a value: none, the range of its material in the old mesh, or that of the old points it is computed from.
   integer, parameter :: limit_none = 0, limit_material = 1, limit_sources = 2
 
   type :: transfer_options_t
     !> Number of the method. Of 100 transfers there and back moving squares of degree 2 lose least (tests/bench/transfer_study.py).
     integer :: method = 1
-    !> N of 1/R^N, and how many points it takes.
+    !> N of 1/R^N, and number of points.
     real(wp) :: exponent = 2.0_wp
     integer :: nearest = 8
     !> Points of moving least squares: with less than 12 errors grow from transfer to transfer, with more peaks are flattened
     !> (tests/bench/README.md); degree (0, 1, 2) of it and of the patches.
     integer :: neighbours = 16
     integer :: degree = 2
-    !> How far an element is prolonged beyond the contour, in halves of an element.
+    !> How far an element is extrapolated beyond the contour, in halves of an element.
     real(wp) :: outside = 0.5_wp
     !> Range that scalars of the history are kept in.
     integer :: limit = limit_material
@@ -31,24 +31,24 @@ module transfer_api
     logical :: conserve = .true.
   end type transfer_options_t
 
-  !> One method. Its place in the list is its number + 1.
+  !> One method. Its index in the list is its number + 1.
   type :: transfer_t
     character(len=:), allocatable :: name, purpose
     !> Number on the card.
     integer :: number = 0
-    !> Degree of the fields that come through unchanged: 0 constant, 1 linear, 2 quadratic.
+    !> Degree of the fields that are transferred exactly: 0 constant, 1 linear, 2 quadratic.
     integer :: exact_degree = 0
     procedure(transfer_weights_i), nopass, pointer :: weights => null()
   end type transfer_t
 
   abstract interface
-    !> Weights for new points, each of which takes from old points of its material only.
+    !> Weights for new points, each computed from old points of its material only.
     subroutine transfer_weights_i(mesh, options, points, material, map, error)
       import :: error_t, transfer_map_t, transfer_mesh_t, transfer_options_t, wp
-      type(transfer_mesh_t), intent(in) :: mesh        !! the old one, its trees planted
+      type(transfer_mesh_t), intent(in) :: mesh   !! the old one, with its trees
       type(transfer_options_t), intent(in) :: options
-      real(wp), intent(in) :: points(:, :)             !! (2, n) of the new mesh [length]
-      integer, intent(in) :: material(:)               !! (n)
+      real(wp), intent(in) :: points(:, :)   !! (2, n) of the new mesh [length]
+      integer, intent(in) :: material(:)     !! (n)
       type(transfer_map_t), intent(out) :: map
       type(error_t), allocatable, intent(out) :: error
     end subroutine transfer_weights_i
@@ -59,7 +59,7 @@ contains
   !> Every material of the new points must have points in the old mesh.
   pure subroutine check_materials(mesh, material, error)
     type(transfer_mesh_t), intent(in) :: mesh
-    integer, intent(in) :: material(:)
+    integer, intent(in) :: material(:)   !! (npoint) of the new points
     type(error_t), allocatable, intent(out) :: error
     integer :: p
 

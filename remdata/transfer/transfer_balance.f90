@@ -1,9 +1,9 @@
-!> What a transfer does to integrals over the volume, and the correction that gives them back.
+!> Change of integrals over the volume by a transfer, and the correction that restores them.
 !>
 !> The correction keeps the mean of a variable over its material; where the volume is kept so is the integral. (A change of volume
-!> is the contour's: it must not heat or harden the material, and a constant stays constant.) It respects ranges:
-!> `v + lambda (v - a)(b - v)/(b - a)` with |lambda| <= 1 stays in [a, b] and moves nothing that is at an end of its range, so
-!> that zones without strain stay without, and peaks as they are.
+!> is due to the contour: it must not heat or harden the material, and a constant stays constant.) It respects ranges:
+!> `v + lambda (v - a)(b - v)/(b - a)` with |lambda| <= 1 stays in [a, b] and does not change values at an end of their range, so
+!> that regions without strain stay without, and peaks are kept.
 module transfer_balance
   use kinds, only: eps, wp
   implicit none
@@ -18,24 +18,24 @@ module transfer_balance
 contains
 
   pure function integral(values, volumes) result(total)
-    real(wp), intent(in) :: values(:), volumes(:)
+    real(wp), intent(in) :: values(:), volumes(:)   !! (npoint) [unit of the variable]; (npoint) [volume]
     real(wp) :: total
 
     total = sum(values*volumes)
   end function integral
 
-  !> Values of the given integral in the range [lower, upper]; a range that does not allow it leaves them at its end.
-  pure subroutine keep_mean(volumes, lower, upper, wanted, values)
-    real(wp), intent(in) :: volumes(:)
+  !> Values of the given integral in the range [lower, upper]; if the range does not allow it they are at its end.
+  pure subroutine keep_mean(volumes, lower, upper, requested, values)
+    real(wp), intent(in) :: volumes(:)     !! (npoint) [volume]
     real(wp), intent(in) :: lower, upper   !! of the material
-    real(wp), intent(in) :: wanted         !! integral
-    real(wp), intent(inout) :: values(:)
+    real(wp), intent(in) :: requested      !! integral
+    real(wp), intent(inout) :: values(:)   !! (npoint) [unit of the variable]
     real(wp) :: missing, room, freedom(size(values))
     integer :: sweep
 
     if (.not. upper > lower) return
     do sweep = 1, most_sweeps
-      missing = wanted - integral(values, volumes)
+      missing = requested - integral(values, volumes)
       if (abs(missing) <= same_integral*(upper - lower)*sum(volumes)) exit
       freedom = max(0.0_wp, values - lower)*max(0.0_wp, upper - values)/(upper - lower)
       room = integral(freedom, volumes)
@@ -47,16 +47,16 @@ contains
   !> Fractions (fraction, point) whose sums are 1 at every point and whose integrals are the given ones: each is multiplied by a
   !> factor of its own, then all of a point are divided by their sum (W.E. Deming, F.F. Stephan, Ann. Math. Stat. 11 (1940) 427).
   !> The factors are found one by one in Newton's steps of their logarithms, d integral(v)/d log(factor) = integral(v (1 - v)).
-  pure subroutine keep_mean_fractions(volumes, wanted, values)
-    real(wp), intent(in) :: volumes(:), wanted(:)
-    real(wp), intent(inout) :: values(:, :)
+  pure subroutine keep_mean_fractions(volumes, requested, values)
+    real(wp), intent(in) :: volumes(:), requested(:)   !! (npoint) [volume]; (nfraction) integrals [volume]
+    real(wp), intent(inout) :: values(:, :)            !! (nfraction, npoint) [-]
     real(wp) :: missing, freedom, worst
     integer :: sweep, i, p
 
     do sweep = 1, most_sweeps
       worst = 0
-      do i = 1, size(wanted)
-        missing = wanted(i) - integral(values(i, :), volumes)
+      do i = 1, size(requested)
+        missing = requested(i) - integral(values(i, :), volumes)
         freedom = integral(values(i, :)*(1 - values(i, :)), volumes)
         worst = max(worst, abs(missing))
         if (.not. freedom > tiny(1.0_wp)) cycle

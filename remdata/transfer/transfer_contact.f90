@@ -1,9 +1,10 @@
-!> Contact variables carried along the contour by arc length, from entry to exit of the same stretch of contact; the force on a die.
+!> Contact variables carried along the contour by arc length, from entry to exit of the same contact interval; the force on a die.
 !>
-!> Arc lengths of the new stretch are scaled to the old one's length, so that entry meets entry and exit meets exit. Between the
-!> old points values run straight; with NPT > 2 each new value is that of the straight line fitted to the NPT nearest old points,
-!> weighted by nearness, which smooths what penalty and time left of noise. Values stay in the range of the old points they are
-!> made from. The correction `v + lambda |v|` gives the integral along the stretch back and moves no zero: a pressure is scaled.
+!> Arc lengths of the new interval are scaled to the length of the old one, so that entry meets entry and exit meets exit. Between
+!> the old points values are linear; with NPT > 2 each new value is that of the straight line fitted to the NPT nearest old points,
+!> weighted by nearness, which smooths the noise of penalty and time integration. Values stay in the range of the old points they
+!> are computed from. The correction `v + lambda |v|` restores the integral along the interval and changes no zero: a pressure is
+!> scaled.
 module transfer_contact
   use kinds, only: wp
   implicit none
@@ -12,16 +13,16 @@ module transfer_contact
 
 contains
 
-  !> Values (component, point) at the new points of a stretch from those at the old ones, both in the order of the contour.
+  !> Values (component, point) at the new points of an interval from those at the old ones, both in the order of the contour.
   pure subroutine carry_along(length_old, s_old, old, weight_old, length_new, s_new, weight_new, smoothing, conserve, new, change)
-    real(wp), intent(in) :: length_old, length_new        !! of the stretch from entry to exit [length]
-    real(wp), intent(in) :: s_old(:), s_new(:)            !! arc length from the entry, not decreasing [length]
-    real(wp), intent(in) :: old(:, :)                     !! (component, old point)
-    real(wp), intent(in) :: weight_old(:), weight_new(:)  !! length of contour of a point, times the radius when axisymmetric
-    integer, intent(in) :: smoothing                      !! NPT: points of the fitted line; 2 or less: none
-    logical, intent(in) :: conserve                       !! give the integrals back
-    real(wp), intent(out) :: new(:, :)                    !! (component, new point)
-    real(wp), intent(out) :: change(:)                    !! of the integrals by the transfer before the correction (component)
+    real(wp), intent(in) :: length_old, length_new         !! of the interval from entry to exit [length]
+    real(wp), intent(in) :: s_old(:), s_new(:)             !! (npoint) arc length from the entry, not decreasing [length]
+    real(wp), intent(in) :: old(:, :)                      !! (component, npoint) at the old points [unit of the variable]
+    real(wp), intent(in) :: weight_old(:), weight_new(:)   !! (npoint) [length], or times the radius [length^2]
+    integer, intent(in) :: smoothing                       !! NPT: points of the fitted line; 2 or less: none
+    logical, intent(in) :: conserve                        !! restore the integrals
+    real(wp), intent(out) :: new(:, :)                     !! (component, npoint) at the new points [unit of the variable]
+    real(wp), intent(out) :: change(:)  !! (component) change of the integrals by the transfer, before the correction [unit length]
     real(wp) :: weight(size(s_old)), s, before, after, missing, magnitude
     integer :: p, c, first, last
 
@@ -53,18 +54,18 @@ contains
     integer, intent(out) :: first, last
     real(wp), intent(inout) :: weight(:)
     real(wp) :: kernel, total, mean, spread_of, reach, part
-    integer :: wanted, n, k
+    integer :: requested, n, k
 
     n = size(s_old)
-    wanted = min(n, max(2, smoothing))
+    requested = min(n, max(2, smoothing))
     last = 1 + count(s_old(2:) <= s)
     first = last
-    do while (last - first + 1 < wanted)
+    do while (last - first + 1 < requested)
       if (first == 1) then
         last = last + 1
       else if (last == n) then
         first = first - 1
-      else if (wanted == 2 .or. s_old(last + 1) - s <= s - s_old(first - 1)) then
+      else if (requested == 2 .or. s_old(last + 1) - s <= s - s_old(first - 1)) then
         ! the two of a plain interpolation are those on either side
         last = last + 1
       else
@@ -74,7 +75,7 @@ contains
     ! the line sum k (a + b (s_k - s) - v_k)^2 -> least, its value a
     reach = max(abs(s_old(first) - s), abs(s_old(last) - s))
     weight(first:last) = 1
-    if (wanted > 2 .and. reach > 0) weight(first:last) = 1 - 0.75_wp*(abs(s_old(first:last) - s)/reach)**2
+    if (requested > 2 .and. reach > 0) weight(first:last) = 1 - 0.75_wp*(abs(s_old(first:last) - s)/reach)**2
     total = sum(weight(first:last))
     mean = sum(weight(first:last)*s_old(first:last))/total
     spread_of = sum(weight(first:last)*(s_old(first:last) - mean)**2)

@@ -1,12 +1,12 @@
 !> Method 0: mean of the nearest integration points, weighted by 1/R^N.
 !>
-!> Source: D. Shepard, Proc. 23rd ACM Nat. Conf. (1968) 517-524. A constant comes through exactly, a linear field does not:
+!> Source: D. Shepard, Proc. 23rd ACM Nat. Conf. (1968) 517-524. A constant is transferred exactly, a linear field is not:
 !> the mean of points on one side only (at a boundary, on a graded mesh) is off by the size of an element.
 module transfer_inverse_distance
   use connected_points, only: nearest_connected
   use errors, only: error_t
   use kinds, only: wp
-  use locate_point, only: locate, place_t
+  use locate_point, only: element_location_t, locate
   use patch_nodes, only: number_nodes, patch_nodes_t
   use transfer_api, only: check_materials, transfer_options_t, transfer_t
   use transfer_map, only: append_rows, start_rows, transfer_map_t
@@ -15,7 +15,7 @@ module transfer_inverse_distance
   private
   public :: transfer_inverse_distance_row
 
-  !> Points between two appendings to the map.
+  !> Points whose rows are appended to the map at once.
   integer, parameter :: block = 512
 
 contains
@@ -38,7 +38,7 @@ contains
     type(transfer_map_t), intent(out) :: map
     type(error_t), allocatable, intent(out) :: error
     type(patch_nodes_t) :: nodes
-    type(place_t) :: place
+    type(element_location_t) :: location
     integer :: source(options%nearest, block), used(block), p, k, n
     real(wp) :: weight(options%nearest, block), squares(options%nearest)
 
@@ -50,11 +50,11 @@ contains
     allocate (map%outside(n), source=0.0_wp)
     allocate (map%degree(n), source=0)
     do p = 0, n - 1, block
-      !$omp parallel do schedule(static) private(place, squares)
+      !$omp parallel do schedule(static) private(location, squares)
       do k = 1, min(block, n - p)
-        call locate(mesh, material(p + k), points(:, p + k), 0.0_wp, place)
-        map%outside(p + k) = place%distance
-        call nearest_connected(mesh, nodes, place%element, points(:, p + k), used(k), source(:, k), squares)
+        call locate(mesh, material(p + k), points(:, p + k), 0.0_wp, location)
+        map%outside(p + k) = location%distance
+        call nearest_connected(mesh, nodes, location%element, points(:, p + k), used(k), source(:, k), squares)
         call from_distances(squares(:used(k)), options%exponent, weight(:used(k), k))
       end do
       !$omp end parallel do
@@ -62,7 +62,7 @@ contains
     end do
   end subroutine weights
 
-  !> Weights from squares of distances, nearest first. Distances are taken over the nearest: no overflow, no unit.
+  !> Weights from squares of distances, nearest first. Distances are divided by the nearest one: no overflow, no unit.
   pure subroutine from_distances(squares, exponent, weight)
     real(wp), intent(in) :: squares(:), exponent
     real(wp), intent(out) :: weight(:)

@@ -5,17 +5,17 @@ module transfer_limits
   private
   public :: clip, fractions_rule, keep_fractions, sum_is_free, sum_at_most_one, sum_is_one
 
-  !> What the fractions of a material add up to.
+  !> Constraint on the sum of the fractions of a material.
   integer, parameter :: sum_is_free = 0, sum_at_most_one = 1, sum_is_one = 2
-  !> Sums of fractions that differ by less are equal: what many steps and transfers leave of round-off.
+  !> Tolerance on sums of fractions: round-off of many steps and transfers.
   real(wp), parameter :: same_sum = 1.0e-6_wp
 
 contains
 
-  !> Keep values in their ranges; `share` is the volume of the points that left them, over all of it.
+  !> Limit values to their ranges; `share` is the share of the volume whose points were outside.
   pure subroutine clip(volumes, lower, upper, values, share)
-    real(wp), intent(in) :: volumes(:), lower(:), upper(:)
-    real(wp), intent(inout) :: values(:)
+    real(wp), intent(in) :: volumes(:), lower(:), upper(:)   !! (npoint) [volume]; limits (npoint) [unit of the variable]
+    real(wp), intent(inout) :: values(:)                     !! (npoint) [unit of the variable]
     real(wp), intent(out) :: share
 
     share = sum(volumes, mask=values < lower .or. values > upper)/max(sum(volumes), tiny(1.0_wp))
@@ -24,7 +24,7 @@ contains
 
   !> The rule that fractions (fraction, point) obey: phases add up to 1, some of them to no more, unlike fractions to anything.
   pure function fractions_rule(fractions) result(rule)
-    real(wp), intent(in) :: fractions(:, :)
+    real(wp), intent(in) :: fractions(:, :)   !! (nfraction, npoint) [-]
     integer :: rule
     real(wp) :: sums(size(fractions, 2))
 
@@ -34,10 +34,10 @@ contains
     if (all(abs(sums - 1) <= same_sum)) rule = sum_is_one
   end function fractions_rule
 
-  !> Fractions of a point between 0 and 1, their sum as the rule says.
+  !> Fractions of a point limited to 0 and 1, with their sum according to the rule.
   pure subroutine keep_fractions(rule, fractions)
     integer, intent(in) :: rule
-    real(wp), intent(inout) :: fractions(:)
+    real(wp), intent(inout) :: fractions(:)   !! (nfraction) [-]
     real(wp) :: total
 
     fractions = min(1.0_wp, max(0.0_wp, fractions))

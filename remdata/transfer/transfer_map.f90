@@ -1,5 +1,5 @@
-!> A state transfer as what it is: a sparse matrix from the points of the old mesh to those of the new one, or two of them with the
-!> nodes of the old mesh between. Made once, used for every variable.
+!> A state transfer as a sparse matrix from the points of the old mesh to those of the new one, or two of them with the nodes of the
+!> old mesh in between. Computed once, used for every variable.
 module transfer_map
   use kinds, only: wp
   implicit none
@@ -7,7 +7,7 @@ module transfer_map
   public :: sparse_rows_t, transfer_map_t, start_rows, append_rows, start_map, carry, range_of_sources
 
   type :: sparse_rows_t
-    !> Row p takes from places first(p) ... first(p + 1) - 1 of the two lists (nrow + 1).
+    !> Row p has entries first(p) ... first(p + 1) - 1 of the two lists (nrow + 1).
     integer, allocatable :: first(:)
     !> Columns, and their weights; the weights of a row sum to 1.
     integer, allocatable :: source(:)
@@ -16,7 +16,7 @@ module transfer_map
 
   !> Rows are the new points. Columns are the old points, or the rows of `nodal` where that is there.
   type, extends(sparse_rows_t) :: transfer_map_t
-    !> Distance of new points outside the old mesh, where the method looks at it [length]; degree of the polynomial fitted.
+    !> Distance of new points outside the old mesh, where the method computes it [length]; degree of the polynomial fitted.
     real(wp), allocatable :: outside(:)
     integer, allocatable :: degree(:)
     !> From the old points to the nodes.
@@ -34,11 +34,11 @@ contains
     allocate (rows%source(0), rows%weight(0))
   end subroutine start_rows
 
-  !> Put the next rows behind the `done` there are: `used(k)` places of column k of two wide tables.
+  !> Append rows to the `done` ones: `used(k)` entries of column k of two wide tables.
   pure subroutine append_rows(done, source, weight, used, rows)
     integer, intent(in) :: done
-    integer, intent(in) :: source(:, :), used(:)
-    real(wp), intent(in) :: weight(:, :)
+    integer, intent(in) :: source(:, :), used(:)   !! (wide, n) columns of the rows; (n) number of entries
+    real(wp), intent(in) :: weight(:, :)           !! (wide, n) [-]
     class(sparse_rows_t), intent(inout) :: rows
     integer, allocatable :: wider(:)
     real(wp), allocatable :: wider_weight(:)
@@ -47,7 +47,7 @@ contains
     n = rows%first(done + 1) - 1
     needed = n + sum(used)
     if (done + size(used) == size(rows%first) - 1 .or. needed > size(rows%source)) then
-      ! the last rows leave no room behind them
+      ! no room is left after the last rows
       if (done + size(used) < size(rows%first) - 1) then
         allocate (wider(2*needed), wider_weight(2*needed))
       else
@@ -68,7 +68,7 @@ contains
 
   !> A map with room for `lengths(p)` sources of point p.
   pure subroutine start_map(lengths, map)
-    integer, intent(in) :: lengths(:)
+    integer, intent(in) :: lengths(:)   !! (n)
     type(transfer_map_t), intent(out) :: map
     integer :: p, n
 
@@ -88,8 +88,8 @@ contains
   !> the same bits for any number of threads.
   subroutine carry(map, old, new)
     type(transfer_map_t), intent(in) :: map
-    real(wp), intent(in) :: old(:, :)
-    real(wp), intent(out) :: new(:, :)
+    real(wp), intent(in) :: old(:, :)    !! (component, nold) [unit of each component]
+    real(wp), intent(out) :: new(:, :)   !! (component, nnew) [unit of each component]
     real(wp), allocatable :: at_nodes(:, :)
 
     if (allocated(map%nodal)) then
@@ -117,11 +117,11 @@ contains
     !$omp end parallel do
   end subroutine multiply
 
-  !> Least and largest value among the old points each new point takes from.
+  !> Least and largest value of the old points each new point is computed from.
   pure subroutine range_of_sources(map, old, lower, upper)
     type(transfer_map_t), intent(in) :: map
-    real(wp), intent(in) :: old(:)
-    real(wp), intent(out) :: lower(:), upper(:)
+    real(wp), intent(in) :: old(:)                !! (nold) [unit of the variable]
+    real(wp), intent(out) :: lower(:), upper(:)   !! (nnew) [unit of the variable]
     real(wp), allocatable :: at_nodes(:, :)
 
     if (allocated(map%nodal)) then

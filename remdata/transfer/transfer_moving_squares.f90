@@ -2,13 +2,13 @@
 !>
 !> Sources: P. Lancaster, K. Salkauskas, Math. Comput. 37 (1981) 141-158; T. Liszka, J. Orkisz, Comput. Struct. 11 (1980) 83-95.
 !> The weight of a neighbour is the quartic spline of T. Belytschko et al., Comput. Methods Appl. Mech. Eng. 139 (1996) 3-47,
-!> eq. 20; it vanishes at the nearest point left out, so that values do not jump as neighbours change.
+!> eq. 20; it vanishes at the nearest point left out, so that values are continuous as neighbours change.
 module transfer_moving_squares
   use connected_points, only: nearest_connected
   use errors, only: error_t
   use kinds, only: wp
   use local_fit, only: fit_polynomial, max_terms, most_amplified, terms_of
-  use locate_point, only: locate, place_t
+  use locate_point, only: element_location_t, locate
   use patch_nodes, only: number_nodes, patch_nodes_t
   use transfer_api, only: check_materials, transfer_options_t, transfer_t
   use transfer_map, only: append_rows, start_rows, transfer_map_t
@@ -17,10 +17,10 @@ module transfer_moving_squares
   private
   public :: transfer_moving_squares_row
 
-  !> Neighbours are doubled so often, where they do not determine the polynomial, before its degree is lowered: in a layer of flat
-  !> elements the nearest points lie on a line.
+  !> How often the neighbours are doubled, where they do not determine the polynomial, before its degree is lowered: in a layer of
+  !> flat elements the nearest points lie on a line.
   integer, parameter :: doublings = 2
-  !> Points between two appendings to the map.
+  !> Points whose rows are appended to the map at once.
   integer, parameter :: block = 512
 
 contains
@@ -43,7 +43,7 @@ contains
     type(transfer_map_t), intent(out) :: map
     type(error_t), allocatable, intent(out) :: error
     type(patch_nodes_t) :: nodes
-    type(place_t) :: place
+    type(element_location_t) :: location
     integer :: source(options%neighbours*2**doublings, block), used(block), p, k, n
     real(wp) :: weight(size(source, 1), block)
 
@@ -55,11 +55,11 @@ contains
     allocate (map%outside(n), source=0.0_wp)
     allocate (map%degree(n), source=0)
     do p = 0, n - 1, block
-      !$omp parallel do schedule(static) private(place)
+      !$omp parallel do schedule(static) private(location)
       do k = 1, min(block, n - p)
-        call locate(mesh, material(p + k), points(:, p + k), 0.0_wp, place)
-        map%outside(p + k) = place%distance
-        call weights_of_point(mesh, nodes, options, points(:, p + k), place%element, source(:, k), weight(:, k), used(k), &
+        call locate(mesh, material(p + k), points(:, p + k), 0.0_wp, location)
+        map%outside(p + k) = location%distance
+        call weights_of_point(mesh, nodes, options, points(:, p + k), location%element, source(:, k), weight(:, k), used(k), &
                               map%degree(p + k))
       end do
       !$omp end parallel do
@@ -87,7 +87,7 @@ contains
       do doubling = 0, doublings
         n = options%neighbours*2**doubling
         call nearest_connected(mesh, nodes, element, point, found, items(:n + 1), squares(:n + 1))
-        ! the last one found sets the reach; where the material has no more points all of them count
+        ! the last point found sets the radius; where the material has no more points all of them are used
         if (found == n + 1) then
           reach = sqrt(squares(n + 1))
         else

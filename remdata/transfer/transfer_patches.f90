@@ -3,7 +3,7 @@
 !> Source: O.C. Zienkiewicz, J.Z. Zhu, Int. J. Numer. Methods Eng. 33 (1992) 1331-1364. A polynomial is fitted to the points of the
 !> elements around a node, by plain least squares; here a mid-side node has a patch of its own, the elements around both
 !> ends of its side. Patches stay within a material: a node between two of them has a value in each. Where a patch does not
-!> determine the polynomial, or only by prolonging it far (at a boundary), the elements around it are taken in.
+!> determine the polynomial, or only by extrapolation (at a boundary), the elements around it are added.
 module transfer_patches
   use errors, only: error_t
   use kinds, only: wp
@@ -21,7 +21,7 @@ module transfer_patches
   integer, parameter :: rings = 3
   !> Most elements and points of a patch: three rings in a grid of 2 x 2 points are 36 and 144.
   integer, parameter :: most_elements = 64, most_points = 576
-  !> Nodes between two appendings to the map.
+  !> Nodes whose rows are appended to the map at once.
   integer, parameter :: block = 512
 
 contains
@@ -50,7 +50,7 @@ contains
     integer :: used(block), first, k, n, p
 
     call number_nodes(mesh, nodes)
-    call shape_weights(mesh, nodes%places, points, material, options%outside, map, error)
+    call shape_weights(mesh, nodes%entries, points, material, options%outside, map, error)
     if (allocated(error)) return
     n = size(nodes%node)
     allocate (map%nodal)
@@ -113,15 +113,15 @@ contains
     end do
   end subroutine points_of
 
-  !> Weights of the value at a place of the polynomial through some points.
-  pure subroutine fit_at(points, source, place, degree, weight, determined)
-    real(wp), intent(in) :: points(:, :), place(2)
+  !> Weights of the value at a point of the polynomial fitted to some integration points.
+  pure subroutine fit_at(points, source, centre, degree, weight, determined)
+    real(wp), intent(in) :: points(:, :), centre(2)
     integer, intent(in) :: source(:), degree
     real(wp), intent(out) :: weight(:)
     logical, intent(out) :: determined
     real(wp) :: local(2, size(source)), ones(size(source)), fit(max_terms, size(source)), reach
 
-    local = points(:, source) - spread(place, 2, size(source))
+    local = points(:, source) - spread(centre, 2, size(source))
     reach = sqrt(maxval(sum(local**2, 1)))
     ones = 1
     call fit_polynomial(local/reach, ones, terms_of(degree), fit, determined)

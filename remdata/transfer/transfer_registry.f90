@@ -1,4 +1,4 @@
-!> The list of transfer methods. Only its submodule knows the members.
+!> The list of transfer methods. Only its submodule uses the members.
 module transfer_registry
   use transfer_api, only: transfer_t
   implicit none
@@ -6,9 +6,9 @@ module transfer_registry
   public :: list_transfers
 
   interface
-    !> All methods, in a fixed order: a method's place is its number + 1.
+    !> All methods, in a fixed order: a method's index is its number + 1.
     module subroutine list_transfers(rows)
-      type(transfer_t), allocatable, intent(out) :: rows(:)
+      type(transfer_t), allocatable, intent(out) :: rows(:)   !! (nmethod)
     end subroutine list_transfers
   end interface
 end module transfer_registry

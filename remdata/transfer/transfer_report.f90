@@ -1,13 +1,13 @@
-!> What a state transfer tells of itself.
+!> Report of a state transfer.
 module transfer_report
   use kinds, only: wp
   use text, only: string_t, to_text
   implicit none
   private
-  public :: balance_t, transfer_report_t, report_lines, in_words
+  public :: carried_quantity_t, transfer_report_t, report_lines, in_words
 
   !> One component of a variable in one material, over the volume (per unit thickness or per radian).
-  type :: balance_t
+  type :: carried_quantity_t
     character(len=:), allocatable :: name, unit, transfer
     integer :: material = 0
     !> Integrals in the old mesh, and in the new one as carried, in range, and after the correction [unit volume].
@@ -16,31 +16,31 @@ module transfer_report
     real(wp) :: magnitude = 0.0_wp
     !> Ranges in the old and the new mesh [unit].
     real(wp) :: least_before = 0.0_wp, largest_before = 0.0_wp, least_after = 0.0_wp, largest_after = 0.0_wp
-    !> Share of the volume whose values were brought back into range.
+    !> Share of the volume whose values were limited to their range.
     real(wp) :: clipped = 0.0_wp
-  end type balance_t
+  end type carried_quantity_t
 
   type :: transfer_report_t
     !> Name of the method.
     character(len=:), allocatable :: method
     !> Volumes of the materials (nmaterial) in the old and in the new mesh, per unit thickness or per radian.
     real(wp), allocatable :: volume_before(:), volume_after(:)
-    !> One row a component and material.
-    type(balance_t), allocatable :: rows(:)
-    !> New points outside the old mesh, and the farthest of them [length]; 0 for methods that do not look.
+    !> One row per component and material.
+    type(carried_quantity_t), allocatable :: rows(:)
+    !> New points outside the old mesh, and the distance of the farthest [length]; 0 for methods that do not compute it.
     integer :: points_outside = 0
     real(wp) :: farthest = 0.0_wp
-    !> New points whose polynomial was of a lower degree than asked for.
+    !> New points whose polynomial was of a lower degree than requested.
     integer :: lower_degree = 0
   end type transfer_report_t
 
 contains
 
-  !> The report in words, a line a material and a component: integrals before and after, the change over the integral of the
-  !> absolute value before and after the correction, ranges, and the share of the volume brought back into range.
+  !> The report as text, a line per material and component: integrals before and after, the change over the integral of the
+  !> absolute value before and after the correction, ranges, and the share of the volume limited to its range.
   pure subroutine report_lines(report, lines)
     type(transfer_report_t), intent(in) :: report
-    type(string_t), allocatable, intent(out) :: lines(:)
+    type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
     integer :: m, k, n
 
     allocate (lines(1 + count(report%volume_after > 0) + size(report%rows)))
@@ -63,7 +63,7 @@ lines(1)%s = 'transfer by '//report%method//': '//to_text(report%points_outside)
 
   !> One row: integrals before and after, ranges.
   pure function in_words(row) result(words)
-    type(balance_t), intent(in) :: row
+    type(carried_quantity_t), intent(in) :: row
     character(len=:), allocatable :: words
 
     words = '  '//row%name//': integral '//to_text(row%before)//' -> '//to_text(row%after)//' (' &

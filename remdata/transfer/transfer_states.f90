@@ -1,49 +1,34 @@
-!> The state of the points of a new mesh from that of an old one, by the kind each variable declares; no law is known here.
+!> The state of the points of a new mesh from that of an old one, by the transfer kind of each variable; laws are not used here.
 !>
 !> - scalar: carried, kept in the range of old values (options%limit), its mean kept on demand (options%conserve);
 !> - tensor: carried component by component in the global frame;
 !> - fraction: carried, kept between 0 and 1, their sum as it was (transfer_limits), means on demand;
-!> - any other kind: the declared value at the start. Contact goes along the contour (transfer_contact), nodal fields go by
+!> - any other kind: the declared initial value. Contact is carried along the contour (transfer_contact), nodal fields by
 !>   shape_weights (transfer_nodes).
 !>
 !> Carried stresses need not satisfy equilibrium, nor the yield condition of the carried history: the first equilibrium on the new
-!> mesh, at fixed time and fixed dies, calls the laws, whose return puts them back.
+!> mesh, at fixed time and fixed dies, calls the laws, whose return mapping restores the yield condition.
 module transfer_states
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
-  use state_pieces, only: gather_states, hand_out_states, list_variables, mesh_of, state_pieces_t
+  use state_pieces, only: gather_states, hand_out_states, list_variables, state_pieces_t
   use state_variables, only: state_variable_t, transfer_fraction, transfer_scalar, transfer_tensor
   use text, only: to_text
   use transfer_api, only: transfer_options_t, transfer_t
   use transfer_map, only: carry, transfer_map_t
-  use transfer_mesh, only: plant_mesh_trees, transfer_mesh_t
+  use transfer_mesh, only: transfer_mesh_t
   use transfer_registry, only: list_transfers
   use transfer_report, only: transfer_report_t
   use transfer_treatment, only: treat_materials
   implicit none
   private
-  public :: carry_between, carry_states
+  public :: carry_states
 
 contains
 
   !> Give the groups of `new` (connectivity, variables, npoint, material set) their values.
-  subroutine carry_states(old, new, options, report, error)
-    type(state_pieces_t), intent(in) :: old
-    type(state_pieces_t), intent(inout) :: new
-    type(transfer_options_t), intent(in) :: options
-    type(transfer_report_t), intent(out) :: report
-    type(error_t), allocatable, intent(out) :: error
-    type(transfer_mesh_t) :: from, to
-
-    call mesh_of(old, from)
-    call mesh_of(new, to)
-    call plant_mesh_trees(from)
-    call carry_between(from, to, old, new, options, report, error)
-  end subroutine carry_states
-
-  !> The same for who has the meshes already.
-  subroutine carry_between(from, to, old, new, options, report, error)
-    type(transfer_mesh_t), intent(in) :: from, to   !! of `old`, its trees planted, and of `new`
+  subroutine carry_states(from, to, old, new, options, report, error)
+    type(transfer_mesh_t), intent(in) :: from, to   !! of `old`, with its trees, and of `new`
     type(state_pieces_t), intent(in) :: old
     type(state_pieces_t), intent(inout) :: new
     type(transfer_options_t), intent(in) :: options
@@ -75,6 +60,6 @@ contains
     call carry(map, before, after)
     call treat_materials(from, to, map, variables, options, before, after, report)
     call hand_out_states(old%groups, variables, after, new%groups)
-  end subroutine carry_between
+  end subroutine carry_states
 
 end module transfer_states

@@ -1,4 +1,4 @@
-!> What is done to values after they were carried: ranges, sums of fractions, means, and the account of it.
+!> Treatment of values after their transfer: ranges, sums of fractions, means, and the report of the changes.
 module transfer_treatment
   use kinds, only: wp
   use state_variables, only: component_names, state_variable_t, transfer_fraction, transfer_scalar
@@ -8,7 +8,7 @@ module transfer_treatment
   use transfer_limits, only: clip, fractions_rule, keep_fractions, sum_is_one
   use transfer_map, only: range_of_sources, transfer_map_t
   use transfer_mesh, only: transfer_mesh_t
-  use transfer_report, only: balance_t, transfer_report_t
+  use transfer_report, only: carried_quantity_t, transfer_report_t
   implicit none
   private
   public :: treat_materials
@@ -19,10 +19,10 @@ contains
   subroutine treat_materials(from, to, map, variables, options, before, after, report)
     type(transfer_mesh_t), intent(in) :: from, to
     type(transfer_map_t), intent(in) :: map
-    type(state_variable_t), intent(in) :: variables(:)
+    type(state_variable_t), intent(in) :: variables(:)   !! (nvariable)
     type(transfer_options_t), intent(in) :: options
-    real(wp), intent(in) :: before(:, :)
-    real(wp), intent(inout) :: after(:, :)
+    real(wp), intent(in) :: before(:, :)     !! (component, npoint) of the old mesh [unit of each component]
+    real(wp), intent(inout) :: after(:, :)   !! (component, npoint) of the new mesh [unit of each component]
     type(transfer_report_t), intent(inout) :: report
     real(wp) :: lower(size(after, 2), size(after, 1)), upper(size(after, 2), size(after, 1))
     integer :: m, i, k, n
@@ -60,7 +60,7 @@ contains
     ! (point, component) here: each component is treated alone
     real(wp) :: old(size(old_points), size(before, 1)), new(size(new_points), size(before, 1))
     real(wp) :: old_volumes(size(old_points)), new_volumes(size(new_points))
-    type(balance_t) :: rows(size(before, 1))
+    type(carried_quantity_t) :: rows(size(before, 1))
     logical :: is_fraction(size(before, 1))
     integer :: i, k
 
@@ -77,10 +77,10 @@ contains
       end do
     end do
     call find_fractions(variables, old, is_fraction)
-    associate (place => pack([(k, k=1, size(rows))], is_fraction))
-      if (size(place) > 0) call treat_fractions(old(:, place), new_volumes, place, new, rows)
+    associate (fractional => pack([(k, k=1, size(rows))], is_fraction))
+      if (size(fractional) > 0) call treat_fractions(old(:, fractional), new_volumes, fractional, new, rows)
       rows%limited = [(integral(new(:, k), new_volumes), k=1, size(rows))]
-      if (options%conserve) call conserve_means(variables, place, old, old_volumes, new_volumes, rows, new)
+      if (options%conserve) call conserve_means(variables, fractional, old, old_volumes, new_volumes, rows, new)
     end associate
     rows%after = [(integral(new(:, k), new_volumes), k=1, size(rows))]
     rows%least_after = minval(new, 1)
@@ -94,7 +94,7 @@ contains
     type(state_variable_t), intent(in) :: variables(:)
     integer, intent(in) :: material
     real(wp), intent(in) :: old_volumes(:), new_volumes(:), old(:, :), new(:, :)
-    type(balance_t), intent(out) :: rows(:)
+    type(carried_quantity_t), intent(out) :: rows(:)
     type(string_t), allocatable :: names(:)
     integer :: i, k
 
@@ -131,34 +131,34 @@ contains
   end subroutine find_fractions
 
   !> Fractions between 0 and 1, their sums as they were.
-  pure subroutine treat_fractions(old, volumes, place, new, rows)
+  pure subroutine treat_fractions(old, volumes, fractional, new, rows)
     real(wp), intent(in) :: old(:, :), volumes(:)   !! old fractions only
-    integer, intent(in) :: place(:)
+    integer, intent(in) :: fractional(:)
     real(wp), intent(inout) :: new(:, :)
-    type(balance_t), intent(inout) :: rows(:)
-    real(wp) :: fractions(size(place))
+    type(carried_quantity_t), intent(inout) :: rows(:)
+    real(wp) :: fractions(size(fractional))
     integer :: rule, p, k
 
     rule = fractions_rule(transpose(old))
-    do k = 1, size(place)
-      rows(place(k))%clipped = sum(volumes, mask=new(:, place(k)) < 0 .or. new(:, place(k)) > 1)/sum(volumes)
+    do k = 1, size(fractional)
+      rows(fractional(k))%clipped = sum(volumes, mask=new(:, fractional(k)) < 0 .or. new(:, fractional(k)) > 1)/sum(volumes)
     end do
     do p = 1, size(new, 1)
-      fractions = new(p, place)
+      fractions = new(p, fractional)
       call keep_fractions(rule, fractions)
-      new(p, place) = fractions
+      new(p, fractional) = fractions
     end do
   end subroutine treat_fractions
 
   !> Means of scalars within the range of the material, and of fractions, as in the old mesh.
-  pure subroutine conserve_means(variables, place, old, old_volumes, new_volumes, rows, new)
+  pure subroutine conserve_means(variables, fractional, old, old_volumes, new_volumes, rows, new)
     type(state_variable_t), intent(in) :: variables(:)
-    integer, intent(in) :: place(:)
+    integer, intent(in) :: fractional(:)
     real(wp), intent(in) :: old(:, :), old_volumes(:), new_volumes(:)
-    type(balance_t), intent(in) :: rows(:)
+    type(carried_quantity_t), intent(in) :: rows(:)
     real(wp), intent(inout) :: new(:, :)
     real(wp) :: growth
-    real(wp) :: fractions(size(place), size(new, 1))
+    real(wp) :: fractions(size(fractional), size(new, 1))
     integer :: i, k
 
     growth = sum(new_volumes)/sum(old_volumes)
@@ -169,22 +169,22 @@ contains
                        max(rows(k)%largest_before, maxval(new(:, k))), rows(k)%before*growth, new(:, k))
       end do
     end do
-    if (size(place) == 0) return
-    if (fractions_rule(transpose(old(:, place))) == sum_is_one) then
-      fractions = transpose(new(:, place))
-      call keep_mean_fractions(new_volumes, rows(place)%before*growth, fractions)
-      new(:, place) = transpose(fractions)
+    if (size(fractional) == 0) return
+    if (fractions_rule(transpose(old(:, fractional))) == sum_is_one) then
+      fractions = transpose(new(:, fractional))
+      call keep_mean_fractions(new_volumes, rows(fractional)%before*growth, fractions)
+      new(:, fractional) = transpose(fractions)
     else
-      do i = 1, size(place)
-        call keep_mean(new_volumes, 0.0_wp, 1.0_wp, rows(place(i))%before*growth, new(:, place(i)))
+      do i = 1, size(fractional)
+        call keep_mean(new_volumes, 0.0_wp, 1.0_wp, rows(fractional(i))%before*growth, new(:, fractional(i)))
       end do
     end if
   end subroutine conserve_means
 
   pure subroutine add_rows(more, rows)
-    type(balance_t), intent(in) :: more(:)
-    type(balance_t), allocatable, intent(inout) :: rows(:)
-    type(balance_t), allocatable :: all_rows(:)
+    type(carried_quantity_t), intent(in) :: more(:)
+    type(carried_quantity_t), allocatable, intent(inout) :: rows(:)
+    type(carried_quantity_t), allocatable :: all_rows(:)
     integer :: n
 
     n = size(rows)

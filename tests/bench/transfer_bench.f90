@@ -4,9 +4,9 @@ program transfer_bench
   use kinds, only: wp
   use state_pieces, only: state_pieces_t
   use transfer_api, only: limit_material, limit_none, limit_sources, transfer_options_t, transfer_t
+  use transfer_cases, only: carry_pieces
   use transfer_registry, only: list_transfers
   use transfer_report, only: transfer_report_t
-  use transfer_states, only: carry_states
   use transfer_study, only: field_edge, field_hill, loss_t, study_pieces, there_and_back
   implicit none
   character(len=4), parameter :: fields(3) = ['hill', 'band', 'edge']
@@ -110,7 +110,7 @@ contains
         seconds = huge(seconds)
         do k = 1, again
           call cpu_time(start)
-          call carry_states(old, new, options, report, error)
+          call carry_pieces(old, new, options, report, error)
           call cpu_time(finish)
           if (allocated(error)) error stop 'transfer_bench: the transfer failed'
           seconds = min(seconds, finish - start)

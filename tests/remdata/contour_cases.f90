@@ -1,9 +1,9 @@
 !> Scenes of blocks and dies in known states, for the tests of the contour.
 module contour_cases
   use block_mesh, only: block_t, mesh_block
+  use boundary_curves, only: boundary_curve_t
   use contact_contour, only: find_contact_ends
   use contact_ends, only: contact_end_t
-  use contour_chain, only: chain_t
   use dies, only: die_t, finish_die, present_die
   use kinds, only: wp
   use quadrature, only: line_rule
@@ -92,7 +92,7 @@ contains
     call move_alloc(sets, scene%mesh%sides)
   end subroutine append_set
 
-  !> Nodes that stand in one place become one, in all blocks.
+  !> Coincident nodes become one, in all blocks.
   subroutine join_nodes(scene)
     type(scene_t), intent(inout) :: scene
     integer :: into(size(scene%mesh%coordinates, 2)), i, k, j
@@ -229,14 +229,14 @@ contains
     end do
   end subroutine ends_of
 
-  !> Stretches that begin with a joint of one of some kinds, in order.
-  pure function joints_of_kind(chain, kinds) result(joints)
-    type(chain_t), intent(in) :: chain
+  !> Arcs that begin with a joint of given kinds, in order.
+  pure function joints_of_kind(boundary, kinds) result(joints)
+    type(boundary_curve_t), intent(in) :: boundary
     integer, intent(in) :: kinds(:)
     integer, allocatable :: joints(:)
     integer :: k
 
-    allocate (joints, source=pack([(k, k=1, size(chain%kinds))], [(any(chain%kinds(k) == kinds), k=1, size(chain%kinds))]))
+    allocate (joints, source=pack([(k, k=1, size(boundary%kinds))], [(any(boundary%kinds(k) == kinds), k=1, size(boundary%kinds))]))
   end function joints_of_kind
 
 end module contour_cases

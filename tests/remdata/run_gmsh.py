@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Meshes without zones in whole runs of remdata: what it says when Gmsh fails it in any way, and shapes of bodies.
+"""Meshes without zones in whole runs of remdata: its messages when Gmsh fails, and shapes of bodies.
 
 usage: run_gmsh.py [-v] [-k]
 
@@ -147,7 +147,7 @@ END
 
 
 def remdata(checkpoint, new, *options, **environment):
-    """Run remdata; what came of it, and its facts."""
+    """Run remdata; its result, and its facts."""
     if os.path.exists(new):
         os.remove(new)
     result = subprocess.run([REMDATA, checkpoint, "--out", new, "--quiet", *options], text=True, stdin=subprocess.DEVNULL,
@@ -179,7 +179,7 @@ def fails(checks, checkpoint, name, program, words, *options):
     result, facts = remdata(checkpoint, new, *options, REMDATA_GMSH=program)
     lines = result.stderr.splitlines()
     checks.that(result.returncode == NO_CONVERGENCE, f"{name}: code 3", said(result))
-    checks.that(len(lines) == 2 and words in lines[0], f"{name}: told in one line", result.stderr)
+    checks.that(len(lines) == 2 and words in lines[0], f"{name}: reported in one line", result.stderr)
     checks.that(lines and "ZONE cards" in lines[-1], f"{name}: with advice", result.stderr)
     checks.that(facts["stage"] == "mesh" and not facts["accepted"] and words in facts["reason"], f"{name}: stage", facts)
     checks.that(os.listdir(os.path.dirname(new)) == ["new.h5.json"], f"{name}: nothing is left", os.listdir(os.path.dirname(new)))
@@ -198,11 +198,11 @@ def failures(checks, checkpoint):
     one("no file", "exit 0\n", "no mesh of the contour: there is no mesh")
     one("rubbish", "head -c 5000 /dev/urandom >$2\n", "no mesh of the contour: it has no nodes")
     one("empty", "printf '$Nodes\\n0\\n' >$2\n", "no mesh of the contour: it has no nodes")
-    one("bad node", "printf '$Nodes\\n2\\n1 0 0 0\\n2 nan 0 0\\n' >$2\n", "row 2 of its nodes is none")
+    one("bad node", "printf '$Nodes\\n2\\n1 0 0 0\\n2 nan 0 0\\n' >$2\n", "row 2 of its nodes is invalid")
     one("cut short", "printf '$Nodes\\n1\\n1 0 0 0\\n$EndNodes\\n$Elements\\n2\\n1 15 2 0 1 1\\n' >$2\n",
-        "row 2 of its elements is none")
+        "row 2 of its elements is invalid")
     one("another contour", "printf '$Nodes\\n4\\n1 0 0 0\\n2 1 0 0\\n3 1 1 0\\n4 0 1 0\\n$EndNodes\\n$Elements\\n1\\n"
-        "1 3 2 0 1 1 2 3 4\\n' >$2\n", "it has not the points of the contour")
+        "1 3 2 0 1 1 2 3 4\\n' >$2\n", "the points of the contour are missing")
     if os.path.exists(GMSH):
         one("without an element", f"{GMSH} $1 $2; sed -i '0,/^[0-9]* 3 2/{{/^[0-9]* 3 2/s/.*/1 15 2 0 1 1/}}' $2\n",
             "do not fill the contour")
@@ -257,16 +257,16 @@ def bodies(checks):
     result, facts = remdata(stop_of(checks, "few", BRACKET.format(more="   COUNT 60\n")), checks.path("few.h5"))
     if os.path.exists(GMSH):
         checks.that(result.returncode == DONE and 40 < facts["new_elements"] <= 60, "at most 60 elements", said(result))
-        checks.that(facts["mesh"]["coarser"] > 1.2, "at most 60 elements: told", facts["mesh"])
+        checks.that(facts["mesh"]["coarser"] > 1.2, "at most 60 elements: reported", facts["mesh"])
 
     # zones alone, where there are none: what is wrong with zones
     result, facts = remdata(stop_of(checks, "alone", BRACKET.format(more="   MESHER ZONES\n")), checks.path("alone.h5"))
     checks.that(result.returncode == INPUT and facts["stage"] == "mesh", "zones alone: refused", said(result))
-    checks.that("corners cannot be meshed without zones, expected four" in result.stderr, "zones alone: told", result.stderr)
+    checks.that("corners cannot be meshed without zones, expected four" in result.stderr, "zones alone: reported", result.stderr)
     # without Gmsh the same, with the other way out
     result, _ = remdata(checks.path("bracket", "bracket.ckp.h5"), checks.path("none.h5"), REMDATA_GMSH=checks.path("none"))
     checks.that("corners cannot be meshed without zones" in result.stderr and "libgmsh-dev" in result.stderr,
-                "no zones and no Gmsh: told", result.stderr)
+                "no zones and no Gmsh: reported", result.stderr)
     # sides inside a body have no place on another mesh, whoever makes it
     for mesher in ("ZONES", "GMSH"):
         name = f"inner sides, {mesher}"

@@ -164,7 +164,7 @@ def whole_cycle(checks, name, text, options, round_about, most):
         if not facts["accepted"]:
             return folder, meshes
         mesh, before = Mesh(new), Mesh(old)
-        checks.that(facts["generation"] == generation and facts["new_elements"] == len(mesh.elements), f"{what}: told as it is", facts)
+        checks.that(facts["generation"] == generation and facts["new_elements"] == len(mesh.elements), f"{what}: reported as it is", facts)
         least = mesh.jacobians().min()
         checks.that(least > 0.1, f"{what}: Jacobians above a tenth of the largest of their element", least)
         change = mesh.volume(round_about) / before.volume(round_about) - 1
@@ -176,7 +176,7 @@ def whole_cycle(checks, name, text, options, round_about, most):
 
 
 def corners_on_line(mesh):
-    """Corner nodes at the place where the zones meet, from below: the two ends of the line between them lie there to round-off."""
+    """Corner nodes at the point where the zones meet, from below: the two ends of the line between them lie there to round-off."""
     on_line = {node for element in mesh.elements for node in element[:4] if abs(mesh.x[node, 0] - LINE) < 1e-9}
     return sorted(on_line, key=lambda node: mesh.x[node, 1])
 
@@ -200,7 +200,7 @@ def forging(checks):
 
 
 def written_out(checks):
-    """A body without blocks, by the zone given for it, or by one between the places where its sets of sides meet."""
+    """A body without blocks, by the zone given for it, or by one between the points where its sets of sides meet."""
     text = SMALL_STRIP.format(mesh=cards_of_grid(6, 4, 6.0, 4.0))
     meshes = whole_cycle(checks, "strip", add_cards(text, ONE_ZONE), [], False, 1e-4)[1]
     checks.that(len(meshes) == 1, "strip: a new mesh", len(meshes))
@@ -272,14 +272,14 @@ def bracket(checks):
 
 
 def lost_point(checks):
-    """A line that leaves the part is told with the point's name."""
+    """A line that leaves the part is reported with the point's name."""
     cards = HUB_AND_FLANGE.replace(f"ON X {LINE} UPPER", "ON X 40. UPPER")
     folder = checks.path("lost")
     deck = write(os.path.join(folder, "case.lag"), add_cards(deck_text(FORGING), cards))
     result = run([deck, "--out", folder, "--threads", "1", "--quiet", "-p", "nx=8", "-p", "ny=4"])
     checks.that(result.returncode == REMESH, "lost point: stops for a new mesh", said(result))
     words = remesh(checks, "lost point", os.path.join(folder, "case.ckp.h5"), os.path.join(folder, "new.h5"), INPUT)[0]
-    checks.that("ZPNT foot: the contour does not cross x = 40" in words, "lost point: told by its name", words)
+    checks.that("ZPNT foot: the contour does not cross x = 40" in words, "lost point: reported by its name", words)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 !> Contours, zones and measures of quality for the tests of meshes of zones.
 module zone_cases
-  use contour_chain, only: chain_t, close_chain, closest_place, kind_corner, kind_end, place_t, point_on
+  use boundary_curves, only: boundary_curve_t, close_boundary, closest_position, kind_corner, kind_end, point_on, position_t
   use derived_zones, only: one_zone
   use errors, only: error_t
   use kinds, only: pi, wp
@@ -8,11 +8,11 @@ module zone_cases
   use shape_functions, only: quad8, quad8_corner, quad8_side
   use size_field, only: need_t, set_up_sizes, size_field_t, size_limits_t
   use vectors, only: length_of
-  use zone_mesh, only: mesh_wish_t, mesh_zones, new_mesh_t
+  use zone_mesh, only: mesh_settings_t, mesh_zones, new_mesh_t
   use zones, only: zone_point_t, zone_t
   implicit none
   private
-  public :: chain_of_points, polygon, circle, blob, barrel, point_at_contour, point_inside, zone_of, uniform_field
+  public :: boundary_of_points, polygon, circle, blob, barrel, point_at_contour, point_inside, zone_of, uniform_field
   public :: rectangle_mesh, l_shape, ring
   public :: quality_t, quality_of, off_contour, area_of, shared_exactly
 
@@ -27,28 +27,28 @@ module zone_cases
 
 contains
 
-  !> A chain through ends and middles in turn, the part on its left.
-  pure function chain_of_points(x, corner_turn) result(chain)
+  !> A boundary through ends and middles in turn, the part on its left.
+  pure function boundary_of_points(x, corner_turn) result(boundary)
     real(wp), intent(in) :: x(:, :)   !! (2, 2n)
     real(wp), intent(in) :: corner_turn
-    type(chain_t) :: chain
+    type(boundary_curve_t) :: boundary
     integer :: k, n
 
     n = size(x, 2)/2
-    allocate (chain%stretches(n), chain%kinds(n))
+    allocate (boundary%arcs(n), boundary%kinds(n))
     do k = 1, n
-      chain%stretches(k)%points = x(:, [2*k - 1, 2*k, mod(2*k, 2*n) + 1])
-      chain%stretches(k)%middle = k
+      boundary%arcs(k)%points = x(:, [2*k - 1, 2*k, mod(2*k, 2*n) + 1])
+      boundary%arcs(k)%middle = k
     end do
-    chain%kinds = kind_end
-    call close_chain(corner_turn, chain)
-  end function chain_of_points
+    boundary%kinds = kind_end
+    call close_boundary(corner_turn, boundary)
+  end function boundary_of_points
 
   !> Straight sides between corners, each cut into `cuts`.
-  pure function polygon(corners, cuts) result(chain)
+  pure function polygon(corners, cuts) result(boundary)
     real(wp), intent(in) :: corners(:, :)
     integer, intent(in) :: cuts
-    type(chain_t) :: chain
+    type(boundary_curve_t) :: boundary
     real(wp) :: x(2, 2*cuts*size(corners, 2))
     integer :: c, i
 
@@ -58,14 +58,14 @@ contains
                                    *(i - 1)/(2*cuts)
       end do
     end do
-    chain = chain_of_points(x, 0.5_wp)
+    boundary = boundary_of_points(x, 0.5_wp)
   end function polygon
 
   !> A full circle of `n` parabolas; a hole with a negative radius.
-  pure function circle(centre, radius, n) result(chain)
+  pure function circle(centre, radius, n) result(boundary)
     real(wp), intent(in) :: centre(2), radius
     integer, intent(in) :: n
-    type(chain_t) :: chain
+    type(boundary_curve_t) :: boundary
     real(wp) :: x(2, 2*n), angle
     integer :: i
 
@@ -73,14 +73,14 @@ contains
       angle = sign(pi*(i - 1)/n, radius)
       x(:, i) = centre + abs(radius)*[cos(angle), sin(angle)]
     end do
-    chain = chain_of_points(x, 0.9_wp)
+    boundary = boundary_of_points(x, 0.9_wp)
   end function circle
 
   !> A wavy circle of n parabolas about a centre, by six shares from 0 to 1; a hole with a negative radius.
-  pure function blob(centre, radius, share, n) result(chain)
+  pure function blob(centre, radius, share, n) result(boundary)
     real(wp), intent(in) :: centre(2), radius, share(6)
     integer, intent(in) :: n
-    type(chain_t) :: chain
+    type(boundary_curve_t) :: boundary
     real(wp) :: x(2, 2*n), angle
     integer :: i
 
@@ -90,15 +90,15 @@ contains
                 *(1 + 0.3_wp*(share(1) - 0.5_wp)*sin(2*angle + 6*share(2)) + 0.25_wp*(share(3) - 0.5_wp)*sin(3*angle + 6*share(4)) &
                   + 0.1_wp*(share(5) - 0.5_wp)*sin(5*angle + 6*share(6)))
     end do
-    chain = chain_of_points(x, 0.9_wp)
+    boundary = boundary_of_points(x, 0.9_wp)
   end function blob
 
   !> A square of side 1 whose right side bulges to 1 + bulge sin(pi s), at the height s - fold sin(2 pi s); the first corner
   !> at the origin, n parabolas a side. With a fold the bulge hangs over the corners.
-  pure function barrel(bulge, fold, n) result(chain)
+  pure function barrel(bulge, fold, n) result(boundary)
     real(wp), intent(in) :: bulge, fold
     integer, intent(in) :: n
-    type(chain_t) :: chain
+    type(boundary_curve_t) :: boundary
     real(wp) :: x(2, 8*n), s
     integer :: i
 
@@ -109,19 +109,19 @@ contains
       x(:, 4*n + i) = [1 - s, 1.0_wp]
       x(:, 6*n + i) = [0.0_wp, 1 - s]
     end do
-    chain = chain_of_points(x, 0.5_wp)
-    chain%kinds([1, n + 1, 2*n + 1, 3*n + 1]) = kind_corner
+    boundary = boundary_of_points(x, 0.5_wp)
+    boundary%kinds([1, n + 1, 2*n + 1, 3*n + 1]) = kind_corner
   end function barrel
 
-  !> The zone point of a chain closest to a target.
-  pure function point_at_contour(number, chain, target) result(point)
+  !> The zone point of a boundary closest to a target.
+  pure function point_at_contour(number, boundary, target) result(point)
     integer, intent(in) :: number
-    type(chain_t), intent(in) :: chain
+    type(boundary_curve_t), intent(in) :: boundary
     real(wp), intent(in) :: target(2)
     type(zone_point_t) :: point
 
-    point%chain = number
-    point%place = closest_place(chain, target)
+    point%boundary = number
+    point%position = closest_position(boundary, target)
   end function point_at_contour
 
   pure function point_inside(x) result(point)
@@ -139,37 +139,37 @@ contains
   end function zone_of
 
   !> An L of three unit squares, one zone each.
-  pure subroutine l_shape(chains, points, zones)
-    type(chain_t), allocatable, intent(out) :: chains(:)
+  pure subroutine l_shape(boundaries, points, zones)
+    type(boundary_curve_t), allocatable, intent(out) :: boundaries(:)
     type(zone_point_t), allocatable, intent(out) :: points(:)
     type(zone_t), allocatable, intent(out) :: zones(:)
     real(wp), parameter :: x(2, 8) = reshape([0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, 2.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, &
                                               1.0_wp, 2.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, 1.0_wp], [2, 8])
     integer :: i
 
-    allocate (chains(1), points(8), zones(3))
-    chains(1) = polygon(x(:, [1, 3, 4, 5, 6, 7]), 3)
+    allocate (boundaries(1), points(8), zones(3))
+    boundaries(1) = polygon(x(:, [1, 3, 4, 5, 6, 7]), 3)
     do i = 1, 8
-      points(i) = point_at_contour(1, chains(1), x(:, i))
+      points(i) = point_at_contour(1, boundaries(1), x(:, i))
     end do
     zones = [zone_of([1, 2, 5, 8]), zone_of([2, 3, 4, 5]), zone_of([5, 6, 7, 8])]
   end subroutine l_shape
 
   !> A disc with a hole beside its centre, four zones around.
-  pure subroutine ring(chains, points, zones)
-    type(chain_t), allocatable, intent(out) :: chains(:)
+  pure subroutine ring(boundaries, points, zones)
+    type(boundary_curve_t), allocatable, intent(out) :: boundaries(:)
     type(zone_point_t), allocatable, intent(out) :: points(:)
     type(zone_t), allocatable, intent(out) :: zones(:)
     real(wp) :: angle
     integer :: i
 
-    allocate (chains(2), points(8), zones(4))
-    chains(1) = circle([0.0_wp, 0.0_wp], 2.0_wp, 16)
-    chains(2) = circle([0.3_wp, 0.0_wp], -0.7_wp, 12)
+    allocate (boundaries(2), points(8), zones(4))
+    boundaries(1) = circle([0.0_wp, 0.0_wp], 2.0_wp, 16)
+    boundaries(2) = circle([0.3_wp, 0.0_wp], -0.7_wp, 12)
     do i = 1, 4
       angle = 0.5_wp*pi*(i - 1) + 0.3_wp
-      points(i) = point_at_contour(1, chains(1), 2*[cos(angle), sin(angle)])
-      points(4 + i) = point_at_contour(2, chains(2), [0.3_wp, 0.0_wp] + 0.7_wp*[cos(angle), sin(angle)])
+      points(i) = point_at_contour(1, boundaries(1), 2*[cos(angle), sin(angle)])
+      points(4 + i) = point_at_contour(2, boundaries(2), [0.3_wp, 0.0_wp] + 0.7_wp*[cos(angle), sin(angle)])
     end do
     zones = [zone_of([1, 2, 6, 5]), zone_of([2, 3, 7, 6]), zone_of([3, 4, 8, 7]), zone_of([4, 1, 5, 8])]
   end subroutine ring
@@ -187,16 +187,16 @@ contains
   function rectangle_mesh(width, height, h) result(mesh)
     real(wp), intent(in) :: width, height, h
     type(new_mesh_t) :: mesh
-    type(chain_t) :: chains(1)
+    type(boundary_curve_t) :: boundaries(1)
     type(zone_point_t), allocatable :: points(:)
     type(zone_t), allocatable :: zones(:)
-    type(mesh_wish_t) :: wish
-    type(place_t) :: none(0)
+    type(mesh_settings_t) :: settings
+    type(position_t) :: none(0)
     type(error_t), allocatable :: error
 
-    chains(1) = polygon(reshape([0.0_wp, 0.0_wp, width, 0.0_wp, width, height, 0.0_wp, height], [2, 4]), 1)
-    call one_zone(chains, none, points, zones, error)
-    call mesh_zones(chains, points, zones, uniform_field(h), wish, mesh, error)
+    boundaries(1) = polygon(reshape([0.0_wp, 0.0_wp, width, 0.0_wp, width, height, 0.0_wp, height], [2, 4]), 1)
+    call one_zone(boundaries, none, points, zones, error)
+    call mesh_zones(boundaries, points, zones, uniform_field(h), settings, mesh, error)
   end function rectangle_mesh
 
   pure function quality_of(mesh) result(quality)
@@ -233,20 +233,20 @@ contains
     end do
   end function quality_of
 
-  !> Farthest a node of the contour is from the chain it says it lies on, by a search that knows nothing of its place.
-  pure function off_contour(chains, mesh) result(distance)
-    type(chain_t), intent(in) :: chains(:)
+  !> Largest distance of a node of the contour from its boundary, by a search independent of its position.
+  pure function off_contour(boundaries, mesh) result(distance)
+    type(boundary_curve_t), intent(in) :: boundaries(:)
     type(new_mesh_t), intent(in) :: mesh
     real(wp) :: distance
-    type(place_t) :: place
+    type(position_t) :: position
     integer :: i, k
 
     distance = 0
     do i = 1, size(mesh%sides)
       do k = 1, 3
-        associate (x => mesh%coordinates(:, mesh%sides(i)%nodes(k)), chain => chains(mesh%sides(i)%chain))
-          place = closest_place(chain, x)
-          distance = max(distance, length_of(x - point_on(chain, place)))
+        associate (x => mesh%coordinates(:, mesh%sides(i)%nodes(k)), boundary => boundaries(mesh%sides(i)%boundary))
+          position = closest_position(boundary, x)
+          distance = max(distance, length_of(x - point_on(boundary, position)))
         end associate
       end do
     end do

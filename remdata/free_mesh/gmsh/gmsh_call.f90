@@ -1,9 +1,9 @@
-!> Gmsh's mesh of one body, by the program `remdata_gmsh`: files out, a process, a file back.
+!> Gmsh's mesh of one body, by the program `remdata_gmsh`: input files, a child process, an output file.
 module gmsh_call
   use arguments, only: argument
   use child_process, only: ending_t, own_process, run_child
   use errors, only: error_t, exit_no_convergence, fail
-  use gmsh_files, only: cell_t, frame_t, quads_t, read_quads, write_script
+  use gmsh_files, only: cell_t, quads_t, read_quads, unit_frame_t, write_script
   use kinds, only: wp
   use system, only: directory_of, join_path, remove_file
   use text, only: string_t, to_text
@@ -14,22 +14,22 @@ module gmsh_call
   !> How Gmsh is called.
   type :: gmsh_t
     character(len=:), allocatable :: program_name
-    !> Names of files begin so. They are this process's own: a child may outlive a parent that was killed.
+    !> Prefix of the file names, unique to this process: a child may outlive a parent that was killed.
     character(len=:), allocatable :: stem
     !> Longest time for a mesh [s].
     real(wp) :: limit = 0.0_wp
-    !> When it was called last: it could be started; it took too long.
-    logical :: is_there = .true., late = .false.
+    !> Result of the last call: it could be started; it exceeded the time limit.
+    logical :: available = .true., late = .false.
   end type gmsh_t
 
 contains
 
-  !> The program: the one that REMDATA_GMSH in the environment names, or the one beside this program.
+  !> The program named by REMDATA_GMSH in the environment, or the one in the folder of this program.
   subroutine find_gmsh(beside, limit, gmsh)
-    character(len=*), intent(in) :: beside    !! files are written beside this one
-    real(wp), intent(in) :: limit             !! longest time for a mesh [s]
+    character(len=*), intent(in) :: beside   !! files are written in the folder of this one
+    real(wp), intent(in) :: limit            !! longest time for a mesh [s]
     type(gmsh_t), intent(out) :: gmsh
-    character(len=:), allocatable :: mine
+    character(len=:), allocatable :: own_path
     integer :: length
 
     gmsh%stem = beside//'.'//to_text(own_process())
@@ -41,29 +41,29 @@ contains
       return
     end if
     gmsh%program_name = 'remdata_gmsh'
-    call argument(0, mine)
-    if (index(mine, '/') > 0) gmsh%program_name = join_path(directory_of(mine), gmsh%program_name)
-    if (index(gmsh%program_name, '/') == 0 .and. index(mine, '/') > 0) gmsh%program_name = './'//gmsh%program_name
+    call argument(0, own_path)
+    if (index(own_path, '/') > 0) gmsh%program_name = join_path(directory_of(own_path), gmsh%program_name)
+    if (index(gmsh%program_name, '/') == 0 .and. index(own_path, '/') > 0) gmsh%program_name = './'//gmsh%program_name
   end subroutine find_gmsh
 
   !> Quadrilaterals between points along the contours of a body.
   subroutine mesh_outline(gmsh, points, first, cells, factor, quads, error)
     type(gmsh_t), intent(inout) :: gmsh
-    real(wp), intent(in) :: points(:, :)      !! (2, n) [length]
-    integer, intent(in) :: first(:)           !! of each contour among the points, and one past the last
-    type(cell_t), intent(in) :: cells(:)
-    real(wp), intent(in) :: factor            !! sizes are so many times those of the cells
+    real(wp), intent(in) :: points(:, :)   !! (2, n) [length]
+    integer, intent(in) :: first(:)        !! (ncontour + 1) of each contour among the points, and one past the last
+    type(cell_t), intent(in) :: cells(:)   !! (ncell)
+    real(wp), intent(in) :: factor         !! ratio of the sizes to those of the cells
     type(quads_t), intent(out) :: quads
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: late
     type(ending_t) :: ending
-    type(frame_t) :: frame
+    type(unit_frame_t) :: frame
     type(string_t) :: words(3)
-    character(len=:), allocatable :: script, mesh, said
+    character(len=:), allocatable :: script, mesh, log_file
 
     script = gmsh%stem//'.geo'
     mesh = gmsh%stem//'.msh'
-    said = gmsh%stem//'.said'
+    log_file = gmsh%stem//'.said'
     frame%low = minval(points, 2)
     frame%width = maxval(maxval(points, 2) - frame%low)
     call remove_file(mesh, error)
@@ -72,25 +72,25 @@ contains
       words(1)%s = gmsh%program_name
       words(2)%s = script
       words(3)%s = mesh
-      call run_child(words, said, gmsh%limit, ending)
-      call judge(gmsh, ending, said, error)
+      call run_child(words, log_file, gmsh%limit, ending)
+      call check_ending(gmsh, ending, log_file, error)
     end if
     if (.not. allocated(error)) call read_quads(mesh, frame, size(points, 2), quads, error)
     call remove_file(script, late)
     call remove_file(mesh, late)
-    call remove_file(said, late)
+    call remove_file(log_file, late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
   end subroutine mesh_outline
 
-  !> One line for every way to end.
-  subroutine judge(gmsh, ending, said, error)
+  !> One message for each kind of failure.
+  subroutine check_ending(gmsh, ending, log_file, error)
     type(gmsh_t), intent(inout) :: gmsh
     type(ending_t), intent(in) :: ending
-    character(len=*), intent(in) :: said
+    character(len=*), intent(in) :: log_file
     type(error_t), allocatable, intent(out) :: error
     character(len=*), parameter :: advice = 'give ZONE cards, or other sizes of elements'
 
-    gmsh%is_there = ending%started
+    gmsh%available = ending%started
     gmsh%late = ending%late
     if (.not. ending%started) then
       call fail(error, exit_no_convergence, "remdata: a contour without zones is meshed by Gmsh, and '"//gmsh%program_name &
@@ -100,20 +100,20 @@ contains
     else if (ending%signal /= 0) then
       call fail(error, exit_no_convergence, 'remdata: Gmsh crashed, signal '//to_text(ending%signal), advice)
     else if (ending%code /= 0) then
-      call fail(error, exit_no_convergence, 'remdata: Gmsh made no mesh, exit code '//to_text(ending%code)//last_words(said), &
+      call fail(error, exit_no_convergence, 'remdata: Gmsh made no mesh, exit code '//to_text(ending%code)//last_words(log_file), &
                 advice)
     end if
-  end subroutine judge
+  end subroutine check_ending
 
   !> The last line that is not empty, after a colon.
-  function last_words(said) result(words)
-    character(len=*), intent(in) :: said
+  function last_words(log_file) result(words)
+    character(len=*), intent(in) :: log_file
     character(len=:), allocatable :: words
     character(len=200) :: line
     integer :: unit, status
 
     words = ''
-    open (newunit=unit, file=said, status='old', action='read', iostat=status)
+    open (newunit=unit, file=log_file, status='old', action='read', iostat=status)
     if (status /= 0) return
     do
       read (unit, '(a)', iostat=status) line

@@ -1,6 +1,6 @@
-!> What goes to Gmsh and what comes back: a script of points, lines and sizes, and a mesh.
+!> Input and output files of Gmsh: a script of points, lines and sizes, and a mesh.
 !>
-!> The points along the contours are all given, one element a line: Gmsh adds none there. Coordinates are those of a body of unit
+!> All points along the contours are given, one element per line: Gmsh adds none there. Coordinates are those of a body of unit
 !> size at the origin, for Gmsh's tolerances are absolute numbers. Formats: Gmsh reference manual, scripting language and
 !> MSH file format, version 2.
 module gmsh_files
@@ -10,9 +10,9 @@ module gmsh_files
   use text, only: to_text
   implicit none
   private
-  public :: cell_t, frame_t, quads_t, write_script, read_quads, refuse_mesh
+  public :: cell_t, unit_frame_t, quads_t, write_script, read_quads, refuse_mesh
 
-  !> A square with wanted sizes of elements.
+  !> A square with requested element sizes.
   type :: cell_t
     real(wp) :: low(2) = 0.0_wp, width = 0.0_wp   !! [length]
     !> Sizes at the corners, counter-clockwise from `low` [length].
@@ -20,25 +20,25 @@ module gmsh_files
     integer :: depth = 0
   end type cell_t
 
-  !> Where the unit body is.
-  type :: frame_t
+  !> Position and scale of the unit body.
+  type :: unit_frame_t
     real(wp) :: low(2) = 0.0_wp, width = 1.0_wp   !! [length]
-  end type frame_t
+  end type unit_frame_t
 
   !> Quadrilaterals, or triangles, between given points and new ones, which are numbered after them.
   type :: quads_t
     real(wp), allocatable :: inside(:, :)   !! new points (2, n) [length]
-    integer, allocatable :: corners(:, :)   !! (4, nelem), either way round; the fourth is 0 for a triangle
+    integer, allocatable :: corners(:, :)   !! (4, nelem), in either direction; the fourth is 0 for a triangle
   end type quads_t
 
   !> Frontal Delaunay triangles (J.-F. Remacle et al., Int. J. Num. Meth. Engng 94 (2013) 494-512) paired into quadrilaterals by
-  !> Blossom (ibid. 89 (2012) 1102-1119). Whatever a version has as default and a run may change is said.
+  !> Blossom (ibid. 89 (2012) 1102-1119). Options whose defaults depend on the version or the user's files are set.
   character(len=*), parameter :: options(14) = [character(len=40) :: &
     'Mesh.Algorithm = 6;', 'Mesh.RecombineAll = 1;', 'Mesh.RecombinationAlgorithm = 1;', 'Mesh.Smoothing = 10;', &
     'Mesh.ElementOrder = 1;', 'Mesh.MeshSizeExtendFromBoundary = 0;', 'Mesh.MeshSizeFromPoints = 0;', &
     'Mesh.MeshSizeFromCurvature = 0;', 'Mesh.RandomSeed = 1;', 'Mesh.RandomFactor = 1e-9;', 'Mesh.MaxNumThreads2D = 1;', &
     'Mesh.MshFileVersion = 2.2;', 'Mesh.Binary = 0;', 'Mesh.SaveAll = 1;']
-  !> Types of elements in its files; one of type 2 or 3 has a corner more.
+  !> Element types of the file format; types 2 and 3 have 3 and 4 corners.
   integer, parameter :: triangle = 2, quadrilateral = 3, point = 15
 
 contains
@@ -46,11 +46,11 @@ contains
   !> The script. The outer contour comes first, then holes; each has the body on its left.
   subroutine write_script(path, frame, points, first, cells, factor, error)
     character(len=*), intent(in) :: path
-    type(frame_t), intent(in) :: frame
-    real(wp), intent(in) :: points(:, :)      !! along the contours (2, n) [length]
-    integer, intent(in) :: first(:)           !! of each contour among the points, and one past the last
-    type(cell_t), intent(in) :: cells(:)
-    real(wp), intent(in) :: factor            !! sizes are so many times those of the cells
+    type(unit_frame_t), intent(in) :: frame
+    real(wp), intent(in) :: points(:, :)   !! along the contours (2, n) [length]
+    integer, intent(in) :: first(:)        !! (ncontour + 1) of each contour among the points, and one past the last
+    type(cell_t), intent(in) :: cells(:)   !! (ncell)
+    real(wp), intent(in) :: factor         !! ratio of the sizes to those of the cells
     type(error_t), allocatable, intent(out) :: error
     character(len=*), parameter :: form = '(*(a,g0,:))'
     integer :: unit, status, k, c, next
@@ -88,10 +88,10 @@ contains
     if (status /= 0) call fail(error, exit_machine, "cannot write '"//path//"'")
   end subroutine write_script
 
-  !> The mesh between n given points. Whatever is not as it must be is told.
+  !> The mesh between n given points. Anything unexpected in the file is an error.
   subroutine read_quads(path, frame, n, quads, error)
     character(len=*), intent(in) :: path
-    type(frame_t), intent(in) :: frame
+    type(unit_frame_t), intent(in) :: frame
     integer, intent(in) :: n
     type(quads_t), intent(out) :: quads
     type(error_t), allocatable, intent(out) :: error
@@ -111,16 +111,16 @@ contains
     quads%inside = spread(frame%low, 2, size(quads%inside, 2)) + frame%width*quads%inside
   end subroutine read_quads
 
-  !> Stand behind a line.
-  subroutine find_line(unit, wanted, status)
+  !> Read up to and including a line.
+  subroutine find_line(unit, requested, status)
     integer, intent(in) :: unit
-    character(len=*), intent(in) :: wanted
+    character(len=*), intent(in) :: requested
     integer, intent(out) :: status
     character(len=32) :: line
 
     do
       read (unit, '(a)', iostat=status) line
-      if (status /= 0 .or. line == wanted) return
+      if (status /= 0 .or. line == requested) return
     end do
   end subroutine find_line
 
@@ -129,7 +129,7 @@ contains
     real(wp), allocatable, intent(inout) :: x(:, :)   !! by number
     type(error_t), allocatable, intent(out) :: error
     integer :: status, n, k, number
-    real(wp) :: place(2)
+    real(wp) :: coordinates(2)
 
     n = 0
     call find_line(unit, '$Nodes', status)
@@ -141,18 +141,18 @@ contains
     deallocate (x)
     allocate (x(2, n))
     do k = 1, n
-      read (unit, *, iostat=status) number, place
-      if (status == 0 .and. .not. all(ieee_is_finite(place))) status = 1
+      read (unit, *, iostat=status) number, coordinates
+      if (status == 0 .and. .not. all(ieee_is_finite(coordinates))) status = 1
       if (status == 0 .and. (number < 1 .or. number > n)) status = 1
       if (status /= 0) then
-        call refuse_mesh('row '//to_text(k)//' of its nodes is none', error)
+        call refuse_mesh('row '//to_text(k)//' of its nodes is invalid', error)
         return
       end if
-      x(:, number) = place
+      x(:, number) = coordinates
     end do
   end subroutine read_nodes
 
-  !> Elements, and which given point each number of the file is.
+  !> Elements, and the given point of each node number of the file.
   subroutine read_elements(unit, n, x, quads, error)
     integer, intent(in) :: unit, n
     real(wp), intent(in) :: x(:, :)
@@ -188,7 +188,7 @@ contains
         if (head(2) == point .and. (row(5) < 1 .or. row(5) > n)) status = 1
       end if
       if (status /= 0) then
-        call refuse_mesh('row '//to_text(k)//' of its elements is none', error)
+        call refuse_mesh('row '//to_text(k)//' of its elements is invalid', error)
         return
       end if
       select case (head(2))
@@ -203,14 +203,14 @@ contains
     if (ncell == 0) then
       call refuse_mesh('it has no quadrilaterals', error)
     else if (count(known > 0) /= n) then
-      call refuse_mesh('it has not the points of the contour', error)
+      call refuse_mesh('the points of the contour are missing', error)
     else
       quads%corners = quads%corners(:, :ncell)
       call number_inside(n, x, known, quads)
     end if
   end subroutine read_elements
 
-  !> Number the nodes that quadrilaterals have: given points as they are, then the others.
+  !> Number the nodes of quadrilaterals: given points as they are, then the others.
   pure subroutine number_inside(n, x, known, quads)
     integer, intent(in) :: n
     real(wp), intent(in) :: x(:, :)
@@ -234,7 +234,7 @@ contains
     quads%inside = x(:, list(:last))
   end subroutine number_inside
 
-  !> Why a mesh is not taken, and what may be done.
+  !> Reason why a mesh is refused, and advice.
   pure subroutine refuse_mesh(why, error)
     character(len=*), intent(in) :: why
     type(error_t), allocatable, intent(out) :: error

@@ -1,10 +1,15 @@
 !> Meshes of 8-node elements and fields for the tests of the state transfer.
 module transfer_cases
+  use errors, only: error_t
   use kinds, only: pi, wp
-  use transfer_mesh, only: plant_mesh_trees, set_up_mesh, transfer_mesh_t
+  use state_pieces, only: mesh_of, state_pieces_t
+  use transfer_api, only: transfer_options_t
+  use transfer_mesh, only: build_mesh_trees, set_up_mesh, transfer_mesh_t
+  use transfer_report, only: transfer_report_t
+  use transfer_states, only: carry_states
   implicit none
   private
-  public :: square_grid, one_material, ring_sector, polynomial
+  public :: square_grid, one_material, ring_sector, polynomial, carry_pieces
 
 contains
 
@@ -74,7 +79,7 @@ contains
 
     n = size(connectivity, 2)
     call set_up_mesh(nodes, connectivity, spread(1, 1, n), spread(npoint, 1, n), .false., mesh)
-    call plant_mesh_trees(mesh)
+    call build_mesh_trees(mesh)
   end subroutine one_material
 
   !> 2 + 3 x - 5 y, and with degree 2 also + 4 x^2 - 7 x y + 6 y^2.
@@ -87,5 +92,20 @@ contains
     if (degree > 0) values = values + 3*points(1, :) - 5*points(2, :)
     if (degree > 1) values = values + 4*points(1, :)**2 - 7*points(1, :)*points(2, :) + 6*points(2, :)**2
   end function polynomial
+
+  !> The states of groups carried to others, by way of the meshes they make.
+  subroutine carry_pieces(old, new, options, report, error)
+    type(state_pieces_t), intent(in) :: old
+    type(state_pieces_t), intent(inout) :: new
+    type(transfer_options_t), intent(in) :: options
+    type(transfer_report_t), intent(out) :: report
+    type(error_t), allocatable, intent(out) :: error
+    type(transfer_mesh_t) :: from, to
+
+    call mesh_of(old, from)
+    call mesh_of(new, to)
+    call build_mesh_trees(from)
+    call carry_states(from, to, old, new, options, report, error)
+  end subroutine carry_pieces
 
 end module transfer_cases

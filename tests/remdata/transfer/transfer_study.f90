@@ -5,10 +5,9 @@ module transfer_study
   use state_pieces, only: mesh_of, state_pieces_t
   use state_variables, only: state_variable, transfer_scalar
   use transfer_api, only: transfer_options_t
-  use transfer_cases, only: square_grid
+  use transfer_cases, only: carry_pieces, square_grid
   use transfer_mesh, only: transfer_mesh_t
   use transfer_report, only: transfer_report_t
-  use transfer_states, only: carry_states
   implicit none
   private
   public :: loss_t, there_and_back, study_pieces, field_hill, field_band, field_edge
@@ -81,9 +80,9 @@ contains
     allocate (now(size(first)))
     one%groups(1)%values(1, :, :) = reshape(first, shape(one%groups(1)%values(1, :, :)))
     do k = 1, transfers/2
-      call carry_states(one, other, options, report, error)
+      call carry_pieces(one, other, options, report, error)
       if (allocated(error)) return
-      call carry_states(other, one, options, report, error)
+      call carry_pieces(other, one, options, report, error)
       if (allocated(error)) return
       now = reshape(one%groups(1)%values(1, :, :), shape(now))
       losses(k)%peak = 1 - maxval(now)/maxval(first)

@@ -1,5 +1,5 @@
-!> `remdata --about`: what a checkpoint holds, for scripts: a word and its value on each line.
-module checkpoint_words
+!> `remdata --about`: the contents of a checkpoint, for scripts: a key and its value on each line.
+module checkpoint_summary
   use errors, only: error_t
   use exact_numbers, only: exact_text
   use exchange, only: checkpoint_facts_t, read_facts
@@ -10,7 +10,7 @@ module checkpoint_words
 
 contains
 
-  !> Refuse the file by name, or print its facts.
+  !> Print the contents of the file, or report why it is refused.
   subroutine print_about(path, error)
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
@@ -44,4 +44,4 @@ contains
     write (*, '(a)') word//' '//its_value
   end subroutine say
 
-end module checkpoint_words
+end module checkpoint_summary

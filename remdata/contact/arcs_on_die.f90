@@ -1,76 +1,76 @@
-!> The stretches that follow a die from where contact begins to where it ends, at given depths.
+!> Arcs that follow a die from where contact begins to where it ends, at given depths.
 !>
-!> The depth d = p/AKP carries the contact pressure: on a contour that lies so deep in the die the first residual finds the
-!> pressures of the mesh before. Between the points where it is known the depth runs in a straight line along the die's arc.
-!> Where the die has a vertex the two curves at depth are cut where they meet, or drawn on until they do.
-module contact_stretches
+!> The depth d = p/AKP carries the contact pressure: on a contour at this depth in the die the first residual finds the pressures of
+!> the previous mesh. Between the points where it is known the depth is linear in the arc length of the die. At a vertex of the die
+!> the two curves at depth are cut at their intersection, or extended to it.
+module arcs_on_die
+  use arcs, only: arc_t, cross, cut, length_between, point_at, straight, tangent_at
   use dies, only: die_t
   use kinds, only: eps, wp
-  use stretches, only: cross, cut, length_between, point_at, straight, stretch_t, tangent_at
   use vectors, only: length_of
   implicit none
   private
-  public :: knot_t, placed_piece, follow_die
+  public :: closest_point_t, placed_piece, follow_die
 
-  !> A place on a die and the depth there.
-  type :: knot_t
+  !> A closest point on a die, and the depth there.
+  type :: closest_point_t
     integer :: piece = 0
     real(wp) :: xi = 0.0_wp
     real(wp) :: depth = 0.0_wp   !! [length]
-  end type knot_t
+  end type closest_point_t
 
-  !> Pieces go on smoothly where the tangent turns by less: the gap this leaves is that share of a depth.
+  !> Pieces are smooth at their joint where the tangent turns by less: the gap is this share of a depth.
   real(wp), parameter :: smooth_turn = 1.0e-7_wp
-  !> Curves at a depth meet within this many depths of a vertex, else a straight stretch joins them: turns up to 120 degrees.
+  !> Curves at a depth intersect within this many depths of a vertex, else a straight arc joins them: turns up to 120 degrees.
   real(wp), parameter :: longest_mitre = 2.0_wp
-  !> A range shorter than this holds nothing.
+  !> A shorter range of xi is empty.
   real(wp), parameter :: shortest_range = 1.0e-12_wp
 
 contains
 
-  !> A piece of a die where the die stands.
-  pure function placed_piece(die, pilot, piece) result(stretch)
+  !> A piece of a die in its present position.
+  pure function placed_piece(die, pilot, piece) result(arc)
     type(die_t), intent(in) :: die
-    real(wp), intent(in) :: pilot(3)   !! (x, y, angle) now
+    real(wp), intent(in) :: pilot(3)   !! (x, y, angle) of the die now [length and radian]
     integer, intent(in) :: piece
-    type(stretch_t) :: stretch
+    type(arc_t) :: arc
     real(wp) :: turn(2, 2)
     integer :: i
 
     turn = reshape([cos(pilot(3)), sin(pilot(3)), -sin(pilot(3)), cos(pilot(3))], [2, 2])
     do i = 1, 3
-      stretch%points(:, i) = pilot(1:2) + matmul(turn, die%pieces(:, i, piece))
+      arc%points(:, i) = pilot(1:2) + matmul(turn, die%pieces(:, i, piece))
     end do
-    stretch%piece = piece
+    arc%piece = piece
   end function placed_piece
 
-  !> Stretches from the first knot to the last. The knots are in their order along the die; a closed die may be walked across
+  !> Arcs from the first closest point to the last. The points are sorted along the die; a closed die may be traversed across
   !> its start.
-  pure subroutine follow_die(die, pilot, number, knots, stretches)
+  pure subroutine follow_die(die, pilot, number, closest_points, arcs)
     type(die_t), intent(in) :: die
-    real(wp), intent(in) :: pilot(3)
+    real(wp), intent(in) :: pilot(3)                         !! (x, y, angle) of the die now [length and radian]
     integer, intent(in) :: number                            !! of the die
-    type(knot_t), intent(in) :: knots(:)
-    type(stretch_t), allocatable, intent(out) :: stretches(:)
-    type(stretch_t) :: list(2*size(knots) + 3*size(die%pieces, 3))
+    type(closest_point_t), intent(in) :: closest_points(:)   !! (n) in their order along the die
+    type(arc_t), allocatable, intent(out) :: arcs(:)         !! (narc)
+    type(arc_t) :: list(2*size(closest_points) + 3*size(die%pieces, 3))
     integer :: k, n
 
     n = 0
-    do k = 1, size(knots) - 1
-      call between_knots(die, pilot, number, knots(k), knots(k + 1), list, n)
+    do k = 1, size(closest_points) - 1
+      call add_arcs_between(die, pilot, number, closest_points(k), closest_points(k + 1), list, n)
     end do
-    allocate (stretches, source=list(:n))
+    allocate (arcs, source=list(:n))
   end subroutine follow_die
 
-  !> Stretches between two knots, one for each piece they touch.
-  pure subroutine between_knots(die, pilot, number, from, to, list, n)
+  !> Arcs between two closest points, one for each piece between them.
+  pure subroutine add_arcs_between(die, pilot, number, from, to, list, n)
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: pilot(3)
     integer, intent(in) :: number
-    type(knot_t), intent(in) :: from, to
-    type(stretch_t), intent(inout) :: list(:)
+    type(closest_point_t), intent(in) :: from, to
+    type(arc_t), intent(inout) :: list(:)
     integer, intent(inout) :: n
-    type(stretch_t) :: one
+    type(arc_t) :: one
     real(wp) :: total, done, part
     integer :: count, i, pass, npiece
 
@@ -96,14 +96,14 @@ contains
         done = done + part
       end do
     end do
-  end subroutine between_knots
+  end subroutine add_arcs_between
 
-  !> Add a stretch to those before it, over a vertex of the die if there is one.
+  !> Append an arc, with the corner where the die has a vertex.
   pure subroutine append(one, list, n)
-    type(stretch_t), intent(in) :: one
-    type(stretch_t), intent(inout) :: list(:)
+    type(arc_t), intent(in) :: one
+    type(arc_t), intent(inout) :: list(:)
     integer, intent(inout) :: n
-    type(stretch_t) :: next, bridge
+    type(arc_t) :: next, bridge
     real(wp) :: a, b
     logical :: met
 
@@ -124,16 +124,16 @@ contains
         next = cut(next, b, next%range(2))
         exit
       end if
-      ! the whole stretch lies beyond where the curves meet
+      ! the whole arc lies beyond the intersection
       n = n - 1
     end do
     n = n + 1
     list(n) = next
   end subroutine append
 
-  !> The die turns between two stretches at a depth.
+  !> The die turns between two arcs at a depth.
   pure function is_vertex(before, after) result(yes)
-    type(stretch_t), intent(in) :: before, after
+    type(arc_t), intent(in) :: before, after
     logical :: yes
     real(wp) :: one(2), other(2)
 
@@ -144,20 +144,20 @@ contains
   end function is_vertex
 
   !> Tangent of the die itself.
-  pure function flat_tangent(stretch, xi) result(tangent)
-    type(stretch_t), intent(in) :: stretch
+  pure function flat_tangent(arc, xi) result(tangent)
+    type(arc_t), intent(in) :: arc
     real(wp), intent(in) :: xi
     real(wp) :: tangent(2)
-    type(stretch_t) :: flat
+    type(arc_t) :: flat
 
-    flat = stretch
+    flat = arc
     flat%depth = 0
     tangent = tangent_at(flat, xi)
   end function flat_tangent
 
-  !> Where two curves at depth meet near a vertex: Newton's method on X1(a) - X2(b) = 0.
+  !> Intersection of two curves at depth near a vertex: Newton's method on X1(a) - X2(b) = 0.
   pure subroutine meet(before, after, a, b, met)
-    type(stretch_t), intent(in) :: before, after
+    type(arc_t), intent(in) :: before, after
     real(wp), intent(out) :: a, b
     logical, intent(out) :: met
     real(wp) :: gap(2), one(2), other(2), det, near, step(2)
@@ -181,9 +181,9 @@ contains
       met = maxval(abs(step)) <= 8*eps
       if (met) exit
     end do
-    ! a cusp turned inside out, or a stretch used up, is no meeting
+    ! no intersection at an inverted cusp, or on an arc of no length
     met = length_of(gap) <= shortest_range*(length_of(one) + length_of(other)) .and. b < after%range(2) .and. &
           abs(a - before%range(2))*length_of(one) <= near .and. abs(b - after%range(1))*length_of(other) <= near
   end subroutine meet
 
-end module contact_stretches
+end module arcs_on_die

@@ -1,6 +1,6 @@
 !> Where the points of zones are.
-module zone_places
-  use contour_chain, only: point_on
+module zone_point_coordinates
+  use boundary_curves, only: point_on
   use kinds, only: wp
   use part_contour, only: contour_t
   use zones, only: zone_point_t
@@ -12,12 +12,12 @@ contains
 
   !> Of a point on a contour or inside [length].
   pure function coordinates(contours, point) result(x)
-    type(contour_t), intent(in) :: contours(:)
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
     type(zone_point_t), intent(in) :: point
     real(wp) :: x(2)
 
     x = point%x
-    if (point%chain > 0) x = point_on(contours(point%chain)%chain, point%place)
+    if (point%boundary > 0) x = point_on(contours(point%boundary)%boundary, point%position)
   end function coordinates
 
-end module zone_places
+end module zone_point_coordinates

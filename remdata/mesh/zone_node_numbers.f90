@@ -1,29 +1,29 @@
-!> Numbers of the nodes of a mesh of zones.
+!> Numbering of the nodes of a mesh of zones.
 !>
 !> Ends of elements come first: zone points, then side by side, then zone by zone and row by row; middle nodes follow in the same
-!> order. What lies on a side is numbered by the side alone, so that two zones share it exactly.
-module zone_numbers
+!> order. Nodes on a side are numbered by the side alone, so that two zones share them.
+module zone_node_numbers
   use zone_divisions, only: division_t, is_forward
-  use zones, only: layout_t
+  use zones, only: zone_layout_t
   implicit none
   private
-  public :: numbers_t, number_nodes, ends_of_side, middles_of_side, divisions_of, ends_of_zone, middles_of_zone, row_beside
+  public :: node_numbers_t, number_nodes, ends_of_side, middles_of_side, divisions_of, ends_of_zone, middles_of_zone, row_beside
 
-  type :: numbers_t
+  type :: node_numbers_t
     !> Node of each zone point, 0 where no zone has it.
     integer, allocatable :: point(:)
     !> Number before the first: ends inside sides and zones, middles of sides and inside zones.
     integer, allocatable :: side_ends(:), zone_ends(:), side_middles(:), zone_middles(:)
     !> Ends of elements are nodes 1 ... nend.
     integer :: nend = 0, nnode = 0
-  end type numbers_t
+  end type node_numbers_t
 
 contains
 
   pure function number_nodes(layout, division) result(numbers)
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     type(division_t), intent(in) :: division
-    type(numbers_t) :: numbers
+    type(node_numbers_t) :: numbers
     integer :: n, p, s, z, m(2)
 
     allocate (numbers%point(size(layout%points)))
@@ -62,7 +62,7 @@ contains
 
   !> Divisions along sides 1 and 3 of a zone, and along sides 2 and 4.
   pure function divisions_of(layout, division, zone) result(n)
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     type(division_t), intent(in) :: division
     integer, intent(in) :: zone
     integer :: n(2)
@@ -72,9 +72,9 @@ contains
 
   !> Ends of elements along a side (0:n), in its own direction.
   pure function ends_of_side(layout, division, numbers, side) result(nodes)
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     type(division_t), intent(in) :: division
-    type(numbers_t), intent(in) :: numbers
+    type(node_numbers_t), intent(in) :: numbers
     integer, intent(in) :: side
     integer :: nodes(0:division%count(side))
     integer :: k
@@ -85,7 +85,7 @@ contains
 
   pure function middles_of_side(division, numbers, side) result(nodes)
     type(division_t), intent(in) :: division
-    type(numbers_t), intent(in) :: numbers
+    type(node_numbers_t), intent(in) :: numbers
     integer, intent(in) :: side
     integer :: nodes(division%count(side))
     integer :: k
@@ -95,11 +95,11 @@ contains
 
   !> Ends of elements of a zone (0:n, 0:m): from corner 1 toward corner 2, and toward corner 4.
   pure subroutine ends_of_zone(layout, division, numbers, zone, grid)
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     type(division_t), intent(in) :: division
-    type(numbers_t), intent(in) :: numbers
+    type(node_numbers_t), intent(in) :: numbers
     integer, intent(in) :: zone
-    integer, allocatable, intent(out) :: grid(:, :)
+    integer, allocatable, intent(out) :: grid(:, :)   !! (0:n, 0:m)
     integer :: n, m, i, j, k, side
     integer, allocatable :: nodes(:)
 
@@ -130,9 +130,9 @@ contains
 
   !> Middle nodes of a zone: between (i - 1, j) and (i, j), and between (i, j - 1) and (i, j).
   pure subroutine middles_of_zone(layout, division, numbers, zone, along, across)
-    type(layout_t), intent(in) :: layout
+    type(zone_layout_t), intent(in) :: layout
     type(division_t), intent(in) :: division
-    type(numbers_t), intent(in) :: numbers
+    type(node_numbers_t), intent(in) :: numbers
     integer, intent(in) :: zone
     integer, allocatable, intent(out) :: along(:, :)    !! (1:n, 0:m)
     integer, allocatable, intent(out) :: across(:, :)   !! (0:n, 1:m)
@@ -169,9 +169,9 @@ contains
     end do
   end subroutine middles_of_zone
 
-  !> The ends of elements of a zone that lie one row in from its side k, as the zone walks that side.
+  !> The ends of elements of a zone that lie one row in from its side k, in the direction of the zone.
   pure function row_beside(grid, k) result(row)
-    integer, intent(in) :: grid(0:, 0:)
+    integer, intent(in) :: grid(0:, 0:)   !! (0:n, 0:m)
     integer, intent(in) :: k
     integer, allocatable :: row(:)
     integer :: n, m
@@ -190,4 +190,4 @@ contains
     end select
   end function row_beside
 
-end module zone_numbers
+end module zone_node_numbers

@@ -1,35 +1,35 @@
-!> Elements that smoothing left too skewed, mended by moving their corners.
+!> Untangling of elements that smoothing left too skewed, by moving their corners.
 !>
-!> An element is as good as the smallest sine between its lines at its eight nodes (the Jacobian over the lengths of its
-!> columns); where it is folded, as the Jacobian itself over its area before, for beyond a right angle the sine grows again. A
-!> corner of a bad element goes where the worst element around it is best, by trial in eight directions; its sides keep
-!> their shape. Elements that are good are not touched, and none becomes the new worst around.
-module mend_elements
-  use kinds, only: wp
+!> The quality of an element is the smallest sine between its lines at its eight nodes (the Jacobian over the lengths of its
+!> columns); where it is inverted, the Jacobian itself divided by its previous area, since beyond a right angle the sine grows
+!> again. A corner of a bad element is moved to the best of trial positions in eight directions, judged by the worst adjacent
+!> element; its sides keep their shape. Good elements are not touched, and none becomes worse than the worst one around.
+module untangle_elements
   use graded_sizes, only: list_elements
+  use kinds, only: wp
   use shape_functions, only: quad8, quad8_corner
   implicit none
   private
-  public :: mend, least_sine, slopes_at_nodes
+  public :: untangle, least_sine, slopes_at_nodes
 
-  !> Steps tried, as shares of the mean side around, and how often all is gone through.
+  !> Trial steps, as shares of the mean adjacent side, and number of passes.
   real(wp), parameter :: steps(4) = [0.4_wp, 0.15_wp, 0.05_wp, 0.015_wp]
   integer, parameter :: passes = 20
   real(wp), parameter :: half_root = 0.70710678118654752440_wp
   real(wp), parameter :: directions(2, 8) = reshape([1.0_wp, 0.0_wp, half_root, half_root, 0.0_wp, 1.0_wp, -half_root, half_root, &
                                                      -1.0_wp, 0.0_wp, -half_root, -half_root, 0.0_wp, -1.0_wp, &
                                                      half_root, -half_root], [2, 8])
-  !> A gain smaller than this is none.
+  !> A smaller improvement is rejected.
   real(wp), parameter :: gain = 1.0e-3_wp
 
 contains
 
   !> Move corners of elements below `least` that may move.
-  pure subroutine mend(connectivity, may_move, least, x)
+  pure subroutine untangle(connectivity, may_move, least, x)
     integer, intent(in) :: connectivity(:, :)   !! (8, nelem)
     logical, intent(in) :: may_move(:)          !! (nend) corners, which are the first nodes
     real(wp), intent(in) :: least
-    real(wp), intent(inout) :: x(:, :)          !! (2, nnode) [length]
+    real(wp), intent(inout) :: x(:, :)   !! (2, nnode) [length]
     integer, allocatable :: first(:), around(:)
     real(wp), allocatable :: sine(:), unit(:)
     real(wp) :: dphi(2, 8, 8)
@@ -58,9 +58,9 @@ contains
       end do
       if (.not. changed) exit
     end do
-  end subroutine mend
+  end subroutine untangle
 
-  !> The best of the places tried for one corner.
+  !> The best of the trial positions of one corner.
   pure subroutine improve(connectivity, elements, node, dphi, unit, sine, x, moved)
     integer, intent(in) :: connectivity(:, :), elements(:), node
     real(wp), intent(in) :: dphi(:, :, :), unit(:)
@@ -100,7 +100,7 @@ contains
     end do
   end subroutine improve
 
-  !> Move a corner of an element; the sides beside it keep their shape, so that no middle leaves its place over the chord.
+  !> Move a corner of an element; the adjacent sides keep their shape, so that no middle node moves along the chord.
   pure subroutine shift(corner, step, cell)
     integer, intent(in) :: corner
     real(wp), intent(in) :: step(2)
@@ -126,7 +126,7 @@ contains
   !> Smallest sine between the lines of an element at its nodes; below zero the Jacobian over a quarter of a unit of area.
   pure function least_sine(x, dphi, unit) result(least)
     real(wp), intent(in) :: x(:, :)         !! (2, 8) [length]
-    real(wp), intent(in) :: dphi(:, :, :)   !! of `slopes_at_nodes`
+    real(wp), intent(in) :: dphi(:, :, :)   !! (2, 8, 8) of `slopes_at_nodes` [-]
     real(wp), intent(in) :: unit            !! [length^2]
     real(wp) :: least
     real(wp) :: a(2), b(2), det
@@ -155,7 +155,7 @@ contains
 
   !> Derivatives of the shape functions at the corners and middles.
   pure subroutine slopes_at_nodes(dphi)
-    real(wp), intent(out) :: dphi(2, 8, 8)   !! (direction, function, node)
+    real(wp), intent(out) :: dphi(2, 8, 8)   !! (direction, function, node) [-]
     real(wp) :: phi(8), xi(2)
     integer :: k
 
@@ -166,4 +166,4 @@ contains
     end do
   end subroutine slopes_at_nodes
 
-end module mend_elements
+end module untangle_elements

@@ -1,32 +1,32 @@
-!> Nodes on the axis, brought back to the depth of the points in contact beside them.
+!> Nodes on the axis, moved back to the depth of the adjacent integration points in contact.
 !>
-!> A point on the axis has no surface: with rules that have points in the ends of a side nothing holds its node there, and it may
-!> sink in the die. The contour of a new mesh would run through it, and points of that mesh would find themselves so deep. (The
-!> node has no part in the load of an even pressure, nor in the volume: to second order nothing hangs on it.)
-module loose_nodes
-  use contact_knots, only: find_knot
-  use contact_stretches, only: knot_t, placed_piece
+!> A point on the axis has no surface: with integration rules that have points at the ends of a side no contact force acts on its
+!> node there, and it may penetrate the die. The contour of a new mesh would pass through it, and integration points of that mesh
+!> would have the same depth. (The node has no part in the load of a uniform pressure, nor, to second order, in the volume.)
+module axis_nodes
+  use arcs, only: arc_t, tangent_at
+  use arcs_on_die, only: closest_point_t, placed_piece
+  use die_closest_points, only: find_closest_point
   use dies, only: die_t, is_deformable
   use kinds, only: wp
   use quadrature, only: line_rule
   use scene, only: axisymmetric, scene_t
   use solution, only: solution_t
   use state_variables, only: find_variable
-  use stretches, only: stretch_t, tangent_at
   use vectors, only: length_of
   implicit none
   private
-  public :: hold_nodes
+  public :: limit_depths
 
-  !> A radius below this share of the largest one is the axis.
+  !> A radius below this share of the largest one is zero.
   real(wp), parameter :: no_radius = 1.0e-9_wp
-  !> Dies that stand steeper on the axis are left: along it their depth means nothing.
+  !> Dies steeper than this on the axis are ignored: the depth along the axis has no meaning there.
   real(wp), parameter :: least_cosine = 0.5_wp
 
 contains
 
   !> Nodes on the axis that lie deeper in a rigid die than the closed point next to them.
-  pure subroutine hold_nodes(scene, solution, x)
+  pure subroutine limit_depths(scene, solution, x)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     real(wp), intent(inout) :: x(:, :)   !! nodes now (2, nnode) [length]
@@ -57,24 +57,24 @@ contains
         end do
       end associate
     end do
-  end subroutine hold_nodes
+  end subroutine limit_depths
 
-  !> Bring a point on the axis out of a die to a depth.
+  !> Move a point along the axis to a given depth in a die.
   pure subroutine lift(die, pilot, depth, point)
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: pilot(3), depth
     real(wp), intent(inout) :: point(2)
-    type(knot_t) :: knot
-    type(stretch_t) :: piece
+    type(closest_point_t) :: closest
+    type(arc_t) :: piece
     real(wp) :: normal(2)
     logical :: over
 
-    call find_knot(die, pilot, point, [1, size(die%pieces, 3)], .true., knot, over)
-    if (.not. (over .and. knot%depth > depth)) return
-    piece = placed_piece(die, pilot, knot%piece)
-    normal = tangent_at(piece, knot%xi)
+    call find_closest_point(die, pilot, point, [1, size(die%pieces, 3)], .true., closest, over)
+    if (.not. (over .and. closest%depth > depth)) return
+    piece = placed_piece(die, pilot, closest%piece)
+    normal = tangent_at(piece, closest%xi)
     normal = [normal(2), -normal(1)]/length_of(normal)
-    if (abs(normal(2)) > least_cosine) point(2) = point(2) + (depth - knot%depth)/normal(2)
+    if (abs(normal(2)) > least_cosine) point(2) = point(2) + (depth - closest%depth)/normal(2)
   end subroutine lift
 
-end module loose_nodes
+end module axis_nodes
