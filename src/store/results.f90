@@ -9,7 +9,7 @@ module results
   use hdf5_file, only: hdf5_file_t
   use instant_files, only: begin_file, forget_later_steps, instant_path, instants_folder, link_instant, mesh_path, put_in_place
   use kinds, only: wp
-  use nodal_average, only: add_to_nodes
+  use nodal_fields, only: list_nodal_fields, nodal_field
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use state_variables, only: component_names
@@ -228,46 +228,21 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(xdmf_grid_t), intent(inout) :: grid
-    type(string_t), allocatable :: names(:), done(:)
-    integer :: g, c
+    type(string_t), allocatable :: names(:)
+    integer :: k
 
-    allocate (done(0))
-    call put_field('mises', 0)
-    do g = 1, size(scene%groups)
-      if (.not. is_solid(scene%groups(g))) cycle
-      call component_names(scene%groups(g)%variables, names)
-      do c = 1, size(names)
-        if (any_is(done, names(c)%s)) cycle
-        call put_field(names(c)%s, 1)
-        done = [done, names(c)]
-      end do
+    call list_nodal_fields(scene, names)
+    do k = 1, size(names)
+      call put_field(names(k)%s)
     end do
 
   contains
 
-    subroutine put_field(name, kind)
+    subroutine put_field(name)
       character(len=*), intent(in) :: name
-      integer, intent(in) :: kind
-      real(wp) :: at(size(scene%mesh%coordinates, 2)), count_at(size(scene%mesh%coordinates, 2))
-      type(string_t), allocatable :: own(:)
-      integer :: h, k
+      real(wp), allocatable :: at(:)
 
-      at = 0
-      count_at = 0
-      do h = 1, size(scene%groups)
-        if (.not. is_solid(scene%groups(h))) cycle
-        associate (state => solution%groups(h)%committed, nodes => scene%groups(h)%connectivity)
-          if (kind == 0) then
-            call add_to_nodes(nodes, mises(state(1:4, :, :)), at, count_at)
-          else
-            call component_names(scene%groups(h)%variables, own)
-            do k = 1, size(own)
-              if (own(k)%s == name) call add_to_nodes(nodes, state(k, :, :), at, count_at)
-            end do
-          end if
-        end associate
-      end do
-      where (count_at > 0) at = at/count_at
+      call nodal_field(scene, solution, name, at)
       call file%write('node/'//name, at)
       grid%fields = [grid%fields, xdmf_field_t(name, 'Node', 'Scalar', 'node/'//name)]
     end subroutine put_field
@@ -300,26 +275,5 @@ contains
       call file%write('points/'//to_text(g)//'/components', names)
     end do
   end subroutine put_points
-
-  !> von Mises' equivalent stress of stresses (4, npoint, nelem).
-  pure function mises(stress) result(q)
-    real(wp), intent(in) :: stress(:, :, :)
-    real(wp) :: q(size(stress, 2), size(stress, 3))
-
-    q = sqrt(0.5_wp*((stress(1, :, :) - stress(2, :, :))**2 + (stress(2, :, :) - stress(4, :, :))**2 &
-                     + (stress(4, :, :) - stress(1, :, :))**2) + 3*stress(3, :, :)**2)
-  end function mises
-
-  pure function any_is(words, word) result(found)
-    type(string_t), intent(in) :: words(:)
-    character(len=*), intent(in) :: word
-    logical :: found
-    integer :: k
-
-    found = .false.
-    do k = 1, size(words)
-      found = found .or. words(k)%s == word
-    end do
-  end function any_is
 
 end module results
