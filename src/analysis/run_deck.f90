@@ -10,7 +10,7 @@ module run_deck
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use law_api, only: law_t
-  use law_manual, only: law_card
+  use law_manual, only: law_card, law_list
   use law_registry, only: law_names, list_laws
   use listing, only: close_listing, end_progress, list_lines, list_note, list_resumed, open_listing
   use march, only: march_to_end
@@ -23,8 +23,8 @@ module run_deck
   use scene_summary, only: scene_lines
   use solution, only: solution_t, start_solution
   use summary, only: run_facts_t, summary_lines, write_summary
-  use system, only: catch_signals, join_path, make_directory, wall_seconds
-  use text, only: nearest_word, string_t
+  use system, only: catch_signals, join_path, make_directory, remove_file, wall_seconds
+  use text, only: join, nearest_word, string_t
   use threads, only: number_of_threads, set_threads
   use unknowns_summary, only: unknowns_lines
   implicit none
@@ -162,6 +162,9 @@ contains
     started = wall_seconds()
     call open_listing(run%stem//'.log', run%resume, options%quiet, solution%time/scene%strategy%end_time, run%listing, error)
     if (allocated(error)) return
+    ! what an earlier call came to says nothing of this one: no summary, no end
+    call remove_file(join_path(run%folder, 'summary.json'), error)
+    if (allocated(error)) return
     if (run%resume) call list_resumed(run%listing, options%resume, solution)
     call scene_lines(scene, lines)
     call list_lines(run%listing, lines)
@@ -197,42 +200,50 @@ contains
     type(scene_t), intent(in) :: scene
     type(error_t), allocatable, intent(out) :: error
     type(string_t), allocatable :: lines(:), more(:)
-    integer :: k
 
     call scene_lines(scene, lines)
     allocate (more(0))
     if (.not. lacks_mesh(scene)) call unknowns_lines(scene, more, error)
     if (allocated(error)) return
-    do k = 1, size(lines)
-      write (*, '(a)') lines(k)%s
-    end do
-    do k = 1, size(more)
-      write (*, '(a)') more(k)%s
-    end do
+    call print_lines(lines)
+    call print_lines(more)
   end subroutine print_check
 
-  !> --law NAME: the card of a law.
+  !> --law: the card of a law, or all laws in a list where no name is given.
   subroutine print_law(name, error)
     character(len=*), intent(in) :: name
     type(error_t), allocatable, intent(out) :: error
     type(law_t), allocatable :: laws(:)
     type(string_t), allocatable :: names(:), lines(:)
     character(len=:), allocatable :: nearest
-    integer :: k, i
+    integer :: k
 
     call list_laws(laws)
+    if (name == '') then
+      call law_list(laws, lines)
+      call print_lines(lines)
+      return
+    end if
     do k = 1, size(laws)
       if (laws(k)%name /= name) cycle
       call law_card(laws(k), lines)
-      do i = 1, size(lines)
-        write (*, '(a)') lines(i)%s
-      end do
+      call print_lines(lines)
       return
     end do
     call law_names(laws, names)
     nearest = nearest_word(name, names)
     if (nearest /= '') nearest = '; nearest: '''//nearest//''''
-    call fail(error, exit_input, 'no law is called '''//name//''''//nearest)
+    call law_list(laws, lines)
+    call fail(error, exit_input, 'no law is called '''//name//''''//nearest, 'the laws:'//new_line('a')//join(lines, new_line('a')))
   end subroutine print_law
+
+  subroutine print_lines(lines)
+    type(string_t), intent(in) :: lines(:)
+    integer :: k
+
+    do k = 1, size(lines)
+      write (*, '(a)') lines(k)%s
+    end do
+  end subroutine print_lines
 
 end module run_deck

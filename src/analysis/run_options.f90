@@ -12,7 +12,7 @@ module run_options
     !> Folder of the results; by default the deck's name, in the present folder.
     character(len=:), allocatable :: out
     character(len=:), allocatable :: resume
-    !> Law whose card is asked for.
+    !> Law whose card is asked for; empty for the list of all.
     character(len=:), allocatable :: law
     type(string_t), allocatable :: overrides(:)
     logical :: check = .false., point = .false., quiet = .false., help = .false., version = .false.
@@ -49,7 +49,11 @@ contains
       case ('--resume')
         call value_of(word, k, options%resume, error)
       case ('--law')
-        call value_of(word, k, options%law, error)
+        if (k == command_argument_count()) then
+          options%law = ''
+        else
+          call value_of(word, k, options%law, error)
+        end if
       case ('-p')
         call value_of('-p', k, word, error)
         options%overrides = [options%overrides, string_t(word)]
@@ -103,7 +107,7 @@ contains
     text = 'lagamine: metal forming and heat treatment in two dimensions'//nl//nl// &
            'lagamine DECK [--out DIR] [--check] [--resume CHECKPOINT] [-p NAME=VALUE]... [--threads N] [--quiet]'//nl// &
            'lagamine --point DECK [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
-           'lagamine --law NAME | --help | --version'//nl//nl// &
+           'lagamine --law [NAME] | --help | --version'//nl//nl// &
            '  --out DIR       folder of the results (default: the deck''s name)'//nl// &
            '  --check         read the deck, print the scene, run nothing'//nl// &
            '  --resume FILE   go on from a checkpoint of the same deck'//nl// &
@@ -111,7 +115,7 @@ contains
            '  --threads N     threads of the element loop; results are the same bits for any number'//nl// &
            '  --point         one material point along the deck''s PATH; its answer comes into DIR/NAME.point.csv'//nl// &
            '  --quiet         print errors only'//nl// &
-           '  --law NAME      print the card of a law: parameters, units, state, source'//nl//nl// &
+           '  --law [NAME]    print the card of a law: parameters, units, state, source; without a name, list all laws'//nl//nl// &
            'Exit codes: 0 done, 2 input refused, 3 no convergence at the smallest step, 4 remesh due,'//nl// &
            '            5 the machine failed, 6 a check of our own failed, 128+n stopped by signal n'
   end function usage_text

@@ -1,13 +1,38 @@
-!> A law in words, for `lagamine --law NAME`: its card, its numbers, its state, where it comes from.
+!> Laws in words, for `lagamine --law`: the list of all; of one its card, its numbers, its state, where it comes from.
 module law_manual
   use kinds, only: wp
-  use law_api, only: contact_law, find_parameter, law_line_t, law_t, line_choice, line_pairs, parameter_t
+  use law_api, only: contact_law, find_parameter, law_line_t, law_t, line_choice, line_pairs, parameter_t, solid_law
   use text, only: string_t, to_text
   implicit none
   private
-  public :: law_card
+  public :: law_card, law_list
 
 contains
+
+  !> A line for each law, those for solids first: name, number, what it is for, purpose.
+  pure subroutine law_list(laws, lines)
+    type(law_t), intent(in) :: laws(:)
+    type(string_t), allocatable, intent(out) :: lines(:)
+    integer :: kind, i
+
+    allocate (lines(0))
+    do kind = solid_law, contact_law
+      do i = 1, size(laws)
+        if (laws(i)%kind /= kind) cycle
+        call put(lines, '  '//padded(laws(i)%name, 9)//padded(to_text(laws(i)%number), 6)//padded(users(laws(i)), 18) &
+                 //laws(i)%purpose)
+      end do
+    end do
+  end subroutine law_list
+
+  !> Elements that use a law.
+  pure function users(law) result(s)
+    type(law_t), intent(in) :: law
+    character(len=:), allocatable :: s
+
+    s = 'solids (PL8LS)'
+    if (law%kind == contact_law) s = 'contact (CNT2D)'
+  end function users
 
   subroutine law_card(law, lines)
     type(law_t), intent(in) :: law
@@ -17,11 +42,7 @@ contains
     allocate (lines(0))
     call put(lines, law%name//' ('//to_text(law%number)//'): '//law%purpose)
     call put(lines, 'source: '//law%source)
-    if (law%kind == contact_law) then
-      call put(lines, 'for: contact (CNT2D)')
-    else
-      call put(lines, 'for: solids (PL8LS)')
-    end if
+    call put(lines, 'for: '//users(law))
     call put(lines, 'tangent: '//trim(merge('symmetric  ', 'unsymmetric', law%symmetric)))
     call put(lines, '')
     call put(lines, 'LAW name '//law%name)
@@ -101,7 +122,7 @@ contains
     t = s//repeat(' ', max(1, width - len(s)))
   end function padded
 
-  subroutine put(lines, s)
+  pure subroutine put(lines, s)
     type(string_t), allocatable, intent(inout) :: lines(:)
     character(len=*), intent(in) :: s
     type(string_t) :: line

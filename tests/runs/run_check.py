@@ -66,7 +66,7 @@ def check_decks(checks):
 def laws(checks):
     """Every law of the manual has a card that names its parameters."""
     with open(os.path.join(SOURCE, "decks", "README.md"), encoding="utf-8") as manual:
-        names = re.findall(r"(?m)^\| `(\w+)` \| (?:solids|contact) \|", manual.read())
+        names = re.findall(r"(?m)^\| `([\w-]+)` \| (?:solids|contact) \|", manual.read())
     checks.that(len(names) >= 4, "the manual lists laws", names)
     for name in names:
         result = run(["--law", name])
@@ -75,6 +75,19 @@ def laws(checks):
         checks.that(len(result.stdout.splitlines()) >= 4, f"--law {name}: a card", result.stdout)
         lower = run(["--law", name.lower()])
         checks.that(lower.returncode == 2 and name in lower.stderr, f"--law {name.lower()}: refused, with the name meant", said(lower))
+
+
+def list_of_laws(checks):
+    """--law alone: every law of the manual in a line with its number and what its card says it is."""
+    result = run(["--law"])
+    checks.that(result.returncode == DONE and result.stderr == "", "--law: done", said(result))
+    with open(os.path.join(SOURCE, "decks", "README.md"), encoding="utf-8") as manual:
+        names = re.findall(r"(?m)^\| `([\w-]+)` \| (solids|contact) \|", manual.read())
+    rows = [line.split(None, 3) for line in result.stdout.splitlines()]
+    checks.that(sorted((row[0], row[2]) for row in rows) == sorted(names), "--law: the laws of the manual, no more", result.stdout)
+    for row in rows:
+        title = run(["--law", row[0]]).stdout.splitlines()[0]
+        checks.that(title == f"{row[0]} ({row[1]}): {row[3].partition(') ')[2].strip()}", f"--law: {row[0]} as on its card", (row, title))
 
 
 def help_and_version(checks):
@@ -119,6 +132,7 @@ def main():
     checks = Checks()
     check_decks(checks)
     laws(checks)
+    list_of_laws(checks)
     help_and_version(checks)
     off_is_off(checks)
     checks.end()

@@ -23,13 +23,13 @@ PAGE = 4096
 STRANGE = ("Backtrace", "Fortran runtime", "HDF5-DIAG", "SIG", "core dumped", "At line")
 
 
-def fails(checks, result, code, what, phrases):
-    """Exit code; one clear line first, on the stream of errors; nothing from the libraries."""
+def fails(checks, result, code, what, phrases, advice=1):
+    """Exit code; one clear line first, on the stream of errors, then lines of advice; nothing from the libraries."""
     lines = result.stderr.splitlines()
     first = lines[0] if lines else ""
     checks.that(result.returncode == code, f"{what}: exit code {code}", said(result))
     checks.that(all(phrase in first for phrase in phrases), f"{what}: the first line says {' and '.join(phrases)}", result.stderr[:400])
-    checks.that(len(lines) <= 2, f"{what}: a line, and one of advice", f"{len(lines)} lines: {result.stderr[:600]}")
+    checks.that(len(lines) <= 1 + advice, f"{what}: a line, and {advice} of advice", f"{len(lines)} lines: {result.stderr[:600]}")
     strange = [word for word in STRANGE if word in result.stderr + result.stdout]
     checks.that(not strange, f"{what}: no word from libraries", result.stderr[:300])
 
@@ -57,12 +57,16 @@ def command_line(checks):
              "-p of no parameter": ([UPSETTING, "-p", "nz=3"], ["nz"]),
              "an empty name of a deck": ([""], []),
              "an empty folder": ([UPSETTING, "--out", ""] + SMALL, ["--out"]),
-             "a law that is not there": (["--law", "EPLB"], ["EPLB", "EPLA"]),
              "a checkpoint that is not there": ([UPSETTING, "--resume", "no.ckp.h5"], ["no.ckp.h5"])}
     for what, (arguments, phrases) in cases.items():
         result = run(arguments, cwd=folder)
         fails(checks, result, INPUT, what, phrases)
         silent(checks, result, what)
+    laws = run(["--law"], cwd=folder).stdout
+    what, result = "a law that is not there", run(["--law", "EPLB"], cwd=folder)
+    fails(checks, result, INPUT, what, ["EPLB", "EPLA"], advice=1 + len(laws.splitlines()))
+    silent(checks, result, what)
+    checks.that("EPLA" in laws and result.stderr.endswith(laws), f"{what}: the list of laws follows", said(result))
     checks.that(os.listdir(folder) == [], "mistakes on the command line: nothing is made", os.listdir(folder))
 
 
