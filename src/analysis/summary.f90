@@ -8,6 +8,7 @@ module summary
   use history, only: circumference
   use json_writer, only: json_t
   use kinds, only: i8, wp
+  use penetration_advice, only: advice_at_points, advice_between_points, states_penetration
   use restart_report, only: add_restart
   use restore_balance, only: balance_t
   use scene, only: is_solid, scene_t
@@ -26,9 +27,6 @@ module summary
     integer :: exit_code = 0, threads = 1
     real(wp) :: wall = 0.0_wp
   end type run_facts_t
-
-  !> Penetrations are told as too large beyond this share above the allowed.
-  real(wp), parameter :: augmentation_slack = 1.0e-6_wp
 
 contains
 
@@ -90,6 +88,7 @@ contains
     call json%add('energy_imbalance', energy_imbalance(solution, totals))
     call json%add('spurious_mode', solution%worst_spurious)
     call json%end_object()
+    call add_advice(json, scene, solution)
     call json%begin_object('energy')
     call json%add('external_work', circumference(scene)*solution%external_work)
     call json%add('elastic', circumference(scene)*totals%elastic_energy)
@@ -99,6 +98,27 @@ contains
     call json%end_object()
     call json%write_file(path, error)
   end subroutine write_summary
+
+  !> What to do about the checks that do not hold, by their names.
+  subroutine add_advice(json, scene, solution)
+    type(json_t), intent(inout) :: json
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+
+    call json%begin_object('advice')
+    call add('max_penetration_over_allowed', advice_at_points(scene, solution))
+    call add('max_penetration_sampled_over_allowed', advice_between_points(scene, solution))
+    call json%end_object()
+
+  contains
+
+    subroutine add(check, advice)
+      character(len=*), intent(in) :: check, advice
+
+      if (len(advice) > 0) call json%add(check, advice)
+    end subroutine add
+
+  end subroutine add_advice
 
   !> Estimated errors in percent, and why a new mesh is due.
   subroutine add_estimate(json, scene, solution)
@@ -219,44 +239,62 @@ contains
     type(solution_t), intent(in) :: solution
     type(totals_t), intent(in) :: totals
     type(string_t), allocatable, intent(out) :: lines(:)
-    integer :: t, n
+    integer :: t
 
-    allocate (lines(8 + merge(1, 0, scene%remesh%estimate) + equations%timers%size()))
-    lines(1)%s = ''
-    lines(2)%s = facts%status//': '//facts%stop_reason
-    lines(3)%s = '  time '//to_text(solution%time)//' of '//to_text(scene%strategy%end_time)//', '//to_text(solution%step) &
-                 //' steps, '//to_text(solution%iterations)//' iterations, '//to_text(solution%cutbacks)//' cutbacks'
-    lines(4)%s = '  volume drift '//to_text(100*(totals%volume/solution%initial_volume - 1), 3)//' % (without elastic strain ' &
-                 //to_text(100*(totals%unloaded_volume/solution%initial_volume - 1), 3)//' %), energy imbalance ' &
-                 //to_text(100*energy_imbalance(solution, totals), 3)//' %, worst linear residual ' &
-                 //to_text(solution%worst_linear_residual, 2)
-    lines(5)%s = '  largest penetration '//to_text(solution%worst_penetration, 3)//', at most ' &
-                 //to_text(solution%worst_penetration_ratio, 3)//' of the allowed'
-    if (solution%worst_penetration_ratio > 1 + augmentation_slack) then
-      lines(5)%s = lines(5)%s//' WARNING: above it; ask for AUGMENT, or a larger PENETR'
+    allocate (lines(0))
+    call put('')
+    call put(facts%status//': '//facts%stop_reason)
+    call put('  time '//to_text(solution%time)//' of '//to_text(scene%strategy%end_time)//', '//to_text(solution%step) &
+             //' steps, '//to_text(solution%iterations)//' iterations, '//to_text(solution%cutbacks)//' cutbacks')
+    call put('  volume drift '//to_text(100*(totals%volume/solution%initial_volume - 1), 3)//' % (without elastic strain ' &
+             //to_text(100*(totals%unloaded_volume/solution%initial_volume - 1), 3)//' %), energy imbalance ' &
+             //to_text(100*energy_imbalance(solution, totals), 3)//' %, worst linear residual ' &
+             //to_text(solution%worst_linear_residual, 2))
+    if (size(scene%dies) == 0) then
+      call put('  no contact')
+    else
+      call put('  largest penetration at points of contact '//depth(solution%worst_penetration, solution%worst_penetration_ratio) &
+               //'; between them too '//depth(solution%worst_sample, solution%worst_sample_ratio))
+      call warn('points of contact', advice_at_points(scene, solution))
+      call warn('sides between points of contact', advice_between_points(scene, solution))
     end if
-    lines(5)%s = lines(5)%s//'; between points too '//to_text(solution%worst_sample, 3)//', ' &
-                 //to_text(solution%worst_sample_ratio, 3)
-    if (solution%worst_sample_ratio > max(1.0_wp, solution%worst_penetration_ratio) + augmentation_slack) then
-      lines(5)%s = lines(5)%s//': more points on a side (CNT2D) see it'
-    end if
-    if (size(scene%dies) == 0) lines(5)%s = '  no contact'
-    lines(6)%s = '  '//to_text(equations%dofs%neq)//' equations, '//to_text(solid_elements(scene))//' elements, ' &
-                 //to_text(facts%threads)//' threads, '//to_text(facts%wall, 4)//' s on the wall, ' &
-                 //to_text(cpu_seconds(), 4)//' s of processor, '//to_text(peak_memory_mb(), 4)//' MB'
-    n = 7
+    call put('  '//to_text(equations%dofs%neq)//' equations, '//to_text(solid_elements(scene))//' elements, ' &
+             //to_text(facts%threads)//' threads, '//to_text(facts%wall, 4)//' s on the wall, ' &
+             //to_text(cpu_seconds(), 4)//' s of processor, '//to_text(peak_memory_mb(), 4)//' MB')
     if (scene%remesh%estimate) then
-      lines(7)%s = '  estimated error: stress '//to_text(100*solution%estimate%stress, 3)//' %, strain ' &
-                   //to_text(100*solution%estimate%strain, 3)//' %'
-      n = 8
+      call put('  estimated error: stress '//to_text(100*solution%estimate%stress, 3)//' %, strain ' &
+               //to_text(100*solution%estimate%strain, 3)//' %')
     end if
-    lines(n)%s = '  seconds by effect and task:'
+    call put('  seconds by effect and task:')
     do t = 1, equations%timers%size()
-      n = n + 1
-      lines(n)%s = '    '//equations%timers%name(t)//'  '//to_text(equations%timers%seconds(t), 4)//' s in ' &
-                   //to_text(equations%timers%calls(t))//' calls'
+      call put('    '//equations%timers%name(t)//'  '//to_text(equations%timers%seconds(t), 4)//' s in ' &
+               //to_text(equations%timers%calls(t))//' calls')
     end do
-    lines(n + 1)%s = ''
+    call put('')
+
+  contains
+
+    subroutine put(line)
+      character(len=*), intent(in) :: line
+
+      lines = [lines, string_t(line)]
+    end subroutine put
+
+    subroutine warn(what, advice)
+      character(len=*), intent(in) :: what, advice
+
+      if (len(advice) > 0) call put('  WARNING: '//what//' are deeper in a die than allowed: '//advice)
+    end subroutine warn
+
+    !> A depth, and its share of what is allowed where a law states that.
+    function depth(length, ratio) result(words)
+      real(wp), intent(in) :: length, ratio
+      character(len=:), allocatable :: words
+
+      words = to_text(length, 3)
+      if (states_penetration(scene)) words = words//', '//to_text(ratio, 3)//' of the allowed'
+    end function depth
+
   end subroutine summary_lines
 
 end module summary

@@ -67,7 +67,15 @@ class Triangles:
 
     def at(self, nodal: np.ndarray) -> np.ndarray:
         """Nodal values carried to the points of the triangles; of one or two columns."""
-        values = np.einsum("pk,ek...->ep...", self.phi, nodal[self.topology])
+        return self._welded(np.einsum("pk,ek...->ep...", self.phi, nodal[self.topology]))
+
+    def bounded(self, nodal: np.ndarray) -> np.ndarray:
+        """The same of one column, within the range of the nodes of each element: a parabola goes beyond it between them."""
+        of_nodes = nodal[self.topology]
+        return self._welded(np.clip(of_nodes @ self.phi.T, of_nodes.min(axis=1)[:, None], of_nodes.max(axis=1)[:, None]))
+
+    def _welded(self, values: np.ndarray) -> np.ndarray:
+        """Values (element, point, ...) at the points of all elements, each once."""
         return values.reshape((-1,) + values.shape[2:])[self.first]
 
 

@@ -4,6 +4,7 @@ from typing import Iterable, List, Sequence, Tuple
 
 from .picture import Picture
 
+MANY = 7    # columns of a table that is moved under the finger on a narrow screen
 Sections = List[Tuple[str, str, str]]    # anchor, heading, content
 
 
@@ -12,15 +13,18 @@ def escape(value) -> str:
 
 
 def figure(picture: Picture, heading: str) -> str:
-    return (f'<figure><img alt="{escape(picture.heading or heading)}: {escape(picture.caption)}" src="{picture.data_uri()}">'
+    # On a narrow screen a touch shows the picture large, to be moved under the finger: the box is the switch, without a script.
+    return (f'<figure><label><input type="checkbox"><img alt="{escape(picture.heading or heading)}: {escape(picture.caption)}" '
+            f'src="{picture.data_uri()}"></label>'
             f"<figcaption>{escape(picture.caption)}</figcaption></figure>")
 
 
 def table(head: Sequence[str], rows: Iterable[Tuple[str, Sequence[str]]]) -> str:
     """Cells are HTML already; each row comes with its class."""
     text = "".join(f"<th>{escape(cell)}</th>" for cell in head)
-    lines = [f"<table><thead><tr>{text}</tr></thead><tbody>"]
+    many = ' class="many"' if len(head) > MANY else ""
+    lines = [f'<div class="wide"><table{many}><thead><tr>{text}</tr></thead><tbody>']
     for look, cells in rows:
         start = f'<tr class="{look}">' if look else "<tr>"
         lines.append(start + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
-    return "\n".join(lines + ["</tbody></table>"])
+    return "\n".join(lines + ["</tbody></table></div>"])

@@ -9,12 +9,13 @@ from .reader import Run
 from .remesh_section import remesh_section
 from .short import Check, checks, command
 from .tables import number
+from .unfinished import UNDER_WAY
 from .words import brief
 
 # Sections in reading order: anchor, heading, pictures by name.
 SECTIONS: List[Tuple[str, str, Sequence[str]]] = [
     ("shape", "Shape and mesh", ("mesh", "meshes")),
-    ("fields", "Fields at the end", ("fields", "more")),
+    ("fields", "Fields", ("fields", "more")),
     ("series", "Fields over time", ("series",)),
     ("forces", "Forces on the dies", ("force",)),
     ("contact", "Contact", ("contact",)),
@@ -68,16 +69,24 @@ Lengths, forces and stresses are in the units of the deck.</footer>
 
 def _status(run: Run) -> str:
     s = run.summary
-    done = s.get("exit_code", 0) == 0
+    look = _look(run)
     reason = s.get("stop_reason") or ""
-    code = "" if done else f'<span>exit code {escape(s.get("exit_code"))}</span>'
-    return (f'<p class="reason"><span class="status{"" if done else " stopped"}">{escape(s["status"])}</span>'
+    code = f'<span>exit code {escape(s.get("exit_code"))}</span>' if run.ended and look else ""
+    return (f'<p class="reason"><span class="status{look}">{escape(s["status"])}</span>'
             f'<span>{escape(reason)}</span>{code}</p>')
+
+
+def _look(run: Run) -> str:
+    """Class of what tells how the run ended: nothing when all is well."""
+    if not run.ended:
+        return " open" if run.summary["status"] == UNDER_WAY else " stopped"
+    return "" if run.summary.get("exit_code", 0) == 0 else " stopped"
 
 
 def _tiles(run: Run) -> str:
     s = run.summary
-    tiles = [(brief(number(s.get("time"))), f"time reached, of {brief(number(s.get('end_time')))}")]
+    end = f", of {brief(number(s['end_time']))}" if "end_time" in s else ""
+    tiles = [(brief(number(s.get("time"))), "time reached" + end)]
     for key, word in (("steps", "steps"), ("iterations", "iterations"), ("cutbacks", "cutbacks"), ("remeshings", "remeshings"),
                       ("elements", "elements"), ("dofs", "equations")):
         if key in s:
@@ -89,8 +98,9 @@ def _tiles(run: Run) -> str:
             column = max(columns, key=lambda column: abs(column.values).max())
             tiles.append((brief(column.values[abs(column.values).argmax()]), f"largest {column.name}"))
     for field in ("plastic_strain", "mises"):
-        if field in run.names(run.steps[-1], "node"):
-            tiles.append((brief(float(run.nodal(run.steps[-1], field).max())), f"largest {field} at the nodes, at the end"))
+        largest = run.largest_at_points(run.steps[-1], field) if run.steps else None
+        if largest is not None:
+            tiles.append((brief(largest), f"largest {field} at points, {'at the end' if run.ended else 'as last saved'}"))
     tiles += _cost(run)
     return '<div class="tiles">' + "".join(f'<div class="tile"><b>{escape(value)}</b><span>{escape(word)}</span></div>'
                                            for value, word in tiles) + "</div>"
@@ -99,27 +109,35 @@ def _tiles(run: Run) -> str:
 def _cost(run: Run) -> List[Tuple[str, str]]:
     """Seconds and memory. A run of several calls has those of the calls that ended: what was killed has told nothing."""
     s, calls = run.summary, run.calls
-    threads = f"{escape(s.get('threads', '?'))} threads"
-    if calls.number < 2:
-        tiles = [(f"{brief(number(s.get('wall_s')), 3)} s", f"on the wall, {threads}")]
+    if not run.ended and calls.number == 0:
+        return []
+    threads = f", {escape(s['threads'])} threads" if "threads" in s else ""
+    if run.ended and calls.number < 2:
+        tiles = [(f"{brief(number(s.get('wall_s')), 3)} s", f"on the wall{threads}")]
         if "peak_rss_mb" in s:
             tiles.append((f"{brief(number(s['peak_rss_mb']), 3)} MB", "memory at its peak"))
         return tiles
     remesher = [row.numbers["remdata"] for row in run.tries if not math.isnan(row.numbers["remdata"])]
-    tiles = [(f"{brief(calls.wall, 3)} s", f"on the wall in {calls.number} calls of lagamine, {threads}")]
+    tiles = [(f"{brief(calls.wall, 3)} s", f"on the wall in {calls.number} calls of lagamine{threads}")]
     if remesher:
         tiles.append((f"{brief(sum(remesher), 3)} s", f"on the wall in {len(remesher)} calls of remdata"))
     return tiles + [(f"{brief(calls.memory, 3)} MB", "memory of lagamine at its peak")]
 
 
 def _alerts(run: Run, judged: Iterable[Check]) -> str:
-    lines = [f"<b>{escape(check.name)}</b> {escape(check.found)}, allowed {escape(check.allowed)}: {escape(check.advice)}"
+    lines = [escape(check.warning).replace(escape(check.name), f"<b>{escape(check.name)}</b>", 1)
              for check in judged if check.good is False]
-    if run.summary.get("exit_code", 0) != 0:
+    look = _look(run)
+    if look == " open":
+        lines.insert(0, "<b>The run is under way.</b> The page shows what it has written so far; made again, it shows more.")
+    elif not run.ended:
+        lines.insert(0, "<b>The run has been interrupted</b>, or is under way where this machine does not see it. "
+                        "The page shows what it has written so far.")
+    elif look:
         lines.insert(0, f"<b>The run did not reach its end:</b> {escape(run.summary.get('stop_reason', ''))}")
     if not lines:
         return ""
-    return '<div class="alerts" role="note">' + "".join(f"<p>{line}</p>" for line in lines) + "</div>"
+    return f'<div class="alerts{look}" role="note">' + "".join(f"<p>{line}</p>" for line in lines) + "</div>"
 
 
 def _sections(pictures: Sequence[Picture]) -> Sections:
@@ -177,9 +195,11 @@ def _notes(run: Run) -> Sections:
 
 def _origin(run: Run) -> Sections:
     s = run.summary
-    rows = [("", ("deck", f"<code>{escape(s['deck'])}</code>")),
-            ("", ("SHA-256 of the deck", f"<code>{escape(s.get('deck_sha256', 'not told'))}</code>")),
-            ("", ("program", escape(f"{s.get('program', 'lagamine')} {s.get('version', '')}"))),
-            ("", ("fields", "<br>".join(f"<code>{escape(os.path.basename(generation.path))}</code> {len(generation.steps)} saved "
-                                        f"steps, {len(generation.topology)} elements" for generation in run.generations)))]
-    return [("origin", "To make it again", f"<pre>{escape(command(run))}</pre>\n" + table(("", ""), rows))]
+    rows = []
+    if run.ended:
+        rows = [("", ("deck", f"<code>{escape(s['deck'])}</code>")),
+                ("", ("SHA-256 of the deck", f"<code>{escape(s.get('deck_sha256', 'not told'))}</code>")),
+                ("", ("program", escape(f"{s.get('program', 'lagamine')} {s.get('version', '')}")))]
+    rows.append(("", ("fields", "<br>".join(f"<code>{escape(os.path.basename(generation.path))}</code> {len(generation.steps)} saved "
+                                        f"steps, {len(generation.topology)} elements" for generation in run.generations))))
+    return [("origin", "To make it again" if run.ended else "To go on with it", f"<pre>{escape(command(run))}</pre>\n" + table(("", ""), rows))]

@@ -8,7 +8,7 @@ from .picture import Picture, when
 from .reader import Run, Step
 from .scene_view import SceneView, colour_bar, scale_for, value_range
 from .style import INK, SOFT, figure, panel_size
-from .words import DIRECTIONS, NOT_NEGATIVE, brief, field_title
+from .words import DIRECTIONS, brief, field_title
 
 MAIN_FIELDS = ["mises", "plastic_strain", "temperature"]
 HIDDEN_FIELDS = ["applied_force"]
@@ -102,7 +102,7 @@ def fields_picture(view: SceneView, names: Sequence[str], name: str = "fields", 
     fig, axes = figure(rows, columns, (columns * (inches[0] + 1.1), rows * (inches[1] + 0.55)))
     for panel, (field, values) in zip(axes.flat, shown):
         low, high = value_range(values)
-        scale = scale_for(field, low, high)
+        scale = scale_for(low, high)
         view.frame(panel, box, bare=small)
         view.dies(panel, step, box)
         if not small:
@@ -112,8 +112,7 @@ def fields_picture(view: SceneView, names: Sequence[str], name: str = "fields", 
         drawn = view.field(panel, step, values, scale, edges=not small)
         colour_bar(fig, drawn, panel)
         panel.set_title(field_title(field, run.axisymmetric), fontsize=9.5 if small else 10.5)
-        least = 0.0 if field in NOT_NEGATIVE and low < 0 else low
-        panel.set_xlabel(f"{brief(least)} … {brief(high)}", fontsize=8.5, color=SOFT)
+        panel.set_xlabel(f"{brief(low)} … {brief(high)}", fontsize=8.5, color=SOFT)
     for panel in axes.flat[len(shown):]:
         panel.set_visible(False)
     caption = when(run, step) + (". The same everywhere: " + "; ".join(uniform) if uniform else "")
@@ -133,7 +132,7 @@ def series_picture(view: SceneView, field: str, most: int = 8) -> Optional[Pictu
     spans = [span for span in map(value_range, values) if span]
     if not spans:
         return None
-    scale = scale_for(field, min(low for low, _ in spans), max(high for _, high in spans))
+    scale = scale_for(min(low for low, _ in spans), max(high for _, high in spans))
     fig, panels = _grid(view, steps, 2.05, 2.3)
     drawn = None
     for panel, step, value in zip(panels, steps, values):

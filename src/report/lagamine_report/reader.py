@@ -10,7 +10,8 @@ import numpy as np
 
 from .cycle import read_cycle
 from .errors import ReportError
-from .tables import read_calls, read_history, read_notes, read_summary
+from .tables import read_calls, read_history, read_history_so_far, read_notes, read_summary, with_entries
+from .unfinished import unfinished_name, unfinished_summary
 
 AXISYMMETRIC = 2
 
@@ -53,25 +54,38 @@ class Generation:
 
 
 class Run:
-    """Results in a folder. Everything that is missing or damaged is refused by name (ReportError)."""
+    """Results in a folder. What is missing or damaged is refused by name (ReportError).
+
+    A run writes its summary when it ends: without one it is under way or was interrupted, and has what it has written so far.
+    """
 
     def __init__(self, folder: str) -> None:
         if not os.path.isdir(folder):
             raise ReportError(f"{folder}: no such folder")
         self.folder = folder
-        if not os.path.exists(os.path.join(folder, "summary.json")):
-            advice = "give the folder that `lagamine DECK --out DIR` has written; a run writes its summary when it ends"
-            raise ReportError(f"{os.path.join(folder, 'summary.json')}: missing: no results of a finished run here", advice=advice)
-        self.summary = read_summary(os.path.join(folder, "summary.json"))
-        self.name = os.path.splitext(os.path.basename(self.summary["deck"]))[0]
-        self.history = read_history(os.path.join(folder, "history.csv"))
+        summary, history = os.path.join(folder, "summary.json"), os.path.join(folder, "history.csv")
+        self.ended = os.path.exists(summary)
+        if self.ended:
+            self.summary = read_summary(summary)
+            self.name = os.path.splitext(os.path.basename(self.summary["deck"]))[0]
+            self.history = read_history(history)
+        else:
+            name = unfinished_name(folder)
+            if name is None:
+                raise ReportError(f"{summary}: missing, and no listing: no results of a run here",
+                                  advice="give the folder that `lagamine DECK --out DIR` writes to")
+            self.name = name
+            self.history = read_history_so_far(history)
         self.notes = read_notes(os.path.join(folder, self.name + ".log"))
         self.calls = read_calls(os.path.join(folder, self.name + ".log"))
         self.tries = read_cycle(folder, self.name)
         self.generations = [read_generation(path) for path in self._generation_files()]
         self.steps = [step for generation in self.generations for step in generation.steps]
-        if not self.steps:
+        if not self.steps and self.ended:
             raise ReportError(f"{self.generations[0].path}: no saved steps")
+        if not self.ended:
+            self.summary = with_entries(unfinished_summary(folder, self.name, self.history, self._last_elements(),
+                                                           max(len(self.generations) - 1, 0)))
         self.die_names = self._order_dies()
 
     def _generation_files(self) -> List[str]:
@@ -83,14 +97,22 @@ class Run:
             if match:
                 found[int(match.group(1))] = path
         if not found:
+            if not self.ended and not self.history:     # it has only just begun
+                return []
             raise ReportError(f"{stem}.g01.h5: missing")
         for number in range(min(found), max(found) + 1):
             if number not in found:
                 raise ReportError(f"{stem}.g{number:02d}.h5: missing, though there is {os.path.basename(found[max(found)])}")
         return [found[number] for number in sorted(found)]
 
+    def _last_elements(self) -> int:
+        """Elements of the latest mesh; 0 where there is none yet."""
+        return len(self.generations[-1].topology) if self.generations else 0
+
     def _order_dies(self) -> List[str]:
         """Dies in the order of the pilots: the deck's, which the columns of the history keep (HDF5 sorts names)."""
+        if not self.generations:
+            return []
         names = list(self.generations[-1].dies)
         order = self.generations[-1].die_order
         if len(order) == len(names):
@@ -100,11 +122,11 @@ class Run:
 
     @property
     def axisymmetric(self) -> bool:
-        return self.generations[0].plane_state == AXISYMMETRIC
+        return bool(self.generations) and self.generations[0].plane_state == AXISYMMETRIC
 
     @property
     def title(self) -> str:
-        return self.summary.get("title") or self.generations[0].title or self.name
+        return self.summary.get("title") or (self.generations[0].title if self.generations else "") or self.name
 
     def read(self, step: Step, dataset: str) -> np.ndarray:
         """A dataset of a saved step."""
@@ -140,6 +162,21 @@ class Run:
             raise ReportError(f"{step.generation.path}: damaged: '{step.place}/points/{group.number}/state' "
                               "does not fit its components and elements")
         return names, state
+
+    def largest_at_points(self, step: Step, name: str) -> Optional[float]:
+        """Largest value of a field at the integration points of all bodies, None where none has it."""
+        found = []
+        for group in step.generation.groups:
+            held = self.points(step, group) if group.connectivity.shape[1:] == (8,) else None
+            if held is None:
+                continue
+            state = dict(zip(held[0], np.moveaxis(held[1], 2, 0)))
+            if name == "mises" and "stress_xx" in state:
+                xx, yy, xy, zz = (state[f"stress_{c}"] for c in ("xx", "yy", "xy", "zz"))
+                state[name] = np.sqrt(0.5 * ((xx - yy)**2 + (yy - zz)**2 + (zz - xx)**2) + 3 * xy**2)
+            if name in state:
+                found.append(float(state[name].max()))
+        return max(found) if found else None
 
     def pilots(self, step: Step) -> Dict[str, np.ndarray]:
         """Position (x, y, angle) of every die at a saved step."""

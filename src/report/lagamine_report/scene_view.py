@@ -13,7 +13,6 @@ from matplotlib.tri import Triangulation
 from .geometry import Triangles, all_sides, die_body, die_curve, element_curves, side_curves
 from .reader import Generation, Run, Step
 from .style import BODIES, DIE_FILL, DIE_LINE, INK, POSITIVE, SIGNED, SOFT
-from .words import NOT_NEGATIVE
 
 Box = Tuple[float, float, float, float]
 
@@ -105,8 +104,7 @@ class SceneView:
         """Filled contours of nodal values on the deformed shape; returns what a colour bar wants."""
         triangles = self.triangles(step.generation)
         x = self.run.coordinates(step)
-        at, fine, levels = triangles.at(x), triangles.at(values), scale.levels
-        # Between the nodes a parabola may leave the range of the nodes a little: no new colour for that.
+        at, fine, levels = triangles.at(x), triangles.bounded(values), scale.levels
         fine = np.clip(np.nan_to_num(fine, nan=levels[0]), levels[0], levels[-1])
         norm = BoundaryNorm(levels, 256)
         drawn = None
@@ -127,10 +125,8 @@ class Scale:
     colours: str
 
 
-def scale_for(name: str, low: float, high: float, count: int = 16) -> Scale:
+def scale_for(low: float, high: float, count: int = 16) -> Scale:
     """Levels between two values; a field of both signs is centred on 0."""
-    if name in NOT_NEGATIVE:
-        low = max(low, 0.0)
     signed = low < 0 < high and min(-low, high) > 0.1 * max(-low, high)
     if signed:
         high = max(-low, high)

@@ -1,9 +1,10 @@
 """What a run came to, judged and told in a few lines."""
 import math
+import os
 import shlex
 import sys
 from dataclasses import dataclass
-from typing import List, Optional, TextIO, Union
+from typing import Dict, List, Optional, TextIO, Union
 
 from .cycle import new_meshes
 from .reader import Run
@@ -13,19 +14,27 @@ from .words import brief
 # Above these the page warns: shares of the work, of the volume and of what all remeshings change of it, what a sound linear solution leaves, and the share of an
 # element's strain that its points do not see.
 ENERGY_IMBALANCE, VOLUME_DRIFT, VOLUME_BY_MESHES, LINEAR_RESIDUAL, SPURIOUS_MODE = 0.02, 0.01, 0.001, 1e-10, 0.9
+# Depths in summary.json, the share of the allowed beside them, and how far above 1 that is told as too large, as in the listing.
+PENETRATIONS = {"max_penetration": "at points of contact", "max_penetration_sampled": "between points of contact too"}
+OVER_ALLOWED, RATIO_SLACK = "_over_allowed", 1e-6
 # Signs of the page that not every terminal has.
 PLAIN = {0x2212: "-", 0x202F: None, 0x221E: "infinite", 0x2013: "-"}
 
 
 @dataclass
 class Check:
-    """A check: what was found, what is allowed, whether it holds (None: nothing to hold it against), what to do."""
+    """A check: what was found, what is allowed, whether it holds (None: nothing to hold it against), what to do about it."""
 
     name: str
     found: str
     allowed: str
     good: Optional[bool]
     advice: str = ""
+
+    @property
+    def warning(self) -> str:
+        """What to tell when it does not hold."""
+        return f"{self.name} {self.found}, allowed {self.allowed}" + (f": {self.advice}" if self.advice else "")
 
 
 def percent(value: float) -> str:
@@ -43,12 +52,7 @@ def checks(run: Run) -> List[Check]:
             good = abs(values[name]) <= limit
             result.append(Check(title, shown(values[name]), shown(limit), good, "" if good else advice))
 
-    if "max_penetration" in given:
-        allowed = values.get("allowed_penetration")
-        good = None if allowed is None else values["max_penetration"] <= allowed
-        result.append(Check("largest penetration", brief(values["max_penetration"], 3),
-                            "–" if allowed is None else brief(allowed, 3), good,
-                            "ask for AUGMENT, or a smaller PENETR, in the contact law" if good is False else ""))
+    result += penetration_checks(run, values)
     within("energy_imbalance", "energy imbalance", ENERGY_IMBALANCE, percent, "take smaller steps (STRAT) and compare")
     if "volume_drift_unloaded" in given:
         within("volume_drift_unloaded", "volume drift, without elastic strain", VOLUME_DRIFT, percent,
@@ -70,11 +74,30 @@ def checks(run: Run) -> List[Check]:
         good = values["least_dissipation"] >= -slack
         result.append(Check("least friction work of a step", brief(values["least_dissipation"], 3), "not negative", good,
                             "" if good else "friction gave energy back: report it with the deck"))
-    known = {"max_penetration", "allowed_penetration", "energy_imbalance", "volume_drift", "worst_linear_residual",
+    known = {*PENETRATIONS, *(name + OVER_ALLOWED for name in PENETRATIONS), "energy_imbalance", "volume_drift", "worst_linear_residual",
              "volume_drift_unloaded", "least_dissipation", "spurious_mode"}
     for name in given:
         if name not in known:
             result.append(Check(name.replace("_", " "), brief(values[name], 4), "–", None))
+    return result
+
+
+def penetration_checks(run: Run, values: Dict[str, float]) -> List[Check]:
+    """Depths in the dies, at points of contact and between them too, over what the contact laws allow (PENETR)."""
+    result = []
+    worst = 1.0
+    for name, title in PENETRATIONS.items():
+        depth, ratio = values.get(name, math.nan), values.get(name + OVER_ALLOWED, math.nan)
+        if math.isnan(depth) or not run.summary["effects"].get("contact", {}).get("on", True):
+            continue
+        if not ratio > 0:       # no contact law says what it allows, or nothing was touched
+            result.append(Check(f"depth {title}", brief(depth, 3), "–", None))
+            continue
+        good = ratio <= 1 + RATIO_SLACK
+        advice = str(run.summary["advice"].get(name + OVER_ALLOWED, "as at the points" if ratio <= worst else ""))
+        worst = max(worst, ratio)
+        result.append(Check(f"depth over allowed {title}", f"{brief(ratio, 3)} (depth {brief(depth, 3)})", "1", good,
+                            "" if good else advice))
     return result
 
 
@@ -93,7 +116,12 @@ def volume_by_meshes(run: Run) -> float:
 
 
 def command(run: Run) -> str:
-    """The command that makes these results again."""
+    """The command that makes these results again, or goes on with them."""
+    if not run.ended:
+        checkpoint = os.path.join(run.folder, run.name + ".ckp.h5")
+        if run.tries or not os.path.exists(checkpoint):
+            return f"{'lagacycle' if run.tries else 'lagamine'} DECK --out {shlex.quote(run.folder)}"
+        return f"lagamine DECK --out {shlex.quote(run.folder)} --resume {shlex.quote(checkpoint)}"
     given = run.summary.get("command")
     if isinstance(given, str) and given:
         return given
@@ -114,10 +142,12 @@ def short_lines(run: Run) -> List[str]:
     """The result in a few lines for a terminal; numbers in plain letters."""
     s = run.summary
     wall = run.calls.wall if run.calls.number > 1 else number(s.get("wall_s"))
+    end = f" of {brief(number(s['end_time']))}" if "end_time" in s else ""
     lines = [run.title, headline(run),
-             f"  time {brief(number(s.get('time')))} of {brief(number(s.get('end_time')))}, {s.get('steps', '?')} steps, "
-             f"{s.get('iterations', '?')} iterations, {s.get('cutbacks', '?')} cutbacks, {s.get('remeshings', 0)} remeshings",
-             f"  {s.get('elements', '?')} elements, {s.get('dofs', '?')} equations, {brief(wall, 3)} s"]
+             f"  time {brief(number(s.get('time')))}{end}, {s.get('steps', '?')} steps, "
+             f"{s.get('iterations', '?')} iterations, {s.get('cutbacks', '?')} cutbacks, {s.get('remeshings', 0)} remeshings"]
+    if run.ended:
+        lines.append(f"  {s.get('elements', '?')} elements, {s.get('dofs', '?')} equations, {brief(wall, 3)} s")
     for die in run.die_names:
         for axis in "yx":
             force = run.history.get(f"force_{axis}_{die}")
@@ -127,7 +157,7 @@ def short_lines(run: Run) -> List[str]:
                 break
     for check in checks(run):
         if check.good is False:
-            lines.append(f"  WARNING: {check.name} {check.found}, allowed {check.allowed}: {check.advice}")
+            lines.append(f"  WARNING: {check.warning}")
     return [line.translate(PLAIN) for line in lines]
 
 

@@ -2,6 +2,7 @@
 import csv
 import json
 import math
+import os
 import re
 from dataclasses import dataclass
 from typing import Any, Dict, List
@@ -13,6 +14,9 @@ from .errors import ReportError
 # The line of the listing with which a call of the solver ends.
 REAL = r"([0-9.]+(?:[eE][-+]?[0-9]+)?)"
 CALL = re.compile(rf"  [0-9]+ equations, .* {REAL} s on the wall, .* {REAL} MB")
+# Objects of a summary that the page looks into.
+ENTRIES = ("effects", "seconds", "checks", "energy", "advice")
+
 
 @dataclass
 class Column:
@@ -63,8 +67,8 @@ def read_summary(path: str) -> Dict[str, Any]:
     for name in ("deck", "status"):
         if not isinstance(summary.get(name), str):
             raise ReportError(f"{path}: damaged: '{name}' is missing or not a text")
-    for name in ("effects", "seconds", "checks", "energy"):
-        if not isinstance(summary.setdefault(name, {}), dict):
+    for name, entry in with_entries(summary).items():
+        if name in ENTRIES and not isinstance(entry, dict):
             raise ReportError(f"{path}: damaged: '{name}' is not an object")
     for name, effect in summary["effects"].items():
         if not isinstance(effect, dict):
@@ -72,9 +76,28 @@ def read_summary(path: str) -> Dict[str, Any]:
     return summary
 
 
+def with_entries(summary: Dict[str, Any]) -> Dict[str, Any]:
+    """The same, with an empty object for every one that is not there."""
+    for name in ENTRIES:
+        summary.setdefault(name, {})
+    return summary
+
+
 def read_history(path: str) -> Dict[str, Column]:
     """Columns of history.csv by name, in the order of the file."""
-    rows = list(csv.reader(read_text(path).splitlines()))
+    return columns_of(path, read_text(path))
+
+
+def read_history_so_far(path: str) -> Dict[str, Column]:
+    """The same of a run that has not ended: a row that is half written is left out; empty where no row can be."""
+    text = read_text(path) if os.path.exists(path) else ""
+    text = text[:text.rfind("\n") + 1]
+    return columns_of(path, text) if text else {}
+
+
+def columns_of(path: str, text: str) -> Dict[str, Column]:
+    """Columns of the text of a history."""
+    rows = list(csv.reader(text.splitlines()))
     if not rows or not rows[0] or not rows[0][0].startswith("time"):
         raise ReportError(f"{path}: damaged: no header that begins with 'time'")
     numbers = np.empty((len(rows) - 1, len(rows[0])))

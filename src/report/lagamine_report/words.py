@@ -5,8 +5,6 @@ DIRECTIONS = {"xx": ("xx", "radial"), "yy": ("yy", "axial"), "xy": ("xy", "shear
 WORDS = {"mises": "von Mises stress", "plastic_strain": "equivalent plastic strain", "plastic_work": "plastic work per volume",
          "stored_work": "work kept by backstress per volume", "plastic_rate": "rate of plastic strain",
          "displacement": "displacement (length)", "applied_force": "applied force at nodes", "temperature": "temperature"}
-# Fields that cannot be negative: what a fit through integration points leaves below 0 is not shown as a colour.
-NOT_NEGATIVE = {"mises", "plastic_strain", "plastic_work", "stored_work", "plastic_rate", "displacement", "applied_force"}
 
 
 def field_title(name: str, axisymmetric: bool = False) -> str:
