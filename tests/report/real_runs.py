@@ -1,4 +1,4 @@
-"""Folders of results that the solver, the remesher and lagacycle wrote, for tests of what reads them: small runs, each made once."""
+"""Folders of results that solver, remesher and lagacycle wrote, for tests of what reads them: small runs, each made once."""
 import os
 import shutil
 import stat

@@ -220,7 +220,8 @@ class ReportTest(unittest.TestCase):
             self.assertRegex(listing, "WARNING: .*: " + re.escape(words))
             self.assertRegex(result.stdout, r"WARNING: depth over allowed .*: " + re.escape(words))
             self.assertIn(f"<td>{words}</td>", text)
-            self.assertIn(f"<td>{brief(checks[name], 3)} (depth {brief(checks[name[:-len('_over_allowed')]], 3)})</td><td>1</td>", text)
+            depth = checks[name[:-len("_over_allowed")]]
+            self.assertIn(f"<td>{brief(checks[name], 3)} (depth {brief(depth, 3)})</td><td>1</td>", text)
         for name in advice:     # what is just not too deep is no warning
             self.change_summary(folder, "checks", name, 1.0)
         self.assertEqual([], warnings(folder))
@@ -230,7 +231,7 @@ class ReportTest(unittest.TestCase):
             self.change_summary(folder, "checks", name, 1.0)
 
     def test_penetration_advice_helps(self):
-        """With AUGMENT no point is too deep, with points at the nodes sides are less deep; PENETR changes depth and allowed alike."""
+        """With AUGMENT no point is too deep, with -3 points sides are less deep; PENETR changes depth and allowed alike."""
         points, sides = "max_penetration_over_allowed", "max_penetration_sampled_over_allowed"
         first, out = read_json(self.made("soft"), "summary.json")["checks"], os.path.join(self.folder, "again")
         self.runs.call("lagamine", out, {**SOFT, "augment": "20"}, 0)
@@ -248,7 +249,8 @@ class ReportTest(unittest.TestCase):
         """A page of a real run with one value changed warns of this one, and of no other."""
         for name, value, words in (("energy_imbalance", 0.5, "energy imbalance"), ("energy_imbalance", None, "not a number"),
                                    ("volume_drift_unloaded", 0.02, "volume drift"), ("least_dissipation", -1.0, "friction work"),
-                                   ("worst_linear_residual", 1e-8, "linear residual"), ("spurious_mode", 0.95, "unseen by the points")):
+                                   ("worst_linear_residual", 1e-8, "linear residual"),
+                                   ("spurious_mode", 0.95, "unseen by the points")):
             folder = self.made()
             self.change_summary(folder, "checks", name, value)
             told = warnings(folder)
@@ -279,7 +281,8 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(0, result.returncode, result.stderr)
         with open(path, encoding="utf-8") as file:
             rows = list(csv.reader(file))[1:-1]
-        self.assertIn(f"time {brief(float(rows[-1][0]))}, {rows[-1][1]} steps, {sum(int(row[3]) for row in rows)} iterations", result.stdout)
+        iterations = sum(int(row[3]) for row in rows)
+        self.assertIn(f"time {brief(float(rows[-1][0]))}, {rows[-1][1]} steps, {iterations} iterations", result.stdout)
         text = self.good_page(os.path.join(folder, "report.html"), 7)
         self.assertIn("The run has been interrupted", text)
         self.assertNotIn("The run is under way", text)
@@ -313,15 +316,16 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(4, text.count('<tr class="bad"><td>2</td>'))
         self.assertEqual(1, text.count("<b>the old mesh goes on</b>"))
         found = {name[:-4] for name in os.listdir(png)}
-        self.assertEqual({f"remesh_g{g:02d}" for g in (2, 4, 5, 6, 7, 8, 9)}, {name for name in found if name.startswith("remesh_")})
-        self.assertLessEqual({"mesh", "meshes", "fields", "more", "series", "force", "contact", "probes", "steps", "energy", "seconds"},
-                             found)
+        self.assertEqual({f"remesh_g{g:02d}" for g in (2, 4, 5, 6, 7, 8, 9)},
+                         {name for name in found if name.startswith("remesh_")})
+        self.assertLessEqual({"mesh", "meshes", "fields", "more", "series", "force", "contact", "probes", "steps", "energy",
+                              "seconds"}, found)
         for path in glob.glob(os.path.join(png, "*.png")):
             with open(path, "rb") as file:
                 self.assertGreater(drawn_share(file.read()), BLANK, path)
 
     def check_narrow_screen(self, text):
-        """A page as wide as the screen: the viewport is told, nothing is wider than a phone but what is moved in a box of its own."""
+        """A page as wide as the screen: the viewport is told, nothing is wider than a phone but what scrolls in its own box."""
         self.assertIn('<meta name="viewport" content="width=device-width, initial-scale=1">', text)
         style = text[text.index("<style>"):text.index("</style>")]
         self.assertRegex(style, r"nav \{[^}]*flex-wrap: wrap")
@@ -349,8 +353,9 @@ class ReportTest(unittest.TestCase):
             change = 100 * (restart["volume_after"] / restart["volume_before"] - 1)
             self.assertIn(f"Kept: volume {'+' if change > 0 else ''}{brief(change, 3)} %", text)
             by_meshes += restart["volume_before"] / first - 1 - drift[int(row["step"])]
-            strain = next(field for field in read_json(folder, stem + ".start.h5.json")["transfer"] if field["name"] == "plastic_strain")
-            self.assertIn(f"<td>equivalent plastic strain</td><td>{brief(strain['before'], 6)}</td><td>{brief(strain['after'], 6)}</td>", text)
+            fields = {field["name"]: field for field in read_json(folder, stem + ".start.h5.json")["transfer"]}
+            strain = [brief(fields["plastic_strain"][key], 6) for key in ("before", "after")]
+            self.assertIn(f"<td>equivalent plastic strain</td><td>{strain[0]}</td><td>{strain[1]}</td>", text)
         self.assertIn(f"<td>volume drift by new meshes, in all</td><td>{brief(100 * by_meshes, 3)} %</td><td>0.1 %</td>", text)
         limits = {**restart, **read_json(folder, stem + ".probation.json")}
         shown = [brief(factor * limits[name + "_limit"], 3) for name, factor in
@@ -413,7 +418,8 @@ class ReportTest(unittest.TestCase):
     def test_damaged_texts(self):
         for name, damage in (("summary.json", lambda s: s[:200]), ("summary.json", lambda s: "[]"),
                              ("history.csv", lambda s: s[:-30]),
-                             ("history.csv", lambda s: re.sub(r"(?m)^([^,\n]*),12,", r"\1,twelve,", s)), ("history.csv", lambda s: "")):
+                             ("history.csv", lambda s: re.sub(r"(?m)^([^,\n]*),12,", r"\1,twelve,", s)),
+                             ("history.csv", lambda s: "")):
             folder = self.made()
             self.damage(os.path.join(folder, name), damage)
             self.refused(folder, names=name)

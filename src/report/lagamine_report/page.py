@@ -200,6 +200,8 @@ def _origin(run: Run) -> Sections:
         rows = [("", ("deck", f"<code>{escape(s['deck'])}</code>")),
                 ("", ("SHA-256 of the deck", f"<code>{escape(s.get('deck_sha256', 'not told'))}</code>")),
                 ("", ("program", escape(f"{s.get('program', 'lagamine')} {s.get('version', '')}")))]
-    rows.append(("", ("fields", "<br>".join(f"<code>{escape(os.path.basename(generation.path))}</code> {len(generation.steps)} saved "
-                                        f"steps, {len(generation.topology)} elements" for generation in run.generations))))
-    return [("origin", "To make it again" if run.ended else "To go on with it", f"<pre>{escape(command(run))}</pre>\n" + table(("", ""), rows))]
+    files = [f"<code>{escape(os.path.basename(generation.path))}</code> {len(generation.steps)} saved steps, "
+             f"{len(generation.topology)} elements" for generation in run.generations]
+    rows.append(("", ("fields", "<br>".join(files))))
+    heading = "To make it again" if run.ended else "To go on with it"
+    return [("origin", heading, f"<pre>{escape(command(run))}</pre>\n" + table(("", ""), rows))]

@@ -11,8 +11,8 @@ from .reader import Run
 from .tables import number
 from .words import brief
 
-# Above these the page warns: shares of the work, of the volume and of what all remeshings change of it, what a sound linear solution leaves, and the share of an
-# element's strain that its points do not see.
+# Above these the page warns: shares of the work, of the volume and of what all remeshings change of it, what a sound linear
+# solution leaves, and the share of an element's strain that its points do not see.
 ENERGY_IMBALANCE, VOLUME_DRIFT, VOLUME_BY_MESHES, LINEAR_RESIDUAL, SPURIOUS_MODE = 0.02, 0.01, 0.001, 1e-10, 0.9
 # Depths in summary.json, the share of the allowed beside them, and how far above 1 that is told as too large, as in the listing.
 PENETRATIONS = {"max_penetration": "at points of contact", "max_penetration_sampled": "between points of contact too"}
@@ -74,8 +74,8 @@ def checks(run: Run) -> List[Check]:
         good = values["least_dissipation"] >= -slack
         result.append(Check("least friction work of a step", brief(values["least_dissipation"], 3), "not negative", good,
                             "" if good else "friction gave energy back: report it with the deck"))
-    known = {*PENETRATIONS, *(name + OVER_ALLOWED for name in PENETRATIONS), "energy_imbalance", "volume_drift", "worst_linear_residual",
-             "volume_drift_unloaded", "least_dissipation", "spurious_mode"}
+    known = {*PENETRATIONS, *(name + OVER_ALLOWED for name in PENETRATIONS), "energy_imbalance", "volume_drift",
+             "volume_drift_unloaded", "worst_linear_residual", "least_dissipation", "spurious_mode"}
     for name in given:
         if name not in known:
             result.append(Check(name.replace("_", " "), brief(values[name], 4), "–", None))
