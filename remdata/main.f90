@@ -8,8 +8,11 @@ program remdata
   use remesh_options, only: read_remesh_options, remesh_options_t, remesh_usage
   use remesh_report, only: print_facts, write_facts
   use remesh_scene, only: remesh_checkpoint
-  use run_version, only: version_text
+  use run_version, only: blas_words, print_version
+  use solver_blas, only: ask_blas
+  use start_again, only: start_as_fits
   use system, only: program_stop, wall_seconds
+  use threads, only: number_of_threads, start_team, team_t
   implicit none
   type(remesh_options_t) :: options
   type(remesh_facts_t) :: facts
@@ -23,7 +26,7 @@ program remdata
   else if (options%help) then
     write (*, '(a)') remesh_usage()
   else if (options%version) then
-    write (*, '(a)') 'remdata '//version_text
+    call tell_version()
   else if (options%about) then
     call print_about(options%checkpoint, error)
   else
@@ -39,13 +42,24 @@ program remdata
 contains
 
   subroutine run()
+    type(team_t) :: team
     real(wp) :: started
 
     started = wall_seconds()
+    call start_team(team, 0)
     call remesh_checkpoint(options, facts, error)
     call write_facts(options%out//'.json', facts, wall_seconds() - started, error, late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
     if (.not. options%quiet .and. .not. allocated(error)) call print_facts(facts, wall_seconds() - started)
   end subroutine run
+
+  !> The BLAS is the solver's, with the kernels that it takes there.
+  subroutine tell_version()
+    character(len=:), allocatable :: build, core
+
+    call ask_blas(build, core)
+    call start_as_fits(1, core)
+    call print_version('remdata', blas_words(build, core), number_of_threads())
+  end subroutine tell_version
 
 end program remdata

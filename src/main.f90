@@ -1,12 +1,15 @@
 !> The solver: arguments -> run -> exit code.
 program lagamine
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use blas, only: blas_build, blas_core_name
   use errors, only: error_t, exit_done
   use point_run, only: run_point
   use run_deck, only: print_law, run_options_on_deck
   use run_options, only: read_options, run_options_t, usage_text
-  use run_version, only: version_text
+  use run_version, only: blas_words, print_version
+  use start_again, only: start_as_fits
   use system, only: program_stop
+  use threads, only: number_of_threads, set_threads
   implicit none
   type(run_options_t) :: options
   type(error_t), allocatable :: error
@@ -19,12 +22,14 @@ program lagamine
   else if (options%help) then
     write (*, '(a)') usage_text()
   else if (options%version) then
-    write (*, '(a)') 'lagamine '//version_text
+    call settle_libraries()
+    call print_version('lagamine', blas_words(blas_build(), blas_core_name()), number_of_threads())
   else if (allocated(options%law)) then
     call print_law(options%law, error)
   else if (options%point) then
     call run_point(options, error)
   else
+    if (.not. options%check) call settle_libraries()
     call run_options_on_deck(options, code, error)
   end if
   if (allocated(error)) then
@@ -33,4 +38,13 @@ program lagamine
     if (allocated(error%advice)) write (error_unit, '(a)') error%advice
   end if
   call program_stop(code)
+
+contains
+
+  !> The environment the libraries want, by another start of the program where it is not so.
+  subroutine settle_libraries()
+    call set_threads(options%threads)
+    call start_as_fits(number_of_threads(), blas_core_name())
+  end subroutine settle_libraries
+
 end program lagamine

@@ -1,6 +1,6 @@
 !> `lagamine DECK`: from a deck to its results.
 module run_deck
-  use blas, only: keep_blas_to_one_thread
+  use blas, only: blas_build, blas_core_name, keep_blas_to_one_thread
   use contact_ends, only: contact_end_t
   use deck_reader, only: deck_t, fingerprint_text, read_deck
   use diagnostics, only: diagnostics_t
@@ -16,7 +16,7 @@ module run_deck
   use march, only: march_to_end
   use run_record, only: run_t
   use run_options, only: run_options_t, stem_of
-  use run_version, only: version_text
+  use run_version, only: blas_words, version_text
   use remesh, only: remesh_t
   use scene, only: lacks_mesh, scene_t
   use scene_reader, only: read_scene
@@ -25,7 +25,7 @@ module run_deck
   use summary, only: run_facts_t, summary_lines, write_summary
   use system, only: catch_signals, join_path, make_directory, remove_file, wall_seconds
   use text, only: join, nearest_word, string_t
-  use threads, only: number_of_threads, set_threads
+  use threads, only: start_team
   use unknowns_summary, only: unknowns_lines
   implicit none
   private
@@ -49,7 +49,6 @@ contains
     code = exit_done
     call catch_signals()
     call keep_blas_to_one_thread()
-    call set_threads(options%threads)
     call read_input(options, deck, scene, run%deck_text, at_rest, checkpoint, error)
     run%resume = allocated(options%resume) .and. .not. at_rest
     if (.not. (allocated(error) .or. options%check)) then
@@ -160,6 +159,7 @@ contains
     integer :: k, status
 
     started = wall_seconds()
+    call start_team(run%equations%team, options%threads)
     call open_listing(run%stem//'.log', run%resume, options%quiet, solution%time/scene%strategy%end_time, run%listing, error)
     if (allocated(error)) return
     ! what an earlier call came to says nothing of this one: no summary, no end
@@ -179,7 +179,8 @@ contains
     facts%status = trim(facts%status)
     facts%stop_reason = run%stop_reason
     facts%exit_code = run%exit_code
-    facts%threads = number_of_threads()
+    facts%threads = run%equations%team%most
+    facts%blas = blas_words(blas_build(), blas_core_name())
     facts%wall = wall_seconds() - started
     call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
     call list_lines(run%listing, lines)

@@ -16,7 +16,7 @@ module run_options
     character(len=:), allocatable :: law
     type(string_t), allocatable :: overrides(:)
     logical :: check = .false., point = .false., quiet = .false., help = .false., version = .false.
-    integer :: threads = 0   !! 0: as OpenMP finds
+    integer :: threads = 0   !! 0: as many as there are free processors
   end type run_options_t
 
 contains
@@ -112,7 +112,7 @@ contains
            '  --check         read the deck, print the scene, run nothing'//nl// &
            '  --resume FILE   go on from a checkpoint of the same deck'//nl// &
            '  -p NAME=VALUE   set a parameter of the deck'//nl// &
-           '  --threads N     threads of the element loop; results are the same bits for any number'//nl// &
+           '  --threads N     threads (default: as many as processors are free); the same bits for any number'//nl// &
            '  --point         one material point along the deck''s PATH; its answer comes into DIR/NAME.point.csv'//nl// &
            '  --quiet         print errors only'//nl// &
            '  --law [NAME]    print the card of a law: parameters, units, state, source; without a name, list all laws'//nl//nl// &

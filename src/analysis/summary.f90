@@ -21,7 +21,7 @@ module summary
 
   !> What the run knows of itself.
   type :: run_facts_t
-    character(len=:), allocatable :: version, deck, deck_text, status, stop_reason
+    character(len=:), allocatable :: version, deck, deck_text, status, stop_reason, blas
     !> Parameters set on the command line, NAME=VALUE.
     type(string_t), allocatable :: overrides(:)
     integer :: exit_code = 0, threads = 1
@@ -69,6 +69,7 @@ contains
     call json%add('cpu_s', cpu_seconds())
     call json%add('peak_rss_mb', peak_memory_mb())
     call json%add('threads', facts%threads)
+    call json%add('blas', facts%blas)
     call json%add('dofs', equations%dofs%neq)
     call json%add('elements', solid_elements(scene))
     call json%add('symmetric', equations%pattern%symmetric)

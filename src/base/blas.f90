@@ -1,10 +1,11 @@
-!> Interfaces of the dense kernels that are used, and of the switch of OpenBLAS's own threads.
+!> Interfaces of the dense kernels that are used, of the switch of OpenBLAS's own threads, and of what it tells of itself.
 module blas
-  use, intrinsic :: iso_c_binding, only: c_int
+  use, intrinsic :: iso_c_binding, only: c_int, c_ptr
   use kinds, only: wp
+  use system, only: text_of_c
   implicit none
   private
-  public :: dgemm, dgemv, dtrsm, dtrsv, keep_blas_to_one_thread
+  public :: dgemm, dgemv, dtrsm, dtrsv, keep_blas_to_one_thread, blas_core_name, blas_build
 
   interface
     !> C := alpha op(A) op(B) + beta C.
@@ -47,6 +48,16 @@ module blas
       import :: c_int
       integer(c_int), value :: n
     end subroutine openblas_set_num_threads
+
+    function openblas_get_corename() bind(c, name='openblas_get_corename') result(address)
+      import :: c_ptr
+      type(c_ptr) :: address
+    end function openblas_get_corename
+
+    function openblas_get_config() bind(c, name='openblas_get_config') result(address)
+      import :: c_ptr
+      type(c_ptr) :: address
+    end function openblas_get_config
   end interface
 
 contains
@@ -55,5 +66,19 @@ contains
   subroutine keep_blas_to_one_thread()
     call openblas_set_num_threads(1_c_int)
   end subroutine keep_blas_to_one_thread
+
+  !> The processor whose kernels are in use, in OpenBLAS's words: Haswell, SkylakeX, ...
+  function blas_core_name() result(core)
+    character(len=:), allocatable :: core
+
+    core = text_of_c(openblas_get_corename())
+  end function blas_core_name
+
+  !> Name, version and options of the build: OpenBLAS 0.3.21 DYNAMIC_ARCH ...
+  function blas_build() result(build)
+    character(len=:), allocatable :: build
+
+    build = text_of_c(openblas_get_config())
+  end function blas_build
 
 end module blas

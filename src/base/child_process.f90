@@ -9,7 +9,7 @@ module child_process
   use text, only: string_t
   implicit none
   private
-  public :: ending_t, run_child, own_process
+  public :: ending_t, run_child, own_process, words_for_c
 
   !> How a child ended.
   type :: ending_t
@@ -105,19 +105,9 @@ contains
     character(kind=c_char, len=:), allocatable, target :: all_words
     type(c_ptr) :: pointers(size(words) + 1)
     character(kind=c_char, len=:), allocatable :: program_name, file
-    integer :: first, k
     integer(c_int) :: process
 
-    all_words = ''
-    do k = 1, size(words)
-      all_words = all_words//words(k)%s//c_null_char
-    end do
-    first = 1
-    do k = 1, size(words)
-      pointers(k) = c_loc(all_words(first:first))
-      first = first + len(words(k)%s) + 1
-    end do
-    pointers(size(pointers)) = c_null_ptr
+    call words_for_c(words, all_words, pointers)
     program_name = words(1)%s//c_null_char
     file = said//c_null_char
     process = c_fork()
@@ -125,6 +115,25 @@ contains
     ending%started = process > 0
     if (ending%started) call wait_for(process, limit, ending)
   end subroutine run_child
+
+  !> Words as C takes the arguments of a program: pointers to their first letters, and one to nothing.
+  subroutine words_for_c(words, text, pointers)
+    type(string_t), intent(in) :: words(:)
+    character(kind=c_char, len=:), allocatable, target, intent(out) :: text   !! holds the letters, and must last
+    type(c_ptr), intent(out) :: pointers(:)                                   !! (words + 1)
+    integer :: first, k
+
+    text = ''
+    do k = 1, size(words)
+      text = text//words(k)%s//c_null_char
+    end do
+    first = 1
+    do k = 1, size(words)
+      pointers(k) = c_loc(text(first:first))
+      first = first + len(words(k)%s) + 1
+    end do
+    pointers(size(pointers)) = c_null_ptr
+  end subroutine words_for_c
 
   !> The number of this process, for names of files that no other one uses meanwhile.
   function own_process() result(number)

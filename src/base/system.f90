@@ -12,7 +12,7 @@ module system
   public :: file_exists, directory_exists, make_directory, rename_file, link_file, remove_file, flush_to_disk
   public :: split_path, base_name, directory_of, join_path
   public :: catch_signals, caught_signal, program_stop
-  public :: set_environment
+  public :: set_environment, in_environment, from_environment, text_of_c
 
   !> The numbers POSIX gives to the two requests to stop.
   integer(c_int), parameter :: signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, signal_file_size = 25
@@ -329,6 +329,30 @@ contains
     last_signal = number
   end subroutine record_signal
 
+  !> Is there a variable of one of these names, be it empty?
+  function in_environment(names) result(is_set)
+    character(len=*), intent(in) :: names(:)
+    logical :: is_set
+    integer :: k, status
+
+    is_set = .false.
+    do k = 1, size(names)
+      call get_environment_variable(trim(names(k)), status=status)
+      is_set = is_set .or. status /= 1
+    end do
+  end function in_environment
+
+  !> The value of a variable, '' where there is none.
+  function from_environment(name) result(value)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: value
+    integer :: length
+
+    call get_environment_variable(name, length=length)
+    allocate (character(len=length) :: value)
+    if (length > 0) call get_environment_variable(name, value)
+  end function from_environment
+
   !> Set a variable of the environment of this process, unless it is set and `overwrite` is false.
   subroutine set_environment(name, value, error, overwrite)
     character(len=*), intent(in) :: name, value
@@ -355,19 +379,26 @@ contains
   function reason() result(words)
     character(len=:), allocatable :: words
     integer(c_int), pointer :: number
+
+    call c_f_pointer(c_errno(), number)
+    words = text_of_c(c_strerror(number))
+    if (words == '') words = 'unknown reason'
+  end function reason
+
+  !> The text that C keeps at an address, '' where there is none.
+  function text_of_c(address) result(words)
+    type(c_ptr), intent(in) :: address
+    character(len=:), allocatable :: words
     character(kind=c_char), pointer :: letters(:)
-    type(c_ptr) :: address
     integer :: i
 
-    words = 'unknown reason'
-    call c_f_pointer(c_errno(), number)
-    address = c_strerror(number)
+    words = ''
     if (.not. c_associated(address)) return
     call c_f_pointer(address, letters, [c_strlen(address)])
     words = repeat(' ', size(letters))
     do i = 1, size(letters)
       words(i:i) = letters(i)
     end do
-  end function reason
+  end function text_of_c
 
 end module system

@@ -4,9 +4,14 @@ find_library(MUMPS_LIBRARY NAMES dmumps_seq)
 find_library(MUMPS_COMMON_LIBRARY NAMES mumps_common_seq)
 find_library(MUMPS_MPISEQ_LIBRARY NAMES mpiseq_seq mpiseq)
 find_library(MUMPS_PORD_LIBRARY NAMES pord_seq pord)
+if(EXISTS "${MUMPS_INCLUDE_DIR}/dmumps_c.h")
+  file(STRINGS "${MUMPS_INCLUDE_DIR}/dmumps_c.h" line REGEX "define MUMPS_VERSION +\"")
+  string(REGEX REPLACE ".*\"(.*)\".*" "\\1" MUMPS_VERSION "${line}")
+endif()
 include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(MUMPS
   REQUIRED_VARS MUMPS_LIBRARY MUMPS_COMMON_LIBRARY MUMPS_MPISEQ_LIBRARY MUMPS_PORD_LIBRARY MUMPS_INCLUDE_DIR
+  VERSION_VAR MUMPS_VERSION
   REASON_FAILURE_MESSAGE "Sequential MUMPS is missing: install libmumps-seq-dev (Debian, Ubuntu) or set MUMPS_LIBRARY and MUMPS_INCLUDE_DIR")
 if(MUMPS_FOUND AND NOT TARGET MUMPS::DMUMPS)
   add_library(MUMPS::DMUMPS UNKNOWN IMPORTED)

@@ -21,6 +21,7 @@ module equations
   use sections, only: section_forced
   use solution, only: solution_t
   use sparsity, only: build_pattern, pattern_t
+  use threads, only: fit_to_load, team_t
   use timers, only: ledger_t
   use vectors, only: length_of
   implicit none
@@ -36,6 +37,7 @@ module equations
     type(element_buffers_t) :: buffers
     type(linear_solver_t) :: solver
     type(ledger_t) :: timers
+    type(team_t) :: team
     !> Internal force (element forces summed) at the last evaluation, and the sum of their sizes (ndof).
     real(wp), allocatable :: force(:), magnitude(:)
     real(wp), allocatable :: values(:)
@@ -241,6 +243,7 @@ contains
     type(instant_t) :: instant
     integer :: timer
 
+    call fit_to_load(equations%team)
     call make_instant(scene, equations, solution, dt, du, tangent, instant)
     do
       call pair_up(scene, solution%pairs, equations)

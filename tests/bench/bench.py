@@ -313,14 +313,14 @@ def write_csv(path, results):
                                + [row["forces"].get(moment, "") for moment in MOMENTS])
 
 
-def put_into_readme(text):
-    """The tables between the marks of README.md."""
+def put_into_readme(text, begin=BEGIN, end=END):
+    """The tables between two marks of README.md."""
     with open(README, encoding="utf-8") as file:
         old = file.read()
-    if BEGIN not in old or END not in old:
-        sys.exit(f"bench: {README} has no marks '{BEGIN}' and '{END}'")
+    if begin not in old or end not in old:
+        sys.exit(f"bench: {README} has no marks '{begin}' and '{end}'")
     with open(README, "w", encoding="utf-8") as file:
-        file.write(old.split(BEGIN)[0] + BEGIN + "\n" + text + END + old.split(END)[1])
+        file.write(old.split(begin)[0] + begin + "\n" + text + end + old.split(end)[1])
 
 
 def main():

@@ -2,9 +2,7 @@
 """Results are the same bits for any number of threads: history, fields, XDMF and checkpoint of the upsetting deck.
 
 usage: run_threads.py [-v] [-k]       -v prints every check, -k keeps the results
-Threads that wait do so asleep (OMP_WAIT_POLICY), lest this takes minutes on a machine with other work.
 """
-import os
 import sys
 
 sys.dont_write_bytecode = True
@@ -14,7 +12,6 @@ from support import DONE, UPSETTING, Checks, mesh, result_differences, run, said
 def main():
     with_h5py()
     checks = Checks()
-    os.environ["OMP_WAIT_POLICY"] = "passive"
     # The deck as it is; a mesh of an odd number of elements with more threads than divide it; the first steps of one so large that
     # the linear solver shares its fronts out, too.
     for name, options, numbers in (("12x18", [], (1, 2)), ("7x11", mesh(7, 11), (1, 2, 3, 8)),

@@ -5,7 +5,7 @@ module gmsh_call
   use errors, only: error_t, exit_no_convergence, fail
   use gmsh_files, only: cell_t, quads_t, read_quads, unit_frame_t, write_script
   use kinds, only: wp
-  use system, only: directory_of, join_path, remove_file
+  use system, only: directory_of, from_environment, join_path, remove_file
   use text, only: string_t, to_text
   implicit none
   private
@@ -30,16 +30,11 @@ contains
     real(wp), intent(in) :: limit            !! longest time for a mesh [s]
     type(gmsh_t), intent(out) :: gmsh
     character(len=:), allocatable :: own_path
-    integer :: length
 
     gmsh%stem = beside//'.'//to_text(own_process())
     gmsh%limit = limit
-    call get_environment_variable('REMDATA_GMSH', length=length)
-    allocate (character(len=length) :: gmsh%program_name)
-    if (length > 0) then
-      call get_environment_variable('REMDATA_GMSH', gmsh%program_name)
-      return
-    end if
+    gmsh%program_name = from_environment('REMDATA_GMSH')
+    if (gmsh%program_name /= '') return
     gmsh%program_name = 'remdata_gmsh'
     call argument(0, own_path)
     if (index(own_path, '/') > 0) gmsh%program_name = join_path(directory_of(own_path), gmsh%program_name)

@@ -1,6 +1,8 @@
 """`lagareport DIR`: arguments -> page -> exit code."""
 import argparse
+import importlib
 import os
+import subprocess
 import sys
 import tempfile
 from typing import NoReturn, Sequence
@@ -21,6 +23,28 @@ class _Parser(argparse.ArgumentParser):
         sys.exit(EXIT_INPUT)
 
 
+class _Version(argparse.Action):
+    """The version, then what the programs beside this one are made of, as `lagamine --version` has it."""
+
+    def __init__(self, option_strings: Sequence[str], dest: str, version: str) -> None:
+        super().__init__(option_strings, dest, nargs=0, help="show the version, and those of the libraries")
+        self.version = version
+
+    def __call__(self, parser, *_) -> NoReturn:
+        print(f"lagareport {self.version}")
+        # in share/lagamine/lagamine_report, beside bin
+        home = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__)))))
+        try:
+            told = subprocess.run([os.path.join(home, "bin", "lagamine"), "--version"], stdin=subprocess.DEVNULL,
+                                  stdout=subprocess.PIPE, text=True, check=False).stdout
+        except OSError:
+            told = ""
+        print("".join(told.splitlines(keepends=True)[1:]), end="")
+        for module in ("numpy", "h5py", "matplotlib"):
+            print(f"{module}: {importlib.import_module(module).__version__}")
+        sys.exit(EXIT_DONE)
+
+
 def main(arguments: Sequence[str], version: str) -> int:
     """Read the arguments, make the page, tell the short result."""
     parser = _Parser("lagareport", description="The results of a run as one self-contained HTML page with pictures.",
@@ -32,7 +56,7 @@ def main(arguments: Sequence[str], version: str) -> int:
     parser.add_argument("--png", metavar="DIR", help="write the pictures as PNG files into this folder too")
     parser.add_argument("--mirror", action="store_true", help="axisymmetric scenes: show both halves of the section")
     parser.add_argument("--quiet", action="store_true", help="print nothing when all goes well")
-    parser.add_argument("--version", action="version", version=f"lagareport {version}")
+    parser.add_argument("--version", action=_Version, version=version)
     options = parser.parse_args(list(arguments))
     for stream in (sys.stdout, sys.stderr):
         stream.reconfigure(errors="replace")     # a title may hold letters that the terminal has not

@@ -1,0 +1,10 @@
+# Gmsh, its C interface. Defines GMSH_INCLUDE_DIR, GMSH_LIBRARY, Gmsh_VERSION.
+find_path(GMSH_INCLUDE_DIR gmshc.h)
+find_library(GMSH_LIBRARY gmsh)
+if(GMSH_INCLUDE_DIR)
+  file(STRINGS "${GMSH_INCLUDE_DIR}/gmshc.h" line REGEX "define GMSH_API_VERSION +\"")
+  string(REGEX REPLACE ".*\"(.*)\".*" "\\1" Gmsh_VERSION "${line}")
+endif()
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(Gmsh REQUIRED_VARS GMSH_LIBRARY GMSH_INCLUDE_DIR VERSION_VAR Gmsh_VERSION)
+mark_as_advanced(GMSH_INCLUDE_DIR GMSH_LIBRARY)
