@@ -19,22 +19,23 @@ module listing
 
   type :: listing_t
     integer :: unit = -1
-    !> Progress is shown on the terminal.
-    logical :: live = .false.
+    !> Progress is shown: over and over in one line of a terminal, or in a new line each time.
+    logical :: live = .false., terminal = .false.
     real(wp) :: started = 0.0_wp, shown = 0.0_wp
     !> Share of the scene already done when the program started (a resumed run).
     real(wp) :: start_share = 0.0_wp
   end type listing_t
 
   integer, parameter :: standard_output = 1
-  !> Seconds between two progress lines.
-  real(wp), parameter :: refresh = 0.2_wp
+  !> Seconds between two progress lines, on a terminal and elsewhere.
+  real(wp), parameter :: refresh = 0.2_wp, refresh_file = 60.0_wp
 
 contains
 
-  subroutine open_listing(path, resume, quiet, share, listing, error)
+  subroutine open_listing(path, resume, quiet, progress, share, listing, error)
     character(len=*), intent(in) :: path
     logical, intent(in) :: resume, quiet
+    logical, intent(in) :: progress   !! show it also where there is no terminal
     real(wp), intent(in) :: share
     type(listing_t), intent(out) :: listing
     type(error_t), allocatable, intent(out) :: error
@@ -46,8 +47,8 @@ contains
       open (newunit=listing%unit, file=path, action='write', status='replace', iostat=status)
     end if
     if (status /= 0) call fail(error, exit_machine, path//': cannot be written')
-    listing%live = is_terminal(standard_output)
-    if (quiet) listing%live = .false.
+    listing%terminal = is_terminal(standard_output)
+    listing%live = (listing%terminal .or. progress) .and. .not. quiet
     listing%started = wall_seconds()
     listing%start_share = share
   end subroutine open_listing
@@ -172,7 +173,7 @@ contains
     write (error_unit, '(a)') note
   end subroutine list_note
 
-  !> One line on the terminal: step, time, iterations, share done, time left.
+  !> One line: step, time, iterations, share done, time left.
   subroutine show_progress(listing, scene, solution, iterations)
     type(listing_t), intent(inout) :: listing
     type(scene_t), intent(in) :: scene
@@ -185,13 +186,17 @@ contains
     if (.not. listing%live) return
     now = wall_seconds()
     share = solution%time/scene%strategy%end_time
-    if (now - listing%shown < refresh .and. share < 1) return
+    if (listing%shown > 0 .and. now - listing%shown < merge(refresh, refresh_file, listing%terminal) .and. share < 1) return
     listing%shown = now
     left = (now - listing%started)*(1 - share)/max(share - listing%start_share, tiny(1.0_wp))
     line = 'step '//to_text(solution%step)//'  time '//to_text(solution%time, 4)//'  iterations '//to_text(iterations) &
            //'  '//to_text(100*share, 3)//' %  '//to_text(now - listing%started, 3)//' s, left ' &
            //to_text(min(left, 1.0e9_wp), 3)//' s'
-    write (*, '(a)', advance='no', iostat=status) achar(13)//line(:79)
+    if (listing%terminal) then
+      write (*, '(a)', advance='no', iostat=status) achar(13)//line(:79)
+    else
+      write (*, '(a)', iostat=status) trim(line)
+    end if
     if (status == 0) flush (output_unit, iostat=status)
     ! nobody is there to see it
     if (status /= 0) listing%live = .false.
@@ -201,7 +206,7 @@ contains
   subroutine end_progress(listing)
     type(listing_t), intent(in) :: listing
 
-    if (listing%live .and. listing%shown > 0) write (*, '(a)') ''
+    if (listing%live .and. listing%terminal .and. listing%shown > 0) write (*, '(a)') ''
   end subroutine end_progress
 
 end module listing

@@ -85,7 +85,7 @@ contains
     character(len=*), parameter :: reason = 'remesh: no mesh yet, the remesher makes it'
     type(string_t), allocatable :: lines(:)
 
-    call open_listing(run%stem//'.log', .false., options%quiet, 0.0_wp, run%listing, error)
+    call open_listing(run%stem//'.log', .false., options%quiet, options%progress, 0.0_wp, run%listing, error)
     if (allocated(error)) return
     call scene_lines(scene, lines)
     call list_lines(run%listing, lines)
@@ -160,7 +160,8 @@ contains
 
     started = wall_seconds()
     call start_team(run%equations%team, options%threads)
-    call open_listing(run%stem//'.log', run%resume, options%quiet, solution%time/scene%strategy%end_time, run%listing, error)
+    call open_listing(run%stem//'.log', run%resume, options%quiet, options%progress, solution%time/scene%strategy%end_time, &
+                      run%listing, error)
     if (allocated(error)) return
     ! what an earlier call came to says nothing of this one: no summary, no end
     call remove_file(join_path(run%folder, 'summary.json'), error)
@@ -188,7 +189,7 @@ contains
     call write_summary(join_path(run%folder, 'summary.json'), facts, scene, run%equations, solution, run%totals, &
                        run%balance, late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
-    if (.not. options%quiet) then
+    if (.not. (options%quiet .or. options%progress)) then
       do k = 1, size(lines)
         write (*, '(a)', iostat=status) lines(k)%s
         if (status /= 0) exit  ! the reader has gone away

@@ -16,6 +16,8 @@ module run_options
     character(len=:), allocatable :: law
     type(string_t), allocatable :: overrides(:)
     logical :: check = .false., point = .false., quiet = .false., help = .false., version = .false.
+    !> Progress and nothing else, also where the output is no terminal.
+    logical :: progress = .false.
     integer :: threads = 0   !! 0: as many as there are free processors
   end type run_options_t
 
@@ -44,6 +46,8 @@ contains
         options%point = .true.
       case ('--quiet')
         options%quiet = .true.
+      case ('--progress')
+        options%progress = .true.
       case ('--out')
         call value_of(word, k, options%out, error)
       case ('--resume')
@@ -67,8 +71,8 @@ contains
       case default
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
           call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--check'), string_t('--quiet'), &
-                                    string_t('--out'), string_t('--resume'), string_t('--law'), string_t('--point'), &
-                                    string_t('-p'), string_t('--threads')], 'lagamine', error)
+                                    string_t('--progress'), string_t('--out'), string_t('--resume'), string_t('--law'), &
+                                    string_t('--point'), string_t('-p'), string_t('--threads')], 'lagamine', error)
         else if (allocated(options%deck)) then
           call fail(error, exit_input, 'one deck at a time: found '''//options%deck//''' and '''//word//'''')
         else
@@ -105,7 +109,8 @@ contains
     character(len=*), parameter :: nl = new_line('a')
 
     text = 'lagamine: metal forming and heat treatment in two dimensions'//nl//nl// &
-           'lagamine DECK [--out DIR] [--check] [--resume CHECKPOINT] [-p NAME=VALUE]... [--threads N] [--quiet]'//nl// &
+           'lagamine DECK [--out DIR] [--check] [--resume CHECKPOINT] [-p NAME=VALUE]... [--threads N]'//nl// &
+           '         [--progress|--quiet]'//nl// &
            'lagamine --point DECK [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --law [NAME] | --help | --version'//nl//nl// &
            '  --out DIR       folder of the results (default: the deck''s name)'//nl// &
@@ -114,6 +119,7 @@ contains
            '  -p NAME=VALUE   set a parameter of the deck'//nl// &
            '  --threads N     threads (default: as many as processors are free); the same bits for any number'//nl// &
            '  --point         one material point along the deck''s PATH; its answer comes into DIR/NAME.point.csv'//nl// &
+           '  --progress      print the progress only, no summary; once a minute where that goes into a file'//nl// &
            '  --quiet         print errors only'//nl// &
            '  --law [NAME]    print the card of a law: parameters, units, state, source; without a name, list all laws'//nl//nl// &
            'Exit codes: 0 done, 2 input refused, 3 no convergence at the smallest step, 4 remesh due,'//nl// &

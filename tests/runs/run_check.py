@@ -13,7 +13,7 @@ from support import DONE, LAGAMINE, SOURCE, UPSETTING, Checks, mesh, run, said, 
 
 EFFECTS = ("displacement", "large strain", "plasticity", "contact", "friction", "pressure", "body force", "heat", "phases",
            "temperature", "error estimates", "remeshing")
-OPTIONS = ("--out", "--check", "--resume", "-p", "--threads", "--quiet", "--law", "--point", "--help", "--version")
+OPTIONS = ("--out", "--check", "--resume", "-p", "--threads", "--progress", "--quiet", "--law", "--point", "--help", "--version")
 
 # One effect each, and nothing else.
 LEAN = """TITLE  Two elastic elements
