@@ -1,5 +1,6 @@
 !> `remdata --about`: the contents of a checkpoint, for scripts: a key and its value on each line.
 module checkpoint_summary
+  use cycle_situation, only: due_reason
   use errors, only: error_t
   use exact_numbers, only: exact_text
   use exchange, only: checkpoint_facts_t, read_facts
@@ -16,7 +17,6 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(checkpoint_facts_t) :: facts
     character(len=:), allocatable :: why
-    integer :: k
 
     call read_facts(path, facts, error)
     if (allocated(error)) return
@@ -30,11 +30,7 @@ contains
     call say('tries', to_text(facts%tries))
     if (facts%error_stress >= 0) call say('error_stress_pct', to_text(100*facts%error_stress, 4))
     if (facts%error_strain >= 0) call say('error_strain_pct', to_text(100*facts%error_strain, 4))
-    why = ''
-    do k = 1, size(facts%triggers)
-      if (k > 1) why = why//'; '
-      why = why//facts%triggers(k)%s//' '//to_text(facts%values(k), 4)//' (limit '//to_text(facts%limits(k))//')'
-    end do
+    why = due_reason(facts)
     if (len(why) > 0) call say('due', why)
   end subroutine print_about
 

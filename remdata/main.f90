@@ -1,7 +1,9 @@
-!> The remesher: arguments -> new mesh and state -> exit code.
+!> The remesher: arguments -> new mesh and state -> exit code. With `--next`: what a cycle of solver and remesher does next.
 program remdata
   use, intrinsic :: iso_fortran_env, only: error_unit
   use checkpoint_summary, only: print_about
+  use cycle_answer, only: answer_next
+  use cycle_options, only: asks_for_next
   use errors, only: error_t, exit_done
   use kinds, only: wp
   use remesh_facts, only: remesh_facts_t
@@ -16,21 +18,15 @@ program remdata
   implicit none
   type(remesh_options_t) :: options
   type(remesh_facts_t) :: facts
-  type(error_t), allocatable :: error, late
+  type(error_t), allocatable :: error
   integer :: code
 
   code = exit_done
-  call read_remesh_options(options, error)
-  if (allocated(error)) then
-    code = error%code
-  else if (options%help) then
-    write (*, '(a)') remesh_usage()
-  else if (options%version) then
-    call tell_version()
-  else if (options%about) then
-    call print_about(options%checkpoint, error)
+  if (asks_for_next()) then
+    call answer_next(code, error)
   else
-    call run()
+    call read_remesh_options(options, error)
+    if (.not. allocated(error)) call do_as_told(error)
   end if
   if (allocated(error)) then
     code = error%code
@@ -41,7 +37,23 @@ program remdata
 
 contains
 
-  subroutine run()
+  subroutine do_as_told(error)
+    type(error_t), allocatable, intent(out) :: error
+
+    if (options%help) then
+      write (*, '(a)') remesh_usage()
+    else if (options%version) then
+      call tell_version()
+    else if (options%about) then
+      call print_about(options%checkpoint, error)
+    else
+      call run(error)
+    end if
+  end subroutine do_as_told
+
+  subroutine run(error)
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: late
     type(team_t) :: team
     real(wp) :: started
 

@@ -95,13 +95,16 @@ contains
     text = 'remdata: a new mesh and the state on it, from a checkpoint of lagamine'//nl//nl// &
            'remdata CHECKPOINT --out NEW [--transfer N] [--finer F] [--limit SECONDS] [--quiet]'//nl// &
            'remdata --about CHECKPOINT'//nl// &
+           'remdata --next DIR/NAME [--tries N] [--fresh] [--ran WHAT --code N --said FILE [--from NAME] [--late S]]'//nl// &
            'remdata --help | --version'//nl//nl// &
            '  --out NEW       checkpoint of the new mesh, for lagamine --resume; facts in NEW.json'//nl// &
            '  --transfer N    state transfer: 0 inverse distance, 1 moving least squares, 2 patches (default: the deck''s)'//nl// &
            '  --finer F       divide the wanted sizes of elements by F'//nl// &
            '  --limit SECONDS longest time for Gmsh, where it makes the mesh (default 300)'//nl// &
            '  --about         check the file and print what it holds, a word and its value a line'//nl// &
-           '  --quiet         print errors only'//nl//nl// &
+           '  --quiet         print errors only'//nl// &
+           '  --next DIR/NAME say what lagacycle does next for deck NAME with results in DIR, a word and its value a line;'//nl// &
+           '                  --ran check, lagamine or remdata and what follows: how the program ended that it called'//nl//nl// &
            'Exit codes: 0 done, 2 input refused, 3 no mesh that is good enough, 5 the machine failed, 6 a check of our own failed'
   end function remesh_usage
 

@@ -83,8 +83,13 @@ def undisturbed(checks, deck, out):
     checks.that(result.returncode == DONE, "undisturbed: done", said(result))
     checks.that(result.stderr == "", "undisturbed: no word of errors", result.stderr)
     lines = result.stdout.splitlines()
-    checks.that([line.split()[:2] for line in lines[:-1]] == [["mesh", "2"], ["mesh", "3"]] and lines[-1].startswith("done"),
-                "undisturbed: a line for each mesh", result.stdout)
+    wanted = ["lagamine begins", "remdata makes mesh 2", "lagamine takes up mesh 2", "mesh 2", "remdata makes mesh 3",
+              "lagamine takes up mesh 3", "mesh 3", "done"]
+    told = [line for line in lines if not line.startswith("step ")]
+    checks.that(len(told) == len(wanted) and all(line.startswith(words) for line, words in zip(told, wanted)),
+                "undisturbed: a line for each program, each mesh and the end", result.stdout)
+    checks.that([line.split()[1] for line in lines if line.startswith("step ")] == ["1", "7", "11", "25"],
+                "undisturbed: progress of each run of the solver", result.stdout)
     rows = tries(out)
     checks.that([(row["generation [-]"], row["action"], row["accepted"]) for row in rows]
                 == [("2", ACTIONS[0], "y"), ("3", ACTIONS[0], "y")], "undisturbed: a row for each mesh", rows)
@@ -117,6 +122,22 @@ def undisturbed(checks, deck, out):
     result = cycle(deck, copy, "--fresh")
     checks.that(result.returncode == DONE and "mesh 3" in result.stdout, "--fresh begins anew", said(result))
     checks.that(not differences(out, copy), "--fresh: as in one go", differences(out, copy)[:5])
+
+
+def says_at_once(checks, deck):
+    """What is under way is told before it has ended, a line at a time; --quiet tells nothing."""
+    slow = write(checks.path("slow.lag"), deck_text(deck).replace("nx 3", "nx 24").replace("ny 4", "ny 36"))
+    out = checks.path("slow")
+    process = subprocess.Popen([CYCLE, slow, "--out", out, "--threads", "1"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                               stderr=subprocess.DEVNULL, text=True, preexec_fn=hear_signals)
+    first = [process.stdout.readline(), process.stdout.readline()]
+    at_work = process.poll() is None and not tries(out)
+    checks.that(at_work and first[0].startswith("lagamine begins") and first[1].startswith("step 1 "),
+                "says at once what is under way, and the first step", first)
+    process.send_signal(signal.SIGTERM)
+    process.communicate(timeout=LONGEST_RUN)
+    result = cycle(deck, checks.path("quiet"), "--quiet")
+    checks.that(result.returncode == DONE and result.stdout == result.stderr == "", "--quiet: not a word", said(result))
 
 
 def files_of(folder):
@@ -220,9 +241,31 @@ def two_at_once(checks, deck, whole):
         checks.that(result.returncode == DONE, f"a lock of process '{number}', no lagacycle: taken over", said(result))
 
 
-# A remesher that fails in a given way in its first calls ($FAILS of them), and answers --about as ever.
+def foreign_processes(checks, deck):
+    """Processes that a lagacycle which is gone may have started, or others that have their numbers now, are not ended: a solver that
+    seems to be at work is waited for, a lagacycle that seems to be is refused."""
+    out = checks.path("foreign")
+    lock = os.path.join(out, "case.lock")
+    other = [sys.executable, "-c", "import sys, time; time.sleep(float(sys.argv[2]))"]
+    with subprocess.Popen([*other, "case", "6"]) as solver:
+        write(os.path.join(lock, "pid"), "999999")
+        write(os.path.join(lock, "machine"), os.uname().nodename)
+        write(os.path.join(lock, "child.999999"), str(solver.pid))
+        result = cycle(deck, out)
+        checks.that(solver.poll() == 0, "a process whose number a lock holds: ended by itself", solver.poll())
+        checks.that(result.returncode == DONE and f"waiting for the end of process {solver.pid}" in result.stdout,
+                    "a process whose number a lock holds: waited for", said(result))
+    with subprocess.Popen([*other, "lagacycle", "100"]) as owner:
+        write(os.path.join(lock, "pid"), str(owner.pid))
+        write(os.path.join(lock, "machine"), os.uname().nodename)
+        result = cycle(deck, out)
+        checks.that(result.returncode == INPUT and str(owner.pid) in result.stderr and owner.poll() is None,
+                    "a process that may hold the lock: refused, not ended", said(result))
+        owner.kill()
+
+
+# A remesher that fails in a given way in its first calls ($FAILS of them).
 FAILING = """#!/bin/sh
-case $1 in --about) exec "$REAL" "$@" ;; esac
 echo "$*" >>"$CALLS"
 [ "$(wc -l <"$CALLS")" -gt "$FAILS" ] && exec "$REAL" "$@"
 case $WAY in
@@ -267,7 +310,7 @@ def remesher_fails_once(checks, deck):
 
 def an_earlier_save(checks, draw, deck, seconds):
     """The mesh is made from the save before: rows and instants after it are made again, killed or not."""
-    script = write(checks.path("bin", "choosy"), "#!/bin/sh\ncase $1 in --about | *.end.1.h5) exec \"$REAL\" \"$@\" ;; esac\nexit 3\n")
+    script = write(checks.path("bin", "choosy"), "#!/bin/sh\ncase $1 in *.end.1.h5) exec \"$REAL\" \"$@\" ;; esac\nexit 3\n")
     os.chmod(script, 0o755)
     environment = {"REMDATA": script, "REAL": REMDATA}
     whole = checks.path("earlier")
@@ -419,6 +462,7 @@ def main():
     deck = write(checks.path("case.lag"), text)
     whole = checks.path("whole")
     undisturbed(checks, deck, whole)
+    says_at_once(checks, deck)
     started = time.monotonic()
     shutil.rmtree(checks.path("fresh"))
     cycle(deck, checks.path("fresh"))
@@ -426,6 +470,7 @@ def main():
     kills(checks, draw, deck, whole, numbers[0], seconds)
     stops(checks, draw, deck, whole, seconds)
     two_at_once(checks, deck, whole)
+    foreign_processes(checks, deck)
     remesher_fails_once(checks, deck)
     an_earlier_save(checks, draw, deck, seconds)
     all_ways_fail(checks, deck)

@@ -46,6 +46,9 @@ NOT_FOR_REMDATA = {
 ROOMS = ["remdata", *(f"remdata/{room}" for room in ("transfer", "free_mesh", "plan", "mesh", "sizes", "contour", "contact",
                                                      "old_mesh", "curves"))]
 
+# What a cycle does next is decided beside these rooms: the driver asks, and only these floors are used.
+CYCLE, CYCLE_ON = "remdata/cycle", ("store", "model", "base")
+
 # What stands in remdata/ itself: the driver and what it reads and reports.
 DRIVER = {"main", "remesh_scene", "remesh_options", "remesh_facts", "remesh_report", "checkpoint_summary", "solver_blas"}
 
@@ -129,7 +132,7 @@ class Tree:
         else:
             self.check(name == stem, file, line, f"{kind} {name} in {stem}.f90: the names must be the same")
             self.check(parts != ["src", parts[-1]], file, line, "modules stand in a folder of src/, not beside main.f90")
-        if folder not in (*ROOMS, *FLOORS):
+        if folder not in (*ROOMS, CYCLE, *FLOORS):
             self.check(False, file, line, f"folder {'/'.join(parts[:2])} is not in the table of floors (tests/layers)")
         # A submodule stands in its module's scope and inherits both.
         if kind != "submodule":
@@ -199,6 +202,10 @@ def why_not(folder, target):
     """Why a folder may not use this module; empty where it may."""
     if folder == target.folder:
         return ""
+    if folder == CYCLE:
+        return "" if target.folder in CYCLE_ON else "a cycle is decided by what files tell"
+    if target.folder == CYCLE:
+        return "" if folder == "remdata" else "only the driver of remdata asks what a cycle does next"
     if folder in ROOMS and target.folder in ROOMS:
         return f"{target.folder} is above {folder}" if ROOMS.index(folder) > ROOMS.index(target.folder) else ""
     if target.folder in ROOMS:
@@ -217,7 +224,7 @@ def why_not(folder, target):
 
 def report(tree):
     """The table of arrows, then what is wrong."""
-    order = [*ROOMS, *FLOORS]
+    order = [*ROOMS, CYCLE, *FLOORS]
     for start in sorted({a for a, _ in tree.arrows}, key=lambda f: order.index(f) if f in order else len(order)):
         ends = sorted((b for a, b in tree.arrows if a == start), key=lambda f: order.index(f) if f in order else len(order))
         print(f"{start:>17} -> " + ", ".join(f"{end} {tree.arrows[start, end]}" for end in ends))
@@ -270,6 +277,12 @@ CASES = [
     ("room on the driver", {"remdata/mesh/bad.f90": module("bad", "remesh_scene")}, "remdata is above remdata/mesh"),
     ("beside the driver", {"remdata/bad.f90": module("bad")}, "only the driver stands in remdata/ itself"),
     ("unknown room", {"remdata/attic/bad.f90": module("bad")}, "folder remdata/attic is not in the table"),
+    ("cycle on a room", {"remdata/cycle/bad.f90": module("bad", "zones")}, "a cycle is decided by what files tell"),
+    ("cycle on a deck", {"remdata/cycle/bad.f90": module("bad", "cards_read")}, "a cycle is decided by what files tell"),
+    ("room on the cycle", {"remdata/cycle/steps.f90": module("steps", "files"), "remdata/mesh/bad.f90": module("bad", "steps")},
+     "remdata/mesh/bad.f90:2: remdata/mesh may not use steps of remdata/cycle: only the driver of remdata asks"),
+    ("src on the cycle", {"remdata/cycle/steps.f90": module("steps"), "src/analysis/bad.f90": module("bad", "steps")},
+     "only the driver of remdata asks"),
     ("src on remdata", {"src/analysis/bad.f90": module("bad", "zones")}, "nothing in src stands on remdata"),
     ("submodule's arrow", {"src/base/bad.f90": "submodule(kinds) bad\n  use mesh\nend submodule bad\n"},
      "src/base/bad.f90:2: base may not use mesh"),

@@ -1,0 +1,104 @@
+!> `remdata --next`: what a cycle does next, for the script that does it: a word and its value on each line.
+!>
+!>     say TEXT            for the user
+!>     error TEXT          for the user too: why the cycle ends, with the exit code of this program
+!>     from NAME           checkpoint to begin with, as its name ends (ckp.h5, g01.end.h5)
+!>     new NAME            file for the new mesh, the same way
+!>     transfer N          options of the remesher
+!>     finer F
+!>     do WORD             start, check, resume, remesh or end: comes last
+module cycle_answer
+  use cycle_action, only: act_check, act_end, act_refuse, act_remesh, act_resume, act_start, action_t, is_inner
+  use cycle_bookkeeping, only: carry_out
+  use cycle_decision, only: next_action
+  use cycle_folder, only: read_situation
+  use cycle_options, only: cycle_options_t, read_cycle_options
+  use cycle_situation, only: ended_known, situation_t
+  use errors, only: error_t, exit_bug, exit_done, fail
+  use text, only: to_text
+  implicit none
+  private
+  public :: answer_next
+
+  !> More inner actions one after the other than there are kinds of them: something goes in a circle.
+  integer, parameter :: most_in_a_row = 12
+
+contains
+
+  !> Read the folder, decide, tidy up, until there is something for the script.
+  subroutine answer_next(code, error)
+    integer, intent(out) :: code   !! with which the cycle ends; 0: it goes on, or is done
+    type(error_t), allocatable, intent(out) :: error
+    type(cycle_options_t) :: options
+    type(situation_t) :: situation
+    type(action_t) :: action
+    character(len=:), allocatable :: line
+    integer :: k
+
+    code = exit_done
+    call read_cycle_options(options, error)
+    do k = 1, most_in_a_row
+      if (allocated(error)) return
+      call read_situation(options, situation, error)
+      if (allocated(error)) return
+      action = next_action(situation)
+      call carry_out(situation, action, line, error)
+      if (allocated(error)) return
+      if (line /= '') call print_word('say', line)
+      ! how the program ended has had its consequence
+      if (action%kind == act_refuse) options%ended%program = ended_known
+      if (is_inner(action)) cycle
+      if (allocated(action%error)) then
+        code = action%error%code
+        call print_error(action%error)
+      else
+        call print_action(action)
+      end if
+      return
+    end do
+    call fail(error, exit_bug, options%stem//': the same is done over and over (action '//to_text(action%kind)//')')
+  end subroutine answer_next
+
+  subroutine print_action(action)
+    type(action_t), intent(in) :: action
+
+    if (action%from /= '') call print_word('from', action%from)
+    if (action%new /= '') call print_word('new', action%new)
+    if (action%transfer >= 0) call print_word('transfer', to_text(action%transfer))
+    if (action%finer > 0) call print_word('finer', to_text(action%finer))
+    select case (action%kind)
+    case (act_start)
+      call print_word('do', 'start')
+    case (act_check)
+      call print_word('do', 'check')
+    case (act_resume)
+      call print_word('do', 'resume')
+    case (act_remesh)
+      call print_word('do', 'remesh')
+    case (act_end)
+      call print_word('do', 'end')
+    end select
+  end subroutine print_action
+
+  !> Why the cycle ends: a word for each line.
+  subroutine print_error(error)
+    type(error_t), intent(in) :: error
+    character(len=:), allocatable :: rest
+    integer :: last
+
+    rest = error%message//new_line('a')
+    if (allocated(error%advice)) rest = rest//error%advice//new_line('a')
+    do while (len(rest) > 0)
+      last = index(rest, new_line('a'))
+      call print_word('error', rest(:last - 1))
+      rest = rest(last + 1:)
+    end do
+  end subroutine print_error
+
+  subroutine print_word(word, its_value)
+    character(len=*), intent(in) :: word, its_value
+
+    write (*, '(a)') word//' '//its_value
+  end subroutine print_word
+
+end module cycle_answer

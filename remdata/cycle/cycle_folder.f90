@@ -1,0 +1,202 @@
+!> Where a cycle stands, read from the files in its folder. Each of them is whole or not there.
+module cycle_folder
+  use atomic, only: previous_name, read_text, write_text
+  use cycle_options, only: cycle_options_t
+  use cycle_situation, only: checkpoint_file_t, current_name, ended_lagamine, ended_nothing, ended_remdata, ended_t, first_line, &
+    is_due, is_read, mesh_name, new_mesh_t, situation_t, try_name
+  use cycle_table, only: number_refused, parse_table, try_row_t
+  use errors, only: error_t, exit_machine, exit_no_convergence
+  use exchange, only: read_facts
+  use json_lookup, only: json_number, json_text, read_json
+  use kinds, only: wp
+  use system, only: directory_of, file_exists, join_path, remove_file
+  implicit none
+  private
+  public :: read_situation, most_tries
+
+contains
+
+  !> Only what the decision may ask for is read: checkpoints are large, and every one is checked as a whole.
+  subroutine read_situation(options, s, error)
+    type(cycle_options_t), intent(in) :: options
+    type(situation_t), intent(out) :: s
+    type(error_t), allocatable, intent(out) :: error
+
+    s%stem = options%stem
+    s%folder = directory_of(s%stem)
+    s%table = join_path(s%folder, 'cycle.csv')
+    s%tries = options%tries
+    s%fresh = options%fresh
+    s%ended = options%ended
+    allocate (s%rows(0))
+    s%new = no_mesh()
+    call look(s%stem//'.'//current_name, s%current)
+    if (.not. is_read(s%current)) call look(s%stem//'.'//previous_name(current_name), s%previous)
+    if (s%ended%program == ended_nothing .or. .not. is_read(s%current)) return
+    call read_table(s%table, s%rows, error)
+    if (allocated(error)) return
+    call read_new_mesh(s)
+    s%finished = is_finished(s)
+    if (s%ended%program == ended_remdata .and. s%ended%code == exit_machine) s%has_room = room_for_copy(s%stem)
+  end subroutine read_situation
+
+  !> A checkpoint: is it there, is it whole, what does it hold?
+  subroutine look(path, file)
+    character(len=*), intent(in) :: path
+    type(checkpoint_file_t), intent(out) :: file
+    type(error_t), allocatable :: error
+
+    file%found = file_exists(path)
+    if (.not. file%found) return
+    call read_facts(path, file%facts, error)
+    if (allocated(error)) file%refused = first_line(error%message)
+  end subroutine look
+
+  subroutine read_table(path, rows, error)
+    character(len=*), intent(in) :: path
+    type(try_row_t), allocatable, intent(out) :: rows(:)
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (file_exists(path)) call read_text(path, text, error)
+    if (.not. allocated(error)) call parse_table(text, path, rows, error)
+  end subroutine read_table
+
+  !> The mesh that the run is on while its try is still there: its first steps are through, or the run could not go on in them.
+  !> Otherwise the one that is due.
+  subroutine read_new_mesh(s)
+    type(situation_t), intent(inout) :: s
+    logical :: due, has_tries, judged
+
+    due = is_due(s%current%facts)
+    associate (generation => s%current%facts%generation, new => s%new)
+      judged = s%current%facts%probation == 0 .or. failed(s%ended)
+      has_tries = generation > 1 .and. judged
+      if (has_tries) has_tries = any_try(s, generation)
+      new%has_tries = has_tries
+      if (has_tries) then
+        new%generation = generation
+        call look(s%stem//'.'//mesh_name(generation - 1, 'end.h5'), new%old_end)
+      else
+        new%generation = generation + 1
+        if (due) s%end_is_kept = is_same(s%stem//'.'//current_name, s%stem//'.'//mesh_name(generation, 'end.h5'))
+        if (s%end_is_kept) new%old_end = s%current
+      end if
+      if (is_read(new%old_end)) call read_try(s%stem, s%rows, new)
+    end associate
+  end subroutine read_new_mesh
+
+  !> The try at hand: the one after those that were refused at this stop.
+  subroutine read_try(stem, rows, new)
+    character(len=*), intent(in) :: stem
+    type(try_row_t), intent(in) :: rows(:)
+    type(new_mesh_t), intent(inout) :: new
+    character(len=:), allocatable :: json, path
+
+    new%number = number_refused(rows, new%generation, new%old_end%facts%step) + 1
+    ! the earlier save is never the first way
+    if (new%number > 1) call look(stem//'.'//mesh_name(new%generation - 1, 'end.1.h5'), new%old_earlier)
+    path = stem//'.'//try_name(new%generation, new%number)
+    call look(path, new%made)
+    new%has_facts = file_exists(path//'.json')
+    call read_json(path//'.json', json)
+    new%made_stage = json_text(json, 'stage')
+    call read_json(stem//'.'//mesh_name(new%generation, 'restart.json'), json)
+    new%restart_refused = json_text(json, 'remesh_refused') == 'true'
+    new%restart_stage = json_text(json, 'stage')
+    call read_json(stem//'.'//mesh_name(new%generation, 'probation.json'), json)
+    new%steps_stage = json_text(json, 'stage')
+  end subroutine read_try
+
+  pure function no_mesh() result(new)
+    type(new_mesh_t) :: new
+
+    new%made_stage = ''
+    new%restart_stage = ''
+    new%steps_stage = ''
+  end function no_mesh
+
+  pure function failed(ended)
+    type(ended_t), intent(in) :: ended
+    logical :: failed
+
+    failed = ended%program == ended_lagamine .and. ended%code == exit_no_convergence
+  end function failed
+
+  !> No try at mesh `generation` has a higher number.
+  pure function most_tries(rows, generation) result(most)
+    type(try_row_t), intent(in) :: rows(:)
+    integer, intent(in) :: generation
+    integer :: most
+
+    most = count(rows%generation == generation) + 1
+  end function most_tries
+
+  !> Is there a file of any try at mesh `generation`?
+  function any_try(s, generation)
+    type(situation_t), intent(in) :: s
+    integer, intent(in) :: generation
+    logical :: any_try
+    integer :: k
+
+    any_try = .false.
+    do k = 1, most_tries(s%rows, generation)
+      any_try = file_exists(s%stem//'.'//try_name(generation, k))
+      if (any_try) return
+    end do
+  end function any_try
+
+  !> Have two files the same bytes?
+  function is_same(one, other)
+    character(len=*), intent(in) :: one, other
+    logical :: is_same
+    character(len=:), allocatable :: first, second
+    type(error_t), allocatable :: error
+
+    is_same = file_exists(other)
+    if (.not. is_same) return
+    call read_text(one, first, error)
+    if (.not. allocated(error)) call read_text(other, second, error)
+    is_same = .not. allocated(error)
+    if (is_same) is_same = len(first) == len(second)
+    if (is_same) is_same = first == second
+  end function is_same
+
+  !> `summary.json` tells of the end of the scene, where the checkpoint stands.
+  function is_finished(s) result(finished)
+    type(situation_t), intent(in) :: s
+    logical :: finished
+    character(len=:), allocatable :: json
+
+    call read_json(join_path(s%folder, 'summary.json'), json)
+    associate (facts => s%current%facts)
+      finished = number('exit_code') == 0 .and. number('steps') == facts%step .and. number('remeshings') == facts%generation - 1
+    end associate
+
+  contains
+
+    function number(name)
+      character(len=*), intent(in) :: name
+      integer :: number
+
+      number = nint(json_number(json, name, -1.0_wp))
+    end function number
+
+  end function is_finished
+
+  !> Can the checkpoint be written once more?
+  function room_for_copy(stem) result(room)
+    character(len=*), intent(in) :: stem
+    logical :: room
+    character(len=:), allocatable :: bytes, path
+    type(error_t), allocatable :: error, ignored
+
+    path = stem//'.room.tmp'
+    call read_text(stem//'.'//current_name, bytes, error)
+    if (.not. allocated(error)) call write_text(path, bytes, error)
+    room = .not. allocated(error)
+    call remove_file(path, ignored)
+  end function room_for_copy
+
+end module cycle_folder

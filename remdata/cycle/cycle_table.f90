@@ -1,0 +1,202 @@
+!> The table of a cycle, `cycle.csv`: a row for every try at a new mesh. It is the memory of the cycle: what was refused at a stop
+!> is not tried again there. No cell holds a comma or a quote.
+module cycle_table
+  use errors, only: error_t, exit_input, fail
+  use kinds, only: wp
+  use text, only: join, string_t, to_text
+  implicit none
+  private
+  public :: try_row_t, table_heading, number_of_columns, parse_table, line_of_cells
+  public :: way_deck, way_transfer, way_finer, way_earlier, way_old_mesh
+  public :: number_refused, was_refused, has_new_mesh, keeps_old_mesh, can_blame_transfer, took_earlier
+
+  !> What is done for a new mesh, as the column `action` names it: as the deck says, another state transfer, finer elements, from
+  !> the checkpoint one save earlier; or the old mesh goes on for a while.
+  character(len=*), parameter :: way_deck = 'as the deck says', way_transfer = 'other transfer', way_finer = 'finer', &
+                                 way_earlier = 'earlier', way_old_mesh = 'old mesh'
+
+  character(len=*), parameter :: table_heading = &
+    'generation [-],try [-],stop_step [-],stop_time [time],step [-],trigger,action,result,accepted,stage,'// &
+    'old_elements [-],new_elements [-],error_before [%],error_after [%],first_residual [-],iterations [-],force_change [%],'// &
+    'energy_change [%],depth_change [-],least_step_ratio [-],remdata [s],restart [s],reason'
+  !> Places of columns in it.
+  integer, parameter :: at_generation = 1, at_stop_step = 3, at_stop_time = 4, at_action = 7, at_accepted = 9, at_stage = 10
+  integer, parameter :: number_of_columns = 23
+
+  !> Times are the same up to this share: the table has all their digits.
+  real(wp), parameter :: same_time = 1.0e-12_wp
+
+  !> Of a row, what decisions look at.
+  type :: try_row_t
+    integer :: generation = 0                !! of the new mesh
+    integer :: stop_step = 0                 !! step at which the old mesh stopped
+    real(wp) :: stop_time = 0.0_wp           !! [time]
+    character(len=:), allocatable :: action  !! one of the ways above
+    character(len=:), allocatable :: stage   !! to blame, '' when accepted
+    logical :: accepted = .false.
+  end type try_row_t
+
+contains
+
+  !> The rows of a table. One that is damaged is refused by its line: tries that are forgotten would be made again.
+  pure subroutine parse_table(text, path, rows, error)
+    character(len=*), intent(in) :: text, path
+    type(try_row_t), allocatable, intent(out) :: rows(:)
+    type(error_t), allocatable, intent(out) :: error
+    type(try_row_t) :: row
+    integer :: first, last, line
+    logical :: good
+
+    allocate (rows(0))
+    first = 1
+    line = 0
+    do while (first <= len(text))
+      line = line + 1
+      last = first + index(text(first:)//new_line('a'), new_line('a')) - 2
+      if (line == 1) then
+        good = text(first:last) == table_heading
+      else
+        call parse_row(text(first:last), row, good)
+        if (good) rows = [rows, row]
+      end if
+      if (.not. good) then
+        call fail(error, exit_input, path//':'//to_text(line)//': damaged: no row of '//to_text(number_of_columns)// &
+                  ' cells as lagacycle writes them', 'lagacycle --fresh begins anew')
+        return
+      end if
+      first = last + 2
+    end do
+  end subroutine parse_table
+
+  pure subroutine parse_row(line, row, good)
+    character(len=*), intent(in) :: line
+    type(try_row_t), intent(out) :: row
+    logical, intent(out) :: good
+    type(string_t) :: cells(number_of_columns)
+    integer :: k, first, last, status
+
+    good = .false.
+    first = 1
+    do k = 1, number_of_columns
+      last = first + index(line(first:)//',', ',') - 2
+      if ((last == len(line)) .neqv. (k == number_of_columns)) return
+      cells(k)%s = line(first:last)
+      first = last + 2
+    end do
+    read (cells(at_generation)%s, *, iostat=status) row%generation
+    if (status /= 0) return
+    read (cells(at_stop_step)%s, *, iostat=status) row%stop_step
+    if (status /= 0) return
+    read (cells(at_stop_time)%s, *, iostat=status) row%stop_time
+    if (status /= 0) return
+    row%action = cells(at_action)%s
+    row%accepted = cells(at_accepted)%s == 'y'
+    row%stage = cells(at_stage)%s
+    good = row%accepted .or. cells(at_accepted)%s == 'n'
+  end subroutine parse_row
+
+  !> Cells as a line of the table; what would part them is replaced.
+  pure function line_of_cells(cells) result(line)
+    type(string_t), intent(in) :: cells(:)
+    character(len=:), allocatable :: line
+    type(string_t) :: clean(size(cells))
+    integer :: k, i
+
+    do k = 1, size(cells)
+      clean(k)%s = cells(k)%s
+      do i = 1, len(clean(k)%s)
+        select case (clean(k)%s(i:i))
+        case (',')
+          clean(k)%s(i:i) = ';'
+        case (new_line('a'), '"')
+          clean(k)%s(i:i) = ' '
+        end select
+      end do
+    end do
+    line = join(clean, ',')
+  end function line_of_cells
+
+  !> Tries at mesh `generation` that were refused at the stop after `stop_step`.
+  pure function number_refused(rows, generation, stop_step) result(number)
+    type(try_row_t), intent(in) :: rows(:)
+    integer, intent(in) :: generation, stop_step
+    integer :: number
+
+    number = count(rows%generation == generation .and. rows%stop_step == stop_step .and. .not. rows%accepted)
+  end function number_refused
+
+  !> Was this way refused at this stop?
+  pure function was_refused(rows, generation, stop_step, way) result(refused)
+    type(try_row_t), intent(in) :: rows(:)
+    integer, intent(in) :: generation, stop_step
+    character(len=*), intent(in) :: way
+    logical :: refused
+    integer :: k
+
+    refused = .false.
+    do k = 1, size(rows)
+      if (rows(k)%generation == generation .and. rows(k)%stop_step == stop_step .and. .not. rows(k)%accepted) &
+        refused = refused .or. rows(k)%action == way
+    end do
+  end function was_refused
+
+  !> Is there a row of mesh `generation` as an accepted one?
+  pure function has_new_mesh(rows, generation) result(has)
+    type(try_row_t), intent(in) :: rows(:)
+    integer, intent(in) :: generation
+    logical :: has
+    integer :: k
+
+    has = .false.
+    do k = 1, size(rows)
+      if (rows(k)%generation == generation .and. rows(k)%accepted) has = has .or. rows(k)%action /= way_old_mesh
+    end do
+  end function has_new_mesh
+
+  !> Was it decided that the old mesh goes on, before mesh `generation` could be made: at this stop, or at any?
+  pure function keeps_old_mesh(rows, generation, stop_step) result(keeps)
+    type(try_row_t), intent(in) :: rows(:)
+    integer, intent(in) :: generation
+    integer, intent(in), optional :: stop_step
+    logical :: keeps
+    integer :: k
+
+    keeps = .false.
+    do k = 1, size(rows)
+      if (rows(k)%generation /= generation .or. rows(k)%action /= way_old_mesh) cycle
+      if (present(stop_step)) then
+        keeps = keeps .or. rows(k)%stop_step == stop_step
+      else
+        keeps = .true.
+      end if
+    end do
+  end function keeps_old_mesh
+
+  !> Was a try at this stop refused for what came of the transfer? Another one cannot mend what comes before it.
+  pure function can_blame_transfer(rows, generation, stop_step) result(can)
+    type(try_row_t), intent(in) :: rows(:)
+    integer, intent(in) :: generation, stop_step
+    logical :: can
+    integer :: k
+
+    can = .false.
+    do k = 1, size(rows)
+      if (rows(k)%generation /= generation .or. rows(k)%stop_step /= stop_step .or. rows(k)%accepted) cycle
+      can = can .or. all(rows(k)%stage /= [character(len=10) :: 'contour', 'mesh', 'checkpoint'])
+    end do
+  end function can_blame_transfer
+
+  !> Was a mesh made from the save before a stop at this time, or at a later one?
+  pure function took_earlier(rows, time) result(took)
+    type(try_row_t), intent(in) :: rows(:)
+    real(wp), intent(in) :: time
+    logical :: took
+    integer :: k
+
+    took = .false.
+    do k = 1, size(rows)
+      if (rows(k)%accepted .and. rows(k)%stop_time >= time*(1 - same_time)) took = took .or. rows(k)%action == way_earlier
+    end do
+  end function took_earlier
+
+end module cycle_table
