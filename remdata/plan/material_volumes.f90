@@ -63,6 +63,7 @@ contains
     integer :: s, k
 
     worst = 0
+    allocate (nodes(0))
     numbers = number_nodes(mesh%layout, mesh%division)
     do s = 1, size(mesh%layout%sides)
       if (mesh%layout%sides(s)%path == 0) cycle

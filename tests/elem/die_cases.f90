@@ -90,6 +90,8 @@ contains
     integer :: k, i, best
 
     distance = huge(1.0_wp)
+    best = 1
+    best_xi = 0
     do k = 1, size(die%pieces, 3)
       do i = -nplace, nplace
         y = on_piece(die%pieces(:, :, k), real(i, wp)/nplace)

@@ -85,6 +85,7 @@ contains
     case%instant%dies = case%scene%dies
     call place_on_nodes(case%x + du, case%instant%dies(1))
     allocate (trial(size(case%committed, 1), size(case%committed, 2), 1))
+    allocate (nodes(0), dof(0))
     do
       nodes = paired_nodes(case%scene%dies(1), [1, 2, 3], case%instant%pairs(1)%piece(:, 1))
       dof = [2*nodes - 1, 2*nodes, (size(du) + i, i=1, case%nsection)]

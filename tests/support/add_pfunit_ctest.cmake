@@ -15,6 +15,7 @@ add_library(funit STATIC
   "${pf_build}/funit_numbers.f90" "${pf_folder}/funit_run.f90" "${pf_folder}/funit.f90")
 set_target_properties(funit PROPERTIES Fortran_MODULE_DIRECTORY "${pf_build}/modules")
 target_include_directories(funit PUBLIC "${pf_build}/modules")
+target_link_libraries(funit PRIVATE lagamine_flags)
 
 function(add_pfunit_ctest name)
   cmake_parse_arguments(PARSE_ARGV 1 pf "" "WORKING_DIRECTORY" "TEST_SOURCES;OTHER_SOURCES;LINK_LIBRARIES;LABELS")

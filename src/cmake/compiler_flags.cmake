@@ -1,0 +1,37 @@
+# How the sources of this project are compiled, by compiler: the target lagamine_flags. Ours are linked with it PRIVATE, so that a
+# project that uses the library keeps flags of its own. The tests run with GNU; other compilers get what they have of the same.
+#   strict   the standard and warnings
+#   checks   Debug: what a run checks of itself
+#   results  no sums in another order than written: results are the same bits on any number of threads
+add_library(lagamine_flags INTERFACE)
+
+# flags_of(COMPILERS [STRICT f...] [CHECKS f...] [RESULTS f...] [NATIVE f...] [WERROR f...])   COMPILERS: ids, separated by commas
+function(flags_of compilers)
+  cmake_parse_arguments(PARSE_ARGV 1 flags "" "" "STRICT;CHECKS;RESULTS;NATIVE;WERROR")
+  set(here "$<COMPILE_LANG_AND_ID:Fortran,${compilers}>")
+  target_compile_options(lagamine_flags INTERFACE
+    "$<${here}:${flags_STRICT}>"
+    "$<${here}:${flags_RESULTS}>"
+    "$<$<AND:${here},$<CONFIG:Debug>>:${flags_CHECKS}>"
+    "$<$<AND:${here},$<BOOL:${LAGAMINE_NATIVE}>>:${flags_NATIVE}>"
+    "$<$<AND:${here},$<BOOL:${LAGAMINE_WERROR}>>:${flags_WERROR}>")
+endfunction()
+
+# A member of a family seldom needs every argument of the family's interface: no warning for those.
+flags_of(GNU
+  STRICT -std=f2008 -pedantic -Wall -Wextra -Wno-unused-dummy-argument -Wimplicit-interface -Wconversion -fimplicit-none
+  CHECKS -g -O1 -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -fbacktrace
+  NATIVE -march=native
+  WERROR -Werror)
+flags_of(Intel,IntelLLVM
+  STRICT "SHELL:-stand f08" "SHELL:-warn all,nounused"
+  CHECKS -g -O1 "SHELL:-check all,noarg_temp_created,nouninit" -fpe0 -init=snan,arrays -traceback
+  RESULTS -fp-model=precise
+  NATIVE -xHost
+  WERROR "SHELL:-warn errors")
+flags_of(LLVMFlang,Flang
+  CHECKS -g -O1
+  NATIVE -march=native)
+
+set(here "$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>")
+target_compile_options(lagamine_flags INTERFACE "$<${here}:-Wall;-Wextra>" "$<$<AND:${here},$<BOOL:${LAGAMINE_WERROR}>>:-Werror>")

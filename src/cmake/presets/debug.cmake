@@ -1,0 +1,3 @@
+# Initial cache: every check at run time, traps on invalid, zero, overflow (flags: src/cmake/compiler_flags.cmake).
+#   cmake -C src/cmake/presets/debug.cmake -S . -B build-debug
+set(CMAKE_BUILD_TYPE Debug CACHE STRING "")
