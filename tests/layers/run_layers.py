@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Check the floors of the house: who may `use` whom, one module a file, no cycles, files of a readable length, nothing strange at
-the top.
+"""Check the floors of the house: who may `use` whom, one module a file, no cycles, no type name
+twice, files of a readable length, nothing strange at the top.
 
 usage: run_layers.py [ROOT] | --selftest
 ROOT is the project's folder (default: LAGAMINE_SOURCE, else two folders up). Reads src/**/*.f90 and remdata/**/*.f90.
@@ -57,6 +57,10 @@ EXTERNAL = {"iso_fortran_env", "iso_c_binding", "ieee_arithmetic", "ieee_excepti
 
 LONGEST_FILE = 800
 
+# Names of types that are still defined more than once, and how often: each must get a name of its own, and leave this list.
+TYPES_TWICE = {"balance_t": 2, "chain_t": 2, "draft_t": 3, "frame_t": 2, "layout_t": 2, "parameter_t": 2, "place_t": 3, "row_t": 2,
+               "run_t": 2, "side_t": 3}
+
 # What stands at the top of the tree, beside files with a dot and what .gitignore names.
 TOP = {"CMakeLists.txt", "LICENSE", "README.md", "decks", "remdata", "src", "tests"}
 
@@ -64,6 +68,7 @@ MODULE = re.compile(r"\s*module\s+(?!procedure\b|subroutine\b|function\b)(\w+)\s
 SUBMODULE = re.compile(r"\s*submodule\s*\(\s*(\w+)\s*(?::\s*(\w+)\s*)?\)\s*(\w+)\s*(?:!.*)?$", re.I)
 PROGRAM = re.compile(r"\s*program\s+(\w+)\s*(?:!.*)?$", re.I)
 USE = re.compile(r"\s*use\b\s*(?:,\s*(?:non_)?intrinsic\s*)?(?:::)?\s*(\w+)\s*(?:,|!|&|$)", re.I)
+TYPE = re.compile(r"\s*type\s*(?:,[^:]*::\s*|::\s*|\s)\s*(\w+)\s*(?:!.*)?$", re.I)
 BLOCK_START = re.compile(r"\s*(?:type\s*(?:,[^:]*)?(?:::\s*|\s)\s*\w+|(?:abstract\s+)?interface\b.*)\s*(?:!.*)?$", re.I)
 BLOCK_END = re.compile(r"\s*end\s*(?:type|interface)\b", re.I)
 WORDS = {word: re.compile(rf"\s*{word}\s*(?:!.*)?$", re.I) for word in ("implicit none", "private", "contains")}
@@ -74,9 +79,11 @@ Unit = collections.namedtuple("Unit", "kind name file line folder uses parent")
 class Tree:
     """The modules of a source tree, and what is wrong with it."""
 
-    def __init__(self, root):
+    def __init__(self, root, types_twice):
         self.root = root
+        self.types_twice = types_twice
         self.units = {}
+        self.types = collections.defaultdict(list)
         self.errors = []
         self.checks = 0
         self.arrows = collections.Counter()
@@ -106,6 +113,9 @@ class Tree:
                 if start:
                     parent = (start.group(2) or start.group(1)).lower() if kind == "submodule" else None
                     found.append((kind, start.group(start.lastindex).lower(), number, parent))
+            new_type = TYPE.match(line)
+            if new_type:
+                self.types[new_type.group(1).lower()].append((file, number))
             use = USE.match(line)
             if use:
                 uses.append((use.group(1).lower(), number))
@@ -180,6 +190,16 @@ class Tree:
                 visit(name, [name])
         self.checks += 1
 
+    def check_types(self):
+        """One type, one name: what several places define under the same name is read as the same thing."""
+        for name in sorted({*self.types, *self.types_twice}):
+            places, known = self.types.get(name, []), self.types_twice.get(name, 1)
+            file, line = places[known] if len(places) > known else ("tests/layers", 1)
+            others = ", ".join(other for other, _ in places if other != file)
+            self.check(len(places) <= known, file, line, f"type {name} is also defined in {others}")
+            self.check(len(places) >= known, file, line,
+                       f"type {name} is defined {len(places)} times and no longer {known}: TYPES_TWICE must say so")
+
     def check_top(self):
         """Runs and tests leave nothing of theirs beside the sources."""
         ignored = []
@@ -195,6 +215,7 @@ class Tree:
         self.check_top()
         self.check_arrows()
         self.check_cycles()
+        self.check_types()
         return self.errors
 
 
@@ -237,6 +258,8 @@ def module(name, *uses, more="  private\n"):
     return f"module {name}\n" + "".join(f"  use {used}\n" for used in uses) + f"  implicit none\n{more}end module {name}\n"
 
 
+KNOWN = "  private\n  type, extends(base_t), public :: known_t   ! defined twice, and known to be\n  end type known_t\n"
+
 # Name, files, and the one error wanted (None: nothing is wrong).
 GOOD = {"src/main.f90": "program lagamine\n  use run\n  implicit none\nend program lagamine\n",
         "src/analysis/run.f90": module("run", "cells", "kinds"),
@@ -248,8 +271,8 @@ GOOD = {"src/main.f90": "program lagamine\n  use run\n  implicit none\nend progr
         "src/law/law_epla.f90": module("law_epla", "law_api"),
         "src/store/files.f90": module("files", "hdf5", "kinds"),
         "src/deck/cards_read.f90": module("cards_read", "kinds"),
-        "src/model/mesh.f90": module("mesh", "kinds"),
-        "src/base/kinds.f90": module("kinds"),
+        "src/model/mesh.f90": module("mesh", "kinds", more=KNOWN),
+        "src/base/kinds.f90": module("kinds", more=KNOWN),
         "remdata/main.f90": "program remdata\n  use zones\n  implicit none\nend program remdata\n",
         "remdata/remesh_scene.f90": module("remesh_scene", "zones"),
         "remdata/mesh/zones.f90": module("zones", "mesh", "files", "chains"),
@@ -313,6 +336,13 @@ CASES = [
     ("no implicit none",
      {"src/base/bad.f90": "module bad\n  private\ncontains\n  subroutine a()\n  implicit none\n  end\nend module bad\n"},
      "module bad has no `implicit none`"),
+    ("type twice", {"src/base/a.f90": module("a", more="  private\n  type, public :: t ! one\n  end type t\n"),
+                    "src/model/b.f90": module("b", more="  private\n  type T\n  end type T\n  type(t) :: u\n")},
+     "src/model/b.f90:4: type t is also defined in src/base/a.f90"),
+    ("type three times, known twice", {"src/store/c.f90": module("c", more=KNOWN)},
+     "src/store/c.f90:4: type known_t is also defined in src/base/kinds.f90, src/model/mesh.f90"),
+    ("type no longer twice", {"src/model/mesh.f90": module("mesh", "kinds")},
+     "type known_t is defined 1 times and no longer 2"),
     ("results at the top", {"upsetting/history.csv": "", ".gitignore": "build/\nout/\n", "out/a": ""},
      "upsetting:1: stands at the top of the tree"),
     ("long file", {"src/base/bad.f90": module("bad") + "\n" * 800}, "src/base/bad.f90:804: longer than 800 lines"),
@@ -328,7 +358,7 @@ def selftest():
                 os.makedirs(os.path.join(root, os.path.dirname(path)), exist_ok=True)
                 with open(os.path.join(root, path), "w", encoding="utf-8") as out:
                     out.write(text)
-            errors = Tree(root).run()
+            errors = Tree(root, {"known_t": 2}).run()
         good = not errors if wanted is None else len(errors) == 1 and wanted in errors[0]
         if not good:
             failed += 1
@@ -344,7 +374,7 @@ def main(arguments):
         print(__doc__, file=sys.stderr)
         return 2
     above = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-    tree = Tree(arguments[0] if arguments else os.environ.get("LAGAMINE_SOURCE") or above)
+    tree = Tree(arguments[0] if arguments else os.environ.get("LAGAMINE_SOURCE") or above, TYPES_TWICE)
     tree.run()
     report(tree)
     print(f"{len(tree.units)} units: {tree.checks - len(tree.errors)} passed, {len(tree.errors)} failed")
