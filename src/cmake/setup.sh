@@ -1,10 +1,12 @@
 # Shared by tests/run.sh and decks/run.sh, which source it after setting `root` to the project's folder. POSIX sh.
 #   setup_packages        install what is missing, or say what to install and stop with 2
-#   configure_and_build   Release build in $root/build; sets and exports LAGAMINE_PYTHON (empty where there is none)
-# and the variables `build` (the build folder) and `jobs` (how many things to do at once).
+#   configure_and_build   build in $build with the initial cache $preset of src/cmake/presets; sets and exports LAGAMINE_PYTHON
+#                         (empty where there is none)
+# and the variables `build` (the build folder: $root/build), `preset` (release) and `jobs` (how many things to do at once).
 
 packages="gfortran make cmake libmumps-seq-dev libmetis-dev libhdf5-dev libopenblas-dev python3 python3-h5py python3-matplotlib"
 build="$root/build"
+preset=release
 
 # Two at most: a compiler of this code wants about a gigabyte.
 jobs=$(nproc 2>/dev/null || echo 1)
@@ -50,7 +52,7 @@ setup_packages() {
 }
 
 configure_and_build() {
-  cmake -S "$root" -B "$build" -D CMAKE_BUILD_TYPE=Release &&
+  cmake -C "$root/src/cmake/presets/$preset.cmake" -S "$root" -B "$build" &&
     cmake --build "$build" --parallel "$jobs" || return 1
   LAGAMINE_PYTHON=$(sed -n 's/^LAGAMINE_PYTHON:FILEPATH=//p' "$build/CMakeCache.txt")
   export LAGAMINE_PYTHON
