@@ -40,9 +40,6 @@ cd "$build" || exit 1
 # Several tests run at once: each on one thread, unless it asks for more itself.
 OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
 export OMP_NUM_THREADS
-# HDF5 and MUMPS keep memory until the end of a program.
-ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=0}
-export ASAN_OPTIONS
 
 # Names of the tests that a `ctest` selection finds.
 names() {
