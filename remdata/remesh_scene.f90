@@ -120,7 +120,7 @@ contains
     facts%new_elements = count_elements(new)
   end subroutine remesh_checkpoint
 
-  !> Read the whole checkpoint; it is opened, and its digest compared, once.
+  !> Read the whole checkpoint; it is opened, and its hash compared, once.
   subroutine read_all(path, deck_path, deck_text, scene, solution, ends, error)
     character(len=*), intent(in) :: path
     character(len=:), allocatable, intent(out) :: deck_path, deck_text

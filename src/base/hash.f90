@@ -1,5 +1,9 @@
-!> SHA-256 of a text: the fingerprint of a deck, of a dataset, of a checkpoint.
+!> SHA-256 of a text in one call, or of a file piece by piece: the fingerprint of a deck, of a checkpoint.
 !> Source: FIPS 180-4, Secure Hash Standard, section 6.2.
+!>
+!>     type(sha256_t) :: hash
+!>     call hash%add(bytes)       ! as often as there are pieces
+!>     digest = hash%digest()     ! of all bytes so far
 !>
 !> The 32-bit words live in the lower half of 64-bit integers and are cut back by `low` after each
 !> sum. A word copied into both halves turns a rotation into one shift; the bits that this leaves
@@ -8,16 +12,12 @@ module hash
   use kinds, only: i8
   implicit none
   private
-  public :: sha256, sha256_length
+  public :: sha256, sha256_length, sha256_t
 
   !> Number of hexadecimal digits of a fingerprint.
   integer, parameter :: sha256_length = 64
-
-  !> `sha256(text)` of a text, `sha256(bytes)` of an array of single characters.
-  interface sha256
-    module procedure :: sha256_of_text
-    module procedure :: sha256_of_bytes
-  end interface sha256
+  !> Bytes that are worked into the state at a time.
+  integer, parameter :: block_size = 64
 
   integer(i8), parameter :: low = int(z'FFFFFFFF', i8)
 
@@ -45,58 +45,87 @@ module hash
     int(z'748F82EE', i8), int(z'78A5636F', i8), int(z'84C87814', i8), int(z'8CC70208', i8), &
     int(z'90BEFFFA', i8), int(z'A4506CEB', i8), int(z'BEF9A3F7', i8), int(z'C67178F2', i8)]
 
+  !> A hash under way.
+  type :: sha256_t
+    integer(i8), private :: state(0:7) = initial
+    !> Bytes taken so far; those after the last whole block wait for the rest of theirs.
+    integer(i8), private :: length = 0
+    character(len=1), private :: waiting(block_size) = achar(0)
+  contains
+    procedure :: add
+    procedure :: digest
+  end type sha256_t
+
 contains
 
   !> Fingerprint of `text`, trailing blanks included, in lower-case hexadecimal digits.
-  pure function sha256_of_text(text) result(digest)
+  pure function sha256(text) result(digest)
     character(len=*), intent(in) :: text
     character(len=sha256_length) :: digest
+    type(sha256_t) :: hash
 
-    digest = digest_of(len(text, i8), text)
-  end function sha256_of_text
+    call hash%add(text)
+    digest = hash%digest()
+  end function sha256
 
-  !> Fingerprint of `bytes`, in lower-case hexadecimal digits.
-  pure function sha256_of_bytes(bytes) result(digest)
-    character(len=1), intent(in) :: bytes(:)
-    character(len=sha256_length) :: digest
+  !> Take more bytes.
+  pure subroutine add(self, text)
+    class(sha256_t), intent(inout) :: self
+    character(len=*), intent(in) :: text
 
-    digest = digest_of(size(bytes, kind=i8), bytes)
-  end function sha256_of_bytes
+    call add_bytes(self, len(text, i8), text)
+  end subroutine add
 
-  !> The hash proper: whole blocks first, then the rest with its padding (5.1.1).
-  pure function digest_of(n, bytes) result(digest)
+  pure subroutine add_bytes(self, n, bytes)
+    class(sha256_t), intent(inout) :: self
     integer(i8), intent(in) :: n
     character(len=1), intent(in) :: bytes(n)
+    integer(i8) :: first, place
+
+    place = mod(self%length, int(block_size, i8))
+    self%length = self%length + n
+    first = 1
+    if (place > 0) then
+      first = min(block_size - place, n) + 1
+      self%waiting(place + 1:place + first - 1) = bytes(:first - 1)
+      if (place + first - 1 < block_size) return
+      call compress(self%state, self%waiting)
+    end if
+    do first = first, n - block_size + 1, block_size
+      call compress(self%state, bytes(first:first + block_size - 1))
+    end do
+    self%waiting(:n - first + 1) = bytes(first:)
+  end subroutine add_bytes
+
+  !> Fingerprint of all bytes so far, in lower-case hexadecimal digits: what waits, and its padding (5.1.1).
+  pure function digest(self)
+    class(sha256_t), intent(in) :: self
     character(len=sha256_length) :: digest
-    character(len=1) :: tail(128)
-    integer(i8) :: state(0:7), first
+    character(len=1) :: tail(2*block_size)
+    integer(i8) :: state(0:7)
     integer :: rest, ntail, i
 
-    state = initial
-    do first = 1, n - 63, 64
-      call compress(state, bytes(first:first + 63))
-    end do
-
-    rest = int(mod(n, 64_i8))
-    ntail = merge(64, 128, rest < 56)
+    rest = int(mod(self%length, int(block_size, i8)))
+    ntail = merge(block_size, 2*block_size, rest < 56)
     tail = achar(0)
-    tail(:rest) = bytes(n - rest + 1:)
+    tail(:rest) = self%waiting(:rest)
     tail(rest + 1) = char(128)
     do i = 0, 7
-      tail(ntail - i) = char(int(ibits(8*n, 8*i, 8)))
+      tail(ntail - i) = char(int(ibits(8*self%length, 8*i, 8)))
     end do
-    do i = 1, ntail, 64
-      call compress(state, tail(i:i + 63))
+    state = self%state
+    do i = 1, ntail, block_size
+      call compress(state, tail(i:i + block_size - 1))
     end do
 
     write (digest, '(8z8.8)') state
     digest = lower_hexadecimal(digest)
-  end function digest_of
+  end function digest
 
   !> Work one block of 64 bytes into the state (6.2.2).
   pure subroutine compress(state, block)
     integer(i8), intent(inout) :: state(0:7)
-    character(len=1), intent(in) :: block(64)
+    character(len=1), intent(in) :: block(block_size)
     integer(i8) :: w(0:63), a, b, c, d, e, f, g, h, x, y
     integer :: t
 

@@ -12,7 +12,7 @@ module exchange_schema
            schema_version, set_place
 
   !> Raised whenever a dataset changes its name, shape or meaning.
-  integer, parameter :: schema_version = 5
+  integer, parameter :: schema_version = 6
   character(len=*), parameter :: schema_name = 'lagamine checkpoint'
 
 contains
@@ -25,20 +25,22 @@ contains
     type(error_t), allocatable :: ignored
     integer :: version
 
-    call file%open(path, error)
+    call open_verified(file, path, error)
     if (allocated(error)) return
     schema = ''
     version = 0
     if (file%has_attribute('/', 'schema')) call file%read_attribute('/', 'schema', schema)
     if (file%has_attribute('/', 'schema_version')) call file%read_attribute('/', 'schema_version', version)
-    call file%close(ignored)
-    if (schema /= schema_name) then
+    call file%status(error)
+    if (allocated(error)) then
+      call file%close(ignored)
+    else if (schema /= schema_name) then
+      call file%close(ignored)
       call fail(error, exit_input, path//': not a checkpoint of lagamine')
     else if (version /= schema_version) then
+      call file%close(ignored)
       call fail(error, exit_input, path//': checkpoint of schema '//to_text(version)//', this program reads schema ' &
                 //to_text(schema_version))
-    else
-      call open_verified(file, path, error)
     end if
   end subroutine open_checkpoint
 

@@ -1,15 +1,17 @@
-!> HDF5 files that are whole or not there, and that know when they were altered.
+!> HDF5 files that are whole or not there, and in which only what this program writes is read.
 !>
 !>     call create_atomic(file, 'NAME.ckp.h5', error)
 !>     call file%write(...)
 !>     call commit_atomic(file, error, keep_previous=.true.)
 !>
-!> The root carries a digest over all contents; `commit_atomic` reads the closed file back and
-!> compares before it takes the place of the older one, `open_verified` compares before any reading.
+!> Every file carries a hash of all its bytes (hdf5_file). `commit_atomic` reads the closed file back before it takes the place of
+!> the older one; `open_verified` opens a file whose hash is right and in which there is nothing that this program does not write.
+!> Hash and structure are two gates: the first finds every accident, whatever HDF5 would make of it; the second stands also where
+!> somebody has written the file anew, hash and all.
 module hdf5_atomic
   use atomic, only: replace_file, temporary_name
-  use errors, only: error_t, exit_bug, exit_input, exit_machine
-  use hdf5_file, only: digest_attribute, hdf5_file_t
+  use errors, only: error_t, exit_bug, exit_machine
+  use hdf5_file, only: hdf5_file_t
   use system, only: file_exists, remove_file
   implicit none
   private
@@ -33,12 +35,10 @@ contains
     type(hdf5_file_t), intent(inout) :: file
     type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: keep_previous
-    character(len=:), allocatable :: temporary, digest
+    character(len=:), allocatable :: temporary
 
     temporary = file%path()
     if (.not. is_temporary(temporary)) call file%record_error(exit_bug, 'commit of a file that create_atomic did not begin')
-    call file%digest(digest)
-    call file%write_attribute('/', digest_attribute, digest)
     call file%close(error)
     if (.not. allocated(error)) then
       call verify(temporary, error)
@@ -58,25 +58,21 @@ contains
     call discard(file%path())
   end subroutine discard_atomic
 
-  !> Open a committed file for reading, after its contents were found to agree with its digest.
+  !> Open a committed file for reading, unaltered and made of nothing but what this program writes.
   subroutine open_verified(file, path, error)
     type(hdf5_file_t), intent(inout) :: file
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: stored, digest
     type(error_t), allocatable :: ignored
 
     call file%open(path, error)
     if (allocated(error)) return
-    call file%read_attribute('/', digest_attribute, stored)
-    call file%digest(digest)
-    if (digest /= stored) call file%record_error(exit_input, 'altered or damaged: its contents do not agree with its digest')
+    call file%check_structure()
     call file%status(error)
-    if (.not. allocated(error)) return
-    call file%close(ignored)
+    if (allocated(error)) call file%close(ignored)
   end subroutine open_verified
 
-  !> Do the contents of the file agree with its digest?
+  !> Can the file be read back as it was written?
   subroutine verify(path, error)
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error

@@ -11,7 +11,8 @@
 !> Arrays keep the natural Fortran order: what is (a, b) here shows as (b, a) in C, h5py, ParaView.
 !> Numbers are stored as little-endian IEEE doubles and 32-bit integers and without times, so that
 !> the same run gives the same bytes on any machine. Text is UTF-8 of fixed length, padded with nulls.
-!> The procedures live in the submodules `hdf5_file_{access,write,read,attributes,digest}`.
+!> Every file carries a hash of all its bytes, written when it is closed and compared before it is opened again.
+!> The procedures live in the submodules `hdf5_file_{access,hash,write,read,attributes,structure}`.
 module hdf5_file
   use hdf5, only: hid_t
   use errors, only: error_t
@@ -19,12 +20,12 @@ module hdf5_file
   use text, only: string_t
   implicit none
   private
-  public :: hdf5_file_t, digest_attribute
+  public :: hdf5_file_t
 
   !> What HDF5 never gives to an open object.
   integer(hid_t), parameter :: closed = -1
-  !> Attribute of the root that carries the digest of the file; it alone is not part of the digest.
-  character(len=*), parameter :: digest_attribute = 'digest'
+  !> What stands before the part of the file that is HDF5's (hdf5_file_hash).
+  integer, parameter :: user_block_length = 512
 
   type :: hdf5_file_t
     !> Gzip level 0-9 of the arrays written from now on; 0, the default, is none.
@@ -47,7 +48,9 @@ module hdf5_file
     procedure :: has
     procedure :: list
     procedure :: remove
-    procedure :: digest => digest_of_file
+    procedure :: check_structure
+    procedure, private :: write_hash
+    procedure, private :: check_hash
 
     !> `write(path, value)`: a new dataset; missing groups are made. A second one of the same name is an error.
     generic :: write => write_real, write_reals, write_reals_2, write_reals_3, write_integer, write_integers, write_integers_2, &
@@ -98,7 +101,7 @@ module hdf5_file
       type(error_t), allocatable, intent(out) :: error
     end subroutine create
 
-    !> Open a file for reading. What is missing, not HDF5, or cut short is refused.
+    !> Open a file for reading. What is missing, no file of ours, cut short or altered since it was closed is refused.
     module subroutine open_to_read(self, path, error)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
@@ -175,12 +178,28 @@ module hdf5_file
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
     end subroutine remove
+  end interface
 
-    !> SHA-256 over all groups, datasets and attributes (names, types, extents, contents).
-    module subroutine digest_of_file(self, digest)
+  ! The hash of all bytes: hdf5_file_hash.
+  interface
+    !> Enter length and hash of the closed file in its user block.
+    module subroutine write_hash(self)
       class(hdf5_file_t), intent(inout) :: self
-      character(len=:), allocatable, intent(out) :: digest
-    end subroutine digest_of_file
+    end subroutine write_hash
+
+    !> Is the file, not opened yet, just as it was when its hash was written?
+    module subroutine check_hash(self)
+      class(hdf5_file_t), intent(inout) :: self
+    end subroutine check_hash
+  end interface
+
+  ! What a file may be made of: hdf5_file_structure.
+  interface
+    !> Refuse an open file that has anything in it which this module does not write: links that are soft, external or lead twice to
+    !> the same thing; types of other sizes, signs or byte orders; data that are not wholly there.
+    module subroutine check_structure(self)
+      class(hdf5_file_t), intent(inout) :: self
+    end subroutine check_structure
   end interface
 
   ! Writing datasets: hdf5_file_write.

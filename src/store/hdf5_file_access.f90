@@ -1,24 +1,27 @@
 !> Opening, closing, groups and names of HDF5 files.
 submodule(hdf5_file) hdf5_file_access
   use hdf5, only: h5dont_atexit_f, h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_close_strong_f, &
-    h5f_scope_local_f, h5fclose_f, h5fcreate_f, h5fflush_f, h5fis_hdf5_f, h5fopen_f, h5gclose_f, h5gcreate_f, &
-    h5gget_obj_info_idx_f, h5gn_members_f, h5iis_valid_f, h5lcreate_external_f, h5ldelete_f, h5lexists_f, h5open_f, &
-    h5p_file_access_f, h5p_link_create_f, h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_fclose_degree_f, &
-    h5t_native_double
+    h5f_scope_local_f, h5fclose_f, h5fcreate_f, h5fflush_f, h5fopen_f, h5gclose_f, h5gcreate_f, h5gget_obj_info_idx_f, &
+    h5gn_members_f, h5iis_valid_f, h5lcreate_external_f, h5ldelete_f, h5lexists_f, h5open_f, h5p_file_access_f, &
+    h5p_file_create_f, h5p_link_create_f, h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_fclose_degree_f, &
+    h5pset_userblock_f, h5t_native_double, hsize_t
   use errors, only: exit_bug, exit_input, exit_machine, fail
-  use system, only: file_exists, set_environment
+  use system, only: set_environment
   implicit none
 
 contains
 
   module procedure create
-    integer(hid_t) :: access
-    integer :: flag(2)
+    integer(hid_t) :: access, creation
+    integer :: flag(5)
 
     call begin(self, path, .true.)
     call make_access(access)
-    call h5fcreate_f(path, h5f_acc_trunc_f, self%id, flag(1), access_prp=access)
-    call h5pclose_f(access, flag(2))
+    call h5pcreate_f(h5p_file_create_f, creation, flag(2))
+    call h5pset_userblock_f(creation, int(user_block_length, hsize_t), flag(3))
+    call h5fcreate_f(path, h5f_acc_trunc_f, self%id, flag(1), creation_prp=creation, access_prp=access)
+    call h5pclose_f(creation, flag(4))
+    call h5pclose_f(access, flag(5))
     if (flag(1) /= 0) then
       self%id = closed
       call self%record_error(exit_machine, 'cannot be made (no such directory, no permission, or open elsewhere)')
@@ -28,48 +31,30 @@ contains
 
   module procedure open_to_read
     call begin(self, path, .false.)
-    call open_existing(self, 'read')
+    call open_existing(self)
     call self%status(error)
   end procedure open_to_read
 
   module procedure open_append
     call begin(self, path, .true.)
-    call open_existing(self, 'readwrite')
+    call open_existing(self)
     call self%status(error)
   end procedure open_append
 
   !> Open the file at `self%file_path`, or record why it is refused.
-  subroutine open_existing(self, action)
+  subroutine open_existing(self)
     class(hdf5_file_t), intent(inout) :: self
-    character(len=*), intent(in) :: action
-    character(len=200) :: why
     integer(hid_t) :: access
-    integer :: unit, flag, ignored
-    logical :: is_hdf5
+    integer :: flag, ignored
 
-    if (.not. file_exists(self%file_path)) then
-      call self%record_error(exit_input, 'no such file')
-      return
-    end if
-    ! Fortran's own opening says best what the system has against it.
-    open (newunit=unit, file=self%file_path, status='old', action=action, access='stream', iostat=flag, iomsg=why)
-    if (flag /= 0) then
-      call self%record_error(exit_input, trim(why))
-      return
-    end if
-    close (unit)
-    is_hdf5 = .false.
-    call h5fis_hdf5_f(self%file_path, is_hdf5, flag)
-    if (flag /= 0 .or. .not. is_hdf5) then
-      call self%record_error(exit_input, 'not an HDF5 file')
-      return
-    end if
+    call self%check_hash()
+    if (self%failed()) return
     call make_access(access)
     call h5fopen_f(self%file_path, merge(h5f_acc_rdwr_f, h5f_acc_rdonly_f, self%writable), self%id, flag, access_prp=access)
     call h5pclose_f(access, ignored)
     if (flag /= 0) then
       self%id = closed
-      call self%record_error(exit_input, 'an HDF5 file cut short or damaged')
+      call self%record_error(exit_input, 'HDF5 cannot open it (no permission, or a damaged file)')
     end if
   end subroutine open_existing
 
@@ -120,8 +105,9 @@ contains
       flag = 0
       if (self%writable) call h5fflush_f(self%id, h5f_scope_local_f, flag(1))
       call h5fclose_f(self%id, flag(2))
-      if (any(flag /= 0)) call self%record_error(exit_machine, 'writing failed at the closing of the file (disk full?)')
       self%id = closed
+      if (any(flag /= 0)) call self%record_error(exit_machine, 'writing failed at the closing of the file (disk full?)')
+      if (self%writable) call self%write_hash()
     end if
     call self%status(error)
     if (allocated(self%first_error)) deallocate (self%first_error)

@@ -1,9 +1,10 @@
 !> Attributes: small texts and numbers beside a dataset or a group.
 submodule(hdf5_file) hdf5_file_attributes
   use, intrinsic :: iso_c_binding, only: c_loc, c_ptr
-  use hdf5, only: h5aclose_f, h5acreate_f, h5adelete_f, h5aexists_f, h5aget_type_f, h5aopen_f, h5aread_f, h5awrite_f, h5oclose_f, &
-    h5oopen_f, h5s_scalar_f, h5sclose_f, h5screate_f, h5t_float_f, h5t_ieee_f64le, h5t_integer_f, h5t_native_double, &
-    h5t_native_integer, h5t_std_i32le, h5t_string_f, h5tclose_f, h5tget_class_f, h5tget_size_f, h5tis_variable_str_f, size_t
+  use hdf5, only: h5aclose_f, h5acreate_f, h5adelete_f, h5aexists_f, h5aget_space_f, h5aget_type_f, h5aopen_f, h5aread_f, &
+    h5awrite_f, h5oclose_f, h5oopen_f, h5s_scalar_f, h5sclose_f, h5screate_f, h5sget_simple_extent_ndims_f, h5t_float_f, &
+    h5t_ieee_f64le, h5t_integer_f, h5t_native_double, h5t_native_integer, h5t_std_i32le, h5t_string_f, h5tclose_f, &
+    h5tget_class_f, h5tget_size_f, h5tis_variable_str_f, size_t
   use errors, only: exit_bug, exit_input, exit_machine
   use hdf5_text, only: get_words, letters_of, make_text_type
   implicit none
@@ -127,9 +128,9 @@ contains
     integer, intent(in) :: class
     integer(hid_t), intent(out) :: attribute
     integer, intent(out) :: width
-    integer(hid_t) :: object, type
+    integer(hid_t) :: object, type, space
     integer(size_t) :: bytes
-    integer :: flag, found
+    integer :: flag, found, rank
     logical :: variable
 
     attribute = closed
@@ -141,9 +142,13 @@ contains
     end if
     found = -1
     bytes = 0
+    rank = -1
     variable = .false.
     call h5oopen_f(self%id, path, object, flag)
     call h5aopen_f(object, name, attribute, flag)
+    call h5aget_space_f(attribute, space, flag)
+    call h5sget_simple_extent_ndims_f(space, rank, flag)
+    call h5sclose_f(space, flag)
     call h5aget_type_f(attribute, type, flag)
     call h5tget_class_f(type, found, flag)
     call h5tget_size_f(type, bytes, flag)
@@ -151,7 +156,7 @@ contains
     call h5tclose_f(type, flag)
     call h5oclose_f(object, flag)
     width = int(bytes)
-    if (found == class .and. .not. variable .and. .not. (class == h5t_integer_f .and. width > 4)) return
+    if (found == class .and. rank == 0 .and. .not. variable .and. .not. (class == h5t_integer_f .and. width > 4)) return
     call self%record_error(exit_input, "attribute '"//name//"' of '"//path//"' is not of the type wanted")
     call h5aclose_f(attribute, flag)
     attribute = closed

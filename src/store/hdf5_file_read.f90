@@ -201,10 +201,12 @@ contains
     call h5tclose_f(type, flag)
     if (variable) then
       call self%record_error(exit_input, "dataset '"//path//"' is text of variable length, where fixed length is wanted")
+    end if
+    if (variable .or. size(words) == 0) then
       call h5dclose_f(dataset, flag)
       return
     end if
-    allocate (letters(int(width)*max(size(words), 1)))
+    allocate (letters(width*size(words)))
     call make_text_type(int(width), type)
     call read_block(self, path, dataset, type, c_loc(letters))
     call h5tclose_f(type, flag)

@@ -3,7 +3,7 @@
 
 usage: run_acceptance.py [-v] [-k]       -v prints every check, -k keeps the results
 
-The faults are made in the checkpoint of the first try, with a digest that fits. Tries after it are sound: the cycle ends,
+The faults are made in the checkpoint of the first try, with a hash that is right. Tries after it are sound: the cycle ends,
 killed on its way or not.
 """
 import math

@@ -10,6 +10,7 @@ import sys
 
 sys.dont_write_bytecode = True
 from remeshed import cycle, tries  # noqa: E402
+from sealed import alter  # noqa: E402
 from support import BIN, DONE, INPUT, UPSETTING, Checks, add_cards, deck_text, run, said, with_h5py, write  # noqa: E402
 
 REMESH = 4
@@ -48,13 +49,12 @@ def not_a_number(file):
     file["nodes/displacement"][0, 0] = float("nan")
 
 
-def other_hash(file):
+def other_number(file):
     file["mesh/coordinates"][0, 0] += 1e-9
 
 
 def sealed_not_a_number(checks, deck, out):
-    """A number that is none in a checkpoint whose digest is right: refused by its place; the cycle goes on from the one before."""
-    from sealed import alter  # pylint: disable=import-outside-toplevel
+    """A number that is none in a checkpoint whose hash is right: refused by its place; the cycle goes on from the one before."""
     folder, new = checks.path("sealed"), checks.path("new.h5")
     shutil.copytree(out, folder)
     bad = os.path.join(folder, "case.ckp.h5")
@@ -83,11 +83,11 @@ def main():
     facts = dict(line.split(" ", 1) for line in result.stdout.splitlines())
     checks.that(result.returncode == DONE and facts["generation"] == "1" and facts["elements"] == "12"
                 and facts["due"].startswith("time 0.1"), "--about tells what is in it", facts)
-    damages = {"a text": (text, "HDF5"), "cut to nothing": (cut(0), "HDF5"), "cut to 10 %": (cut(0.1), "cut short"),
-               "cut to 97 %": (cut(0.97), "cut short"), "another schema": (change(other_schema), "schema"),
-               "no schema": (change(lambda file: file.attrs.__delitem__("schema")), "not a checkpoint"),
-               "a number that is none": (change(not_a_number), "digest"), "a number altered": (change(other_hash), "digest"),
-               "a dataset gone": (change(lambda file: file.__delitem__("groups/1/state")), "digest"),
+    damages = {"a text": (text, "not a file of this program"), "cut to nothing": (cut(0), "not a file of this program"), "cut to 10 %": (cut(0.1), "cut short"),
+               "cut to 97 %": (cut(0.97), "cut short"), "another schema": (lambda path: alter(path, other_schema), "schema"),
+               "no schema": (lambda path: alter(path, lambda file: file.attrs.__delitem__("schema")), "not a checkpoint"),
+               "a number that is none": (change(not_a_number), "hash"), "a number altered": (change(other_number), "hash"),
+               "a dataset gone": (change(lambda file: file.__delitem__("groups/1/state")), "hash"),
                "no such file": (os.remove, "no such file")}
     for what, (damage, phrase) in damages.items():
         shutil.copy(good, bad)

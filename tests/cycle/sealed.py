@@ -1,58 +1,33 @@
-"""Checkpoints altered on purpose whose digest is right all the same (src/store/hdf5_file_digest.f90 says what it is made of)."""
+"""Checkpoints altered on purpose whose hash is right all the same (src/store/hdf5_file_hash.f90 says where it stands)."""
 import hashlib
 
-import numpy as np
-
-DIGEST = "digest"
+BLOCK = 512
 
 
-def digest_of(file):
-    """A line per group, attribute and dataset: path, type, extent, SHA-256 of the bytes; and the SHA-256 of the lines."""
-    lines = []
-
-    def line_of(kind, identity, shape, words):
-        body = np.empty(shape, dtype=identity.dtype)
-        if body.size:
-            if kind == "dataset":
-                import h5py  # pylint: disable=import-outside-toplevel
-                identity.read(h5py.h5s.ALL, h5py.h5s.ALL, body, mtype=identity.get_type())
-            else:
-                identity.read(body, mtype=identity.get_type())
-        extent = "".join(f" {n}" for n in reversed(shape))
-        width = identity.get_type()
-        lines.append(f"{kind} {words} {width.get_class()} {width.get_size()}{extent} {hashlib.sha256(body.tobytes()).hexdigest()}\n")
-
-    def attributes(thing, path):
-        for name in sorted(thing.attrs):
-            if path == "/" and name == DIGEST:
-                continue
-            identity = thing.attrs.get_id(name)
-            line_of("attribute", identity, identity.shape, f"{path} {name}")
-
-    def group(thing, path):
-        lines.append(f"group {path}\n")
-        attributes(thing, path)
-        for name in sorted(thing):
-            if hasattr(thing[name], "keys"):
-                group(thing[name], f"{path}{name}/")
-            else:
-                line_of("dataset", thing[name].id, thing[name].shape, path + name)
-                attributes(thing[name], path + name)
-
-    group(file, "/")
-    return hashlib.sha256("".join(lines).encode()).hexdigest()
+def block_of(body):
+    """The user block of a file: what it is, its length, SHA-256 of what follows; filled up with null bytes."""
+    text = f"LAGAMINE file with its hash\nlength {BLOCK + len(body)}\nsha256 {hashlib.sha256(body).hexdigest()}\n"
+    return text.encode().ljust(BLOCK, b"\0")
 
 
 def alter(path, action):
-    """Change a checkpoint as its writer might have: its digest fits."""
+    """Change a checkpoint as its writer might have: its hash is right."""
     import h5py  # pylint: disable=import-outside-toplevel
+    with open(path, "rb") as file:
+        if file.read(BLOCK) != block_of(file.read()):
+            raise AssertionError(f"{path}: this hash is made another way")
     with h5py.File(path, "r+") as file:
-        stored = file.attrs[DIGEST]
-        text = stored.decode() if isinstance(stored, bytes) else str(stored)
-        if digest_of(file) != text:
-            raise AssertionError(f"{path}: this digest is made another way")
         action(file)
-        file.attrs.modify(DIGEST, np.bytes_(digest_of(file)))
+    seal(path)
+
+
+def seal(path):
+    """Write length and hash anew."""
+    with open(path, "r+b") as file:
+        file.seek(BLOCK)
+        block = block_of(file.read())
+        file.seek(0)
+        file.write(block)
 
 
 def columns_of(file, group, name):
