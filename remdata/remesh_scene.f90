@@ -137,7 +137,7 @@ contains
     if (.not. allocated(error)) call read_bare_scene(file, scene, error)
     if (.not. allocated(error)) call start_solution(scene, solution)
     if (.not. allocated(error)) call read_state(file, scene, solution, error)
-    if (.not. allocated(error)) call read_contact_ends(file, ends, error)
+    if (.not. allocated(error)) call read_contact_ends(file, scene, ends, error)
     call file%close(ignored)
   end subroutine read_all
 

@@ -118,6 +118,10 @@ contains
     ! A deck that could not be opened has no other mistakes.
     if (sound .or. size(deck%cards) > 0) call read_scene(deck, scene, diagnostics, remesh)
     call diagnostics%error(error)
+    if (allocated(remesh) .and. .not. allocated(unfit)) then
+      if (scene%generation /= remesh%generation) &
+        call fail(unfit, exit_input, options%resume//': its groups or sides are not those of the deck')
+    end if
     if (.not. allocated(error) .and. allocated(unfit)) call move_alloc(unfit, error)
     if (.not. allocated(error)) call fingerprint_text(deck, text)
     at_rest = allocated(remesh)

@@ -67,7 +67,7 @@ contains
     yes = size(remesh%groups) >= size(parts%bodies) .and. size(remesh%sides) == size(draft%scene%mesh%sides)
     if (.not. yes) return
     do i = 1, size(parts%bodies)
-      yes = yes .and. remesh%groups(i)%name == parts%bodies(i)%name
+      yes = yes .and. remesh%groups(i)%name == parts%bodies(i)%name .and. size(remesh%groups(i)%connectivity, 1) == 8
     end do
     do i = 1, size(remesh%sides)
       yes = yes .and. remesh%sides(i)%name == draft%scene%mesh%sides(i)%name

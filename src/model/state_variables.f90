@@ -5,7 +5,7 @@ module state_variables
   use text, only: string_t
   implicit none
   private
-  public :: state_variable_t, state_variable, component_names, find_variable, total_components
+  public :: state_variable_t, state_variable, component_names, find_variable, is_transfer_kind, total_components
   public :: transfer_scalar, transfer_tensor, transfer_fraction, transfer_contact, transfer_recompute
 
   character(len=*), parameter :: transfer_scalar = 'scalar'
@@ -63,6 +63,19 @@ contains
     end do
     k = 0
   end function find_variable
+
+  !> Is this one of the kinds of transfer?
+  pure function is_transfer_kind(word) result(yes)
+    character(len=*), intent(in) :: word
+    logical :: yes
+
+    select case (word)
+    case (transfer_scalar, transfer_tensor, transfer_fraction, transfer_contact, transfer_recompute)
+      yes = .true.
+    case default
+      yes = .false.
+    end select
+  end function is_transfer_kind
 
   !> Names of all components in order: `plastic_strain`, `stress_xx`, `stress_yy`, ...
   pure subroutine component_names(variables, names)

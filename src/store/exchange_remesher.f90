@@ -1,14 +1,19 @@
 !> What the deck asks of the remesher, in the checkpoint.
 module exchange_remesher
-  use errors, only: exit_input
+  use exchange_rules, only: read_count, read_flag, read_list, read_numbers, require, require_range
   use hdf5_file, only: hdf5_file_t
-  use kinds, only: wp
-  use remesher_options, only: as_it_comes, has_contours, has_zones, remesher_options_t
+  use kinds, only: pi, wp
+  use remesher_options, only: by_gmsh, has_contours, has_zones, remesher_options_t
   use text, only: string_t, to_text
-  use zone_marks, only: contour_card_t, zone_card_t, zone_mark_t
+  use zone_marks, only: contour_card_t, mark_corner, mark_inside, zone_card_t, zone_mark_t
   implicit none
   private
   public :: read_remesher, write_remesher
+
+  !> Limits that the cards have too (remesher_rows): methods of transfer, points of moving least squares, exponent of inverse
+  !> distances.
+  integer, parameter :: last_transfer = 2, fewest_neighbours = 8, most_neighbours = 64
+  real(wp), parameter :: largest_exponent = 20.0_wp
 
 contains
 
@@ -24,8 +29,10 @@ contains
     call file%write('remesher/strain_error', remesher%strain_error)
     call file%write('remesher/count', [remesher%most_elements, remesher%across_contact])
     call file%write('remesher/turn', remesher%turn)
-    if (remesher%mesher /= as_it_comes) call file%write('remesher/mesher', remesher%mesher)
+    call file%write('remesher/mesher', remesher%mesher)
     call file%write('remesher/tries', remesher%tries)
+    call file%write('remesher/has_zones', merge(1, 0, has_zones(remesher)))
+    call file%write('remesher/has_contours', merge(1, 0, has_contours(remesher)))
     if (has_zones(remesher)) call write_zones(file, remesher%marks, remesher%zones)
     if (has_contours(remesher)) call write_contours(file, remesher%contours)
   end subroutine write_remesher
@@ -33,35 +40,37 @@ contains
   subroutine read_remesher(file, remesher)
     type(hdf5_file_t), intent(inout) :: file
     type(remesher_options_t), intent(out) :: remesher
-    integer, allocatable :: numbers(:)
-    real(wp), allocatable :: sizes(:)
-    integer :: wanted
+    integer :: transfer(2), count(2)
+    real(wp) :: sizes(2)
+    logical :: zones, contours
 
-    wanted = 0
-    call file%read('remesher/wanted', wanted)
-    remesher%wanted = wanted == 1
-    call file%read('remesher/transfer', numbers)
-    if (size(numbers) == 2) then
-      remesher%transfer = numbers(1)
-      remesher%neighbours = numbers(2)
-    end if
+    call read_flag(file, 'remesher/wanted', remesher%wanted)
+    call read_numbers(file, 'remesher/transfer', transfer)
+    call require_range(file, 'remesher/transfer', transfer(1), 0, last_transfer)
+    call require_range(file, 'remesher/transfer', transfer(2), fewest_neighbours, most_neighbours)
+    remesher%transfer = transfer(1)
+    remesher%neighbours = transfer(2)
     call file%read('remesher/exponent', remesher%exponent)
-    call file%read('remesher/size', sizes)
-    if (size(sizes) == 2) then
-      remesher%smallest = sizes(1)
-      remesher%largest = sizes(2)
-    end if
+    call require_range(file, 'remesher/exponent', remesher%exponent, tiny(1.0_wp), largest_exponent)
+    call read_list(file, 'remesher/size', sizes)
+    call require_range(file, 'remesher/size', sizes, 0.0_wp, huge(1.0_wp))
+    call require(file, 'remesher/size', sizes(1) <= sizes(2), 'holds a smallest size above the largest one')
+    remesher%smallest = sizes(1)
+    remesher%largest = sizes(2)
     call file%read('remesher/strain_error', remesher%strain_error)
-    call file%read('remesher/count', numbers)
-    if (size(numbers) == 2) then
-      remesher%most_elements = numbers(1)
-      remesher%across_contact = numbers(2)
-    end if
+    call require_range(file, 'remesher/strain_error', remesher%strain_error, tiny(1.0_wp), huge(1.0_wp))
+    call read_numbers(file, 'remesher/count', count)
+    call require_range(file, 'remesher/count', count, 0, huge(1))
+    remesher%most_elements = count(1)
+    remesher%across_contact = count(2)
     call file%read('remesher/turn', remesher%turn)
-    if (file%has('remesher/mesher')) call file%read('remesher/mesher', remesher%mesher)
-    call file%read('remesher/tries', remesher%tries)
-    if (file%has('remesher/zones')) call read_zones(file, remesher)
-    if (file%has('remesher/contours')) call read_contours(file, remesher%contours)
+    call require_range(file, 'remesher/turn', remesher%turn, tiny(1.0_wp), pi/2)
+    call read_count(file, 'remesher/mesher', remesher%mesher, by_gmsh)
+    call read_count(file, 'remesher/tries', remesher%tries)
+    call read_flag(file, 'remesher/has_zones', zones)
+    call read_flag(file, 'remesher/has_contours', contours)
+    if (zones) call read_zones(file, remesher)
+    if (contours) call read_contours(file, remesher%contours)
   end subroutine read_remesher
 
   !> Zones and their points, with the names that messages call them by. A row each of numbers: what a point is, axis, pick, by
@@ -104,15 +113,20 @@ contains
     integer :: k
 
     call file%read('remesher/points/name', names)
+    call file%require_shape('remesher/points/numbers', [6, size(names)])
+    call file%require_shape('remesher/points/place', [2, size(names)])
     call file%read('remesher/points/numbers', numbers)
     call file%read('remesher/points/place', places)
     call file%read('remesher/zones/name', zone_names)
+    call file%require_shape('remesher/zones/numbers', [5, size(zone_names)])
     call file%read('remesher/zones/numbers', corners)
-    if (any(shape(numbers) /= [6, size(names)]) .or. any(shape(places) /= [2, size(names)]) &
-        .or. any(shape(corners) /= [5, size(zone_names)])) then
-      call file%record_error(exit_input, 'remesher/zones: names and numbers do not fit')
-      return
-    end if
+    if (file%failed()) return
+    call require_range(file, 'remesher/points/numbers', numbers(1, :), mark_corner, mark_inside)
+    call require_range(file, 'remesher/points/numbers', numbers(2, :), 0, 2)
+    call require_range(file, 'remesher/points/numbers', numbers(3, :), -1, 1)
+    call require_range(file, 'remesher/points/numbers', numbers(4:5, :), 0, 1)
+    call require_range(file, 'remesher/zones/numbers', corners(2:, :), 1, size(names))
+    if (file%failed()) return
     allocate (remesher%marks(size(names)), remesher%zones(size(zone_names)))
     do k = 1, size(names)
       remesher%marks(k) = zone_mark_t(name=names(k)%s, form=numbers(1, k), x=places(:, k), axis=numbers(2, k), &
@@ -148,10 +162,11 @@ contains
     allocate (contours(size(groups)))
     do k = 1, size(groups)
       contours(k)%group = groups(k)
-      call file%read('remesher/contours/'//to_text(k)//'/pieces', contours(k)%pieces)
       call file%read('remesher/contours/'//to_text(k)//'/side', contours(k)%row)
-      if (any(shape(contours(k)%pieces) /= [2, 3, size(contours(k)%row)])) &
-        call file%record_error(exit_input, 'remesher/contours: pieces and sides do not fit')
+      call require_range(file, 'remesher/contours/'//to_text(k)//'/side', contours(k)%row, 1, huge(1))
+      call require(file, 'remesher/contours/'//to_text(k)//'/side', size(contours(k)%row) > 0, 'is empty')
+      call file%require_shape('remesher/contours/'//to_text(k)//'/pieces', [2, 3, size(contours(k)%row)])
+      call file%read('remesher/contours/'//to_text(k)//'/pieces', contours(k)%pieces)
     end do
   end subroutine read_contours
 

@@ -1,7 +1,8 @@
 !> Writing the checkpoint.
 !>
 !> Every state array carries the names, units and transfer kinds of its variables, taken from the laws and elements that declare
-!> them: who reads it needs to know no law.
+!> them: who reads it needs to know no law. What a scene does not have is written all the same, as 0 or empty: a dataset that is
+!> missing is so always a mistake.
 module exchange_write
   use contact_ends, only: contact_end_t
   use dies, only: is_deformable
@@ -42,6 +43,7 @@ contains
     call write_dies(file, scene, solution)
     call write_progress(file, solution)
     call write_states(file, scene, solution)
+    call file%write('estimate/wanted', merge(1, 0, scene%remesh%estimate))
     if (scene%remesh%estimate) call write_estimate(file, scene, solution%estimate)
     call write_ends(file, ends)
     call commit_atomic(file, error, keep_previous=.true.)
@@ -87,7 +89,11 @@ contains
     call file%group('dies')
     do k = 1, size(scene%dies)
       call file%write('dies/'//scene%dies(k)%name//'/pieces', scene%dies(k)%pieces)
-      if (is_deformable(scene%dies(k))) call file%write('dies/'//scene%dies(k)%name//'/nodes', scene%dies(k)%nodes)
+      if (is_deformable(scene%dies(k))) then
+        call file%write('dies/'//scene%dies(k)%name//'/nodes', scene%dies(k)%nodes)
+      else
+        call file%write('dies/'//scene%dies(k)%name//'/nodes', reshape([integer ::], [3, 0]))
+      end if
       call file%write('dies/'//scene%dies(k)%name//'/start', scene%dies(k)%pilot)
       call file%write('dies/'//scene%dies(k)%name//'/pilot', solution%pilots(:, k))
       call file%write('dies/'//scene%dies(k)%name//'/last_increment', solution%last_pilot_increment(:, k))
@@ -142,16 +148,10 @@ contains
         call file%write(place//'/elem', group%elem)
         call file%write(place//'/npoint', group%npoint)
         call file%write(place//'/connectivity', group%connectivity)
-        if (group%die > 0) then
-          call file%write(place//'/die', scene%dies(group%die)%name)
-          call file%write(place//'/die_number', group%die)
-        end if
-        if (group%material > 0) then
-          call file%write(place//'/material', scene%materials(group%material)%name)
-          call file%write(place//'/material_number', group%material)
-        end if
+        call file%write(place//'/die_number', group%die)
+        call file%write(place//'/material_number', group%material)
+        if (group%material > 0) call file%write(place//'/material', scene%materials(group%material)%name)
         if (group%pairs > 0) call file%write(place//'/pairs', solution%pairs(group%pairs)%piece)
-        if (size(group%variables) == 0) cycle
         allocate (names(size(group%variables)), units(size(group%variables)), kinds(size(group%variables)))
         do v = 1, size(group%variables)
           names(v)%s = group%variables(v)%name
@@ -191,7 +191,6 @@ contains
     end do
     call file%write('remesh/last_stop', estimate%last_stop)
     call file%write('remesh/first_stress', estimate%first_stress)
-    if (size(estimate%triggers) == 0) return
     allocate (names(size(estimate%triggers)))
     do k = 1, size(names)
       names(k)%s = estimate%triggers(k)%name

@@ -48,6 +48,7 @@ module hdf5_file
     procedure :: has
     procedure :: list
     procedure :: remove
+    procedure :: require_shape
     procedure :: check_structure
     procedure, private :: write_hash
     procedure, private :: check_hash
@@ -259,8 +260,16 @@ module hdf5_file
     end subroutine write_words
   end interface
 
-  ! Reading datasets: hdf5_file_read.
+  ! Reading datasets: hdf5_file_read. Reals are finite numbers, or the dataset is refused.
   interface
+    !> Refuse a dataset that has not these extents (negative: any). Ask before reading where memory is made for what is told
+    !> elsewhere, and where what is read takes the place of an array of known shape.
+    module subroutine require_shape(self, path, wanted)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      integer, intent(in) :: wanted(:)
+    end subroutine require_shape
+
     module subroutine read_real(self, path, value)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path

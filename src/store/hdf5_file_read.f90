@@ -1,11 +1,13 @@
 !> Reading datasets of a known type and rank.
 submodule(hdf5_file) hdf5_file_read
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use, intrinsic :: iso_c_binding, only: c_loc, c_ptr
   use hdf5, only: h5dclose_f, h5dget_space_f, h5dget_type_f, h5dopen_f, h5dread_f, h5sclose_f, h5sget_simple_extent_dims_f, &
     h5sget_simple_extent_ndims_f, h5t_float_f, h5t_integer_f, h5t_native_double, h5t_native_integer, h5t_string_f, h5tclose_f, &
     h5tget_class_f, h5tget_size_f, h5tis_variable_str_f, hsize_t, size_t
   use errors, only: exit_input
   use hdf5_text, only: get_words, make_text_type
+  use kinds, only: i8
   use text, only: to_text
   implicit none
 
@@ -18,6 +20,9 @@ contains
     value = 0
     call open_dataset(self, path, h5t_float_f, extent, dataset)
     call read_block(self, path, dataset, h5t_native_double, c_loc(value))
+    if (ieee_is_finite(value)) return
+    call refuse_not_finite(self, path)
+    value = 0
   end procedure read_real
 
   module procedure read_reals
@@ -27,6 +32,9 @@ contains
     call open_dataset(self, path, h5t_float_f, extent, dataset)
     allocate (values(extent(1)))
     call read_block(self, path, dataset, h5t_native_double, c_loc(values))
+    if (all(ieee_is_finite(values))) return
+    call refuse_not_finite(self, path)
+    values = 0
   end procedure read_reals
 
   module procedure read_reals_2
@@ -36,6 +44,9 @@ contains
     call open_dataset(self, path, h5t_float_f, extent, dataset)
     allocate (values(extent(1), extent(2)))
     call read_block(self, path, dataset, h5t_native_double, c_loc(values))
+    if (all(ieee_is_finite(values))) return
+    call refuse_not_finite(self, path)
+    values = 0
   end procedure read_reals_2
 
   module procedure read_reals_3
@@ -45,6 +56,9 @@ contains
     call open_dataset(self, path, h5t_float_f, extent, dataset)
     allocate (values(extent(1), extent(2), extent(3)))
     call read_block(self, path, dataset, h5t_native_double, c_loc(values))
+    if (all(ieee_is_finite(values))) return
+    call refuse_not_finite(self, path)
+    values = 0
   end procedure read_reals_3
 
   module procedure read_integer
@@ -92,6 +106,62 @@ contains
     allocate (values(extent(1)))
     call read_letters(self, path, dataset, values)
   end procedure read_words
+
+  !> A number that is none would spread through all that is computed with it.
+  subroutine refuse_not_finite(self, path)
+    class(hdf5_file_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+
+    call self%record_error(exit_input, "dataset '"//path//"' holds a number that is not finite")
+  end subroutine refuse_not_finite
+
+  module procedure require_shape
+    integer(hsize_t) :: extent(32), largest(32)
+    integer(hid_t) :: dataset, space
+    character(len=:), allocatable :: found
+    integer :: rank, k, flag
+
+    if (self%failed()) return
+    if (.not. self%has(path)) then
+      call self%record_error(exit_input, "dataset '"//path//"' is missing")
+      return
+    end if
+    call h5dopen_f(self%id, path, dataset, flag)
+    if (flag /= 0) then
+      call self%record_error(exit_input, "'"//path//"' is not a dataset, or a damaged one")
+      return
+    end if
+    call h5dget_space_f(dataset, space, flag)
+    call h5sget_simple_extent_ndims_f(space, rank, flag)
+    if (flag /= 0) rank = 0
+    if (rank > 0) call h5sget_simple_extent_dims_f(space, extent, largest, flag)
+    call h5sclose_f(space, flag)
+    call h5dclose_f(dataset, flag)
+    if (rank == size(wanted)) then
+      if (all(extent(:rank) == wanted .or. wanted < 0)) return
+    end if
+    found = ''
+    do k = 1, rank
+      found = found//' '//to_text(int(extent(k), i8))
+    end do
+    call self%record_error(exit_input, "dataset '"//path//"' has the extents"//found//', where'//extents_in_words(wanted)// &
+                           ' is wanted')
+  end procedure require_shape
+
+  pure function extents_in_words(wanted) result(words)
+    integer, intent(in) :: wanted(:)
+    character(len=:), allocatable :: words
+    integer :: k
+
+    words = ''
+    do k = 1, size(wanted)
+      if (wanted(k) < 0) then
+        words = words//' any'
+      else
+        words = words//' '//to_text(wanted(k))
+      end if
+    end do
+  end function extents_in_words
 
   !> Open the dataset `path` and learn its `extent`, whose size is the rank wanted. When the dataset
   !> is not there or is something else, `dataset` is `closed` and the extent zero.

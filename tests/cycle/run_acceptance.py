@@ -112,7 +112,7 @@ FAULTS = {
     "pressure": (no_pressure, "contact", "the pressures carried over miss"),
     "die away": (die_off(0.1), "contour", "sides lie"),
     "corner": (flat_corner, "mesh", "scaled Jacobian"),
-    "nan": (not_a_number, "checkpoint", "not a finite number"),
+    "nan": (not_a_number, "checkpoint", "not finite"),
     "steps": (tiny_steps, "transfer", "its steps fall to"),
     "strength": (no_strength, "transfer", "its steps fall to"),
     "none": (lambda file: None, "", ""),

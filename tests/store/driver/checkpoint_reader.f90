@@ -1,0 +1,129 @@
+!> Reads checkpoints as the programs do, one after the other in one process: for tests that try very many.
+!>
+!> usage: checkpoint_reader DECK < paths
+!> For each path a line: exit codes of what `remdata`, `remdata --about` and `lagamine --resume` read of the file, then the first
+!> message.
+program checkpoint_reader
+  use, intrinsic :: iso_fortran_env, only: input_unit, output_unit
+  use arguments, only: argument
+  use contact_ends, only: contact_end_t
+  use deck_reader, only: deck_t, fingerprint_text, read_deck
+  use diagnostics, only: diagnostics_t
+  use errors, only: error_t, exit_done, exit_input, fail
+  use exchange, only: checkpoint_facts_t, open_checkpoint, read_bare_scene, read_contact_ends, read_deck_of_checkpoint, &
+    read_facts, read_remesh, read_state
+  use hdf5_file, only: hdf5_file_t
+  use remesh, only: remesh_t
+  use scene, only: lacks_mesh, scene_t
+  use scene_reader, only: read_scene
+  use solution, only: solution_t, start_solution
+  use system, only: program_stop
+  use text, only: string_t, to_text
+  implicit none
+  character(len=:), allocatable :: deck_path
+  character(len=4096) :: path
+  type(error_t), allocatable :: error
+  character(len=:), allocatable :: line, message
+  integer :: status
+
+  call argument(1, deck_path)
+  do
+    read (input_unit, '(a)', iostat=status) path
+    if (status /= 0) exit
+    line = ''
+    message = ''
+    call as_remesher(trim(path), error)
+    call note()
+    call about(trim(path), error)
+    call note()
+    call as_solver(trim(path), error)
+    call note()
+    write (output_unit, '(a)') line//message
+    flush (output_unit)
+  end do
+  call program_stop(exit_done)
+
+contains
+
+  subroutine note()
+    if (allocated(error)) then
+      line = line//to_text(error%code)//' '
+      if (message == '') message = first_line(error%message)
+    else
+      line = line//'0 '
+    end if
+  end subroutine note
+
+  subroutine as_remesher(path, error)
+    character(len=*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+    type(scene_t) :: scene
+    type(solution_t) :: solution
+    type(contact_end_t), allocatable :: ends(:)
+    type(error_t), allocatable :: ignored
+    character(len=:), allocatable :: name, text
+
+    call open_checkpoint(path, file, error)
+    if (allocated(error)) return
+    call read_deck_of_checkpoint(file, name, text, error)
+    if (.not. allocated(error)) call read_bare_scene(file, scene, error)
+    if (.not. allocated(error)) call start_solution(scene, solution)
+    if (.not. allocated(error)) call read_state(file, scene, solution, error)
+    if (.not. allocated(error)) call read_contact_ends(file, scene, ends, error)
+    call file%close(ignored)
+  end subroutine as_remesher
+
+  subroutine about(path, error)
+    character(len=*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    type(checkpoint_facts_t) :: facts
+
+    call read_facts(path, facts, error)
+  end subroutine about
+
+  subroutine as_solver(path, error)
+    character(len=*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t) :: file
+    type(deck_t), target :: deck
+    type(diagnostics_t), target :: diagnostics
+    type(scene_t) :: scene
+    type(solution_t) :: solution
+    type(remesh_t), allocatable :: remesh
+    type(error_t), allocatable :: ignored
+    character(len=:), allocatable :: name, text, own
+    logical :: at_rest
+
+    call open_checkpoint(path, file, error)
+    if (allocated(error)) return
+    call read_deck(deck_path, [string_t ::], deck, diagnostics)
+    call fingerprint_text(deck, own)
+    call read_deck_of_checkpoint(file, name, text, error)
+    if (.not. allocated(error)) then
+      if (text /= own) call fail(error, exit_input, 'another deck')
+    end if
+    allocate (remesh)
+    if (.not. allocated(error)) call read_remesh(file, remesh, error)
+    if (.not. allocated(error)) then
+      if (remesh%generation == 1) deallocate (remesh)
+      call read_scene(deck, scene, diagnostics, remesh)
+      call diagnostics%error(error)
+    end if
+    if (.not. allocated(error)) then
+      at_rest = lacks_mesh(scene)
+      if (allocated(remesh)) at_rest = remesh%step == 0
+      call start_solution(scene, solution)
+      if (.not. at_rest) call read_state(file, scene, solution, error)
+    end if
+    call file%close(ignored)
+  end subroutine as_solver
+
+  pure function first_line(text) result(line)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: line
+
+    line = text(:index(text//new_line('a'), new_line('a')) - 1)
+  end function first_line
+
+end program checkpoint_reader
