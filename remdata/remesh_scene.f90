@@ -13,6 +13,7 @@ module remesh_scene
   use dies, only: is_deformable
   use errors, only: error_t
   use exchange, only: open_checkpoint, read_bare_scene, read_contact_ends, read_deck_of_checkpoint, read_state, write_checkpoint
+  use fields, only: displacement_field, on_nodes, pilot_field
   use first_contours, only: contours_of_cards
   use gmsh_call, only: find_gmsh, gmsh_t
   use hdf5_file, only: hdf5_file_t
@@ -30,7 +31,7 @@ module remesh_scene
   use remesher_options, only: as_it_comes, by_gmsh, has_zones, remesher_options_t
   use scene, only: is_solid, lacks_mesh, scene_t
   use size_field, only: need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t
-  use solution, only: solution_t, start_solution
+  use solution, only: present_coordinates, solution_t, start_solution
   use state_pieces, only: mesh_of, solid_pieces, state_pieces_t, store_states
   use text, only: to_text
   use transfer_api, only: transfer_options_t
@@ -91,7 +92,7 @@ contains
     call requested_sizes(old, before, contours, first, sizes)
     if (old%remesher%mesher /= by_gmsh) then
       call begin_task(facts, 'mesh', 'zones')
-      call plan_zones(old, old%mesh%coordinates + before%displacement, before%pilots, materials_of(old, before), &
+      call plan_zones(old, present_coordinates(old, before), before%fields(pilot_field)%value, materials_of(old, before), &
                       contours, interfaces, plan, error)
       call begin_task(facts, 'mesh', 'mesh')
       if (.not. allocated(error)) call make_mesh(old, before, contours, plan, sizes, options%finer, mesh, facts, error)
@@ -148,11 +149,13 @@ contains
     type(solution_t), intent(inout) :: solution
     real(wp), allocatable, intent(out) :: moved(:, :)   !! (2, nnode) [length]
 
-    allocate (moved, mold=solution%displacement)
-    moved = 0
-    if (scene%finite .or. any(scene%groups%die > 0)) return
-    moved = solution%displacement
-    solution%displacement = 0
+    associate (displacement => solution%fields(displacement_field)%value)
+      allocate (moved, mold=displacement)
+      moved = 0
+      if (scene%finite .or. any(scene%groups%die > 0)) return
+      moved = displacement
+      displacement = 0
+    end associate
   end subroutine reset_to_start
 
   !> Transfer everything from the old mesh: progress, state of the solids, contact.
@@ -233,7 +236,8 @@ contains
     allocate (needs(0), bends(0))
     do d = 1, size(scene%dies)
       if (is_deformable(scene%dies(d))) cycle
-      call needs_of_die([(placed_piece(scene%dies(d), solution%pilots(:, d), k), k=1, size(scene%dies(d)%pieces, 3))], &
+      call needs_of_die([(placed_piece(scene%dies(d), solution%fields(pilot_field)%value(:, d), k), &
+                          k=1, size(scene%dies(d)%pieces, 3))], &
                         settings, limits, more)
       bends = [bends, more]
     end do
@@ -339,18 +343,16 @@ contains
   pure subroutine carry_progress(before, after)
     type(solution_t), intent(in) :: before
     type(solution_t), intent(inout) :: after
+    integer :: f
 
     after%time = before%time
     after%step = before%step
     after%last_step = before%last_step
     after%next_step = before%next_step
     after%probation = before%probation
-    after%pilots = before%pilots
-    after%last_pilot_increment = before%last_pilot_increment
-    after%pilot_applied = before%pilot_applied
-    after%section = before%section
-    after%last_section_increment = before%last_section_increment
-    after%section_applied = before%section_applied
+    do f = 1, size(after%fields)
+      if (after%fields(f)%place /= on_nodes) after%fields(f) = before%fields(f)
+    end do
     after%iterations = before%iterations
     after%cutbacks = before%cutbacks
     after%external_work = before%external_work
@@ -379,8 +381,6 @@ contains
     type(state_pieces_t) :: from, to
     type(transfer_options_t) :: options
     type(transfer_mesh_t) :: mesh, target
-    real(wp), allocatable :: values(:, :)
-    real(wp) :: farthest
     integer, allocatable :: material(:)
     integer :: k
 
@@ -403,14 +403,62 @@ contains
     do k = 1, size(target%material)
       material(target%connectivity(:, k)) = target%material(k)
     end do
-    allocate (values(6, size(material)))
-    call carry_at_nodes(mesh, reshape([transpose(old%mesh%origin), transpose(before%last_increment), transpose(moved)], &
-                                      [6, size(moved, 2)], order=[2, 1]), &
-                        new%mesh%coordinates, material, options%outside, values, farthest, error)
-    if (allocated(error)) return
-    new%mesh%origin = values(1:2, :)
-    after%last_increment = values(3:4, :)
-    after%displacement = values(5:6, :)
+    call carry_nodes(mesh, old, before, moved, material, options%outside, new, after, error)
   end subroutine carry_solids
+
+  !> What belongs to nodes, by the shape functions of the old mesh: origin of the material, and of every field on nodes the change
+  !> of the last step and the value; of the displacement the value is what was `moved`.
+  subroutine carry_nodes(mesh, old, before, moved, material, outside, new, after, error)
+    type(transfer_mesh_t), intent(in) :: mesh
+    type(scene_t), intent(in) :: old
+    type(solution_t), intent(in) :: before
+    real(wp), intent(in) :: moved(:, :)      !! (2, nnode) [length]
+    integer, intent(in) :: material(:)       !! of the new nodes (nnode)
+    real(wp), intent(in) :: outside
+    type(scene_t), intent(inout) :: new
+    type(solution_t), intent(inout) :: after
+    type(error_t), allocatable, intent(out) :: error
+    real(wp), allocatable :: from(:, :), to(:, :)
+    real(wp) :: farthest
+    integer :: f, n, pass
+
+    n = 2
+    do f = 1, size(before%fields)
+      if (is_carried(f)) n = n + 2*before%fields(f)%ncomp
+    end do
+    allocate (from(n, size(moved, 2)), to(n, size(material)))
+    from(1:2, :) = old%mesh%origin
+    do pass = 1, 2
+      n = 2
+      do f = 1, size(before%fields)
+        if (.not. is_carried(f)) cycle
+        associate (m => before%fields(f)%ncomp)
+          if (pass == 1) then
+            from(n + 1:n + m, :) = before%fields(f)%last_increment
+            from(n + m + 1:n + 2*m, :) = before%fields(f)%value
+            if (f == displacement_field) from(n + m + 1:n + 2*m, :) = moved
+          else
+            after%fields(f)%last_increment = to(n + 1:n + m, :)
+            after%fields(f)%value = to(n + m + 1:n + 2*m, :)
+          end if
+          n = n + 2*m
+        end associate
+      end do
+      if (pass == 2) exit
+      call carry_at_nodes(mesh, from, new%mesh%coordinates, material, outside, to, farthest, error)
+      if (allocated(error)) return
+    end do
+    new%mesh%origin = to(1:2, :)
+
+  contains
+
+    pure function is_carried(k) result(yes)
+      integer, intent(in) :: k
+      logical :: yes
+
+      yes = before%fields(k)%place == on_nodes .and. before%fields(k)%declared
+    end function is_carried
+
+  end subroutine carry_nodes
 
 end module remesh_scene

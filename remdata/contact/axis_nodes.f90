@@ -8,6 +8,7 @@ module axis_nodes
   use arcs_on_die, only: closest_point_t, placed_piece
   use die_closest_points, only: find_closest_point
   use dies, only: die_t, is_deformable
+  use fields, only: pilot_field
   use kinds, only: wp
   use quadrature, only: line_rule
   use scene, only: axisymmetric, scene_t
@@ -51,7 +52,8 @@ contains
             p = merge(2, size(xi) - 1, i == 1)
             associate (point => x(:, group%connectivity(i, e)))
               if (abs(point(1)) > least .or. nint(state(status, p, e)) <= 0) cycle
-              call lift(scene%dies(group%die), solution%pilots(:, group%die), max(state(penetration, p, e), 0.0_wp), point)
+              call lift(scene%dies(group%die), solution%fields(pilot_field)%value(:, group%die), &
+                        max(state(penetration, p, e), 0.0_wp), point)
             end associate
           end do
         end do

@@ -10,6 +10,7 @@ module contact_gaps
   use contact_intervals, only: along, coincide, contact_interval_t, side_point_t, sort_intervals, wrap_start
   use die_closest_points, only: find_closest_point, point_on_side
   use dies, only: die_t, present_die
+  use fields, only: pilot_field
   use kinds, only: wp
   use scene, only: scene_t
   use side_tags, only: side_tags_t
@@ -106,7 +107,7 @@ contains
     narrow = .true.
     number = scene%groups(interval%group)%die
     die = present_die(scene%dies(number), x)
-    associate (pilot => solution%pilots(:, number))
+    associate (pilot => solution%fields(pilot_field)%value(:, number))
       do k = interval%to%side, until%side
         side = modulo(k - 1, size(loop%sides, 2)) + 1
         chord = length_of(x(:, loop%sides(3, side)) - x(:, loop%sides(1, side)))

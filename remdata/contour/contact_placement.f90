@@ -7,6 +7,7 @@ module contact_placement
   use contour_assembly, only: contact_t
   use die_closest_points, only: section_t, sections_of_interval, start_at_contact_point
   use dies, only: present_die
+  use fields, only: pilot_field
   use kinds, only: pi, wp
   use scene, only: scene_t
   use side_tags, only: kept_corners, side_tags_t
@@ -63,7 +64,7 @@ contains
       one%interval = intervals(k)
       one%number = scene%groups(intervals(k)%group)%die
       one%die = present_die(scene%dies(one%number), x)
-      one%pilot = solution%pilots(:, one%number)
+      one%pilot = solution%fields(pilot_field)%value(:, one%number)
       associate (npoint => scene%groups(intervals(k)%group)%npoint)
         call start_at_contact_point(npoint, loop, x, one%die, one%pilot, options%least_contact, turn, &
                             [is_shared(intervals, k, 1, size(loop%sides, 2)), is_shared(intervals, k, 2, size(loop%sides, 2))], &

@@ -20,7 +20,7 @@ module part_contour
   use kinds, only: wp
   use scene, only: axisymmetric, is_solid, scene_t
   use side_tags, only: find_tags, held_nodes, side_tags_t
-  use solution, only: solution_t
+  use solution, only: present_coordinates, solution_t
   use text, only: to_text
   use vectors, only: length_of
   implicit none
@@ -99,7 +99,7 @@ contains
     type(side_point_t), allocatable :: joints(:)
     integer :: status, node, k, i
 
-    uncorrected = scene%mesh%coordinates + solution%displacement
+    uncorrected = present_coordinates(scene, solution)
     x = uncorrected
     call limit_depths(scene, solution, x)
     call gather_solids(scene, connectivity)

@@ -3,7 +3,7 @@ module cycle_folder
   use atomic, only: previous_name, read_text, write_text
   use cycle_options, only: cycle_options_t
   use cycle_situation, only: checkpoint_file_t, current_name, ended_lagamine, ended_nothing, ended_remdata, ended_t, first_line, &
-    is_due, is_read, mesh_name, new_mesh_t, situation_t, try_name
+    is_due, is_read, mesh_name, made_mesh_t, situation_t, try_name
   use cycle_table, only: number_refused, parse_table, try_row_t
   use errors, only: error_t, exit_machine, exit_no_convergence
   use exchange, only: read_facts
@@ -54,7 +54,7 @@ contains
 
   subroutine read_table(path, rows, error)
     character(len=*), intent(in) :: path
-    type(try_row_t), allocatable, intent(out) :: rows(:)
+    type(try_row_t), allocatable, intent(out) :: rows(:)   !! (ntry)
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: text
 
@@ -90,8 +90,8 @@ contains
   !> The try at hand: the one after those that were refused at this stop.
   subroutine read_try(stem, rows, new)
     character(len=*), intent(in) :: stem
-    type(try_row_t), intent(in) :: rows(:)
-    type(new_mesh_t), intent(inout) :: new
+    type(try_row_t), intent(in) :: rows(:)   !! (ntry)
+    type(made_mesh_t), intent(inout) :: new
     character(len=:), allocatable :: json, path
 
     new%number = number_refused(rows, new%generation, new%old_end%facts%step) + 1
@@ -110,7 +110,7 @@ contains
   end subroutine read_try
 
   pure function no_mesh() result(new)
-    type(new_mesh_t) :: new
+    type(made_mesh_t) :: new
 
     new%made_stage = ''
     new%restart_stage = ''
@@ -126,7 +126,7 @@ contains
 
   !> No try at mesh `generation` has a higher number.
   pure function most_tries(rows, generation) result(most)
-    type(try_row_t), intent(in) :: rows(:)
+    type(try_row_t), intent(in) :: rows(:)   !! (ntry)
     integer, intent(in) :: generation
     integer :: most
 

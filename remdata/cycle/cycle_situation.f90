@@ -7,7 +7,7 @@ module cycle_situation
   use text, only: to_text, two_digits
   implicit none
   private
-  public :: checkpoint_file_t, ended_t, new_mesh_t, situation_t
+  public :: checkpoint_file_t, ended_t, made_mesh_t, situation_t
   public :: ended_nothing, ended_check, ended_lagamine, ended_remdata, ended_known
   public :: due_reason, is_due, is_in_distress, is_first_mesh, is_read, first_line
   public :: try_name, mesh_name, current_name
@@ -41,7 +41,7 @@ module cycle_situation
   end type ended_t
 
   !> The new mesh in question: the one that is due, or the one the run is on as long as it is not entered in the table.
-  type :: new_mesh_t
+  type :: made_mesh_t
     integer :: generation = 0
     !> Checkpoint where the old mesh stopped, and the save before it.
     type(checkpoint_file_t) :: old_end, old_earlier
@@ -56,7 +56,7 @@ module cycle_situation
     logical :: restart_refused = .false.
     !> There is a file of a try, perhaps of another one.
     logical :: has_tries = .false.
-  end type new_mesh_t
+  end type made_mesh_t
 
   type :: situation_t
     !> Folder and name of the deck: what all names of files begin with, but for `table`.
@@ -68,7 +68,7 @@ module cycle_situation
     type(ended_t) :: ended
     !> The run's checkpoint and the one before.
     type(checkpoint_file_t) :: current, previous
-    type(new_mesh_t) :: new
+    type(made_mesh_t) :: new
     !> `new%old_end` is the run's checkpoint.
     logical :: end_is_kept = .false.
     type(try_row_t), allocatable :: rows(:)

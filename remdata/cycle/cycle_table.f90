@@ -41,7 +41,7 @@ contains
   !> The rows of a table. One that is damaged is refused by its line: tries that are forgotten would be made again.
   pure subroutine parse_table(text, path, rows, error)
     character(len=*), intent(in) :: text, path
-    type(try_row_t), allocatable, intent(out) :: rows(:)
+    type(try_row_t), allocatable, intent(out) :: rows(:)   !! (ntry)
     type(error_t), allocatable, intent(out) :: error
     type(try_row_t) :: row
     integer :: first, last, line
@@ -97,7 +97,7 @@ contains
 
   !> Cells as a line of the table; what would part them is replaced.
   pure function line_of_cells(cells) result(line)
-    type(string_t), intent(in) :: cells(:)
+    type(string_t), intent(in) :: cells(:)   !! (ncell)
     character(len=:), allocatable :: line
     type(string_t) :: clean(size(cells))
     integer :: k, i
@@ -118,7 +118,7 @@ contains
 
   !> Tries at mesh `generation` that were refused at the stop after `stop_step`.
   pure function number_refused(rows, generation, stop_step) result(number)
-    type(try_row_t), intent(in) :: rows(:)
+    type(try_row_t), intent(in) :: rows(:)   !! (ntry)
     integer, intent(in) :: generation, stop_step
     integer :: number
 
@@ -127,7 +127,7 @@ contains
 
   !> Was this way refused at this stop?
   pure function was_refused(rows, generation, stop_step, way) result(refused)
-    type(try_row_t), intent(in) :: rows(:)
+    type(try_row_t), intent(in) :: rows(:)   !! (ntry)
     integer, intent(in) :: generation, stop_step
     character(len=*), intent(in) :: way
     logical :: refused
@@ -142,7 +142,7 @@ contains
 
   !> Is there a row of mesh `generation` as an accepted one?
   pure function has_new_mesh(rows, generation) result(has)
-    type(try_row_t), intent(in) :: rows(:)
+    type(try_row_t), intent(in) :: rows(:)   !! (ntry)
     integer, intent(in) :: generation
     logical :: has
     integer :: k
@@ -155,7 +155,7 @@ contains
 
   !> Was it decided that the old mesh goes on, before mesh `generation` could be made: at this stop, or at any?
   pure function keeps_old_mesh(rows, generation, stop_step) result(keeps)
-    type(try_row_t), intent(in) :: rows(:)
+    type(try_row_t), intent(in) :: rows(:)   !! (ntry)
     integer, intent(in) :: generation
     integer, intent(in), optional :: stop_step
     logical :: keeps
@@ -174,7 +174,7 @@ contains
 
   !> Was a try at this stop refused for what came of the transfer? Another one cannot mend what comes before it.
   pure function can_blame_transfer(rows, generation, stop_step) result(can)
-    type(try_row_t), intent(in) :: rows(:)
+    type(try_row_t), intent(in) :: rows(:)   !! (ntry)
     integer, intent(in) :: generation, stop_step
     logical :: can
     integer :: k
@@ -188,7 +188,7 @@ contains
 
   !> Was a mesh made from the save before a stop at this time, or at a later one?
   pure function took_earlier(rows, time) result(took)
-    type(try_row_t), intent(in) :: rows(:)
+    type(try_row_t), intent(in) :: rows(:)   !! (ntry)
     real(wp), intent(in) :: time
     logical :: took
     integer :: k

@@ -3,7 +3,7 @@ module new_scene
   use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, position_at_arc_length, position_t
   use cards_side_dies, only: chain_of_sides
   use dies, only: is_deformable, place_on_nodes
-  use errors, only: error_t, exit_input, exit_no_convergence, fail
+  use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
   use mesh, only: side_set_t
   use part_contour, only: contour_t
@@ -26,10 +26,13 @@ contains
     type(scene_t), intent(out) :: new
     type(error_t), allocatable, intent(out) :: error
     logical :: selected(size(mesh%zone))
-    integer :: g, e, k, n
+    integer :: g, k, n
 
     new = old
     new%generation = old%generation + 1
+    ! supports are placed anew by the cards of the deck
+    deallocate (new%fixations)
+    allocate (new%fixations(0))
     new%mesh%coordinates = mesh%coordinates
     new%mesh%labels = [(k, k=1, size(mesh%coordinates, 2))]
     do k = 1, size(old%mesh%sides)
@@ -47,28 +50,11 @@ contains
       end associate
     end do
     call remake_dies(old, new, error)
-    ! loads on the volume of a body have its elements
-    do g = 1, size(old%groups)
-      ! springs of dies have no nodes
-      if (is_solid(old%groups(g)) .or. any(size(old%groups(g)%connectivity, 1) == [0, 3])) cycle
-      do e = 1, size(old%groups)
-        if (.not. is_solid(old%groups(e))) cycle
-        if (.not. same_elements(old%groups(e)%connectivity, old%groups(g)%connectivity)) cycle
-        new%groups(g)%connectivity = new%groups(e)%connectivity
-        exit
-      end do
-      if (e > size(old%groups)) call fail(error, exit_input, 'remdata: the elements of '//old%groups(g)%name &
-                                          //' belong to no body')
+    ! further formulations and loads on the volume have the elements of their body
+    do g = 1, size(new%groups)
+      if (new%groups(g)%host > 0) new%groups(g)%connectivity = new%groups(new%groups(g)%host)%connectivity
     end do
   end subroutine set_up_new_scene
-
-  pure function same_elements(a, b) result(same)
-    integer, intent(in) :: a(:, :), b(:, :)
-    logical :: same
-
-    same = all(shape(a) == shape(b))
-    if (same) same = all(a == b)
-  end function same_elements
 
   !> Sides of a set: those between zones, or the contour sides that replace sides of the old set: sets follow the material.
   pure function new_set(contours, plan, mesh, set) result(sides)

@@ -1,6 +1,7 @@
 !> The solid elements of a scene with their state, and that state as one table (component, point) of all groups.
 module state_pieces
   use errors, only: error_t, exit_bug, fail
+  use fields, only: displacement_field
   use kinds, only: wp
   use scene, only: axisymmetric, is_solid, scene_t
   use solution, only: solution_t
@@ -42,7 +43,7 @@ contains
     integer :: g, k, other, nsolid, low, high
 
     allocate (pieces%nodes, source=scene%mesh%coordinates)
-    if (present(solution)) pieces%nodes = pieces%nodes + solution%displacement
+    if (present(solution)) pieces%nodes = pieces%nodes + solution%fields(displacement_field)%value
     pieces%axisymmetric = scene%plane_state == axisymmetric
     nsolid = 0
     do g = 1, size(scene%groups)

@@ -10,7 +10,7 @@ module contact_carry
   use quadrature, only: line_rule
   use scene, only: axisymmetric, scene_t
   use shape_functions, only: line3
-  use solution, only: solution_t
+  use solution, only: present_coordinates, solution_t
   use state_variables, only: component_names, find_variable, kind_contact => transfer_contact
   use text, only: string_t
   use transfer_contact, only: carry_along
@@ -46,7 +46,7 @@ contains
     integer :: c, k, g, i
 
     allocate (rows(0))
-    x = old%mesh%coordinates + from%displacement
+    x = present_coordinates(old, from)
     do c = 1, size(contours)
       do k = 1, size(contours(c)%contacts)
         g = contours(c)%contacts(k)%interval%group

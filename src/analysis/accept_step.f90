@@ -5,9 +5,10 @@ module accept_step
   use elem_api, only: totals_t
   use equations, only: equations_t
   use errors, only: error_t, exit_bug, fail
+  use fields, only: field_t, fill_middle_nodes, has_corners_only
   use kinds, only: wp
   use newton, only: outcome_t
-  use scene, only: scene_t
+  use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use text, only: to_text
   implicit none
@@ -30,8 +31,9 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     call book_work(equations, outcome%du, solution)
-    call book_reactions(scene, equations, solution%time + dt, solution%reactions)
-    call take_motion(equations, outcome%du, solution)
+    call book_reactions(scene, equations, solution%time + dt, solution%fields)
+    call take_motion(equations, outcome%du, solution%fields)
+    call fill_middles(scene, solution%fields)
     solution%time = solution%time + dt
     solution%last_step = dt
     solution%step = solution%step + 1
@@ -60,51 +62,55 @@ contains
     type(solution_t), intent(inout) :: solution
     type(totals_t), intent(out) :: totals
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: work, increment(2, size(solution%last_increment, 2)), pilots(3, size(solution%pilots, 2)), section(3)
+    type(field_t) :: before(size(solution%fields))
+    real(wp) :: work
+    integer :: f
 
     work = solution%external_work
     call book_work(equations, outcome%du, solution)
     solution%external_work = work
-    call book_reactions(scene, equations, solution%time, solution%reactions)
-    increment = solution%last_increment
-    pilots = solution%last_pilot_increment
-    section = solution%last_section_increment
-    call take_motion(equations, outcome%du, solution)
-    solution%last_increment = increment
-    solution%last_pilot_increment = pilots
-    solution%last_section_increment = section
+    call book_reactions(scene, equations, solution%time, solution%fields)
+    before = solution%fields
+    call take_motion(equations, outcome%du, solution%fields)
+    do f = 1, size(before)
+      solution%fields(f)%last_increment = before(f)%last_increment
+    end do
     solution%iterations = solution%iterations + outcome%iterations
     call book_deformable_dies(scene, equations, solution, error)
     call measure_scene(scene, equations, solution, totals)
     call commit(scene, equations, solution)
   end subroutine accept_balance
 
-  !> Move nodes, pilots and section.
-  pure subroutine take_motion(equations, du, solution)
+  !> Middle nodes get the values of fields that have none of their own there.
+  pure subroutine fill_middles(scene, fields)
+    type(scene_t), intent(in) :: scene
+    type(field_t), intent(inout) :: fields(:)
+    integer :: f, g
+
+    do f = 1, size(fields)
+      if (.not. (fields(f)%declared .and. has_corners_only(fields(f)))) cycle
+      do g = 1, size(scene%groups)
+        if (is_solid(scene%groups(g))) call fill_middle_nodes(scene%groups(g)%connectivity, fields(f)%value)
+      end do
+    end do
+  end subroutine fill_middles
+
+  !> Advance all fields: nodes, pilots and section move, temperatures change.
+  pure subroutine take_motion(equations, du, fields)
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: du(:)
-    type(solution_t), intent(inout) :: solution
-    integer :: k, c, d
+    type(field_t), intent(inout) :: fields(:)
+    integer :: f, k, c, d
 
-    do k = 1, size(equations%dofs%node, 2)
-      do c = 1, 2
-        d = equations%dofs%node(c, k)
-        if (d > 0) solution%last_increment(c, k) = du(d)
+    do f = 1, size(fields)
+      do k = 1, size(fields(f)%value, 2)
+        do c = 1, fields(f)%ncomp
+          d = equations%dofs%fields(f)%number(c, k)
+          if (d > 0) fields(f)%last_increment(c, k) = du(d)
+        end do
       end do
+      fields(f)%value = fields(f)%value + fields(f)%last_increment
     end do
-    do k = 1, size(equations%dofs%pilot, 2)
-      do c = 1, 3
-        d = equations%dofs%pilot(c, k)
-        if (d > 0) solution%last_pilot_increment(c, k) = du(d)
-      end do
-    end do
-    do c = 1, 3
-      d = equations%dofs%section(c)
-      if (d > 0) solution%last_section_increment(c) = du(d)
-    end do
-    solution%displacement = solution%displacement + solution%last_increment
-    solution%section = solution%section + solution%last_section_increment
-    solution%pilots = solution%pilots + solution%last_pilot_increment
   end subroutine take_motion
 
   !> The trial state becomes the state.

@@ -6,9 +6,10 @@ module bookkeeping
   use element_loop, only: group_geometry
   use equations, only: equations_t, external_forces
   use errors, only: error_t, exit_bug, fail
+  use fields, only: displacement_field, field_t, on_nodes, pilot_field, section_field
   use kinds, only: wp
   use scene, only: scene_t
-  use solution, only: solution_t
+  use solution, only: present_coordinates, solution_t
   use spurious_mode, only: find_spurious_mode, has_spurious_mode
   use text, only: to_text
   use vectors, only: length_of
@@ -28,12 +29,12 @@ contains
     real(wp), intent(in) :: du(:)
     type(solution_t), intent(inout) :: solution
     real(wp) :: applied(equations%dofs%ndof)
-    integer :: g, k, c, d, m
+    integer :: f, g, k, c, d, m
 
     applied = equations%force
     do g = 1, size(equations%dofs%groups)
       if (.not. equations%is_load(g)) cycle
-      m = equations%pattern%force_start(g)
+      m = equations%solves(1)%pattern%force_start(g)
       do k = 1, size(equations%dofs%groups(g)%dof, 2)
         do c = 1, size(equations%dofs%groups(g)%dof, 1)
           m = m + 1
@@ -42,49 +43,48 @@ contains
         end do
       end do
     end do
-    do k = 1, size(equations%dofs%node, 2)
-      do c = 1, 2
-        call book(equations%dofs%node(c, k), solution%applied(c, k))
+    do f = 1, size(solution%fields)
+      do k = 1, size(solution%fields(f)%applied, 2)
+        do c = 1, solution%fields(f)%ncomp
+          call book(equations%dofs%fields(f)%number(c, k), solution%fields(f)%quantity == 'motion', &
+                    solution%fields(f)%applied(c, k))
+        end do
       end do
-    end do
-    do k = 1, size(equations%dofs%pilot, 2)
-      do c = 1, 3
-        call book(equations%dofs%pilot(c, k), solution%pilot_applied(c, k))
-      end do
-    end do
-    do c = 1, 3
-      call book(equations%dofs%section(c), solution%section_applied(c))
     end do
 
   contains
 
-    subroutine book(dof, force)
+    subroutine book(dof, works, force)
       integer, intent(in) :: dof
+      logical, intent(in) :: works   !! the product of force and motion is work
       real(wp), intent(inout) :: force
 
       if (dof == 0) return
-      solution%external_work = solution%external_work + 0.5_wp*(force + applied(dof))*du(dof)
+      if (works) solution%external_work = solution%external_work + 0.5_wp*(force + applied(dof))*du(dof)
       force = applied(dof)
     end subroutine book
 
   end subroutine book_work
 
   !> What supports and imposed motions bear: internal force less nodal forces; pressures are in it already.
-  subroutine book_reactions(scene, equations, time, reactions)
+  subroutine book_reactions(scene, equations, time, fields)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: time
-    real(wp), intent(out) :: reactions(:, :)
+    type(field_t), intent(inout) :: fields(:)
     real(wp) :: external(equations%dofs%ndof)
-    integer :: k, c, d
+    integer :: f, k, c, d
 
     call external_forces(scene, equations%dofs, time, external)
-    reactions = 0
-    do k = 1, size(reactions, 2)
-      do c = 1, 2
-        d = equations%dofs%node(c, k)
-        if (d == 0) cycle
-        if (equations%dofs%equation(d) == 0) reactions(c, k) = equations%force(d) - external(d)
+    do f = 1, size(fields)
+      fields(f)%reaction = 0
+      if (fields(f)%place /= on_nodes) cycle
+      do k = 1, size(fields(f)%reaction, 2)
+        do c = 1, fields(f)%ncomp
+          d = equations%dofs%fields(f)%number(c, k)
+          if (d == 0) cycle
+          if (.not. equations%dofs%is_free(d)) fields(f)%reaction(c, k) = equations%force(d) - external(d)
+        end do
       end do
     end do
   end subroutine book_reactions
@@ -100,22 +100,23 @@ contains
     integer :: g, e, i, m, n
 
     do g = 1, size(scene%dies)
-      if (is_deformable(scene%dies(g))) solution%pilot_applied(:, g) = 0
+      if (is_deformable(scene%dies(g))) solution%fields(pilot_field)%applied(:, g) = 0
     end do
     do g = 1, size(scene%groups)
       if (scene%groups(g)%pairs == 0) cycle
       sum = 0
       magnitude = 0
-      associate (nodes => equations%dofs%groups(g)%nodes, applied => solution%pilot_applied(:, scene%groups(g)%die))
+      associate (nodes => equations%dofs%groups(g)%nodes, &
+                 applied => solution%fields(pilot_field)%applied(:, scene%groups(g)%die))
         n = size(nodes, 1)
         do e = 1, size(nodes, 2)
-          m = equations%pattern%force_start(g) + (e - 1)*size(equations%dofs%groups(g)%dof, 1)
+          m = equations%solves(1)%pattern%force_start(g) + (e - 1)*size(equations%dofs%groups(g)%dof, 1)
           do i = 1, n
             force = equations%buffers%force([m + i, m + n + i])
             sum = sum + force
             magnitude = magnitude + length_of(force)
             if (i <= size(scene%groups(g)%connectivity, 1)) cycle
-            x = scene%mesh%coordinates(:, nodes(i, e)) + solution%displacement(:, nodes(i, e))
+            x = scene%mesh%coordinates(:, nodes(i, e)) + solution%fields(displacement_field)%value(:, nodes(i, e))
             applied = applied + [force, x(1)*force(2) - x(2)*force(1)]
           end do
         end do
@@ -142,7 +143,7 @@ contains
       if (scene%groups(g)%pairs == 0 .or. scene%groups(g)%die /= die) cycle
       n = size(equations%dofs%groups(g)%nodes, 1)
       do e = 1, size(equations%dofs%groups(g)%nodes, 2)
-        m = equations%pattern%force_start(g) + (e - 1)*size(equations%dofs%groups(g)%dof, 1)
+        m = equations%solves(1)%pattern%force_start(g) + (e - 1)*size(equations%dofs%groups(g)%dof, 1)
         associate (force => equations%buffers%force, side => size(scene%groups(g)%connectivity, 1))
           total = total + length_of([sum(force(m + 1:m + side)), sum(force(m + n + 1:m + n + side))])
         end associate
@@ -164,9 +165,9 @@ contains
       associate (group => scene%groups(g), row => equations%elems(scene%groups(g)%elem_id))
         if (.not. associated(row%measure)) cycle
         law = scene%materials(group%material)%law_id
-        call group_geometry(scene, group, row, solution%displacement, x)
-        call row%measure(scene, group, equations%laws(law), solution%section, x, solution%groups(g)%trial, &
-                         solution%groups(g)%committed, part)
+        call group_geometry(scene, group, row, solution%fields(displacement_field)%value, x)
+        call row%measure(scene, group, equations%laws(law), solution%fields(section_field)%value(:, 1), x, &
+                         solution%groups(g)%trial, solution%groups(g)%committed, part)
         call add_totals(totals, part)
       end associate
     end do
@@ -185,8 +186,10 @@ contains
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
         if (.not. has_spurious_mode(group)) cycle
-        call group_geometry(scene, group, equations%elems(group%elem_id), solution%displacement, x)
-        call find_spurious_mode(scene, group, x, solution%last_increment, share, element)
+        associate (u => solution%fields(displacement_field))
+          call group_geometry(scene, group, equations%elems(group%elem_id), u%value, x)
+          call find_spurious_mode(scene, group, x, u%last_increment, share, element)
+        end associate
         if (.not. share > solution%worst_spurious) cycle
         solution%worst_spurious = share
         solution%spurious_group = g
@@ -208,9 +211,9 @@ contains
         if (group%die == 0 .or. group%material == 0) cycle
         ! every contact law begins with it (contact_penalties)
         allowed = scene%materials(group%material)%values(1)
-        x = scene%mesh%coordinates + solution%displacement
-        call sample_depth(group, present_die(scene%dies(group%die), x), solution%pilots(:, group%die), scene%mesh%coordinates, &
-                          x, allowed, depth, ratio)
+        x = present_coordinates(scene, solution)
+        call sample_depth(group, present_die(scene%dies(group%die), x), solution%fields(pilot_field)%value(:, group%die), &
+                          scene%mesh%coordinates, x, allowed, depth, ratio)
       end associate
       solution%worst_sample = max(solution%worst_sample, depth)
       solution%worst_sample_ratio = max(solution%worst_sample_ratio, ratio)

@@ -5,6 +5,7 @@ module history
   use dies, only: is_deformable
   use elem_api, only: totals_t
   use errors, only: error_t
+  use fields, only: displacement_field, pilot_field, section_field
   use kinds, only: pi, wp
   use newton, only: outcome_t
   use probes, only: probe_maximum, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
@@ -123,12 +124,12 @@ contains
     call table%put([totals%volume/solution%initial_volume - 1, totals%max_penetration])
     call table%put([totals%stick, totals%slip])
     do k = 1, size(scene%dies)
-      call table%put(-factor*solution%pilot_applied(:, k))
-      if (.not. is_deformable(scene%dies(k))) call table%put(solution%pilots(:, k) - scene%dies(k)%pilot)
+      call table%put(-factor*solution%fields(pilot_field)%applied(:, k))
+      if (.not. is_deformable(scene%dies(k))) call table%put(solution%fields(pilot_field)%value(:, k) - scene%dies(k)%pilot)
     end do
     if (scene%plane_state == generalised_plane_strain) then
-      call table%put((solution%section - scene%section)/scene%section(1))
-      call table%put(solution%section_applied)
+      call table%put((solution%fields(section_field)%value(:, 1) - scene%section)/scene%section(1))
+      call table%put(solution%fields(section_field)%applied(:, 1))
     end if
     if (scene%remesh%estimate) call table%put([solution%estimate%stress, solution%estimate%strain])
     do k = 1, size(scene%probes)
@@ -148,15 +149,17 @@ contains
     value = 0
     select case (probe%kind)
     case (probe_node)
-      associate (node => probe%nodes(1), c => 2 - mod(probe%quantity, 2))
-        if (probe%quantity <= 2) then
-          value = solution%displacement(c, node) + scene%mesh%coordinates(c, node) + probe%offset(c)
+      associate (node => probe%nodes(1), c => 2 - mod(probe%quantity, 2), u => solution%fields(displacement_field)%value)
+        if (probe%field > 0) then
+          value = solution%fields(probe%field)%value(1, node)
+        else if (probe%quantity <= 2) then
+          value = u(c, node) + scene%mesh%coordinates(c, node) + probe%offset(c)
         else
-          value = solution%displacement(c, node) + (scene%mesh%coordinates(c, node) - scene%mesh%origin(c, node))
+          value = u(c, node) + (scene%mesh%coordinates(c, node) - scene%mesh%origin(c, node))
         end if
       end associate
     case (probe_reaction)
-      value = sum(solution%reactions(probe%quantity, probe%nodes))
+      value = sum(solution%fields(displacement_field)%reaction(probe%quantity, probe%nodes))
     case (probe_point)
       value = solution%groups(probe%group)%committed(probe%component, probe%point, probe%element)
     case (probe_maximum)

@@ -11,7 +11,7 @@ module march
   use judge_remesh, only: limit_lines, refuse_remesh
   use kinds, only: eps, wp
   use listing, only: list_balance, list_cut, list_event, list_lines, list_note, list_step, show_progress
-  use newton, only: outcome_t, solve_step
+  use newton, only: outcome_t
   use probation, only: is_too_short, pass_probation, refuse_after_all
   use restart_report, only: write_restart
   use restore_balance, only: restore_equilibrium
@@ -21,6 +21,7 @@ module march
   use scene, only: scene_t
   use solution, only: solution_t
   use spurious_mode, only: spurious_limit
+  use step_solves, only: solve_fields
   use step_strategy, only: after_failure, after_success, choose_step
   use system, only: caught_signal, join_path
   use text, only: to_text, two_digits
@@ -52,11 +53,11 @@ contains
       length = min(solution%next_step, scene%strategy%largest_step)
       on_probation = is_on_probation(solution%probation)
 
-      call solve_step(scene, run%equations, solution, dt, outcome)
+      call solve_fields(scene, run%equations, solution, dt, outcome)
       do while (outcome%event < 1)
         dt = max(min(outcome%event, largest_event)*dt, scene%strategy%least_step)
         call list_event(run%listing, solution, dt)
-        call solve_step(scene, run%equations, solution, dt, outcome)
+        call solve_fields(scene, run%equations, solution, dt, outcome)
       end do
       if (allocated(outcome%error)) then
         call move_alloc(outcome%error, error)

@@ -11,7 +11,7 @@ module probation
   use newton, only: outcome_t
   use residual_place, only: least_shape, place_residual, residual_place_t
   use scene, only: is_solid, scene_t
-  use solution, only: solution_t
+  use solution, only: present_coordinates, solution_t
   use text, only: string_t, to_text, two_digits
   implicit none
   private
@@ -86,9 +86,9 @@ contains
     integer :: node
 
     residual = 0
-    if (allocated(outcome%residual)) residual = merge(outcome%residual, 0.0_wp, equations%dofs%equation > 0)
+    if (allocated(outcome%residual)) residual = merge(outcome%residual, 0.0_wp, equations%dofs%is_free)
     call place_residual(scene, equations%dofs, 0*residual, equations%magnitude, residual, place)
-    x = scene%mesh%coordinates + solution%displacement
+    x = present_coordinates(scene, solution)
     shape = least_shape(scene, x, place%node)
     if (outcome%group > 0 .and. outcome%element > 0) then
       associate (group => scene%groups(outcome%group))

@@ -1,6 +1,7 @@
 !> How large a residual force is, and where it sits: it tells whether a remesh went wrong, and which stage of it.
 module residual_place
   use dofs, only: dofs_t
+  use fields, only: displacement_field
   use kinds, only: wp
   use mesh_quality, only: element_shape, shape_places, shape_places_t
   use remeshing, only: ncriteria, scaled_jacobian
@@ -28,8 +29,8 @@ contains
     real(wp), intent(in) :: magnitude(:)   !! sum of what elements do there, each by its size (ndof) [force]
     real(wp), intent(in) :: residual(:)    !! of free unknowns, 0 elsewhere (ndof) [force]
     type(residual_place_t), intent(out) :: place
-    real(wp) :: square(size(dofs%node, 2)), reference, largest
-    logical :: on_side(size(dofs%node, 2))
+    real(wp) :: square(size(dofs%fields(displacement_field)%number, 2)), reference, largest
+    logical :: on_side(size(dofs%fields(displacement_field)%number, 2))
     integer :: g, e, k, c, d
 
     on_side = .false.
@@ -44,11 +45,11 @@ contains
     largest = 0
     do k = 1, size(square)
       do c = 1, 2
-        d = dofs%node(c, k)
+        d = dofs%fields(displacement_field)%number(c, k)
         if (d == 0) cycle
         square(k) = square(k) + residual(d)**2
         largest = largest + magnitude(d)**2
-        if (.not. (on_side(k) .or. dofs%equation(d) == 0 .or. abs(external(d)) > 0)) cycle
+        if (.not. (on_side(k) .or. .not. dofs%is_free(d) .or. abs(external(d)) > 0)) cycle
         reference = reference + max(magnitude(d), abs(external(d)))**2
       end do
     end do

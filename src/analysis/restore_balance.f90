@@ -11,11 +11,12 @@ module restore_balance
   use accept_step, only: accept_balance
   use bookkeeping, only: pressed_on
   use dies, only: is_deformable
-  use elem_api, only: block_done, report_t, totals_t
-  use equations, only: equations_t, evaluate, external_forces, solve_correction
+  use elem_api, only: block_done, mode_advance, mode_restore, report_t, totals_t
+  use equations, only: equations_t, evaluate, external_forces, solve_correction, take_turn
   use errors, only: error_t
+  use fields, only: displacement_field, pilot_field
   use kinds, only: wp
-  use linear_solver, only: try_without_pivoting
+  use linear_solver, only: return_to_chosen
   use newton, only: outcome_t, solve_step
   use residual_place, only: least_shape, place_residual, residual_place_t
   use scene, only: scene_t
@@ -77,7 +78,9 @@ contains
     integer :: k
 
     started = wall_seconds()
-    allocate (balance%pilot_before, source=solution%pilot_applied)
+    equations%mode = mode_restore
+    call take_turn(equations, displacement_field)
+    allocate (balance%pilot_before, source=solution%fields(pilot_field)%applied)
     ! until a part is in equilibrium the state is what was carried
     balance%after = balance%before
     balance%shape = least_shape(scene, scene%mesh%coordinates)
@@ -87,10 +90,10 @@ contains
     balance%depth_change = depth_change(scene, solution)
     call keep_pressures(scene, solution)
     call evaluate(scene, equations, solution, 0.0_wp, rest, .true., report)
-    allocate (balance%pilot_carried, source=solution%pilot_applied)
+    allocate (balance%pilot_carried, source=solution%fields(pilot_field)%applied)
     if (report%status == block_done) call book_carried(scene, equations, balance%pilot_carried)
     rest = external - equations%force
-    where (equations%dofs%equation == 0) rest = 0
+    where (equations%solves(equations%now)%equation == 0) rest = 0
     call place_residual(scene, equations%dofs, external, equations%magnitude, rest, balance%place)
     call work_of_correction(equations, rest, work)
     left = 1
@@ -113,13 +116,14 @@ contains
     balance%restored = .not. left > 0
     balance%first_residual = relative_distance(work, max(balance%before%elastic_energy, balance%after%elastic_energy))
     if (allocated(outcome%reason)) balance%reason = outcome%reason
-    balance%motion = maxval(abs(solution%displacement))/equations%size
-    allocate (balance%pilot_after, source=solution%pilot_applied)
+    balance%motion = maxval(abs(solution%fields(displacement_field)%value))/equations%size
+    allocate (balance%pilot_after, source=solution%fields(pilot_field)%applied)
     allocate (balance%pressed(size(scene%dies)))
     do k = 1, size(balance%pressed)
       balance%pressed(k) = pressed_on(scene, equations, k)
     end do
     if (balance%restored) solution%unbalanced = .false.
+    equations%mode = mode_advance
     balance%wall = wall_seconds() - started
   end subroutine restore_equilibrium
 
@@ -133,7 +137,7 @@ contains
 
     work = 0
     if (.not. any(abs(residual) > 0)) return
-    call try_without_pivoting(equations%solver)
+    call return_to_chosen(equations%solves(equations%now)%solver)
     call solve_correction(equations, residual, correction, error)
     work = abs(dot_product(residual, correction))
     ! what no linear correction removes is as large as it can be; Newton's method then tells more
@@ -183,7 +187,9 @@ contains
     do k = 1, size(on_pilots, 2)
       if (is_deformable(scene%dies(k))) cycle
       do c = 1, 3
-        if (equations%dofs%pilot(c, k) > 0) on_pilots(c, k) = equations%force(equations%dofs%pilot(c, k))
+        associate (d => equations%dofs%fields(pilot_field)%number(c, k))
+          if (d > 0) on_pilots(c, k) = equations%force(d)
+        end associate
       end do
     end do
   end subroutine book_carried

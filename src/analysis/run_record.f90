@@ -9,6 +9,7 @@ module run_record
   use errors, only: error_t, exit_done
   use estimator, only: estimator_t
   use exchange, only: write_checkpoint
+  use fields, only: pilot_field
   use history, only: write_row
   use kinds, only: eps, wp
   use listing, only: listing_t
@@ -16,7 +17,7 @@ module run_record
   use restore_balance, only: balance_t
   use results, only: results_t, save_fields
   use scene, only: scene_t
-  use solution, only: solution_t
+  use solution, only: present_coordinates, solution_t
   use state_variables, only: find_variable
   use system, only: caught_signal
   use watch_mesh, only: mesh_is_due
@@ -105,8 +106,8 @@ contains
         if (group%die == 0 .or. group%material == 0) cycle
         status = group%variables(find_variable(group%variables, 'contact_status'))%first
         penetration = group%variables(find_variable(group%variables, 'penetration'))%first
-        x = scene%mesh%coordinates + solution%displacement
-        call find_contact_ends(group, g, present_die(scene%dies(group%die), x), solution%pilots(:, group%die), &
+        x = present_coordinates(scene, solution)
+        call find_contact_ends(group, g, present_die(scene%dies(group%die), x), solution%fields(pilot_field)%value(:, group%die), &
                                scene%mesh%coordinates, x, &
                                nint(solution%groups(g)%committed(status, :, :)), &
                                solution%groups(g)%committed(penetration, :, :), ends)

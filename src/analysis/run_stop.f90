@@ -2,6 +2,7 @@
 module run_stop
   use equations, only: equations_t
   use errors, only: error_t, exit_done, exit_no_convergence, exit_remesh, exit_signal, fail
+  use fields, only: displacement_field
   use kinds, only: wp
   use newton, only: outcome_t
   use results, only: save_failure
@@ -56,12 +57,12 @@ contains
     real(wp), allocatable, intent(out) :: at_nodes(:, :)
     integer :: k, c, d
 
-    allocate (at_nodes(2, size(equations%dofs%node, 2)), source=0.0_wp)
+    allocate (at_nodes(2, size(equations%dofs%fields(displacement_field)%number, 2)), source=0.0_wp)
     do k = 1, size(at_nodes, 2)
       do c = 1, 2
-        d = equations%dofs%node(c, k)
+        d = equations%dofs%fields(displacement_field)%number(c, k)
         if (d == 0) cycle
-        if (equations%dofs%equation(d) > 0) at_nodes(c, k) = residual(d)
+        if (equations%dofs%is_free(d)) at_nodes(c, k) = residual(d)
       end do
     end do
   end subroutine residual_at_nodes

@@ -70,9 +70,10 @@ contains
     call json%add('peak_rss_mb', peak_memory_mb())
     call json%add('threads', facts%threads)
     call json%add('blas', facts%blas)
-    call json%add('dofs', equations%dofs%neq)
+    call json%add('dofs', sum(equations%solves%neq))
     call json%add('elements', solid_elements(scene))
-    call json%add('symmetric', equations%pattern%symmetric)
+    call json%add('linear_solver', equations%solves(1)%solver%row%name)
+    call json%add('symmetric', all(equations%solves%pattern%symmetric))
     call add_effects(json, scene, equations)
     call add_seconds(json, equations)
     if (scene%remesh%estimate) call add_estimate(json, scene, solution)
@@ -259,7 +260,7 @@ contains
       call warn('points of contact', advice_at_points(scene, solution))
       call warn('sides between points of contact', advice_between_points(scene, solution))
     end if
-    call put('  '//to_text(equations%dofs%neq)//' equations, '//to_text(solid_elements(scene))//' elements, ' &
+    call put('  '//to_text(sum(equations%solves%neq))//' equations, '//to_text(solid_elements(scene))//' elements, ' &
              //to_text(facts%threads)//' threads, '//to_text(facts%wall, 4)//' s on the wall, ' &
              //to_text(cpu_seconds(), 4)//' s of processor, '//to_text(peak_memory_mb(), 4)//' MB')
     if (scene%remesh%estimate) then

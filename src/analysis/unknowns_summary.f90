@@ -21,8 +21,8 @@ contains
     type(string_t), allocatable, intent(out) :: lines(:)
     type(error_t), allocatable, intent(out) :: error
     type(equations_t) :: equations
-    real(wp) :: bytes, seconds
-    integer :: g, nelem
+    real(wp) :: bytes, seconds, entries, operations
+    integer :: g, s, nelem, nonzeros
 
     call set_up(scene, equations, error)
     if (allocated(error)) return
@@ -30,17 +30,27 @@ contains
     do g = 1, size(scene%groups)
       if (is_solid(scene%groups(g))) nelem = nelem + size(scene%groups(g)%connectivity, 2)
     end do
-    bytes = 8.0_wp*(real(equations%pattern%matrix_length, wp) + equations%pattern%nnz) &
-            + 4.0_wp*(size(equations%pattern%entry) + 3.0_wp*equations%pattern%nnz) &
-            + 8.0_wp*equations%solver%estimated_entries
-    seconds = seconds_per_element*nelem + equations%solver%estimated_flops/flops_per_second
+    bytes = 8.0_wp*real(equations%solves(1)%pattern%matrix_length, wp)
+    entries = 0
+    operations = 0
+    nonzeros = 0
+    do s = 1, size(equations%solves)
+      associate (solve => equations%solves(s))
+        bytes = bytes + 8.0_wp*solve%pattern%nnz + 4.0_wp*(size(solve%pattern%entry) + 3.0_wp*solve%pattern%nnz) &
+                + 8.0_wp*solve%solver%estimated_entries
+        entries = entries + solve%solver%estimated_entries
+        operations = operations + solve%solver%estimated_flops
+        nonzeros = nonzeros + solve%pattern%nnz
+      end associate
+    end do
+    seconds = seconds_per_element*nelem + operations/flops_per_second
     allocate (lines(4))
     lines(1)%s = ''
-    lines(2)%s = 'Unknowns: '//to_text(equations%dofs%ndof)//', of them '//to_text(equations%dofs%neq) &
-                 //' free; matrix '//trim(merge('symmetric  ', 'unsymmetric', equations%pattern%symmetric))//', ' &
-                 //to_text(equations%pattern%nnz)//' nonzeros'
-    lines(3)%s = 'Factors: '//to_text(equations%solver%estimated_entries, 3)//' entries, ' &
-                 //to_text(equations%solver%estimated_flops, 3)//' operations; memory about '//to_text(bytes/2.0_wp**20, 3)//' MB'
+    lines(2)%s = 'Unknowns: '//to_text(equations%dofs%ndof)//', of them '//to_text(sum(equations%solves%neq)) &
+                 //' free; matrix '//trim(merge('symmetric  ', 'unsymmetric', all(equations%solves%pattern%symmetric)))//', ' &
+                 //to_text(nonzeros)//' nonzeros'
+    lines(3)%s = 'Factors: '//to_text(entries, 3)//' entries, ' &
+                 //to_text(operations, 3)//' operations; memory about '//to_text(bytes/2.0_wp**20, 3)//' MB'
     lines(4)%s = 'Expected: about '//to_text(seconds, 2)//' s per iteration on one core'
   end subroutine unknowns_lines
 

@@ -3,6 +3,8 @@ module card_places
   use card_points, only: read_xy
   use deck_cursor, only: cursor_t
   use deck_reader, only: card_t
+  use field_places, only: refuse_without_field
+  use fields, only: displacement_field
   use kinds, only: wp
   use mesh, only: nearest_node, nodes_of_sides
   use mesh_parts, only: find_label
@@ -39,19 +41,23 @@ contains
     end do
   end function numbers_after_name
 
-  !> A set of sides: the name of a SIDES card, or that of a block and its sides.
+  !> A set of sides that move: the name of a SIDES card, or that of a block and its sides.
   subroutine read_sides(cursor, draft, most, label, sides)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
     integer, intent(in) :: most                          !! so many numbers at most belong to the place
     character(len=:), allocatable, intent(out) :: label
     integer, allocatable, intent(out) :: sides(:, :)     !! (3, n), empty while the mesh has mistakes
+    integer, allocatable :: nodes(:)
     integer :: k
 
     label = ''
     allocate (sides(3, 0))
     call draft%places%find(cursor, 'a BLOCK or a set of sides', k)
-    if (k > 0) call read_sides_of(cursor, draft, k, most, label, sides)
+    if (k == 0) return
+    call read_sides_of(cursor, draft, k, most, label, sides)
+    call nodes_of_sides(sides, size(draft%scene%mesh%labels), nodes)
+    call refuse_without_field(cursor, draft, displacement_field, nodes, label, own=.true.)
   end subroutine read_sides
 
   !> What follows the name of a place made of sides.

@@ -4,6 +4,8 @@ module cards_body_forces
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
+  use field_places, only: refuse_without_field
+  use fields, only: displacement_field
   use kinds, only: wp
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, words_of
@@ -76,8 +78,12 @@ contains
       call cursor%fail(''''//group%name//''' is a '//draft%places%keywords(k)%s//', expected a body')
     else if (draft%mesh_sound) then
       do g = 1, size(draft%scene%groups)
-        if (draft%scene%groups(g)%name == group%name) group%connectivity = draft%scene%groups(g)%connectivity
+        if (draft%scene%groups(g)%name /= group%name) cycle
+        group%connectivity = draft%scene%groups(g)%connectivity
+        group%host = g
       end do
+      call refuse_without_field(cursor, draft, displacement_field, &
+                                reshape(group%connectivity, [size(group%connectivity)]), group%name, own=.true.)
     end if
   end subroutine read_body
 

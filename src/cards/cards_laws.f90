@@ -4,7 +4,7 @@ module cards_laws
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
   use kinds, only: wp
-  use law_api, only: law_line_t, law_t, line_choice, line_pairs, parameter_t, solid_law
+  use law_api, only: kind_names, law_line_t, law_t, line_choice, line_pairs, parameter_t, solid_law
   use law_checks, only: check_alike, check_numbers
   use law_registry, only: law_names
   use materials, only: material_t
@@ -81,7 +81,7 @@ contains
     do while (cursor%peek_row() == 'TEMP')
       call cursor%next_row('TEMP and a temperature')
       call cursor%word('TEMP', word)
-      if (law%kind /= solid_law) call cursor%fail('a law for contact has no temperatures')
+      if (law%kind /= solid_law) call cursor%fail('a law for '//trim(kind_names(law%kind))//' has no temperatures')
       n = size(temperatures)
       if (n == 0) then
         call cursor%real('the temperature of the numbers that follow', temperature)
@@ -277,13 +277,8 @@ contains
     id = draft%scene%materials(material)%law_id
     if (id == 0) return
     if (draft%laws(id)%kind == kind) return
-    if (kind == solid_law) then
-      call cursor%fail('LAW '''//draft%materials%words(k)%s//''' is of type '//draft%laws(id)%name//', a law for contact; ' &
-                       //'expected one for solids')
-    else
-      call cursor%fail('LAW '''//draft%materials%words(k)%s//''' is of type '//draft%laws(id)%name//', a law for solids; ' &
-                       //'expected one for contact')
-    end if
+    call cursor%fail('LAW '''//draft%materials%words(k)%s//''' is of type '//draft%laws(id)%name//', a law for ' &
+                     //trim(kind_names(draft%laws(id)%kind))//'; expected one for '//trim(kind_names(kind)))
   end subroutine read_material
 
   pure function described(parameter) result(s)

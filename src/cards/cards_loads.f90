@@ -6,6 +6,8 @@ module cards_loads
   use deck_reader, only: deck_t
   use dies, only: is_deformable
   use diagnostics, only: diagnostics_t, location_t
+  use field_places, only: refuse_without_field
+  use fields, only: displacement_field
   use kinds, only: wp
   use loads, only: die_motion_t, fixation_t, multiplier_t, nodal_force_t
   use scene_draft, only: close_card, draft_t, words_of
@@ -104,6 +106,7 @@ contains
 
     call words_of('X Y XY', directions)
     call read_place(cursor, draft, .false., place)
+    call refuse_without_field(cursor, draft, displacement_field, place%nodes, place%label, own=.true.)
     call cursor%name('a direction', directions, direction)
     do component = 1, 2
       if (direction /= component .and. direction /= 3) cycle
@@ -130,6 +133,8 @@ contains
 
     call words_of('X Y A', directions)
     call read_place(cursor, draft, .true., place)
+    if (place%die == 0) &
+      call refuse_without_field(cursor, draft, displacement_field, place%nodes, place%label, own=.true.)
     if (place%die > 0) then
       if (is_deformable(draft%scene%dies(place%die))) call cursor%fail('the DIE '''//place%label &
                                                                        //''' is made of sides: it moves with their bodies')
@@ -217,6 +222,7 @@ contains
 
     call words_of('X Y', directions)
     call read_place(cursor, draft, .false., place)
+    call refuse_without_field(cursor, draft, displacement_field, place%nodes, place%label, own=.true.)
     call cursor%name('a direction', directions, force%component)
     if (size(place%nodes) > 0 .and. .not. cursor%failed()) then
       force%node = place%nodes(1)

@@ -7,16 +7,15 @@ module cards_mesh
   use diagnostics, only: diagnostics_t, location_t
   use elem_api, only: elem_t
   use kinds, only: wp
-  use law_api, only: solid_law
   use mesh, only: side_set_t
   use mesh_parts, only: body_t, find_label, mesh_parts_t, sort_labels
-  use scene, only: plane_stress
-  use scene_draft, only: close_card, draft_t, words_of
+  use scene, only: plane_stress, role_body
+  use scene_draft, only: close_card, draft_t, find_elem, words_of
   use shape_functions, only: quad8_side
   use text, only: string_t, to_text
   implicit none
   private
-  public :: read_nodes, read_elements, read_side_sets, read_body_head, is_body_elem
+  public :: read_nodes, read_elements, read_side_sets, read_body_head, read_option, is_body_elem
 
   !> Nodes of an element of a body; a rule of Gauss points it may have.
   integer, parameter :: nnode = 8
@@ -29,7 +28,7 @@ contains
     type(elem_t), intent(in) :: elem
     logical :: yes
 
-    yes = elem%law_kind == solid_law .and. elem%nnode == nnode
+    yes = elem%role == role_body
   end function is_body_elem
 
   !> All NODES cards: labels and coordinates, and the index of labels.
@@ -119,7 +118,7 @@ contains
     character(len=*), intent(in) :: keyword
     integer, intent(in) :: item      !! what the name stands for: 0, or the first set of sides of a block
     type(body_t), intent(inout) :: body
-    type(string_t), allocatable :: known(:), options(:)
+    type(string_t), allocatable :: known(:)
     logical :: names_element
     integer :: k, n
 
@@ -142,19 +141,34 @@ contains
       call cursor%fail('expected 4 or 9 integration points, found '//to_text(body%npoint))
       body%npoint = rules(1)
     end if
-    call read_material(cursor, draft, solid_law, body%material)
-    body%mean_dilatation = .false.
-    if (cursor%more()) then
-      call words_of('MEAN', options)
-      call cursor%name('MEAN', options, k)
-      body%mean_dilatation = k > 0
-      if (body%mean_dilatation .and. body%npoint /= rules(2)) &
-        call cursor%fail('the mean dilatation wants 9 integration points: with 4 nothing locks')
-      if (body%mean_dilatation .and. draft%scene%plane_state == plane_stress) &
-        call cursor%fail('nothing locks in plane stress: the mean dilatation is for the other states')
-    end if
+    k = find_elem(draft%elems, body%elem)
+    call read_material(cursor, draft, draft%elems(k)%law_kind, body%material)
+    call read_option(cursor, draft%elems(k), draft%scene%plane_state, body%npoint, body%option)
     call cursor%end_row()
   end subroutine read_body_head
+
+  !> A word of the element that a card may end with.
+  subroutine read_option(cursor, elem, plane_state, npoint, option)
+    type(cursor_t), intent(inout) :: cursor
+    type(elem_t), intent(in) :: elem
+    integer, intent(in) :: plane_state, npoint
+    integer, intent(out) :: option
+    character(len=:), allocatable :: words
+    integer :: k
+
+    option = 0
+    if (.not. cursor%more() .or. size(elem%options) == 0) return
+    words = elem%options(1)%s
+    do k = 2, size(elem%options)
+      words = words//' or '//elem%options(k)%s
+    end do
+    call cursor%name(words, elem%options, option)
+    if (option == 0) return
+    if (elem%options(option)%s /= 'MEAN') return
+    if (npoint /= rules(2)) call cursor%fail('the mean dilatation wants 9 integration points: with 4 nothing locks')
+    if (plane_state == plane_stress) &
+      call cursor%fail('nothing locks in plane stress: the mean dilatation is for the other states')
+  end subroutine read_option
 
   !> Rows of an element card: label and nodes, turned from labels into places.
   subroutine read_rows(cursor, nrow, draft, nodes_known, body)

@@ -109,6 +109,7 @@ contains
     end do
     group%elem = 'SPRNG'
     group%elem_id = find_elem(draft%elems, group%elem)
+    group%role = draft%elems(group%elem_id)%role
     group%npoint = 1
     allocate (group%variables(0), group%connectivity(0, 1))
     draft%scene%groups = [draft%scene%groups, group]

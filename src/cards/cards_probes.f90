@@ -1,9 +1,12 @@
 !> PROBE cards: columns of the history.
 module cards_probes
-  use card_places, only: place_t, read_place
+  use card_places, only: node_text, place_t, read_place
   use card_points, only: read_xy
+  use cards_fields, only: field_words
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
+  use field_places, only: refuse_without_field
+  use fields, only: displacement_field
   use diagnostics, only: diagnostics_t
   use kinds, only: pi, wp
   use mesh, only: nearest_node
@@ -60,22 +63,34 @@ contains
     end do
   end subroutine read_probes
 
-  !> `X|Y|UX|UY x y`: the node nearest to a point of the mesh as it begins.
+  !> `X|Y|UX|UY x y`, or the word of another field: the node nearest to a point of the mesh as it begins.
   subroutine read_node_probe(cursor, draft, probe)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft
     type(probe_t), intent(inout) :: probe
-    type(string_t), allocatable :: quantities(:)
+    type(string_t), allocatable :: quantities(:), words(:)
+    integer, allocatable :: place(:)
     real(wp) :: x(2), distance
     integer :: node
 
     call words_of('X Y UX UY', quantities)
+    allocate (place(0))
+    if (draft%groups_sound) then
+      call field_words(draft%scene%fields, place, words)
+      quantities = [quantities, words]
+    end if
     call cursor%name('a quantity', quantities, probe%quantity)
     probe%unit = 'length'
+    if (probe%quantity > 4) then
+      probe%field = place(probe%quantity - 4)
+      probe%unit = draft%scene%fields(probe%field)%unit
+    end if
     call read_point(cursor, draft, x)
     if (cursor%failed() .or. .not. draft%mesh_sound) return
     call nearest_node(draft%scene%mesh%origin, x, node, distance)
     probe%nodes = [node]
+    if (probe%field > 0 .and. draft%scene%generation == 1) &
+      call refuse_without_field(cursor, draft, probe%field, probe%nodes, node_text(draft, node), own=.false.)
     if (draft%scene%generation > 1) probe%offset = x - draft%scene%mesh%origin(:, node)
   end subroutine read_node_probe
 
@@ -100,6 +115,7 @@ contains
     asked(place%nodes) = .true.
     held = .false.
     do k = 1, size(draft%scene%fixations)
+      if (draft%scene%fixations(k)%field /= displacement_field) cycle
       if (draft%scene%fixations(k)%component == probe%quantity) held = held .or. any(asked(draft%scene%fixations(k)%nodes))
     end do
     if (.not. held) call cursor%fail('no motion is given there in this direction: the reaction would always be zero')

@@ -126,6 +126,7 @@ contains
     group%name = ''
     group%elem = elem
     group%elem_id = find_elem(draft%elems, elem)
+    group%role = draft%elems(group%elem_id)%role
     allocate (group%variables(0))
   end subroutine start_group
 

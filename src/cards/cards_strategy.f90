@@ -1,9 +1,11 @@
-!> STRAT, NORMS, STOP, SAVE and CKPT: how a run marches and what it keeps.
+!> STRAT, NORMS, SOLVR, STOP, SAVE and CKPT: how a run marches, which linear solver it takes, and what it keeps.
 module cards_strategy
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
   use kinds, only: wp
+  use linear_api, only: solver_row_t
+  use linear_registry, only: list_solvers
   use scene_draft, only: close_card, draft_t, head_location, only_card, words_of
   use strategy, only: strategy_t
   use text, only: string_t, to_text
@@ -32,6 +34,12 @@ contains
       if (k > 0) then
         call cursor%open(deck%cards(k), diagnostics)
         call read_norms(cursor, strategy)
+        call close_card(draft, cursor, deck%cards(k))
+      end if
+      call only_card(deck, 'SOLVR', .false., diagnostics, k)
+      if (k > 0) then
+        call cursor%open(deck%cards(k), diagnostics)
+        call read_linear_solver(cursor, strategy)
         call close_card(draft, cursor, deck%cards(k))
       end if
       call read_end(deck, draft, diagnostics)
@@ -92,6 +100,23 @@ contains
       if (.not. cursor%more()) exit
     end do
   end subroutine read_norms
+
+  !> `SOLVR name`.
+  subroutine read_linear_solver(cursor, strategy)
+    type(cursor_t), intent(inout) :: cursor
+    type(strategy_t), intent(inout) :: strategy
+    type(solver_row_t), allocatable :: rows(:)
+    type(string_t), allocatable :: names(:)
+    integer :: k
+
+    call list_solvers(rows)
+    allocate (names(size(rows)))
+    do k = 1, size(rows)
+      names(k)%s = rows(k)%name
+    end do
+    call cursor%name('the name of a linear solver', names, k)
+    if (k > 0) strategy%linear_solver = k
+  end subroutine read_linear_solver
 
   !> `STOP time`, or the last time of all multipliers.
   subroutine read_end(deck, draft, diagnostics)

@@ -3,6 +3,7 @@ module cards_temperature
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
+  use elem_api, only: acts_on
   use kinds, only: wp
   use law_api, only: asks_for, law_t
   use materials, only: material_t
@@ -62,6 +63,7 @@ contains
     integer :: law
 
     associate (group => draft%scene%groups(g))
+      if (has_field(draft, g)) call cursor%fail('the temperature of '//group%name//' is an unknown of this scene')
       if (group%temperature_multiplier > 0) call cursor%fail('the temperature of '''//group%name//''' is given twice')
       if (group%material == 0) return
       associate (material => draft%scene%materials(group%material))
@@ -74,6 +76,20 @@ contains
     end associate
   end subroutine check_body
 
+  !> A formulation on the body has the temperature among its unknowns.
+  pure function has_field(draft, g) result(yes)
+    type(draft_t), intent(in) :: draft
+    integer, intent(in) :: g   !! place of a body
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    do k = 1, size(draft%scene%groups)
+      if (k /= g .and. draft%scene%groups(k)%host /= g) cycle
+      yes = yes .or. acts_on(draft%elems(draft%scene%groups(k)%elem_id), 'temperature')
+    end do
+  end function has_field
+
   subroutine refuse_bodies_without(draft, diagnostics)
     type(draft_t), intent(in) :: draft
     type(diagnostics_t), intent(inout) :: diagnostics
@@ -81,7 +97,7 @@ contains
 
     do g = 1, size(draft%scene%groups)
       associate (group => draft%scene%groups(g))
-        if (group%material == 0 .or. group%temperature_multiplier > 0) cycle
+        if (group%material == 0 .or. group%temperature_multiplier > 0 .or. has_field(draft, g)) cycle
         associate (material => draft%scene%materials(group%material))
           if (material%law_id == 0) cycle
           if (.not. knows_temperature(draft%laws(material%law_id), material)) cycle

@@ -5,7 +5,7 @@ module mesh_finish
   use kinds, only: wp
   use law_api, only: law_of_material
   use mesh_parts, only: body_t, mesh_parts_t, root_of
-  use scene, only: axisymmetric, group_t
+  use scene, only: axisymmetric, group_t, role_body
   use scene_draft, only: draft_t, find_elem
   use text, only: to_text
   use vectors, only: length_of
@@ -60,7 +60,7 @@ contains
       call renumber(parts%bodies(i)%connectivity, number)
       call fill_group(draft, parts%bodies(i), draft%scene%groups(i))
       draft%group_where = [draft%group_where, location_t()]
-      draft%groups_sound = draft%groups_sound .and. size(draft%scene%groups(i)%variables) > 0
+      draft%groups_sound = draft%groups_sound .and. has_law(draft, draft%scene%groups(i)%material)
     end do
     draft%mesh_sound = parts%sound
     if (.not. parts%sound) return
@@ -87,6 +87,16 @@ contains
     end do
   end subroutine renumber
 
+  !> The material of a body is known, and made of a law that is.
+  pure function has_law(draft, material) result(yes)
+    type(draft_t), intent(in) :: draft
+    integer, intent(in) :: material
+    logical :: yes
+
+    yes = material > 0
+    if (yes) yes = draft%scene%materials(material)%law_id > 0
+  end function has_law
+
   !> A group of the scene from a body.
   subroutine fill_group(draft, body, group)
     type(draft_t), intent(in) :: draft
@@ -99,7 +109,8 @@ contains
     group%elem_id = find_elem(draft%elems, body%elem)
     group%material = body%material
     group%npoint = body%npoint
-    group%mean_dilatation = body%mean_dilatation
+    group%option = body%option
+    group%role = role_body
     group%connectivity = body%connectivity
     allocate (group%variables(0))
     if (body%material == 0) return

@@ -11,7 +11,8 @@ module mesh_parts
     character(len=:), allocatable :: name
     character(len=:), allocatable :: elem
     integer :: npoint = 4
-    logical :: mean_dilatation = .false.
+    !> Option of the ELEM, 0 for none.
+    integer :: option = 0
     integer :: material = 0
     !> Nodes (8, nelem), and where each element or their block stands in the deck.
     integer, allocatable :: connectivity(:, :)

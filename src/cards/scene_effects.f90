@@ -3,7 +3,7 @@ module scene_effects
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
   use effects, only: effect_t
-  use elem_api, only: elem_t
+  use elem_api, only: elem_t, has_unknown
   use law_api, only: asks_for, find_parameter, law_of_material, law_t
   use materials, only: material_t
   use scene, only: generalised_plane_strain, scene_t
@@ -51,10 +51,13 @@ contains
                          to_text(2*size(scene%mesh%labels) + merge(3, 0, scene%plane_state == generalised_plane_strain)) &
                          //' unknowns, 8 state per point (stress, elastic strain)')
         case ('contact')
-          call switch_on(4, .true., 'CNT2D', before_slash(group%name), unknowns_of(elems(group%elem_id)%pilot) &
+          call switch_on(4, .true., 'CNT2D', before_slash(group%name), unknowns_of(has_unknown(elems(group%elem_id), 'pilot')) &
                          //', '//to_text(total_components(group%variables))//' state per point')
         case ('body force')
           call switch_on(7, .true., group%elem, before_slash(group%name), 'forces and matrix of the loaded elements')
+        case ('heat')
+          call switch_on(8, .true., merge('ADDEL', 'BLOCK', group%host > 0), before_slash(group%name), &
+                         'a temperature on every node or corner, a solve of its own')
         case ('pressure')
           call switch_on(6, .true., group%elem, before_slash(group%name), 'forces and matrix of the loaded sides')
         end select

@@ -4,6 +4,7 @@ module scene_reader
   use cards_body_forces, only: read_body_forces
   use cards_contours, only: read_contours, refuse_half_contours
   use cards_dies, only: read_dies
+  use cards_fields, only: read_coupling, read_formulations, read_imposed_values, read_start_values
   use cards_head, only: read_kinematics, read_title
   use cards_laws, only: read_laws
   use cards_loads, only: read_loads, read_multipliers
@@ -20,7 +21,7 @@ module scene_reader
   use cards_zones, only: read_zones
   use deck_reader, only: deck_t, refuse_unknown
   use diagnostics, only: diagnostics_t, location_t
-  use elem_api, only: elem_t
+  use elem_api, only: declare_fields, elem_t
   use elem_registry, only: list_elems
   use mesh_finish, only: finish_mesh
   use mesh_parts, only: mesh_parts_t, start_parts
@@ -76,6 +77,8 @@ contains
     call finish_mesh(draft, parts, diagnostics)
     if (size(parts%bodies) == 0) call refuse_empty(deck, diagnostics)
 
+    call read_formulations(deck, draft, diagnostics)
+    call read_start_values(deck, draft, diagnostics)
     call read_temperatures_of_bodies(deck, draft, diagnostics)
     call read_side_dies(deck, draft, diagnostics)
     call read_zones(deck, draft, diagnostics)
@@ -83,15 +86,18 @@ contains
     call read_pressures(deck, draft, diagnostics)
     call read_body_forces(deck, draft, diagnostics)
     call read_loads(deck, draft, diagnostics)
+    call read_imposed_values(deck, draft, diagnostics)
     call read_tractions(deck, draft, diagnostics)
     call read_pilots(deck, draft, diagnostics)
     call read_strategy(deck, draft, diagnostics)
+    call read_coupling(deck, draft, diagnostics)
     call read_remesh(deck, draft, diagnostics)
     call refuse_half_contours(deck, draft, parts, diagnostics)
     call read_probes(deck, draft, diagnostics)
     call refuse_unused_names(deck, draft, keywords, diagnostics)
 
     if (present(remesh)) call order_as_remeshed(remesh, draft%scene%groups)
+    if (diagnostics%count() == 0) call declare_fields(draft%elems, draft%scene)
     if (diagnostics%count() == 0) call list_effects(deck, draft%laws, draft%elems, diagnostics, draft%scene)
     scene = draft%scene
   end subroutine read_scene
@@ -104,8 +110,9 @@ contains
     integer :: k
 
     call list_elems(elems)
-    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE FIXED MOVE ' &
-                  //'FORCE FREE SPRNG LIC STRAT NORMS STOP SAVE CKPT PROBE ESTIM REMSH ZPNT ZONE', keywords)
+    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE START ' &
+                  //'FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG LIC STRAT NORMS SOLVR STOP SAVE CKPT PROBE ESTIM REMSH ' &
+                  //'ZPNT ZONE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle

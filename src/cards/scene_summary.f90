@@ -1,9 +1,13 @@
 !> What a scene holds, in lines for people: printed by `--check` and at the start of a run.
 module scene_summary
   use dies, only: is_deformable
+  use elem_api, only: elem_t
+  use elem_registry, only: list_elems
   use kinds, only: wp
+  use linear_api, only: solver_row_t
+  use linear_registry, only: list_solvers
   use remeshing, only: criterion_names, is_upper, ncriteria, never
-  use scene, only: axisymmetric, generalised_plane_strain, lacks_mesh, plane_state_names, scene_t
+  use scene, only: axisymmetric, generalised_plane_strain, group_t, lacks_mesh, plane_state_names, scene_t
   use sections, only: section_drive_t, section_forced, section_moved, section_names
   use text, only: string_t, to_text
   implicit none
@@ -17,19 +21,26 @@ contains
   subroutine scene_lines(scene, lines)
     type(scene_t), intent(in) :: scene
     type(string_t), allocatable, intent(out) :: lines(:)
+    type(elem_t), allocatable :: elems(:)
+    type(solver_row_t), allocatable :: solvers(:)
     integer :: k
 
+    call list_elems(elems)
+    call list_solvers(solvers)
     allocate (lines(0))
     call put('scene      '//scene%title)
     call put('           '//trim(plane_state_names(scene%plane_state))//thickness()//', kinematics '//scene%kinematics &
              //', until time '//to_text(scene%strategy%end_time))
     call put('nodes      '//to_text(size(scene%mesh%labels)))
+    associate (solver => solvers(scene%strategy%linear_solver))
+      call put('solver     '//padded(solver%name, 24)//solver%purpose)
+    end associate
     if (lacks_mesh(scene)) call put('mesh       none yet: the remesher makes it of contours and zones')
     do k = 1, size(scene%groups)
       associate (group => scene%groups(k))
         call put('group      '//padded(group%name, 24)//padded(to_text(size(group%connectivity, 2))//' '//group%elem, 14) &
                  //to_text(abs(group%npoint))//rule_of(group%npoint)//' points' &
-                 //trim(merge(', mean dilatation', '                 ', group%mean_dilatation))//driven_by(k))
+                 //option_of(group)//driven_by(k))
       end associate
     end do
     do k = 1, size(scene%materials)
@@ -139,6 +150,15 @@ contains
     end function drive_text
 
     !> Law and temperature of a group of elements, or the multiplier of its load.
+    !> The option that the card of a group asks for.
+    pure function option_of(group) result(s)
+      type(group_t), intent(in) :: group
+      character(len=:), allocatable :: s
+
+      s = ''
+      if (group%option > 0) s = ', '//elems(group%elem_id)%options(group%option)%s
+    end function option_of
+
     pure function driven_by(g) result(s)
       integer, intent(in) :: g
       character(len=:), allocatable :: s

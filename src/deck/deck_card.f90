@@ -1,16 +1,16 @@
 !> A deck as its reader delivers it: cards, rows, fields.
 module deck_card
-  use deck_field, only: field_t
+  use deck_field, only: deck_field_t
   use diagnostics, only: diagnostics_t, location_t
   use kinds, only: wp
   use text, only: nearest_word, string_t
   implicit none
   private
-  public :: field_t, row_t, card_t, deck_t, refuse_unknown, fingerprint_text
+  public :: deck_field_t, row_t, card_t, deck_t, refuse_unknown, fingerprint_text
 
   !> The fields of one line, the keyword left out.
   type :: row_t
-    type(field_t), allocatable :: fields(:)
+    type(deck_field_t), allocatable :: fields(:)
     integer :: file = 0
     integer :: line = 0
   end type row_t

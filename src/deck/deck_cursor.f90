@@ -9,7 +9,7 @@
 !> It is a view: the card and the diagnostics belong to the caller, who declares them `target`.
 module deck_cursor
   use deck_card, only: card_t, row_t
-  use deck_field, only: field_t
+  use deck_field, only: deck_field_t
   use diagnostics, only: diagnostics_t, location_t
   use kinds, only: eps, wp
   use text, only: nearest_word, string_t, to_text, upper_case
@@ -74,7 +74,7 @@ contains
     class(cursor_t), intent(inout) :: self
     character(len=*), intent(in) :: what
     character(len=:), allocatable, intent(out) :: value
-    type(field_t) :: field
+    type(deck_field_t) :: field
 
     value = ''
     call self%take(what, field)
@@ -92,7 +92,7 @@ contains
     character(len=*), intent(in) :: what
     type(string_t), intent(in) :: known(:)
     integer, intent(out) :: index
-    type(field_t) :: field
+    type(deck_field_t) :: field
     character(len=:), allocatable :: nearest
     integer :: i
 
@@ -129,7 +129,7 @@ contains
     logical, intent(in), optional :: strict_lower, strict_upper
     character(len=*), intent(in), optional :: unit
     character(len=:), allocatable :: wanted
-    type(field_t) :: field
+    type(deck_field_t) :: field
     logical :: above, below, outside
 
     above = .false.
@@ -157,7 +157,7 @@ contains
     integer, intent(out) :: value
     integer, intent(in), optional :: lower, upper
     character(len=:), allocatable :: wanted
-    type(field_t) :: field
+    type(deck_field_t) :: field
     real(wp) :: rounded, low, high
     logical :: outside
 
@@ -188,7 +188,7 @@ contains
     class(cursor_t), intent(inout) :: self
     character(len=*), intent(in) :: what
     character(len=:), allocatable, intent(out) :: value
-    type(field_t) :: field
+    type(deck_field_t) :: field
 
     value = ''
     call self%take(what, field)
@@ -235,7 +235,7 @@ contains
   !> Refuse fields that are left in this row.
   subroutine end_row(self)
     class(cursor_t), intent(inout) :: self
-    type(field_t) :: field
+    type(deck_field_t) :: field
 
     if (.not. self%more()) return
     call self%take('', field)
@@ -282,7 +282,7 @@ contains
   !> Refuse fields and rows that are left.
   subroutine end_card(self)
     class(cursor_t), intent(inout) :: self
-    type(field_t) :: field
+    type(deck_field_t) :: field
 
     call self%end_row()
     if (.not. self%more_rows()) return
@@ -347,7 +347,7 @@ contains
   subroutine take(self, what, field)
     class(cursor_t), intent(inout) :: self
     character(len=*), intent(in) :: what
-    type(field_t), intent(out) :: field
+    type(deck_field_t), intent(out) :: field
 
     if (self%silent) return
     if (.not. self%more()) then
@@ -367,7 +367,7 @@ contains
   subroutine expected(self, what, field, hint)
     class(cursor_t), intent(inout) :: self
     character(len=*), intent(in) :: what
-    type(field_t), intent(in) :: field
+    type(deck_field_t), intent(in) :: field
     character(len=*), intent(in), optional :: hint
     character(len=:), allocatable :: message
 

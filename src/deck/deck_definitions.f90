@@ -1,7 +1,7 @@
 !> PARAM lines, overrides `-p NAME=VALUE`, and the value of a field which may use parameters.
 module deck_definitions
   use deck_expression, only: evaluate, looks_numeric
-  use deck_field, only: field_t, scan_fields
+  use deck_field, only: deck_field_t, scan_fields
   use deck_parameters, only: parameter_t, parameters_t, valid_name
   use diagnostics, only: diagnostics_t, location_t
   use text, only: nearest_word, string_t
@@ -72,7 +72,7 @@ contains
 
   !> Find out whether a field is a number or a word, and its value.
   subroutine interpret(field, where, keyword, parameters, diagnostics)
-    type(field_t), intent(inout) :: field
+    type(deck_field_t), intent(inout) :: field
     type(location_t), intent(in) :: where
     character(len=*), intent(in) :: keyword
     type(parameters_t), intent(inout) :: parameters
@@ -113,7 +113,7 @@ contains
     type(override_t), intent(inout) :: options(:)
     type(parameters_t), intent(inout) :: parameters
     type(diagnostics_t), intent(inout) :: diagnostics
-    type(field_t), allocatable :: fields(:), given(:)
+    type(deck_field_t), allocatable :: fields(:), given(:)
     type(parameter_t) :: item
     integer :: i, old
 
@@ -166,7 +166,7 @@ contains
   contains
 
     subroutine set_value(field)
-      type(field_t), intent(in) :: field
+      type(deck_field_t), intent(in) :: field
 
       item%text = field%text
       item%numeric = field%numeric

@@ -8,7 +8,7 @@ module deck_field
   use text, only: to_text, upper_case
   implicit none
   private
-  public :: field_t, scan_fields, first_word, comment_column, is_title, keyword_letters, letters, digits
+  public :: deck_field_t, scan_fields, first_word, comment_column, is_title, keyword_letters, letters, digits
 
   character(len=*), parameter :: digits = '0123456789'
   character(len=*), parameter :: upper_letters = 'ABCDEFGHIJKLMNOPQRSTUVWXYZ'
@@ -17,7 +17,7 @@ module deck_field
   character(len=*), parameter :: quotes = '''"'
 
   !> One field, a word or a number.
-  type :: field_t
+  type :: deck_field_t
     !> As written, without quotes; the word itself where a parameter stands for a word.
     character(len=:), allocatable :: text
     logical :: numeric = .false.
@@ -26,7 +26,7 @@ module deck_field
     logical :: faulty = .false.
     real(wp) :: value = 0
     integer :: column = 0
-  end type field_t
+  end type deck_field_t
 
 contains
 
@@ -80,9 +80,9 @@ contains
     character(len=*), intent(in) :: line, keyword
     integer, intent(in) :: start
     type(location_t), intent(in) :: where
-    type(field_t), allocatable, intent(inout) :: fields(:)
+    type(deck_field_t), allocatable, intent(inout) :: fields(:)
     type(diagnostics_t), intent(inout) :: diagnostics
-    type(field_t), allocatable :: longer(:)
+    type(deck_field_t), allocatable :: longer(:)
     integer :: n, first, last, i
 
     if (allocated(fields)) deallocate (fields)
@@ -116,7 +116,7 @@ contains
     character(len=*), intent(in) :: line, keyword
     integer, intent(in) :: first
     type(location_t), intent(in) :: where
-    type(field_t), intent(out) :: field
+    type(deck_field_t), intent(out) :: field
     integer, intent(out) :: last
     type(diagnostics_t), intent(inout) :: diagnostics
     integer :: closing, i, code

@@ -3,7 +3,7 @@
 module deck_reader
   use deck_card, only: card_t, deck_t, fingerprint_text, refuse_unknown, row_t
   use deck_definitions, only: define, interpret, merge_overrides, override_t, refuse_unused
-  use deck_field, only: field_t, first_word, is_title, scan_fields
+  use deck_field, only: deck_field_t, first_word, is_title, scan_fields
   use deck_lines, only: classify, declared_names, is_card, is_param, is_row
   use deck_parameters, only: parameters_t
   use deck_source, only: load_file, load_text, source_t, write_text
@@ -11,7 +11,7 @@ module deck_reader
   use text, only: string_t, to_text, upper_case
   implicit none
   private
-  public :: field_t, row_t, card_t, deck_t, read_deck, read_deck_text, refuse_unknown, fingerprint_text
+  public :: deck_field_t, row_t, card_t, deck_t, read_deck, read_deck_text, refuse_unknown, fingerprint_text
 
 contains
 
@@ -136,7 +136,7 @@ contains
   subroutine title_field(line, where, fields, diagnostics)
     character(len=*), intent(in) :: line
     type(location_t), intent(in) :: where
-    type(field_t), allocatable, intent(out) :: fields(:)
+    type(deck_field_t), allocatable, intent(out) :: fields(:)
     type(diagnostics_t), intent(inout) :: diagnostics
     integer :: first, i, code
 

@@ -4,7 +4,7 @@
 !> `!@file "name" line` gives the place of the line that follows, and `!@param NAME=VALUE` is an override.
 module deck_source
   use diagnostics, only: diagnostics_t, location_t
-  use deck_field, only: comment_column, digits, field_t, first_word, scan_fields
+  use deck_field, only: comment_column, digits, deck_field_t, first_word, scan_fields
   use kinds, only: i8
   use text, only: string_t, to_text, upper_case
   implicit none
@@ -216,7 +216,7 @@ contains
     integer, intent(in) :: depth
     type(source_t), intent(inout) :: source
     type(diagnostics_t), intent(inout) :: diagnostics
-    type(field_t), allocatable :: fields(:)
+    type(deck_field_t), allocatable :: fields(:)
     character(len=:), allocatable :: path, content, failure
     integer :: i, file, column
 

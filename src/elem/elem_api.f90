@@ -1,11 +1,14 @@
 !> The ELEM family: what an element declares of itself and the interface by which the element loop calls it.
 !>
 !> Objects stop at the loop's door: an element gets plain arrays for a block of elements and answers
-!> forces, matrices and the trial state. Local unknowns: x of all nodes, y of all nodes, then the
-!> pilot of the die faced (x, y, angle) where the element has one, then the section (sections) in
-!> generalised plane strain.
+!> forces, matrices and the trial state. It declares its unknowns (unknown_t): which field, on which of
+!> its nodes, pilot or section. Its local unknowns stand in the order of its declaration, each component
+!> of a field contiguous: x of all nodes, y of all nodes, pilot (x, y, angle), section, ...; `layout_t`
+!> says where each begins.
 module elem_api
   use dies, only: die_t
+  use fields, only: displacement_field, field_t, find_field, has_corners_only, mechanical_fields, on_nodes, pilot_field, &
+                    section_field
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
@@ -13,16 +16,52 @@ module elem_api
   use pairs, only: pairs_t
   use scene, only: generalised_plane_strain, group_t, scene_t
   use state_variables, only: state_variable_t
+  use text, only: string_t
   implicit none
   private
-  public :: elem_t, instant_t, report_t, totals_t, elem_compute_i, elem_variables_i, elem_measure_i, elem_augment_i
+  public :: elem_t, instant_t, layout_t, report_t, totals_t, unknown_t
+  public :: elem_compute_i, elem_variables_i, elem_measure_i, elem_augment_i
   public :: block_done, block_inverted, block_law_failed
-  public :: add_totals, group_temperature, section_motion
+  public :: acts_on, add_totals, applies, declare_fields, first_unknown, group_temperature, has_unknown, layout_of, section_motion
+  public :: of_displacement, of_pilot, of_section, that_reads
+  public :: mode_advance, mode_restore
+  public :: most_components
 
   !> Answers of a block.
   integer, parameter :: block_done = 0
   integer, parameter :: block_inverted = 1     !! an element has turned inside out
   integer, parameter :: block_law_failed = 2   !! a law gave up
+
+  !> What elements are asked for: to advance by a step; or to restore equilibrium on a new mesh at fixed time, without flow of
+  !> material or heat.
+  integer, parameter :: mode_advance = 1, mode_restore = 2
+
+  !> Most components of a field, and most fields among the unknowns of an element.
+  integer, parameter :: most_components = 3, most_fields = 4
+
+  !> A field among the unknowns of an element.
+  type :: unknown_t
+    type(field_t) :: field
+    !> Option of the element with which alone it has it, -1 for any (0: without an option).
+    integer :: option = -1
+    !> Only where other elements of the scene have the field: what the element reads of other fields.
+    logical :: optional = .false.
+    !> Plane state in which alone the element has it, 0 for any.
+    integer :: plane_state = 0
+    !> The element acts on it (has forces, heat flows there); otherwise it only reads it.
+    logical :: acts = .true.
+  end type unknown_t
+
+  !> Where the unknowns of an element stand among its local ones, in the order of the declaration.
+  type :: layout_t
+    integer :: ndof = 0, nfield = 0
+    !> Place of each field in the scene's list.
+    integer :: field(most_fields) = 0
+    !> The element acts on the field.
+    logical :: acts(most_fields) = .false.
+    !> Local place of the first value of a component, and how many values a component has.
+    integer :: first(most_components, most_fields) = 0, count(most_fields) = 0
+  end type layout_t
 
   !> The instant at which a block is computed.
   type :: instant_t
@@ -35,10 +74,15 @@ module elem_api
     type(pairs_t), allocatable :: pairs(:)
     !> Section at the start of the step (sections).
     real(wp) :: section(3) = 0.0_wp
+    !> Values of all unknowns at the start of the step (ndof); not allocated where mechanics is all there is.
+    real(wp), allocatable :: values(:)
     !> Multipliers at the start and at the end of the step.
     real(wp), allocatable :: multipliers_before(:), multipliers(:)
     !> Matrices are wanted.
     logical :: tangent = .true.
+    integer :: mode = mode_advance
+    !> Fields solved for now (nfield): derivatives along others are not needed.
+    logical, allocatable :: solved(:)
   end type instant_t
 
   !> What a block has to say: its answer, the element at fault, the largest strain increment.
@@ -75,10 +119,12 @@ module elem_api
   type :: elem_t
     character(len=:), allocatable :: name, purpose
     integer :: nnode = 0
-    !> Uses a law of this kind (law_api), or none (0).
-    integer :: law_kind = 0
-    !> Has the pilot of a die among its unknowns.
-    logical :: pilot = .false.
+    !> What a group of it is (scene), and the kind of law it uses (law_api), 0 for none.
+    integer :: role = 0, law_kind = 0
+    !> Words that a card may end with, each an option.
+    type(string_t), allocatable :: options(:)
+    !> Its unknowns, in the order of its local ones.
+    type(unknown_t), allocatable :: unknowns(:)
     !> Works on the present geometry even where kinematics are SMALL.
     logical :: follows = .false.
     !> Its matrix is symmetric when the law's is.
@@ -103,16 +149,19 @@ module elem_api
     end subroutine elem_variables_i
 
     !> Forces, matrices and trial state of elements first ... first + nb - 1 of a group.
-    subroutine elem_compute_i(scene, group, kinematics, law, instant, first, x, du, committed, trial, force, stiffness, report)
-      import :: group_t, instant_t, kinematics_t, law_t, report_t, scene_t, wp
+    subroutine elem_compute_i(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+                              force, stiffness, report)
+      import :: group_t, instant_t, kinematics_t, law_t, layout_t, report_t, scene_t, wp
       type(scene_t), intent(in) :: scene
       type(group_t), intent(in) :: group
       type(kinematics_t), intent(in) :: kinematics
       type(law_t), intent(in) :: law
       type(instant_t), intent(in) :: instant
+      type(layout_t), intent(in) :: layout
       integer, intent(in) :: first
       real(wp), intent(in) :: x(:, :, :)              !! (2, nnode, nb) at the start of the step [length]
       real(wp), intent(in) :: du(:, :)                !! (ndof, nb) motion of the step
+      real(wp), intent(in) :: start(:, :)             !! (ndof, nb) values at the start of the step; (0, nb) in mechanics alone
       real(wp), intent(in), contiguous :: committed(:, :, :)   !! (nstate, npoint, nb)
       real(wp), intent(inout), contiguous :: trial(:, :, :)
       real(wp), intent(out) :: force(:, :)            !! (ndof, nb) [force, per radian when axisymmetric]
@@ -158,15 +207,165 @@ contains
                                                instant%multipliers(group%temperature_multiplier)]
   end function group_temperature
 
-  !> Motion of the section in the step: the last three local unknowns in generalised plane strain, none otherwise.
-  pure function section_motion(scene, du) result(motion)
-    type(scene_t), intent(in) :: scene
-    real(wp), intent(in) :: du(:)   !! local unknowns of an element
+  !> Motion of the section in the step, 0 where it is no unknown.
+  pure function section_motion(layout, du) result(motion)
+    type(layout_t), intent(in) :: layout
+    real(wp), intent(in) :: du(:)   !! of the local unknowns of an element (ndof)
     real(wp) :: motion(3)
+    integer :: first
 
     motion = 0
-    if (scene%plane_state == generalised_plane_strain) motion = du(size(du) - 2:)
+    first = first_unknown(layout, section_field)
+    if (first > 0) motion = du(first:first + 2)
   end function section_motion
+
+  !> Displacements of all nodes of an element.
+  pure function of_displacement() result(unknown)
+    type(unknown_t) :: unknown
+
+    unknown = of_mechanics(displacement_field)
+  end function of_displacement
+
+  !> The pilot of the die that an element faces.
+  pure function of_pilot() result(unknown)
+    type(unknown_t) :: unknown
+
+    unknown = of_mechanics(pilot_field)
+  end function of_pilot
+
+  !> The section, an unknown in generalised plane strain.
+  pure function of_section() result(unknown)
+    type(unknown_t) :: unknown
+
+    unknown = of_mechanics(section_field)
+    unknown%plane_state = generalised_plane_strain
+  end function of_section
+
+  !> A field that the element only reads, where the scene has it.
+  pure function that_reads(name) result(unknown)
+    character(len=*), intent(in) :: name   !! of the field
+    type(unknown_t) :: unknown
+
+    unknown%field%name = name
+    unknown%optional = .true.
+    unknown%acts = .false.
+  end function that_reads
+
+  pure function of_mechanics(k) result(unknown)
+    integer, intent(in) :: k   !! place in the list of the fields of mechanics
+    type(unknown_t) :: unknown
+    type(field_t) :: list(3)
+
+    list = mechanical_fields()
+    unknown%field = list(k)
+  end function of_mechanics
+
+  !> An element acts on a field.
+  pure function acts_on(elem, name) result(yes)
+    type(elem_t), intent(in) :: elem
+    character(len=*), intent(in) :: name   !! of the field
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    do k = 1, size(elem%unknowns)
+      if (elem%unknowns(k)%acts) yes = yes .or. elem%unknowns(k)%field%name == name
+    end do
+  end function acts_on
+
+  !> An element has a field of the scene's list among its unknowns.
+  pure function has_unknown(elem, name) result(yes)
+    type(elem_t), intent(in) :: elem
+    character(len=*), intent(in) :: name   !! of the field
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    do k = 1, size(elem%unknowns)
+      yes = yes .or. elem%unknowns(k)%field%name == name
+    end do
+  end function has_unknown
+
+  !> The element has this unknown in a plane state with an option.
+  elemental function applies(unknown, plane_state, option) result(yes)
+    type(unknown_t), intent(in) :: unknown
+    integer, intent(in) :: plane_state, option
+    logical :: yes
+
+    yes = (unknown%plane_state == 0 .or. unknown%plane_state == plane_state) &
+          .and. (unknown%option < 0 .or. unknown%option == option)
+  end function applies
+
+  !> Where the unknowns of an element of so many nodes stand.
+  pure function layout_of(elem, nnode, option, plane_state, fields) result(layout)
+    type(elem_t), intent(in) :: elem
+    integer, intent(in) :: nnode        !! of the element, with those it is paired with
+    integer, intent(in) :: option       !! of the group
+    integer, intent(in) :: plane_state
+    type(field_t), intent(in) :: fields(:)   !! of the scene
+    type(layout_t) :: layout
+    integer :: u, c, n, f
+
+    do u = 1, size(elem%unknowns)
+      associate (unknown => elem%unknowns(u))
+        if (.not. applies(unknown, plane_state, option)) cycle
+        f = find_field(fields, unknown%field%name)
+        if (unknown%optional) then
+          if (f == 0) cycle
+          if (.not. fields(f)%declared) cycle
+        end if
+        n = layout%nfield + 1
+        layout%nfield = n
+        layout%field(n) = f
+        layout%acts(n) = unknown%acts
+        layout%count(n) = 1
+        if (fields(f)%place == on_nodes) layout%count(n) = merge(4, nnode, has_corners_only(fields(f)) .and. nnode == 8)
+        do c = 1, fields(f)%ncomp
+          layout%first(c, n) = layout%ndof + 1
+          layout%ndof = layout%ndof + layout%count(n)
+        end do
+      end associate
+    end do
+  end function layout_of
+
+  !> Local place of the first unknown of a field, 0 where the element has none.
+  pure function first_unknown(layout, field) result(first)
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: field   !! place in the scene's list
+    integer :: first
+    integer :: k
+
+    first = 0
+    do k = 1, layout%nfield
+      if (layout%field(k) == field) first = layout%first(1, k)
+    end do
+  end function first_unknown
+
+  !> The fields that the elements of the groups of a scene have among their unknowns: those of mechanics first, declared where
+  !> some element has them, then others in the order of the groups.
+  pure subroutine declare_fields(elems, scene)
+    type(elem_t), intent(in) :: elems(:)
+    type(scene_t), intent(inout) :: scene
+    integer :: g, u, k
+
+    if (.not. allocated(scene%fields)) scene%fields = mechanical_fields()
+    scene%fields%declared = .false.
+    do g = 1, size(scene%groups)
+      associate (elem => elems(scene%groups(g)%elem_id))
+        do u = 1, size(elem%unknowns)
+          associate (unknown => elem%unknowns(u))
+            if (unknown%optional .or. .not. applies(unknown, scene%plane_state, scene%groups(g)%option)) cycle
+            k = find_field(scene%fields, unknown%field%name)
+            if (k == 0) then
+              scene%fields = [scene%fields, unknown%field]
+              k = size(scene%fields)
+            end if
+            scene%fields(k)%declared = .true.
+          end associate
+        end do
+      end associate
+    end do
+  end subroutine declare_fields
 
   !> Add what one group says to the totals of the scene.
   pure subroutine add_totals(sum, part)

@@ -5,12 +5,12 @@
 !> scene, along x and y about the origin of a plane one. Linearised exactly: d(b dv) = (db + b tr h) dv, h of the solid
 !> elements (unsymmetric matrix where b has a direction of its own). In plane stress the thickness is that of the start.
 module elem_body_forces
-  use elem_api, only: elem_t, instant_t, report_t, section_motion
+  use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
   use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
-  use scene, only: axisymmetric, generalised_plane_strain, group_t, scene_t
+  use scene, only: axisymmetric, generalised_plane_strain, group_t, role_volume_load, scene_t
   use sections, only: thickness_at
   use state_variables, only: state_variable_t
   implicit none
@@ -41,8 +41,11 @@ contains
     type(elem_t) :: row
 
     row%nnode = 8
+    row%role = role_volume_load
+    allocate (row%unknowns, source=[of_displacement(), of_section()])
     row%symmetric = .false.
     row%effect = 'body force'
+    allocate (row%options(0))
     row%variables => variables
   end function common_row
 
@@ -55,14 +58,16 @@ contains
   end subroutine variables
 
   !> Amplitude times multiplier, along the group's direction.
-  subroutine compute_force(scene, group, kinematics, law, instant, first, x, du, committed, trial, force, stiffness, report)
+  subroutine compute_force(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+                           force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(kinematics_t), intent(in) :: kinematics
     type(law_t), intent(in) :: law
     type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)
@@ -74,20 +79,22 @@ contains
     b = 0
     b(group%direction) = group%amplitude*instant%multipliers(group%multiplier)
     do e = 1, size(x, 3)
-      call load_element(scene, kinematics%finite, instant, group%npoint, b, [0.0_wp, 0.0_wp], x(:, :, e), du(:, e), force(:, e), &
-                        stiffness(:, :, e))
+      call load_element(scene, kinematics%finite, instant, layout, group%npoint, b, [0.0_wp, 0.0_wp], x(:, :, e), du(:, e), &
+                        force(:, e), stiffness(:, :, e))
     end do
   end subroutine compute_force
 
   !> Amplitude (density times the square of an angular velocity) times the square of the multiplier, times the distance.
-  subroutine compute_centrifugal(scene, group, kinematics, law, instant, first, x, du, committed, trial, force, stiffness, report)
+  subroutine compute_centrifugal(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+                                 force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(kinematics_t), intent(in) :: kinematics
     type(law_t), intent(in) :: law
     type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)
@@ -99,16 +106,17 @@ contains
     growth = group%amplitude*instant%multipliers(group%multiplier)**2
     if (scene%plane_state == axisymmetric) growth(2) = 0
     do e = 1, size(x, 3)
-      call load_element(scene, kinematics%finite, instant, group%npoint, [0.0_wp, 0.0_wp], growth, x(:, :, e), du(:, e), &
-                        force(:, e), stiffness(:, :, e))
+      call load_element(scene, kinematics%finite, instant, layout, group%npoint, [0.0_wp, 0.0_wp], growth, x(:, :, e), &
+                        du(:, e), force(:, e), stiffness(:, :, e))
     end do
   end subroutine compute_centrifugal
 
   !> Forces and matrix for b = b0 + growth x at present places x.
-  pure subroutine load_element(scene, finite, instant, npoint, b0, growth, x, du, force, stiffness)
+  pure subroutine load_element(scene, finite, instant, layout, npoint, b0, growth, x, du, force, stiffness)
     type(scene_t), intent(in) :: scene
     logical, intent(in) :: finite
     type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
     integer, intent(in) :: npoint
     real(wp), intent(in) :: b0(2), growth(2)         !! [force/volume], [force/volume/length]
     real(wp), intent(in) :: x(2, 8), du(:)
@@ -124,7 +132,7 @@ contains
     section = scene%section
     if (finite) then
       y = y + transpose(reshape(du(1:16), [8, 2]))
-      section = instant%section + section_motion(scene, du)
+      section = instant%section + section_motion(layout, du)
     end if
     call quad8_rule(npoint, rule)
     do p = 1, npoint

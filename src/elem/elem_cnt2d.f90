@@ -24,14 +24,14 @@ module elem_cnt2d
   use corner_contact, only: at_place, press_corners
   use die_search, only: box_distance, find_foot, follow_foot, foot_t
   use dies, only: die_t
-  use elem_api, only: elem_t, instant_t, report_t, section_motion
+  use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_pilot, of_section, report_t, section_motion
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_law, contact_open, law_t
   use materials, only: material_t
   use quadrature, only: line_rule
   use rigid_contact, only: ndof, place_point, press, side_t, turned
-  use scene, only: axisymmetric, group_t, scene_t
+  use scene, only: axisymmetric, group_t, role_contact, scene_t
   use state_variables, only: state_variable, state_variable_t, transfer_recompute
   implicit none
   private
@@ -45,11 +45,13 @@ contains
     row%name = 'CNT2D'
     row%purpose = 'contact of a side with a die'
     row%nnode = 3
+    row%role = role_contact
+    allocate (row%unknowns, source=[of_displacement(), of_pilot(), of_section()])
     row%law_kind = contact_law
-    row%pilot = .true.
     row%follows = .true.
     row%symmetric = .false.
     row%effect = 'contact'
+    allocate (row%options(0))
     row%variables => variables
     row%compute => compute
     row%measure => measure
@@ -75,14 +77,16 @@ contains
     end do
   end subroutine variables
 
-  subroutine compute(scene, group, kinematics, law, instant, first, x, du, committed, trial, force, stiffness, report)
+  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+                     force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(kinematics_t), intent(in) :: kinematics
     type(law_t), intent(in) :: law
     type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)
@@ -102,7 +106,7 @@ contains
       do e = 1, size(x, 3)
         force(:, e) = 0
         if (instant%tangent) stiffness(:, :, e) = 0
-        call begin_side(scene, group, instant, first + e - 1, x(:, :, e), du(:, e), side)
+        call begin_side(scene, group, instant, layout, first + e - 1, x(:, :, e), du(:, e), side)
         call begin_states(side, xi, committed(:, :, e), trial(:, :, e))
         if (far(die, side)) cycle
         f = 0
@@ -125,17 +129,18 @@ contains
   end subroutine compute
 
   !> The side of an element in the step.
-  subroutine begin_side(scene, group, instant, element, x, du, side)
+  subroutine begin_side(scene, group, instant, layout, element, x, du, side)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
     integer, intent(in) :: element
     real(wp), intent(in) :: x(2, 3), du(:)
     type(side_t), intent(out) :: side
 
     side%x = x
     side%du(:size(du)) = du
-    side%thickening = section_motion(scene, du)
+    side%thickening = section_motion(layout, du)
     side%section = scene%section
     if (scene%finite) side%section = instant%section + side%thickening
     side%length = side_length(scene, group%connectivity(:, element))

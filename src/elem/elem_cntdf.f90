@@ -23,7 +23,7 @@ module elem_cntdf
                            show_on_axis, side_length, side_point, thinning
   use die_search, only: box_distance, find_foot, find_foot_on, foot_t
   use dies, only: die_t
-  use elem_api, only: elem_t, instant_t, report_t, section_motion
+  use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
   use elem_cnt2d, only: elem_cnt2d_row
   use kinds, only: eps, wp
   use kinematics_api, only: kinematics_t
@@ -54,7 +54,8 @@ contains
     row = elem_cnt2d_row()
     row%name = 'CNTDF'
     row%purpose = 'contact of a side with sides of another body'
-    row%pilot = .false.
+    deallocate (row%unknowns)
+    allocate (row%unknowns, source=[of_displacement(), of_section()])
     row%variables => variables
     row%compute => compute
   end function elem_cntdf_row
@@ -72,14 +73,16 @@ contains
     end do
   end subroutine variables
 
-  subroutine compute(scene, group, kinematics, law, instant, first, x, du, committed, trial, force, stiffness, report)
+  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+                     force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(kinematics_t), intent(in) :: kinematics
     type(law_t), intent(in) :: law
     type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)
@@ -105,10 +108,10 @@ contains
         call rest(trial(:npoint_state, :, e))
         side = side_length(scene, group%connectivity(:, first + e - 1))
         section = scene%section
-        if (scene%finite) section = instant%section + section_motion(scene, du(:, e))
+        if (scene%finite) section = instant%section + section_motion(layout, du(:, e))
         place(1:6) = [1, 2, 3, nnode + 1, nnode + 2, nnode + 3]
         place(13:15) = [2*nnode + 1, 2*nnode + 2, 2*nnode + 3]
-        trial(at_work, :, e) = committed(at_work, :, e)*thinning(xi, xi, section, section_motion(scene, du(:, e)), &
+        trial(at_work, :, e) = committed(at_work, :, e)*thinning(xi, xi, section, section_motion(layout, du(:, e)), &
                                                                 x(:, 1:3, e), du(place(1:6), e))
         if (box_distance(die, box_of(x(:, 1:3, e), du(place(1:6), e))) > side) cycle
         do p = 1, size(xi)

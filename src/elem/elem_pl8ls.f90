@@ -6,22 +6,28 @@
 !> and M = A + geometric part. The geometric part is annex 1's matrix, d(F) at frozen stress, written once
 !> for all unknowns: d(sigma J f^-T) = J (sigma tr h - sigma h^T). Across the plane h_zz = dt/t: in
 !> generalised plane strain dt = da1 + x da2 + y da3 + a2 dx + a3 dy, an axisymmetric scene being a = (0, 1, 0);
-!> in plane stress h_zz is condensed out of M by the row of sigma_zz = 0. A group may ask for the mean dilatation (mean_dilatation).
+!> in plane stress h_zz is condensed out of M by the row of sigma_zz = 0. With the option MEAN the
+!> points share few values of the change of volume (mean_dilatation).
 module elem_pl8ls
-  use elem_api, only: block_inverted, block_law_failed, elem_t, group_temperature, instant_t, report_t, section_motion, totals_t
+  use elem_api, only: block_inverted, block_law_failed, elem_t, instant_t, layout_t, of_displacement, of_section, report_t, &
+                      section_motion, that_reads, totals_t
   use kinds, only: wp
   use kinematics_api, only: first_history, first_strain, kinematics_t, solid_variables
   use law_api, only: law_done, law_t, solid_law
   use mean_dilatation, only: dilatation_t, share_dilatation, share_pressure
   use plane_stress_points, only: update_plane_stress
+  use point_temperatures, only: find_temperatures, nodal_temperatures, temperature_field, temperature_place
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
-  use scene, only: generalised_plane_strain, group_t, plane_stress, scene_t
+  use scene, only: generalised_plane_strain, group_t, plane_stress, role_body, scene_t
   use sections, only: thickness_at
   use solid_terms, only: add_section, first_element, geometric, mean_element
   use state_variables, only: find_variable, state_variable, state_variable_t, transfer_scalar
   implicit none
   private
   public :: elem_pl8ls_row
+
+  !> Place of the option MEAN in the row's list.
+  integer, parameter :: with_mean_dilatation = 1
 
 contains
 
@@ -31,8 +37,12 @@ contains
     row%name = 'PL8LS'
     row%purpose = '8-node quadrilateral, large strain'
     row%nnode = 8
+    row%role = role_body
+    allocate (row%unknowns, source=[of_displacement(), of_section(), that_reads(temperature_field)])
     row%law_kind = solid_law
     row%effect = 'displacement'
+    allocate (row%options(1))
+    row%options(with_mean_dilatation)%s = 'MEAN'
     row%variables => variables
     row%compute => compute
     row%measure => measure
@@ -57,14 +67,16 @@ contains
     allocate (list, source=[others, stretch])
   end subroutine variables
 
-  subroutine compute(scene, group, kinematics, law, instant, first, x, du, committed, trial, force, stiffness, report)
+  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+                     force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(kinematics_t), intent(in) :: kinematics
     type(law_t), intent(in) :: law
     type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)
@@ -78,13 +90,15 @@ contains
     integer :: status(group%npoint, size(x, 3))
     real(wp) :: strain
     logical :: valid
-    integer :: e, p, nb, nstate
+    integer :: e, p, n, nb, nstate
 
     nb = size(x, 3)
+    n = size(du, 1)
+    if (temperature_place(layout) > 0) n = layout%first(1, temperature_place(layout)) - 1
     nstate = size(committed, 1)
     call quad8_rule(group%npoint, rule)
     do e = 1, nb
-      call sections_of_step(scene, kinematics%finite, instant, du(:, e), section)
+      call sections_of_step(scene, kinematics%finite, instant, layout, du(:, e), section)
       do p = 1, group%npoint
         call motion(rule, p, section, kinematics%finite, x(:, :, e), du(:, e), nx(:, p, e), ny(:, p, e), zx(:, p, e), &
                     dv(p, e), f(:, p, e), strain, valid)
@@ -96,7 +110,7 @@ contains
           return
         end if
       end do
-      if (.not. group%mean_dilatation) cycle
+      if (.not. group%option == with_mean_dilatation) cycle
       call first_element(scene, rule, group%connectivity(:, first + e - 1), own)
       call share_dilatation(kinematics%finite, own, dv(:, e), f(:, :, e), valid)
       if (.not. valid) then
@@ -107,7 +121,10 @@ contains
       end if
     end do
 
-    temperature = spread(group_temperature(group, instant), 2, size(temperature, 2))
+    do e = 1, nb
+      p = (e - 1)*group%npoint
+      call find_temperatures(group, instant, layout, rule%phi, du(:, e), start(:, e), temperature(:, p + 1:p + group%npoint))
+    end do
     if (scene%plane_state == plane_stress) then
       call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%npoint*nb, nstate, temperature, &
                                f, committed, trial, tangent, status)
@@ -123,33 +140,100 @@ contains
         report%status = block_law_failed
         report%element = first + e - 1
       end if
-      if (group%mean_dilatation) then
-        call sections_of_step(scene, kinematics%finite, instant, du(:, e), section)
-        call first_element(scene, rule, group%connectivity(:, first + e - 1), own)
-        call mean_element(kinematics%finite, instant%tangent, rule, section, own, x(:, :, e), du(:, e), nx(:, :, e), &
-                          ny(:, :, e), dv(:, e), trial(1:4, :, e), tangent(:, :, :, e), force(:, e), stiffness(:, :, e))
-        cycle
+      if (n < size(du, 1)) then
+        force(n + 1:, e) = 0
+        if (instant%tangent) stiffness(:, :, e) = 0
       end if
-      call internal_force(nx(:, :, e), ny(:, :, e), zx(:, :, e), dv(:, e), trial(1:4, :, e), force(1:16, e))
-      if (instant%tangent) call tangent_matrix(scene%plane_state == plane_stress, kinematics%finite, nx(:, :, e), ny(:, :, e), &
-                                               zx(:, :, e), dv(:, e), trial(1:4, :, e), tangent(:, :, :, e), &
-                                               stiffness(1:16, 1:16, e))
-      if (scene%plane_state /= generalised_plane_strain) cycle
-      call sections_of_step(scene, kinematics%finite, instant, du(:, e), section)
-      call add_section(kinematics%finite, instant%tangent, rule, section, x(:, :, e), du(:, e), nx(:, :, e), ny(:, :, e), &
-                       dv(:, e), trial(1:4, :, e), tangent(:, :, :, e), force(:, e), stiffness(:, :, e))
+      call forces_of(e, instant%tangent, trial(1:4, :, e), dv(:, e), force(:n, e), stiffness(:n, :n, e))
     end do
+    if (.not. instant%tangent .or. n == size(du, 1) .or. report%status /= 0) return
+    if (instant%solved(layout%field(temperature_place(layout)))) call add_columns_of_temperature()
+
+  contains
+
+    !> Forces of the stresses at the points of an element on its mechanical unknowns, and the matrix where it is wanted.
+    subroutine forces_of(element, wanted, stress, volume, f_element, k_element)
+      integer, intent(in) :: element
+      logical, intent(in) :: wanted
+      real(wp), intent(in) :: stress(:, :), volume(:)
+      real(wp), intent(out) :: f_element(:)
+      real(wp), intent(inout) :: k_element(:, :)
+
+      if (group%option == with_mean_dilatation) then
+        call sections_of_step(scene, kinematics%finite, instant, layout, du(:, element), section)
+        call first_element(scene, rule, group%connectivity(:, first + element - 1), own)
+        call mean_element(kinematics%finite, wanted, rule, section, own, x(:, :, element), du(:, element), nx(:, :, element), &
+                          ny(:, :, element), volume, stress, tangent(:, :, :, element), f_element, k_element)
+        return
+      end if
+      call internal_force(nx(:, :, element), ny(:, :, element), zx(:, :, element), volume, stress, f_element(1:16))
+      if (wanted) call tangent_matrix(scene%plane_state == plane_stress, kinematics%finite, nx(:, :, element), ny(:, :, element), &
+                                      zx(:, :, element), volume, stress, tangent(:, :, :, element), k_element(1:16, 1:16))
+      if (scene%plane_state /= generalised_plane_strain) return
+      call sections_of_step(scene, kinematics%finite, instant, layout, du(:, element), section)
+      call add_section(kinematics%finite, wanted, rule, section, x(:, :, element), du(:, element), nx(:, :, element), &
+                       ny(:, :, element), volume, stress, tangent(:, :, :, element), f_element, k_element)
+    end subroutine forces_of
+
+    !> d(force)/d(temperature): the forces of d(stress dv)/d(temperature) at the points, by central differences of the whole update
+    !> (any law, any kinematics); error eps**(2/3).
+    subroutine add_columns_of_temperature()
+      real(wp), dimension(4, group%npoint, nb) :: high, low
+      real(wp) :: change, shape(8, layout%count(temperature_place(layout))), unused(n, n)
+      integer :: u, k
+
+      u = temperature_place(layout)
+      change = epsilon(1.0_wp)**(1.0_wp/3)*maxval(abs(temperature))
+      ! nothing has a temperature yet: any number serves
+      if (.not. change > 0) change = epsilon(1.0_wp)**(1.0_wp/3)
+      call stresses_at(change, high)
+      call stresses_at(-change, low)
+      high = (high - low)/(2*change)
+      do k = 1, layout%count(u)
+        shape(:, k) = nodal_temperatures(merge(1.0_wp, 0.0_wp, [(p == k, p=1, layout%count(u))]))
+      end do
+      do e = 1, nb
+        do k = 1, layout%count(u)
+          low(:, :, e) = high(:, :, e)*spread(matmul(shape(:, k), rule%phi(:, :group%npoint)), 1, 4)
+          call forces_of(e, .false., low(:, :, e), dv(:, e), stiffness(:n, layout%first(1, u) + k - 1, e), unused)
+        end do
+      end do
+    end subroutine add_columns_of_temperature
+
+    !> Stresses at the end of the step, times the volume over that of the trial state, were all temperatures higher.
+    subroutine stresses_at(change, stress)
+      real(wp), intent(in) :: change
+      real(wp), intent(out) :: stress(:, :, :)
+      real(wp) :: other(nstate, group%npoint, nb), shifted(2, group%npoint*nb), g(5, group%npoint, nb)
+      real(wp) :: unused(4, 5, group%npoint, nb)
+      integer :: answers(group%npoint, nb)
+
+      shifted = temperature
+      shifted(2, :) = shifted(2, :) + change
+      g = f
+      if (scene%plane_state == plane_stress) then
+        call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%npoint*nb, nstate, shifted, &
+                                 g, committed, other, unused, answers)
+      else
+        call kinematics%update(law, scene%materials(group%material), instant%dt, group%npoint*nb, nstate, shifted, g, committed, &
+                               other, unused, answers)
+      end if
+      stress = other(1:4, :, :)
+      if (scene%plane_state == plane_stress .and. kinematics%finite) stress = stress*spread(g(5, :, :)/f(5, :, :), 1, 4)
+    end subroutine stresses_at
+
   end subroutine compute
 
   !> Section (:, 1) the geometry is at, and its motion (:, 2) in the step.
-  pure subroutine sections_of_step(scene, finite, instant, du, section)
+  pure subroutine sections_of_step(scene, finite, instant, layout, du, section)
     type(scene_t), intent(in) :: scene
     logical, intent(in) :: finite
     type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
     real(wp), intent(in) :: du(:)
     real(wp), intent(out) :: section(3, 2)
 
-    section(:, 2) = section_motion(scene, du)
+    section(:, 2) = section_motion(layout, du)
     section(:, 1) = scene%section
     if (finite) section(:, 1) = instant%section + section(:, 2)
   end subroutine sections_of_step
@@ -263,7 +347,7 @@ contains
         if (scene%plane_state == plane_stress .and. scene%finite) volume(p) = volume(p)*state(size(state, 1), p, e)
       end do
       totals%volume = totals%volume + sum(volume)
-      if (group%mean_dilatation) then
+      if (group%option == with_mean_dilatation) then
         call first_element(scene, rule, group%connectivity(:, e), own)
         call share_pressure(own, volume, state(1:4, :, e), m, shared)
         volume = m

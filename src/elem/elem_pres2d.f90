@@ -4,12 +4,12 @@
 !> inner normal: F_i = integral phi_i p (-y', x') t dxi, linearised exactly (unsymmetric matrix). The
 !> thickness t of the section is the radius in an axisymmetric scene; in plane stress it is that of the start.
 module elem_pres2d
-  use elem_api, only: elem_t, instant_t, report_t, section_motion
+  use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
   use quadrature, only: line_rule
-  use scene, only: generalised_plane_strain, group_t, scene_t
+  use scene, only: generalised_plane_strain, group_t, role_side_load, scene_t
   use sections, only: thickness_at
   use shape_functions, only: line3
   use state_variables, only: state_variable_t
@@ -25,8 +25,11 @@ contains
     row%name = 'PRES2D'
     row%purpose = 'pressure that follows a side'
     row%nnode = 3
+    row%role = role_side_load
+    allocate (row%unknowns, source=[of_displacement(), of_section()])
     row%symmetric = .false.
     row%effect = 'pressure'
+    allocate (row%options(0))
     row%variables => variables
     row%compute => compute
   end function elem_pres2d_row
@@ -39,14 +42,16 @@ contains
     allocate (list(0))
   end subroutine variables
 
-  subroutine compute(scene, group, kinematics, law, instant, first, x, du, committed, trial, force, stiffness, report)
+  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+                     force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(kinematics_t), intent(in) :: kinematics
     type(law_t), intent(in) :: law
     type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)
@@ -65,7 +70,7 @@ contains
       section = scene%section
       if (kinematics%finite) then
         y = y + transpose(reshape(du(1:6, e), [3, 2]))
-        section = instant%section + section_motion(scene, du(:, e))
+        section = instant%section + section_motion(layout, du(:, e))
       end if
       do p = 1, size(xi)
         call line3(xi(p), phi, dphi)

@@ -3,11 +3,11 @@
 !> Force k (c - c_start) on one component of the pilot: k is a stiffness, or one of rotation. It holds a die
 !> that is free before it touches anything, and is the compliance of a press.
 module elem_spring
-  use elem_api, only: elem_t, instant_t, report_t
+  use elem_api, only: elem_t, instant_t, layout_t, of_pilot, report_t
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
-  use scene, only: group_t, scene_t
+  use scene, only: group_t, role_spring, scene_t
   use state_variables, only: state_variable_t
   implicit none
   private
@@ -21,8 +21,10 @@ contains
     row%name = 'SPRNG'
     row%purpose = 'spring of a die'
     row%nnode = 0
-    row%pilot = .true.
+    row%role = role_spring
+    allocate (row%unknowns, source=[of_pilot()])
     row%effect = 'contact'
+    allocate (row%options(0))
     row%variables => variables
     row%compute => compute
   end function elem_spring_row
@@ -35,14 +37,16 @@ contains
     allocate (list(0))
   end subroutine variables
 
-  subroutine compute(scene, group, kinematics, law, instant, first, x, du, committed, trial, force, stiffness, report)
+  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+                     force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(kinematics_t), intent(in) :: kinematics
     type(law_t), intent(in) :: law
     type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)

@@ -6,10 +6,11 @@ module contact_quality
   use contact_point, only: at_penetration, at_status, npoint_state
   use contact_scan, only: deepest_sample, in_pilot_axes, is_near
   use dies, only: die_t, present_die
+  use fields, only: pilot_field
   use kinds, only: wp
   use law_api, only: contact_open
   use scene, only: scene_t
-  use solution, only: solution_t
+  use solution, only: present_coordinates, solution_t
   use state_variables, only: find_variable
   use vectors, only: length_of
   implicit none
@@ -39,11 +40,11 @@ contains
     allowed = scene%materials(scene%groups(g)%material)%values(1)
     if (.not. allowed > 0) return
     corners = find_variable(scene%groups(g)%variables, 'corner_place') > 0
-    x = scene%mesh%coordinates + solution%displacement
+    x = present_coordinates(scene, solution)
     die = present_die(scene%dies(scene%groups(g)%die), x)
     do e = 1, size(scene%groups(g)%connectivity, 2)
       associate (nodes => scene%groups(g)%connectivity(:, e), state => solution%groups(g)%committed(:, :, e))
-        side = in_pilot_axes(x(:, nodes), solution%pilots(:, scene%groups(g)%die))
+        side = in_pilot_axes(x(:, nodes), solution%fields(pilot_field)%value(:, scene%groups(g)%die))
         length = length_of(scene%mesh%coordinates(:, nodes(3)) - scene%mesh%coordinates(:, nodes(1)))
         if (.not. is_near(die, side, length)) cycle
         known = depth_of(state(:npoint_state, :))

@@ -6,6 +6,7 @@
 !> Recovery (patch_recovery) goes over all elements of one material, and not across the line to another.
 module estimator
   use elasticity, only: moduli
+  use fields, only: displacement_field, section_field
   use kinds, only: wp
   use law_api, only: find_parameter, law_t
   use loads, only: multiplier_at
@@ -127,8 +128,8 @@ contains
     x = scene%mesh%coordinates
     section = scene%section
     if (scene%finite) then
-      x = x + solution%displacement
-      section = solution%section
+      x = x + solution%fields(displacement_field)%value
+      section = solution%fields(section_field)%value(:, 1)
     end if
     stiffness = 0
     do k = 1, size(self%parts)
@@ -177,8 +178,11 @@ contains
       n = scene%groups(g)%npoint
       value(1:4, :n, e) = solution%groups(g)%committed(1:4, :, part%element(e))
       if (.not. self%elastic) shear = max(shear, maxval(value(1:4, :n, e)**2))
-      call increments(self%fields(part%rule(e))%own, scene%finite, section, solution%last_section_increment, &
-                      x(:, part%connectivity(:, e)), solution%last_increment(:, part%connectivity(:, e)), value(5:8, :n, e))
+      associate (nodes => part%connectivity(:, e))
+        call increments(self%fields(part%rule(e))%own, scene%finite, section, &
+                        solution%fields(section_field)%last_increment(:, 1), x(:, nodes), &
+                        solution%fields(displacement_field)%last_increment(:, nodes), value(5:8, :n, e))
+      end associate
       weights(:, e) = energy_weights(self, scene, g, solution%time)
     end do
     call missing_squares(part%patches, self%fields, part%rule, section, x, part%connectivity, value, weights, &

@@ -5,6 +5,7 @@
 !> half.
 module triggers
   use contact_quality, only: measure_misfit, misfit_t
+  use fields, only: displacement_field, pilot_field
   use kinds, only: eps, wp
   use mesh_quality, only: element_shape, is_bad, shape_places, shape_places_t
   use remeshing, only: criterion_names, is_upper, ncriteria, never, stroke_t, trigger_t
@@ -42,7 +43,7 @@ contains
     do k = 1, size(scene%remesh%strokes)
       associate (stroke => scene%remesh%strokes(k))
         if (.not. has_passed(scene, solution, stroke)) cycle
-        call add(found, 'stroke', solution%pilots(stroke%component, stroke%die) &
+        call add(found, 'stroke', solution%fields(pilot_field)%value(stroke%component, stroke%die) &
                  - scene%dies(stroke%die)%pilot(stroke%component), stroke%value)
       end associate
     end do
@@ -76,8 +77,8 @@ contains
     logical :: passed
     real(wp) :: now, before, aim
 
-    now = solution%pilots(stroke%component, stroke%die) - scene%dies(stroke%die)%pilot(stroke%component)
-    before = now - solution%last_pilot_increment(stroke%component, stroke%die)
+    now = solution%fields(pilot_field)%value(stroke%component, stroke%die) - scene%dies(stroke%die)%pilot(stroke%component)
+    before = now - solution%fields(pilot_field)%last_increment(stroke%component, stroke%die)
     aim = stroke%value*(1 - 64*eps)
     passed = merge(now >= aim .and. before < aim, now <= aim .and. before > aim, stroke%value > 0)
   end function has_passed
@@ -93,7 +94,7 @@ contains
     logical :: bad(ncriteria)
 
     x = scene%mesh%coordinates
-    if (scene%finite) x = x + solution%displacement
+    if (scene%finite) x = x + solution%fields(displacement_field)%value
     places = shape_places()
     worst = scene%remesh%shape
     group = 0

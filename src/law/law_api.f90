@@ -14,16 +14,18 @@ module law_api
   public :: parameter, law_line, find_parameter, law_of_material, asks_for
   public :: law_done, law_not_converged
   public :: contact_open, contact_stick, contact_slip
-  public :: solid_law, contact_law
+  public :: solid_law, contact_law, heat_law, kind_names
   public :: line_values, line_choice, line_pairs
 
   !> Answers of a law for a point.
   integer, parameter :: law_done = 0
   integer, parameter :: law_not_converged = 1
 
-  !> Kinds of law: for solid elements, or for contact elements.
+  !> Kinds of law: for solid elements, for contact elements, for the conduction of heat.
   integer, parameter :: solid_law = 1
   integer, parameter :: contact_law = 2
+  integer, parameter :: heat_law = 3
+  character(len=7), parameter :: kind_names(3) = ['solids ', 'contact', 'heat   ']
 
   !> Contact states of a point.
   integer, parameter :: contact_open = 0

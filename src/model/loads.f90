@@ -1,5 +1,6 @@
 !> Multipliers in time (.LIC), imposed displacements, motions of dies, nodal forces.
 module loads
+  use fields, only: displacement_field
   use kinds, only: wp
   implicit none
   private
@@ -11,13 +12,15 @@ module loads
     real(wp), allocatable :: time(:), value(:)
   end type multiplier_t
 
-  !> Displacement of some nodes in one direction: amplitude times multiplier (0 = held).
+  !> Imposed motion (or value) of one component of a field at some nodes: amplitude times multiplier (0 = held).
   type :: fixation_t
     integer, allocatable :: nodes(:)
-    !> 1 = x, 2 = y.
+    !> Of the displacement 1 = x, 2 = y.
     integer :: component = 0
     real(wp) :: amplitude = 0.0_wp
     integer :: multiplier = 0
+    !> Place in the scene's list of fields.
+    integer :: field = displacement_field
     !> As the deck names it, for listings.
     character(len=:), allocatable :: label
   end type fixation_t
@@ -39,12 +42,14 @@ module loads
     integer :: multiplier = 0
   end type die_force_t
 
-  !> Force on one node (per radian when axisymmetric): amplitude times multiplier.
+  !> Force (what acts on a field) on one node (per radian when axisymmetric): amplitude times multiplier.
   type :: nodal_force_t
     integer :: node = 0
     integer :: component = 0
     real(wp) :: amplitude = 0.0_wp
     integer :: multiplier = 0
+    !> Place in the scene's list of fields.
+    integer :: field = displacement_field
   end type nodal_force_t
 
 contains

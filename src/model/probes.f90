@@ -18,6 +18,8 @@ module probes
     integer :: kind = 0
     !> Node kind: 1 = x, 2 = y, 3 = displacement x, 4 = displacement y. Reaction kind: 1 = x, 2 = y.
     integer :: quantity = 0
+    !> Field of the node kind that is not the displacement (place in the scene's list), 0 for this.
+    integer :: field = 0
     !> Nodes asked for (one for the node kind).
     integer, allocatable :: nodes(:)
     !> From the node to the place asked for, which a node of the deck's own mesh stands for (0) [length].

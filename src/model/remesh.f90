@@ -9,6 +9,8 @@ module remesh
   !> Elements of a group of the deck.
   type :: elements_t
     character(len=:), allocatable :: name
+    !> What the group is (scene): bodies have elements of their own.
+    integer :: role = 0
     !> Nodes (nnode, nelem).
     integer, allocatable :: connectivity(:, :)
   end type elements_t

@@ -2,6 +2,7 @@
 module scene
   use dies, only: die_t
   use effects, only: effect_t
+  use fields, only: field_t
   use kinds, only: wp
   use loads, only: die_force_t, die_motion_t, fixation_t, multiplier_t, nodal_force_t
   use materials, only: material_t
@@ -14,7 +15,8 @@ module scene
   use strategy, only: strategy_t
   implicit none
   private
-  public :: scene_t, group_t, plane_state_names, is_solid, lacks_mesh
+  public :: scene_t, group_t, plane_state_names, host_of, is_solid, lacks_mesh
+  public :: role_body, role_second, role_contact, role_side_load, role_volume_load, role_spring
   public :: plane_strain, axisymmetric, plane_stress, generalised_plane_strain
 
   !> Plane states.
@@ -24,9 +26,16 @@ module scene
   integer, parameter :: generalised_plane_strain = 4
   character(len=6), parameter :: plane_state_names(4) = ['PLSTN ', 'AXISYM', 'PLSTS ', 'GPLSTN']
 
+  !> What a group is: a body with its first formulation, a further formulation on a body's elements and points, contact of sides,
+  !> a load on sides or on the volume of a body, the spring of a die.
+  integer, parameter :: role_body = 1, role_second = 2, role_contact = 3, role_side_load = 4, role_volume_load = 5, role_spring = 6
+
   !> Elements of one ELEM and one LAW with their state: the unit of the element loop.
   type :: group_t
     character(len=:), allocatable :: name
+    integer :: role = 0
+    !> Body whose elements these are (place in the scene's list), for further formulations and loads on the volume; 0 for others.
+    integer :: host = 0
     !> Member of the ELEM family, by name and place in its list.
     character(len=:), allocatable :: elem
     integer :: elem_id = 0
@@ -34,8 +43,8 @@ module scene
     integer :: material = 0
     !> Integration points of an element (negative: at equal distances).
     integer :: npoint = 0
-    !> The points of a solid element share few values of the change of volume (mean_dilatation).
-    logical :: mean_dilatation = .false.
+    !> Option of the ELEM that the card asks for (place in the row's list), 0 for none.
+    integer :: option = 0
     !> Nodes (nnode, nelem).
     integer, allocatable :: connectivity(:, :)
     !> Die faced by contact elements, multiplier and amplitude of load elements, component of a spring; 0 where unused.
@@ -68,6 +77,8 @@ module scene
     type(mesh_t) :: mesh
     type(material_t), allocatable :: materials(:)
     type(group_t), allocatable :: groups(:)
+    !> Unknowns that the elements of the groups declare, without values: those of mechanics first (fields).
+    type(field_t), allocatable :: fields(:)
     type(die_t), allocatable :: dies(:)
     type(multiplier_t), allocatable :: multipliers(:)
     type(fixation_t), allocatable :: fixations(:)
@@ -85,13 +96,23 @@ module scene
 
 contains
 
-  !> Elements of matter: loads on the volume of a body have its nodes and no material.
+  !> A body: it has elements of its own, and counts once for contours, errors, results and remeshing.
   pure function is_solid(group) result(yes)
     type(group_t), intent(in) :: group
     logical :: yes
 
-    yes = size(group%connectivity, 1) == 8 .and. group%material > 0
+    yes = group%role == role_body
   end function is_solid
+
+  !> The body whose elements a group has: its own, or those of its host.
+  pure function host_of(scene, g) result(host)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g   !! place of the group
+    integer :: host
+
+    host = scene%groups(g)%host
+    if (host == 0) host = g
+  end function host_of
 
   !> Bodies are given by their contours, and no mesh has been made of them yet.
   pure function lacks_mesh(scene) result(yes)

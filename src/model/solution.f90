@@ -1,6 +1,7 @@
 !> The state of a run at an accepted instant, and the trial state of the step under way.
 module solution
   use acceptance, only: probation_t
+  use fields, only: displacement_field, field_t, on_nodes, on_pilots, pilot_field, section_field, start_field
   use kinds, only: wp
   use pairs, only: pairs_t, start_pairs
   use remeshing, only: estimate_t
@@ -8,7 +9,7 @@ module solution
   use state_variables, only: total_components
   implicit none
   private
-  public :: solution_t, group_state_t, start_solution
+  public :: solution_t, group_state_t, start_solution, present_coordinates
 
   !> State of the points of a group (component, point, element).
   type :: group_state_t
@@ -22,14 +23,9 @@ module solution
     integer :: step = 0
     !> Length of the last accepted step and the one proposed for the next [time].
     real(wp) :: last_step = 0.0_wp, next_step = 0.0_wp
-    !> Displacement of the nodes since the mesh began (2, nnode) [length].
-    real(wp), allocatable :: displacement(:, :)
-    !> Pilots of the dies: (x, y, angle; ndie).
-    real(wp), allocatable :: pilots(:, :)
-    !> Motion of all nodes and pilots in the last accepted step, for the predictor.
-    real(wp), allocatable :: last_increment(:, :), last_pilot_increment(:, :)
-    !> Section, and its motion in the last accepted step (sections).
-    real(wp) :: section(3) = 0.0_wp, last_section_increment(3) = 0.0_wp
+    !> Unknowns: displacement of the nodes since the mesh began, pilots of the dies, section (sections), and what else the
+    !> elements of the scene declare (as `scene%fields`).
+    type(field_t), allocatable :: fields(:)
     type(group_state_t), allocatable :: groups(:)
     !> Pairs the equations are set up for, of the groups that face deformable dies.
     type(pairs_t), allocatable :: pairs(:)
@@ -54,15 +50,6 @@ module solution
     integer :: spurious_group = 0, spurious_element = 0
     !> Largest depth of a side in a die anywhere along it, and over what the side allows.
     real(wp) :: worst_sample = 0.0_wp, worst_sample_ratio = 0.0_wp
-    !> Forces below this are round-off (set at the first evaluation of a mesh).
-    real(wp) :: force_floor = 0.0_wp
-    !> Forces from outside at the last accepted instant: reactions, nodal forces, pressures, on
-    !> nodes (2, nnode) and on pilots (3, ndie).
-    real(wp), allocatable :: applied(:, :), pilot_applied(:, :)
-    !> On the section: axial force, and moments of the axial stress about y and x.
-    real(wp) :: section_applied(3) = 0.0_wp
-    !> Reactions of supports and of imposed motions (2, nnode), without the loads that act on the same nodes.
-    real(wp), allocatable :: reactions(:, :)
     !> Errors of the mesh; of no elements where nothing asks for them.
     type(estimate_t) :: estimate
   end type solution_t
@@ -73,17 +60,9 @@ contains
   pure subroutine start_solution(scene, solution)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(out) :: solution
-    integer :: g, v, c, nnode, ndie, npoint, nsolid
+    integer :: g, v, c, npoint, nsolid
 
-    nnode = size(scene%mesh%coordinates, 2)
-    ndie = size(scene%dies)
-    allocate (solution%displacement(2, nnode), solution%last_increment(2, nnode), solution%applied(2, nnode), &
-              solution%reactions(2, nnode), source=0.0_wp)
-    allocate (solution%pilots(3, ndie), solution%last_pilot_increment(3, ndie), solution%pilot_applied(3, ndie), source=0.0_wp)
-    do g = 1, ndie
-      solution%pilots(:, g) = scene%dies(g)%pilot
-    end do
-    solution%section = scene%section
+    call start_fields(scene, solution%fields)
     solution%next_step = scene%strategy%first_step
     call start_pairs(scene, solution%pairs)
     allocate (solution%groups(size(scene%groups)))
@@ -107,5 +86,39 @@ contains
               solution%estimate%strain_sums(2, nsolid), source=0.0_wp)
     allocate (solution%estimate%triggers(0))
   end subroutine start_solution
+
+  !> All fields at rest: zero, the pilots and the section where the scene has them. A field on nodes that no element declares has
+  !> no values; pilots and section have theirs in any case, since they place the dies and give the third direction.
+  pure subroutine start_fields(scene, fields)
+    type(scene_t), intent(in) :: scene
+    type(field_t), allocatable, intent(out) :: fields(:)
+    integer :: k
+
+    allocate (fields, source=scene%fields)
+    do k = 1, size(fields)
+      select case (fields(k)%place)
+      case (on_nodes)
+        call start_field(merge(size(scene%mesh%coordinates, 2), 0, fields(k)%declared), fields(k))
+      case (on_pilots)
+        call start_field(size(scene%dies), fields(k))
+      case default
+        call start_field(1, fields(k))
+      end select
+    end do
+    do k = 1, size(scene%dies)
+      fields(pilot_field)%value(:, k) = scene%dies(k)%pilot
+    end do
+    fields(section_field)%value(:, 1) = scene%section
+  end subroutine start_fields
+
+  !> Nodes where they are now (2, nnode) [length].
+  pure function present_coordinates(scene, solution) result(x)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp) :: x(2, size(scene%mesh%coordinates, 2))
+
+    x = scene%mesh%coordinates
+    if (scene%fields(displacement_field)%declared) x = x + solution%fields(displacement_field)%value
+  end function present_coordinates
 
 end module solution

@@ -1,9 +1,15 @@
-!> How a run marches: steps, iterations, norms, savings (cards STRAT, NORMS, SAVE, STOP).
+!> How a run marches: steps, iterations, norms, savings (cards STRAT, NORMS, SOLVR, SAVE, STOP).
 module strategy
   use kinds, only: wp
   implicit none
   private
   public :: strategy_t
+  public :: coupling_once, coupling_converged, coupling_monolithic, coupling_names
+
+  !> How fields of several quantities (motion, temperature) are coupled in a step: solved in turns, once or until nothing
+  !> changes any more, or all in one Newton iteration.
+  integer, parameter :: coupling_once = 1, coupling_converged = 2, coupling_monolithic = 3
+  character(len=10), parameter :: coupling_names(3) = ['ONCE      ', 'CONVERGE  ', 'MONOLITHIC']
 
   type :: strategy_t
     !> First, least and largest step [time].
@@ -20,6 +26,10 @@ module strategy
     real(wp) :: force_norm = 1.0e-6_wp, displacement_norm = 1.0e-5_wp
     !> Largest strain increment of a step at any point (norm of the logarithmic strain).
     real(wp) :: strain_bound = 0.4_wp
+    !> Place of the linear solver in their list; the first is the default.
+    integer :: linear_solver = 1
+    !> Of no account where a scene has fields of one quantity.
+    integer :: coupling = coupling_once
     !> Fields are saved every so many steps, and at these times.
     integer :: save_every = 0
     real(wp), allocatable :: save_times(:)

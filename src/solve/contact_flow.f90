@@ -3,13 +3,13 @@
 !> It is that of the accepted state, the mean over the two integration points of the element nearest to the side, and holds for
 !> the step that follows.
 module contact_flow
-  use elem_api, only: elem_t
+  use fields, only: find_field
   use kinds, only: wp
   use kinematics_api, only: first_history
-  use law_api, only: find_parameter, law_t, solid_law
+  use law_api, only: find_parameter, law_t
   use loads, only: multiplier_at
   use quadrature, only: square_rule
-  use scene, only: group_t, scene_t
+  use scene, only: group_t, is_solid, scene_t
   use solution, only: solution_t
   use state_variables, only: find_variable
   implicit none
@@ -25,9 +25,8 @@ module contact_flow
 contains
 
   !> Bodies behind the sides of all contacts whose friction factor M is given.
-  subroutine find_bodies(scene, elems, laws, bodies)
+  subroutine find_bodies(scene, laws, bodies)
     type(scene_t), intent(in) :: scene
-    type(elem_t), intent(in) :: elems(:)
     type(law_t), intent(in) :: laws(:)
     type(bodies_t), allocatable, intent(out) :: bodies(:)
     integer :: owner(3, size(scene%mesh%coordinates, 2))
@@ -36,7 +35,7 @@ contains
     allocate (bodies(size(scene%groups)))
     owner = 0
     do g = 1, size(scene%groups)
-      if (elems(scene%groups(g)%elem_id)%law_kind /= solid_law) cycle
+      if (.not. is_solid(scene%groups(g))) cycle
       do e = 1, size(scene%groups(g)%connectivity, 2)
         do k = 1, 4
           owner(:, scene%groups(g)%connectivity(4 + k, e)) = [g, e, k]
@@ -63,7 +62,7 @@ contains
     type(law_t), intent(in) :: laws(:)
     type(bodies_t), intent(in) :: bodies(:)
     type(solution_t), intent(inout) :: solution
-    real(wp) :: flow
+    real(wp) :: flow, temperature
     integer :: g, s, at, near(2), p
 
     do g = 1, size(bodies)
@@ -75,8 +74,9 @@ contains
             flow = 0
             if (associated(laws(material%law_id)%flow_stress)) then
               near = nearest_points(body%npoint, bodies(g)%side(s))
+              temperature = temperature_of(scene, solution, body, bodies(g)%element(s))
               do p = 1, 2
-                flow = flow + 0.5_wp*laws(material%law_id)%flow_stress(material, temperature_of(scene, body, solution%time), &
+                flow = flow + 0.5_wp*laws(material%law_id)%flow_stress(material, temperature, &
                                      solution%groups(bodies(g)%group(s))%committed(first_history:, near(p), bodies(g)%element(s)))
               end do
             end if
@@ -88,15 +88,20 @@ contains
     end do
   end subroutine update_flow_stress
 
-  pure function temperature_of(scene, body, time) result(temperature)
+  !> What a TEMPE card gives, or the mean of the field over the corners of the element.
+  pure function temperature_of(scene, solution, body, element) result(temperature)
     type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
     type(group_t), intent(in) :: body
-    real(wp), intent(in) :: time
-    real(wp) :: temperature
+    integer, intent(in) :: element
+    real(wp) :: temperature   !! [temperature]
+    integer :: f
 
     temperature = 0
+    f = find_field(solution%fields, 'temperature')
+    if (f > 0) temperature = 0.25_wp*sum(solution%fields(f)%value(1, body%connectivity(1:4, element)))
     if (body%temperature_multiplier == 0) return
-    temperature = body%temperature_amplitude*multiplier_at(scene%multipliers(body%temperature_multiplier), time)
+    temperature = body%temperature_amplitude*multiplier_at(scene%multipliers(body%temperature_multiplier), solution%time)
   end function temperature_of
 
   !> The two integration points of the square nearest to a side (1: eta = -1, 2: xi = 1, 3: eta = 1, 4: xi = -1), apart from the

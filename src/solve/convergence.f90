@@ -1,12 +1,17 @@
-!> Norms of forces and motions, and what is small against them. No number here has a unit.
+!> Norms of residuals and corrections, and what is small against them. No number here has a unit.
+!>
+!> Each quantity of a solve (motion, temperature) has norms of its own: a force is not compared with a heat flow. What is returned
+!> is the largest of them.
 module convergence
   use equations, only: equations_t
+  use fields, only: displacement_field, field_t, pilot_field
   use kinds, only: wp
   implicit none
   private
-  public :: relative_residual, relative_motion, free_force, pilots_in_equilibrium
+  public :: relative_residual, relative_motion, free_force, pilots_in_equilibrium, slope_along, weigh_quantities
 
-  !> Motions below this share of the mesh's size are round-off of coordinates.
+  !> Motions below this share of the mesh's size are round-off of coordinates; changes of another quantity below this share of its
+  !> largest value likewise.
   real(wp), parameter :: least_motion = 1.0e-10_wp
 
   !> A free pilot is in equilibrium when its residual is below this share of the forces that act on it.
@@ -15,81 +20,211 @@ module convergence
 contains
 
   !> The few unknowns that carry the force of a whole die are held to a norm of their own.
-  pure function pilots_in_equilibrium(equations, force_floor, external, residual) result(in_equilibrium)
+  pure function pilots_in_equilibrium(equations, fields, external, residual) result(in_equilibrium)
     type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: force_floor, external(:), residual(:)
+    type(field_t), intent(in) :: fields(:)
+    real(wp), intent(in) :: external(:), residual(:)   !! (ndof) [force]
     logical :: in_equilibrium
     integer :: k, c, d
 
     in_equilibrium = .true.
-    do k = 1, size(equations%dofs%pilot, 2)
+    do k = 1, size(equations%dofs%fields(pilot_field)%number, 2)
       do c = 1, 3
-        d = equations%dofs%pilot(c, k)
+        d = equations%dofs%fields(pilot_field)%number(c, k)
         if (d == 0) cycle
-        if (equations%dofs%equation(d) == 0) cycle
+        if (equations%solves(equations%now)%equation(d) == 0) cycle
         in_equilibrium = in_equilibrium .and. abs(residual(d)) &
                          <= max(pilot_tolerance*max(abs(external(d)), equations%magnitude(d)), &
-                                force_floor*merge(equations%size, 1.0_wp, equations%dofs%is_angle(d)))
+                                fields(displacement_field)%floor*merge(equations%size, 1.0_wp, equations%dofs%is_angle(d)))
       end do
     end do
   end function pilots_in_equilibrium
 
   !> Residual of the free unknowns over the largest of external force, reactions and element forces; 0 when it is
   !> round-off. Moments on pilots depend on where the pilot stands: they are no measure of the forces.
-  pure function relative_residual(equations, force_floor, external, residual, du) result(norm)
+  pure function relative_residual(equations, fields, external, residual, du) result(norm)
     type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: force_floor, external(:), residual(:), du(:)
+    type(field_t), intent(in) :: fields(:)
+    real(wp), intent(in) :: external(:), residual(:), du(:)   !! (ndof)
     real(wp) :: norm
-    real(wp) :: reference, round_off
+    integer :: q
 
-    norm = free_force(equations, residual)
-    reference = max(force_norm(equations, external), force_norm(equations, residual), force_norm(equations, equations%magnitude))
-    round_off = force_floor*max(1.0_wp, force_norm(equations, du)/equations%size)
-    if (norm <= round_off) then
-      norm = 0
-    else if (reference > 0) then
-      norm = norm/reference
-    end if
+    norm = 0
+    do q = 1, size(equations%dofs%quantities)
+      if (is_solved_for(equations, q)) norm = larger(norm, residual_of(q))
+    end do
+
+  contains
+
+    pure function residual_of(q) result(own)
+      integer, intent(in) :: q
+      real(wp) :: own
+      real(wp) :: reference, round_off
+
+      own = free_norm(equations, q, residual, 1/equations%size)
+      reference = max(norm_of(equations, q, external), norm_of(equations, q, residual), norm_of(equations, q, equations%magnitude))
+      round_off = floor_of(equations, fields, q)
+      if (is_motion(equations, q)) round_off = round_off*max(1.0_wp, norm_of(equations, q, du)/equations%size)
+      if (own <= round_off) then
+        own = 0
+      else if (reference > 0) then
+        own = own/reference
+      end if
+    end function residual_of
+
   end function relative_residual
 
   !> Correction over the motion of the step, angles of pilots left out.
-  pure function relative_motion(equations, correction, du) result(norm)
+  pure function relative_motion(equations, fields, correction, du) result(norm)
     type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: correction(:), du(:)
+    type(field_t), intent(in) :: fields(:)
+    real(wp), intent(in) :: correction(:), du(:)   !! (ndof)
     real(wp) :: norm
+    integer :: q
 
-    norm = free_norm(equations, correction, equations%size)/max(force_norm(equations, du), least_motion*equations%size)
+    norm = 0
+    do q = 1, size(equations%dofs%quantities)
+      if (.not. is_solved_for(equations, q)) cycle
+      norm = larger(norm, free_norm(equations, q, correction, equations%size) &
+                    /max(norm_of(equations, q, du), least_change(equations, fields, q)))
+    end do
   end function relative_motion
 
-  !> Euclidean norm over displacements and forces, without angles and moments.
-  pure function force_norm(equations, v) result(norm)
-    type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: v(:)
-    real(wp) :: norm
+  !> The larger of two norms; what is not a number counts as largest.
+  pure function larger(a, b) result(c)
+    real(wp), intent(in) :: a, b
+    real(wp) :: c
 
-    norm = sqrt(sum(v**2, mask=.not. equations%dofs%is_angle))
-  end function force_norm
+    c = a
+    if (.not. b <= a) c = b
+  end function larger
 
-  !> Norm of forces on the free unknowns; moments count as forces at the distance of the mesh's size.
+  !> Weights by which residuals of several quantities are added up in one norm: 1 where there is one.
+  subroutine weigh_quantities(equations, external, residual)
+    type(equations_t), intent(inout) :: equations
+    real(wp), intent(in) :: external(:), residual(:)   !! (ndof)
+    real(wp) :: reference
+    integer :: q
+
+    equations%weight = 1
+    if (count([(is_solved_for(equations, q), q=1, size(equations%weight))]) < 2) return
+    do q = 1, size(equations%weight)
+      reference = max(norm_of(equations, q, external), norm_of(equations, q, residual), norm_of(equations, q, equations%magnitude))
+      if (reference > 0) equations%weight(q) = 1/reference
+    end do
+  end subroutine weigh_quantities
+
+  !> Norm of residuals on the free unknowns, those of each quantity by its weight; moments count as forces at the distance of the
+  !> mesh's size.
   pure function free_force(equations, v) result(norm)
     type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: v(:)   !! (ndof)
+    real(wp) :: norm
+    integer :: q, n
+
+    n = 0
+    norm = 0
+    do q = 1, size(equations%dofs%quantities)
+      if (.not. is_solved_for(equations, q)) cycle
+      n = n + 1
+      if (n == 1) then
+        norm = equations%weight(q)*free_norm(equations, q, v, 1/equations%size)
+      else
+        norm = hypot(norm, equations%weight(q)*free_norm(equations, q, v, 1/equations%size))
+      end if
+    end do
+  end function free_force
+
+  !> Work of residuals along a correction: of the motion, where the solve has one (the energy that a line search looks at).
+  pure function slope_along(equations, correction, residual) result(slope)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: correction(:), residual(:)   !! (ndof)
+    real(wp) :: slope
+    integer :: q
+
+    if (count([(is_solved_for(equations, q), q=1, size(equations%dofs%quantities))]) < 2) then
+      slope = dot_product(correction, residual)
+    else
+      slope = sum(correction*residual, mask=equations%dofs%quantity == 1)
+    end if
+  end function slope_along
+
+  !> A quantity is among those of the solve under way.
+  pure function is_solved_for(equations, q) result(yes)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: q
+    logical :: yes
+
+    yes = any(equations%solves(equations%now)%is_own .and. equations%dofs%quantity == q)
+  end function is_solved_for
+
+  !> Displacements come first among the fields: theirs is the first quantity.
+  pure function is_motion(equations, q) result(yes)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: q
+    logical :: yes
+
+    yes = equations%dofs%quantities(q)%s == 'motion'
+  end function is_motion
+
+  !> Round-off of what acts on the fields of a quantity.
+  pure function floor_of(equations, fields, q) result(floor)
+    type(equations_t), intent(in) :: equations
+    type(field_t), intent(in) :: fields(:)
+    integer, intent(in) :: q
+    real(wp) :: floor
+    integer :: f
+
+    floor = 0
+    do f = 1, size(fields)
+      if (fields(f)%quantity == equations%dofs%quantities(q)%s) floor = max(floor, fields(f)%floor)
+    end do
+  end function floor_of
+
+  !> A change that is round-off of the values themselves.
+  pure function least_change(equations, fields, q) result(change)
+    type(equations_t), intent(in) :: equations
+    type(field_t), intent(in) :: fields(:)
+    integer, intent(in) :: q
+    real(wp) :: change
+    integer :: f
+
+    change = tiny(change)
+    if (is_motion(equations, q)) then
+      change = least_motion*equations%size
+      return
+    end if
+    do f = 1, size(fields)
+      if (fields(f)%quantity == equations%dofs%quantities(q)%s .and. size(fields(f)%value) > 0) &
+        change = max(change, least_motion*maxval(abs(fields(f)%value)))
+    end do
+  end function least_change
+
+  !> Euclidean norm over the unknowns of a quantity, without angles and moments.
+  pure function norm_of(equations, q, v) result(norm)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: q
     real(wp), intent(in) :: v(:)
     real(wp) :: norm
 
-    norm = free_norm(equations, v, 1/equations%size)
-  end function free_force
+    norm = sqrt(sum(v**2, mask=.not. equations%dofs%is_angle .and. equations%dofs%quantity == q))
+  end function norm_of
 
-  !> Euclidean norm over the free unknowns, those that are angles times `lever`.
-  pure function free_norm(equations, v, lever) result(norm)
+  !> Euclidean norm over the free unknowns of a quantity, those that are angles times `lever`.
+  pure function free_norm(equations, q, v, lever) result(norm)
     type(equations_t), intent(in) :: equations
+    integer, intent(in) :: q
     real(wp), intent(in) :: v(:), lever
     real(wp) :: norm
     integer :: d
 
     norm = 0
-    do d = 1, size(v)
-      if (equations%dofs%equation(d) > 0) norm = norm + merge(lever*v(d), v(d), equations%dofs%is_angle(d))**2
-    end do
+    associate (solve => equations%solves(equations%now))
+      do d = 1, size(v)
+        if (solve%equation(d) > 0 .and. equations%dofs%quantity(d) == q) &
+          norm = norm + merge(lever*v(d), v(d), equations%dofs%is_angle(d))**2
+      end do
+    end associate
     norm = sqrt(norm)
   end function free_norm
 

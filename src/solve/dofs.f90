@@ -1,46 +1,59 @@
-!> Unknowns by the scene: numbered only where a card calls for them.
+!> Unknowns by the scene: numbered only where an element calls for them.
 !>
-!> An unknown is a displacement of a node, a motion of a die's pilot, or in generalised plane strain a
-!> motion of the section. Each is free (it has an
-!> equation) or prescribed (its motion is known: elimination, no penalty).
+!> An unknown is a component of a field at a place: a displacement of a node, a motion of a die's pilot or of the section, a
+!> temperature of a node. Each is free (it has an equation) or prescribed (its motion is known: elimination, no penalty).
 module dofs
-  use elem_api, only: elem_t
+  use elem_api, only: elem_t, layout_of, layout_t, most_components
+  use fields, only: field_t, on_nodes, on_pilots, on_section, pilot_field, section_field
   use kinds, only: wp
   use loads, only: multiplier_at
   use pairs, only: nodes_per_point, paired_nodes, pairs_t, start_pairs
-  use scene, only: generalised_plane_strain, scene_t
+  use scene, only: scene_t
   use sections, only: section_forced, section_moved
+  use text, only: string_t
   implicit none
   private
-  public :: dofs_t, group_dofs_t, number_dofs, number_pairs, prescribed_motion
+  public :: dofs_t, field_dofs_t, group_dofs_t, number_dofs, number_pairs, prescribed_motion
+
+  !> Unknown of each component of a field at each place (ncomp, place), 0 where there is none.
+  type :: field_dofs_t
+    integer, allocatable :: number(:, :)
+    !> The places are nodes of the mesh.
+    logical :: at_nodes = .false.
+  end type field_dofs_t
 
   type :: group_dofs_t
     !> Nodes and unknowns of each element, in the local order of the ELEM family (nnode, nelem), (ndof, nelem).
     integer, allocatable :: nodes(:, :), dof(:, :)
+    type(layout_t) :: layout
   end type group_dofs_t
 
-  !> An unknown whose motion is amplitude times multiplier; multiplier 0 holds it.
+  !> An unknown whose motion, or whose value, is amplitude times multiplier; multiplier 0 holds it.
   type :: prescribed_t
     integer :: dof = 0
     real(wp) :: amplitude = 0.0_wp
     integer :: multiplier = 0
+    !> Field and place of a value that is imposed as such; 0 where the motion since the start is.
+    integer :: field = 0, component = 0, place = 0
   end type prescribed_t
 
   type :: dofs_t
     integer :: ndof = 0
-    !> Number of equations.
-    integer :: neq = 0
-    !> Unknowns of the nodes (2, nnode) and of the pilots (3, ndie); 0 where there is none.
-    integer, allocatable :: node(:, :), pilot(:, :)
-    !> Unknowns of the section, 0 where there are none.
-    integer :: section(3) = 0
-    !> Equation of each unknown, 0 when prescribed.
-    integer, allocatable :: equation(:)
+    !> Unknowns of the fields of the scene.
+    type(field_dofs_t), allocatable :: fields(:)
+    !> Unknowns whose motion is not prescribed (ndof).
+    logical, allocatable :: is_free(:)
     !> Unknowns that are angles, and tilts of the section (their forces are moments).
     logical, allocatable :: is_angle(:)
+    !> Quantities of the fields, and that of each unknown (ndof).
+    type(string_t), allocatable :: quantities(:)
+    integer, allocatable :: quantity(:)
     type(prescribed_t), allocatable :: prescribed(:)
     type(group_dofs_t), allocatable :: groups(:)
   end type dofs_t
+
+  !> Unknowns are numbered by where they stand, those of nodes first, then by field.
+  integer, parameter :: places(3) = [on_nodes, on_pilots, on_section]
 
 contains
 
@@ -49,63 +62,133 @@ contains
     type(scene_t), intent(in) :: scene
     type(elem_t), intent(in) :: elems(:)
     type(dofs_t), intent(out) :: dofs
-    integer :: g, e, k, d, nnode
+    integer :: f, g, k
 
-    nnode = size(scene%mesh%coordinates, 2)
-    allocate (dofs%node(2, nnode), dofs%pilot(3, size(scene%dies)), source=0)
-    do g = 1, size(scene%groups)
-      associate (group => scene%groups(g))
-        do e = 1, size(group%connectivity, 2)
-          dofs%node(:, group%connectivity(:, e)) = 1
-        end do
-        if (elems(group%elem_id)%pilot) dofs%pilot(:, group%die) = 1
-      end associate
-    end do
-    do k = 1, nnode
-      do d = 1, 2
-        call take_number(dofs%node(d, k))
+    call mark_unknowns(scene, elems, dofs%fields)
+    do k = 1, size(places)
+      do f = 1, size(scene%fields)
+        if (scene%fields(f)%place == places(k)) call take_numbers(dofs%fields(f)%number)
       end do
     end do
-    do k = 1, size(scene%dies)
-      do d = 1, 3
-        call take_number(dofs%pilot(d, k))
-      end do
-    end do
-
-    if (scene%plane_state == generalised_plane_strain) then
-      do d = 1, 3
-        dofs%section(d) = 1
-        call take_number(dofs%section(d))
-      end do
-    end if
 
     allocate (dofs%is_angle(dofs%ndof), source=.false.)
-    do k = 1, size(scene%dies)
-      if (dofs%pilot(3, k) > 0) dofs%is_angle(dofs%pilot(3, k)) = .true.
+    do f = 1, size(scene%fields)
+      if (scene%fields(f)%first_angle == 0) cycle
+      associate (angles => dofs%fields(f)%number(scene%fields(f)%first_angle:, :))
+        do k = 1, size(angles, 2)
+          do g = 1, size(angles, 1)
+            if (angles(g, k) > 0) dofs%is_angle(angles(g, k)) = .true.
+          end do
+        end do
+      end associate
     end do
-    if (dofs%section(1) > 0) dofs%is_angle(dofs%section(2:3)) = .true.
 
+    call list_quantities(scene, dofs)
     call list_prescribed(scene, dofs)
-    allocate (dofs%equation(dofs%ndof), source=1)
-    dofs%equation(dofs%prescribed%dof) = 0
-    do k = 1, dofs%ndof
-      if (dofs%equation(k) == 0) cycle
-      dofs%neq = dofs%neq + 1
-      dofs%equation(k) = dofs%neq
-    end do
     call list_elements(scene, elems, dofs)
+    call find_free(dofs)
 
   contains
 
-    subroutine take_number(place)
-      integer, intent(inout) :: place
+    subroutine take_numbers(number)
+      integer, intent(inout) :: number(:, :)
+      integer :: i, c
 
-      if (place == 0) return
-      dofs%ndof = dofs%ndof + 1
-      place = dofs%ndof
-    end subroutine take_number
+      do i = 1, size(number, 2)
+        do c = 1, size(number, 1)
+          if (number(c, i) == 0) cycle
+          dofs%ndof = dofs%ndof + 1
+          number(c, i) = dofs%ndof
+        end do
+      end do
+    end subroutine take_numbers
 
   end subroutine number_dofs
+
+  !> A 1 for every component of a field at a place where some element has it among its unknowns.
+  subroutine mark_unknowns(scene, elems, fields)
+    type(scene_t), intent(in) :: scene
+    type(elem_t), intent(in) :: elems(:)
+    type(field_dofs_t), allocatable, intent(out) :: fields(:)
+    type(layout_t) :: layout
+    integer :: g, u, f, e
+
+    allocate (fields(size(scene%fields)))
+    do f = 1, size(fields)
+      allocate (fields(f)%number(scene%fields(f)%ncomp, places_of(scene, scene%fields(f))), source=0)
+      fields(f)%at_nodes = scene%fields(f)%place == on_nodes
+    end do
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        layout = layout_of(elems(group%elem_id), size(group%connectivity, 1), group%option, scene%plane_state, scene%fields)
+        do u = 1, layout%nfield
+          associate (number => fields(layout%field(u))%number)
+            select case (scene%fields(layout%field(u))%place)
+            case (on_nodes)
+              do e = 1, size(group%connectivity, 2)
+                number(:, group%connectivity(:layout%count(u), e)) = 1
+              end do
+            case (on_pilots)
+              number(:, group%die) = 1
+            case default
+              number = 1
+            end select
+          end associate
+        end do
+      end associate
+    end do
+  end subroutine mark_unknowns
+
+  !> Quantities in the order of the fields, and that of each unknown.
+  subroutine list_quantities(scene, dofs)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(inout) :: dofs
+    integer :: f, q, k, c
+
+    allocate (dofs%quantities(0), dofs%quantity(dofs%ndof))
+    do f = 1, size(scene%fields)
+      do q = 1, size(dofs%quantities)
+        if (dofs%quantities(q)%s == scene%fields(f)%quantity) exit
+      end do
+      if (q > size(dofs%quantities)) call append(scene%fields(f)%quantity)
+      associate (number => dofs%fields(f)%number)
+        do k = 1, size(number, 2)
+          do c = 1, size(number, 1)
+            if (number(c, k) > 0) dofs%quantity(number(c, k)) = q
+          end do
+        end do
+      end associate
+    end do
+
+  contains
+
+    subroutine append(name)
+      character(len=*), intent(in) :: name
+      type(string_t), allocatable :: longer(:)
+
+      allocate (longer(size(dofs%quantities) + 1))
+      longer(:size(dofs%quantities)) = dofs%quantities
+      longer(size(longer))%s = name
+      call move_alloc(longer, dofs%quantities)
+    end subroutine append
+
+  end subroutine list_quantities
+
+  !> At how many places a field may have unknowns.
+  pure function places_of(scene, field) result(n)
+    type(scene_t), intent(in) :: scene
+    type(field_t), intent(in) :: field
+    integer :: n
+
+    select case (field%place)
+    case (on_nodes)
+      n = size(scene%mesh%coordinates, 2)
+    case (on_pilots)
+      n = size(scene%dies)
+    case default
+      n = 1
+    end select
+  end function places_of
 
   !> Fixations, imposed displacements and pilots; an unknown held twice is listed once.
   subroutine list_prescribed(scene, dofs)
@@ -114,37 +197,69 @@ contains
     type(prescribed_t) :: by_dof(dofs%ndof)
     integer :: k, i, d
 
-    do k = 1, size(dofs%pilot, 2)
-      if (dofs%pilot(1, k) > 0) by_dof(dofs%pilot(:, k))%dof = dofs%pilot(:, k)
-    end do
-    do k = 1, size(scene%die_forces)
-      d = dofs%pilot(scene%die_forces(k)%component, scene%die_forces(k)%die)
-      if (d > 0) by_dof(d)%dof = 0
-    end do
-    do k = 1, 3
-      if (dofs%section(k) == 0 .or. scene%section_drives(k)%kind == section_forced) cycle
-      by_dof(dofs%section(k))%dof = dofs%section(k)
-      if (scene%section_drives(k)%kind /= section_moved) cycle
-      by_dof(dofs%section(k)) = prescribed_t(dofs%section(k), scene%section(1)*scene%section_drives(k)%amplitude, &
-                                             scene%section_drives(k)%multiplier)
-    end do
-    do k = 1, size(scene%die_motions)
-      associate (motion => scene%die_motions(k))
-        if (dofs%pilot(1, motion%die) == 0) cycle
-        d = dofs%pilot(motion%component, motion%die)
-        by_dof(d) = prescribed_t(d, motion%amplitude, motion%multiplier)
-      end associate
-    end do
-    do k = 1, size(scene%fixations)
-      associate (fixation => scene%fixations(k))
-        do i = 1, size(fixation%nodes)
-          d = dofs%node(fixation%component, fixation%nodes(i))
-          by_dof(d) = prescribed_t(d, fixation%amplitude, fixation%multiplier)
+    associate (pilot => dofs%fields(pilot_field)%number, section => dofs%fields(section_field)%number(:, 1))
+      do k = 1, size(pilot, 2)
+        if (pilot(1, k) > 0) by_dof(pilot(:, k))%dof = pilot(:, k)
+      end do
+      do k = 1, size(scene%die_forces)
+        d = pilot(scene%die_forces(k)%component, scene%die_forces(k)%die)
+        if (d > 0) by_dof(d)%dof = 0
+      end do
+      do k = 1, 3
+        if (section(k) == 0 .or. scene%section_drives(k)%kind == section_forced) cycle
+        by_dof(section(k))%dof = section(k)
+        if (scene%section_drives(k)%kind /= section_moved) cycle
+        by_dof(section(k)) = prescribed_t(section(k), scene%section(1)*scene%section_drives(k)%amplitude, &
+                                          scene%section_drives(k)%multiplier)
+      end do
+      do k = 1, size(scene%die_motions)
+        associate (motion => scene%die_motions(k))
+          if (pilot(1, motion%die) == 0) cycle
+          d = pilot(motion%component, motion%die)
+          by_dof(d) = prescribed_t(d, motion%amplitude, motion%multiplier)
+        end associate
+      end do
+      do k = 1, size(scene%fixations)
+        associate (fixation => scene%fixations(k))
+          do i = 1, size(fixation%nodes)
+            d = dofs%fields(fixation%field)%number(fixation%component, fixation%nodes(i))
+            ! a field of corners has nothing to impose in the middle of sides
+            if (d == 0) cycle
+            by_dof(d) = prescribed_t(d, fixation%amplitude, fixation%multiplier)
+            if (scene%fields(fixation%field)%imposed_as_value) &
+              by_dof(d) = prescribed_t(d, fixation%amplitude, fixation%multiplier, fixation%field, fixation%component, &
+                                       fixation%nodes(i))
+          end do
+        end associate
+      end do
+    end associate
+    dofs%prescribed = pack(by_dof, by_dof%dof > 0)
+  end subroutine list_prescribed
+
+  !> Unknowns that are not prescribed, and that some element acts on: what elements only read of a field that ends beside them stays
+  !> as it is.
+  pure subroutine find_free(dofs)
+    type(dofs_t), intent(inout) :: dofs
+    integer :: g, u, c, i, e
+
+    allocate (dofs%is_free(dofs%ndof), source=.false.)
+    do g = 1, size(dofs%groups)
+      associate (layout => dofs%groups(g)%layout, dof => dofs%groups(g)%dof)
+        do u = 1, layout%nfield
+          if (.not. layout%acts(u)) cycle
+          do c = 1, most_components
+            if (layout%first(c, u) == 0) cycle
+            do e = 1, size(dof, 2)
+              do i = layout%first(c, u), layout%first(c, u) + layout%count(u) - 1
+                dofs%is_free(dof(i, e)) = .true.
+              end do
+            end do
+          end do
         end do
       end associate
     end do
-    dofs%prescribed = pack(by_dof, by_dof%dof > 0)
-  end subroutine list_prescribed
+    dofs%is_free(dofs%prescribed%dof) = .false.
+  end subroutine find_free
 
   !> Unknowns of every element.
   subroutine list_elements(scene, elems, dofs)
@@ -157,15 +272,17 @@ contains
     allocate (dofs%groups(size(scene%groups)))
     call start_pairs(scene, pairs)
     do g = 1, size(scene%groups)
-      if (scene%groups(g)%pairs == 0) dofs%groups(g)%nodes = scene%groups(g)%connectivity
-      if (scene%groups(g)%pairs == 0) call number_elements(elems(scene%groups(g)%elem_id)%pilot, scene%groups(g)%die, dofs, g)
+      if (scene%groups(g)%pairs > 0) cycle
+      dofs%groups(g)%nodes = scene%groups(g)%connectivity
+      call number_elements(scene, elems(scene%groups(g)%elem_id), g, dofs)
     end do
-    call number_pairs(scene, pairs, dofs)
+    call number_pairs(scene, elems, pairs, dofs)
   end subroutine list_elements
 
   !> Unknowns of the elements that face deformable dies, with the pairs of now.
-  subroutine number_pairs(scene, pairs, dofs)
+  subroutine number_pairs(scene, elems, pairs, dofs)
     type(scene_t), intent(in) :: scene
+    type(elem_t), intent(in) :: elems(:)
     type(pairs_t), intent(in) :: pairs(:)
     type(dofs_t), intent(inout) :: dofs
     integer :: g, e
@@ -181,39 +298,49 @@ contains
             dofs%groups(g)%nodes(:, e) = paired_nodes(scene%dies(group%die), group%connectivity(:, e), middle(:, e))
           end do
         end associate
-        call number_elements(.false., group%die, dofs, g)
+        call number_elements(scene, elems(group%elem_id), g, dofs)
       end associate
     end do
   end subroutine number_pairs
 
   !> Unknowns of the elements of a group from their nodes.
-  subroutine number_elements(pilot, die, dofs, g)
-    logical, intent(in) :: pilot
-    integer, intent(in) :: die, g
+  subroutine number_elements(scene, elem, g, dofs)
+    type(scene_t), intent(in) :: scene
+    type(elem_t), intent(in) :: elem
+    integer, intent(in) :: g
     type(dofs_t), intent(inout) :: dofs
-    integer :: e, n, ndof
+    integer :: e, u, c, at
 
-    n = size(dofs%groups(g)%nodes, 1)
-    ndof = 2*n
-    if (pilot) ndof = ndof + 3
-    if (dofs%section(1) > 0) ndof = ndof + 3
-    if (.not. allocated(dofs%groups(g)%dof)) allocate (dofs%groups(g)%dof(ndof, size(dofs%groups(g)%nodes, 2)))
-    associate (dof => dofs%groups(g)%dof, nodes => dofs%groups(g)%nodes)
-      do e = 1, size(nodes, 2)
-        dof(:n, e) = dofs%node(1, nodes(:, e))
-        dof(n + 1:2*n, e) = dofs%node(2, nodes(:, e))
-        if (pilot) dof(2*n + 1:2*n + 3, e) = dofs%pilot(:, die)
-        if (dofs%section(1) > 0) dof(ndof - 2:, e) = dofs%section
+    associate (own => dofs%groups(g))
+      own%layout = layout_of(elem, size(own%nodes, 1), scene%groups(g)%option, scene%plane_state, scene%fields)
+      if (.not. allocated(own%dof)) allocate (own%dof(own%layout%ndof, size(own%nodes, 2)))
+      do u = 1, own%layout%nfield
+        associate (number => dofs%fields(own%layout%field(u))%number, n => own%layout%count(u))
+          do c = 1, size(number, 1)
+            at = own%layout%first(c, u)
+            do e = 1, size(own%nodes, 2)
+              select case (scene%fields(own%layout%field(u))%place)
+              case (on_nodes)
+                own%dof(at:at + n - 1, e) = number(c, own%nodes(:n, e))
+              case (on_pilots)
+                own%dof(at, e) = number(c, scene%groups(g)%die)
+              case default
+                own%dof(at, e) = number(c, 1)
+              end select
+            end do
+          end do
+        end associate
       end do
     end associate
   end subroutine number_elements
 
   !> Motion of the prescribed unknowns from time t0 (or from rest) to t1, in the order of the list.
-  pure subroutine prescribed_motion(scene, dofs, from_rest, t0, t1, motion)
+  pure subroutine prescribed_motion(scene, dofs, fields, from_rest, t0, t1, motion)
     type(scene_t), intent(in) :: scene
     type(dofs_t), intent(in) :: dofs
+    type(field_t), intent(in) :: fields(:)   !! with their values at t0
     logical, intent(in) :: from_rest
-    real(wp), intent(in) :: t0, t1
+    real(wp), intent(in) :: t0, t1           !! [time]
     real(wp), intent(out) :: motion(:)
     integer :: k
 
@@ -222,6 +349,10 @@ contains
       associate (p => dofs%prescribed(k))
         if (p%multiplier == 0) cycle
         motion(k) = multiplier_at(scene%multipliers(p%multiplier), t1)
+        if (p%field > 0) then
+          motion(k) = p%amplitude*motion(k) - fields(p%field)%value(p%component, p%place)
+          cycle
+        end if
         if (.not. from_rest) motion(k) = motion(k) - multiplier_at(scene%multipliers(p%multiplier), t0)
         motion(k) = p%amplitude*motion(k)
       end associate

@@ -4,7 +4,8 @@
 !> then gathered in a fixed order, so results are the same bits for any number of threads.
 module element_loop
   use dofs, only: dofs_t
-  use elem_api, only: block_done, elem_t, instant_t, report_t
+  use elem_api, only: block_done, elem_t, instant_t, layout_t, report_t
+  use fields, only: displacement_field
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
@@ -28,14 +29,15 @@ module element_loop
 
 contains
 
-  !> Compute all groups at the motion `du` of the step. `report` holds the first failure met, in
+  !> Compute all active groups at the motion `du` of the step. `report` holds the first failure met, in
   !> the order of groups and elements.
-  subroutine run_elements(scene, elems, kinematics, laws, dofs, pattern, instant, du, solution, buffers, timers, report)
+  subroutine run_elements(scene, elems, kinematics, laws, dofs, active, pattern, instant, du, solution, buffers, timers, report)
     type(scene_t), intent(in) :: scene
     type(elem_t), intent(in) :: elems(:)
     type(kinematics_t), intent(in) :: kinematics
     type(law_t), intent(in) :: laws(:)
     type(dofs_t), intent(in) :: dofs
+    logical, intent(in) :: active(:)          !! groups to compute (ngroup)
     type(pattern_t), intent(in) :: pattern
     type(instant_t), intent(in) :: instant
     real(wp), intent(in) :: du(:)             !! motion of every unknown (ndof)
@@ -47,6 +49,7 @@ contains
     integer :: g, b, nelem, ndof, first, last, f, m, timer
 
     do g = 1, size(scene%groups)
+      if (.not. active(g)) cycle
       associate (group => scene%groups(g), row => elems(scene%groups(g)%elem_id), state => solution%groups(g))
         call timers%add(row%effect, timer)
         call timers%start(timer)
@@ -60,7 +63,8 @@ contains
           f = pattern%force_start(g) + (first - 1)*ndof
           m = pattern%matrix_start(g) + (first - 1)*ndof*ndof
           call run_block(scene, group, row, kinematics, laws, instant, dofs%groups(g)%nodes(:, first:last), &
-                         dofs%groups(g)%dof(:, first:last), first, du, solution%displacement, state%committed(:, :, first:last), &
+                         dofs%groups(g)%dof(:, first:last), dofs%groups(g)%layout, first, du, &
+                         solution%fields(displacement_field)%value, state%committed(:, :, first:last), &
                          state%trial(:, :, first:last), buffers%force(f + 1), buffers%matrix(m + 1), reports(b))
         end do
         !$omp end parallel do
@@ -82,7 +86,7 @@ contains
   end subroutine run_elements
 
   !> One block: gather its geometry and motion, then call the element.
-  subroutine run_block(scene, group, row, kinematics, laws, instant, nodes, dof, first, du, displacement, &
+  subroutine run_block(scene, group, row, kinematics, laws, instant, nodes, dof, layout, first, du, displacement, &
                        committed, trial, force, matrix, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -91,12 +95,14 @@ contains
     type(law_t), intent(in) :: laws(:)
     type(instant_t), intent(in) :: instant
     integer, intent(in) :: nodes(:, :), dof(:, :), first
+    type(layout_t), intent(in) :: layout
     real(wp), intent(in) :: du(:), displacement(:, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(inout) :: force(size(dof, 1), size(dof, 2)), matrix(size(dof, 1), size(dof, 1), size(dof, 2))
     type(report_t), intent(out) :: report
     real(wp) :: x(2, size(nodes, 1), size(nodes, 2)), motion(size(dof, 1), size(dof, 2))
+    real(wp) :: start(merge(size(dof, 1), 0, allocated(instant%values)), size(dof, 2))
     integer :: e, law
 
     law = 1
@@ -104,8 +110,10 @@ contains
     call gather_geometry(scene, row, kinematics%finite, nodes, displacement, x)
     do e = 1, size(dof, 2)
       motion(:, e) = du(dof(:, e))
+      if (allocated(instant%values)) start(:, e) = instant%values(dof(:, e))
     end do
-    call row%compute(scene, group, kinematics, laws(law), instant, first, x, motion, committed, trial, force, matrix, report)
+    call row%compute(scene, group, kinematics, laws(law), instant, layout, first, x, motion, start, committed, trial, force, &
+                     matrix, report)
   end subroutine run_block
 
   !> Coordinates the elements work on: moved with the displacements, unless kinematics are SMALL and the element does not follow.
@@ -120,7 +128,7 @@ contains
 
     do e = 1, size(connectivity, 2)
       x(:, :, e) = scene%mesh%coordinates(:, connectivity(:, e))
-      if (finite .or. row%follows) x(:, :, e) = x(:, :, e) + displacement(:, connectivity(:, e))
+      if ((finite .or. row%follows) .and. size(displacement) > 0) x(:, :, e) = x(:, :, e) + displacement(:, connectivity(:, e))
     end do
   end subroutine gather_geometry
 
@@ -136,15 +144,17 @@ contains
     call gather_geometry(scene, row, scene%finite, group%connectivity, displacement, x)
   end subroutine group_geometry
 
-  !> Internal force on every unknown, and the sum of the sizes of what is added there.
-  subroutine gather_forces(pattern, buffers, force, magnitude)
+  !> Internal force on every unknown of a solve, and the sum of the sizes of what is added there; others keep theirs.
+  subroutine gather_forces(pattern, buffers, is_own, force, magnitude)
     type(pattern_t), intent(in) :: pattern
     type(element_buffers_t), intent(in) :: buffers
-    real(wp), intent(out) :: force(:), magnitude(:)
+    logical, intent(in) :: is_own(:)                       !! (ndof)
+    real(wp), intent(inout) :: force(:), magnitude(:)      !! (ndof) [force]
     integer :: d, k
 
     !$omp parallel do private(k) schedule(static) if (pattern%nnz > worth_gathering)
     do d = 1, size(force)
+      if (.not. is_own(d)) cycle
       force(d) = 0
       magnitude(d) = 0
       do k = pattern%force_first(d), pattern%force_first(d + 1) - 1
@@ -173,8 +183,9 @@ contains
   end subroutine gather_matrix
 
   !> Add K du to the internal force for a motion of prescribed unknowns not yet in `du` (the rest of `motion` is zero).
-  subroutine add_prescribed(dofs, pattern, buffers, motion, force)
+  subroutine add_prescribed(dofs, active, pattern, buffers, motion, force)
     type(dofs_t), intent(in) :: dofs
+    logical, intent(in) :: active(:)   !! groups that act in the solve (ngroup)
     type(pattern_t), intent(in) :: pattern
     type(element_buffers_t), intent(in) :: buffers
     real(wp), intent(in) :: motion(:)
@@ -182,6 +193,7 @@ contains
     integer :: g, e, i, j, m, ndof
 
     do g = 1, size(dofs%groups)
+      if (.not. active(g)) cycle
       associate (dof => dofs%groups(g)%dof)
         ndof = size(dof, 1)
         do e = 1, size(dof, 2)

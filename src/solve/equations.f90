@@ -4,50 +4,55 @@ module equations
   use contact_point, only: at_piece
   use dies, only: is_deformable, place_on_nodes
   use dofs, only: dofs_t, number_dofs, number_pairs
-  use elem_api, only: block_done, elem_t, instant_t, report_t
+  use elem_api, only: block_done, elem_t, instant_t, mode_advance, report_t
   use elem_registry, only: list_elems
   use element_loop, only: element_buffers_t, gather_forces, gather_matrix, run_elements
   use errors, only: error_t
+  use fields, only: displacement_field, field_t, mechanical_fields, on_nodes, pilot_field, section_field
   use kinds, only: eps, wp
   use kinematics_api, only: kinematics_t
   use kinematics_registry, only: list_kinematics
   use law_api, only: law_t, solid_law
   use law_registry, only: list_laws
-  use linear_solver, only: analyse, factorise, linear_solver_t, solve_linear
+  use linear_solver, only: analyse, choose_solver, factorise, solve_linear
   use loads, only: multiplier_at
   use ordering, only: order_equations
   use pairs, only: pairs_differ, pairs_t, start_pairs
-  use scene, only: scene_t
+  use scene, only: is_solid, role_body, role_second, role_side_load, role_spring, role_volume_load, scene_t
   use sections, only: section_forced
-  use solution, only: solution_t
-  use sparsity, only: build_pattern, pattern_t
+  use solution, only: present_coordinates, solution_t
+  use solves, only: list_solves, number_equations, quantities_of, set_up_pattern, solve_t
   use threads, only: fit_to_load, team_t
   use timers, only: ledger_t
   use vectors, only: length_of
   implicit none
   private
-  public :: equations_t, set_up, evaluate, solve_correction, external_forces
+  public :: equations_t, set_up, evaluate, solve_correction, external_forces, take_turn
 
   type :: equations_t
     type(elem_t), allocatable :: elems(:)
     type(law_t), allocatable :: laws(:)
     type(kinematics_t) :: kinematics
     type(dofs_t) :: dofs
-    type(pattern_t) :: pattern
+    !> What is solved for together, in the order of a step, and the one under way.
+    type(solve_t), allocatable :: solves(:)
+    integer :: now = 1
+    !> What elements are asked for (elem_api).
+    integer :: mode = mode_advance
     type(element_buffers_t) :: buffers
-    type(linear_solver_t) :: solver
     type(ledger_t) :: timers
     type(team_t) :: team
     !> Internal force (element forces summed) at the last evaluation, and the sum of their sizes (ndof).
     real(wp), allocatable :: force(:), magnitude(:)
-    real(wp), allocatable :: values(:)
+    !> Weights of the quantities in norms over several of them (convergence).
+    real(wp), allocatable :: weight(:)
     !> Nodes of the solid elements, and the pairs that unknowns and pattern are of.
     integer, allocatable :: solids(:, :)
     type(pairs_t), allocatable :: pairs(:)
     !> Nodes coupled by the pairs: a side and a piece, two nodes twice to make eight.
     integer, allocatable :: links(:, :)
-    !> The solver knows the pattern.
-    logical :: analysed = .false.
+    !> Nodes of the mesh.
+    integer :: nnode = 0
     !> Groups that are loads: their forces come from outside.
     logical, allocatable :: is_load(:)
     !> Bodies behind the sides of contacts.
@@ -67,7 +72,7 @@ contains
     type(equations_t), intent(inout) :: equations
     type(error_t), allocatable, intent(out) :: error
     type(kinematics_t), allocatable :: rows(:)
-    integer :: g, timer
+    integer :: g, s, timer
 
     call equations%timers%add('analysis', timer)
     call equations%timers%start(timer)
@@ -76,30 +81,54 @@ contains
     call list_kinematics(rows)
     equations%kinematics = rows(scene%kinematics_id)
     call number_dofs(scene, equations%elems, equations%dofs)
-    call build_pattern(equations%dofs, is_symmetric(scene, equations), equations%pattern)
-    allocate (equations%force(equations%dofs%ndof), equations%magnitude(equations%dofs%ndof))
-    allocate (equations%values(equations%pattern%nnz))
+    call list_solves(scene%fields, scene%strategy%coupling, equations%solves)
+    do s = 1, size(equations%solves)
+      call choose_solver(equations%solves(s)%solver, scene%strategy%linear_solver)
+      call number_equations(equations%dofs, equations%solves(s))
+      call set_up_pattern(equations%dofs, is_symmetric(scene, equations, s), equations%solves(s))
+    end do
+    allocate (equations%force(equations%dofs%ndof), equations%magnitude(equations%dofs%ndof), source=0.0_wp)
+    allocate (equations%weight(size(equations%dofs%quantities)), source=1.0_wp)
     call start_pairs(scene, equations%pairs)
-    allocate (equations%buffers%force(equations%pattern%force_length), equations%buffers%matrix(equations%pattern%matrix_length))
+    associate (pattern => equations%solves(1)%pattern)
+      allocate (equations%buffers%force(pattern%force_length), equations%buffers%matrix(pattern%matrix_length))
+    end associate
+    equations%nnode = size(scene%mesh%coordinates, 2)
     equations%size = length_of(maxval(scene%mesh%coordinates, 2) - minval(scene%mesh%coordinates, 2))
 
-    call find_bodies(scene, equations%elems, equations%laws, equations%bodies)
+    call find_bodies(scene, equations%laws, equations%bodies)
     allocate (equations%is_load(size(scene%groups)))
     do g = 1, size(scene%groups)
-      equations%is_load(g) = equations%elems(scene%groups(g)%elem_id)%law_kind == 0
+      equations%is_load(g) = any(scene%groups(g)%role == [role_side_load, role_volume_load, role_spring])
     end do
 
     allocate (equations%solids(8, 0), equations%links(8, 0))
     do g = 1, size(scene%groups)
-      if (equations%elems(scene%groups(g)%elem_id)%law_kind /= solid_law) cycle
+      if (.not. is_solid(scene%groups(g))) cycle
       equations%solids = reshape([equations%solids, scene%groups(g)%connectivity], &
                                  [8, size(equations%solids, 2) + size(scene%groups(g)%connectivity, 2)])
     end do
     call equations%timers%stop(timer)
-    call analyse_pattern(equations, error)
+    do s = 1, size(equations%solves)
+      equations%now = s
+      call analyse_pattern(equations, error)
+      if (allocated(error)) return
+    end do
+    equations%now = 1
   end subroutine set_up
 
-  !> Order the equations of the present pattern and let the solver analyse it.
+  !> The solve that a field belongs to is under way.
+  pure subroutine take_turn(equations, field)
+    type(equations_t), intent(inout) :: equations
+    integer, intent(in) :: field   !! place in the scene's list
+    integer :: s
+
+    do s = 1, size(equations%solves)
+      if (equations%solves(s)%own(field)) equations%now = s
+    end do
+  end subroutine take_turn
+
+  !> Order the equations of the solve under way and let its solver analyse the pattern.
   subroutine analyse_pattern(equations, error)
     type(equations_t), intent(inout) :: equations
     type(error_t), allocatable, intent(out) :: error
@@ -108,12 +137,13 @@ contains
 
     call equations%timers%add('analysis', timer)
     call equations%timers%start(timer)
-    call order_equations(reshape([equations%solids, equations%links], &
-                                 [8, size(equations%solids, 2) + size(equations%links, 2)]), equations%dofs, position, error)
-    if (.not. allocated(error) .and. equations%dofs%neq > 0) then
-      call analyse(equations%solver, equations%pattern, position, error)
-    end if
-    equations%analysed = .true.
+    associate (solve => equations%solves(equations%now))
+      if (solve%neq > 0) call order_equations(reshape([equations%solids, equations%links], &
+                                                      [8, size(equations%solids, 2) + size(equations%links, 2)]), &
+                                              equations%nnode, equations%dofs, solve%equation, position, error)
+      if (.not. allocated(error) .and. solve%neq > 0) call analyse(solve%solver, solve%pattern, position, error)
+      solve%analysed = .true.
+    end associate
     call equations%timers%stop(timer)
   end subroutine analyse_pattern
 
@@ -150,18 +180,17 @@ contains
     type(scene_t), intent(in) :: scene
     type(pairs_t), intent(in) :: pairs(:)
     type(equations_t), intent(inout) :: equations
-    integer :: timer
+    integer :: s, timer
 
     if (.not. pairs_differ(pairs, equations%pairs)) return
     call equations%timers%add('analysis', timer)
     call equations%timers%start(timer)
     equations%pairs = pairs
-    call number_pairs(scene, pairs, equations%dofs)
-    call build_pattern(equations%dofs, is_symmetric(scene, equations), equations%pattern)
+    call number_pairs(scene, equations%elems, pairs, equations%dofs)
+    do s = 1, size(equations%solves)
+      call set_up_pattern(equations%dofs, is_symmetric(scene, equations, s), equations%solves(s))
+    end do
     call list_links(scene, equations)
-    deallocate (equations%values)
-    allocate (equations%values(equations%pattern%nnz))
-    equations%analysed = .false.
     call equations%timers%stop(timer)
   end subroutine pair_up
 
@@ -179,16 +208,19 @@ contains
     end do
   end subroutine renew_pairs
 
-  !> Everything the scene calls for is symmetric.
-  pure function is_symmetric(scene, equations) result(symmetric)
+  !> All that acts in a solve is symmetric.
+  pure function is_symmetric(scene, equations, s) result(symmetric)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
+    integer, intent(in) :: s   !! place of the solve
     logical :: symmetric
     integer :: g
 
-    symmetric = .true.
+    ! one quantity drives another by other numbers than it is driven back
+    symmetric = quantities_of(equations%dofs, equations%solves(s)) < 2
     do g = 1, size(scene%groups)
       associate (row => equations%elems(scene%groups(g)%elem_id), m => scene%groups(g)%material)
+        if (.not. equations%solves(s)%active(g)) cycle
         symmetric = symmetric .and. (row%symmetric .or. .not. (row%follows .or. scene%finite))
         if (m == 0) cycle
         symmetric = symmetric .and. equations%laws(scene%materials(m)%law_id)%symmetric
@@ -211,25 +243,47 @@ contains
     instant%time = solution%time + dt
     instant%dt = dt
     instant%tangent = tangent
-    instant%pilots = solution%pilots
-    instant%section = solution%section
+    instant%mode = equations%mode
+    instant%solved = equations%solves(equations%now)%own
+    instant%pilots = solution%fields(pilot_field)%value
+    instant%section = solution%fields(section_field)%value(:, 1)
     allocate (instant%multipliers(size(scene%multipliers)), instant%multipliers_before(size(scene%multipliers)))
     do k = 1, size(scene%multipliers)
       instant%multipliers_before(k) = multiplier_at(scene%multipliers(k), solution%time)
       instant%multipliers(k) = multiplier_at(scene%multipliers(k), instant%time)
     end do
+    if (size(solution%fields) > size(mechanical_fields())) call list_values(equations%dofs, solution%fields, instant%values)
     if (size(solution%pairs) == 0) return
-    coordinates = scene%mesh%coordinates + solution%displacement
-    do k = 1, size(coordinates, 2)
-      do c = 1, 2
-        if (equations%dofs%node(c, k) > 0) coordinates(c, k) = coordinates(c, k) + du(equations%dofs%node(c, k))
+    coordinates = present_coordinates(scene, solution)
+    associate (number => equations%dofs%fields(displacement_field)%number)
+      do k = 1, size(coordinates, 2)
+        do c = 1, 2
+          if (number(c, k) > 0) coordinates(c, k) = coordinates(c, k) + du(number(c, k))
+        end do
       end do
-    end do
+    end associate
     allocate (instant%dies, source=scene%dies)
     do k = 1, size(instant%dies)
       if (is_deformable(instant%dies(k))) call place_on_nodes(coordinates, instant%dies(k))
     end do
   end subroutine make_instant
+
+  !> Values of all unknowns (ndof).
+  pure subroutine list_values(dofs, fields, values)
+    type(dofs_t), intent(in) :: dofs
+    type(field_t), intent(in) :: fields(:)
+    real(wp), allocatable, intent(out) :: values(:)
+    integer :: f, k, c
+
+    allocate (values(dofs%ndof), source=0.0_wp)
+    do f = 1, size(fields)
+      do k = 1, size(fields(f)%value, 2)
+        do c = 1, fields(f)%ncomp
+          if (dofs%fields(f)%number(c, k) > 0) values(dofs%fields(f)%number(c, k)) = fields(f)%value(c, k)
+        end do
+      end do
+    end do
+  end subroutine list_values
 
   !> Internal force, and matrices when wanted, at the motion `du` of the step. Points that meet pieces of deformable dies
   !> beyond their pairs get new ones, and all is computed again: no contact is lost, no step cut.
@@ -248,43 +302,71 @@ contains
     do
       call pair_up(scene, solution%pairs, equations)
       instant%pairs = solution%pairs
-      call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, equations%pattern, &
-                        instant, du, solution, equations%buffers, equations%timers, report)
+      call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, &
+                        equations%solves(equations%now)%active, equations%solves(equations%now)%pattern, instant, du, solution, &
+                        equations%buffers, equations%timers, report)
       if (report%status /= block_done) return
       if (.not. report%unpaired) exit
       call renew_pairs(scene, solution)
     end do
     call equations%timers%add('assembly', timer)
     call equations%timers%start(timer)
-    call gather_forces(equations%pattern, equations%buffers, equations%force, equations%magnitude)
-    if (tangent) then
-      call gather_matrix(equations%pattern, equations%buffers, equations%values)
-      if (.not. solution%force_floor > 0) call set_floor(scene, equations, solution%force_floor)
-    end if
+    associate (solve => equations%solves(equations%now))
+      call gather_forces(solve%pattern, equations%buffers, solve%is_own, equations%force, equations%magnitude)
+      if (tangent) then
+        call gather_matrix(solve%pattern, equations%buffers, solve%values)
+        call set_floors(scene, equations, solution%fields)
+      end if
+    end associate
     call equations%timers%stop(timer)
   end subroutine evaluate
 
-  !> Size of round-off in forces: what a motion of round-off makes through the diagonals of the solid elements' matrices.
-  pure subroutine set_floor(scene, equations, force_floor)
+  !> Size of round-off in what acts on the own fields, once for a mesh: what a change of round-off makes through the diagonals of
+  !> the matrices of the bodies.
+  pure subroutine set_floors(scene, equations, fields)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
-    real(wp), intent(out) :: force_floor
-    integer :: g, e, i, ndof, m
+    type(field_t), intent(inout) :: fields(:)
+    integer :: f
+
+    do f = 1, size(fields)
+      if (.not. (fields(f)%declared .and. equations%solves(equations%now)%own(f))) cycle
+      if (fields(f)%place /= on_nodes .or. fields(f)%floor > 0) cycle
+      if (f == displacement_field) then
+        fields(f)%floor = round_off_motion*equations%size*sqrt(sum_of_diagonals(scene, equations, f))
+      else
+        fields(f)%floor = round_off_motion*maxval(abs(fields(f)%value))*sqrt(sum_of_diagonals(scene, equations, f))
+      end if
+    end do
+  end subroutine set_floors
+
+  !> Squares of the diagonals of the matrices of all bodies, of the unknowns of one field.
+  pure function sum_of_diagonals(scene, equations, field) result(sum)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: field
     real(wp) :: sum
+    integer :: g, e, u, c, i, ndof, m
 
     sum = 0
     do g = 1, size(scene%groups)
-      if (equations%elems(scene%groups(g)%elem_id)%law_kind /= solid_law) cycle
-      ndof = size(equations%dofs%groups(g)%dof, 1)
-      do e = 1, size(equations%dofs%groups(g)%dof, 2)
-        m = equations%pattern%matrix_start(g) + (e - 1)*ndof*ndof
-        do i = 1, ndof
-          sum = sum + equations%buffers%matrix(m + (i - 1)*ndof + i)**2
+      if (.not. (any(scene%groups(g)%role == [role_body, role_second]) .and. equations%solves(equations%now)%active(g))) cycle
+      associate (layout => equations%dofs%groups(g)%layout)
+        ndof = layout%ndof
+        do e = 1, size(equations%dofs%groups(g)%dof, 2)
+          m = equations%solves(1)%pattern%matrix_start(g) + (e - 1)*ndof*ndof
+          do u = 1, layout%nfield
+            if (layout%field(u) /= field) cycle
+            do c = 1, size(equations%dofs%fields(field)%number, 1)
+              do i = layout%first(c, u), layout%first(c, u) + layout%count(u) - 1
+                sum = sum + equations%buffers%matrix(m + (i - 1)*ndof + i)**2
+              end do
+            end do
+          end do
         end do
-      end do
+      end associate
     end do
-    force_floor = round_off_motion*equations%size*sqrt(sum)
-  end subroutine set_floor
+  end function sum_of_diagonals
 
   !> Forces on nodes and pilots, and loads of the section, at a time (ndof).
   pure subroutine external_forces(scene, dofs, time, force)
@@ -297,22 +379,23 @@ contains
     force = 0
     do k = 1, size(scene%forces)
       associate (load => scene%forces(k))
-        d = dofs%node(load%component, load%node)
+        d = dofs%fields(load%field)%number(load%component, load%node)
         force(d) = force(d) + load%amplitude*multiplier_at(scene%multipliers(load%multiplier), time)
       end associate
     end do
     do k = 1, size(scene%die_forces)
       associate (load => scene%die_forces(k))
-        d = dofs%pilot(load%component, load%die)
+        d = dofs%fields(pilot_field)%number(load%component, load%die)
         if (d == 0 .or. load%multiplier == 0) cycle
         force(d) = load%amplitude*multiplier_at(scene%multipliers(load%multiplier), time)
       end associate
     end do
     do k = 1, 3
-      if (dofs%section(k) == 0) cycle
+      d = dofs%fields(section_field)%number(k, 1)
+      if (d == 0) cycle
       associate (drive => scene%section_drives(k))
         if (drive%kind /= section_forced .or. drive%multiplier == 0) cycle
-        force(dofs%section(k)) = drive%amplitude*multiplier_at(scene%multipliers(drive%multiplier), time)
+        force(d) = drive%amplitude*multiplier_at(scene%multipliers(drive%multiplier), time)
       end associate
     end do
   end subroutine external_forces
@@ -323,28 +406,30 @@ contains
     real(wp), intent(in) :: residual(:)
     real(wp), intent(out) :: correction(:)
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: rhs(equations%dofs%neq), x(equations%dofs%neq)
+    real(wp) :: rhs(equations%solves(equations%now)%neq), x(equations%solves(equations%now)%neq)
     integer :: d, timer
 
     correction = 0
-    if (equations%dofs%neq == 0) return
-    if (.not. equations%analysed) call analyse_pattern(equations, error)
+    if (size(rhs) == 0) return
+    if (.not. equations%solves(equations%now)%analysed) call analyse_pattern(equations, error)
     if (allocated(error)) return
-    do d = 1, equations%dofs%ndof
-      if (equations%dofs%equation(d) > 0) rhs(equations%dofs%equation(d)) = residual(d)
-    end do
-    call equations%timers%add('factorisation', timer)
-    call equations%timers%start(timer)
-    call factorise(equations%solver, equations%values, error)
-    call equations%timers%stop(timer)
-    if (allocated(error)) return
-    call equations%timers%add('solution', timer)
-    call equations%timers%start(timer)
-    call solve_linear(equations%solver, equations%pattern, rhs, x, error)
-    call equations%timers%stop(timer)
-    do d = 1, equations%dofs%ndof
-      if (equations%dofs%equation(d) > 0) correction(d) = x(equations%dofs%equation(d))
-    end do
+    associate (solve => equations%solves(equations%now))
+      do d = 1, equations%dofs%ndof
+        if (solve%equation(d) > 0) rhs(solve%equation(d)) = residual(d)
+      end do
+      call equations%timers%add('factorisation', timer)
+      call equations%timers%start(timer)
+      call factorise(solve%solver, solve%values, error)
+      call equations%timers%stop(timer)
+      if (allocated(error)) return
+      call equations%timers%add('solution', timer)
+      call equations%timers%start(timer)
+      call solve_linear(solve%solver, solve%pattern, rhs, x, error)
+      call equations%timers%stop(timer)
+      do d = 1, equations%dofs%ndof
+        if (solve%equation(d) > 0) correction(d) = x(solve%equation(d))
+      end do
+    end associate
   end subroutine solve_correction
 
 end module equations

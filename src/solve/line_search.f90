@@ -19,7 +19,7 @@
 !> drive the body, whatever the residual: equilibrium is further on, and no shorter step would find it nearer (J.J. More,
 !> D.C. Sorensen, Math. Programming 16 (1979) 1-20: directions of negative curvature).
 module line_search
-  use convergence, only: free_force
+  use convergence, only: free_force, slope_along
   use elem_api, only: block_done, report_t
   use equations, only: equations_t, evaluate
   use kinds, only: wp
@@ -61,7 +61,7 @@ contains
 
     start = du
     trial = 1
-    slope0 = dot_product(correction, residual)
+    slope0 = slope_along(equations, correction, residual)
     uphill = slope0 < 0
     enough = merge(search_closely_above, search_above, manner%closely)
     norm0 = free_force(equations, residual)
@@ -77,7 +77,7 @@ contains
         far = 0
         cycle
       end if
-      slope = dot_product(correction, external - equations%force)
+      slope = slope_along(equations, correction, external - equations%force)
       norm = free_force(equations, external - equations%force)
       if (abs(slope) < best) then
         best = abs(slope)

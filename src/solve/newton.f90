@@ -5,13 +5,13 @@
 !> `displacement_norm` of the motion of the step.
 module newton
   use contact_changes, only: contact_set, note_contact
-  use convergence, only: pilots_in_equilibrium, relative_motion, relative_residual
+  use convergence, only: pilots_in_equilibrium, relative_motion, relative_residual, weigh_quantities
   use elem_api, only: block_done, block_inverted, report_t
   use element_loop, only: add_prescribed
   use equations, only: equations_t, evaluate, external_forces, solve_correction
   use errors, only: error_t, exit_no_convergence
   use kinds, only: wp
-  use linear_solver, only: try_without_pivoting
+  use linear_solver, only: return_to_chosen
   use line_search, only: manner_t, search_along, short_share
   use predictor, only: predict
   use scene, only: scene_t
@@ -61,14 +61,17 @@ module newton
 
 contains
 
-  !> Seek equilibrium at the end of a step of length dt. A step that fails leaves no trace in the committed state.
-  subroutine solve_step(scene, equations, solution, dt, outcome, left)
+  !> Seek equilibrium of the solve under way at the end of a step of length dt. A step that fails leaves no trace in the committed
+  !> state.
+  subroutine solve_step(scene, equations, solution, dt, outcome, left, given, go_on)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt
     type(outcome_t), intent(out) :: outcome
     real(wp), intent(in), optional :: left(:)   !! part of the residual to be left, per unknown (0)
+    real(wp), intent(in), optional :: given(:)  !! motion of the unknowns of other solves; of all where Newton's method goes on
+    logical, intent(in), optional :: go_on      !! from `given` for the own unknowns too
     real(wp), dimension(equations%dofs%ndof) :: external, missing, residual, correction
     type(group_state_t) :: before(size(scene%groups))
     type(iteration_t) :: line
@@ -79,10 +82,10 @@ contains
     integer :: first
 
     allocate (outcome%history(0), outcome%du(equations%dofs%ndof))
-    call try_without_pivoting(equations%solver)
+    call return_to_chosen(equations%solves(equations%now)%solver)
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     if (present(left)) external = external - left
-    call predict(scene, equations, solution, dt, outcome%du, missing, report)
+    call predict(scene, equations, solution, dt, given, go_on, outcome%du, missing, report)
     if (report%status /= block_done) then
       call blame(report, outcome)
       return
@@ -95,13 +98,14 @@ contains
     allocate (contact, source=contact_set(scene, solution))
     do
       residual = external - equations%force
-      line%force_norm = relative_residual(equations, solution%force_floor, external, residual, outcome%du)
-      line%displacement_norm = relative_motion(equations, correction, outcome%du)
+      if (size(outcome%history) == 0) call weigh_quantities(equations, external, residual)
+      line%force_norm = relative_residual(equations, solution%fields, external, residual, outcome%du)
+      line%displacement_norm = relative_motion(equations, solution%fields, correction, outcome%du)
       outcome%history = [outcome%history, line]
       outcome%iterations = size(outcome%history) - 1
       if (.not. any(abs(missing) > 0)) then
         if (has_converged(scene, outcome%history(first:)) &
-            .and. pilots_in_equilibrium(equations, solution%force_floor, external, residual)) then
+            .and. pilots_in_equilibrium(equations, solution%fields, external, residual)) then
           if (outcome%augmentations == 0) outcome%first_iterations = outcome%iterations
           call augment(scene, equations, solution, outcome%augmentations, before, changed)
           if (.not. changed) exit
@@ -121,7 +125,7 @@ contains
         call blame_solver(outcome)
         exit
       end if
-      outcome%linear_residual = max(outcome%linear_residual, equations%solver%residual)
+      outcome%linear_residual = max(outcome%linear_residual, equations%solves(equations%now)%solver%residual)
       manner = manner_t(whole=caught(outcome%history(first:)), closely=in_turmoil(outcome%history(first:)))
       call search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, outcome%du, &
                         line%line_search, report)
@@ -224,7 +228,9 @@ contains
 
     if (.not. any(abs(missing) > 0)) return
     force = 0
-    call add_prescribed(equations%dofs, equations%pattern, equations%buffers, missing, force)
+    associate (solve => equations%solves(equations%now))
+      call add_prescribed(equations%dofs, solve%active, solve%pattern, equations%buffers, missing, force)
+    end associate
     residual = residual - force
   end subroutine add_missing
 

@@ -25,16 +25,17 @@ module ordering
 contains
 
   !> position(neq): place of each equation in the order of elimination. Equations of no node come last.
-  subroutine order_equations(connectivity, dofs, position, error)
+  subroutine order_equations(connectivity, nnode, dofs, equation_of, position, error)
     integer, intent(in) :: connectivity(:, :)   !! nodes of the solid elements, and of links between bodies (nnode, nelem)
+    integer, intent(in) :: nnode                !! of the mesh
     type(dofs_t), intent(in) :: dofs
+    integer, intent(in) :: equation_of(:)       !! of each unknown, 0 where there is none (ndof)
     integer, allocatable, intent(out) :: position(:)
     type(error_t), allocatable, intent(out) :: error
     integer(c_int), allocatable :: xadj(:), adjncy(:), perm(:), place(:)
     integer, allocatable :: node_at(:)
-    integer :: nnode, status, k, d, n
+    integer :: status, f, k, d, n
 
-    nnode = size(dofs%node, 2)
     call node_graph(connectivity, nnode, xadj, adjncy)
     allocate (perm(nnode), place(nnode), node_at(nnode))
     status = metis_node_nd(int(nnode, c_int), xadj, adjncy, c_null_ptr, c_null_ptr, perm, place)
@@ -45,11 +46,14 @@ contains
     do k = 1, nnode
       node_at(place(k) + 1) = k
     end do
-    allocate (position(dofs%neq), source=0)
+    allocate (position(maxval(equation_of)), source=0)
     n = 0
     do k = 1, nnode
-      do d = 1, size(dofs%node, 1)
-        call take(dofs%node(d, node_at(k)))
+      do f = 1, size(dofs%fields)
+        if (.not. dofs%fields(f)%at_nodes) cycle
+        do d = 1, size(dofs%fields(f)%number, 1)
+          call take(dofs%fields(f)%number(d, node_at(k)))
+        end do
       end do
     end do
     do k = 1, dofs%ndof
@@ -63,7 +67,7 @@ contains
       integer :: equation
 
       if (dof == 0) return
-      equation = dofs%equation(dof)
+      equation = equation_of(dof)
       if (equation == 0) return
       if (position(equation) > 0) return
       n = n + 1

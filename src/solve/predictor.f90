@@ -4,15 +4,16 @@
 !> motion, and only the onset of it is kept: the matrix there (loading, with the contacts of now)
 !> spreads the rest. What prescribed unknowns still miss is left for the first iteration to spread.
 module predictor
-  use dofs, only: prescribed_motion
+  use dofs, only: dofs_t, prescribed_motion
   use elem_api, only: block_done, report_t
   use equations, only: equations_t, evaluate
+  use fields, only: field_t
   use kinds, only: wp
   use scene, only: scene_t
   use solution, only: solution_t
   implicit none
   private
-  public :: predict
+  public :: predict, proportion
 
   !> Change of penetration, as a share of the side, below which contact goes on as before.
   real(wp), parameter :: smooth_contact = 2.0e-3_wp
@@ -24,62 +25,73 @@ module predictor
 contains
 
   !> Start `du` and what prescribed unknowns miss of their motion; forces and matrices are evaluated there.
-  subroutine predict(scene, equations, solution, dt, du, missing, report)
+  subroutine predict(scene, equations, solution, dt, given, go_on, du, missing, report)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt
+    real(wp), intent(in), optional :: given(:)  !! motion of the unknowns of other solves (ndof)
+    logical, intent(in), optional :: go_on      !! start from `given` for the own unknowns too
     real(wp), intent(out) :: du(:), missing(:)
     type(report_t), intent(out) :: report
+    logical :: fixed(size(du))
     real(wp) :: motion(size(equations%dofs%prescribed))
     real(wp) :: ratio
     integer :: k
 
+    fixed = .not. equations%solves(equations%now)%is_own
+    if (present(go_on)) fixed = fixed .or. go_on
     ratio = 0
     if (solution%last_step > 0) ratio = dt/solution%last_step
-    call proportion(equations, solution, ratio, du)
-    call evaluate(scene, equations, solution, dt, du, .true., report)
+    call start_from(ratio)
     if (report%status == block_done .and. report%event >= 1 .and. report%jump > smooth_contact) then
-      call proportion(equations, solution, onset*ratio, du)
-      call evaluate(scene, equations, solution, dt, du, .true., report)
+      call start_from(onset*ratio)
     end if
     if (report%status /= block_done .and. ratio > 0) then
-      du = 0
-      call evaluate(scene, equations, solution, dt, du, .true., report)
+      call start_from(0.0_wp)
     end if
 
-    call prescribed_motion(scene, equations%dofs, solution%step == 0, solution%time, solution%time + dt, motion)
+    call prescribed_motion(scene, equations%dofs, solution%fields, solution%step == 0, solution%time, solution%time + dt, motion)
     missing = 0
     do k = 1, size(motion)
       associate (d => equations%dofs%prescribed(k)%dof)
+        if (.not. equations%solves(equations%now)%is_own(d)) cycle
         missing(d) = motion(k) - du(d)
         if (abs(missing(d)) > round_off*abs(motion(k))) cycle
         du(d) = motion(k)
         missing(d) = 0
       end associate
     end do
+
+  contains
+
+    !> Evaluate at the last motion times a share; what is given is taken as it is.
+    subroutine start_from(share)
+      real(wp), intent(in) :: share
+
+      call proportion(equations%dofs, solution%fields, share, du)
+      if (present(given)) du = merge(given, du, fixed)
+      call evaluate(scene, equations, solution, dt, du, .true., report)
+    end subroutine start_from
+
   end subroutine predict
 
   !> The last accepted motion of all unknowns times `ratio`.
-  pure subroutine proportion(equations, solution, ratio, du)
-    type(equations_t), intent(in) :: equations
-    type(solution_t), intent(in) :: solution
+  pure subroutine proportion(dofs, fields, ratio, du)
+    type(dofs_t), intent(in) :: dofs
+    type(field_t), intent(in) :: fields(:)
     real(wp), intent(in) :: ratio
     real(wp), intent(out) :: du(:)
-    integer :: k, c
+    integer :: f, k, c
 
-    do k = 1, size(equations%dofs%node, 2)
-      do c = 1, 2
-        if (equations%dofs%node(c, k) > 0) du(equations%dofs%node(c, k)) = ratio*solution%last_increment(c, k)
-      end do
-    end do
-    do c = 1, 3
-      if (equations%dofs%section(c) > 0) du(equations%dofs%section(c)) = ratio*solution%last_section_increment(c)
-    end do
-    do k = 1, size(equations%dofs%pilot, 2)
-      do c = 1, 3
-        if (equations%dofs%pilot(c, k) > 0) du(equations%dofs%pilot(c, k)) = ratio*solution%last_pilot_increment(c, k)
-      end do
+    do f = 1, size(fields)
+      associate (number => dofs%fields(f)%number)
+        do k = 1, size(number, 2)
+          do c = 1, size(number, 1)
+            if (number(c, k) > 0) du(number(c, k)) = ratio*fields(f)%last_increment(c, k)
+          end do
+        end do
+      end associate
     end do
   end subroutine proportion
 

@@ -7,12 +7,13 @@ module exchange_parts
   use dies, only: is_deformable
   use exchange_rules, only: require, require_range
   use exchange_schema, only: group_place, set_place
+  use fields, only: displacement_field
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use mesh, only: side_set_t
   use remesh, only: remesh_t
   use remesher_options, only: has_contours, has_zones
-  use scene, only: axisymmetric, group_t, is_solid, scene_t
+  use scene, only: axisymmetric, group_t, is_solid, role_body, role_second, role_volume_load, scene_t
   use shape_functions, only: quad8, quad8_side
   use quadrature, only: square_rule
   use solution, only: solution_t
@@ -71,7 +72,9 @@ contains
 
     call begin_sides(size(remesh%coordinates, 2), known)
     do g = 1, size(remesh%groups)
-      if (size(remesh%groups(g)%connectivity, 1) == 8) &
+      if (remesh%groups(g)%role /= role_body) cycle
+      call require(file, group_place(g)//'/connectivity', size(remesh%groups(g)%connectivity, 1) == 8, 'has no 8-node elements')
+      if (.not. file%failed()) &
         call enter_sides(file, group_place(g)//'/connectivity', remesh%groups(g)%connectivity, known)
     end do
     call check_sets(file, remesh%sides, known)
@@ -96,13 +99,14 @@ contains
       end do
       do e = 1, size(scene%groups(g)%connectivity, 2)
         associate (nodes => scene%groups(g)%connectivity(:, e))
-          x = scene%mesh%coordinates(:, nodes) + solution%displacement(:, nodes)
+          x = scene%mesh%coordinates(:, nodes) + solution%fields(displacement_field)%value(:, nodes)
         end associate
         do p = 1, size(weight)
           jacobian = matmul(dphi(:, :, p), transpose(x))
           if (jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1) > 0 .and. &
               (scene%plane_state /= axisymmetric .or. dot_product(x(1, :), phi(:, p)) > 0)) cycle
-          call require(file, 'nodes/displacement', .false., 'turns element '//to_text(e)//' of '//group_place(g)//' inside out')
+          call require(file, 'fields/displacement/value', .false., 'turns element '//to_text(e)//' of '//group_place(g) &
+                       //' inside out')
           return
         end do
       end do
@@ -203,6 +207,14 @@ contains
     call require(file, place//'/connectivity', any(size(group%connectivity, 1) == [0, 3, 8]), 'has '// &
                  to_text(size(group%connectivity, 1))//' nodes an element, where 0, 3 or 8 are wanted')
     if (size(group%connectivity, 1) == 3) call check_sides(file, place//'/connectivity', group%connectivity, known)
+    if (any(group%role == [role_second, role_volume_load])) then
+      call require_solid(file, place//'/host', scene, group%host)
+      if (file%failed()) return
+      call require(file, place//'/connectivity', same_elements(group%connectivity, scene%groups(group%host)%connectivity), &
+                   'holds other elements than those of its body')
+    else
+      call require(file, place//'/host', group%host == 0, 'holds '//to_text(group%host)//', where 0 is wanted')
+    end if
     if (group%die == 0 .or. group%material == 0) return
     call require(file, place//'/connectivity', size(group%connectivity, 1) == 3, 'is not one of sides')
     do k = 1, size(of_contact)
@@ -210,6 +222,14 @@ contains
                    'lacks '''//trim(of_contact(k))//'''')
     end do
   end subroutine check_group
+
+  pure function same_elements(a, b) result(same)
+    integer, intent(in) :: a(:, :), b(:, :)   !! (nnode, nelem)
+    logical :: same
+
+    same = all(shape(a) == shape(b))
+    if (same) same = all(a == b)
+  end function same_elements
 
   subroutine require_solid(file, place, scene, group)
     type(hdf5_file_t), intent(inout) :: file

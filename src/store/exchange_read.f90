@@ -3,6 +3,7 @@ module exchange_read
   use acceptance, only: probation_steps
   use contact_ends, only: contact_end_t
   use errors, only: error_t
+  use exchange_fields, only: read_field_values
   use exchange_parts, only: check_shapes
   use exchange_rules, only: read_count, read_flag, read_list, read_matrix, require, require_range
   use exchange_schema, only: group_place
@@ -45,14 +46,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     call read_progress(file, solution)
-    call read_matrix(file, 'nodes/displacement', solution%displacement)
-    call read_matrix(file, 'nodes/last_increment', solution%last_increment)
-    call read_matrix(file, 'nodes/applied', solution%applied)
+    call read_field_values(file, solution%fields)
     call read_spurious_mode(file, scene, solution)
-    call read_list(file, 'section/position', solution%section)
-    call read_list(file, 'section/last_increment', solution%last_section_increment)
-    call read_list(file, 'section/applied', solution%section_applied)
-    call read_dies(file, scene, solution)
     call read_states(file, scene, solution)
     call read_estimate(file, scene, solution%estimate)
     if (.not. file%failed()) call check_shapes(file, scene, solution)
@@ -88,8 +83,6 @@ contains
     solution%friction_apart = friction(2)
     call file%read('progress/initial_volume', solution%initial_volume)
     call require_range(file, 'progress/initial_volume', solution%initial_volume, 0.0_wp, huge(1.0_wp))
-    call file%read('progress/force_floor', solution%force_floor)
-    call require_range(file, 'progress/force_floor', solution%force_floor, 0.0_wp, huge(1.0_wp))
     call read_list(file, 'progress/worst', worst)
     solution%worst_linear_residual = worst(1)
     solution%worst_penetration = worst(2)
@@ -114,19 +107,6 @@ contains
     solution%spurious_group = nint(mode(2))
     solution%spurious_element = nint(mode(3))
   end subroutine read_spurious_mode
-
-  subroutine read_dies(file, scene, solution)
-    type(hdf5_file_t), intent(inout) :: file
-    type(scene_t), intent(in) :: scene
-    type(solution_t), intent(inout) :: solution
-    integer :: k
-
-    do k = 1, size(scene%dies)
-      call read_list(file, 'dies/'//scene%dies(k)%name//'/pilot', solution%pilots(:, k))
-      call read_list(file, 'dies/'//scene%dies(k)%name//'/last_increment', solution%last_pilot_increment(:, k))
-      call read_list(file, 'dies/'//scene%dies(k)%name//'/applied', solution%pilot_applied(:, k))
-    end do
-  end subroutine read_dies
 
   subroutine read_states(file, scene, solution)
     type(hdf5_file_t), intent(inout) :: file

@@ -2,6 +2,7 @@
 module exchange_scene
   use dies, only: die_t, finish_die, is_deformable
   use errors, only: error_t
+  use exchange_fields, only: read_declared_fields
   use exchange_parts, only: check_parts, check_remesh
   use exchange_remesher, only: read_remesher
   use exchange_rules, only: read_count, read_flag, read_list, require, require_range
@@ -10,7 +11,7 @@ module exchange_scene
   use kinds, only: wp
   use mesh, only: side_set_t
   use remesh, only: remesh_t
-  use scene, only: is_solid, plane_state_names, scene_t
+  use scene, only: is_solid, plane_state_names, role_body, role_spring, scene_t
   use state_variables, only: find_variable, is_transfer_kind, state_variable, state_variable_t, total_components
   use text, only: string_t, to_text
   implicit none
@@ -53,6 +54,8 @@ contains
       allocate (remesh%groups(n))
       do k = 1, n
         call file%read(group_place(k)//'/name', remesh%groups(k)%name)
+        call file%read(group_place(k)//'/role', remesh%groups(k)%role)
+        call require_range(file, group_place(k)//'/role', remesh%groups(k)%role, role_body, role_spring)
         call read_connectivity(file, k, size(remesh%coordinates, 2), remesh%groups(k)%connectivity)
       end do
       if (.not. file%failed()) call check_remesh(file, remesh)
@@ -88,6 +91,7 @@ contains
       call file%read(fixation_place(k)//'/component', scene%fixations(k)%component)
       call require_range(file, fixation_place(k)//'/component', scene%fixations(k)%component, 1, 2)
     end do
+    call read_declared_fields(file, scene%fields)
     call read_remesher(file, scene%remesher)
     call read_flag(file, 'estimate/wanted', scene%remesh%estimate)
     call file%read('dies_in_order', names)
@@ -172,10 +176,10 @@ contains
     place = 'dies/'//die%name
     call file%require_shape(place//'/pieces', [2, 3, -1])
     call file%read(place//'/pieces', die%pieces)
-    call require(file, place//'/pieces', size(die%pieces) > 0, 'is empty')
     call file%require_shape(place//'/nodes', [3, -1])
     call file%read(place//'/nodes', nodes)
-    if (size(nodes) > 0) then
+    ! a die made of sides has none before its deck has seen a mesh
+    if (size(nodes) > 0 .or. size(die%pieces) == 0) then
       call file%require_shape(place//'/nodes', [3, size(die%pieces, 3)])
       call require_range(file, place//'/nodes', nodes, 1, nnode)
       call move_alloc(nodes, die%nodes)
@@ -196,6 +200,9 @@ contains
       call file%read(place//'/elem', group%elem)
       call file%read(place//'/npoint', group%npoint)
       call require_range(file, place//'/npoint', group%npoint, -most_points, most_points)
+      call file%read(place//'/role', group%role)
+      call require_range(file, place//'/role', group%role, role_body, role_spring)
+      call read_count(file, place//'/host', group%host, size(scene%groups))
       call read_connectivity(file, k, size(scene%mesh%coordinates, 2), group%connectivity)
       call read_count(file, place//'/die_number', group%die, size(scene%dies))
       call read_count(file, place//'/material_number', group%material, size(scene%materials))
@@ -204,7 +211,8 @@ contains
       call file%require_shape(place//'/state', [total_components(group%variables), abs(group%npoint), &
                                                 size(group%connectivity, 2)])
       if (group%die == 0) return
-      if (is_deformable(scene%dies(group%die))) then
+      if (.not. is_deformable(scene%dies(group%die))) return
+      if (size(scene%dies(group%die)%nodes) > 0) then
         group%pairs = maxval([0, scene%groups(:k - 1)%pairs]) + 1
         call file%require_shape(place//'/pairs', [abs(group%npoint), size(group%connectivity, 2)])
       end if

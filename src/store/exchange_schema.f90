@@ -9,7 +9,7 @@ module exchange_schema
   public :: fixation_place, group_place, open_checkpoint, schema_name, schema_version, set_place
 
   !> Raised whenever a dataset changes its name, shape or meaning.
-  integer, parameter :: schema_version = 6
+  integer, parameter :: schema_version = 7
   character(len=*), parameter :: schema_name = 'lagamine checkpoint'
 
 contains

@@ -7,6 +7,7 @@ module exchange_write
   use contact_ends, only: contact_end_t
   use dies, only: is_deformable
   use errors, only: error_t
+  use exchange_fields, only: write_fields
   use exchange_remesher, only: write_remesher
   use exchange_schema, only: fixation_place, group_place, schema_name, schema_version, set_place
   use hash, only: sha256
@@ -40,7 +41,7 @@ contains
     call file%write('deck/text', deck_text)
     call file%write('deck/sha256', sha256(deck_text))
     call write_mesh(file, scene)
-    call write_dies(file, scene, solution)
+    call write_dies(file, scene)
     call write_progress(file, solution)
     call write_states(file, scene, solution)
     call file%write('estimate/wanted', merge(1, 0, scene%remesh%estimate))
@@ -76,10 +77,9 @@ contains
     call write_remesher(file, scene%remesher)
   end subroutine write_mesh
 
-  subroutine write_dies(file, scene, solution)
+  subroutine write_dies(file, scene)
     type(hdf5_file_t), intent(inout) :: file
     type(scene_t), intent(in) :: scene
-    type(solution_t), intent(in) :: solution
     type(string_t) :: names(size(scene%dies))
     integer :: k
     do k = 1, size(scene%dies)
@@ -95,9 +95,6 @@ contains
         call file%write('dies/'//scene%dies(k)%name//'/nodes', reshape([integer ::], [3, 0]))
       end if
       call file%write('dies/'//scene%dies(k)%name//'/start', scene%dies(k)%pilot)
-      call file%write('dies/'//scene%dies(k)%name//'/pilot', solution%pilots(:, k))
-      call file%write('dies/'//scene%dies(k)%name//'/last_increment', solution%last_pilot_increment(:, k))
-      call file%write('dies/'//scene%dies(k)%name//'/applied', solution%pilot_applied(:, k))
     end do
   end subroutine write_dies
 
@@ -118,19 +115,12 @@ contains
     call file%write('progress/external_work', solution%external_work)
     call file%write('progress/friction_work', [solution%friction_work, solution%friction_apart])
     call file%write('progress/initial_volume', solution%initial_volume)
-    call file%write('progress/force_floor', solution%force_floor)
     call file%write('progress/worst', [solution%worst_linear_residual, solution%worst_penetration, &
                                       solution%worst_penetration_ratio, solution%least_dissipation, &
                                       solution%worst_sample, solution%worst_sample_ratio])
     call file%write('progress/spurious_mode', [solution%worst_spurious, real(solution%spurious_group, wp), &
                                               real(solution%spurious_element, wp)])
-    call file%write('section/position', solution%section)
-    call file%write('section/last_increment', solution%last_section_increment)
-    call file%write('section/applied', solution%section_applied)
-    call file%write('nodes/displacement', solution%displacement)
-    call file%write_attribute('nodes/displacement', 'unit', 'length')
-    call file%write('nodes/last_increment', solution%last_increment)
-    call file%write('nodes/applied', solution%applied)
+    call write_fields(file, solution%fields)
   end subroutine write_progress
 
   subroutine write_states(file, scene, solution)
@@ -147,6 +137,8 @@ contains
         call file%write(place//'/name', group%name)
         call file%write(place//'/elem', group%elem)
         call file%write(place//'/npoint', group%npoint)
+        call file%write(place//'/role', group%role)
+        call file%write(place//'/host', group%host)
         call file%write(place//'/connectivity', group%connectivity)
         call file%write(place//'/die_number', group%die)
         call file%write(place//'/material_number', group%material)

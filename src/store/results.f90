@@ -6,12 +6,13 @@
 module results
   use dies, only: is_deformable
   use errors, only: error_t
+  use fields, only: field_t, on_nodes, pilot_field
   use hdf5_file, only: hdf5_file_t
   use instant_files, only: begin_file, forget_later_steps, instant_path, instants_folder, link_instant, mesh_path, put_in_place
   use kinds, only: wp
   use nodal_fields, only: list_nodal_fields, nodal_field
   use scene, only: is_solid, scene_t
-  use solution, only: solution_t
+  use solution, only: present_coordinates, solution_t
   use state_variables, only: component_names
   use system, only: base_name, file_exists, make_directory, remove_file, rename_file
   use text, only: string_t, to_text
@@ -164,11 +165,11 @@ contains
     path = instant_path(results%folder, number)
     call begin_file(file, path, error)
     if (allocated(error)) return
-    call file%write('coordinates', scene%mesh%coordinates + solution%displacement)
+    call file%write('coordinates', present_coordinates(scene, solution))
     call file%write_attribute('/', 'time', solution%time)
     call file%write_attribute('/', 'step', solution%step)
     rigid = pack([(g, g=1, size(scene%dies))],.not. is_deformable(scene%dies))
-    if (size(rigid) > 0) call file%write('pilots', solution%pilots(:, rigid))
+    if (size(rigid) > 0) call file%write('pilots', solution%fields(pilot_field)%value(:, rigid))
     grid%time = solution%time
     grid%file = base_name(results%folder)//'/'//base_name(path)
     grid%mesh_file = base_name(results%path)
@@ -179,8 +180,9 @@ contains
     do g = 1, size(scene%groups)
       if (is_solid(scene%groups(g))) grid%nelement = grid%nelement + size(scene%groups(g)%connectivity, 2)
     end do
-    call put_vector(file, 'displacement', solution%displacement, grid)
-    call put_vector(file, 'applied_force', solution%applied, grid)
+    do g = 1, size(solution%fields)
+      if (solution%fields(g)%declared .and. solution%fields(g)%place == on_nodes) call put_field(file, solution%fields(g), grid)
+    end do
     if (present(residual)) call put_vector(file, 'residual_force', residual, grid)
     call put_nodal_fields(file, scene, solution, grid)
     if (scene%remesh%estimate) then
@@ -207,6 +209,31 @@ contains
     call open_results(scene, solution, stem//'.failed', -1, .false., failed, error)
     if (.not. allocated(error)) call save_fields(scene, solution, failed, error, residual)
   end subroutine save_failure
+
+  !> A field on nodes, and what acts on it.
+  subroutine put_field(file, field, grid)
+    type(hdf5_file_t), intent(inout) :: file
+    type(field_t), intent(in) :: field
+    type(xdmf_grid_t), intent(inout) :: grid
+
+    if (field%ncomp == 2) then
+      call put_vector(file, field%name, field%value, grid)
+      call put_vector(file, field%dual, field%applied, grid)
+    else
+      call put_scalar(file, field%name, field%value(1, :), grid)
+      call put_scalar(file, field%dual, field%applied(1, :), grid)
+    end if
+  end subroutine put_field
+
+  subroutine put_scalar(file, name, values, grid)
+    type(hdf5_file_t), intent(inout) :: file
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: values(:)   !! (nnode)
+    type(xdmf_grid_t), intent(inout) :: grid
+
+    call file%write('node/'//name, values)
+    grid%fields = [grid%fields, xdmf_field_t(name, 'Node', 'Scalar', 'node/'//name)]
+  end subroutine put_scalar
 
   !> A vector at the nodes, with the third component ParaView asks for.
   subroutine put_vector(file, name, vector, grid)

@@ -19,7 +19,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.join(HERE, "..", "..")
 BIN = os.environ.get("LAGAMINE_BIN") or os.path.join(ROOT, "build", "bin")
 MARK = "! your cards here"
-ONCE = {"TITLE", "STATE", "KINEM", "STRAT", "NORMS", "STOP", "CKPT"}
+ONCE = {"TITLE", "STATE", "KINEM", "STRAT", "NORMS", "SOLVR", "STOP", "CKPT"}
 
 
 def read_examples(path):

@@ -64,9 +64,8 @@ def no_pressure(file):
 def die_off(way):
     """The die stands away from where the contour was fitted to it."""
     def fault(file):
-        pilot = file["dies/upper/pilot"][()]
-        pilot[1] += way
-        file["dies/upper/pilot"][...] = pilot
+        upper = list(file["dies_in_order"].asstr()).index("upper")
+        file["fields/pilot/value"][upper, 1] += way
     return fault
 
 

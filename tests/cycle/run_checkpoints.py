@@ -46,7 +46,7 @@ def other_schema(file):
 
 
 def not_a_number(file):
-    file["nodes/displacement"][0, 0] = float("nan")
+    file["fields/displacement/value"][0, 0] = float("nan")
 
 
 def other_number(file):
@@ -59,7 +59,7 @@ def sealed_not_a_number(checks, deck, out):
     shutil.copytree(out, folder)
     bad = os.path.join(folder, "case.ckp.h5")
     alter(bad, not_a_number)
-    phrase = "dataset 'nodes/displacement' holds a number that is not finite"
+    phrase = "dataset 'fields/displacement/value' holds a number that is not finite"
     for result in (call("remdata", bad, "--out", new), run([deck, "--out", checks.path("no"), "--resume", bad, "--threads", "1"])):
         checks.that(result.returncode == INPUT and bad in result.stderr and phrase in result.stderr, "sealed: refused by name",
                     said(result))

@@ -161,8 +161,8 @@ def ends_of_contact(checks, out, generation):
     that has sunk. Ends that are not kept are those of gaps narrower than 1 % of a side, which are contact too."""
     names = [glob.glob(os.path.join(out, f"*.g{g:02d}.{kind}.h5"))[0] for g, kind in ((generation - 1, "end"), (generation, "start"))]
     with h5py.File(names[0], "r") as old, h5py.File(names[1], "r") as new:
-        nodes = old["mesh/coordinates"][()] + old["nodes/displacement"][()]
-        contour = boundary(new["mesh/coordinates"][()] + new["nodes/displacement"][()], new["groups/1/connectivity"][()] - 1)
+        nodes = old["mesh/coordinates"][()] + old["fields/displacement/value"][()]
+        contour = boundary(new["mesh/coordinates"][()] + new["fields/displacement/value"][()], new["groups/1/connectivity"][()] - 1)
         contact = nodes[old["groups/2/connectivity"][()] - 1]
         sides, places = old["contact_ends/side"][()] - 1, old["contact_ends/place"][()]
         begins = old["contact_ends/begins"][()] != 0

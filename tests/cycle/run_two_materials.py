@@ -110,7 +110,7 @@ class Mesh:
                 array = file[name][()]
                 return array if array.shape[1] == width else array.T
 
-            self.x = rows("mesh/coordinates", 2) + rows("nodes/displacement", 2)
+            self.x = rows("mesh/coordinates", 2) + rows("fields/displacement/value", 2)
             groups = [rows(f"groups/{k}/connectivity", 8) - 1 for k in range(1, 1 + sum(len(m) for m in materials))]
             self.sets = {one["name"][()].decode(): one["nodes"][()].reshape(-1, 3) - 1
                          for one in (file[f"mesh/sides/{k}"] for k in range(1, 1 + int(file["mesh/nset"][()])))}

@@ -1,20 +1,22 @@
 !> Scenes of one element, built in code, for the tests of the ELEM family.
 module element_cases
   use dies, only: die_t, finish_die
-  use elem_api, only: elem_t, instant_t, report_t, section_motion, totals_t
+  use elem_api, only: elem_t, first_unknown, has_unknown, instant_t, layout_of, layout_t, report_t, section_motion, totals_t
   use elem_registry, only: list_elems
+  use fields, only: displacement_field, mechanical_fields
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use kinematics_registry, only: list_kinematics
   use law_api, only: law_of_material, law_t
-  use law_cases, only: elastic_material, law_row, plastic_material
+  use law_cases, only: elastic_material, law_row, material_of, plastic_material
   use materials, only: material_t
   use scene, only: axisymmetric, scene_t
   use state_variables, only: total_components
   implicit none
   private
-  public :: case_t, solid_case, material_case, contact_case, pressure_case, body_force_case, evaluate, accept
-  public :: difference_matrix, totals_of
+  public :: case_t, solid_case, material_case, contact_case, pressure_case, body_force_case, heat_case, evaluate, accept
+  public :: add_temperature
+  public :: difference_matrix, layout_of_case, totals_of
   public :: die_of, segment, shape_of_test, elem_row, kinematics_row
   public :: step_of_differences, tolerance_of_differences
 
@@ -26,6 +28,8 @@ module element_cases
     type(kinematics_t) :: kinematics
     type(instant_t) :: instant
     real(wp), allocatable :: x(:, :, :), committed(:, :, :)
+    !> Values of the unknowns at the start of the step; none in mechanics alone.
+    real(wp), allocatable :: start(:, :)
   end type case_t
 
   !> Differences of fourth order, steps h and 2h: truncation (h/l)**4, with l the length over which the
@@ -71,6 +75,7 @@ contains
     case%elem = elem_row(elem)
     case%kinematics = kinematics_row(kinematics)
     case%scene%plane_state = plane_state
+    case%scene%fields = mechanical_fields()
     case%scene%section = merge([0.0_wp, 1.0_wp, 0.0_wp], [1.0_wp, 0.0_wp, 0.0_wp], plane_state == axisymmetric)
     case%instant%section = case%scene%section
     case%scene%finite = case%kinematics%finite
@@ -78,8 +83,10 @@ contains
     allocate (case%x(2, size(x, 2), 1), case%scene%groups(1), case%scene%dies(0), case%instant%pilots(3, 0))
     case%x(:, :, 1) = x
     case%instant%dt = 1
+    allocate (case%start(0, 1))
     allocate (case%instant%multipliers(1), source=1.0_wp)
     case%scene%groups(1)%npoint = npoint
+    case%scene%groups(1)%role = case%elem%role
     case%scene%groups(1)%elem = elem
     case%scene%groups(1)%connectivity = reshape([(i, i=1, size(x, 2))], [size(x, 2), 1])
   end subroutine begin_case
@@ -171,6 +178,47 @@ contains
     allocate (case%scene%materials(0), case%committed(0, 9, 1))
   end function body_force_case
 
+  !> PL8TM with the numbers of HEAT, `moves` with displacements among its unknowns; all at the temperature 0.
+  function heat_case(plane_state, kinematics, numbers, bilinear, moves, npoint, x) result(case)
+    integer, intent(in) :: plane_state, npoint
+    character(len=*), intent(in) :: kinematics
+    real(wp), intent(in) :: numbers(3), x(2, 8)
+    logical, intent(in) :: bilinear, moves
+    type(case_t) :: case
+    integer :: i
+
+    call begin_case('PL8TM', kinematics, plane_state, npoint, x, case)
+    call add_law(case, material_of('HEAT', numbers))
+    case%scene%groups(1)%option = merge(1, 0, bilinear)
+    call add_temperature(case, bilinear)
+    case%scene%fields(displacement_field)%declared = moves
+    case%start = spread([(0.0_wp, i=1, ndof_of(case))], 2, 1)
+  end function heat_case
+
+  !> The scene has temperatures among its fields, at corners only or at all nodes; all 0.
+  subroutine add_temperature(case, at_corners)
+    type(case_t), intent(inout) :: case
+    logical, intent(in) :: at_corners
+    type(elem_t) :: heat
+    integer :: i
+
+    heat = elem_row('PL8TM')
+    case%scene%fields = [case%scene%fields, heat%unknowns(merge(2, 1, at_corners))%field]
+    case%scene%fields(size(case%scene%fields))%declared = .true.
+    allocate (case%instant%solved(size(case%scene%fields)), source=.true.)
+    case%start = spread([(0.0_wp, i=1, ndof_of(case))], 2, 1)
+  end subroutine add_temperature
+
+  !> Number of local unknowns.
+  pure function ndof_of(case) result(n)
+    type(case_t), intent(in) :: case
+    integer :: n
+    type(layout_t) :: layout
+
+    layout = layout_of_case(case)
+    n = layout%ndof
+  end function ndof_of
+
   !> Force, matrix and trial state at the motion du of the step.
   subroutine evaluate(case, du, force, stiffness, trial, report)
     type(case_t), intent(in) :: case
@@ -183,11 +231,19 @@ contains
     motion(:, 1) = du
     k = 0
     allocate (trial(size(case%committed, 1), size(case%committed, 2), 1))
-    call case%elem%compute(case%scene, case%scene%groups(1), case%kinematics, case%law, case%instant, 1, case%x, motion, &
-                           case%committed, trial, f, k, report)
+    call case%elem%compute(case%scene, case%scene%groups(1), case%kinematics, case%law, case%instant, layout_of_case(case), 1, &
+                           case%x, motion, case%start, case%committed, trial, f, k, report)
     force = f(:, 1)
     stiffness = k(:, :, 1)
   end subroutine evaluate
+
+  !> Where its local unknowns stand.
+  pure function layout_of_case(case) result(layout)
+    type(case_t), intent(in) :: case
+    type(layout_t) :: layout
+
+    layout = layout_of(case%elem, case%elem%nnode, case%scene%groups(1)%option, case%scene%plane_state, case%scene%fields)
+  end function layout_of_case
 
   !> Take the motion du: the case stands at the end of the step.
   subroutine accept(case, du)
@@ -196,17 +252,19 @@ contains
     real(wp), allocatable :: trial(:, :, :)
     real(wp) :: force(size(du)), stiffness(size(du), size(du))
     type(report_t) :: report
-    integer :: n
+    integer :: n, u
 
     call evaluate(case, du, force, stiffness, trial, report)
     case%committed = trial
     n = case%elem%nnode
-    if (case%kinematics%finite .or. case%elem%follows) then
-      case%x(1, :, 1) = case%x(1, :, 1) + du(:n)
-      case%x(2, :, 1) = case%x(2, :, 1) + du(n + 1:2*n)
+    u = first_unknown(layout_of_case(case), displacement_field)
+    if ((case%kinematics%finite .or. case%elem%follows) .and. u > 0) then
+      case%x(1, :, 1) = case%x(1, :, 1) + du(u:u + n - 1)
+      case%x(2, :, 1) = case%x(2, :, 1) + du(u + n:u + 2*n - 1)
     end if
-    if (case%elem%pilot) case%instant%pilots(:, 1) = case%instant%pilots(:, 1) + du(2*n + 1:2*n + 3)
-    case%instant%section = case%instant%section + section_motion(case%scene, du)
+    if (size(case%start) > 0) case%start(:, 1) = case%start(:, 1) + du
+    if (has_unknown(case%elem, 'pilot')) case%instant%pilots(:, 1) = case%instant%pilots(:, 1) + du(2*n + 1:2*n + 3)
+    case%instant%section = case%instant%section + section_motion(layout_of_case(case), du)
   end subroutine accept
 
   !> d force / d du by differences of fourth order.

@@ -4,15 +4,16 @@
 module pair_cases
   use contact_point, only: at_piece
   use dies, only: place_on_nodes
-  use elem_api, only: elem_t, instant_t, report_t
+  use elem_api, only: elem_t, instant_t, layout_of, report_t
   use element_cases, only: elem_row, kinematics_row, step_of_differences
+  use fields, only: mechanical_fields
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
   use law_cases, only: law_row
   use materials, only: material_t
   use pairs, only: paired_nodes, start_pairs
-  use scene, only: axisymmetric, generalised_plane_strain, scene_t
+  use scene, only: axisymmetric, generalised_plane_strain, role_contact, scene_t
   use state_variables, only: total_components
   implicit none
   private
@@ -48,6 +49,7 @@ contains
     case%instant%dt = 1
     associate (scene => case%scene)
       scene%plane_state = plane_state
+      scene%fields = mechanical_fields()
       scene%section = merge([0.0_wp, 1.0_wp, 0.0_wp], [1.0_wp, 0.0_wp, 0.0_wp], plane_state == axisymmetric)
       if (plane_state == generalised_plane_strain) then
         case%nsection = 3
@@ -61,6 +63,7 @@ contains
       scene%dies(1)%nodes = reshape([([k, k + 1, k + 2], k=4, size(x, 2) - 2, 2)], [3, (size(x, 2) - 4)/2])
       allocate (scene%dies(1)%pieces(2, 3, size(scene%dies(1)%nodes, 2)))
       scene%groups(1)%npoint = npoint
+      scene%groups(1)%role = role_contact
       scene%groups(1)%connectivity = reshape([1, 2, 3], [3, 1])
       scene%groups(1)%die = 1
       scene%groups(1)%pairs = 1
@@ -80,6 +83,7 @@ contains
     type(report_t), intent(out) :: report
     real(wp), allocatable :: x(:, :, :), motion(:, :), f(:, :), k(:, :, :)
     integer, allocatable :: nodes(:), dof(:)
+    real(wp) :: none(0, 1)
     integer :: i, j
 
     case%instant%dies = case%scene%dies
@@ -93,8 +97,9 @@ contains
       motion = reshape([du(1, nodes), du(2, nodes), case%thickening(:case%nsection)], [size(dof), 1])
       if (allocated(f)) deallocate (f, k)
       allocate (f(size(dof), 1), k(size(dof), size(dof), 1), source=0.0_wp)
-      call case%elem%compute(case%scene, case%scene%groups(1), case%kinematics, case%law, case%instant, 1, x, motion, &
-                             case%committed, trial, f, k, report)
+      call case%elem%compute(case%scene, case%scene%groups(1), case%kinematics, case%law, case%instant, &
+                             layout_of(case%elem, size(nodes), 0, case%scene%plane_state, case%scene%fields), 1, x, motion, &
+                             none, case%committed, trial, f, k, report)
       if (.not. report%unpaired) exit
       case%instant%pairs(1)%piece = nint(trial(at_piece, :, :))
     end do

@@ -14,7 +14,7 @@ import tempfile
 
 # Floors from top to bottom. Names are folders of src/; `main` is src/main.f90. A folder may use itself and what is below.
 FLOORS = ["main", "analysis", "report", "solve", "estimate", "cards", "elem", "kinematics", "law", "store", "model", "deck",
-          "base"]
+          "linear", "base"]
 
 # Arrows that point downward and are forbidden all the same, with the reason that is printed.
 FORBIDDEN = {
@@ -30,6 +30,8 @@ FORBIDDEN = {
 ONLY_THROUGH = {
     ("elem", "law"): {"law_api"},
     ("kinematics", "law"): {"law_api"},
+    ("cards", "linear"): {"linear_api", "linear_registry"},
+    ("solve", "linear"): {"linear_solver", "matrix_pattern"},
 }
 
 # remdata/ stands on src/ but not on these; nothing in src/ stands on remdata/.
@@ -40,6 +42,7 @@ NOT_FOR_REMDATA = {
     "elem": "REMDATA knows no element",
     "kinematics": "REMDATA knows no law",
     "law": "REMDATA knows no law",
+    "linear": "REMDATA solves nothing",
 }
 
 # Rooms of remdata from top to bottom: a room may use itself and what is below. The driver stands in remdata/ itself.
@@ -271,6 +274,7 @@ GOOD = {"src/main.f90": "program lagamine\n  use run\n  implicit none\nend progr
         "src/store/files.f90": module("files", "hdf5", "kinds"),
         "src/deck/cards_read.f90": module("cards_read", "kinds"),
         "src/model/mesh.f90": module("mesh", "kinds", more=KNOWN),
+        "src/linear/linear_mumps.f90": module("linear_mumps", "kinds"),
         "src/base/kinds.f90": module("kinds", more=KNOWN),
         "remdata/main.f90": "program remdata\n  use zones\n  implicit none\nend program remdata\n",
         "remdata/remesh_scene.f90": module("remesh_scene", "zones"),
@@ -287,6 +291,10 @@ CASES = [
     ("element on a law", {"src/elem/bad.f90": module("bad", "law_epla")},
      "elem may not use law_epla of law: only through law_api"),
     ("kinematics on a law", {"src/kinematics/bad.f90": module("bad", "law_epla")}, "only through law_api"),
+    ("solve on a linear solver", {"src/solve/bad.f90": module("bad", "linear_mumps")},
+     "solve may not use linear_mumps of linear: only through linear_solver, matrix_pattern"),
+    ("linear solver on the model", {"src/linear/bad.f90": module("bad", "mesh")}, "model is above linear"),
+    ("remdata on a linear solver", {"remdata/mesh/bad.f90": module("bad", "linear_mumps")}, "REMDATA solves nothing"),
     ("kinematics on files", {"src/kinematics/bad.f90": module("bad", "files")}, "kinematics knows no file"),
     ("model on a deck", {"src/model/bad.f90": module("bad", "cards_read")}, "the model knows no deck"),
     ("model on files", {"src/model/bad.f90": module("bad", "files")}, "store is above model"),

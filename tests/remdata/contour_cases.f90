@@ -5,11 +5,12 @@ module contour_cases
   use contact_contour, only: find_contact_ends
   use contact_ends, only: contact_end_t
   use dies, only: die_t, finish_die, present_die
+  use fields, only: displacement_field, mechanical_fields, pilot_field
   use kinds, only: wp
   use quadrature, only: line_rule
-  use scene, only: axisymmetric, group_t, plane_strain, scene_t
+  use scene, only: axisymmetric, group_t, plane_strain, role_body, role_contact, scene_t
   use shape_functions, only: line3
-  use solution, only: solution_t, start_solution
+  use solution, only: present_coordinates, solution_t, start_solution
   use state_variables, only: state_variable, transfer_recompute
   use vectors, only: length_of
   implicit none
@@ -24,6 +25,7 @@ contains
     logical, intent(in) :: round   !! about an axis
 
     scene%plane_state = merge(axisymmetric, plane_strain, round)
+    scene%fields = mechanical_fields()
     allocate (scene%groups(0), scene%dies(0), scene%fixations(0), scene%mesh%coordinates(2, 0), scene%mesh%sides(0), &
               scene%mesh%labels(0))
   end subroutine begin_scene
@@ -57,6 +59,7 @@ contains
     scene%mesh%labels = [(k, k=1, size(scene%mesh%coordinates, 2))]
     group%name = name
     group%elem = 'PL8LS'
+    group%role = role_body
     group%material = 1
     group%npoint = 4
     group%connectivity = n + connectivity
@@ -166,6 +169,7 @@ contains
 
     group%name = scene%mesh%sides(set)%name
     group%elem = 'CNT2D'
+    group%role = role_contact
     group%material = 1
     group%die = die
     group%npoint = npoint
@@ -201,7 +205,8 @@ contains
       do e = 1, size(nodes, 2)
         do p = 1, size(xi)
           call line3(xi(p), phi, dphi)
-          depth = dot_product(phi, scene%mesh%coordinates(2, nodes(:, e)) + solution%displacement(2, nodes(:, e))) - height
+          depth = dot_product(phi, scene%mesh%coordinates(2, nodes(:, e)) &
+                              + solution%fields(displacement_field)%value(2, nodes(:, e))) - height
           if (.not. above) depth = -depth
           state(1, p, e) = depth
           state(2, p, e) = merge(1, 0, depth > 0)
@@ -219,11 +224,11 @@ contains
     integer :: g
 
     allocate (ends(0))
-    x = scene%mesh%coordinates + solution%displacement
+    x = present_coordinates(scene, solution)
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g), state => solution%groups(g)%committed)
         if (group%die == 0) cycle
-        call find_contact_ends(group, g, present_die(scene%dies(group%die), x), solution%pilots(:, group%die), &
+        call find_contact_ends(group, g, present_die(scene%dies(group%die), x), solution%fields(pilot_field)%value(:, group%die), &
                                scene%mesh%coordinates, x, nint(state(2, :, :)), state(1, :, :), ends)
       end associate
     end do

@@ -98,7 +98,7 @@ class Mesh:
 
     def __init__(self, path):
         with h5py.File(path, "r") as file:
-            self.x = self.rows(file["mesh/coordinates"][()], 2) + self.rows(file["nodes/displacement"][()], 2)
+            self.x = self.rows(file["mesh/coordinates"][()], 2) + self.rows(file["fields/displacement/value"][()], 2)
             self.elements = self.rows(file["groups/1/connectivity"][()], 8) - 1
 
     @staticmethod

@@ -6,16 +6,27 @@ module solve_cases
   use elem_api, only: elem_t
   use elem_registry, only: list_elems
   use element_loop, only: element_buffers_t
+  use fields, only: mechanical_fields
   use kinds, only: wp
   use law_cases, only: contact_material, elastic_material
   use sample_numbers, only: sample_t
-  use scene, only: plane_strain, scene_t
+  use scene, only: plane_strain, role_body, role_contact, scene_t
+  use solves, only: number_equations, solve_t
   use sparsity, only: pattern_t
   implicit none
   private
-  public :: two_elements, elements_of, random_buffers, dense_matrix, matrix_of_pattern
+  public :: whole_solve, two_elements, elements_of, random_buffers, dense_matrix, matrix_of_pattern
 
 contains
+
+  !> All fields in one solve, its equations numbered.
+  subroutine whole_solve(dofs, solve)
+    type(dofs_t), intent(in) :: dofs
+    type(solve_t), intent(out) :: solve
+
+    allocate (solve%own(size(dofs%fields)), source=.true.)
+    call number_equations(dofs, solve)
+  end subroutine whole_solve
 
   !> Two elements side by side (nodes 1-13), a node of no element (14), a die under both, which has its
   !> pilot at (1, -1). Held: x of the left side; driven: y of the top by multiplier 1 (0 to -0.3 in time 0
@@ -35,6 +46,7 @@ contains
     block%divisions = [2, 1]
     call mesh_block(block, coordinates, connectivity, side_first, side_nodes)
     scene%plane_state = plane_strain
+    scene%fields = mechanical_fields()
     scene%section = [1.0_wp, 0.0_wp, 0.0_wp]
     scene%kinematics_id = 1
     scene%mesh%coordinates = reshape([coordinates, 9.0_wp, 9.0_wp], [2, 14])
@@ -47,11 +59,13 @@ contains
     allocate (scene%groups(2))
     scene%groups(1)%elem = 'PL8LS'
     scene%groups(1)%elem_id = 1
+    scene%groups(1)%role = role_body
     scene%groups(1)%material = 1
     scene%groups(1)%npoint = 4
     scene%groups(1)%connectivity = connectivity
     scene%groups(2)%elem = 'CNT2D'
     scene%groups(2)%elem_id = 2
+    scene%groups(2)%role = role_contact
     scene%groups(2)%material = 2
     scene%groups(2)%npoint = 2
     scene%groups(2)%die = 2

@@ -1,17 +1,17 @@
-!> Direct solution of the linear system: analysis once per mesh, factorisation per matrix, residual of every solve checked
-!> and refined. Factors are made without pivoting, by all threads; a matrix for which these prove too poor, and those
-!> after it in the step, get MUMPS with pivoting.
+!> Direct solution of the linear system by the solver chosen: analysis once per mesh, factorisation per matrix, residual of every
+!> solve checked and refined. A matrix for which the factors prove too poor, and those after it in the step, get the fallback of the
+!> solver, where it has one.
 module linear_solver
   use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
-  use multifrontal, only: decompose, multifrontal_t, plan, substitute
-  use mumps_solver, only: mumps_analyse, mumps_factorise, mumps_release, mumps_solve, mumps_t
-  use sparsity, only: pattern_t
+  use linear_api, only: factors_t, solver_row_t
+  use linear_registry, only: list_solvers
+  use matrix_pattern, only: matrix_pattern_t
   use text, only: to_text
   use vectors, only: length_of
   implicit none
   private
-  public :: linear_solver_t, analyse, factorise, solve_linear, release, try_without_pivoting
+  public :: linear_solver_t, choose_solver, analyse, factorise, solve_linear, release, return_to_chosen
 
   !> Backward error of a solve that is refined; and what is accepted at last.
   real(wp), parameter, public :: refine_above = 1.0e-14_wp
@@ -24,13 +24,15 @@ module linear_solver
 
   type :: linear_solver_t
     private
-    type(multifrontal_t) :: fronts
-    type(mumps_t) :: mumps
+    !> The solver chosen.
+    type(solver_row_t), public :: row
+    !> Its factors, and those of its fallback once that was needed.
+    class(factors_t), allocatable :: own, fallback
     !> Order of elimination asked for; where every row of the matrix begins; its nonzeros.
     integer, allocatable :: position(:), row_start(:)
     real(wp), allocatable :: values(:)
-    !> The factors at hand are sound; the solver has turned to pivoting.
-    logical :: regular = .false., pivoting = .false.
+    !> The factors at hand are sound; they are made by the fallback.
+    logical :: sound = .false., fallen_back = .false.
     !> Entries of the factors and operations of a factorisation.
     real(wp), public :: estimated_entries = 0.0_wp, estimated_flops = 0.0_wp
     !> Backward error of the last solve.
@@ -39,25 +41,37 @@ module linear_solver
 
 contains
 
+  !> Take the solver at this place of the list.
+  subroutine choose_solver(solver, place)
+    type(linear_solver_t), intent(inout) :: solver
+    integer, intent(in) :: place
+    type(solver_row_t), allocatable :: rows(:)
+
+    call release(solver)
+    call list_solvers(rows)
+    solver%row = rows(place)
+  end subroutine choose_solver
+
   !> Plan the factorisation for a pattern and an order of elimination.
   subroutine analyse(solver, pattern, position, error)
     type(linear_solver_t), intent(inout) :: solver
-    type(pattern_t), intent(in) :: pattern
-    integer, intent(in) :: position(:)
+    class(matrix_pattern_t), intent(in) :: pattern
+    integer, intent(in) :: position(:)   !! (neq)
     type(error_t), allocatable, intent(out) :: error
 
     call release(solver)
     solver%position = position
     allocate (solver%values(pattern%nnz))
     call start_rows(pattern, solver%row_start)
-    call plan(solver%fronts, pattern, position, error)
-    solver%estimated_entries = real(solver%fronts%layout%factor_length, wp)
-    solver%estimated_flops = solver%fronts%layout%flops
+    call solver%row%create(solver%own)
+    call solver%own%plan(pattern, position, error)
+    solver%estimated_entries = solver%own%entries
+    solver%estimated_flops = solver%own%operations
   end subroutine analyse
 
   !> Nonzeros are sorted by row: where every row begins (neq + 1).
   pure subroutine start_rows(pattern, row_start)
-    type(pattern_t), intent(in) :: pattern
+    class(matrix_pattern_t), intent(in) :: pattern
     integer, allocatable, intent(out) :: row_start(:)
     integer :: k
 
@@ -72,42 +86,40 @@ contains
   end subroutine start_rows
 
   !> At the start of a step: what earlier steps needed does not count, or a run taken up again would go another way.
-  pure subroutine try_without_pivoting(solver)
+  pure subroutine return_to_chosen(solver)
     type(linear_solver_t), intent(inout) :: solver
 
-    solver%pivoting = .false.
-  end subroutine try_without_pivoting
+    solver%fallen_back = .false.
+  end subroutine return_to_chosen
 
   !> Factorise the matrix with these nonzeros. A singular matrix answers exit_no_convergence: the step is cut.
   subroutine factorise(solver, values, error)
     type(linear_solver_t), intent(inout) :: solver
-    real(wp), intent(in) :: values(:)
+    real(wp), intent(in) :: values(:)    !! (nnz) [residual/unknown]
     type(error_t), allocatable, intent(out) :: error
 
     solver%values = values
-    if (solver%pivoting) then
-      call mumps_factorise(solver%mumps, solver%values, error)
+    if (solver%fallen_back) then
+      call solver%fallback%factorise(solver%values, solver%sound, error)
     else
-      call decompose(solver%fronts, solver%values, solver%regular)
+      call solver%own%factorise(solver%values, solver%sound, error)
     end if
   end subroutine factorise
 
   !> Solve for one right-hand side with the present factors, refining while the residual asks for it.
-  !> Factors made without pivoting that prove too poor are made again with it, for the rest of the step.
+  !> Factors that prove too poor are made again by the fallback, for the rest of the step.
   subroutine solve_linear(solver, pattern, rhs, x, error)
     type(linear_solver_t), intent(inout) :: solver
-    type(pattern_t), intent(in) :: pattern
-    real(wp), intent(in) :: rhs(:)
-    real(wp), intent(out) :: x(:)
+    class(matrix_pattern_t), intent(in) :: pattern
+    real(wp), intent(in) :: rhs(:)       !! (neq) [residual]
+    real(wp), intent(out) :: x(:)        !! (neq) [unknown]
     type(error_t), allocatable, intent(out) :: error
 
     x = 0
-    if (solver%regular .or. solver%pivoting) call refine(solver, pattern, rhs, x, error)
+    if (solver%sound) call refine(solver, pattern, rhs, x, error)
     if (allocated(error)) return
-    if (.not. solver%pivoting .and. .not. (solver%regular .and. solver%residual <= linear_tolerance)) then
-      solver%pivoting = .true.
-      if (.not. solver%mumps%started) call mumps_analyse(solver%mumps, pattern, solver%position, error)
-      if (.not. allocated(error)) call mumps_factorise(solver%mumps, solver%values, error)
+    if (can_fall_back(solver) .and. .not. (solver%sound .and. solver%residual <= linear_tolerance)) then
+      call fall_back(solver, pattern, error)
       if (.not. allocated(error)) call refine(solver, pattern, rhs, x, error)
     end if
     if (allocated(error)) return
@@ -117,12 +129,39 @@ contains
     end if
   end subroutine solve_linear
 
+  pure function can_fall_back(solver) result(yes)
+    type(linear_solver_t), intent(in) :: solver
+    logical :: yes
+
+    yes = solver%row%fallback /= '' .and. .not. solver%fallen_back
+  end function can_fall_back
+
+  !> Factorise the present matrix by the fallback, which is planned when it is needed first.
+  subroutine fall_back(solver, pattern, error)
+    type(linear_solver_t), intent(inout) :: solver
+    class(matrix_pattern_t), intent(in) :: pattern
+    type(error_t), allocatable, intent(out) :: error
+    type(solver_row_t), allocatable :: rows(:)
+    integer :: k
+
+    solver%fallen_back = .true.
+    if (.not. allocated(solver%fallback)) then
+      call list_solvers(rows)
+      do k = 1, size(rows)
+        if (rows(k)%name == solver%row%fallback) call rows(k)%create(solver%fallback)
+      end do
+      call solver%fallback%plan(pattern, solver%position, error)
+      if (allocated(error)) return
+    end if
+    call solver%fallback%factorise(solver%values, solver%sound, error)
+  end subroutine fall_back
+
   !> Solve, then correct by the residual while that is worth it.
   subroutine refine(solver, pattern, rhs, x, error)
     type(linear_solver_t), intent(inout) :: solver
-    type(pattern_t), intent(in) :: pattern
-    real(wp), intent(in) :: rhs(:)
-    real(wp), intent(out) :: x(:)
+    class(matrix_pattern_t), intent(in) :: pattern
+    real(wp), intent(in) :: rhs(:)       !! (neq) [residual]
+    real(wp), intent(out) :: x(:)        !! (neq) [unknown]
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: residual(size(rhs)), correction(size(rhs)), scale
     integer :: k
@@ -132,12 +171,12 @@ contains
     residual = rhs
     do k = 0, max_refinements
       correction = residual
-      if (solver%pivoting) then
-        call mumps_solve(solver%mumps, correction, error)
-        if (allocated(error)) return
+      if (solver%fallen_back) then
+        call solver%fallback%substitute(correction, error)
       else
-        call substitute(solver%fronts, correction)
+        call solver%own%substitute(correction, error)
       end if
+      if (allocated(error)) return
       x = x + correction
       call linear_residual(pattern, solver%row_start, solver%values, rhs, x, residual, scale)
       solver%residual = 0
@@ -152,7 +191,7 @@ contains
   !> residual = rhs - A x, and the size of what was summed, |rhs| + |A| |x|: their ratio is the backward error
   !> (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405-409), which a stiff constraint does not spoil.
   subroutine linear_residual(pattern, row_start, a, rhs, x, residual, scale)
-    type(pattern_t), intent(in) :: pattern
+    class(matrix_pattern_t), intent(in) :: pattern
     integer, intent(in) :: row_start(:)   !! nonzeros of row i: row_start(i) ... row_start(i+1)-1
     real(wp), intent(in) :: a(:), rhs(:), x(:)
     real(wp), intent(out) :: residual(:), scale
@@ -182,15 +221,23 @@ contains
     scale = length_of(magnitude)
   end subroutine linear_residual
 
-  !> Give back what is held.
+  !> Give back what is held; the choice of the solver stays.
   subroutine release(solver)
     type(linear_solver_t), intent(inout) :: solver
 
-    call mumps_release(solver%mumps)
+    call drop(solver%own)
+    call drop(solver%fallback)
     if (allocated(solver%position)) deallocate (solver%position, solver%row_start, solver%values)
-    solver%fronts = multifrontal_t()
-    solver%regular = .false.
-    solver%pivoting = .false.
+    solver%sound = .false.
+    solver%fallen_back = .false.
   end subroutine release
+
+  subroutine drop(factors)
+    class(factors_t), allocatable, intent(inout) :: factors
+
+    if (.not. allocated(factors)) return
+    call factors%release()
+    deallocate (factors)
+  end subroutine drop
 
 end module linear_solver

@@ -8,16 +8,16 @@ module multifrontal
   use blas, only: dgemv, dtrsv, keep_blas_to_one_thread
   use dense_lu, only: eliminate, eliminate_shared
   use errors, only: error_t, exit_machine, fail
-  use front_layout, only: layout_t, lay_out_fronts
+  use front_layout, only: front_layout_t, lay_out_fronts
   use kinds, only: wp
-  use sparsity, only: pattern_t
+  use matrix_pattern, only: matrix_pattern_t
   use text, only: to_text
   implicit none
   private
   public :: multifrontal_t, plan, decompose, substitute
 
   type :: multifrontal_t
-    type(layout_t) :: layout
+    type(front_layout_t) :: layout
     !> Factors of all fronts; matrices of their borders; what borders send on in a solve.
     real(wp), allocatable :: factors(:), borders(:), sent(:)
   end type multifrontal_t
@@ -27,7 +27,7 @@ contains
   !> Find fronts and their places.
   subroutine plan(solver, pattern, position, error)
     type(multifrontal_t), intent(inout) :: solver
-    type(pattern_t), intent(in) :: pattern
+    class(matrix_pattern_t), intent(in) :: pattern
     integer, intent(in) :: position(:)   !! order of elimination (neq)
     type(error_t), allocatable, intent(out) :: error
     integer :: status
@@ -65,7 +65,7 @@ contains
 
   !> Children of front f, then the front itself.
   recursive subroutine decompose_below(layout, values, f, factors, borders, sound)
-    type(layout_t), intent(in) :: layout
+    type(front_layout_t), intent(in) :: layout
     real(wp), intent(in) :: values(:)
     integer, intent(in) :: f
     real(wp), intent(inout) :: factors(layout%factor_length + 1), borders(layout%border_length + 1)
@@ -90,7 +90,7 @@ contains
 
   !> Assemble a front and eliminate its pivots.
   subroutine decompose_front(layout, values, f, factors, borders, sound)
-    type(layout_t), intent(in) :: layout
+    type(front_layout_t), intent(in) :: layout
     real(wp), intent(in) :: values(:)
     integer, intent(in) :: f
     real(wp), intent(inout) :: factors(layout%factor_length + 1), borders(layout%border_length + 1)
@@ -167,7 +167,7 @@ contains
 
   !> Forward substitution: children of front f, then the front itself.
   recursive subroutine forward_below(layout, f, factors, y, sent)
-    type(layout_t), intent(in) :: layout
+    type(front_layout_t), intent(in) :: layout
     integer, intent(in) :: f
     real(wp), intent(in) :: factors(layout%factor_length + 1)
     real(wp), intent(inout) :: y(:), sent(:)
@@ -190,7 +190,7 @@ contains
   end subroutine forward_below
 
   subroutine forward(layout, f, factors, y, sent)
-    type(layout_t), intent(in) :: layout
+    type(front_layout_t), intent(in) :: layout
     integer, intent(in) :: f
     real(wp), intent(in) :: factors(layout%factor_length + 1)
     real(wp), intent(inout) :: y(:), sent(:)
@@ -217,7 +217,7 @@ contains
 
   !> Backward substitution: front f, then its children.
   recursive subroutine backward_below(layout, f, factors, y)
-    type(layout_t), intent(in) :: layout
+    type(front_layout_t), intent(in) :: layout
     integer, intent(in) :: f
     real(wp), intent(in) :: factors(layout%factor_length + 1)
     real(wp), intent(inout) :: y(:)
@@ -240,7 +240,7 @@ contains
   end subroutine backward_below
 
   subroutine backward(layout, f, factors, y)
-    type(layout_t), intent(in) :: layout
+    type(front_layout_t), intent(in) :: layout
     integer, intent(in) :: f
     real(wp), intent(in) :: factors(layout%factor_length + 1)
     real(wp), intent(inout) :: y(:)

@@ -6,12 +6,12 @@
 module front_layout
   use elimination_tree, only: find_fronts, list_neighbours
   use kinds, only: i8, wp
-  use sparsity, only: pattern_t
+  use matrix_pattern, only: matrix_pattern_t
   implicit none
   private
-  public :: layout_t, lay_out_fronts
+  public :: front_layout_t, lay_out_fronts
 
-  type :: layout_t
+  type :: front_layout_t
     integer :: neq = 0, nfront = 0
     !> Place of every equation in the order of elimination (neq).
     integer, allocatable :: place(:)
@@ -32,7 +32,7 @@ module front_layout
     integer, allocatable :: subtree(:)
     !> Operations of a factorisation.
     real(wp) :: flops = 0.0_wp
-  end type layout_t
+  end type front_layout_t
 
   !> Subtrees with less than this share of all operations are done by one thread.
   real(wp), parameter :: subtree_share = 1.0_wp/32
@@ -42,9 +42,9 @@ module front_layout
 contains
 
   subroutine lay_out_fronts(pattern, position, layout)
-    type(pattern_t), intent(in) :: pattern
+    class(matrix_pattern_t), intent(in) :: pattern
     integer, intent(in) :: position(:)   !! order of elimination asked for (neq)
-    type(layout_t), intent(out) :: layout
+    type(front_layout_t), intent(out) :: layout
     integer, allocatable :: parent(:)
 
     call find_fronts(pattern, position, layout%place, layout%first, layout%order, parent)
@@ -60,7 +60,7 @@ contains
 
   pure subroutine list_children(parent, layout)
     integer, intent(in) :: parent(:)
-    type(layout_t), intent(inout) :: layout
+    type(front_layout_t), intent(inout) :: layout
     integer, allocatable :: next(:)
     integer :: f
 
@@ -82,8 +82,8 @@ contains
 
   !> Rows of every border, sorted: neighbours of its pivots and rows of its children's borders that are not pivots.
   subroutine list_borders(pattern, layout)
-    type(pattern_t), intent(in) :: pattern
-    type(layout_t), intent(inout) :: layout
+    class(matrix_pattern_t), intent(in) :: pattern
+    type(front_layout_t), intent(inout) :: layout
     integer, allocatable :: start(:), upper(:), mark(:), owner(:), row(:), by_row(:), next(:)
     integer :: f, k, c, j, n
 
@@ -150,8 +150,8 @@ contains
 
   !> Where nonzeros of the matrix and borders of children go in every front.
   subroutine map_entries(pattern, layout)
-    type(pattern_t), intent(in) :: pattern
-    type(layout_t), intent(inout) :: layout
+    class(matrix_pattern_t), intent(in) :: pattern
+    type(front_layout_t), intent(inout) :: layout
     integer, allocatable :: front_of(:), local(:), next(:)
     integer :: f, k, c, j, p, n, pass, a, b
 
@@ -231,7 +231,7 @@ contains
   !> Operations of all subtrees, and which are left to one thread.
   pure subroutine split_tree(parent, layout)
     integer, intent(in) :: parent(:)
-    type(layout_t), intent(inout) :: layout
+    type(front_layout_t), intent(inout) :: layout
     real(wp), allocatable :: work(:)
     real(wp) :: p, n
     integer :: f
@@ -254,7 +254,7 @@ contains
   !> children off one and puts its own on the other. Every subtree has its stacks; shared fronts have theirs alone.
   pure subroutine place_stores(parent, layout)
     integer, intent(in) :: parent(:)
-    type(layout_t), intent(inout) :: layout
+    type(front_layout_t), intent(inout) :: layout
     integer, allocatable :: depth(:)
     integer(i8) :: top(0:1), peak(0:1)
     integer :: f, s, p, c, k

@@ -5,7 +5,7 @@
 !> (C. Ashcraft, R. Grimes, ACM Trans. Math. Softw. 15 (1989) 291-309).
 module elimination_tree
   use kinds, only: wp
-  use sparsity, only: pattern_t
+  use matrix_pattern, only: matrix_pattern_t
   implicit none
   private
   public :: find_fronts, list_neighbours
@@ -19,7 +19,7 @@ contains
   !> Fronts in postorder: front f eliminates the unknowns at places first(f) ... first(f+1)-1, has `order(f)` rows and sends
   !> what is left to parent(f), 0 for a root. place(neq) keeps the fill of `position`.
   subroutine find_fronts(pattern, position, place, first, order, parent)
-    type(pattern_t), intent(in) :: pattern
+    class(matrix_pattern_t), intent(in) :: pattern
     integer, intent(in) :: position(:)
     integer, allocatable, intent(out) :: place(:), first(:), order(:), parent(:)
     integer, allocatable :: start(:), lower(:), up(:), renumbered(:), count(:)
@@ -77,7 +77,7 @@ contains
 
   !> Neighbours of every unknown in the places given: those before it, or those after it.
   subroutine list_neighbours(pattern, place, after, start, list)
-    type(pattern_t), intent(in) :: pattern
+    class(matrix_pattern_t), intent(in) :: pattern
     integer, intent(in) :: place(:)
     logical, intent(in) :: after
     integer, allocatable, intent(out) :: start(:), list(:)

@@ -1,14 +1,16 @@
-!> Sequential MUMPS with partial pivoting: for matrices that cannot be factorised without.
+!> MUMPS: sequential MUMPS with partial pivoting, for any regular matrix.
 !>
 !> P.R. Amestoy, I.S. Duff, J. Koster, J.-Y. L'Excellent, SIAM J. Matrix Anal. Appl. 23 (2001) 15-41.
-module mumps_solver
+module linear_mumps
+  use blas, only: keep_blas_to_one_thread
   use errors, only: error_t, exit_machine, exit_no_convergence, fail
   use kinds, only: wp
-  use sparsity, only: pattern_t
+  use linear_api, only: factors_t, solver_row_t
+  use matrix_pattern, only: matrix_pattern_t
   use text, only: to_text
   implicit none
   private
-  public :: mumps_t, mumps_analyse, mumps_factorise, mumps_solve, mumps_release
+  public :: linear_mumps_row
 
   include 'dmumps_struc.h'
 
@@ -18,6 +20,8 @@ module mumps_solver
   !> MUMPS' own numbers.
   integer, parameter :: job_start = -1, job_end = -2, job_analyse = 1, job_factorise = 2, job_solve = 3
   integer, parameter :: info_workspace = -9, info_workspace_integer = -8, info_singular = -10, info_memory = -13
+  !> Places of the estimates of an analysis in INFOG and RINFOG.
+  integer, parameter :: info_entries = 3, info_operations = 1
 
   interface
     subroutine dmumps(id)
@@ -26,35 +30,55 @@ module mumps_solver
     end subroutine dmumps
   end interface
 
-  type :: mumps_t
+  type, extends(factors_t) :: mumps_t
     private
     type(dmumps_struc) :: id
-    logical, public :: started = .false.
+    logical :: started = .false.
   contains
-    final :: mumps_release
+    procedure :: plan => plan_mumps
+    procedure :: factorise => factorise_mumps
+    procedure :: substitute => substitute_mumps
+    procedure :: release => release_mumps
+    final :: end_mumps
   end type mumps_t
 
 contains
 
+  function linear_mumps_row() result(row)
+    type(solver_row_t) :: row
+
+    row%name = 'MUMPS'
+    row%purpose = 'MUMPS, always with partial pivoting'
+    row%fallback = ''
+    row%create => create_mumps
+  end function linear_mumps_row
+
+  subroutine create_mumps(factors)
+    class(factors_t), allocatable, intent(out) :: factors
+
+    allocate (mumps_t :: factors)
+  end subroutine create_mumps
+
   !> Give MUMPS the pattern and the order of elimination.
-  subroutine mumps_analyse(solver, pattern, position, error)
-    type(mumps_t), intent(inout) :: solver
-    type(pattern_t), intent(in) :: pattern
+  subroutine plan_mumps(self, pattern, position, error)
+    class(mumps_t), intent(inout) :: self
+    class(matrix_pattern_t), intent(in) :: pattern
     integer, intent(in) :: position(:)
     type(error_t), allocatable, intent(out) :: error
 
-    call mumps_release(solver)
-    solver%id%comm = 0
-    solver%id%par = 1
-    solver%id%sym = merge(2, 0, pattern%symmetric)
-    solver%id%job = job_start
-    call dmumps(solver%id)
-    if (solver%id%infog(1) < 0) then
-      call fail(error, exit_machine, 'MUMPS: start failed (INFOG(1) = '//to_text(solver%id%infog(1))//')')
+    call release_mumps(self)
+    call keep_blas_to_one_thread()
+    self%id%comm = 0
+    self%id%par = 1
+    self%id%sym = merge(2, 0, pattern%symmetric)
+    self%id%job = job_start
+    call dmumps(self%id)
+    if (self%id%infog(1) < 0) then
+      call fail(error, exit_machine, 'MUMPS: start failed (INFOG(1) = '//to_text(self%id%infog(1))//')')
       return
     end if
-    solver%started = .true.
-    associate (id => solver%id)
+    self%started = .true.
+    associate (id => self%id)
       id%icntl(1:3) = -1      ! no output
       id%icntl(4) = 0
       id%icntl(8) = 0         ! no scaling: unknowns are displacements throughout
@@ -69,31 +93,43 @@ contains
       id%jcn = pattern%column
       id%perm_in = position
       id%job = job_analyse
-      call dmumps(solver%id)
+      call dmumps(self%id)
       if (id%infog(1) < 0) call fail(error, exit_machine, &
                                      'MUMPS: analysis failed (INFOG(1) = '//to_text(id%infog(1))//', ' &
                                      //to_text(id%infog(2))//')')
+      self%entries = in_full(id%infog(info_entries))
+      self%operations = id%rinfog(info_operations)
     end associate
-  end subroutine mumps_analyse
+  end subroutine plan_mumps
+
+  !> MUMPS gives large numbers as millions with a minus.
+  pure function in_full(n) result(x)
+    integer, intent(in) :: n
+    real(wp) :: x
+
+    x = real(n, wp)
+    if (n < 0) x = -1.0e6_wp*n
+  end function in_full
 
   !> Factorise the matrix with these nonzeros. A singular matrix answers exit_no_convergence: the step is cut.
-  subroutine mumps_factorise(solver, values, error)
-    type(mumps_t), intent(inout) :: solver
+  subroutine factorise_mumps(self, values, sound, error)
+    class(mumps_t), intent(inout) :: self
     real(wp), intent(in) :: values(:)
+    logical, intent(out) :: sound
     type(error_t), allocatable, intent(out) :: error
     integer :: attempt
 
-    associate (id => solver%id)
+    associate (id => self%id)
       do attempt = 1, 2
         id%a = values
         id%job = job_factorise
-        call dmumps(solver%id)
+        call dmumps(self%id)
         if (id%infog(1) /= info_workspace .and. id%infog(1) /= info_workspace_integer) exit
         id%icntl(14) = 4*id%icntl(14)
       end do
+      sound = id%infog(1) >= 0
+      if (sound) return
       select case (id%infog(1))
-      case (0:)
-        return
       case (info_singular)
         call fail(error, exit_no_convergence, 'the matrix is singular')
       case (info_memory, info_workspace, info_workspace_integer)
@@ -104,35 +140,41 @@ contains
                   //to_text(id%infog(2))//')')
       end select
     end associate
-  end subroutine mumps_factorise
+  end subroutine factorise_mumps
 
   !> x := A^-1 x.
-  subroutine mumps_solve(solver, x, error)
-    type(mumps_t), intent(inout) :: solver
+  subroutine substitute_mumps(self, x, error)
+    class(mumps_t), intent(inout) :: self
     real(wp), intent(inout) :: x(:)
     type(error_t), allocatable, intent(out) :: error
 
-    solver%id%rhs = x
-    solver%id%job = job_solve
-    call dmumps(solver%id)
-    x = solver%id%rhs
-    if (solver%id%infog(1) < 0) then
-      call fail(error, exit_machine, 'MUMPS: solution failed (INFOG(1) = '//to_text(solver%id%infog(1))//')')
+    self%id%rhs = x
+    self%id%job = job_solve
+    call dmumps(self%id)
+    x = self%id%rhs
+    if (self%id%infog(1) < 0) then
+      call fail(error, exit_machine, 'MUMPS: solution failed (INFOG(1) = '//to_text(self%id%infog(1))//')')
     end if
-  end subroutine mumps_solve
+  end subroutine substitute_mumps
 
   !> Give back what MUMPS holds.
-  subroutine mumps_release(solver)
-    type(mumps_t), intent(inout) :: solver
+  subroutine release_mumps(self)
+    class(mumps_t), intent(inout) :: self
 
-    if (.not. solver%started) return
-    associate (id => solver%id)
+    if (.not. self%started) return
+    associate (id => self%id)
       deallocate (id%irn, id%jcn, id%a, id%perm_in, id%rhs)
       nullify (id%irn, id%jcn, id%a, id%perm_in, id%rhs)
       id%job = job_end
     end associate
-    call dmumps(solver%id)
-    solver%started = .false.
-  end subroutine mumps_release
+    call dmumps(self%id)
+    self%started = .false.
+  end subroutine release_mumps
 
-end module mumps_solver
+  subroutine end_mumps(self)
+    type(mumps_t), intent(inout) :: self
+
+    call release_mumps(self)
+  end subroutine end_mumps
+
+end module linear_mumps

@@ -1,0 +1,60 @@
+!> The temperature at the points of a body: what drives its law.
+!>
+!> It is that of a TEMPE card, the same everywhere, or the field `temperature` of the run, by the shape functions of the element.
+module point_temperatures
+  use elem_api, only: group_temperature, instant_t, layout_t
+  use kinds, only: wp
+  use scene, only: group_t
+  implicit none
+  private
+  public :: find_temperatures, nodal_temperatures, temperature_field, temperature_place
+
+  !> Name of the field.
+  character(len=*), parameter :: temperature_field = 'temperature'
+
+contains
+
+  !> Place of the temperature among the fields of an element's layout, 0 where the element has none: the only field of one
+  !> component that solids read.
+  pure function temperature_place(layout) result(u)
+    type(layout_t), intent(in) :: layout
+    integer :: u
+    integer :: k
+
+    u = 0
+    do k = 1, layout%nfield
+      if (layout%first(1, k) > 0 .and. layout%first(2, k) == 0) u = k
+    end do
+  end function temperature_place
+
+  !> Values at the eight nodes: those of corners, and in the middle of sides the mean of the ends where there are no others.
+  pure function nodal_temperatures(values) result(nodal)
+    real(wp), intent(in) :: values(:)   !! (4) or (8) [temperature]
+    real(wp) :: nodal(8)
+
+    nodal(:size(values)) = values
+    if (size(values) == 4) nodal(5:8) = 0.5_wp*(values + cshift(values, 1))
+  end function nodal_temperatures
+
+  !> Temperatures at the start and at the end of the step at the points of one element.
+  pure subroutine find_temperatures(group, instant, layout, phi, du, start, temperature)
+    type(group_t), intent(in) :: group
+    type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
+    real(wp), intent(in) :: phi(:, :)            !! shape functions (8, npoint)
+    real(wp), intent(in) :: du(:), start(:)      !! local unknowns (ndof)
+    real(wp), intent(out) :: temperature(:, :)   !! (2, npoint) [temperature]
+    integer :: u, first, last
+
+    u = temperature_place(layout)
+    if (u == 0) then
+      temperature = spread(group_temperature(group, instant), 2, size(temperature, 2))
+    else
+      first = layout%first(1, u)
+      last = first + layout%count(u) - 1
+      temperature(1, :) = matmul(nodal_temperatures(start(first:last)), phi(:, :size(temperature, 2)))
+      temperature(2, :) = matmul(nodal_temperatures(start(first:last) + du(first:last)), phi(:, :size(temperature, 2)))
+    end if
+  end subroutine find_temperatures
+
+end module point_temperatures

@@ -1,0 +1,99 @@
+!> One step of all fields: each solve in its turn.
+!>
+!> Where fields of several quantities are solved for one after the other, a solve takes the motion of the others' unknowns as their
+!> own solve has found it in this step, or as the last step foretells. Once in turns is first order in the step; in turns until
+!> nothing changes any more is the answer of the monolithic solve.
+module step_solves
+  use equations, only: equations_t
+  use kinds, only: wp
+  use newton, only: outcome_t, solve_step
+  use predictor, only: proportion
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use strategy, only: coupling_converged
+  use text, only: to_text
+  implicit none
+  private
+  public :: solve_fields
+
+  !> More turns than this do not come together: the step is too long.
+  integer, parameter :: most_turns = 50
+
+contains
+
+  !> Seek the fields at the end of a step of length dt. `outcome` is that of all solves together; of a failed step, of the one that
+  !> failed.
+  subroutine solve_fields(scene, equations, solution, dt, outcome)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt   !! [time]
+    type(outcome_t), intent(out) :: outcome
+    type(outcome_t) :: own
+    real(wp) :: motion(equations%dofs%ndof), change
+    integer :: s, turn
+
+    if (size(equations%solves) == 1) then
+      call solve_step(scene, equations, solution, dt, outcome)
+      return
+    end if
+    motion = 0
+    if (solution%last_step > 0) call proportion(equations%dofs, solution%fields, dt/solution%last_step, motion)
+    do turn = 1, most_turns
+      change = 0
+      do s = 1, size(equations%solves)
+        equations%now = s
+        call solve_step(scene, equations, solution, dt, own, given=motion, go_on=turn > 1)
+        call add_outcome(equations%solves(s)%name, own, outcome)
+        if (.not. own%converged) return
+        change = max(change, relative_change(equations, motion, own%du))
+        motion = merge(own%du, motion, equations%solves(s)%is_own)
+      end do
+      outcome%du = motion
+      if (scene%strategy%coupling /= coupling_converged .or. change <= scene%strategy%displacement_norm) return
+    end do
+    outcome%converged = .false.
+    outcome%reason = 'the fields do not agree after '//to_text(most_turns)//' turns (they change by '//to_text(change, 3)//')'
+  end subroutine solve_fields
+
+  !> Change of the motion of the own unknowns over the motion.
+  pure function relative_change(equations, before, now) result(change)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: before(:), now(:)   !! (ndof)
+    real(wp) :: change
+    real(wp) :: whole
+
+    associate (is_own => equations%solves(equations%now)%is_own .and. .not. equations%dofs%is_angle)
+      whole = sum(now**2, mask=is_own)
+      change = sum((now - before)**2, mask=is_own)
+    end associate
+    if (whole > 0) change = sqrt(change/whole)
+  end function relative_change
+
+  !> Add what a solve came to: iterations one after the other, extremes, why it failed.
+  subroutine add_outcome(name, own, all)
+    character(len=*), intent(in) :: name   !! of the solve
+    type(outcome_t), intent(inout) :: own
+    type(outcome_t), intent(inout) :: all
+
+    if (.not. allocated(all%history)) then
+      allocate (all%history(0))
+      all%converged = .true.
+    end if
+    if (allocated(own%history)) all%history = [all%history, own%history]
+    all%converged = all%converged .and. own%converged
+    all%iterations = all%iterations + own%iterations
+    all%first_iterations = max(all%first_iterations, own%first_iterations)
+    all%event = min(all%event, own%event)
+    all%strain = max(all%strain, own%strain)
+    all%linear_residual = max(all%linear_residual, own%linear_residual)
+    all%augmentations = max(all%augmentations, own%augmentations)
+    if (own%converged) return
+    all%group = own%group
+    all%element = own%element
+    if (allocated(own%reason)) all%reason = name//': '//own%reason
+    if (allocated(own%residual)) all%residual = own%residual
+    if (allocated(own%error)) call move_alloc(own%error, all%error)
+  end subroutine add_outcome
+
+end module step_solves

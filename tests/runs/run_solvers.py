@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""Every linear solver carries a run: shipped decks with SOLVR against the default, what is told of the choice, threads, resume.
+
+usage: run_solvers.py [-v] [-k]       -v prints every check and the differences, -k keeps the results
+
+A deck takes the same steps and its history agrees to 1e-8 of the largest number of each column: solutions of the linear systems differ
+in round-off alone, and Newton's method ends within its norms.
+"""
+import os
+import re
+import signal
+import sys
+
+sys.dont_write_bytecode = True
+from support import (DONE, SIGNAL, SOURCE, Checks, add_cards, deck_text, history, mesh, read_bytes, result_differences, run, said,  # noqa: E402
+                     start, stop_after, summary, with_h5py, write)
+
+AGREE = 1.0e-8
+OTHERS = ("MUMPS",)
+DECKS = {"upsetting": ("upsetting/upsetting.lag", mesh(4, 6)), "press fit": ("press_fit/press_fit.lag", []),
+         "thick cylinder": ("thick_cylinder/thick_cylinder.lag", []), "cook": ("cook/cook.lag", []), "hertz": ("hertz/hertz.lag", [])}
+
+
+def difference(one, two):
+    """The largest difference of two histories, relative to the largest number of its column, and the column."""
+    worst = (0.0, "")
+    for name, column in one.items():
+        size = max((abs(value) for value in column), default=0.0)
+        for a, b in zip(column, two[name]):
+            if abs(a - b) > 0:
+                worst = max(worst, (abs(a - b) / max(size, abs(b)), name))
+    return worst
+
+
+def compare(checks, name, deck, options, solver):
+    """One deck with the default and with another solver."""
+    text = deck_text(os.path.join(SOURCE, "decks", deck))
+    folders = {}
+    for label, cards in (("default", ""), (solver, f"SOLVR  {solver}")):
+        path = write(checks.path(name.replace(" ", "_"), label, "deck.lag"), add_cards(text, cards) if cards else text)
+        folders[label] = os.path.join(os.path.dirname(path), "out")
+        result = run([path, "--threads", "1", "--quiet", "--out", folders[label]] + options)
+        if not checks.that(result.returncode == DONE, f"{name}, {label}: runs", said(result)):
+            return
+    told = [summary(folders[label])["linear_solver"] for label in folders]
+    checks.that(told == ["FRONT", solver], f"{name}, {solver}: summary.json tells the solver", told)
+    one, two = (history(folders[label]) for label in folders)
+    # lengths of steps follow strains, and have their round-off
+    if checks.that(len(one["time"]) == len(two["time"]), f"{name}, {solver}: the same steps", (len(one["time"]), len(two["time"]))):
+        worst = difference(one, two)
+        checks.that(worst[0] <= AGREE, f"{name}, {solver}: the same history", worst)
+        if checks.verbose:
+            print(f"       {len(one['time'])} steps, largest difference {worst[0]:.1e} {worst[1]}")
+
+
+def check_choice(checks):
+    """--check and the listing tell the solver and what its factors cost."""
+    for solver in ("FRONT",) + OTHERS:
+        deck = write(checks.path("told", f"{solver}.lag"), add_cards(deck_text(), f"SOLVR  {solver}"))
+        result = run([deck, "--check"])
+        checks.that(result.returncode == DONE and re.search(rf"(?m)^solver +{solver} +\S", result.stdout), f"{solver}: --check tells it",
+                    said(result))
+        cost = re.search(r"(?m)^Factors: (\S+) entries, (\S+) operations", result.stdout)
+        checks.that(cost and float(cost[1]) > 1000 and float(cost[2]) > 1000, f"{solver}: --check tells the cost", result.stdout[-300:])
+
+
+def check_threads_and_resume(checks, solver):
+    """The same bits with two threads, and after a stop."""
+    deck = write(checks.path(solver, "deck.lag"), add_cards(deck_text(), f"SOLVR  {solver}"))
+    whole, two, parts = (checks.path(solver, name) for name in ("whole", "two", "parts"))
+    for threads, out in (("1", whole), ("2", two)):
+        result = run([deck, "--threads", threads, "--quiet", "--out", out])
+        checks.that(result.returncode == DONE, f"{solver}, {threads} threads: runs", said(result))
+    checks.that(read_bytes(os.path.join(whole, "history.csv")) == read_bytes(os.path.join(two, "history.csv")),
+                f"{solver}: the same history with two threads")
+    common = [deck, "--threads", "1", "--quiet", "--out", parts]
+    code, _, told = stop_after(start(common), parts, 10, signal.SIGTERM)
+    if checks.that(code == SIGNAL + signal.SIGTERM, f"{solver}: stops", (code, told)):
+        result = run(common + ["--resume", os.path.join(parts, "deck.ckp.h5")])
+        checks.that(result.returncode == DONE, f"{solver}: resumes", said(result))
+        wrong = result_differences(whole, parts)
+        checks.that(not wrong, f"{solver}: stopped and resumed, the same results", wrong)
+
+
+def main():
+    with_h5py()
+    checks = Checks()
+    check_choice(checks)
+    for solver in OTHERS:
+        for name, (deck, options) in DECKS.items():
+            compare(checks, name, deck, options, solver)
+        check_threads_and_resume(checks, solver)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
