@@ -4,13 +4,14 @@ submodule(elem_registry) elem_members
   use elem_cnt2d, only: elem_cnt2d_row
   use elem_cntdf, only: elem_cntdf_row
   use elem_pl8ls, only: elem_pl8ls_row
+  use elem_pl8tm, only: elem_pl8tm_row
   use elem_pres2d, only: elem_pres2d_row
   use elem_spring, only: elem_spring_row
   implicit none
 contains
 
   module procedure list_elems
-    allocate (elems(7))
+    allocate (elems(8))
     elems(1) = elem_pl8ls_row()
     elems(2) = elem_cnt2d_row()
     elems(3) = elem_cntdf_row()
@@ -18,6 +19,7 @@ contains
     elems(5) = elem_bforc_row()
     elems(6) = elem_centr_row()
     elems(7) = elem_spring_row()
+    elems(8) = elem_pl8tm_row()
   end procedure list_elems
 
 end submodule elem_members
