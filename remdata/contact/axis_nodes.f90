@@ -42,7 +42,7 @@ contains
         if (group%die == 0) cycle
         status = find_variable(group%variables, 'contact_status')
         penetration = find_variable(group%variables, 'penetration')
-        call line_rule(group%npoint, xi, weight)
+        call line_rule(group%rule, xi, weight)
         if (is_deformable(scene%dies(group%die)) .or. status == 0 .or. penetration == 0 .or. size(xi) < 2) cycle
         if (xi(size(xi)) < 1) cycle
         status = group%variables(status)%first

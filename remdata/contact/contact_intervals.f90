@@ -171,7 +171,7 @@ contains
     type(contact_interval_t), intent(inout) :: interval
     real(wp), allocatable :: xi(:), weight(:)
 
-    call line_rule(group%npoint, xi, weight)
+    call line_rule(group%rule, xi, weight)
     if (tags%on_axis(wrapped(interval%to%side + 1, nside)) .and. .not. any(xi > interval%to%xi .and. xi < 1)) interval%to%xi = 1
     if (tags%on_axis(wrapped(interval%from%side - 1, nside)) .and. .not. any(xi < interval%from%xi .and. xi > -1)) &
       interval%from%xi = -1

@@ -14,7 +14,7 @@ module die_closest_points
   use contact_intervals, only: along, contact_interval_t, side_point_t
   use dies, only: die_t
   use kinds, only: eps, wp
-  use quadrature, only: line_rule
+  use quadrature, only: line_rule, rule_t
   use side_tags, only: same_tags, side_tags_t
   use vectors, only: length_of
   implicit none
@@ -39,8 +39,8 @@ contains
   !> Where a side enters the die so steeply that a corner would be left within the shortest interval of an end of contact, at the
   !> first or last point in contact, the interval begins or ends in that point, and the corner with it. Ends shared with another
   !> interval are kept, and so is an interval that would become too short.
-  pure subroutine start_at_contact_point(npoint, loop, x, die, pilot, least, turn, shared, interval)
-    integer, intent(in) :: npoint   !! rule of the group's points
+  pure subroutine start_at_contact_point(rule, loop, x, die, pilot, least, turn, shared, interval)
+    type(rule_t), intent(in) :: rule   !! of the group's points
     type(loop_t), intent(in) :: loop
     real(wp), intent(in) :: x(:, :)   !! nodes now (2, nnode) [length]
     type(die_t), intent(in) :: die
@@ -53,7 +53,7 @@ contains
     type(side_point_t) :: point
     real(wp), allocatable :: xi(:), weight(:)
 
-    call line_rule(npoint, xi, weight)
+    call line_rule(rule, xi, weight)
     moved = interval
     point = interval%from
     point%xi = minval(xi, mask=xi > interval%from%xi)
@@ -88,9 +88,9 @@ contains
   end subroutine start_at_contact_point
 
   !> Sections of an interval with their closest points; none when the interval runs backwards along the die.
-  pure subroutine sections_of_interval(interval, npoint, loop, tags, x, die, pilot, sections)
+  pure subroutine sections_of_interval(interval, rule, loop, tags, x, die, pilot, sections)
     type(contact_interval_t), intent(in) :: interval
-    integer, intent(in) :: npoint   !! rule of the group's points
+    type(rule_t), intent(in) :: rule   !! of the group's points
     type(loop_t), intent(in) :: loop
     type(side_tags_t), intent(in) :: tags
     real(wp), intent(in) :: x(:, :)   !! nodes now (2, nnode) [length]
@@ -171,11 +171,11 @@ contains
       type(side_point_t), intent(in) :: first, last
       type(closest_point_t), intent(in) :: start, finish
       type(closest_point_t), allocatable, intent(out) :: closest_points(:)
-      type(closest_point_t) :: list((abs(npoint) + 1)*(last%side - first%side + 1) + 4)
+      type(closest_point_t) :: list((rule%n + 1)*(last%side - first%side + 1) + 4)
       real(wp), allocatable :: xi(:), weight(:)
       integer :: k, p, n
 
-      call line_rule(npoint, xi, weight)
+      call line_rule(rule, xi, weight)
       n = 1
       list(1) = start
       call follow(interval%found(1), first, last, finish, list, n)

@@ -65,11 +65,11 @@ contains
       one%number = scene%groups(intervals(k)%group)%die
       one%die = present_die(scene%dies(one%number), x)
       one%pilot = solution%fields(pilot_field)%value(:, one%number)
-      associate (npoint => scene%groups(intervals(k)%group)%npoint)
-        call start_at_contact_point(npoint, loop, x, one%die, one%pilot, options%least_contact, turn, &
+      associate (rule => scene%groups(intervals(k)%group)%rule)
+        call start_at_contact_point(rule, loop, x, one%die, one%pilot, options%least_contact, turn, &
                             [is_shared(intervals, k, 1, size(loop%sides, 2)), is_shared(intervals, k, 2, size(loop%sides, 2))], &
                               one%interval)
-        call sections_of_interval(one%interval, npoint, loop, tags, x, one%die, one%pilot, sections)
+        call sections_of_interval(one%interval, rule, loop, tags, x, one%die, one%pilot, sections)
       end associate
       if (size(sections) == 0) then
         backward = backward + 1

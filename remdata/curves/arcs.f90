@@ -6,7 +6,7 @@
 !> increases along the contour on either.
 module arcs
   use kinds, only: eps, wp
-  use quadrature, only: line_rule
+  use quadrature, only: gauss_line
   use shape_functions, only: line3
   use vectors, only: length_of
   implicit none
@@ -136,7 +136,7 @@ contains
     real(wp) :: length
     real(wp), allocatable :: x(:), w(:)
 
-    call line_rule(4, x, w)
+    call gauss_line(4, x, w)
     length = measured(from, to, by_rule(from, to), most_halvings)
 
   contains

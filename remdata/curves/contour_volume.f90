@@ -8,7 +8,7 @@ module contour_volume
   use boundary_curves, only: boundary_curve_t
   use boundary_sides, only: loop_t
   use kinds, only: eps, wp
-  use quadrature, only: line_rule
+  use quadrature, only: gauss_line
   use vectors, only: length_of
   implicit none
   private
@@ -64,7 +64,7 @@ contains
     real(wp), allocatable :: x(:), w(:)
     real(wp) :: unit, t(2)
 
-    call line_rule(4, x, w)
+    call gauss_line(4, x, w)
     t = tangent_at(arc, arc%range(1))
     unit = length_of(t)*(arc%range(2) - arc%range(1))
     if (axisymmetric) then

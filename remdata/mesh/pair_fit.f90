@@ -165,7 +165,7 @@ contains
         status = group%variables(find_variable(group%variables, 'contact_status'))%first
         piece_row = group%variables(find_variable(group%variables, 'die_piece'))%first
         xi_row = group%variables(find_variable(group%variables, 'die_xi'))%first
-        call line_rule(group%npoint, xi, weight)
+        call line_rule(group%rule, xi, weight)
         associate (die => scene%dies(group%die), state => solution%groups(g)%committed)
           do e = 1, size(group%connectivity, 2)
             do p = 1, size(xi)

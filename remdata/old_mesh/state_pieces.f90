@@ -57,7 +57,7 @@ contains
       associate (group => pieces%groups(k))
         group%scene_group = g
         group%material = k
-        group%npoint = scene%groups(g)%npoint
+        group%npoint = scene%groups(g)%rule%n
         allocate (group%connectivity, source=scene%groups(g)%connectivity)
         allocate (group%variables, source=scene%groups(g)%variables)
         if (present(solution)) allocate (group%values, source=solution%groups(g)%committed)

@@ -108,7 +108,7 @@ contains
     integer :: side, number, e, p
 
     allocate (row%s(0), row%weight(0), row%point(0), row%element(0))
-    call line_rule(scene%groups(g)%npoint, xi, weight)
+    call line_rule(scene%groups(g)%rule, xi, weight)
     if (.not. interval%from%xi > -1) call add_neighbour(scene, g, loop, x, interval%from%side - 1, 1.0_wp, row)
     do side = interval%from%side, interval%to%side
       number = modulo(side - 1, size(loop%sides, 2)) + 1
@@ -143,7 +143,7 @@ contains
     n = modulo(side - 1, size(loop%sides, 2)) + 1
     e = findloc(scene%groups(g)%connectivity(2, :), loop%sides(2, n), 1)
     if (e == 0) return
-    call line_rule(scene%groups(g)%npoint, xi, weight)
+    call line_rule(scene%groups(g)%rule, xi, weight)
     jacobian = line_jacobian(x(:, loop%sides(:, n)), at, scene%plane_state == axisymmetric)
     do p = 1, size(xi)
       if (abs(xi(p) - at) > 0) cycle
@@ -161,7 +161,7 @@ contains
     real(wp) :: jacobian, at
     integer :: ends(2), k, e, p
 
-    call line_rule(scene%groups(g)%npoint, xi, weight)
+    call line_rule(scene%groups(g)%rule, xi, weight)
     associate (sides => scene%groups(g)%connectivity)
       ends(1) = sides(1, row%element(minloc(row%s, 1)))
       ends(2) = sides(3, row%element(maxloc(row%s, 1)))
@@ -215,11 +215,11 @@ contains
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: start, from, to, total
     integer, allocatable :: order(:)
-    logical :: taken((size(mesh%sides) + 2)*abs(scene%groups(g)%npoint))
+    logical :: taken((size(mesh%sides) + 2)*scene%groups(g)%rule%n)
     integer :: k, e, p
 
     allocate (unsorted%s(0), unsorted%weight(0), unsorted%point(0), unsorted%element(0))
-    call line_rule(scene%groups(g)%npoint, xi, weight)
+    call line_rule(scene%groups(g)%rule, xi, weight)
     associate (boundary => contours(c)%boundary, contact => contours(c)%contacts(interval))
       total = boundary_length(boundary)
       start = boundary%arc_length(contact%first - 1)

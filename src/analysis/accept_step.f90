@@ -1,13 +1,13 @@
 !> What happens when a step is accepted: the trial state becomes the state, and every check is made.
 module accept_step
   use bookkeeping, only: book_work, book_reactions, book_deformable_dies, measure_scene, book_spurious_mode, sample_contacts
-  use contact_flow, only: update_flow_stress
   use elem_api, only: totals_t
   use equations, only: equations_t
   use errors, only: error_t, exit_bug, fail
   use fields, only: field_t, fill_middle_nodes, has_corners_only
   use kinds, only: wp
   use newton, only: outcome_t
+  use point_drivers, only: start_drivers
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use text, only: to_text
@@ -23,7 +23,7 @@ contains
   !> Commit the step, book its work, measure the scene, check it. An error is a bug of ours: exit 6.
   subroutine accept(scene, equations, dt, outcome, solution, totals, error)
     type(scene_t), intent(in) :: scene
-    type(equations_t), intent(in) :: equations
+    type(equations_t), intent(inout) :: equations
     real(wp), intent(in) :: dt
     type(outcome_t), intent(in) :: outcome
     type(solution_t), intent(inout) :: solution
@@ -57,7 +57,7 @@ contains
   !> before stays the one to go on with.
   subroutine accept_balance(scene, equations, outcome, solution, totals, error)
     type(scene_t), intent(in) :: scene
-    type(equations_t), intent(in) :: equations
+    type(equations_t), intent(inout) :: equations
     type(outcome_t), intent(in) :: outcome
     type(solution_t), intent(inout) :: solution
     type(totals_t), intent(out) :: totals
@@ -116,14 +116,14 @@ contains
   !> The trial state becomes the state.
   subroutine commit(scene, equations, solution)
     type(scene_t), intent(in) :: scene
-    type(equations_t), intent(in) :: equations
+    type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     integer :: k
 
     do k = 1, size(solution%groups)
       solution%groups(k)%committed = solution%groups(k)%trial
     end do
-    call update_flow_stress(scene, equations%laws, equations%bodies, solution)
+    call start_drivers(scene, equations%laws, solution, equations%drivers)
   end subroutine commit
 
   !> Invariants of an accepted step.

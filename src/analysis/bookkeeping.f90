@@ -1,6 +1,7 @@
 !> What an accepted step is worth: work, reactions, sums over the scene, the worst it has borne.
 module bookkeeping
   use contact_contour, only: sample_depth
+  use contact_penalties, only: allowed_penetration
   use dies, only: is_deformable, present_die
   use elem_api, only: add_totals, totals_t
   use element_loop, only: group_geometry
@@ -209,8 +210,7 @@ contains
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
         if (group%die == 0 .or. group%material == 0) cycle
-        ! every contact law begins with it (contact_penalties)
-        allowed = scene%materials(group%material)%values(1)
+        allowed = allowed_penetration(scene%materials(group%material))
         x = present_coordinates(scene, solution)
         call sample_depth(group, present_die(scene%dies(group%die), x), solution%fields(pilot_field)%value(:, group%die), &
                           scene%mesh%coordinates, x, allowed, depth, ratio)

@@ -3,7 +3,6 @@ module march
   use accept_step, only: accept
   use acceptance, only: begin_probation, is_on_probation, note_cut, note_step
   use bookkeeping, only: measure_scene
-  use contact_flow, only: update_flow_stress
   use equations, only: set_up
   use errors, only: error_t
   use estimator, only: set_up_estimator
@@ -12,6 +11,7 @@ module march
   use kinds, only: eps, wp
   use listing, only: list_balance, list_cut, list_event, list_lines, list_note, list_step, show_progress
   use newton, only: outcome_t
+  use point_drivers, only: start_drivers
   use probation, only: is_too_short, pass_probation, refuse_after_all
   use restart_report, only: write_restart
   use restore_balance, only: restore_equilibrium
@@ -131,7 +131,7 @@ contains
     new_mesh = solution%unbalanced
     call set_up(scene, run%equations, error)
     if (allocated(error)) return
-    call update_flow_stress(scene, run%equations%laws, run%equations%bodies, solution)
+    call start_drivers(scene, run%equations%laws, solution, run%equations%drivers)
     call measure_scene(scene, run%equations, solution, run%totals)
     if (scene%remesh%estimate) call set_up_estimator(scene, run%equations%laws, run%estimator)
     if (.not. run%estimator%elastic) call list_note(run%listing, 'note: a law has no elastic moduli, so error_stress is in the ' &

@@ -6,6 +6,7 @@
 !> points and shorter sides do.
 module penetration_advice
   use kinds, only: wp
+  use quadrature, only: rule_gauss
   use scene, only: group_t, scene_t
   use solution, only: solution_t
   implicit none
@@ -56,8 +57,8 @@ contains
     few = .false.
     do g = 1, size(scene%groups)
       if (.not. is_contact(scene%groups(g))) cycle
-      gauss = gauss .or. scene%groups(g)%npoint > 0
-      few = few .or. abs(scene%groups(g)%npoint) < most_points
+      gauss = gauss .or. scene%groups(g)%rule%family == rule_gauss
+      few = few .or. scene%groups(g)%rule%n < most_points
     end do
     if (gauss) then
       advice = 'CNT2D with -3 points, which are the nodes, or where the die bends within a side with -9 or -17; '

@@ -108,8 +108,8 @@ contains
 
     f(:, 1) = step_gradient(point%kinematics%finite, point%strain, strain)
     committed(:, 1) = point%state
-    call point%kinematics%update(point%law, point%material, dt, 1, size(state), reshape(temperature, [2, 1]), f, committed, trial, &
-                                 tangent, answer)
+    call point%kinematics%update(point%law, point%material, dt, 1, size(state), reshape(temperature, [1, 2, 1]), f, committed, &
+                                 trial, tangent, answer)
     state = trial(:, 1)
     matrix = matmul(tangent(:, :, 1), gradient_of_strain(point%kinematics%finite, strain))
     status = answer(1)

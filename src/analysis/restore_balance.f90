@@ -10,6 +10,7 @@
 module restore_balance
   use accept_step, only: accept_balance
   use bookkeeping, only: pressed_on
+  use contact_penalties, only: allowed_penetration
   use dies, only: is_deformable
   use elem_api, only: block_done, mode_advance, mode_restore, report_t, totals_t
   use equations, only: equations_t, evaluate, external_forces, solve_correction, take_turn
@@ -215,8 +216,7 @@ contains
         status = group%variables(find_variable(group%variables, 'contact_status'))%first
         do e = 1, size(group%connectivity, 2)
           side = length_of(x(:, group%connectivity(3, e)) - x(:, group%connectivity(1, e)))
-          ! every contact law begins with the penetration it allows (contact_penalties)
-          allowed = (scene%materials(group%material)%values(1) + missed_by_parabola)*side
+          allowed = (allowed_penetration(scene%materials(group%material)) + missed_by_parabola)*side
           do p = 1, size(state%committed, 2)
             if (nint(state%committed(status, p, e)) <= 0) cycle
             weight = abs(state%committed(pressure, p, e))*side

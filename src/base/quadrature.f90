@@ -4,17 +4,69 @@ module quadrature
   use kinds, only: wp
   implicit none
   private
-  public :: line_rule, square_rule
+  public :: rule_t, rule_gauss, rule_equidistant
+  public :: line_rule, gauss_line, square_rule, rule_number, rule_of_number
+
+  !> Families of rules: Gauss; points at equal distances, the ends among them (Lobatto's with 3, then Simpson's on equal parts).
+  integer, parameter :: rule_gauss = 1, rule_equidistant = 2
+
+  !> A rule: family, and number of points in all.
+  type :: rule_t
+    integer :: family = rule_gauss
+    integer :: n = 0
+  end type rule_t
 
 contains
 
-  !> Gauss points (n = 1 ... 4), Lobatto points (n = -3), or Simpson's rule on 2, 4, 8 equal parts
-  !> (n = -5, -9, -17); weights sum to 2.
-  pure subroutine line_rule(n, xi, weight)
-    integer, intent(in) :: n
-    real(wp), allocatable, intent(out) :: xi(:), weight(:)
-    real(wp) :: a, b, wa, wb
+  !> A rule as cards and files have it: the number of points, negative for points at equal distances.
+  elemental function rule_number(rule) result(number)
+    type(rule_t), intent(in) :: rule
+    integer :: number
+
+    number = merge(-rule%n, rule%n, rule%family == rule_equidistant)
+  end function rule_number
+
+  elemental function rule_of_number(number) result(rule)
+    integer, intent(in) :: number
+    type(rule_t) :: rule
+
+    rule = rule_t(merge(rule_equidistant, rule_gauss, number < 0), abs(number))
+  end function rule_of_number
+
+  !> Gauss points (1 to 4), or points at equal distances: 3 (Lobatto), or 5, 9, 17 (Simpson's rule on 2, 4, 8 equal parts);
+  !> weights sum to 2.
+  pure subroutine line_rule(rule, xi, weight)
+    type(rule_t), intent(in) :: rule
+    real(wp), allocatable, intent(out) :: xi(:), weight(:)   !! (rule%n)
     integer :: i
+
+    if (rule%family == rule_gauss) then
+      call gauss_line(rule%n, xi, weight)
+      return
+    end if
+    associate (n => rule%n)
+      select case (n)
+      case (3)
+        xi = [-1.0_wp, 0.0_wp, 1.0_wp]
+        weight = [1.0_wp, 4.0_wp, 1.0_wp]/3
+      case (5, 9, 17)
+        allocate (xi(n), weight(n))
+        do i = 1, n
+          xi(i) = -1 + 2*real(i - 1, wp)/(n - 1)
+          weight(i) = merge(8, 4, mod(i, 2) == 0)/(3*real(n - 1, wp))
+        end do
+        weight([1, n]) = 0.5_wp*weight([1, n])
+      case default
+        allocate (xi(0), weight(0))
+      end select
+    end associate
+  end subroutine line_rule
+
+  !> Gauss points of the line, 1 to 4; weights sum to 2.
+  pure subroutine gauss_line(n, xi, weight)
+    integer, intent(in) :: n
+    real(wp), allocatable, intent(out) :: xi(:), weight(:)   !! (n)
+    real(wp) :: a, b, wa, wb
 
     select case (n)
     case (1)
@@ -35,20 +87,10 @@ contains
       wb = (18 - sqrt(30.0_wp))/36
       xi = [-b, -a, a, b]
       weight = [wb, wa, wa, wb]
-    case (-3)
-      xi = [-1.0_wp, 0.0_wp, 1.0_wp]
-      weight = [1.0_wp, 4.0_wp, 1.0_wp]/3
-    case (-5, -9, -17)
-      allocate (xi(-n), weight(-n))
-      do i = 1, -n
-        xi(i) = -1 + 2*real(i - 1, wp)/(-n - 1)
-        weight(i) = merge(8, 4, mod(i, 2) == 0)/(3*real(-n - 1, wp))
-      end do
-      weight([1, -n]) = 0.5_wp*weight([1, -n])
     case default
       allocate (xi(0), weight(0))
     end select
-  end subroutine line_rule
+  end subroutine gauss_line
 
   !> Product Gauss rule of `npoint` = 1, 4, 9 or 16 points; xi runs fastest. Weights sum to 4.
   pure subroutine square_rule(npoint, xi, weight)
@@ -58,7 +100,7 @@ contains
     integer :: i, j, k, n
 
     n = nint(sqrt(real(npoint, wp)))
-    call line_rule(n, x, w)
+    call gauss_line(n, x, w)
     allocate (xi(2, npoint), weight(npoint))
     k = 0
     do j = 1, n

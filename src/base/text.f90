@@ -4,7 +4,7 @@ module text
   use kinds, only: i8, wp
   implicit none
   private
-  public :: string_t, to_text, upper_case, nearest_word, edit_distance, join, two_digits
+  public :: string_t, to_text, upper_case, nearest_word, edit_distance, join, two_digits, add_text
 
   !> A text of its own length, so that arrays of words need no padding.
   type :: string_t
@@ -106,6 +106,16 @@ contains
       s = s//words(i)%s
     end do
   end function join
+
+  !> One more text at the end of a list.
+  pure subroutine add_text(list, s)
+    type(string_t), allocatable, intent(inout) :: list(:)
+    character(len=*), intent(in) :: s
+    type(string_t) :: item
+
+    item%s = s
+    list = [list, item]
+  end subroutine add_text
 
   !> The known word closest to `word`, or '' when none is close enough to be a slip of the finger.
   pure function nearest_word(word, known) result(nearest)

@@ -36,7 +36,7 @@ contains
         if (keyword /= 'BFORC' .and. keyword /= 'CENTR') cycle
         call cursor%open(deck%cards(i), diagnostics)
         call start_group(keyword, draft, group)
-        group%npoint = npoint
+        group%rule%n = npoint
         call read_body(cursor, draft, group)
         if (keyword == 'BFORC') then
           call cursor%name('a direction', directions, group%direction)

@@ -78,7 +78,7 @@ contains
     call read_material(cursor, draft, draft%elems(group%elem_id)%law_kind, group%material)
     if (group%host == 0) return
     associate (host => draft%scene%groups(group%host))
-      group%npoint = host%npoint
+      group%rule = host%rule
       group%connectivity = host%connectivity
       group%name = host%name//'/'//group%elem
       do g = 1, size(draft%scene%groups)
@@ -86,7 +86,7 @@ contains
           call cursor%fail('body '''//host%name//''' has elements '//group%elem//' already')
       end do
     end associate
-    call read_option(cursor, draft%elems(group%elem_id), draft%scene%plane_state, group%npoint, group%option)
+    call read_option(cursor, draft%elems(group%elem_id), draft%scene%plane_state, group%rule%n, group%option)
   end subroutine read_formulation
 
   !> Names of the elements that bodies are made of.

@@ -235,10 +235,10 @@ contains
       if (given(i) .or. parameters(i)%optional) cycle
       call cursor%fail('expected a value of '//described(parameters(i))//', found none')
     end do
-    ! Of the two ways to say the penalty, the default of one gives way to the other.
-    if (any(given .and. names_are(names, 'AKP'))) then
-      where (names_are(names, 'PENETR') .and. .not. given) values = 0
-    end if
+    do i = 1, size(parameters)
+      if (.not. given(i) .or. parameters(i)%replaces == '') cycle
+      where (names_are(names, parameters(i)%replaces) .and. .not. given) values = 0
+    end do
     material%values = [material%values, values]
   end subroutine read_pairs
 
@@ -260,6 +260,7 @@ contains
     real(wp), intent(out) :: value
 
     call cursor%real(described(parameter), value, lower=parameter%lower, upper=parameter%upper, strict_lower=parameter%strict)
+    if (parameter%whole .and. abs(value - anint(value)) > 0) call cursor%fail(parameter%name//' must be a whole number')
   end subroutine read_number
 
   !> Read the name of a LAW of a kind (solid or contact): place of the material, 0 after a mistake.

@@ -98,10 +98,10 @@ contains
     integer :: g
 
     call read_component(cursor, draft, group%die, group%component)
-    call cursor%real('the stiffness', group%amplitude, lower=0.0_wp, strict_lower=.true., &
+    call cursor%real('the stiffness', group%stiffness, lower=0.0_wp, strict_lower=.true., &
                      unit='force/length, for A moment/angle; of the full circumference')
     if (cursor%failed()) return
-    group%amplitude = group%amplitude/per_circumference(draft)
+    group%stiffness = group%stiffness/per_circumference(draft)
     group%name = draft%scene%dies(group%die)%name//'/spring.'//components(group%component)
     do g = 1, size(draft%scene%groups)
       if (draft%scene%groups(g)%name == group%name) &
@@ -110,7 +110,7 @@ contains
     group%elem = 'SPRNG'
     group%elem_id = find_elem(draft%elems, group%elem)
     group%role = draft%elems(group%elem_id)%role
-    group%npoint = 1
+    group%rule%n = 1
     allocate (group%variables(0), group%connectivity(0, 1))
     draft%scene%groups = [draft%scene%groups, group]
     draft%group_where = [draft%group_where, cursor%where()]

@@ -253,14 +253,14 @@ contains
     integer :: e, p, n
 
     n = size(group%connectivity, 1)
-    allocate (phi(n, abs(group%npoint)), dphi(2, n))
+    allocate (phi(n, group%rule%n), dphi(2, n))
     if (n == 3) then
-      call line_rule(group%npoint, line, weight)
+      call line_rule(group%rule, line, weight)
       do p = 1, size(line)
         call line3(line(p), phi(:, p), dphi(1, :))
       end do
     else
-      call square_rule(group%npoint, xi, weight)
+      call square_rule(group%rule%n, xi, weight)
       do p = 1, size(xi, 2)
         call quad8(xi(1, p), xi(2, p), phi(:, p), dphi)
       end do

@@ -7,8 +7,9 @@ module cards_sides
   use diagnostics, only: diagnostics_t, location_t
   use dies, only: is_deformable
   use kinds, only: wp
-  use law_api, only: contact_law, find_parameter, law_of_material
+  use law_api, only: contact_law, find_parameter, is_complete, law_of_material
   use bodies, only: in_one_body
+  use quadrature, only: rule_of_number, rule_t
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, find_elem
   use text, only: to_text
@@ -45,7 +46,7 @@ contains
         group%name = label//'/'//draft%places%words(k)%s
       end if
       if (.not. cursor%failed() .and. draft%mesh_sound) call face_sides(cursor, draft, group)
-      call read_rule(cursor, group%npoint)
+      call read_rule(cursor, group%rule)
       call read_material(cursor, draft, contact_law, group%material)
       if (.not. cursor%failed()) call refuse_second_contact(cursor, draft, group, diagnostics)
       if (.not. cursor%failed()) call refuse_bodies_without_flow(cursor, draft, group)
@@ -59,7 +60,7 @@ contains
       deallocate (group%variables)
       call draft%elems(group%elem_id)%variables(law_of_material(draft%laws(law), draft%scene%materials(group%material)), &
                                                        draft%scene%plane_state, group%variables)
-      group%amplitude = modulus_behind(draft, group%connectivity)
+      group%modulus = modulus_behind(draft, group%connectivity)
       call append_group(draft, group, cursor%where())
     end do
   end subroutine read_contacts
@@ -97,7 +98,7 @@ contains
       ! The two numbers before the multiplier are not sides.
       call read_sides(cursor, draft, numbers_after_name(deck%cards(i)) - 2, label, group%connectivity)
       call refuse_inner_sides(cursor, draft, group%connectivity)
-      call read_rule(cursor, group%npoint)
+      call read_rule(cursor, group%rule)
       call cursor%real('the amplitude of the pressure', group%amplitude, unit='stress')
       call draft%multipliers%find(cursor, 'the name of a LIC', k)
       if (k > 0) then
@@ -140,13 +141,15 @@ contains
     draft%group_where = [draft%group_where, where]
   end subroutine append_group
 
-  subroutine read_rule(cursor, npoint)
+  subroutine read_rule(cursor, rule)
     type(cursor_t), intent(inout) :: cursor
-    integer, intent(out) :: npoint
+    type(rule_t), intent(out) :: rule
+    integer :: npoint
 
     call cursor%integer('the number of integration points, 2, 3, 4, -3, -5, -9 or -17', npoint)
     if (all(rules /= npoint)) call cursor%fail('expected 2, 3 or 4 Gauss points, or -3, -5, -9 or -17 for points at equal ' &
                                                //'distances, found '//to_text(npoint))
+    rule = rule_of_number(npoint)
   end subroutine read_rule
 
   !> Nothing from outside can act on a side between two elements.
@@ -207,19 +210,25 @@ contains
     end do
   end subroutine refuse_bodies_without_flow
 
-  !> Largest Young's modulus of the bodies that the sides belong to.
+  !> Largest Young's modulus of the bodies that the sides belong to, at the first temperature of their cards.
   pure function modulus_behind(draft, sides) result(modulus)
     type(draft_t), intent(in) :: draft
     integer, intent(in) :: sides(:, :)
     real(wp) :: modulus
-    integer :: k, place
+    integer :: k
+    real(wp) :: young, poisson, temperature
 
     modulus = 0
     do k = 1, size(sides, 2)
       associate (material => draft%scene%materials(draft%owner(sides(2, k))))
         if (material%law_id == 0) cycle
-        place = find_parameter(draft%laws(material%law_id), 'E')
-        if (place > 0 .and. place <= size(material%values)) modulus = max(modulus, material%values(place))
+        associate (law => draft%laws(material%law_id))
+          if (.not. associated(law%elastic) .or. .not. is_complete(law, material)) cycle
+          temperature = 0
+          if (allocated(material%temperatures)) temperature = material%temperatures(1)
+          call law%elastic(material, temperature, young, poisson)
+        end associate
+        modulus = max(modulus, young)
       end associate
     end do
   end function modulus_behind

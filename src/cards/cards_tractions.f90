@@ -6,7 +6,7 @@ module cards_tractions
   use diagnostics, only: diagnostics_t
   use kinds, only: wp
   use loads, only: nodal_force_t
-  use quadrature, only: line_rule
+  use quadrature, only: gauss_line
   use scene_draft, only: close_card, draft_t, words_of
   use sections, only: thickness_at
   use shape_functions, only: line3
@@ -57,7 +57,7 @@ contains
     real(wp) :: phi(3), dphi(3), x(2, 3), share(3), length
     integer :: s, p, k
 
-    call line_rule(rule, xi, weight)
+    call gauss_line(rule, xi, weight)
     do s = 1, size(sides, 2)
       x = draft%scene%mesh%coordinates(:, sides(:, s))
       share = 0

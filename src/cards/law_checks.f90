@@ -1,10 +1,9 @@
 !> What laws ask of their numbers beyond the range of each.
 module law_checks
   use deck_cursor, only: cursor_t
-  use kinds, only: wp
   use law_api, only: find_parameter, law_t, line_choice
   use materials, only: material_t
-  use text, only: to_text
+  use text, only: string_t, to_text
   implicit none
   private
   public :: check_numbers, check_alike
@@ -15,53 +14,23 @@ contains
   subroutine check_numbers(cursor, law, material)
     type(cursor_t), intent(inout) :: cursor
     type(law_t), intent(in) :: law
-    type(material_t), intent(in) :: material
-    integer :: k
+    type(material_t), intent(in) :: material   !! at one temperature
+    type(string_t), allocatable :: problems(:)
+    integer :: i
 
-    if (cursor%failed()) return
-    if (law%name == 'EPLA' .and. size(material%curve, 2) > 0) then
-      if (abs(material%curve(1, 1)) > 0) then
-        call cursor%fail('the first plastic strain of the table must be 0, found '//to_text(material%curve(1, 1)))
-      else if (any(.not. material%curve(2, :) > 0)) then
-        call cursor%fail('all yield stresses of the table must be above 0, found '//to_text(minval(material%curve(2, :))))
-      end if
-    end if
-    if (find_parameter(law, 'RATE0') > 0) then
-      if ((given('COWPER') .or. given('JOHNSON')) .and. .not. given('RATE0')) then
-        call cursor%fail('COWPER and JOHNSON need a RATE0 above 0')
-      else if (given('RATE0') .and. (given('COWPER') .eqv. given('JOHNSON'))) then
-        call cursor%fail('RATE0 wants one of COWPER and JOHNSON above 0')
-      end if
-    end if
-    if (find_parameter(law, 'PENETR') > 0 .and. find_parameter(law, 'AKP') > 0) then
-      if (.not. (given('PENETR') .or. given('AKP'))) &
-        call cursor%fail('PENETR and AKP are both zero: one of them must be above 0')
-    end if
-    if (find_parameter(law, 'PHI') > 0 .and. find_parameter(law, 'M') > 0) then
-      if (.not. min(material%values(find_parameter(law, 'PHI')), material%values(find_parameter(law, 'M'))) < huge(1.0_wp)) &
-        call cursor%fail('neither PHI nor M is given: one of them says what friction there is (PHI 0. for none)')
-    end if
-    k = find_parameter(law, 'AUGMENT')
-    if (k == 0) return
-    if (abs(material%values(k) - anint(material%values(k))) > 0) call cursor%fail('AUGMENT must be a whole number')
-
-  contains
-
-    logical function given(name)
-      character(len=*), intent(in) :: name
-
-      given = material%values(find_parameter(law, name)) > 0
-    end function given
-
+    if (cursor%failed() .or. .not. associated(law%check)) return
+    call law%check(material, problems)
+    do i = 1, size(problems)
+      call cursor%fail(problems(i)%s)
+    end do
   end subroutine check_numbers
 
-  !> The same forms at all temperatures: words of choices, points of a table, and whether there is an effect of the rate.
+  !> The same forms at all temperatures: words of choices, points of a table, and the parts that a number turns on.
   subroutine check_alike(cursor, law, first, later)
     type(cursor_t), intent(inout) :: cursor
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: first, later
-    character(len=*), parameter :: rates(3) = [character(len=7) :: 'RATE0', 'COWPER', 'JOHNSON']
-    integer :: i, k
+    integer :: i, k, p
     logical :: choosing
 
     if (cursor%failed()) return
@@ -80,11 +49,13 @@ contains
     if (size(first%curve, 2) /= size(later%curve, 2)) &
       call cursor%fail('the table has '//to_text(size(later%curve, 2))//' points, expected '//to_text(size(first%curve, 2)) &
                        //' as at the first temperature')
-    do i = 1, size(rates)
-      k = find_parameter(law, trim(rates(i)))
-      if (k == 0) cycle
-      if ((first%values(k) > 0) .neqv. (later%values(k) > 0)) &
-        call cursor%fail(trim(rates(i))//' is above 0 at some temperatures only: give it at all or at none')
+    do i = 1, size(law%lines)
+      do p = 1, size(law%lines(i)%parameters)
+        if (.not. law%lines(i)%parameters(p)%turns_on) cycle
+        k = find_parameter(law, law%lines(i)%parameters(p)%name)
+        if ((first%values(k) > 0) .neqv. (later%values(k) > 0)) &
+          call cursor%fail(law%lines(i)%parameters(p)%name//' is above 0 at some temperatures only: give it at all or at none')
+      end do
     end do
   end subroutine check_alike
 

@@ -1,8 +1,9 @@
 !> Laws in words, for `lagamine --law`: the list of all; of one its card, its numbers, its state, where it comes from.
 module law_manual
   use kinds, only: wp
-  use law_api, only: contact_law, find_parameter, law_line_t, law_t, line_choice, line_pairs, parameter_t, solid_law
-  use text, only: string_t, to_text
+  use law_api, only: contact_law, find_parameter, heat_law, kind_names, law_line_t, law_t, line_choice, line_pairs, parameter_t, &
+                     solid_law
+  use text, only: add_text, join, string_t, to_text
   implicit none
   private
   public :: law_card, law_list
@@ -16,10 +17,10 @@ contains
     integer :: kind, i
 
     allocate (lines(0))
-    do kind = solid_law, contact_law
+    do kind = 1, size(kind_names)
       do i = 1, size(laws)
         if (laws(i)%kind /= kind) cycle
-        call put(lines, '  '//padded(laws(i)%name, 9)//padded(to_text(laws(i)%number), 6)//padded(users(laws(i)), 18) &
+        call add_text(lines, '  '//padded(laws(i)%name, 9)//padded(to_text(laws(i)%number), 6)//padded(users(laws(i)), 18) &
                  //laws(i)%purpose)
       end do
     end do
@@ -30,8 +31,14 @@ contains
     type(law_t), intent(in) :: law
     character(len=:), allocatable :: s
 
-    s = 'solids (PL8LS)'
-    if (law%kind == contact_law) s = 'contact (CNT2D)'
+    select case (law%kind)
+    case (contact_law)
+      s = 'contact (CNT2D)'
+    case (heat_law)
+      s = 'heat (PL8TM)'
+    case default
+      s = 'solids (PL8LS)'
+    end select
   end function users
 
   subroutine law_card(law, lines)
@@ -40,24 +47,26 @@ contains
     integer :: i, k
 
     allocate (lines(0))
-    call put(lines, law%name//' ('//to_text(law%number)//'): '//law%purpose)
-    call put(lines, 'source: '//law%source)
-    call put(lines, 'for: '//users(law))
-    call put(lines, 'tangent: '//trim(merge('symmetric  ', 'unsymmetric', law%symmetric)))
-    call put(lines, '')
-    call put(lines, 'LAW name '//law%name)
+    call add_text(lines, law%name//' ('//to_text(law%number)//'): '//law%purpose)
+    call add_text(lines, 'source: '//law%source)
+    call add_text(lines, 'for: '//users(law))
+    call add_text(lines, 'tangent: '//trim(merge('symmetric  ', 'unsymmetric', law%symmetric)))
+    call add_text(lines, '')
+    call add_text(lines, 'LAW name '//law%name)
     do i = 1, size(law%lines)
-      call put(lines, card_line(law%lines(i)))
+      call add_text(lines, card_line(law%lines(i)))
       do k = 1, size(law%lines(i)%parameters)
-        call put(lines, parameter_line(law%lines(i)%parameters(k)))
+        call add_text(lines, parameter_line(law%lines(i)%parameters(k)))
       end do
     end do
-    if (law%kind /= contact_law) call put(lines, '  all rows again for each temperature, after a row TEMP value; or once, without')
-    call put(lines, '')
-    if (size(law%history) == 0) call put(lines, 'state of a point beside that of the element: none')
-    if (size(law%history) > 0) call put(lines, 'state of a point beside that of the element:')
+    if (law%kind == solid_law) &
+      call add_text(lines, '  all rows again for each temperature, after a row TEMP value; or once, without')
+    if (allocated(law%drivers)) call add_text(lines, 'driven, beside the temperature, by: '//join(law%drivers, ', '))
+    call add_text(lines, '')
+    if (size(law%history) == 0) call add_text(lines, 'state of a point beside that of the element: none')
+    if (size(law%history) > 0) call add_text(lines, 'state of a point beside that of the element:')
     do i = 1, size(law%history)
-      call put(lines, '  '//padded(law%history(i)%name, 18)//padded('['//law%history(i)%unit//']', 18) &
+      call add_text(lines, '  '//padded(law%history(i)%name, 18)//padded('['//law%history(i)%unit//']', 18) &
                //to_text(law%history(i)%ncomp)//' component(s), carried over as '//law%history(i)%transfer &
                //only_with(law, law%history(i)%needs))
     end do
@@ -121,14 +130,5 @@ contains
 
     t = s//repeat(' ', max(1, width - len(s)))
   end function padded
-
-  pure subroutine put(lines, s)
-    type(string_t), allocatable, intent(inout) :: lines(:)
-    character(len=*), intent(in) :: s
-    type(string_t) :: line
-
-    line%s = s
-    lines = [lines, line]
-  end subroutine put
 
 end module law_manual

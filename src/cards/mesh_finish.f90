@@ -108,7 +108,7 @@ contains
     group%elem = body%elem
     group%elem_id = find_elem(draft%elems, body%elem)
     group%material = body%material
-    group%npoint = body%npoint
+    group%rule%n = body%npoint
     group%option = body%option
     group%role = role_body
     group%connectivity = body%connectivity

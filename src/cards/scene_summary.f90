@@ -6,6 +6,7 @@ module scene_summary
   use kinds, only: wp
   use linear_api, only: solver_row_t
   use linear_registry, only: list_solvers
+  use quadrature, only: rule_equidistant, rule_t
   use remeshing, only: criterion_names, is_upper, ncriteria, never
   use scene, only: axisymmetric, generalised_plane_strain, group_t, lacks_mesh, plane_state_names, scene_t
   use sections, only: section_drive_t, section_forced, section_moved, section_names
@@ -39,7 +40,7 @@ contains
     do k = 1, size(scene%groups)
       associate (group => scene%groups(k))
         call put('group      '//padded(group%name, 24)//padded(to_text(size(group%connectivity, 2))//' '//group%elem, 14) &
-                 //to_text(abs(group%npoint))//rule_of(group%npoint)//' points' &
+                 //to_text(group%rule%n)//rule_of(group%rule)//' points' &
                  //option_of(group)//driven_by(k))
       end associate
     end do
@@ -174,13 +175,12 @@ contains
     end function driven_by
 
     !> Kind of an integration rule along a side, where it is not Gauss's.
-    pure function rule_of(npoint) result(s)
-      integer, intent(in) :: npoint
+    pure function rule_of(rule) result(s)
+      type(rule_t), intent(in) :: rule
       character(len=:), allocatable :: s
 
       s = ''
-      if (npoint == -3) s = ' Lobatto'
-      if (npoint < -3) s = ' equidistant'
+      if (rule%family == rule_equidistant) s = trim(merge(' Lobatto    ', ' equidistant', rule%n == 3))
     end function rule_of
 
     pure function motion_of(die) result(s)

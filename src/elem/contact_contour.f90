@@ -41,7 +41,7 @@ contains
     integer :: e, p, n, after
     logical, allocatable :: closed(:, :)
 
-    call line_rule(group%npoint, xi, weight)
+    call line_rule(group%rule, xi, weight)
     n = size(xi)
     allocate (closed(n, size(status, 2)))
     closed = status /= contact_open

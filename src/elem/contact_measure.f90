@@ -3,21 +3,20 @@
 !> The state of a point is that of contact_point; behind it there may be the same of a corner of the
 !> die, and its place on the side (corner_contact).
 module contact_measure
-  use contact_point, only: area_at, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_work, dissipated, &
-                           npoint_state, penalties, side_length
-  use corner_contact, only: at_place, stretch_before
+  use contact_penalties, only: allowed_penetration, penalties_of_card, penalties_t
+  use contact_point, only: area_at, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_work, contact_block, &
+                           dissipated, penalties, side_length
+  use corner_contact, only: stretch_before
   use elem_api, only: totals_t
   use kinds, only: wp
   use law_api, only: contact_open, contact_slip, contact_stick, law_t
-  use quadrature, only: line_rule
+  use quadrature, only: line_rule, rule_equidistant, rule_t
   use scene, only: group_t, scene_t
   use state_variables, only: find_variable
   implicit none
   private
   public :: augment, measure
 
-  !> Place of the largest number of augmentations among a contact law's values (contact_penalties).
-  integer, parameter :: at_augment = 4
   !> Augmentation takes away the depth of points, not the bend of the side between them: points that are deep by less than
   !> this share of the allowed penetration have no more to give.
   real(wp), parameter :: worth_augmenting = 0.5_wp
@@ -33,47 +32,49 @@ contains
     real(wp), intent(inout) :: committed(:, :, :)
     real(wp), intent(in) :: trial(:, :, :)
     logical, intent(out) :: changed
+    type(penalties_t) :: given
     real(wp) :: allowed
-    integer :: e, k
+    integer :: e, k, last, n
 
     changed = .false.
-    associate (values => scene%materials(group%material)%values)
-      if (times >= nint(values(at_augment)) .or. .not. values(1) > 0) return
-      do e = 1, size(trial, 3)
-        allowed = values(1)*side_length(scene, group%connectivity(:, e))
-        do k = 0, last_block(group), npoint_state
-          changed = changed .or. any(abs(trial(k + at_penetration, :, e)) > allowed &
-                                     .and. nint(trial(k + at_status, :, e)) /= contact_open)
-        end do
-        changed = changed .or. any(peaks(trial(:, :, e), group%npoint, worth_augmenting*allowed) > allowed)
+    given = penalties_of_card(scene%materials(group%material))
+    if (times >= given%augmentations .or. .not. given%allowed > 0) return
+    n = contact_block(has_corners(group), size(trial, 1))
+    last = merge(n, 0, has_corners(group))
+    do e = 1, size(trial, 3)
+      allowed = given%allowed*side_length(scene, group%connectivity(:, e))
+      do k = 0, last, n
+        changed = changed .or. any(abs(trial(k + at_penetration, :, e)) > allowed &
+                                   .and. nint(trial(k + at_status, :, e)) /= contact_open)
       end do
-    end associate
+      changed = changed .or. any(peaks(trial(:, :, e), group%rule, worth_augmenting*allowed) > allowed)
+    end do
     if (.not. changed) return
-    do k = 0, last_block(group), npoint_state
+    do k = 0, last, n
       committed(k + at_augmentation, :, :) = trial(k + at_pressure, :, :)
     end do
   end subroutine augment
 
-  !> Where the last block of a point's state begins: that of its corner, or its own.
-  pure function last_block(group) result(k)
+  !> Corners of the die are points of contact of their own.
+  pure function has_corners(group) result(yes)
     type(group_t), intent(in) :: group
-    integer :: k
+    logical :: yes
 
-    k = merge(npoint_state, 0, find_variable(group%variables, 'corner_place') > 0)
-  end function last_block
+    yes = find_variable(group%variables, 'corner_place') > 0
+  end function has_corners
 
   !> Depth of the side at its points in contact or beside them: the top of the parabola through three points at equal
   !> distances, when it lies between them; zero elsewhere.
-  pure function peaks(state, npoint, least) result(depth)
+  pure function peaks(state, rule, least) result(depth)
     real(wp), intent(in) :: state(:, :)
-    integer, intent(in) :: npoint
+    type(rule_t), intent(in) :: rule
     real(wp), intent(in) :: least   !! depth of a point that is judged [length]
     real(wp) :: depth(size(state, 2))
     real(wp) :: slope, bend
     integer :: p
 
     depth = 0
-    if (npoint > 0) return
+    if (rule%family /= rule_equidistant) return
     do p = 2, size(state, 2) - 1
       if (nint(state(at_status, p)) == contact_open .or. .not. state(at_penetration, p) > least) cycle
       if (any(nint(state(at_piece, p - 1:p + 1)) == 0)) cycle
@@ -92,14 +93,15 @@ contains
     type(totals_t), intent(out) :: totals
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: side, penalty(2), from, to
-    integer :: e, p
+    integer :: e, p, n
     logical :: corners
 
-    call line_rule(group%npoint, xi, weight)
-    corners = last_block(group) > 0
+    call line_rule(group%rule, xi, weight)
+    corners = has_corners(group)
+    n = contact_block(corners, size(state, 1))
     do e = 1, size(x, 3)
       side = side_length(scene, group%connectivity(:, e))
-      penalty = penalties(scene%materials(group%material), group%amplitude, side)
+      penalty = penalties(scene%materials(group%material), group%modulus, side)
       do p = 1, size(xi)
         select case (nint(state(at_status, p, e)))
         case (contact_stick)
@@ -109,11 +111,10 @@ contains
         case default
           totals%open = totals%open + 1
         end select
-        call add_point(state(:npoint_state, p, e), before(:npoint_state, p, e), xi(p), weight(p))
+        call add_point(state(:n, p, e), before(:n, p, e), xi(p), weight(p))
         if (.not. corners) cycle
         call stretch_before(xi, p, from, to)
-        call add_point(state(npoint_state + 1:2*npoint_state, p, e), before(npoint_state + 1:2*npoint_state, p, e), &
-                       state(at_place, p, e), to - from)
+        call add_point(state(n + 1:2*n, p, e), before(n + 1:2*n, p, e), state(2*n + 1, p, e), to - from)
       end do
     end do
 
@@ -124,7 +125,7 @@ contains
       real(wp), intent(in) :: now(:), old(:), place, share
       real(wp) :: allowed
 
-      allowed = scene%materials(group%material)%values(1)*side
+      allowed = allowed_penetration(scene%materials(group%material))*side
       if (nint(now(at_status)) /= contact_open) then
         totals%max_penetration = max(totals%max_penetration, now(at_penetration))
         if (allowed > 0) totals%penetration_ratio = max(totals%penetration_ratio, now(at_penetration)/allowed)

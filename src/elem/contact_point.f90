@@ -5,6 +5,7 @@
 !> there in generalised plane strain only, and always the last. What is met enters by its motion
 !> alone: depth, slip, and the turn of the normal.
 module contact_point
+  use contact_penalties, only: penalties_of_card, penalties_t
   use kinds, only: wp
   use law_api, only: contact_open, contact_slip, law_t
   use materials, only: material_t
@@ -16,12 +17,12 @@ module contact_point
   implicit none
   private
   public :: contact_point_t, meeting_t, side_point, act, penalties, share_to_contact, show_on_axis, side_length
-  public :: area_at, dissipated, flow_stress_of, point_variables, rest, thinning
+  public :: area_at, dissipated, point_variables, rest, thinning, contact_block
   public :: at_pressure, at_tau, at_penetration, at_status, at_slip, at_augmentation, at_work, at_piece, at_xi, &
             npoint_state
   public :: most_unknowns, no_surface, touching
 
-  !> Places in the state of a point.
+  !> Places in the state of a point; the history of its law follows.
   integer, parameter :: at_pressure = 1, at_tau = 2, at_penetration = 3, at_status = 4, at_slip = 5, &
                         at_augmentation = 6, at_work = 7, at_piece = 8, at_xi = 9, npoint_state = 9
   !> Six of a side, six of what it meets, three of the section.
@@ -58,8 +59,9 @@ module contact_point
 
 contains
 
-  !> State of a point.
-  pure function point_variables() result(list)
+  !> State of a point, with the history of its law.
+  pure function point_variables(law) result(list)
+    type(law_t), intent(in) :: law
     type(state_variable_t), allocatable :: list(:)
 
     allocate (list, source=[state_variable('pressure', 'stress', transfer_contact), &
@@ -70,7 +72,7 @@ contains
                             state_variable('augmentation', 'stress', transfer_contact), &
                             state_variable('friction_work', 'stress*length', transfer_contact), &
                             state_variable('die_piece', '-', transfer_recompute), &
-                            state_variable('die_xi', '-', transfer_recompute)])
+                            state_variable('die_xi', '-', transfer_recompute), law%history])
   end function point_variables
 
   !> Points without contact: what they have slipped and worn stays.
@@ -80,15 +82,14 @@ contains
     state([at_pressure, at_tau, at_status, at_penetration, at_piece, at_xi, at_augmentation], :) = 0
   end subroutine rest
 
-  !> Flow stress of the body behind a point, the last of its state where its law asks for it; else 0.
-  pure function flow_stress_of(law, state) result(flow_stress)
-    type(law_t), intent(in) :: law
-    real(wp), intent(in) :: state(:)
-    real(wp) :: flow_stress
+  !> Rows of the state that are of the point itself: with corners the same of a corner and its place on the side follow.
+  pure function contact_block(corners, nstate) result(n)
+    logical, intent(in) :: corners   !! corners of the die are points of contact of their own
+    integer, intent(in) :: nstate    !! rows of the state
+    integer :: n
 
-    flow_stress = 0
-    if (size(law%history) > 0) flow_stress = state(size(state))
-  end function flow_stress_of
+    n = merge((nstate - 1)/2, nstate, corners)
+  end function contact_block
 
   !> Position, length, inner normal and thickness of a point of the side, and their derivatives.
   pure subroutine side_point(phi, dphi, section, x, du, nunknown, point)
@@ -123,17 +124,18 @@ contains
   !> thickness. The state of the point goes on from committed to trial.
   !>
   !> When contact begins inside the step only the share d/(d - d_start) of the way counts as slip.
-  pure subroutine act(law, material, penalty, flow_stress, point, meeting, weight, tangent_wanted, committed, trial, q, dq)
+  pure subroutine act(law, material, dt, drivers, penalty, point, meeting, weight, tangent_wanted, committed, trial, q, dq)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: penalty(2)
-    real(wp), intent(in) :: flow_stress              !! of the body behind the side [stress]
+    real(wp), intent(in) :: dt                       !! length of the step [time]
+    real(wp), intent(in) :: drivers(:, :)            !! (ndriver, 2) of the law, at the start and at the end of the step
+    real(wp), intent(in) :: penalty(2)               !! normal and tangential [stress/length]
     type(contact_point_t), intent(in) :: point
     type(meeting_t), intent(in) :: meeting
     real(wp), intent(in) :: weight
     logical, intent(in) :: tangent_wanted
-    real(wp), intent(in) :: committed(:)
-    real(wp), intent(inout) :: trial(:)
+    real(wp), intent(in) :: committed(:)             !! (nstate)
+    real(wp), intent(inout) :: trial(:)              !! (nstate)
     real(wp), intent(out) :: q(2)                    !! [force, per radian when axisymmetric]
     real(wp), intent(out) :: dq(2, most_unknowns)    !! set where the tangent is wanted and there is contact
     real(wp) :: dslip(most_unknowns), t(2), slip, depth, gap, share, pressure, stress(2), law_tangent(3, 3), area
@@ -152,8 +154,8 @@ contains
     end if
 
     ! nothing moves across the plane: the second tangential component stays at rest
-    call law%slide(material, penalty, committed(at_augmentation), depth, [slip, 0.0_wp], [committed(at_tau), 0.0_wp], &
-                   flow_stress, pressure, stress, law_tangent, status)
+    call law%slide(material, dt, drivers, penalty, committed(at_augmentation), depth, [slip, 0.0_wp], [committed(at_tau), 0.0_wp], &
+                   committed(npoint_state + 1:), pressure, stress, trial(npoint_state + 1:), law_tangent, status)
     trial(at_pressure) = pressure
     trial(at_tau) = stress(1)
     trial(at_status) = status
@@ -220,10 +222,12 @@ contains
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: modulus, side
     real(wp) :: penalty(2)
+    type(penalties_t) :: given
 
-    penalty(1) = material%values(2)
-    if (.not. penalty(1) > 0) penalty(1) = 0.01_wp*modulus/(material%values(1)*side)
-    penalty(2) = material%values(3)
+    given = penalties_of_card(material)
+    penalty(1) = given%normal
+    if (.not. penalty(1) > 0) penalty(1) = 0.01_wp*modulus/(given%allowed*side)
+    penalty(2) = given%tangential
     if (.not. penalty(2) > 0) penalty(2) = tangential_share*penalty(1)
   end function penalties
 

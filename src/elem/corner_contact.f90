@@ -8,7 +8,8 @@
 !> the law.
 module corner_contact
   use contact_point, only: at_augmentation, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, most_unknowns, &
-                           no_surface, npoint_state, share_to_contact, thinning
+                           contact_block, no_surface, share_to_contact, thinning
+  use contact_penalties, only: allowed_penetration
   use dies, only: die_t
   use elem_api, only: report_t
   use kinds, only: wp
@@ -19,10 +20,8 @@ module corner_contact
   use side_corners, only: corner_t, deepest_corner, foot_at_corner
   implicit none
   private
-  public :: press_corners, stretch_before, at_place
+  public :: press_corners, stretch_before
 
-  !> Place on the side of a corner, after the state of the point and that of the corner.
-  integer, parameter :: at_place = 2*npoint_state + 1
   !> A corner acts on what is deeper than this share of the allowed penetration.
   real(wp), parameter :: corner_share = 0.5_wp
   !> A corner nearer than this to an end of the side, in xi, has lost a part of its weight to the node there.
@@ -31,21 +30,24 @@ module corner_contact
 contains
 
   !> Contact of a side with the corners of a die. States are of all points of the side (nstate, npoint).
-  pure subroutine press_corners(die, law, material, axisym, side, xi, flow_stress, committed, trial, force, stiffness, report)
+  pure subroutine press_corners(die, law, material, drivers, axisym, side, xi, committed, trial, force, stiffness, report)
     type(die_t), intent(in) :: die
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
+    real(wp), intent(in) :: drivers(:, :, :)  !! (ndriver, 2, npoint) of the law
     logical, intent(in) :: axisym
     type(side_t), intent(in) :: side
-    real(wp), intent(in) :: xi(:), flow_stress(:)
-    real(wp), intent(in) :: committed(:, :)
+    real(wp), intent(in) :: xi(:)             !! (npoint)
+    real(wp), intent(in) :: committed(:, :)   !! (nstate, npoint)
     real(wp), intent(inout) :: trial(:, :), force(ndof), stiffness(ndof, ndof)
     type(report_t), intent(inout) :: report
     type(corner_t) :: corner
     real(wp) :: nodes(2, 3), from, to, worn(1)
-    integer :: p, k
+    integer :: p, k, n, at_place
 
-    if (size(die%corners, 2) == 0 .or. .not. material%values(1) > 0) return
+    if (size(die%corners, 2) == 0 .or. .not. allowed_penetration(material) > 0) return
+    at_place = size(trial, 1)
+    n = contact_block(.true., at_place)
     do k = 1, 3
       nodes(:, k) = turned([side%x(1, k) + side%du(k), side%x(2, k) + side%du(k + 3)] - side%pilot(1:2, 2), -side%pilot(3, 2))
     end do
@@ -55,10 +57,10 @@ contains
       call deepest_corner(die, nodes, from, to, side%length, corner)
       if (.not. corner%found) cycle
       trial(at_place, p) = corner%place
-      associate (before => committed(npoint_state + 1:2*npoint_state, p), now => trial(npoint_state + 1:2*npoint_state, p))
+      associate (before => committed(n + 1:2*n, p), now => trial(n + 1:2*n, p))
         worn = thinning(committed([at_place], p), [corner%place], side%section, side%thickening, side%x, side%du(1:6))
         now(at_work) = before(at_work)*worn(1)
-        call corner_at(law, material, axisym, side, corner, to - from, flow_stress(p), before, now, force, stiffness)
+        call corner_at(law, material, drivers(:, :, p), axisym, side, corner, to - from, before, now, force, stiffness)
         if (nint(before(at_status)) /= contact_open) then
           report%jump = max(report%jump, abs(now(at_penetration) - before(at_penetration))/side%length)
         end if
@@ -68,13 +70,14 @@ contains
   end subroutine press_corners
 
   !> Contact at one corner: state, forces, matrix.
-  pure subroutine corner_at(law, material, axisym, side, corner, weight, flow_stress, committed, trial, force, stiffness)
+  pure subroutine corner_at(law, material, drivers, axisym, side, corner, weight, committed, trial, force, stiffness)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
+    real(wp), intent(in) :: drivers(:, :)
     logical, intent(in) :: axisym
     type(side_t), intent(in) :: side
     type(corner_t), intent(in) :: corner
-    real(wp), intent(in) :: weight, flow_stress, committed(:)
+    real(wp), intent(in) :: weight, committed(:)
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: point
     type(drift_t) :: drift
@@ -82,7 +85,7 @@ contains
 
     call place_point(side, corner%place, point)
     if (axisym .and. point%x(1) <= no_surface*side%length) return
-    allowed = corner_share*material%values(1)*side%length
+    allowed = corner_share*allowed_penetration(material)*side%length
     if (.not. committed(at_augmentation) + side%penalty(1)*(corner%d - allowed) > 0) then
       ! its gap is known
       trial([at_penetration, at_piece, at_xi]) = [corner%d, real(corner%piece, wp), corner%xi]
@@ -90,8 +93,8 @@ contains
     end if
     call follow_corner(side, corner, point, drift)
     before = force
-    call press(law, material, side, corner%place, point, foot_at_corner(corner), allowed, weight*share_of(corner%place), &
-               flow_stress, committed, trial, force, stiffness, drift)
+    call press(law, material, drivers, side, corner%place, point, foot_at_corner(corner), allowed, weight*share_of(corner%place), &
+               committed, trial, force, stiffness, drift)
     if (.not. (side%tangent .and. share_of(corner%place) < 1)) return
     ! the share changes with the place: d(ln share) = -sign(place)/(1 - |place|) d(place)
     toward_end = sign(1.0_wp, corner%place)/(1 - abs(corner%place))

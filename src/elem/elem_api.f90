@@ -149,7 +149,7 @@ module elem_api
     end subroutine elem_variables_i
 
     !> Forces, matrices and trial state of elements first ... first + nb - 1 of a group.
-    subroutine elem_compute_i(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+    subroutine elem_compute_i(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                               force, stiffness, report)
       import :: group_t, instant_t, kinematics_t, law_t, layout_t, report_t, scene_t, wp
       type(scene_t), intent(in) :: scene
@@ -162,6 +162,8 @@ module elem_api
       real(wp), intent(in) :: x(:, :, :)              !! (2, nnode, nb) at the start of the step [length]
       real(wp), intent(in) :: du(:, :)                !! (ndof, nb) motion of the step
       real(wp), intent(in) :: start(:, :)             !! (ndof, nb) values at the start of the step; (0, nb) in mechanics alone
+      real(wp), intent(in) :: drivers(:, :, :, :)     !! (ndriver, 2, npoint, nb) of the law at both ends of the step, the
+                                                      !! temperature first; no rows where the law asks for none
       real(wp), intent(in), contiguous :: committed(:, :, :)   !! (nstate, npoint, nb)
       real(wp), intent(inout), contiguous :: trial(:, :, :)
       real(wp), intent(out) :: force(:, :)            !! (ndof, nb) [force, per radian when axisymmetric]

@@ -58,7 +58,7 @@ contains
   end subroutine variables
 
   !> Amplitude times multiplier, along the group's direction.
-  subroutine compute_force(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+  subroutine compute_force(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                            force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -67,7 +67,7 @@ contains
     type(instant_t), intent(in) :: instant
     type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :), drivers(:, :, :, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)
@@ -79,13 +79,13 @@ contains
     b = 0
     b(group%direction) = group%amplitude*instant%multipliers(group%multiplier)
     do e = 1, size(x, 3)
-      call load_element(scene, kinematics%finite, instant, layout, group%npoint, b, [0.0_wp, 0.0_wp], x(:, :, e), du(:, e), &
+      call load_element(scene, kinematics%finite, instant, layout, group%rule%n, b, [0.0_wp, 0.0_wp], x(:, :, e), du(:, e), &
                         force(:, e), stiffness(:, :, e))
     end do
   end subroutine compute_force
 
   !> Amplitude (density times the square of an angular velocity) times the square of the multiplier, times the distance.
-  subroutine compute_centrifugal(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+  subroutine compute_centrifugal(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                                  force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -94,7 +94,7 @@ contains
     type(instant_t), intent(in) :: instant
     type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :), drivers(:, :, :, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)
@@ -106,7 +106,7 @@ contains
     growth = group%amplitude*instant%multipliers(group%multiplier)**2
     if (scene%plane_state == axisymmetric) growth(2) = 0
     do e = 1, size(x, 3)
-      call load_element(scene, kinematics%finite, instant, layout, group%npoint, [0.0_wp, 0.0_wp], growth, x(:, :, e), &
+      call load_element(scene, kinematics%finite, instant, layout, group%rule%n, [0.0_wp, 0.0_wp], growth, x(:, :, e), &
                         du(:, e), force(:, e), stiffness(:, :, e))
     end do
   end subroutine compute_centrifugal

@@ -18,10 +18,10 @@
 !> moment about it. Everything is linearised exactly, the curvature of the die included.
 module elem_cnt2d
   use contact_measure, only: augment, measure
-  use contact_point, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, flow_stress_of, no_surface, &
-                           npoint_state, penalties, point_variables, rest, share_to_contact, show_on_axis, side_length, &
+  use contact_point, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, contact_point_t, no_surface, &
+                           penalties, point_variables, rest, share_to_contact, show_on_axis, side_length, &
                            thinning, touching
-  use corner_contact, only: at_place, press_corners
+  use corner_contact, only: press_corners
   use die_search, only: box_distance, find_foot, follow_foot, foot_t
   use dies, only: die_t
   use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_pilot, of_section, report_t, section_motion
@@ -58,26 +58,27 @@ contains
     row%augment => augment
   end function elem_cnt2d_row
 
-  !> That of a point, the same of the corner before it, the corner's place on the side, and the law's.
+  !> That of a point with its law's, the same of the corner before it, and the corner's place on the side.
   pure subroutine variables(law, plane_state, list)
     type(law_t), intent(in) :: law
     integer, intent(in) :: plane_state
     type(state_variable_t), allocatable, intent(out) :: list(:)
     type(state_variable_t), allocatable :: own(:)
-    integer :: k
+    integer :: k, n
 
-    allocate (own, source=point_variables())
-    allocate (list, source=[own, own, state_variable('corner_place', '-', transfer_recompute), law%history])
-    do k = 1, npoint_state
-      list(npoint_state + k)%name = 'corner_'//own(k)%name
-      list(npoint_state + k)%transfer = transfer_recompute
+    allocate (own, source=point_variables(law))
+    n = size(own)
+    allocate (list, source=[own, own, state_variable('corner_place', '-', transfer_recompute)])
+    do k = 1, n
+      list(n + k)%name = 'corner_'//own(k)%name
+      list(n + k)%transfer = transfer_recompute
     end do
     do k = 1, size(list)
       list(k)%first = k
     end do
   end subroutine variables
 
-  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                      force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -86,22 +87,22 @@ contains
     type(instant_t), intent(in) :: instant
     type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :), drivers(:, :, :, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)
     real(wp), intent(inout) :: stiffness(:, :, :)
     type(report_t), intent(out) :: report
-    real(wp), allocatable :: xi(:), weight(:), flow_stress(:)
+    real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: f(ndof), k(ndof, ndof)
     type(side_t) :: side
-    integer :: e, p, n
+    integer :: e, p, n, own
     logical :: axisym
 
     n = size(du, 1)
+    own = contact_block(.true., size(trial, 1))
     axisym = scene%plane_state == axisymmetric
-    call line_rule(group%npoint, xi, weight)
-    allocate (flow_stress(size(xi)))
+    call line_rule(group%rule, xi, weight)
     associate (die => scene%dies(group%die), material => scene%materials(group%material))
       do e = 1, size(x, 3)
         force(:, e) = 0
@@ -112,15 +113,15 @@ contains
         f = 0
         k = 0
         do p = 1, size(xi)
-          flow_stress(p) = flow_stress_of(law, committed(:, p, e))
-          call contact_at(die, law, material, axisym, side, xi(p), weight(p), flow_stress(p), &
-                          committed(:npoint_state, p, e), trial(:npoint_state, p, e), f, k)
+          call contact_at(die, law, material, drivers(:, :, p, e), axisym, side, xi(p), weight(p), committed(:own, p, e), &
+                          trial(:own, p, e), f, k)
           if (nint(committed(at_status, p, e)) /= contact_open) then
             report%jump = max(report%jump, abs(trial(at_penetration, p, e) - committed(at_penetration, p, e))/side%length)
           end if
           report%event = min(report%event, share_to_contact(committed(:, p, e), trial(:, p, e), side%length))
         end do
-        call press_corners(die, law, material, axisym, side, xi, flow_stress, committed(:, :, e), trial(:, :, e), f, k, report)
+        call press_corners(die, law, material, drivers(:, :, :, e), axisym, side, xi, committed(:, :, e), trial(:, :, e), f, k, &
+                           report)
         force(:, e) = f(:n)
         if (instant%tangent) stiffness(:, :, e) = k(:n, :n)
         if (axisym) call show_on_axis(xi, x(1, :, e) + du(1:3, e), side%length, trial(:, :, e))
@@ -144,9 +145,10 @@ contains
     side%section = scene%section
     if (scene%finite) side%section = instant%section + side%thickening
     side%length = side_length(scene, group%connectivity(:, element))
-    side%penalty = penalties(scene%materials(group%material), group%amplitude, side%length)
+    side%penalty = penalties(scene%materials(group%material), group%modulus, side%length)
     side%pilot(:, 1) = instant%pilots(:, group%die)
     side%pilot(:, 2) = side%pilot(:, 1) + du(7:9)
+    side%dt = instant%dt
     side%tangent = instant%tangent
   end subroutine begin_side
 
@@ -155,13 +157,15 @@ contains
     type(side_t), intent(in) :: side
     real(wp), intent(in) :: xi(:), committed(:, :)
     real(wp), intent(inout) :: trial(:, :)
+    integer :: n
 
+    n = contact_block(.true., size(trial, 1))
     trial = committed
-    call rest(trial(:npoint_state, :))
-    call rest(trial(npoint_state + 1:2*npoint_state, :))
+    call rest(trial(:n, :))
+    call rest(trial(n + 1:2*n, :))
     trial(at_work, :) = committed(at_work, :)*thinning(xi, xi, side%section, side%thickening, side%x, side%du(1:6))
-    associate (place => committed(at_place, :), work => committed(npoint_state + at_work, :))
-      trial(npoint_state + at_work, :) = work*thinning(place, place, side%section, side%thickening, side%x, side%du(1:6))
+    associate (place => committed(2*n + 1, :), work => committed(n + at_work, :))
+      trial(n + at_work, :) = work*thinning(place, place, side%section, side%thickening, side%x, side%du(1:6))
     end associate
   end subroutine begin_states
 
@@ -180,13 +184,14 @@ contains
   end function far
 
   !> Contact at one integration point: state, forces, matrix.
-  pure subroutine contact_at(die, law, material, axisym, side, xi, weight, flow_stress, committed, trial, force, stiffness)
+  pure subroutine contact_at(die, law, material, drivers, axisym, side, xi, weight, committed, trial, force, stiffness)
     type(die_t), intent(in) :: die
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
+    real(wp), intent(in) :: drivers(:, :)
     logical, intent(in) :: axisym
     type(side_t), intent(in) :: side
-    real(wp), intent(in) :: xi, weight, flow_stress
+    real(wp), intent(in) :: xi, weight
     real(wp), intent(in) :: committed(:)
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: point
@@ -199,7 +204,7 @@ contains
     ! a point on the axis has no surface: nothing acts there, and nothing is asked of it
     if (axisym .and. point%x(1) <= no_surface*side%length) return
     if (abs(foot%d) <= touching*side%length) foot%d = 0
-    call press(law, material, side, xi, point, foot, 0.0_wp, weight, flow_stress, committed, trial, force, stiffness)
+    call press(law, material, drivers, side, xi, point, foot, 0.0_wp, weight, committed, trial, force, stiffness)
   end subroutine contact_at
 
   !> Foot of a point: the closest, unless the one that continues the last accepted foot says that the point is inside.

@@ -18,8 +18,8 @@
 !> the other loses, point by point. Each point is coupled with a few pieces only (pairs): a foot on
 !> another one is told, and the pairs are renewed before anything is made of it.
 module elem_cntdf
-  use contact_point, only: act, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, flow_stress_of, meeting_t, &
-                           most_unknowns, no_surface, npoint_state, penalties, point_variables, rest, share_to_contact, &
+  use contact_point, only: act, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, meeting_t, &
+                           most_unknowns, no_surface, penalties, point_variables, rest, share_to_contact, &
                            show_on_axis, side_length, side_point, thinning
   use die_search, only: box_distance, find_foot, find_foot_on, foot_t
   use dies, only: die_t
@@ -67,13 +67,13 @@ contains
     type(state_variable_t), allocatable, intent(out) :: list(:)
     integer :: k
 
-    allocate (list, source=[point_variables(), law%history])
+    allocate (list, source=point_variables(law))
     do k = 1, size(list)
       list(k)%first = k
     end do
   end subroutine variables
 
-  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                      force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -82,7 +82,7 @@ contains
     type(instant_t), intent(in) :: instant
     type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :), drivers(:, :, :, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)
@@ -99,13 +99,13 @@ contains
     axisym = scene%plane_state == axisymmetric
     nnode = size(x, 2)
     n = merge(most_unknowns, most_unknowns - 3, scene%plane_state == generalised_plane_strain)
-    call line_rule(group%npoint, xi, weight)
+    call line_rule(group%rule, xi, weight)
     associate (die => instant%dies(group%die), middle => instant%pairs(group%pairs)%piece(:, first:first + size(x, 3) - 1))
       do e = 1, size(x, 3)
         force(:, e) = 0
         if (instant%tangent) stiffness(:, :, e) = 0
         trial(:, :, e) = committed(:, :, e)
-        call rest(trial(:npoint_state, :, e))
+        call rest(trial(:, :, e))
         side = side_length(scene, group%connectivity(:, first + e - 1))
         section = scene%section
         if (scene%finite) section = instant%section + section_motion(layout, du(:, e))
@@ -132,9 +132,9 @@ contains
           place(7:12) = [at + 1, at + 2, at + 3, nnode + at + 1, nnode + at + 2, nnode + at + 3]
           call line3(foot%xi, psi, dpsi)
           call meet(foot, matmul(x(:, 1:3, e), phi), x(:, at + 1:at + 3, e), du(place(7:12), e), point, meeting, dxi)
-          call act(law, scene%materials(group%material), penalties(scene%materials(group%material), group%amplitude, side), &
-                   flow_stress_of(law, committed(:, p, e)), point, meeting, weight(p), instant%tangent, committed(:, p, e), &
-                   trial(:, p, e), q, dq)
+          call act(law, scene%materials(group%material), instant%dt, drivers(:, :, p, e), &
+                   penalties(scene%materials(group%material), group%modulus, side), point, meeting, weight(p), instant%tangent, &
+                   committed(:, p, e), trial(:, p, e), q, dq)
           if (nint(committed(at_status, p, e)) /= contact_open) then
             report%jump = max(report%jump, abs(trial(at_penetration, p, e) - committed(at_penetration, p, e))/side)
           end if

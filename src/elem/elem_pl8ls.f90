@@ -13,7 +13,7 @@ module elem_pl8ls
                       section_motion, that_reads, totals_t
   use kinds, only: wp
   use kinematics_api, only: first_history, first_strain, kinematics_t, solid_variables
-  use law_api, only: law_done, law_t, solid_law
+  use law_api, only: driver_count, driver_temperature, law_done, law_t, solid_law
   use mean_dilatation, only: dilatation_t, share_dilatation, share_pressure
   use plane_stress_points, only: update_plane_stress
   use point_temperatures, only: find_temperatures, nodal_temperatures, temperature_field, temperature_place
@@ -67,7 +67,7 @@ contains
     allocate (list, source=[others, stretch])
   end subroutine variables
 
-  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                      force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -76,7 +76,7 @@ contains
     type(instant_t), intent(in) :: instant
     type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :), drivers(:, :, :, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)
@@ -84,10 +84,10 @@ contains
     type(report_t), intent(out) :: report
     type(quad8_rule_t) :: rule
     type(dilatation_t) :: own
-    real(wp), dimension(8, group%npoint, size(x, 3)) :: nx, ny, zx
-    real(wp) :: dv(group%npoint, size(x, 3)), f(5, group%npoint, size(x, 3)), tangent(4, 5, group%npoint, size(x, 3))
-    real(wp) :: temperature(2, group%npoint*size(x, 3)), section(3, 2)
-    integer :: status(group%npoint, size(x, 3))
+    real(wp), dimension(8, group%rule%n, size(x, 3)) :: nx, ny, zx
+    real(wp) :: dv(group%rule%n, size(x, 3)), f(5, group%rule%n, size(x, 3)), tangent(4, 5, group%rule%n, size(x, 3))
+    real(wp) :: given(driver_count(law), 2, group%rule%n*size(x, 3)), section(3, 2)
+    integer :: status(group%rule%n, size(x, 3))
     real(wp) :: strain
     logical :: valid
     integer :: e, p, n, nb, nstate
@@ -96,10 +96,10 @@ contains
     n = size(du, 1)
     if (temperature_place(layout) > 0) n = layout%first(1, temperature_place(layout)) - 1
     nstate = size(committed, 1)
-    call quad8_rule(group%npoint, rule)
+    call quad8_rule(group%rule%n, rule)
     do e = 1, nb
       call sections_of_step(scene, kinematics%finite, instant, layout, du(:, e), section)
-      do p = 1, group%npoint
+      do p = 1, group%rule%n
         call motion(rule, p, section, kinematics%finite, x(:, :, e), du(:, e), nx(:, p, e), ny(:, p, e), zx(:, p, e), &
                     dv(p, e), f(:, p, e), strain, valid)
         report%strain = max(report%strain, strain)
@@ -122,16 +122,18 @@ contains
     end do
 
     do e = 1, nb
-      p = (e - 1)*group%npoint
-      call find_temperatures(group, instant, layout, rule%phi, du(:, e), start(:, e), temperature(:, p + 1:p + group%npoint))
+      p = (e - 1)*group%rule%n
+      call find_temperatures(group, instant, layout, rule%phi, du(:, e), start(:, e), &
+                             given(driver_temperature, :, p + 1:p + group%rule%n))
+      if (size(given, 1) > 1) given(2:, :, p + 1:p + group%rule%n) = drivers(2:, :, :, e)
     end do
     if (scene%plane_state == plane_stress) then
-      call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%npoint*nb, nstate, temperature, &
+      call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, given, &
                                f, committed, trial, tangent, status)
       trial(nstate, :, :) = committed(nstate, :, :)*f(5, :, :)
       if (kinematics%finite) dv = dv*trial(nstate, :, :)
     else
-      call kinematics%update(law, scene%materials(group%material), instant%dt, group%npoint*nb, nstate, temperature, &
+      call kinematics%update(law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, given, &
                              f, committed, trial, tangent, status)
     end if
 
@@ -178,12 +180,12 @@ contains
     !> d(force)/d(temperature): the forces of d(stress dv)/d(temperature) at the points, by central differences of the whole update
     !> (any law, any kinematics); error eps**(2/3).
     subroutine add_columns_of_temperature()
-      real(wp), dimension(4, group%npoint, nb) :: high, low
+      real(wp), dimension(4, group%rule%n, nb) :: high, low
       real(wp) :: change, shape(8, layout%count(temperature_place(layout))), unused(n, n)
       integer :: u, k
 
       u = temperature_place(layout)
-      change = epsilon(1.0_wp)**(1.0_wp/3)*maxval(abs(temperature))
+      change = epsilon(1.0_wp)**(1.0_wp/3)*maxval(abs(given(driver_temperature, :, :)))
       ! nothing has a temperature yet: any number serves
       if (.not. change > 0) change = epsilon(1.0_wp)**(1.0_wp/3)
       call stresses_at(change, high)
@@ -194,7 +196,7 @@ contains
       end do
       do e = 1, nb
         do k = 1, layout%count(u)
-          low(:, :, e) = high(:, :, e)*spread(matmul(shape(:, k), rule%phi(:, :group%npoint)), 1, 4)
+          low(:, :, e) = high(:, :, e)*spread(matmul(shape(:, k), rule%phi(:, :group%rule%n)), 1, 4)
           call forces_of(e, .false., low(:, :, e), dv(:, e), stiffness(:n, layout%first(1, u) + k - 1, e), unused)
         end do
       end do
@@ -204,18 +206,18 @@ contains
     subroutine stresses_at(change, stress)
       real(wp), intent(in) :: change
       real(wp), intent(out) :: stress(:, :, :)
-      real(wp) :: other(nstate, group%npoint, nb), shifted(2, group%npoint*nb), g(5, group%npoint, nb)
-      real(wp) :: unused(4, 5, group%npoint, nb)
-      integer :: answers(group%npoint, nb)
+      real(wp) :: other(nstate, group%rule%n, nb), shifted(size(given, 1), 2, group%rule%n*nb), g(5, group%rule%n, nb)
+      real(wp) :: unused(4, 5, group%rule%n, nb)
+      integer :: answers(group%rule%n, nb)
 
-      shifted = temperature
-      shifted(2, :) = shifted(2, :) + change
+      shifted = given
+      shifted(driver_temperature, 2, :) = shifted(driver_temperature, 2, :) + change
       g = f
       if (scene%plane_state == plane_stress) then
-        call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%npoint*nb, nstate, shifted, &
+        call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, shifted, &
                                  g, committed, other, unused, answers)
       else
-        call kinematics%update(law, scene%materials(group%material), instant%dt, group%npoint*nb, nstate, shifted, g, committed, &
+        call kinematics%update(law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, shifted, g, committed, &
                                other, unused, answers)
       end if
       stress = other(1:4, :, :)
@@ -332,16 +334,16 @@ contains
     type(totals_t), intent(out) :: totals
     type(quad8_rule_t) :: rule
     type(dilatation_t) :: own
-    real(wp) :: nx(8), ny(8), detj, dv, volume(group%npoint), m(group%npoint), shared(4, group%npoint), stress(4), strain(4)
+    real(wp) :: nx(8), ny(8), detj, dv, volume(group%rule%n), m(group%rule%n), shared(4, group%rule%n), stress(4), strain(4)
     integer :: e, p, k, kept
 
-    call quad8_rule(group%npoint, rule)
+    call quad8_rule(group%rule%n, rule)
     k = find_variable(law%history, 'plastic_work')
     if (k > 0) k = group%variables(find_variable(group%variables, 'plastic_work'))%first
     kept = find_variable(group%variables, 'stored_work')
     if (kept > 0) kept = group%variables(kept)%first
     do e = 1, size(x, 3)
-      do p = 1, group%npoint
+      do p = 1, group%rule%n
         call derivatives(rule%dphi(:, :, p), x(:, :, e), nx, ny, detj)
         volume(p) = detj*rule%weight(p)*thickness_at(section, matmul(x(:, :, e), rule%phi(:, p)))
         if (scene%plane_state == plane_stress .and. scene%finite) volume(p) = volume(p)*state(size(state, 1), p, e)
@@ -352,7 +354,7 @@ contains
         call share_pressure(own, volume, state(1:4, :, e), m, shared)
         volume = m
       end if
-      do p = 1, group%npoint
+      do p = 1, group%rule%n
         dv = volume(p)
         stress = state(1:4, p, e)
         strain = state(first_strain:first_history - 1, p, e)

@@ -14,7 +14,7 @@ module elem_pl8tm
   use fields, only: displacement_field, field_t, transfer_nodal
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
-  use law_api, only: find_parameter, heat_law, law_t
+  use law_api, only: conduction_t, heat_law, law_t
   use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
   use quadrature, only: square_rule
   use scene, only: group_t, role_body, scene_t
@@ -68,7 +68,7 @@ contains
     allocate (list(0))
   end subroutine variables
 
-  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                      force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -77,7 +77,7 @@ contains
     type(instant_t), intent(in) :: instant
     type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :), drivers(:, :, :, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)
@@ -85,7 +85,7 @@ contains
     type(report_t), intent(out) :: report
     type(quad8_rule_t) :: rule
     type(functions_t) :: own
-    real(wp) :: numbers(3)
+    type(conduction_t) :: numbers
     integer :: e, k, u
     logical :: valid
 
@@ -98,10 +98,8 @@ contains
       end do
       return
     end if
-    associate (values => scene%materials(group%material)%values)
-      numbers = [values(find_parameter(law, 'LAMBDA')), values(find_parameter(law, 'RHOC')), values(find_parameter(law, 'SOURCE'))]
-    end associate
-    call quad8_rule(group%npoint, rule)
+    numbers = law%conduct(scene%materials(group%material), 0.0_wp)
+    call quad8_rule(group%rule%n, rule)
     call functions_of(group, rule, own)
     u = first_unknown(layout, displacement_field)
     do e = 1, size(x, 3)
@@ -138,8 +136,8 @@ contains
       return
     end if
     own%n = 4
-    call square_rule(group%npoint, xi, weight)
-    do p = 1, group%npoint
+    call square_rule(group%rule%n, xi, weight)
+    do p = 1, group%rule%n
       call quad4(xi(1, p), xi(2, p), own%phi(:4, p))
       own%dphi(1, :4, p) = 0.25_wp*quad8_corner(1, :)*(1 + quad8_corner(2, :)*xi(2, p))
       own%dphi(2, :4, p) = 0.25_wp*quad8_corner(2, :)*(1 + quad8_corner(1, :)*xi(1, p))
@@ -154,7 +152,7 @@ contains
     logical, intent(in) :: finite, lumped
     type(quad8_rule_t), intent(in) :: rule
     type(functions_t), intent(in) :: own
-    real(wp), intent(in) :: numbers(3)                      !! LAMBDA, RHOC, SOURCE
+    type(conduction_t), intent(in) :: numbers
     real(wp), intent(in) :: x0(2, 8), x(2, 8)               !! nodes at the start of the mesh, and of the step [length]
     real(wp), intent(in) :: motion(16)                      !! of the nodes, x then y [length]
     real(wp), intent(in) :: dt_nodes(:), t_nodes(:)         !! change of the temperatures, and their start (n) [temperature]
@@ -187,9 +185,9 @@ contains
         gx(:n) = (jacobian(2, 2)*d(1, :) - jacobian(2, 1)*d(2, :))/detj
         gy(:n) = (jacobian(1, 1)*d(2, :) - jacobian(1, 2)*d(1, :))/detj
       end associate
-      slope = numbers(1)*[dot_product(gx(:n), t_nodes + dt_nodes), dot_product(gy(:n), t_nodes + dt_nodes)]
+      slope = numbers%conductivity*[dot_product(gx(:n), t_nodes + dt_nodes), dot_product(gy(:n), t_nodes + dt_nodes)]
       force(:n) = force(:n) + dv*(gx(:n)*slope(1) + gy(:n)*slope(2))
-      capacity = numbers(2)*dv0/instant%dt
+      capacity = numbers%capacity*dv0/instant%dt
       if (lumped) then
         force(:n) = force(:n) + capacity*own%phi(:n, p)*dt_nodes
       else
@@ -203,10 +201,10 @@ contains
       else
         strain = dot_product(swelling, motion)
       end if
-      force(:n) = force(:n) + own%phi(:n, p)*(numbers(3)*dv0/instant%dt*strain)
+      force(:n) = force(:n) + own%phi(:n, p)*(numbers%source*dv0/instant%dt*strain)
       if (.not. instant%tangent) cycle
       do j = 1, n
-        stiffness(:n, j) = stiffness(:n, j) + (dv*numbers(1))*(gx(:n)*gx(j) + gy(:n)*gy(j))
+        stiffness(:n, j) = stiffness(:n, j) + (dv*numbers%conductivity)*(gx(:n)*gx(j) + gy(:n)*gy(j))
         if (lumped) then
           stiffness(j, j) = stiffness(j, j) + capacity*own%phi(j, p)
         else
@@ -215,7 +213,7 @@ contains
       end do
       if (u == 0) cycle
       do j = 1, 16
-        stiffness(:n, u + j - 1) = stiffness(:n, u + j - 1) + own%phi(:n, p)*(numbers(3)*dv0/instant%dt*swelling(j))
+        stiffness(:n, u + j - 1) = stiffness(:n, u + j - 1) + own%phi(:n, p)*(numbers%source*dv0/instant%dt*swelling(j))
         if (.not. finite) cycle
         stiffness(:n, u + j - 1) = stiffness(:n, u + j - 1) + dv*swelling(j)*(gx(:n)*slope(1) + gy(:n)*slope(2))
       end do
@@ -243,9 +241,9 @@ contains
     integer :: e, p
 
     if (group%host > 0) return
-    call quad8_rule(group%npoint, rule)
+    call quad8_rule(group%rule%n, rule)
     do e = 1, size(x, 3)
-      do p = 1, group%npoint
+      do p = 1, group%rule%n
         call derivatives(rule%dphi(:, :, p), x(:, :, e), nx, ny, detj)
         totals%volume = totals%volume + detj*rule%weight(p)*thickness_at(section, matmul(x(:, :, e), rule%phi(:, p)))
       end do

@@ -42,7 +42,7 @@ contains
     allocate (list(0))
   end subroutine variables
 
-  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                      force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -51,7 +51,7 @@ contains
     type(instant_t), intent(in) :: instant
     type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :), drivers(:, :, :, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)
@@ -61,7 +61,7 @@ contains
     real(wp) :: pressure, y(2, 3), phi(3), dphi(3), normal(2), section(3), pull
     integer :: e, p, j
 
-    call line_rule(group%npoint, xi, weight)
+    call line_rule(group%rule, xi, weight)
     pressure = group%amplitude*instant%multipliers(group%multiplier)
     do e = 1, size(x, 3)
       force(:, e) = 0

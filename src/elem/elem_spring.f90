@@ -37,7 +37,7 @@ contains
     allocate (list(0))
   end subroutine variables
 
-  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, committed, trial, &
+  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                      force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -46,7 +46,7 @@ contains
     type(instant_t), intent(in) :: instant
     type(layout_t), intent(in) :: layout
     integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :), drivers(:, :, :, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(out) :: force(:, :)
@@ -55,10 +55,10 @@ contains
 
     associate (c => group%component)
       force = 0
-      force(c, :) = group%amplitude*(instant%pilots(c, group%die) - scene%dies(group%die)%pilot(c) + du(c, :))
+      force(c, :) = group%stiffness*(instant%pilots(c, group%die) - scene%dies(group%die)%pilot(c) + du(c, :))
       if (.not. instant%tangent) return
       stiffness = 0
-      stiffness(c, c, :) = group%amplitude
+      stiffness(c, c, :) = group%stiffness
     end associate
   end subroutine compute
 

@@ -33,6 +33,8 @@ module rigid_contact
     real(wp) :: length = 0.0_wp
     !> Normal and tangential penalty [stress/length].
     real(wp) :: penalty(2) = 0.0_wp
+    !> Length of the step [time].
+    real(wp) :: dt = 0.0_wp
     !> Matrices are wanted.
     logical :: tangent = .true.
   end type side_t
@@ -56,16 +58,16 @@ contains
   end subroutine place_point
 
   !> Contact of a point with its foot on the die: state, forces, matrix.
-  pure subroutine press(law, material, side, xi, point, foot, allowed, weight, flow_stress, committed, trial, force, stiffness, &
-                        drift)
+  pure subroutine press(law, material, drivers, side, xi, point, foot, allowed, weight, committed, trial, force, stiffness, drift)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
+    real(wp), intent(in) :: drivers(:, :)          !! (ndriver, 2) of the law
     type(side_t), intent(in) :: side
     real(wp), intent(in) :: xi                     !! place on the side
     type(contact_point_t), intent(in) :: point
     type(foot_t), intent(in) :: foot               !! in the pilot's axes
     real(wp), intent(in) :: allowed                !! depth that needs no pressure [length]
-    real(wp), intent(in) :: weight, flow_stress
+    real(wp), intent(in) :: weight
     real(wp), intent(in) :: committed(:)
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(drift_t), intent(in), optional :: drift   !! of a point that is not fixed on its side
@@ -83,7 +85,7 @@ contains
     dlever(2, 8) = dlever(2, 8) - 1
     call meet(side, phi, dphi, foot, lever, dlever, meeting, drift)
     meeting%allowed = allowed
-    call act(law, material, side%penalty, flow_stress, point, meeting, weight, side%tangent, committed, trial, q, dq)
+    call act(law, material, side%dt, drivers, side%penalty, point, meeting, weight, side%tangent, committed, trial, q, dq)
     if (nint(trial(at_status)) == contact_open) return
 
     moment = lever(1)*q(2) - lever(2)*q(1)

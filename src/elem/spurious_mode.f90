@@ -27,7 +27,7 @@ contains
     type(group_t), intent(in) :: group
     logical :: yes
 
-    yes = is_solid(group) .and. group%npoint == reduced_rule
+    yes = is_solid(group) .and. group%rule%n == reduced_rule
   end function has_spurious_mode
 
   !> Whether the mode of a group may go unresisted.
@@ -51,7 +51,7 @@ contains
     real(wp) :: u(2, 8), unused, mean
     integer :: e
 
-    call quad8_rule(group%npoint, seen)
+    call quad8_rule(group%rule%n, seen)
     call quad8_rule(9, all)
     do e = 1, size(x, 3)
       u = motion(:, group%connectivity(:, e))

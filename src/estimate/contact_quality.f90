@@ -3,7 +3,8 @@
 !> Two things that no pressure mends: a side whose parabola is deeper in the die between its points than at them, and a corner of
 !> the die that sticks into a side. Both are measured over the penetration that the side's law allows.
 module contact_quality
-  use contact_point, only: at_penetration, at_status, npoint_state
+  use contact_penalties, only: allowed_penetration
+  use contact_point, only: at_penetration, at_status, contact_block
   use contact_scan, only: deepest_sample, in_pilot_axes, is_near
   use dies, only: die_t, present_die
   use fields, only: pilot_field
@@ -34,10 +35,9 @@ contains
     type(die_t) :: die
     real(wp) :: side(2, 3), x(2, size(scene%mesh%coordinates, 2)), allowed, length, known, deep
     logical :: corners
-    integer :: e
+    integer :: e, n
 
-    ! every contact law begins with it (contact_penalties)
-    allowed = scene%materials(scene%groups(g)%material)%values(1)
+    allowed = allowed_penetration(scene%materials(scene%groups(g)%material))
     if (.not. allowed > 0) return
     corners = find_variable(scene%groups(g)%variables, 'corner_place') > 0
     x = present_coordinates(scene, solution)
@@ -47,9 +47,10 @@ contains
         side = in_pilot_axes(x(:, nodes), solution%fields(pilot_field)%value(:, scene%groups(g)%die))
         length = length_of(scene%mesh%coordinates(:, nodes(3)) - scene%mesh%coordinates(:, nodes(1)))
         if (.not. is_near(die, side, length)) cycle
-        known = depth_of(state(:npoint_state, :))
+        n = contact_block(corners, size(state, 1))
+        known = depth_of(state(:n, :))
         if (corners) then
-          deep = depth_of(state(npoint_state + 1:2*npoint_state, :))
+          deep = depth_of(state(n + 1:2*n, :))
           call keep(deep/(allowed*length), e, misfit%corner, misfit%corner_side)
           known = max(known, deep)
         end if
@@ -61,7 +62,7 @@ contains
 
   !> Largest penetration of points in contact [length].
   pure function depth_of(state) result(depth)
-    real(wp), intent(in) :: state(:, :)   !! (npoint_state, npoint)
+    real(wp), intent(in) :: state(:, :)   !! (nstate, npoint) of contact_point
     real(wp) :: depth
 
     depth = max(0.0_wp, maxval(state(at_penetration, :), mask=nint(state(at_status, :)) /= contact_open))

@@ -8,9 +8,8 @@ module estimator
   use elasticity, only: moduli
   use fields, only: displacement_field, section_field
   use kinds, only: wp
-  use law_api, only: find_parameter, law_t
+  use law_api, only: law_elastic_i, law_t
   use loads, only: multiplier_at
-  use materials, only: values_at
   use patch_recovery, only: find_patches, patches_t
   use quad8_geometry, only: derivatives, quad8_rule_t
   use recovered_errors, only: fields_of_rule, fields_t, missing_squares, ncomp, npoint
@@ -31,12 +30,17 @@ module estimator
     integer, allocatable :: group(:), element(:), place(:), rule(:)
   end type part_t
 
+  !> Elastic constants of a material by temperature; not associated where its law has none.
+  type :: constants_t
+    procedure(law_elastic_i), nopass, pointer :: at => null()
+  end type constants_t
+
   !> What is made once for a mesh.
   type :: estimator_t
     type(part_t), allocatable :: parts(:)
     type(fields_t) :: fields(2)
-    !> Places of Young's modulus and Poisson's ratio among the values of each material; 0 where its law has none.
-    integer, allocatable :: young(:), poisson(:)
+    !> Elastic constants of each material.
+    type(constants_t), allocatable :: constants(:)
     !> Every solid law has elastic moduli: errors are energies.
     logical :: elastic = .true.
   end type estimator_t
@@ -56,15 +60,14 @@ contains
     integer :: list(size(scene%materials))
 
     self%fields = [fields_of_rule(4), fields_of_rule(9)]
-    allocate (self%young(size(scene%materials)), self%poisson(size(scene%materials)), source=0)
+    allocate (self%constants(size(scene%materials)))
     n = 0
     do m = 1, size(scene%materials)
       if (.not. any(is_part(scene, m))) cycle
       n = n + 1
       list(n) = m
-      self%young(m) = find_parameter(laws(scene%materials(m)%law_id), 'E')
-      self%poisson(m) = find_parameter(laws(scene%materials(m)%law_id), 'NU')
-      self%elastic = self%elastic .and. self%young(m) > 0 .and. self%poisson(m) > 0
+      self%constants(m)%at => laws(scene%materials(m)%law_id)%elastic
+      self%elastic = self%elastic .and. associated(self%constants(m)%at)
     end do
     allocate (self%parts(n))
     do m = 1, n
@@ -110,7 +113,7 @@ contains
         part%group(n) = g
         part%element(n) = e
         part%place(n) = all
-        part%rule(n) = merge(1, 2, scene%groups(g)%npoint == 4)
+        part%rule(n) = merge(1, 2, scene%groups(g)%rule%n == 4)
       end do
     end do
     call find_patches(part%connectivity, part%patches)
@@ -175,7 +178,7 @@ contains
     shear = 0
     do e = 1, size(part%place)
       g = part%group(e)
-      n = scene%groups(g)%npoint
+      n = scene%groups(g)%rule%n
       value(1:4, :n, e) = solution%groups(g)%committed(1:4, :, part%element(e))
       if (.not. self%elastic) shear = max(shear, maxval(value(1:4, :n, e)**2))
       associate (nodes => part%connectivity(:, e))
@@ -201,20 +204,16 @@ contains
     integer, intent(in) :: g
     real(wp), intent(in) :: time
     real(wp) :: weights(2)
-    real(wp) :: temperature, bulk, shear
+    real(wp) :: temperature, young, poisson, bulk, shear
 
     weights = [1.0_wp, 0.0_wp]
     if (.not. self%elastic) return
     associate (group => scene%groups(g), material => scene%materials(scene%groups(g)%material))
-      block
-        real(wp) :: values(size(material%values))
-
-        temperature = 0
-        if (group%temperature_multiplier > 0) &
-          temperature = group%temperature_amplitude*multiplier_at(scene%multipliers(group%temperature_multiplier), time)
-        call values_at(material, temperature, values)
-        call moduli(values(self%young(group%material)), values(self%poisson(group%material)), bulk, shear)
-      end block
+      temperature = 0
+      if (group%temperature_multiplier > 0) &
+        temperature = group%temperature_amplitude*multiplier_at(scene%multipliers(group%temperature_multiplier), time)
+      call self%constants(group%material)%at(material, temperature, young, poisson)
+      call moduli(young, poisson, bulk, shear)
     end associate
     weights = [0.25_wp/shear, 0.5_wp/bulk]
   end function energy_weights

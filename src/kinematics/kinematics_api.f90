@@ -31,13 +31,13 @@ module kinematics_api
     !>
     !> `f` = dx(n+1)/dx(n) with the components xx, xy, yx, yy, zz. `tangent` = d stress / d h with
     !> h = d(du)/dx(n+1) in the same order, the exact derivative of this update.
-    pure subroutine kinematics_update_i(law, material, dt, n, nstate, temperature, f, committed, trial, tangent, status)
+    pure subroutine kinematics_update_i(law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status)
       import :: law_t, material_t, wp
       type(law_t), intent(in) :: law
       type(material_t), intent(in) :: material
       real(wp), intent(in) :: dt
       integer, intent(in) :: n, nstate
-      real(wp), intent(in) :: temperature(2, n)  !! at the start and at the end of the step
+      real(wp), intent(in) :: drivers(:, :, :)   !! (ndriver, 2, n) of the law, at the start and at the end of the step
       real(wp), intent(in) :: f(5, n)
       real(wp), intent(in) :: committed(nstate, n)
       real(wp), intent(out) :: trial(nstate, n)

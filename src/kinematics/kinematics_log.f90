@@ -26,12 +26,12 @@ contains
     row%update => update
   end function kinematics_log_row
 
-  pure subroutine update(law, material, dt, n, nstate, temperature, f, committed, trial, tangent, status)
+  pure subroutine update(law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt
     integer, intent(in) :: n, nstate
-    real(wp), intent(in) :: temperature(2, n), f(5, n), committed(nstate, n)
+    real(wp), intent(in) :: drivers(:, :, :), f(5, n), committed(nstate, n)
     real(wp), intent(out) :: trial(nstate, n), tangent(4, 5, n)
     integer, intent(out) :: status(n)
     real(wp) :: e(4, n), de(4, 5, n), tau(4, n), elastic(4, n), history(nstate - first_history + 1, n), law_tangent(4, 4, n)
@@ -52,7 +52,7 @@ contains
         e(:, i) = turned(frame(i), e(:, i), back=.true., shear=2.0_wp)
       end do
     end if
-    call law%update(material, dt, temperature, e, committed(first_history:, :), tau, elastic, history, law_tangent, status)
+    call law%update(material, dt, drivers, e, committed(first_history:, :), tau, elastic, history, law_tangent, status)
     do i = 1, n
       if (turning) then
         call turn_history(law, material, frame(i), history(:, i))

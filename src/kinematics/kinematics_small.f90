@@ -19,12 +19,12 @@ contains
     row%update => update
   end function kinematics_small_row
 
-  pure subroutine update(law, material, dt, n, nstate, temperature, f, committed, trial, tangent, status)
+  pure subroutine update(law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt
     integer, intent(in) :: n, nstate
-    real(wp), intent(in) :: temperature(2, n), f(5, n), committed(nstate, n)
+    real(wp), intent(in) :: drivers(:, :, :), f(5, n), committed(nstate, n)
     real(wp), intent(out) :: trial(nstate, n), tangent(4, 5, n)
     integer, intent(out) :: status(n)
     real(wp) :: e(4, n), stress(4, n), elastic(4, n), history(nstate - first_history + 1, n), law_tangent(4, 4, n)
@@ -34,7 +34,7 @@ contains
     e(2, :) = committed(6, :) + f(4, :) - 1
     e(3, :) = 2*committed(7, :) + f(2, :) + f(3, :)
     e(4, :) = committed(8, :) + f(5, :) - 1
-    call law%update(material, dt, temperature, e, committed(first_history:, :), stress, elastic, history, law_tangent, status)
+    call law%update(material, dt, drivers, e, committed(first_history:, :), stress, elastic, history, law_tangent, status)
     trial(1:4, :) = stress
     trial(5:8, :) = elastic/spread(engineering, 2, n)
     trial(first_history:, :) = history

@@ -22,13 +22,13 @@ module plane_stress_points
 contains
 
   !> As `kinematics%update`, with the stretch f(5, :) across the plane as a result.
-  pure subroutine update_plane_stress(kinematics, law, material, dt, n, nstate, temperature, f, committed, trial, tangent, status)
+  pure subroutine update_plane_stress(kinematics, law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status)
     type(kinematics_t), intent(in) :: kinematics
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt
     integer, intent(in) :: n, nstate
-    real(wp), intent(in) :: temperature(2, n)
+    real(wp), intent(in) :: drivers(:, :, :)   !! (ndriver, 2, n) of the law
     real(wp), intent(inout) :: f(5, n)
     real(wp), intent(in) :: committed(nstate, n)
     real(wp), intent(out) :: trial(nstate, n)
@@ -47,7 +47,7 @@ contains
       else
         f(5, :) = 1 + strain
       end if
-      call kinematics%update(law, material, dt, n, nstate, temperature, f, committed, trial, tangent, status)
+      call kinematics%update(law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status)
       if (any(status /= law_done)) return
       do i = 1, n
         met(i) = abs(trial(4, i)) <= max(share_of_stress*maxval(abs(trial(1:3, i))), round_off_strain*abs(tangent(4, 5, i)))

@@ -1,24 +1,70 @@
-!> The numbers every contact law begins with: allowed penetration or penalties, and augmentation.
+!> The numbers that the card of every contact law begins with: allowed penetration or penalties, and augmentation.
 module contact_penalties
   use kinds, only: wp
   use law_api, only: parameter, parameter_t
+  use materials, only: material_t
   implicit none
   private
-  public :: penalty_parameters
+  public :: penalties_t, penalty_parameters, penalties_of_card, penalty_problems, allowed_penetration
+
+  !> Places among the values of a material.
+  integer, parameter :: place_allowed = 1, place_normal = 2, place_tangential = 3, place_augmentations = 4
+
+  type :: penalties_t
+    !> Allowed penetration over the side of the element; 0 where the penalty is given instead.
+    real(wp) :: allowed = 0.0_wp
+    !> Penalties as given, 0 where they follow from others [stress/length].
+    real(wp) :: normal = 0.0_wp, tangential = 0.0_wp
+    !> Most augmentations in a step.
+    integer :: augmentations = 0
+  end type penalties_t
 
 contains
 
-  !> PENETR, AKP, AKTAU, AUGMENT: places 1 to 4 of a contact material's values.
+  !> PENETR, AKP, AKTAU, AUGMENT.
   function penalty_parameters() result(list)
     type(parameter_t), allocatable :: list(:)
 
     allocate (list(4))
-    list(1) = parameter('PENETR', '-', 'allowed penetration, share of the element side (0: AKP is given)', &
-                        lower=0.0_wp, upper=0.1_wp, default=1.0e-3_wp)
-    list(2) = parameter('AKP', 'stress/length', 'normal penalty (0: from PENETR)', lower=0.0_wp, default=0.0_wp)
-    list(3) = parameter('AKTAU', 'stress/length', 'tangential penalty (0: a tenth of AKP)', lower=0.0_wp, default=0.0_wp)
-    list(4) = parameter('AUGMENT', '-', 'largest number of augmentations in a step', &
-                        lower=0.0_wp, upper=50.0_wp, default=0.0_wp)
+    list(place_allowed) = parameter('PENETR', '-', 'allowed penetration, share of the element side (0: AKP is given)', &
+                                    lower=0.0_wp, upper=0.1_wp, default=1.0e-3_wp)
+    list(place_normal) = parameter('AKP', 'stress/length', 'normal penalty (0: from PENETR)', lower=0.0_wp, default=0.0_wp, &
+                                   replaces='PENETR')
+    list(place_tangential) = parameter('AKTAU', 'stress/length', 'tangential penalty (0: a tenth of AKP)', lower=0.0_wp, &
+                                       default=0.0_wp)
+    list(place_augmentations) = parameter('AUGMENT', '-', 'largest number of augmentations in a step', &
+                                          lower=0.0_wp, upper=50.0_wp, default=0.0_wp, whole=.true.)
   end function penalty_parameters
+
+  !> They, from the card of a contact law.
+  pure function penalties_of_card(material) result(penalties)
+    type(material_t), intent(in) :: material
+    type(penalties_t) :: penalties
+
+    penalties%allowed = material%values(place_allowed)
+    penalties%normal = material%values(place_normal)
+    penalties%tangential = material%values(place_tangential)
+    penalties%augmentations = nint(material%values(place_augmentations))
+  end function penalties_of_card
+
+  !> Allowed penetration over the side of the element, 0 where a penalty is given instead.
+  pure function allowed_penetration(material) result(share)
+    type(material_t), intent(in) :: material
+    real(wp) :: share
+
+    share = material%values(place_allowed)
+  end function allowed_penetration
+
+  !> What is wrong with them taken together, '' when nothing is.
+  pure function penalty_problems(material) result(problem)
+    type(material_t), intent(in) :: material
+    character(len=:), allocatable :: problem
+    type(penalties_t) :: penalties
+
+    problem = ''
+    penalties = penalties_of_card(material)
+    if (.not. (penalties%allowed > 0 .or. penalties%normal > 0)) &
+      problem = 'PENETR and AKP are both zero: one of them must be above 0'
+  end function penalty_problems
 
 end module contact_penalties

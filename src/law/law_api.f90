@@ -4,14 +4,21 @@
 !> (src/kinematics) wrap it into large strains. Strain and stress have the components xx, yy, xy, zz;
 !> in this interface the shear strain is the engineering one (2 eps_xy), so tangents are symmetric
 !> for associated laws. A block of points is treated in one call.
+!>
+!> What acts on a point from outside, its drivers, comes at the start and at the end of the step: the temperature first, then what
+!> the law declares by name (`drivers`): a field of the scene, a state variable of another formulation on the same body, or for
+!> contact the `flow_stress` of the body behind the side.
 module law_api
   use kinds, only: wp
   use materials, only: has_number, material_t
   use state_variables, only: state_variable_t
+  use text, only: string_t
   implicit none
   private
-  public :: law_t, law_line_t, parameter_t, law_update_i, law_slide_i, law_flow_i
-  public :: parameter, law_line, find_parameter, law_of_material, asks_for
+  public :: law_t, law_line_t, parameter_t, law_update_i, law_slide_i, law_flow_i, law_check_i, law_elastic_i, law_conduct_i
+  public :: conduction_t
+  public :: parameter, law_line, find_parameter, law_of_material, asks_for, is_complete
+  public :: driver_count, driver_temperature
   public :: law_done, law_not_converged
   public :: contact_open, contact_stick, contact_slip
   public :: solid_law, contact_law, heat_law, kind_names
@@ -32,6 +39,9 @@ module law_api
   integer, parameter :: contact_stick = 1
   integer, parameter :: contact_slip = 2
 
+  !> The temperature is the first driver of every law.
+  integer, parameter :: driver_temperature = 1
+
   !> One number of a law's card.
   type :: parameter_t
     character(len=:), allocatable :: name, unit, meaning
@@ -41,6 +51,12 @@ module law_api
     !> May be left out (only on lines of name-value pairs); then this value is taken.
     logical :: optional = .false.
     real(wp) :: default = 0.0_wp
+    !> Must be a whole number.
+    logical :: whole = .false.
+    !> Above 0 it turns a part of the law on: at all temperatures of a card, or at none.
+    logical :: turns_on = .false.
+    !> Name of another number whose default is 0 where this one is given.
+    character(len=:), allocatable :: replaces
   end type parameter_t
 
   !> Kinds of line: values in order; one of several lines chosen by its first word; name-value pairs in any order.
@@ -58,6 +74,13 @@ module law_api
     logical :: curve = .false.
   end type law_line_t
 
+  !> Conduction of heat at a point.
+  type :: conduction_t
+    real(wp) :: conductivity = 0.0_wp   !! [power/length/temperature]
+    real(wp) :: capacity = 0.0_wp       !! [energy/length^3/temperature] per volume of the start
+    real(wp) :: source = 0.0_wp         !! heat taken up by a change of volume, per unit of volume strain [energy/length^3]
+  end type conduction_t
+
   type :: law_t
     character(len=:), allocatable :: name
     !> LAGAMINE's number (ITYPE).
@@ -65,8 +88,11 @@ module law_api
     integer :: kind = solid_law
     character(len=:), allocatable :: purpose, source
     type(law_line_t), allocatable :: lines(:)
-    !> History of a point beside stress and elastic strain. What a material does not need comes last and is left out.
+    !> History of a point beside stress and elastic strain, or beside what contact keeps. What a material does not need comes
+    !> last and is left out.
     type(state_variable_t), allocatable :: history(:)
+    !> Names of its drivers after the temperature; not allocated where it has none.
+    type(string_t), allocatable :: drivers(:)
     !> Its tangent is symmetric.
     logical :: symmetric = .true.
     !> Effects it asks for, names separated by blanks (page 6).
@@ -75,6 +101,12 @@ module law_api
     procedure(law_slide_i), nopass, pointer :: slide => null()
     !> Not associated for laws without flow.
     procedure(law_flow_i), nopass, pointer :: flow_stress => null()
+    !> Not associated for laws without isotropic elasticity.
+    procedure(law_elastic_i), nopass, pointer :: elastic => null()
+    !> Only of laws for the conduction of heat.
+    procedure(law_conduct_i), nopass, pointer :: conduct => null()
+    !> Relations between the numbers of a card; not associated where there are none.
+    procedure(law_check_i), nopass, pointer :: check => null()
   end type law_t
 
   abstract interface
@@ -84,12 +116,12 @@ module law_api
     !> what is left of it after flow, `stress` follows from it, `history` is the trial history and
     !> `tangent` = d stress / d trial_strain. Rows of the history beyond the law's own are carried
     !> along. Pure: called by several threads.
-    pure subroutine law_update_i(material, dt, temperature, trial_strain, committed, stress, elastic_strain, history, tangent, &
+    pure subroutine law_update_i(material, dt, drivers, trial_strain, committed, stress, elastic_strain, history, tangent, &
                                  status)
       import :: material_t, wp
       type(material_t), intent(in) :: material
       real(wp), intent(in) :: dt                   !! length of the step [time]
-      real(wp), intent(in) :: temperature(:, :)    !! (2, n) at the start and at the end of the step [temperature]
+      real(wp), intent(in) :: drivers(:, :, :)     !! (ndriver, 2, n) at the start and at the end of the step, temperature first
       real(wp), intent(in) :: trial_strain(:, :)   !! (4, n) [-]
       real(wp), intent(in) :: committed(:, :)      !! (nhistory, n)
       real(wp), intent(out) :: stress(:, :)        !! (4, n) [stress]
@@ -102,38 +134,66 @@ module law_api
     !> Contact law at one point: pressure and friction from penetration and slip.
     !>
     !> Vectors have two tangential components, in the plane and across it (annex 3, eq. 1); `tangent` is
-    !> d(pressure, tau)/d(penetration, slip).
-    pure subroutine law_slide_i(material, penalty, augmentation, penetration, slip, tau_committed, flow_stress, &
-                                pressure, tau, tangent, status)
+    !> d(pressure, tau)/d(penetration, slip). In no time at all (dt = 0, equilibrium restored on a new mesh) the history rests.
+    pure subroutine law_slide_i(material, dt, drivers, penalty, augmentation, penetration, slip, tau_committed, committed, &
+                                pressure, tau, history, tangent, status)
       import :: material_t, wp
       type(material_t), intent(in) :: material
+      real(wp), intent(in) :: dt              !! length of the step [time]
+      real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) at the start and at the end of the step, temperature first
       real(wp), intent(in) :: penalty(2)      !! normal and tangential stiffness [stress/length]
       real(wp), intent(in) :: augmentation    !! multiplier carried from earlier augmentations [stress]
       real(wp), intent(in) :: penetration     !! d > 0 inside the die [length]
       real(wp), intent(in) :: slip(2)         !! relative slip of the step [length]
       real(wp), intent(in) :: tau_committed(2) !! friction stress at the start of the step [stress]
-      real(wp), intent(in) :: flow_stress     !! of the body behind the side; 0 where its law has none [stress]
+      real(wp), intent(in) :: committed(:)    !! history at the start of the step (nhistory)
       real(wp), intent(out) :: pressure, tau(2)  !! [stress]
+      real(wp), intent(out) :: history(:)     !! (nhistory)
       real(wp), intent(out) :: tangent(3, 3)  !! [stress/length]
       integer, intent(out) :: status          !! contact_open, contact_stick or contact_slip
     end subroutine law_slide_i
 
     !> Von Mises stress at which a point flows as it is now: what bounds the friction on it.
-    pure function law_flow_i(material, temperature, history) result(flow)
+    pure function law_flow_i(material, drivers, history) result(flow)
       import :: material_t, wp
       type(material_t), intent(in) :: material
-      real(wp), intent(in) :: temperature
+      real(wp), intent(in) :: drivers(:)      !! (ndriver) as they are now, temperature first
       real(wp), intent(in) :: history(:)      !! of the law (nhistory)
       real(wp) :: flow                        !! [stress]
     end function law_flow_i
+
+    !> Isotropic elastic constants at a temperature.
+    pure subroutine law_elastic_i(material, temperature, young, poisson)
+      import :: material_t, wp
+      type(material_t), intent(in) :: material
+      real(wp), intent(in) :: temperature
+      real(wp), intent(out) :: young, poisson   !! [stress], [-]
+    end subroutine law_elastic_i
+
+    !> Conduction of heat at a temperature.
+    pure function law_conduct_i(material, temperature) result(conduction)
+      import :: conduction_t, material_t, wp
+      type(material_t), intent(in) :: material
+      real(wp), intent(in) :: temperature
+      type(conduction_t) :: conduction
+    end function law_conduct_i
+
+    !> What is wrong with the numbers of a card taken together, beyond the range of each.
+    pure subroutine law_check_i(material, problems)
+      import :: material_t, string_t
+      type(material_t), intent(in) :: material               !! at one temperature
+      type(string_t), allocatable, intent(out) :: problems(:) !! a line each, none where all is well
+    end subroutine law_check_i
   end interface
 
 contains
 
   !> A parameter in one line; `above` is a lower bound that is itself refused.
-  pure function parameter(name, unit, meaning, lower, above, upper, default) result(p)
+  pure function parameter(name, unit, meaning, lower, above, upper, default, whole, turns_on, replaces) result(p)
     character(len=*), intent(in) :: name, unit, meaning
     real(wp), intent(in), optional :: lower, above, upper, default
+    logical, intent(in), optional :: whole, turns_on
+    character(len=*), intent(in), optional :: replaces
     type(parameter_t) :: p
 
     p%name = name
@@ -149,6 +209,10 @@ contains
       p%optional = .true.
       p%default = default
     end if
+    if (present(whole)) p%whole = whole
+    if (present(turns_on)) p%turns_on = turns_on
+    p%replaces = ''
+    if (present(replaces)) p%replaces = replaces
   end function parameter
 
   !> A line of a card; with `word` it is one of several to choose from.
@@ -196,6 +260,33 @@ contains
     end do
     k = 0
   end function find_parameter
+
+  !> A material has all the numbers of its law: its card was read without mistakes.
+  pure function is_complete(law, material) result(yes)
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    logical :: yes
+    integer :: i, n
+    logical :: choosing
+
+    n = 0
+    choosing = .false.
+    do i = 1, size(law%lines)
+      if (law%lines(i)%kind == line_choice .and. .not. choosing) n = n + 1
+      choosing = law%lines(i)%kind == line_choice
+      n = n + size(law%lines(i)%parameters)
+    end do
+    yes = size(material%values) == n
+  end function is_complete
+
+  !> Drivers of a law, the temperature among them.
+  pure function driver_count(law) result(n)
+    type(law_t), intent(in) :: law
+    integer :: n
+
+    n = 1
+    if (allocated(law%drivers)) n = 1 + size(law%drivers)
+  end function driver_count
 
   !> A law asks for an effect.
   pure function asks_for(law, effect) result(yes)

@@ -4,14 +4,17 @@
 !> M flow_stress/sqrt3), each limit where it is given (M: constant-factor law, Tresca's friction);
 !> non-associated: no opening by slip. The slip tangent dtau = PHI AKP sign(tau) dd is unsymmetric.
 module law_coul2d
-  use contact_penalties, only: penalty_parameters
+  use contact_penalties, only: penalty_parameters, penalty_problems
   use kinds, only: wp
   use law_api, only: contact_law, contact_open, contact_slip, contact_stick, law_line, law_t, parameter
   use materials, only: material_t
-  use state_variables, only: state_variable, transfer_recompute
+  use text, only: add_text, string_t
   implicit none
   private
   public :: law_coul2d_row
+
+  !> Places among the values of a material, after the penalties; and of the flow stress among the drivers.
+  integer, parameter :: place_phi = 5, place_cohesion = 6, place_largest = 7, place_factor = 8, driver_flow = 2
 
 contains
 
@@ -30,23 +33,38 @@ contains
                                                      above=0.0_wp, default=huge(1.0_wp)), &
                                            parameter('M', '-', 'friction factor: largest friction over the shear flow stress', &
                                                      lower=0.0_wp, upper=1.0_wp, default=huge(1.0_wp))], pairs=.true.)])
-    allocate (row%history, source=[state_variable('flow_stress', 'stress', transfer_recompute)])
+    allocate (row%history(0))
+    allocate (row%drivers(1))
+    row%drivers(driver_flow - 1)%s = 'flow_stress'
     row%symmetric = .false.
     row%effects = 'contact friction'
     row%slide => slide
+    row%check => check
   end function law_coul2d_row
+
+  !> What friction there is must be said.
+  pure subroutine check(material, problems)
+    type(material_t), intent(in) :: material
+    type(string_t), allocatable, intent(out) :: problems(:)
+
+    allocate (problems(0))
+    if (len(penalty_problems(material)) > 0) call add_text(problems, penalty_problems(material))
+    if (.not. min(material%values(place_phi), material%values(place_factor)) < huge(1.0_wp)) &
+      call add_text(problems, 'neither PHI nor M is given: one of them says what friction there is (PHI 0. for none)')
+  end subroutine check
 
   !> In slip, with the direction n = trial/|trial|: tau = limit n, and d tau = n PHI AKP dd + limit/|trial| AKTAU (1 - n n) ds,
   !> the derivative of the discrete update: eq. (7), which is its limit for small steps.
-  pure subroutine slide(material, penalty, augmentation, penetration, slip, tau_committed, flow_stress, pressure, tau, tangent, &
-                        status)
+  pure subroutine slide(material, dt, drivers, penalty, augmentation, penetration, slip, tau_committed, committed, pressure, tau, &
+                        history, tangent, status)
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: penalty(2), augmentation, penetration, slip(2), tau_committed(2), flow_stress
-    real(wp), intent(out) :: pressure, tau(2), tangent(3, 3)
+    real(wp), intent(in) :: dt, drivers(:, :), penalty(2), augmentation, penetration, slip(2), tau_committed(2), committed(:)
+    real(wp), intent(out) :: pressure, tau(2), history(:), tangent(3, 3)
     integer, intent(out) :: status
     real(wp) :: limit, size_of_trial, trial(2), direction(2), phi, cohesion, tau_max
     logical :: by_pressure
 
+    history = committed
     tau = 0
     tangent = 0
     status = contact_open
@@ -56,10 +74,11 @@ contains
       pressure = 0
       return
     end if
-    phi = material%values(5)
-    cohesion = material%values(6)
-    tau_max = material%values(7)
-    if (material%values(8) < huge(1.0_wp)) tau_max = min(tau_max, material%values(8)*flow_stress/sqrt(3.0_wp))
+    phi = material%values(place_phi)
+    cohesion = material%values(place_cohesion)
+    tau_max = material%values(place_largest)
+    if (material%values(place_factor) < huge(1.0_wp)) &
+      tau_max = min(tau_max, material%values(place_factor)*drivers(driver_flow, 2)/sqrt(3.0_wp))
     tangent(1, 1) = penalty(1)
     trial = tau_committed + penalty(2)*slip
     size_of_trial = sqrt(dot_product(trial, trial))

@@ -5,9 +5,10 @@
 !> card: ALPHA is the tangent coefficient d(strain)/d(temperature), as LAGAMINE's. E and NU of the end of the step act on
 !> the whole elastic strain, so that a closed cycle of strain and temperature leaves no stress.
 module law_ela
+  use elastic_numbers, only: elastic_of_card, elastic_parameters, place_poisson, place_young
   use elasticity, only: hooke_stress, hooke_tangent, moduli
   use kinds, only: wp
-  use law_api, only: law_done, law_line, law_t, parameter, parameter_t
+  use law_api, only: driver_temperature, law_done, law_line, law_t, parameter
   use materials, only: integral_over_temperature, material_t, values_at
   implicit none
   private
@@ -29,6 +30,7 @@ contains
     allocate (row%history(0))
     row%effects = ''
     row%update => update
+    row%elastic => elastic_of_card
   end function law_ela_row
 
   function law_elath_row() result(row)
@@ -44,20 +46,12 @@ contains
     allocate (row%history(0))
     row%effects = 'temperature'
     row%update => update
+    row%elastic => elastic_of_card
   end function law_elath_row
 
-  !> E and NU.
-  function elastic_parameters() result(list)
-    type(parameter_t), allocatable :: list(:)
-
-    allocate (list(2))
-    list(1) = parameter('E', 'stress', 'Young''s modulus', above=0.0_wp)
-    list(2) = parameter('NU', '-', 'Poisson''s ratio', lower=0.0_wp, upper=0.499999_wp)
-  end function elastic_parameters
-
-  pure subroutine update(material, dt, temperature, trial_strain, committed, stress, elastic_strain, history, tangent, status)
+  pure subroutine update(material, dt, drivers, trial_strain, committed, stress, elastic_strain, history, tangent, status)
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: dt, temperature(:, :), trial_strain(:, :), committed(:, :)
+    real(wp), intent(in) :: dt, drivers(:, :, :), trial_strain(:, :), committed(:, :)
     real(wp), intent(out) :: stress(:, :), elastic_strain(:, :), history(:, :), tangent(:, :, :)
     integer, intent(out) :: status(:)
     real(wp) :: bulk, shear, hooke(4, 4), values(size(material%values)), expansion
@@ -65,17 +59,18 @@ contains
     integer :: n
 
     by_temperature = allocated(material%temperatures)
-    call moduli(material%values(1), material%values(2), bulk, shear)
+    call moduli(material%values(place_young), material%values(place_poisson), bulk, shear)
     hooke = hooke_tangent(bulk, shear)
     do n = 1, size(trial_strain, 2)
       if (by_temperature) then
-        call values_at(material, temperature(2, n), values)
-        call moduli(values(1), values(2), bulk, shear)
+        call values_at(material, drivers(driver_temperature, 2, n), values)
+        call moduli(values(place_young), values(place_poisson), bulk, shear)
         hooke = hooke_tangent(bulk, shear)
       end if
       elastic_strain(:, n) = trial_strain(:, n)
       if (size(material%values) >= place_alpha) then
-        expansion = integral_over_temperature(material, place_alpha, temperature(1, n), temperature(2, n))
+        expansion = integral_over_temperature(material, place_alpha, drivers(driver_temperature, 1, n), &
+                                              drivers(driver_temperature, 2, n))
         elastic_strain([1, 2, 4], n) = trial_strain([1, 2, 4], n) - expansion
       end if
       stress(:, n) = hooke_stress(bulk, shear, elastic_strain(:, n))

@@ -4,21 +4,28 @@
 !> Between two temperatures of the card the yield stress is linear. The backstress is 2/3 HKIN times the back strain, so that
 !> the work it keeps is a function of the state; `plastic_work` is what is dissipated, `stored_work` what is kept.
 module law_epla
+  use elastic_numbers, only: elastic_of_card, elastic_parameters, place_poisson, place_young
   use elasticity, only: moduli
+  use hardening, only: yield_linear, yield_swift, yield_table, yield_voce
   use kinds, only: wp
-  use law_api, only: find_parameter, law_line, law_t, parameter
+  use law_api, only: driver_temperature, find_parameter, law_line, law_t, parameter
   use materials, only: bracket_temperature, has_number, material_t, values_at
   use radial_return, only: flow_stress_at, flow_t, return_point
   use rate_dependence, only: rate_cowper, rate_johnson
   use state_variables, only: state_variable, transfer_scalar, transfer_tensor
+  use text, only: add_text, string_t, to_text
   implicit none
   private
   public :: law_epla_row
 
-  !> Places of the numbers in a material's values: E, nu, form, the numbers of each form, HKIN, RATE0, COWPER, JOHNSON.
+  !> Forms of hardening in the order of their lines, and how many numbers each has.
+  integer, parameter :: linear = 1, voce = 2, swift = 3, table = 4
+  integer, parameter :: form_numbers(4) = [2, 4, 3, 1]
+  !> Places among the values of a material: after E and NU the form, the numbers of all forms, then the pairs.
   integer, parameter :: place_form = 3
-  integer, parameter :: place_numbers(4) = [4, 6, 10, 13]
-  integer, parameter :: place_kinematic = 14, place_rate = 15, place_cowper = 16, place_johnson = 17
+  integer, parameter :: place_numbers(4) = place_form + 1 + [0, 2, 6, 9]
+  integer, parameter :: place_kinematic = place_form + sum(form_numbers) + 1, place_rate = place_kinematic + 1, &
+                        place_cowper = place_kinematic + 2, place_johnson = place_kinematic + 3
   !> Rows of the history that come after plastic strain and plastic work.
   integer, parameter :: first_option = 3, rows_of_backstress = 5
 
@@ -31,8 +38,7 @@ contains
     row%number = 55
     row%purpose = 'von Mises elastoplasticity, isotropic and linear kinematic hardening, rate'
     row%source = 'Simo and Taylor 1985 (radial return, consistent tangent); Prager; Cowper and Symonds; Johnson and Cook'
-    allocate (row%lines, source=[law_line([parameter('E', 'stress', 'Young''s modulus', above=0.0_wp), &
-                           parameter('NU', '-', 'Poisson''s ratio', lower=0.0_wp, upper=0.499999_wp)]), &
+    allocate (row%lines, source=[law_line(elastic_parameters()), &
                  law_line([parameter('RE', 'stress', 'yield stress', above=0.0_wp), &
                            parameter('ET', 'stress', 'plastic modulus d(yield)/d(plastic strain)', lower=0.0_wp)], &
                           word='LINEAR'), &
@@ -46,10 +52,12 @@ contains
                  law_line([parameter('NPOINT', '-', 'rows: plastic strain, yield stress', lower=1.0_wp)], &
                           word='TABLE', curve=.true.), &
                  law_line([parameter('HKIN', 'stress', 'modulus of kinematic hardening', lower=0.0_wp, default=0.0_wp), &
-                           parameter('RATE0', '1/time', 'reference rate of COWPER or JOHNSON', lower=0.0_wp, default=0.0_wp), &
-                           parameter('COWPER', '-', 'P: yield times 1 + (rate/RATE0)^(1/P)', lower=0.0_wp, default=0.0_wp), &
+                           parameter('RATE0', '1/time', 'reference rate of COWPER or JOHNSON', lower=0.0_wp, default=0.0_wp, &
+                                     turns_on=.true.), &
+                           parameter('COWPER', '-', 'P: yield times 1 + (rate/RATE0)^(1/P)', lower=0.0_wp, default=0.0_wp, &
+                                     turns_on=.true.), &
                            parameter('JOHNSON', '-', 'C: yield times 1 + C ln(rate/RATE0), not below 1', lower=0.0_wp, &
-                                     default=0.0_wp)], pairs=.true.)])
+                                     default=0.0_wp, turns_on=.true.)], pairs=.true.)])
     allocate (row%history(5))
     row%history(1) = state_variable('plastic_strain', '-', transfer_scalar)
     row%history(2) = state_variable('plastic_work', 'stress', transfer_scalar)
@@ -59,11 +67,37 @@ contains
     row%effects = 'plasticity'
     row%update => update
     row%flow_stress => flow_stress
+    row%elastic => elastic_of_card
+    row%check => check
   end function law_epla_row
 
-  pure subroutine update(material, dt, temperature, trial_strain, committed, stress, elastic_strain, history, tangent, status)
+  !> A table begins at 0 with stresses above 0; the effect of the rate has its reference and one form.
+  pure subroutine check(material, problems)
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: dt, temperature(:, :), trial_strain(:, :), committed(:, :)
+    type(string_t), allocatable, intent(out) :: problems(:)
+    logical :: rate, cowper, johnson
+
+    allocate (problems(0))
+    if (size(material%curve, 2) > 0) then
+      if (abs(material%curve(1, 1)) > 0) then
+        call add_text(problems, 'the first plastic strain of the table must be 0, found '//to_text(material%curve(1, 1)))
+      else if (any(.not. material%curve(2, :) > 0)) then
+        call add_text(problems, 'all yield stresses of the table must be above 0, found '//to_text(minval(material%curve(2, :))))
+      end if
+    end if
+    rate = material%values(place_rate) > 0
+    cowper = material%values(place_cowper) > 0
+    johnson = material%values(place_johnson) > 0
+    if ((cowper .or. johnson) .and. .not. rate) then
+      call add_text(problems, 'COWPER and JOHNSON need a RATE0 above 0')
+    else if (rate .and. (cowper .eqv. johnson)) then
+      call add_text(problems, 'RATE0 wants one of COWPER and JOHNSON above 0')
+    end if
+  end subroutine check
+
+  pure subroutine update(material, dt, drivers, trial_strain, committed, stress, elastic_strain, history, tangent, status)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: dt, drivers(:, :, :), trial_strain(:, :), committed(:, :)
     real(wp), intent(out) :: stress(:, :), elastic_strain(:, :), history(:, :), tangent(:, :, :)
     integer, intent(out) :: status(:)
     type(flow_t) :: flow
@@ -79,7 +113,7 @@ contains
       end do
     else
       do n = 1, size(trial_strain, 2)
-        call numbers_at(material, temperature(2, n), values, flow, k)
+        call numbers_at(material, drivers(driver_temperature, 2, n), values, flow, k)
         call return_point(flow, material%curves(:, :, k), material%curves(:, :, min(k + 1, size(material%curves, 3))), dt, &
                           trial_strain(:, n), committed(:, n), stress(:, n), elastic_strain(:, n), history(:, n), &
                           tangent(:, :, n), status(n))
@@ -88,9 +122,9 @@ contains
   end subroutine update
 
   !> Yield stress at the plastic strain and the rate reached.
-  pure function flow_stress(material, temperature, history) result(stress)
+  pure function flow_stress(material, drivers, history) result(stress)
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: temperature, history(:)
+    real(wp), intent(in) :: drivers(:), history(:)
     real(wp) :: stress
     type(flow_t) :: flow
     real(wp) :: values(size(material%values)), rate
@@ -103,7 +137,7 @@ contains
       call numbers_of(material%values, flow)
       stress = flow_stress_at(flow, material%curve, material%curve, history(1), rate)
     else
-      call numbers_at(material, temperature, values, flow, k)
+      call numbers_at(material, drivers(driver_temperature), values, flow, k)
       stress = flow_stress_at(flow, material%curves(:, :, k), material%curves(:, :, min(k + 1, size(material%curves, 3))), &
                               history(1), rate)
     end if
@@ -130,10 +164,21 @@ contains
   pure subroutine numbers_of(values, flow)
     real(wp), intent(in) :: values(:)
     type(flow_t), intent(inout) :: flow
+    integer :: form
 
-    call moduli(values(1), values(2), flow%bulk, flow%shear)
-    flow%form = nint(values(place_form))
-    flow%below = values(place_numbers(flow%form):place_numbers(flow%form) + 3)
+    call moduli(values(place_young), values(place_poisson), flow%bulk, flow%shear)
+    form = nint(values(place_form))
+    select case (form)
+    case (voce)
+      flow%yield => yield_voce
+    case (swift)
+      flow%yield => yield_swift
+    case (table)
+      flow%yield => yield_table
+    case default
+      flow%yield => yield_linear
+    end select
+    flow%below(:form_numbers(form)) = values(place_numbers(form):place_numbers(form) + form_numbers(form) - 1)
     flow%kinematic = values(place_kinematic)
     flow%rate = [values(place_rate), values(merge(place_johnson, place_cowper, flow%rate_form == rate_johnson))]
   end subroutine numbers_of
@@ -145,14 +190,16 @@ contains
     real(wp), intent(out) :: values(:)
     type(flow_t), intent(inout) :: flow
     integer, intent(out) :: k
-    integer :: first
+    integer :: form, first, last
 
     call values_at(material, temperature, values)
     call numbers_of(values, flow)
     call bracket_temperature(material, temperature, k, flow%share)
-    first = place_numbers(flow%form)
-    flow%below = material%values_by_temperature(first:first + 3, k)
-    flow%above = material%values_by_temperature(first:first + 3, min(k + 1, size(material%temperatures)))
+    form = nint(values(place_form))
+    first = place_numbers(form)
+    last = first + form_numbers(form) - 1
+    flow%below(:form_numbers(form)) = material%values_by_temperature(first:last, k)
+    flow%above(:form_numbers(form)) = material%values_by_temperature(first:last, min(k + 1, size(material%temperatures)))
   end subroutine numbers_at
 
 end module law_epla

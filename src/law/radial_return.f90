@@ -8,7 +8,7 @@
 !> Computational Inelasticity (1998), box 3.2.
 module radial_return
   use elasticity, only: hooke_stress, hooke_tangent
-  use hardening, only: yield_between
+  use hardening, only: most_numbers, yield_between, yield_i, yield_linear
   use kinds, only: eps, wp
   use law_api, only: law_done, law_not_converged
   use rate_dependence, only: rate_factor, rate_none, rate_power
@@ -27,8 +27,8 @@ module radial_return
   type :: flow_t
     real(wp) :: bulk = 0.0_wp, shear = 0.0_wp
     !> Form of hardening with numbers at the temperatures of the card below and above, and the share of the latter.
-    integer :: form = 0
-    real(wp) :: below(4) = 0.0_wp, above(4) = 0.0_wp, share = 0.0_wp
+    procedure(yield_i), nopass, pointer :: yield => yield_linear
+    real(wp) :: below(most_numbers) = 0.0_wp, above(most_numbers) = 0.0_wp, share = 0.0_wp
     !> Modulus of linear kinematic hardening [stress].
     real(wp) :: kinematic = 0.0_wp
     integer :: rate_form = rate_none
@@ -66,7 +66,7 @@ contains
       history(flow%back_row + 4) = stored_work(flow%kinematic, back)
     end if
     q = von_mises(driving)
-    call yield_between(flow%form, flow%below, flow%above, flow%share, below, above, committed(1), sy, slope)
+    call yield_between(flow%yield, flow%below, flow%above, flow%share, below, above, committed(1), sy, slope)
     limit = sy
     if (flow%rate_form == rate_power) limit = 0
     ! in no time at all (equilibrium restored on a new mesh) nothing flows
@@ -108,7 +108,7 @@ contains
     real(wp) :: stress
     real(wp) :: slope, factor, exponent
 
-    call yield_between(flow%form, flow%below, flow%above, flow%share, below, above, p, stress, slope)
+    call yield_between(flow%yield, flow%below, flow%above, flow%share, below, above, p, stress, slope)
     call rate_factor(flow%rate_form, flow%rate, rate, factor, exponent)
     stress = stress*factor
   end function flow_stress_at
@@ -127,7 +127,7 @@ contains
     upper = q/g3
     dp = 0
     do iteration = 1, max_iterations
-      call yield_between(flow%form, flow%below, flow%above, flow%share, below, above, p + dp, sy, slope)
+      call yield_between(flow%yield, flow%below, flow%above, flow%share, below, above, p + dp, sy, slope)
       residual = q - g3*dp - sy
       if (abs(residual) <= return_tolerance*q) return
       if (residual > 0) then
@@ -165,7 +165,7 @@ contains
     do iteration = 1, max_iterations
       share = exp(z)
       dp = share*q/g3
-      call yield_between(flow%form, flow%below, flow%above, flow%share, below, above, p + dp, sy, slope)
+      call yield_between(flow%yield, flow%below, flow%above, flow%share, below, above, p + dp, sy, slope)
       call rate_factor(flow%rate_form, flow%rate, dp/dt, factor, exponent)
       slope = slope*factor
       sy = sy*factor

@@ -32,7 +32,7 @@ contains
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
         if (group%pairs == 0) cycle
-        allocate (pairs(group%pairs)%piece(abs(group%npoint), size(group%connectivity, 2)), source=0)
+        allocate (pairs(group%pairs)%piece(group%rule%n, size(group%connectivity, 2)), source=0)
       end associate
     end do
   end subroutine start_pairs

@@ -8,6 +8,7 @@ module scene
   use materials, only: material_t
   use mesh, only: mesh_t
   use probes, only: probe_t
+  use quadrature, only: rule_t
   use remesher_options, only: has_contours, remesher_options_t
   use remeshing, only: remesh_rules_t
   use sections, only: section_drive_t
@@ -41,17 +42,23 @@ module scene
     integer :: elem_id = 0
     !> Material (place in the scene's list); 0 for elements without a law.
     integer :: material = 0
-    !> Integration points of an element (negative: at equal distances).
-    integer :: npoint = 0
+    !> Integration points of an element: of the square for bodies, of the line for sides.
+    type(rule_t) :: rule
     !> Option of the ELEM that the card asks for (place in the row's list), 0 for none.
     integer :: option = 0
     !> Nodes (nnode, nelem).
     integer, allocatable :: connectivity(:, :)
-    !> Die faced by contact elements, multiplier and amplitude of load elements, component of a spring; 0 where unused.
+    !> Die faced by contact elements, or held by a spring; 0 for others.
     integer :: die = 0
-    integer :: component = 0
     !> Place among the groups that face a deformable die, 0 for others.
     integer :: pairs = 0
+    !> Young's modulus of the bodies behind the sides of a contact [stress].
+    real(wp) :: modulus = 0.0_wp
+    !> Component of the pilot that a spring holds, and its stiffness [force/length, or moment per radian].
+    integer :: component = 0
+    real(wp) :: stiffness = 0.0_wp
+    !> Load on sides or on the volume: amplitude (of a pressure, of a force per volume, density times squared speed of rotation)
+    !> times multiplier.
     integer :: multiplier = 0
     real(wp) :: amplitude = 0.0_wp
     !> Direction of a force on the volume: 1 = x, 2 = y; 0 where unused.

@@ -68,7 +68,7 @@ contains
     allocate (solution%groups(size(scene%groups)))
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g), state => solution%groups(g))
-        npoint = abs(group%npoint)
+        npoint = group%rule%n
         allocate (state%committed(total_components(group%variables), npoint, size(group%connectivity, 2)), source=0.0_wp)
         do v = 1, size(group%variables)
           do c = group%variables(v)%first, group%variables(v)%first + group%variables(v)%ncomp - 1

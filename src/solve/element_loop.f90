@@ -9,6 +9,7 @@ module element_loop
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
+  use point_drivers, only: drivers_t
   use scene, only: group_t, scene_t
   use solution, only: solution_t
   use sparsity, only: pattern_t
@@ -31,12 +32,14 @@ contains
 
   !> Compute all active groups at the motion `du` of the step. `report` holds the first failure met, in
   !> the order of groups and elements.
-  subroutine run_elements(scene, elems, kinematics, laws, dofs, active, pattern, instant, du, solution, buffers, timers, report)
+  subroutine run_elements(scene, elems, kinematics, laws, dofs, drivers, active, pattern, instant, du, solution, buffers, timers, &
+                          report)
     type(scene_t), intent(in) :: scene
     type(elem_t), intent(in) :: elems(:)
     type(kinematics_t), intent(in) :: kinematics
     type(law_t), intent(in) :: laws(:)
     type(dofs_t), intent(in) :: dofs
+    type(drivers_t), intent(in) :: drivers(:) !! of the points of the groups (ngroup)
     logical, intent(in) :: active(:)          !! groups to compute (ngroup)
     type(pattern_t), intent(in) :: pattern
     type(instant_t), intent(in) :: instant
@@ -64,7 +67,8 @@ contains
           m = pattern%matrix_start(g) + (first - 1)*ndof*ndof
           call run_block(scene, group, row, kinematics, laws, instant, dofs%groups(g)%nodes(:, first:last), &
                          dofs%groups(g)%dof(:, first:last), dofs%groups(g)%layout, first, du, &
-                         solution%fields(displacement_field)%value, state%committed(:, :, first:last), &
+                         solution%fields(displacement_field)%value, drivers(g)%value(:, :, :, first:last), &
+                         state%committed(:, :, first:last), &
                          state%trial(:, :, first:last), buffers%force(f + 1), buffers%matrix(m + 1), reports(b))
         end do
         !$omp end parallel do
@@ -86,7 +90,7 @@ contains
   end subroutine run_elements
 
   !> One block: gather its geometry and motion, then call the element.
-  subroutine run_block(scene, group, row, kinematics, laws, instant, nodes, dof, layout, first, du, displacement, &
+  subroutine run_block(scene, group, row, kinematics, laws, instant, nodes, dof, layout, first, du, displacement, drivers, &
                        committed, trial, force, matrix, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -96,7 +100,7 @@ contains
     type(instant_t), intent(in) :: instant
     integer, intent(in) :: nodes(:, :), dof(:, :), first
     type(layout_t), intent(in) :: layout
-    real(wp), intent(in) :: du(:), displacement(:, :)
+    real(wp), intent(in) :: du(:), displacement(:, :), drivers(:, :, :, :)
     real(wp), intent(in), contiguous :: committed(:, :, :)
     real(wp), intent(inout), contiguous :: trial(:, :, :)
     real(wp), intent(inout) :: force(size(dof, 1), size(dof, 2)), matrix(size(dof, 1), size(dof, 1), size(dof, 2))
@@ -112,8 +116,8 @@ contains
       motion(:, e) = du(dof(:, e))
       if (allocated(instant%values)) start(:, e) = instant%values(dof(:, e))
     end do
-    call row%compute(scene, group, kinematics, laws(law), instant, layout, first, x, motion, start, committed, trial, force, &
-                     matrix, report)
+    call row%compute(scene, group, kinematics, laws(law), instant, layout, first, x, motion, start, drivers, committed, trial, &
+                     force, matrix, report)
   end subroutine run_block
 
   !> Coordinates the elements work on: moved with the displacements, unless kinematics are SMALL and the element does not follow.

@@ -1,6 +1,5 @@
 !> The discrete equations of a scene: unknowns, pattern, element loop, linear solver.
 module equations
-  use contact_flow, only: bodies_t, find_bodies
   use contact_point, only: at_piece
   use dies, only: is_deformable, place_on_nodes
   use dofs, only: dofs_t, number_dofs, number_pairs
@@ -18,6 +17,7 @@ module equations
   use loads, only: multiplier_at
   use ordering, only: order_equations
   use pairs, only: pairs_differ, pairs_t, start_pairs
+  use point_drivers, only: advance_drivers, drivers_t, find_drivers, is_scalar, nodal_values
   use scene, only: is_solid, role_body, role_second, role_side_load, role_spring, role_volume_load, scene_t
   use sections, only: section_forced
   use solution, only: present_coordinates, solution_t
@@ -55,8 +55,8 @@ module equations
     integer :: nnode = 0
     !> Groups that are loads: their forces come from outside.
     logical, allocatable :: is_load(:)
-    !> Bodies behind the sides of contacts.
-    type(bodies_t), allocatable :: bodies(:)
+    !> What drives the laws at the points of the groups.
+    type(drivers_t), allocatable :: drivers(:)
     !> Diagonal of the box around the mesh [length].
     real(wp) :: size = 0.0_wp
   end type equations_t
@@ -96,7 +96,8 @@ contains
     equations%nnode = size(scene%mesh%coordinates, 2)
     equations%size = length_of(maxval(scene%mesh%coordinates, 2) - minval(scene%mesh%coordinates, 2))
 
-    call find_bodies(scene, equations%laws, equations%bodies)
+    call find_drivers(scene, equations%laws, equations%drivers, error)
+    if (allocated(error)) return
     allocate (equations%is_load(size(scene%groups)))
     do g = 1, size(scene%groups)
       equations%is_load(g) = any(scene%groups(g)%role == [role_side_load, role_volume_load, role_spring])
@@ -299,10 +300,11 @@ contains
 
     call fit_to_load(equations%team)
     call make_instant(scene, equations, solution, dt, du, tangent, instant)
+    if (any(equations%drivers%vary)) call drive_points(scene, solution, instant%time, du, equations)
     do
       call pair_up(scene, solution%pairs, equations)
       instant%pairs = solution%pairs
-      call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, &
+      call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, equations%drivers, &
                         equations%solves(equations%now)%active, equations%solves(equations%now)%pattern, instant, du, solution, &
                         equations%buffers, equations%timers, report)
       if (report%status /= block_done) return
@@ -320,6 +322,28 @@ contains
     end associate
     call equations%timers%stop(timer)
   end subroutine evaluate
+
+  !> Drivers of the points at the end of the step, as fields and states are tried now.
+  subroutine drive_points(scene, solution, time, du, equations)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: time       !! end of the step [time]
+    real(wp), intent(in) :: du(:)      !! change of the unknowns in the step (ndof)
+    type(equations_t), intent(inout) :: equations
+    real(wp) :: now(size(scene%mesh%coordinates, 2), size(scene%fields))
+    integer :: f, k
+
+    call nodal_values(scene, solution, now)
+    do f = 1, size(scene%fields)
+      if (.not. is_scalar(scene%fields(f))) cycle
+      associate (number => equations%dofs%fields(f)%number(1, :))
+        do k = 1, size(now, 1)
+          if (number(k) > 0) now(k, f) = now(k, f) + du(number(k))
+        end do
+      end associate
+    end do
+    call advance_drivers(scene, equations%laws, solution, now, time, equations%drivers)
+  end subroutine drive_points
 
   !> Size of round-off in what acts on the own fields, once for a mesh: what a change of round-off makes through the diagonals of
   !> the matrices of the bodies.

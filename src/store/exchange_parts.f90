@@ -15,7 +15,7 @@ module exchange_parts
   use remesher_options, only: has_contours, has_zones
   use scene, only: axisymmetric, group_t, is_solid, role_body, role_second, role_volume_load, scene_t
   use shape_functions, only: quad8, quad8_side
-  use quadrature, only: square_rule
+  use quadrature, only: rule_number, square_rule
   use solution, only: solution_t
   use state_variables, only: find_variable
   use text, only: to_text
@@ -92,7 +92,7 @@ contains
     if (.not. scene%finite) return
     do g = 1, size(scene%groups)
       if (.not. is_solid(scene%groups(g))) cycle
-      call square_rule(scene%groups(g)%npoint, xi, weight)
+      call square_rule(scene%groups(g)%rule%n, xi, weight)
       allocate (phi(8, size(weight)), dphi(2, 8, size(weight)))
       do p = 1, size(weight)
         call quad8(xi(1, p), xi(2, p), phi(:, p), dphi(:, :, p))
@@ -130,11 +130,11 @@ contains
     type(sides_t), intent(inout) :: known
     integer :: e
 
-    call require(file, place//'/npoint', any(group%npoint == [1, 4, 9, 16]), 'holds '//to_text(group%npoint)// &
-                 ', where 1, 4, 9 or 16 points are wanted')
+    call require(file, place//'/npoint', any(rule_number(group%rule) == [1, 4, 9, 16]), &
+                 'holds '//to_text(rule_number(group%rule))//', where 1, 4, 9 or 16 points are wanted')
     if (file%failed()) return
     do e = 1, size(group%connectivity, 2)
-      if (least_jacobian(coordinates(:, group%connectivity(:, e)), group%npoint) > 0) cycle
+      if (least_jacobian(coordinates(:, group%connectivity(:, e)), group%rule%n) > 0) cycle
       call require(file, place//'/connectivity', .false., 'has a folded element, '//to_text(e))
       return
     end do

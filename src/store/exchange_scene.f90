@@ -10,6 +10,7 @@ module exchange_scene
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use mesh, only: side_set_t
+  use quadrature, only: rule_of_number
   use remesh, only: remesh_t
   use scene, only: is_solid, plane_state_names, role_body, role_spring, scene_t
   use state_variables, only: find_variable, is_transfer_kind, state_variable, state_variable_t, total_components
@@ -193,13 +194,15 @@ contains
     integer, intent(in) :: k
     type(scene_t), intent(inout) :: scene
     character(len=:), allocatable :: place
+    integer :: number
 
     place = group_place(k)
     associate (group => scene%groups(k))
       call file%read(place//'/name', group%name)
       call file%read(place//'/elem', group%elem)
-      call file%read(place//'/npoint', group%npoint)
-      call require_range(file, place//'/npoint', group%npoint, -most_points, most_points)
+      call file%read(place//'/npoint', number)
+      call require_range(file, place//'/npoint', number, -most_points, most_points)
+      group%rule = rule_of_number(number)
       call file%read(place//'/role', group%role)
       call require_range(file, place//'/role', group%role, role_body, role_spring)
       call read_count(file, place//'/host', group%host, size(scene%groups))
@@ -208,13 +211,13 @@ contains
       call read_count(file, place//'/material_number', group%material, size(scene%materials))
       if (group%material > 0) call file%read(place//'/material', scene%materials(group%material)%name)
       call read_variables(file, place, group%variables)
-      call file%require_shape(place//'/state', [total_components(group%variables), abs(group%npoint), &
+      call file%require_shape(place//'/state', [total_components(group%variables), group%rule%n, &
                                                 size(group%connectivity, 2)])
       if (group%die == 0) return
       if (.not. is_deformable(scene%dies(group%die))) return
       if (size(scene%dies(group%die)%nodes) > 0) then
         group%pairs = maxval([0, scene%groups(:k - 1)%pairs]) + 1
-        call file%require_shape(place//'/pairs', [abs(group%npoint), size(group%connectivity, 2)])
+        call file%require_shape(place//'/pairs', [group%rule%n, size(group%connectivity, 2)])
       end if
     end associate
   end subroutine read_bare_group

@@ -14,6 +14,7 @@ module exchange_write
   use hdf5_atomic, only: commit_atomic, create_atomic
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
+  use quadrature, only: rule_number
   use remeshing, only: estimate_t
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
@@ -136,7 +137,7 @@ contains
       associate (group => scene%groups(g))
         call file%write(place//'/name', group%name)
         call file%write(place//'/elem', group%elem)
-        call file%write(place//'/npoint', group%npoint)
+        call file%write(place//'/npoint', rule_number(group%rule))
         call file%write(place//'/role', group%role)
         call file%write(place//'/host', group%host)
         call file%write(place//'/connectivity', group%connectivity)

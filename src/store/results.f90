@@ -11,6 +11,7 @@ module results
   use instant_files, only: begin_file, forget_later_steps, instant_path, instants_folder, link_instant, mesh_path, put_in_place
   use kinds, only: wp
   use nodal_fields, only: list_nodal_fields, nodal_field
+  use quadrature, only: rule_number
   use scene, only: is_solid, scene_t
   use solution, only: present_coordinates, solution_t
   use state_variables, only: component_names
@@ -117,7 +118,7 @@ contains
       call file%write(place//'/connectivity', scene%groups(g)%connectivity - 1)
       call file%write_attribute(place, 'name', scene%groups(g)%name)
       call file%write_attribute(place, 'elem', scene%groups(g)%elem)
-      call file%write_attribute(place, 'npoint', scene%groups(g)%npoint)
+      call file%write_attribute(place, 'npoint', rule_number(scene%groups(g)%rule))
     end do
     ! deformable dies are drawn with their bodies
     n = 0

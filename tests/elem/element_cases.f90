@@ -7,9 +7,10 @@ module element_cases
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use kinematics_registry, only: list_kinematics
-  use law_api, only: law_of_material, law_t
+  use law_api, only: driver_count, law_of_material, law_t
   use law_cases, only: elastic_material, law_row, material_of, plastic_material
   use materials, only: material_t
+  use quadrature, only: rule_of_number
   use scene, only: axisymmetric, scene_t
   use state_variables, only: total_components
   implicit none
@@ -30,6 +31,8 @@ module element_cases
     real(wp), allocatable :: x(:, :, :), committed(:, :, :)
     !> Values of the unknowns at the start of the step; none in mechanics alone.
     real(wp), allocatable :: start(:, :)
+    !> Drivers of the law at the points.
+    real(wp), allocatable :: drivers(:, :, :, :)
   end type case_t
 
   !> Differences of fourth order, steps h and 2h: truncation (h/l)**4, with l the length over which the
@@ -85,7 +88,8 @@ contains
     case%instant%dt = 1
     allocate (case%start(0, 1))
     allocate (case%instant%multipliers(1), source=1.0_wp)
-    case%scene%groups(1)%npoint = npoint
+    case%scene%groups(1)%rule = rule_of_number(npoint)
+    allocate (case%drivers(0, 2, abs(npoint), 1))
     case%scene%groups(1)%role = case%elem%role
     case%scene%groups(1)%elem = elem
     case%scene%groups(1)%connectivity = reshape([(i, i=1, size(x, 2))], [size(x, 2), 1])
@@ -102,7 +106,9 @@ contains
     associate (group => case%scene%groups(1))
       group%material = 1
       call case%elem%variables(case%law, case%scene%plane_state, group%variables)
-      allocate (case%committed(total_components(group%variables), abs(group%npoint), 1), source=0.0_wp)
+      allocate (case%committed(total_components(group%variables), group%rule%n, 1), source=0.0_wp)
+      deallocate (case%drivers)
+      allocate (case%drivers(driver_count(case%law), 2, group%rule%n, 1), source=0.0_wp)
       do k = 1, size(group%variables)
         if (group%variables(k)%ncomp == 1) case%committed(group%variables(k)%first, :, :) = group%variables(k)%initial
       end do
@@ -232,7 +238,7 @@ contains
     k = 0
     allocate (trial(size(case%committed, 1), size(case%committed, 2), 1))
     call case%elem%compute(case%scene, case%scene%groups(1), case%kinematics, case%law, case%instant, layout_of_case(case), 1, &
-                           case%x, motion, case%start, case%committed, trial, f, k, report)
+                           case%x, motion, case%start, case%drivers, case%committed, trial, f, k, report)
     force = f(:, 1)
     stiffness = k(:, :, 1)
   end subroutine evaluate

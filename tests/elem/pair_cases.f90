@@ -13,6 +13,7 @@ module pair_cases
   use law_cases, only: law_row
   use materials, only: material_t
   use pairs, only: paired_nodes, start_pairs
+  use quadrature, only: rule_of_number
   use scene, only: axisymmetric, generalised_plane_strain, role_contact, scene_t
   use state_variables, only: total_components
   implicit none
@@ -62,7 +63,7 @@ contains
       allocate (scene%dies(1), scene%groups(1))
       scene%dies(1)%nodes = reshape([([k, k + 1, k + 2], k=4, size(x, 2) - 2, 2)], [3, (size(x, 2) - 4)/2])
       allocate (scene%dies(1)%pieces(2, 3, size(scene%dies(1)%nodes, 2)))
-      scene%groups(1)%npoint = npoint
+      scene%groups(1)%rule = rule_of_number(npoint)
       scene%groups(1)%role = role_contact
       scene%groups(1)%connectivity = reshape([1, 2, 3], [3, 1])
       scene%groups(1)%die = 1
@@ -83,8 +84,10 @@ contains
     type(report_t), intent(out) :: report
     real(wp), allocatable :: x(:, :, :), motion(:, :), f(:, :), k(:, :, :)
     integer, allocatable :: nodes(:), dof(:)
-    real(wp) :: none(0, 1)
+    real(wp) :: none(0, 1), drivers(2, 2, size(case%committed, 2), 1)
     integer :: i, j
+
+    drivers = 0
 
     case%instant%dies = case%scene%dies
     call place_on_nodes(case%x + du, case%instant%dies(1))
@@ -99,7 +102,7 @@ contains
       allocate (f(size(dof), 1), k(size(dof), size(dof), 1), source=0.0_wp)
       call case%elem%compute(case%scene, case%scene%groups(1), case%kinematics, case%law, case%instant, &
                              layout_of(case%elem, size(nodes), 0, case%scene%plane_state, case%scene%fields), 1, x, motion, &
-                             none, case%committed, trial, f, k, report)
+                             none, drivers, case%committed, trial, f, k, report)
       if (.not. report%unpaired) exit
       case%instant%pairs(1)%piece = nint(trial(at_piece, :, :))
     end do

@@ -55,13 +55,13 @@ contains
     real(wp), intent(in) :: f(5)
     real(wp), intent(out) :: state(nstate), tangent(4, 5)
     integer, intent(out) :: status
-    real(wp) :: temperature(2, 1), block_f(5, 1), committed(nstate, 1), trial(nstate, 1), block_tangent(4, 5, 1)
+    real(wp) :: drivers(1, 2, 1), block_f(5, 1), committed(nstate, 1), trial(nstate, 1), block_tangent(4, 5, 1)
     integer :: block_status(1)
 
     block_f(:, 1) = f
     committed(:, 1) = body%state
-    temperature = 0
-    call body%kinematics%update(body%law, body%material, 1.0_wp, 1, nstate, temperature, block_f, committed, trial, block_tangent, &
+    drivers = 0
+    call body%kinematics%update(body%law, body%material, 1.0_wp, 1, nstate, drivers, block_f, committed, trial, block_tangent, &
                                 block_status)
     state = trial(:, 1)
     tangent = block_tangent(:, :, 1)

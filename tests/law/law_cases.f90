@@ -2,7 +2,7 @@
 module law_cases
   use contact_penalties, only: penalty_parameters
   use kinds, only: wp
-  use law_api, only: find_parameter, law_t
+  use law_api, only: driver_temperature, find_parameter, law_t
   use law_registry, only: list_laws
   use materials, only: material_t
   implicit none
@@ -158,16 +158,16 @@ contains
     type(point_t), intent(out) :: point
     real(wp), intent(in), optional :: dt, temperature(2)
     real(wp) :: strain(4, 1), before(size(committed), 1), stress(4, 1), elastic(4, 1), after(size(committed), 1), tangent(4, 4, 1)
-    real(wp) :: step, degrees(2, 1)
+    real(wp) :: step, drivers(1, 2, 1)
     integer :: status(1)
 
     step = 1
     if (present(dt)) step = dt
-    degrees = 0
-    if (present(temperature)) degrees(:, 1) = temperature
+    drivers = 0
+    if (present(temperature)) drivers(driver_temperature, :, 1) = temperature
     strain(:, 1) = trial
     before(:, 1) = committed
-    call row%update(material, step, degrees, strain, before, stress, elastic, after, tangent, status)
+    call row%update(material, step, drivers, strain, before, stress, elastic, after, tangent, status)
     point%stress = stress(:, 1)
     point%elastic = elastic(:, 1)
     point%history = after(:, 1)

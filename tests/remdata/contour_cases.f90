@@ -7,7 +7,7 @@ module contour_cases
   use dies, only: die_t, finish_die, present_die
   use fields, only: displacement_field, mechanical_fields, pilot_field
   use kinds, only: wp
-  use quadrature, only: line_rule
+  use quadrature, only: line_rule, rule_of_number
   use scene, only: axisymmetric, group_t, plane_strain, role_body, role_contact, scene_t
   use shape_functions, only: line3
   use solution, only: present_coordinates, solution_t, start_solution
@@ -61,7 +61,7 @@ contains
     group%elem = 'PL8LS'
     group%role = role_body
     group%material = 1
-    group%npoint = 4
+    group%rule%n = 4
     group%connectivity = n + connectivity
     allocate (group%variables(0))
     call append_group(scene, group)
@@ -172,7 +172,7 @@ contains
     group%role = role_contact
     group%material = 1
     group%die = die
-    group%npoint = npoint
+    group%rule = rule_of_number(npoint)
     group%connectivity = scene%mesh%sides(set)%nodes
     allocate (group%variables, source=[state_variable('penetration', 'length', transfer_recompute), &
                                       state_variable('contact_status', '-', transfer_recompute)])
@@ -200,7 +200,7 @@ contains
     real(wp) :: phi(3), dphi(3), depth
     integer :: e, p
 
-    call line_rule(scene%groups(group)%npoint, xi, weight)
+    call line_rule(scene%groups(group)%rule, xi, weight)
     associate (nodes => scene%groups(group)%connectivity, state => solution%groups(group)%committed)
       do e = 1, size(nodes, 2)
         do p = 1, size(xi)

@@ -61,13 +61,13 @@ contains
     scene%groups(1)%elem_id = 1
     scene%groups(1)%role = role_body
     scene%groups(1)%material = 1
-    scene%groups(1)%npoint = 4
+    scene%groups(1)%rule%n = 4
     scene%groups(1)%connectivity = connectivity
     scene%groups(2)%elem = 'CNT2D'
     scene%groups(2)%elem_id = 2
     scene%groups(2)%role = role_contact
     scene%groups(2)%material = 2
-    scene%groups(2)%npoint = 2
+    scene%groups(2)%rule%n = 2
     scene%groups(2)%die = 2
     scene%groups(2)%connectivity = side_nodes(:, side_first(1):side_first(2) - 1)
 

@@ -21,9 +21,9 @@ contains
     row%update => update
   end function law_fluid_row
 
-  pure subroutine update(material, dt, temperature, trial_strain, committed, stress, elastic_strain, history, tangent, status)
+  pure subroutine update(material, dt, drivers, trial_strain, committed, stress, elastic_strain, history, tangent, status)
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: dt, temperature(:, :), trial_strain(:, :), committed(:, :)
+    real(wp), intent(in) :: dt, drivers(:, :, :), trial_strain(:, :), committed(:, :)
     real(wp), intent(out) :: stress(:, :), elastic_strain(:, :), history(:, :), tangent(:, :, :)
     integer, intent(out) :: status(:)
     integer, parameter :: normal(3) = [1, 2, 4]

@@ -1,0 +1,361 @@
+!> What drives the laws of points from outside, by the names that each law declares (law_api).
+!>
+!> A point of a body is driven by its temperature, by nodal fields of one component, and by state variables of other formulations
+!> on the same body. A point of contact is driven by the temperature of its side, by such fields there, and by the state of the
+!> body behind: the mean over the two integration points of the element nearest to the side. The `flow_stress` of that body is the
+!> one of the accepted state, and holds for the step that follows; all others are known at both ends of the step.
+!>
+!> The temperature of a body is found by the element itself, which has derivatives along it.
+module point_drivers
+  use errors, only: error_t, exit_input, fail
+  use fields, only: field_t, find_field, has_corners_only, on_nodes
+  use kinds, only: wp
+  use kinematics_api, only: first_history
+  use law_api, only: driver_count, driver_temperature, law_t
+  use loads, only: multiplier_at
+  use point_temperatures, only: nodal_temperatures, temperature_field
+  use quadrature, only: line_rule, square_rule
+  use scene, only: group_t, host_of, is_solid, role_contact, scene_t
+  use shape_functions, only: line3, quad8
+  use solution, only: solution_t
+  use state_variables, only: find_variable
+  implicit none
+  private
+  public :: drivers_t, find_drivers, start_drivers, advance_drivers, nodal_values, is_scalar
+
+  !> Where a driver comes from.
+  integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3
+  !> Name of the flow stress of the body behind a side.
+  character(len=*), parameter :: flow_name = 'flow_stress'
+
+  type :: driver_source_t
+    integer :: kind = from_nothing
+    !> Field of the scene; or group and row of its state, for contact by the groups of bodies (ngroup).
+    integer :: field = 0
+    integer, allocatable :: group(:), row(:)
+  end type driver_source_t
+
+  !> Drivers of the points of a group.
+  type :: drivers_t
+    !> At the start and at the end of the step (ndriver, 2, npoint, nelem); no rows where the law has none but the temperature of
+    !> its body.
+    real(wp), allocatable :: value(:, :, :, :)
+    type(driver_source_t), allocatable :: source(:)
+    !> They change within a step.
+    logical :: vary = .false.
+    !> Of contact: group and element of the body behind each side, and its side 1 to 4 (nelem).
+    integer, allocatable :: body(:), element(:), side(:)
+  end type drivers_t
+
+contains
+
+  !> Where the drivers of all groups come from. A name that nothing in the scene has is an error.
+  subroutine find_drivers(scene, laws, drivers, error)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    type(drivers_t), allocatable, intent(out) :: drivers(:)   !! (ngroup)
+    type(error_t), allocatable, intent(out) :: error
+    integer :: g, k, n, law
+
+    allocate (drivers(size(scene%groups)))
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        n = 0
+        law = 0
+        if (group%material > 0) then
+          law = scene%materials(group%material)%law_id
+          n = driver_count(laws(law))
+          if (n == 1 .and. group%role /= role_contact) n = 0
+        end if
+        allocate (drivers(g)%value(n, 2, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
+        allocate (drivers(g)%source(n))
+        if (n == 0) cycle
+        if (group%role == role_contact) then
+          call find_bodies_behind(scene, group, drivers(g))
+          drivers(g)%source(driver_temperature) = source_of(scene, g, temperature_field)
+        end if
+        do k = 2, n
+          drivers(g)%source(k) = source_of(scene, g, laws(law)%drivers(k - 1)%s)
+          if (drivers(g)%source(k)%kind /= from_nothing) cycle
+          call fail(error, exit_input, scene%materials(group%material)%where_defined//': LAW '// &
+                    scene%materials(group%material)%name//': expected a field or a state variable '''//laws(law)%drivers(k - 1)%s &
+                    //''' of the bodies that it drives, found none')
+          return
+        end do
+        drivers(g)%vary = any(drivers(g)%source%kind == from_field .or. drivers(g)%source%kind == from_state)
+        if (allocated(drivers(g)%body)) &
+          drivers(g)%vary = drivers(g)%vary .or. any(scene%groups(drivers(g)%body)%temperature_multiplier > 0)
+      end associate
+    end do
+  end subroutine find_drivers
+
+  !> Bodies behind the sides of a contact.
+  pure subroutine find_bodies_behind(scene, group, drivers)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(drivers_t), intent(inout) :: drivers
+    integer :: owner(3, size(scene%mesh%coordinates, 2)), g, e, k
+
+    owner = 0
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      do e = 1, size(scene%groups(g)%connectivity, 2)
+        do k = 1, 4
+          owner(:, scene%groups(g)%connectivity(4 + k, e)) = [g, e, k]
+        end do
+      end do
+    end do
+    drivers%body = owner(1, group%connectivity(2, :))
+    drivers%element = owner(2, group%connectivity(2, :))
+    drivers%side = owner(3, group%connectivity(2, :))
+  end subroutine find_bodies_behind
+
+  !> Source of a name for a group.
+  pure function source_of(scene, g, name) result(source)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g   !! place of the group
+    character(len=*), intent(in) :: name
+    type(driver_source_t) :: source
+    integer :: k, v, f
+
+    if (scene%groups(g)%role == role_contact .and. name == flow_name) then
+      source%kind = from_flow
+      return
+    end if
+    f = find_field(scene%fields, name)
+    if (f > 0) then
+      if (is_scalar(scene%fields(f))) then
+        source%kind = from_field
+        source%field = f
+        return
+      end if
+    end if
+    allocate (source%group(size(scene%groups)), source%row(size(scene%groups)), source=0)
+    do k = 1, size(scene%groups)
+      if (k == g .or. scene%groups(k)%role == role_contact) cycle
+      v = find_variable(scene%groups(k)%variables, name)
+      if (v == 0) cycle
+      if (scene%groups(k)%variables(v)%ncomp > 1) cycle
+      if (scene%groups(g)%role /= role_contact .and. host_of(scene, k) /= host_of(scene, g)) cycle
+      source%kind = from_state
+      source%group(host_of(scene, k)) = k
+      source%row(host_of(scene, k)) = scene%groups(k)%variables(v)%first
+    end do
+  end function source_of
+
+  !> All drivers at the accepted state, for the step that begins there.
+  subroutine start_drivers(scene, laws, solution, drivers)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    type(solution_t), intent(in) :: solution
+    type(drivers_t), intent(inout) :: drivers(:)   !! (ngroup)
+    real(wp) :: now(size(scene%mesh%coordinates, 2), size(scene%fields))
+    integer :: g, k
+
+    call nodal_values(scene, solution, now)
+    do k = 1, 2   ! bodies first: the flow stress behind a side depends on what drives them
+      do g = 1, size(drivers)
+        if (size(drivers(g)%value, 1) == 0 .or. (scene%groups(g)%role == role_contact .neqv. k == 2)) cycle
+        call fill(scene, laws, solution, now, solution%time, g, 1, drivers)
+        drivers(g)%value(:, 2, :, :) = drivers(g)%value(:, 1, :, :)
+      end do
+    end do
+  end subroutine start_drivers
+
+  !> Fields and states at the end of the step, as they are tried now.
+  subroutine advance_drivers(scene, laws, solution, now, time, drivers)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: now(:, :)              !! trial values of the nodal fields of one component (nnode, nfield)
+    real(wp), intent(in) :: time                   !! end of the step [time]
+    type(drivers_t), intent(inout) :: drivers(:)   !! (ngroup)
+    integer :: g
+
+    do g = 1, size(drivers)
+      if (drivers(g)%vary) call fill(scene, laws, solution, now, time, g, 2, drivers)
+    end do
+  end subroutine advance_drivers
+
+  !> A field that can drive points: one component, on nodes.
+  elemental function is_scalar(field) result(yes)
+    type(field_t), intent(in) :: field
+    logical :: yes
+
+    yes = field%declared .and. field%place == on_nodes .and. field%ncomp == 1
+  end function is_scalar
+
+  !> Values of the fields that can drive points at the accepted state, 0 for others.
+  pure subroutine nodal_values(scene, solution, now)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(out) :: now(:, :)   !! (nnode, nfield)
+    integer :: f
+
+    now = 0
+    do f = 1, size(scene%fields)
+      if (is_scalar(scene%fields(f))) now(:, f) = solution%fields(f)%value(1, :)
+    end do
+  end subroutine nodal_values
+
+  !> Drivers of one group at one end of the step.
+  subroutine fill(scene, laws, solution, now, time, g, at, drivers)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: now(:, :)   !! nodal values then (nnode, nfield)
+    real(wp), intent(in) :: time
+    integer, intent(in) :: g, at        !! place of the group; 1: start, 2: end of the step
+    type(drivers_t), intent(inout) :: drivers(:)
+    integer :: k, e
+
+    associate (own => drivers(g), group => scene%groups(g))
+      do k = 1, size(own%source)
+        select case (own%source(k)%kind)
+        case (from_field)
+          do e = 1, size(own%value, 4)
+            own%value(k, at, :, e) = field_at_points(scene%fields(own%source(k)%field), now(:, own%source(k)%field), group, e)
+          end do
+        case (from_state)
+          do e = 1, size(own%value, 4)
+            own%value(k, at, :, e) = state_at_points(scene, solution, g, own, k, at, e)
+          end do
+        case (from_flow)
+          if (at == 2) cycle
+          do e = 1, size(own%value, 4)
+            own%value(k, at, :, e) = flow_behind(scene, laws, solution, own, drivers, e)
+          end do
+        end select
+        if (k /= driver_temperature .or. .not. allocated(own%body)) cycle
+        do e = 1, size(own%value, 4)
+          associate (body => scene%groups(own%body(e)))
+            if (body%temperature_multiplier > 0) own%value(k, at, :, e) = given_temperature(scene, body, time)
+          end associate
+        end do
+      end do
+    end associate
+  end subroutine fill
+
+  !> A nodal field at the points of an element or a side.
+  pure function field_at_points(field, now, group, e) result(values)
+    type(field_t), intent(in) :: field
+    real(wp), intent(in) :: now(:)   !! (nnode)
+    type(group_t), intent(in) :: group
+    integer, intent(in) :: e         !! element
+    real(wp) :: values(group%rule%n)
+    real(wp), allocatable :: xi(:), place(:, :), weight(:)
+    real(wp) :: nodal(8), phi(8), dphi(2, 8), phi3(3), dphi3(3)
+    integer :: p
+
+    associate (nodes => group%connectivity(:, e))
+      if (size(nodes) == 3) then
+        nodal(:3) = now(nodes)
+        if (has_corners_only(field)) nodal(2) = 0.5_wp*(nodal(1) + nodal(3))
+        call line_rule(group%rule, xi, weight)
+        do p = 1, size(values)
+          call line3(xi(p), phi3, dphi3)
+          values(p) = dot_product(phi3, nodal(:3))
+        end do
+      else
+        nodal = nodal_temperatures(now(nodes(:merge(4, 8, has_corners_only(field)))))
+        call square_rule(group%rule%n, place, weight)
+        do p = 1, size(values)
+          call quad8(place(1, p), place(2, p), phi, dphi)
+          values(p) = dot_product(phi, nodal)
+        end do
+      end if
+    end associate
+  end function field_at_points
+
+  !> A state variable of another formulation on the same points, or of the body behind a side.
+  pure function state_at_points(scene, solution, g, own, k, at, e) result(values)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: g, k, at, e   !! group, driver, end of the step, element
+    type(drivers_t), intent(in) :: own
+    real(wp) :: values(scene%groups(g)%rule%n)
+    integer :: body, near(2)
+
+    body = host_of(scene, g)
+    if (allocated(own%body)) body = own%body(e)
+    values = 0
+    if (own%source(k)%group(body) == 0) return   ! the body behind has none
+    associate (state => solution%groups(own%source(k)%group(body)), row => own%source(k)%row(body))
+      if (.not. allocated(own%body)) then
+        values = merge(state%committed(row, :, e), state%trial(row, :, e), at == 1)
+      else
+        near = nearest_points(scene%groups(body)%rule%n, own%side(e))
+        values = 0.5_wp*sum(merge(state%committed(row, near, own%element(e)), state%trial(row, near, own%element(e)), at == 1))
+      end if
+    end associate
+  end function state_at_points
+
+  !> Flow stress of the body behind a side, 0 where its law does not flow.
+  pure function flow_behind(scene, laws, solution, own, drivers, e) result(flow)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    type(solution_t), intent(in) :: solution
+    type(drivers_t), intent(in) :: own, drivers(:)   !! of the contact, and of all groups
+    integer, intent(in) :: e
+    real(wp) :: flow   !! [stress]
+    integer :: near(2), p
+
+    flow = 0
+    associate (g => own%body(e), body => scene%groups(own%body(e)))
+      associate (law => laws(scene%materials(body%material)%law_id))
+        if (.not. associated(law%flow_stress)) return
+        near = nearest_points(body%rule%n, own%side(e))
+        block
+          real(wp) :: given(driver_count(law))
+
+          do p = 1, 2
+            if (size(given) > 1) given(2:) = drivers(g)%value(2:, 1, near(p), own%element(e))
+            given(driver_temperature) = mean_temperature(scene, solution, body, own%element(e))
+            flow = flow + 0.5_wp*law%flow_stress(scene%materials(body%material), given, &
+                                                 solution%groups(g)%committed(first_history:, near(p), own%element(e)))
+          end do
+        end block
+      end associate
+    end associate
+  end function flow_behind
+
+  !> What a TEMPE card gives, or the mean of the field over the corners of the element.
+  pure function mean_temperature(scene, solution, body, element) result(temperature)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(group_t), intent(in) :: body
+    integer, intent(in) :: element
+    real(wp) :: temperature   !! [temperature]
+    integer :: f
+
+    temperature = 0
+    f = find_field(solution%fields, temperature_field)
+    if (f > 0) temperature = 0.25_wp*sum(solution%fields(f)%value(1, body%connectivity(1:4, element)))
+    if (body%temperature_multiplier > 0) temperature = given_temperature(scene, body, solution%time)
+  end function mean_temperature
+
+  !> What a TEMPE card gives to a body.
+  pure function given_temperature(scene, body, time) result(temperature)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: body
+    real(wp), intent(in) :: time
+    real(wp) :: temperature   !! [temperature]
+
+    temperature = body%temperature_amplitude*multiplier_at(scene%multipliers(body%temperature_multiplier), time)
+  end function given_temperature
+
+  !> The two integration points of the square nearest to a side (1: eta = -1, 2: xi = 1, 3: eta = 1, 4: xi = -1), apart from the
+  !> middle one of a row of three.
+  pure function nearest_points(npoint, side) result(near)
+    integer, intent(in) :: npoint, side
+    integer :: near(2)
+    real(wp), allocatable :: xi(:, :), weight(:)
+    real(wp) :: depth(npoint), along(npoint)
+
+    call square_rule(npoint, xi, weight)
+    depth = merge(-1, 1, side == 1 .or. side == 4)*xi(merge(2, 1, mod(side, 2) == 1), :)
+    along = xi(merge(1, 2, mod(side, 2) == 1), :)
+    near = [maxloc(depth + 0.1_wp*along, 1), maxloc(depth - 0.1_wp*along, 1)]
+  end function nearest_points
+
+end module point_drivers
