@@ -25,6 +25,7 @@ module scene_reader
   use elem_registry, only: list_elems
   use mesh_finish, only: finish_mesh
   use mesh_parts, only: mesh_parts_t, start_parts
+  use point_drivers, only: missing_driver
   use remesh, only: remesh_t
   use remeshed_parts, only: order_as_remeshed, replace_parts
   use remesher_options, only: has_contours
@@ -98,6 +99,7 @@ contains
 
     if (present(remesh)) call order_as_remeshed(remesh, draft%scene%groups)
     if (diagnostics%count() == 0) call declare_fields(draft%elems, draft%scene)
+    if (diagnostics%count() == 0) call refuse_missing_drivers(draft, diagnostics)
     if (diagnostics%count() == 0) call list_effects(deck, draft%laws, draft%elems, diagnostics, draft%scene)
     scene = draft%scene
   end subroutine read_scene
@@ -129,6 +131,27 @@ contains
     call diagnostics%register(deck%path, where%file)
     call diagnostics%add(where, 'BLOCK', 'the deck has no body: expected a BLOCK, PL8LS or BODY card')
   end subroutine refuse_empty
+
+  !> What drives the law of a body, or of its sides, must be there.
+  subroutine refuse_missing_drivers(draft, diagnostics)
+    type(draft_t), intent(in) :: draft
+    type(diagnostics_t), intent(inout) :: diagnostics
+    character(len=:), allocatable :: name
+    logical :: reported(size(draft%materials%words))
+    integer :: g, k
+
+    reported = .false.
+    do g = 1, size(draft%scene%groups)
+      name = missing_driver(draft%scene, draft%laws, g)
+      if (name == '') cycle
+      do k = 1, size(reported)
+        if (draft%materials%item(k) /= draft%scene%groups(g)%material .or. reported(k)) cycle
+        reported(k) = .true.
+        call diagnostics%add(draft%materials%location(k), 'LAW', ''''//draft%materials%words(k)%s//''' is driven by '''//name &
+                             //''': expected a field, or a state of another element, of that name on its body, found none')
+      end do
+    end do
+  end subroutine refuse_missing_drivers
 
   !> What is defined must be used. Words on cards that nobody knows count as uses.
   subroutine refuse_unused_names(deck, draft, keywords, diagnostics)

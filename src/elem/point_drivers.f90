@@ -7,7 +7,6 @@
 !>
 !> The temperature of a body is found by the element itself, which has derivatives along it.
 module point_drivers
-  use errors, only: error_t, exit_input, fail
   use fields, only: field_t, find_field, has_corners_only, on_nodes
   use kinds, only: wp
   use kinematics_api, only: first_history
@@ -21,7 +20,7 @@ module point_drivers
   use state_variables, only: find_variable
   implicit none
   private
-  public :: drivers_t, find_drivers, start_drivers, advance_drivers, nodal_values, is_scalar
+  public :: drivers_t, find_drivers, missing_driver, start_drivers, advance_drivers, nodal_values, is_scalar
 
   !> Where a driver comes from.
   integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3
@@ -49,12 +48,11 @@ module point_drivers
 
 contains
 
-  !> Where the drivers of all groups come from. A name that nothing in the scene has is an error.
-  subroutine find_drivers(scene, laws, drivers, error)
+  !> Where the drivers of all groups come from. A name that nothing in the scene has is an error of the deck (missing_driver).
+  subroutine find_drivers(scene, laws, drivers)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)
     type(drivers_t), allocatable, intent(out) :: drivers(:)   !! (ngroup)
-    type(error_t), allocatable, intent(out) :: error
     integer :: g, k, n, law
 
     allocate (drivers(size(scene%groups)))
@@ -76,11 +74,6 @@ contains
         end if
         do k = 2, n
           drivers(g)%source(k) = source_of(scene, g, laws(law)%drivers(k - 1)%s)
-          if (drivers(g)%source(k)%kind /= from_nothing) cycle
-          call fail(error, exit_input, scene%materials(group%material)%where_defined//': LAW '// &
-                    scene%materials(group%material)%name//': expected a field or a state variable '''//laws(law)%drivers(k - 1)%s &
-                    //''' of the bodies that it drives, found none')
-          return
         end do
         drivers(g)%vary = any(drivers(g)%source%kind == from_field .or. drivers(g)%source%kind == from_state)
         if (allocated(drivers(g)%body)) &
@@ -88,6 +81,27 @@ contains
       end associate
     end do
   end subroutine find_drivers
+
+  !> The first driver that the law of a group asks for and nothing in the scene gives, '' where there is none.
+  pure function missing_driver(scene, laws, g) result(name)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: g   !! place of the group
+    character(len=:), allocatable :: name
+    type(driver_source_t) :: source
+    integer :: k
+
+    name = ''
+    if (scene%groups(g)%material == 0) return
+    associate (law => laws(scene%materials(scene%groups(g)%material)%law_id))
+      do k = 1, driver_count(law) - 1
+        source = source_of(scene, g, law%drivers(k)%s)
+        if (source%kind /= from_nothing) cycle
+        name = law%drivers(k)%s
+        return
+      end do
+    end associate
+  end function missing_driver
 
   !> Bodies behind the sides of a contact.
   pure subroutine find_bodies_behind(scene, group, drivers)

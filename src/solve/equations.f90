@@ -96,8 +96,7 @@ contains
     equations%nnode = size(scene%mesh%coordinates, 2)
     equations%size = length_of(maxval(scene%mesh%coordinates, 2) - minval(scene%mesh%coordinates, 2))
 
-    call find_drivers(scene, equations%laws, equations%drivers, error)
-    if (allocated(error)) return
+    call find_drivers(scene, equations%laws, equations%drivers)
     allocate (equations%is_load(size(scene%groups)))
     do g = 1, size(scene%groups)
       equations%is_load(g) = any(scene%groups(g)%role == [role_side_load, role_volume_load, role_spring])
