@@ -184,6 +184,7 @@ contains
     real(wp) :: share
     integer :: g, element
 
+    if (.not. solution%fields(displacement_field)%declared) return
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
         if (.not. has_spurious_mode(group)) cycle

@@ -4,8 +4,8 @@ module cards_laws
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
   use kinds, only: wp
-  use law_api, only: kind_names, law_line_t, law_t, line_choice, line_pairs, parameter_t, solid_law
-  use law_checks, only: check_alike, check_numbers
+  use law_api, only: contact_law, kind_names, law_line_t, law_t, line_choice, line_pairs, parameter_t
+  use law_checks, only: check_alike, check_numbers, refuse_without_temperatures
   use law_registry, only: law_names
   use materials, only: material_t
   use scene_draft, only: close_card, draft_t
@@ -48,6 +48,7 @@ contains
           else
             call read_lines(cursor, draft%laws(material%law_id), material)
             call check_numbers(cursor, draft%laws(material%law_id), material)
+            call refuse_without_temperatures(cursor, draft%laws(material%law_id))
           end if
         end if
       end associate
@@ -71,7 +72,7 @@ contains
     type(cursor_t), intent(inout) :: cursor
     type(law_t), intent(in) :: law
     type(material_t), intent(inout) :: material
-    type(material_t) :: first, part
+    type(material_t) :: first, last, part
     character(len=:), allocatable :: word
     real(wp), allocatable :: temperatures(:), values(:), curves(:)
     real(wp) :: temperature
@@ -81,7 +82,7 @@ contains
     do while (cursor%peek_row() == 'TEMP')
       call cursor%next_row('TEMP and a temperature')
       call cursor%word('TEMP', word)
-      if (law%kind /= solid_law) call cursor%fail('a law for '//trim(kind_names(law%kind))//' has no temperatures')
+      if (law%kind == contact_law) call cursor%fail('a law for '//trim(kind_names(law%kind))//' has no temperatures')
       n = size(temperatures)
       if (n == 0) then
         call cursor%real('the temperature of the numbers that follow', temperature)
@@ -93,9 +94,10 @@ contains
       allocate (part%values(0), part%curve(2, 0))
       call read_lines(cursor, law, part)
       call check_numbers(cursor, law, part)
-      if (n > 0) call check_alike(cursor, law, first, part)
+      if (n > 0) call check_alike(cursor, law, first, last, part)
       if (cursor%failed()) return
       if (n == 0) first = part
+      last = part
       temperatures = [temperatures, temperature]
       values = [values, part%values]
       curves = [curves, part%curve]

@@ -6,7 +6,7 @@ module law_checks
   use text, only: string_t, to_text
   implicit none
   private
-  public :: check_numbers, check_alike
+  public :: check_numbers, check_alike, refuse_without_temperatures
 
 contains
 
@@ -25,11 +25,27 @@ contains
     end do
   end subroutine check_numbers
 
-  !> The same forms at all temperatures: words of choices, points of a table, and the parts that a number turns on.
-  subroutine check_alike(cursor, law, first, later)
+  !> A number that grows from temperature to temperature needs some.
+  subroutine refuse_without_temperatures(cursor, law)
     type(cursor_t), intent(inout) :: cursor
     type(law_t), intent(in) :: law
-    type(material_t), intent(in) :: first, later
+    integer :: i, p
+
+    do i = 1, size(law%lines)
+      do p = 1, size(law%lines(i)%parameters)
+        if (law%lines(i)%parameters(p)%rises) call cursor%fail(law%lines(i)%parameters(p)%name &
+                                                              //' is a function of the temperature: expected rows TEMP')
+      end do
+    end do
+  end subroutine refuse_without_temperatures
+
+  !> The same forms at all temperatures: words of choices, points of a table, and the parts that a number turns on.
+  subroutine check_alike(cursor, law, first, before, later)
+    type(cursor_t), intent(inout) :: cursor
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: first    !! at the first temperature
+    type(material_t), intent(in) :: before   !! at the temperature below
+    type(material_t), intent(in) :: later
     integer :: i, k, p
     logical :: choosing
 
@@ -51,8 +67,11 @@ contains
                        //' as at the first temperature')
     do i = 1, size(law%lines)
       do p = 1, size(law%lines(i)%parameters)
-        if (.not. law%lines(i)%parameters(p)%turns_on) cycle
         k = find_parameter(law, law%lines(i)%parameters(p)%name)
+        if (law%lines(i)%parameters(p)%rises .and. .not. later%values(k) > before%values(k)) &
+          call cursor%fail(law%lines(i)%parameters(p)%name//' must grow with the temperature: it is '//to_text(later%values(k)) &
+                           //' after '//to_text(before%values(k)))
+        if (.not. law%lines(i)%parameters(p)%turns_on) cycle
         if ((first%values(k) > 0) .neqv. (later%values(k) > 0)) &
           call cursor%fail(law%lines(i)%parameters(p)%name//' is above 0 at some temperatures only: give it at all or at none')
       end do

@@ -1,9 +1,8 @@
 !> Laws in words, for `lagamine --law`: the list of all; of one its card, its numbers, its state, where it comes from.
 module law_manual
   use kinds, only: wp
-  use law_api, only: contact_law, find_parameter, heat_law, kind_names, law_line_t, law_t, line_choice, line_pairs, parameter_t, &
-                     solid_law
-  use text, only: add_text, join, string_t, to_text
+  use law_api, only: contact_law, find_parameter, heat_law, kind_names, law_line_t, law_t, line_choice, line_pairs, parameter_t
+  use text, only: add_text, string_t, to_text
   implicit none
   private
   public :: law_card, law_list
@@ -59,9 +58,13 @@ contains
         call add_text(lines, parameter_line(law%lines(i)%parameters(k)))
       end do
     end do
-    if (law%kind == solid_law) &
+    if (law%kind /= contact_law) &
       call add_text(lines, '  all rows again for each temperature, after a row TEMP value; or once, without')
-    if (allocated(law%drivers)) call add_text(lines, 'driven, beside the temperature, by: '//join(law%drivers, ', '))
+    if (allocated(law%drivers)) then
+      do i = 1, size(law%drivers)
+        call add_text(lines, 'driven by '//law%drivers(i)%name//only_with(law, law%drivers(i)%needs))
+      end do
+    end if
     call add_text(lines, '')
     if (size(law%history) == 0) call add_text(lines, 'state of a point beside that of the element: none')
     if (size(law%history) > 0) call add_text(lines, 'state of a point beside that of the element:')

@@ -19,11 +19,11 @@ module elem_api
   use text, only: string_t
   implicit none
   private
-  public :: elem_t, instant_t, layout_t, report_t, totals_t, unknown_t
+  public :: elem_t, flow_rule_t, instant_t, layout_t, report_t, totals_t, unknown_t
   public :: elem_compute_i, elem_variables_i, elem_measure_i, elem_augment_i
   public :: block_done, block_inverted, block_law_failed
   public :: acts_on, add_totals, applies, declare_fields, first_unknown, group_temperature, has_unknown, layout_of, section_motion
-  public :: of_displacement, of_pilot, of_section, that_reads
+  public :: of_displacement, of_pilot, of_section, that_reads, field_nodes
   public :: mode_advance, mode_restore
   public :: most_components
 
@@ -63,6 +63,14 @@ module elem_api
     integer :: first(most_components, most_fields) = 0, count(most_fields) = 0
   end type layout_t
 
+  !> How a step is made of instants in the balance of heat: flows count with a weight each, at a share of the step.
+  type :: flow_rule_t
+    integer :: n = 1
+    real(wp) :: weight(2) = [1.0_wp, 0.0_wp], share(2) = [1.0_wp, 0.0_wp]
+    !> Multipliers at these instants (nmultiplier, n).
+    real(wp), allocatable :: multipliers(:, :)
+  end type flow_rule_t
+
   !> The instant at which a block is computed.
   type :: instant_t
     !> End of the step and its length [time].
@@ -78,6 +86,8 @@ module elem_api
     real(wp), allocatable :: values(:)
     !> Multipliers at the start and at the end of the step.
     real(wp), allocatable :: multipliers_before(:), multipliers(:)
+    !> Instants at which heat flows.
+    type(flow_rule_t) :: flow
     !> Matrices are wanted.
     logical :: tangent = .true.
     integer :: mode = mode_advance
@@ -321,7 +331,7 @@ contains
         layout%field(n) = f
         layout%acts(n) = unknown%acts
         layout%count(n) = 1
-        if (fields(f)%place == on_nodes) layout%count(n) = merge(4, nnode, has_corners_only(fields(f)) .and. nnode == 8)
+        if (fields(f)%place == on_nodes) layout%count(n) = size(field_nodes(fields(f), nnode))
         do c = 1, fields(f)%ncomp
           layout%first(c, n) = layout%ndof + 1
           layout%ndof = layout%ndof + layout%count(n)
@@ -329,6 +339,22 @@ contains
       end associate
     end do
   end function layout_of
+
+  !> Nodes of an element where a field has values of its own: all, or the corners of a quadrilateral and the ends of a side.
+  pure function field_nodes(field, nnode) result(nodes)
+    type(field_t), intent(in) :: field   !! on nodes
+    integer, intent(in) :: nnode
+    integer, allocatable :: nodes(:)
+    integer :: k
+
+    if (has_corners_only(field) .and. nnode == 8) then
+      nodes = [1, 2, 3, 4]
+    else if (has_corners_only(field) .and. nnode == 3) then
+      nodes = [1, 3]
+    else
+      nodes = [(k, k=1, nnode)]
+    end if
+  end function field_nodes
 
   !> Local place of the first unknown of a field, 0 where the element has none.
   pure function first_unknown(layout, field) result(first)

@@ -1,12 +1,12 @@
 !> PL8TM: conduction of heat in the 8-node quadrilateral, in all plane states.
 !>
 !> Temperature on eight nodes with the consistent capacity, or with the option BILINEAR on the corners with the capacity lumped
-!> there (no undershoot near a thermal shock; a linear temperature is exact where sides are straight). Balance at the end of the
-!> step, implicit Euler:
-!> F_i = sum phi_i RHOC (T - T_n)/dt dv0 + sum grad phi_i LAMBDA grad T dv + sum phi_i SOURCE (e - e_n)/dt dv0,
-!> heat flow per unit of the section (per radian when axisymmetric). The content of heat goes with the mass: dv0 is the volume at
-!> the start of the mesh; e is the volume strain, ln(dv) where kinematics are finite, of the motion that PL8LS gives the body.
-!> Linearised exactly, along the displacements too.
+!> there (no undershoot near a thermal shock; a linear temperature is exact where sides are straight). Balance of a step,
+!> F_i = sum phi_i (h(T) - h(T_n))/dt dv0 + sum_k w_k sum grad phi_i LAMBDA grad T_k dv + sum phi_i (SOURCE (e - e_n) - r)/dt dv0,
+!> with T_k at the instants k of the flow rule (elem_api: the end of the step for implicit Euler), h the heat content and r the heat
+!> released by the law; heat flow per unit of the section (per radian when axisymmetric). The heat content goes with the mass: dv0
+!> is the volume at the start of the mesh; e is the volume strain, ln(dv) where kinematics are finite, of the motion that PL8LS
+!> gives the body. Linearised exactly, along the displacements too, but for the plastic work behind r.
 !> Source: K.J. Bathe, Finite Element Procedures, sec. 7.2; R.W. Lewis et al., The Finite Element Method in Heat Transfer Analysis.
 module elem_pl8tm
   use elem_api, only: block_inverted, elem_t, first_unknown, instant_t, layout_t, mode_restore, report_t, that_reads, &
@@ -14,7 +14,8 @@ module elem_pl8tm
   use fields, only: displacement_field, field_t, transfer_nodal
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
-  use law_api, only: conduction_t, heat_law, law_t
+  use law_api, only: driver_temperature, heat_law, law_t
+  use materials, only: material_t
   use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
   use quadrature, only: square_rule
   use scene, only: group_t, role_body, scene_t
@@ -23,7 +24,7 @@ module elem_pl8tm
   use state_variables, only: state_variable_t
   implicit none
   private
-  public :: elem_pl8tm_row
+  public :: elem_pl8tm_row, of_temperature
 
   !> Place of the option BILINEAR; the temperature is the first field of the element's unknowns.
   integer, parameter :: bilinear = 1, temperature = 1
@@ -34,11 +35,19 @@ module elem_pl8tm
     real(wp) :: phi(8, 9) = 0.0_wp, dphi(2, 8, 9) = 0.0_wp
   end type functions_t
 
+  !> Geometry of an element in a step at its points.
+  type :: place_t
+    real(wp) :: dv(9), dv0(9)                 !! volumes at the end of the step and at the start of the mesh
+    real(wp) :: gx(8, 9), gy(8, 9)            !! gradients of the functions of the temperature
+    real(wp) :: nx(8, 9), ny(8, 9)            !! gradients of the shape functions
+    real(wp) :: strain(9), swelling(16, 9)    !! volume strain of the step, and its derivative along the displacements
+    logical :: valid = .true.
+  end type place_t
+
 contains
 
   function elem_pl8tm_row() result(row)
     type(elem_t) :: row
-    type(unknown_t) :: unknown
 
     row%name = 'PL8TM'
     row%purpose = 'conduction of heat, 8-node quadrilateral'
@@ -48,9 +57,7 @@ contains
     row%effect = 'heat'
     allocate (row%options(1))
     row%options(bilinear)%s = 'BILINEAR'
-    unknown%field = field_t(name='temperature', unit='temperature', dual='heat_flow', dual_unit='power', word='T', &
-                            quantity='temperature', transfer=transfer_nodal, imposed_as_value=.true.)
-    allocate (row%unknowns, source=[unknown, unknown, that_reads('displacement')])
+    allocate (row%unknowns, source=[of_temperature(), of_temperature(), that_reads('displacement')])
     row%unknowns(1)%option = 0
     row%unknowns(2)%option = bilinear
     row%unknowns(2)%field%at_corners = .true.
@@ -59,13 +66,27 @@ contains
     row%measure => measure
   end function elem_pl8tm_row
 
-  !> The content of heat is a function of the temperature: points keep nothing.
+  !> The temperature on the nodes of an element.
+  pure function of_temperature() result(unknown)
+    type(unknown_t) :: unknown
+
+    unknown%field = field_t(name='temperature', unit='temperature', dual='heat_flow', dual_unit='power', word='T', &
+                            quantity='temperature', transfer=transfer_nodal, imposed_as_value=.true.)
+  end function of_temperature
+
+  !> The heat content is a function of the temperature: points keep what the law does.
   pure subroutine variables(law, plane_state, list)
     type(law_t), intent(in) :: law
     integer, intent(in) :: plane_state
     type(state_variable_t), allocatable, intent(out) :: list(:)
+    integer :: k, next
 
-    allocate (list(0))
+    allocate (list, source=law%history)
+    next = 1
+    do k = 1, size(list)
+      list(k)%first = next
+      next = next + list(k)%ncomp
+    end do
   end subroutine variables
 
   subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
@@ -85,11 +106,12 @@ contains
     type(report_t), intent(out) :: report
     type(quad8_rule_t) :: rule
     type(functions_t) :: own
-    type(conduction_t) :: numbers
+    type(place_t) :: place
+    real(wp) :: motion(16)
     integer :: e, k, u
-    logical :: valid
 
     force = 0
+    trial = committed
     if (instant%tangent) stiffness = 0
     if (instant%mode == mode_restore) then
       ! on a new mesh temperatures stay as they were carried
@@ -98,26 +120,29 @@ contains
       end do
       return
     end if
-    numbers = law%conduct(scene%materials(group%material), 0.0_wp)
     call quad8_rule(group%rule%n, rule)
     call functions_of(group, rule, own)
     u = first_unknown(layout, displacement_field)
+    motion = 0
     do e = 1, size(x, 3)
-      associate (nodes => group%connectivity(:, first + e - 1))
-        if (u > 0) then
-          call balance(scene, instant, kinematics%finite, rule, own, group%option == bilinear, numbers, &
-                       scene%mesh%coordinates(:, nodes), x(:, :, e), du(u:u + 15, e), du(:own%n, e), start(:own%n, e), u, &
-                       force(:, e), stiffness(:, :, e), valid)
-        else
-          call balance(scene, instant, kinematics%finite, rule, own, group%option == bilinear, numbers, &
-                       scene%mesh%coordinates(:, nodes), x(:, :, e), spread(0.0_wp, 1, 16), du(:own%n, e), start(:own%n, e), u, &
-                       force(:, e), stiffness(:, :, e), valid)
-        end if
+      if (u > 0) motion = du(u:u + 15, e)
+      call place_element(scene, instant, kinematics%finite, rule, own, &
+                         scene%mesh%coordinates(:, group%connectivity(:, first + e - 1)), x(:, :, e), motion, place)
+      if (.not. place%valid) then
+        report%status = block_inverted
+        report%element = first + e - 1
+        return
+      end if
+      associate (material => scene%materials(group%material))
+        call add_content(instant, law, material, rule%npoint, own, group%option == bilinear, place, drivers(:, :, :, e), &
+                         du(:own%n, e), start(:own%n, e), force(:, e), stiffness(:, :, e))
+        call add_released(instant, law, material, rule%npoint, own, place, drivers(:, :, :, e), du(:own%n, e), &
+                          start(:own%n, e), u, committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e))
+        do k = 1, instant%flow%n
+          call add_flow(instant, k, law, material, kinematics%finite, rule%npoint, own, place, drivers(:, :, :, e), du(:own%n, e), &
+                        start(:own%n, e), u, force(:, e), stiffness(:, :, e))
+        end do
       end associate
-      if (valid) cycle
-      report%status = block_inverted
-      report%element = first + e - 1
-      return
     end do
   end subroutine compute
 
@@ -144,90 +169,192 @@ contains
     end do
   end subroutine functions_of
 
-  !> Heat flows of one element, and their derivatives along its temperatures and displacements.
-  pure subroutine balance(scene, instant, finite, rule, own, lumped, numbers, x0, x, motion, dt_nodes, t_nodes, u, force, &
-                          stiffness, valid)
+  !> Volumes, gradients and volume strain at the points of an element.
+  pure subroutine place_element(scene, instant, finite, rule, own, x0, x, motion, place)
     type(scene_t), intent(in) :: scene
     type(instant_t), intent(in) :: instant
-    logical, intent(in) :: finite, lumped
+    logical, intent(in) :: finite
     type(quad8_rule_t), intent(in) :: rule
     type(functions_t), intent(in) :: own
-    type(conduction_t), intent(in) :: numbers
-    real(wp), intent(in) :: x0(2, 8), x(2, 8)               !! nodes at the start of the mesh, and of the step [length]
-    real(wp), intent(in) :: motion(16)                      !! of the nodes, x then y [length]
-    real(wp), intent(in) :: dt_nodes(:), t_nodes(:)         !! change of the temperatures, and their start (n) [temperature]
-    integer, intent(in) :: u                                !! local place of the first displacement, 0 where there is none
-    real(wp), intent(inout) :: force(:), stiffness(:, :)
-    logical, intent(out) :: valid
-    real(wp) :: y(2, 8), nx(8), ny(8), detj, dv, dv0, before, thickness, gx(8), gy(8), jacobian(2, 2), slope(2), capacity, strain
-    real(wp) :: section(3), swelling(16)
-    integer :: p, i, j, n
+    real(wp), intent(in) :: x0(2, 8), x(2, 8)   !! nodes at the start of the mesh, and of the step [length]
+    real(wp), intent(in) :: motion(16)          !! of the nodes, x then y [length]
+    type(place_t), intent(out) :: place
+    real(wp) :: y(2, 8), nx(8), ny(8), detj, before, thickness, jacobian(2, 2), section(3)
+    integer :: p
 
-    n = own%n
-    valid = .true.
     y = x
     if (finite) y = x + transpose(reshape(motion, [8, 2]))
     section = scene%section
     if (finite) section = instant%section
     do p = 1, rule%npoint
       call derivatives(rule%dphi(:, :, p), x0, nx, ny, detj)
-      dv0 = detj*rule%weight(p)*thickness_at(scene%section, matmul(x0, rule%phi(:, p)))
+      place%dv0(p) = detj*rule%weight(p)*thickness_at(scene%section, matmul(x0, rule%phi(:, p)))
       call derivatives(rule%dphi(:, :, p), x, nx, ny, detj)
       before = detj*thickness_at(section, matmul(x, rule%phi(:, p)))
       call derivatives(rule%dphi(:, :, p), y, nx, ny, detj)
       thickness = thickness_at(section, matmul(y, rule%phi(:, p)))
-      valid = valid .and. detj > 0 .and. thickness > 0
-      if (.not. valid) return
-      dv = detj*thickness*rule%weight(p)
+      place%valid = place%valid .and. detj > 0 .and. thickness > 0
+      if (.not. place%valid) return
+      place%dv(p) = detj*thickness*rule%weight(p)
+      place%nx(:, p) = nx
+      place%ny(:, p) = ny
       jacobian(:, 1) = matmul(y, rule%dphi(1, :, p))
       jacobian(:, 2) = matmul(y, rule%dphi(2, :, p))
-      associate (d => own%dphi(:, :n, p))
-        gx(:n) = (jacobian(2, 2)*d(1, :) - jacobian(2, 1)*d(2, :))/detj
-        gy(:n) = (jacobian(1, 1)*d(2, :) - jacobian(1, 2)*d(1, :))/detj
+      associate (d => own%dphi(:, :own%n, p))
+        place%gx(:own%n, p) = (jacobian(2, 2)*d(1, :) - jacobian(2, 1)*d(2, :))/detj
+        place%gy(:own%n, p) = (jacobian(1, 1)*d(2, :) - jacobian(1, 2)*d(1, :))/detj
       end associate
-      slope = numbers%conductivity*[dot_product(gx(:n), t_nodes + dt_nodes), dot_product(gy(:n), t_nodes + dt_nodes)]
-      force(:n) = force(:n) + dv*(gx(:n)*slope(1) + gy(:n)*slope(2))
-      capacity = numbers%capacity*dv0/instant%dt
-      if (lumped) then
-        force(:n) = force(:n) + capacity*own%phi(:n, p)*dt_nodes
-      else
-        force(:n) = force(:n) + capacity*own%phi(:n, p)*dot_product(own%phi(:n, p), dt_nodes)
-      end if
-      ! volume strain of the step, and its derivative along the displacements
-      swelling(1:8) = nx + section(2)*rule%phi(:, p)/thickness
-      swelling(9:16) = ny + section(3)*rule%phi(:, p)/thickness
+      place%swelling(1:8, p) = nx + section(2)*rule%phi(:, p)/thickness
+      place%swelling(9:16, p) = ny + section(3)*rule%phi(:, p)/thickness
       if (finite) then
-        strain = log(detj*thickness/before)
+        place%strain(p) = log(detj*thickness/before)
       else
-        strain = dot_product(swelling, motion)
+        place%strain(p) = dot_product(place%swelling(:, p), motion)
       end if
-      force(:n) = force(:n) + own%phi(:n, p)*(numbers%source*dv0/instant%dt*strain)
-      if (.not. instant%tangent) cycle
+    end do
+  end subroutine place_element
+
+  !> Heat taken up in the step, per time: at the points, or lumped at the corners.
+  pure subroutine add_content(instant, law, material, npoint, own, lumped, place, drivers, change, start, force, stiffness)
+    type(instant_t), intent(in) :: instant
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    integer, intent(in) :: npoint
+    type(functions_t), intent(in) :: own
+    logical, intent(in) :: lumped
+    type(place_t), intent(in) :: place
+    real(wp), intent(in) :: drivers(:, :, :)              !! (ndriver, 2, npoint)
+    real(wp), intent(in) :: change(:), start(:)           !! of the temperatures in the step, and they at its start (n)
+    real(wp), intent(inout) :: force(:), stiffness(:, :)
+    real(wp) :: before(max(1, size(drivers, 1)), 9), now(max(1, size(drivers, 1)), 9), taken(9), capacity(9), volume
+    integer :: p, j, n, m
+
+    n = own%n
+    m = merge(n, npoint, lumped)
+    before = 0
+    now = 0
+    if (lumped) then
+      before(driver_temperature, :n) = start
+      now(driver_temperature, :n) = start + change
+    else
+      if (size(drivers, 1) > 1) then
+        before(2:, :npoint) = drivers(2:, 1, :)
+        now(2:, :npoint) = drivers(2:, 2, :)
+      end if
+      before(driver_temperature, :npoint) = matmul(start, own%phi(:n, :npoint))
+      now(driver_temperature, :npoint) = matmul(start + change, own%phi(:n, :npoint))
+    end if
+    call law%store(material, before(:, :m), now(:, :m), taken(:m), capacity(:m))
+    taken = taken/instant%dt
+    capacity = capacity/instant%dt
+    if (lumped) then
       do j = 1, n
-        stiffness(:n, j) = stiffness(:n, j) + (dv*numbers%conductivity)*(gx(:n)*gx(j) + gy(:n)*gy(j))
-        if (lumped) then
-          stiffness(j, j) = stiffness(j, j) + capacity*own%phi(j, p)
-        else
-          stiffness(:n, j) = stiffness(:n, j) + capacity*own%phi(:n, p)*own%phi(j, p)
-        end if
+        volume = dot_product(own%phi(j, :npoint), place%dv0(:npoint))
+        force(j) = force(j) + volume*taken(j)
+        if (instant%tangent) stiffness(j, j) = stiffness(j, j) + volume*capacity(j)
       end do
-      if (u == 0) cycle
-      do j = 1, 16
-        stiffness(:n, u + j - 1) = stiffness(:n, u + j - 1) + own%phi(:n, p)*(numbers%source*dv0/instant%dt*swelling(j))
-        if (.not. finite) cycle
-        stiffness(:n, u + j - 1) = stiffness(:n, u + j - 1) + dv*swelling(j)*(gx(:n)*slope(1) + gy(:n)*slope(2))
+    else
+      do p = 1, npoint
+        force(:n) = force(:n) + own%phi(:n, p)*(taken(p)*place%dv0(p))
+        if (.not. instant%tangent) cycle
+        do j = 1, n
+          stiffness(:n, j) = stiffness(:n, j) + own%phi(:n, p)*(capacity(p)*place%dv0(p)*own%phi(j, p))
+        end do
       end do
-      if (.not. finite) cycle
-      ! gradients turn and stretch with the geometry: d(grad phi) = - grad(du)^T grad phi
-      do j = 1, 8
-        i = u + j - 1
-        associate (along => nx(j)*slope(1) + ny(j)*slope(2), cross => gx(:n)*nx(j) + gy(:n)*ny(j))
-          stiffness(:n, i) = stiffness(:n, i) - dv*(gx(:n)*along + cross*slope(1))
-          stiffness(:n, i + 8) = stiffness(:n, i + 8) - dv*(gy(:n)*along + cross*slope(2))
-        end associate
+    end if
+  end subroutine add_content
+
+  !> Heat that a change of volume takes up, less that released at the points, per time.
+  pure subroutine add_released(instant, law, material, npoint, own, place, drivers, change, start, u, committed, trial, force, &
+                               stiffness)
+    type(instant_t), intent(in) :: instant
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    integer, intent(in) :: npoint
+    type(functions_t), intent(in) :: own
+    type(place_t), intent(in) :: place
+    real(wp), intent(in) :: drivers(:, :, :)
+    real(wp), intent(in) :: change(:), start(:)
+    integer, intent(in) :: u                              !! local place of the first displacement, 0 where there is none
+    real(wp), intent(in) :: committed(:, :)               !! (nstate, npoint)
+    real(wp), intent(inout) :: trial(:, :)
+    real(wp), intent(inout) :: force(:), stiffness(:, :)
+    real(wp) :: given(max(1, size(drivers, 1)), 2), released, slope, per_strain, share
+    integer :: p, j, n
+
+    n = own%n
+    per_strain = law%swell(material)
+    do p = 1, npoint
+      share = place%dv0(p)/instant%dt
+      force(:n) = force(:n) + own%phi(:n, p)*(per_strain*share*place%strain(p))
+      if (instant%tangent .and. u > 0) then
+        do j = 1, 16
+          stiffness(:n, u + j - 1) = stiffness(:n, u + j - 1) + own%phi(:n, p)*(per_strain*share*place%swelling(j, p))
+        end do
+      end if
+      if (.not. associated(law%release) .or. size(committed, 1) == 0) cycle
+      given = 0
+      if (size(drivers, 1) > 0) given = drivers(:, :, p)
+      given(driver_temperature, :) = [dot_product(own%phi(:n, p), start), dot_product(own%phi(:n, p), start + change)]
+      call law%release(material, given, committed(:, p), released, slope, trial(:, p))
+      force(:n) = force(:n) - own%phi(:n, p)*(released*share)
+      if (.not. instant%tangent .or. .not. abs(slope) > 0) cycle
+      do j = 1, n
+        stiffness(:n, j) = stiffness(:n, j) - own%phi(:n, p)*(slope*share*own%phi(j, p))
       end do
     end do
-  end subroutine balance
+  end subroutine add_released
+
+  !> Heat conducted at one of the instants of the flow rule.
+  pure subroutine add_flow(instant, k, law, material, finite, npoint, own, place, drivers, change, start, u, force, stiffness)
+    type(instant_t), intent(in) :: instant
+    integer, intent(in) :: k
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    logical, intent(in) :: finite
+    integer, intent(in) :: npoint
+    type(functions_t), intent(in) :: own
+    type(place_t), intent(in) :: place
+    real(wp), intent(in) :: drivers(:, :, :), change(:), start(:)
+    integer, intent(in) :: u
+    real(wp), intent(inout) :: force(:), stiffness(:, :)
+    real(wp) :: t(size(start)), given(max(1, size(drivers, 1)), npoint), lambda(npoint), by_temperature(npoint), slope(2), dv
+    integer :: p, j, i, n
+
+    n = own%n
+    associate (share => instant%flow%share(k), weight => instant%flow%weight(k))
+      t = start + share*change
+      given = 0
+      if (size(drivers, 1) > 1) given(2:, :) = (1 - share)*drivers(2:, 1, :) + share*drivers(2:, 2, :)
+      given(driver_temperature, :) = matmul(t, own%phi(:n, :npoint))
+      call law%conduct(material, given, lambda, by_temperature)
+      do p = 1, npoint
+        dv = weight*place%dv(p)
+        associate (gx => place%gx(:n, p), gy => place%gy(:n, p), nx => place%nx(:, p), ny => place%ny(:, p))
+          slope = lambda(p)*[dot_product(gx, t), dot_product(gy, t)]
+          force(:n) = force(:n) + dv*(gx*slope(1) + gy*slope(2))
+          if (.not. instant%tangent) cycle
+          do j = 1, n
+            stiffness(:n, j) = stiffness(:n, j) + (share*dv*lambda(p))*(gx*gx(j) + gy*gy(j))
+            if (abs(by_temperature(p)) > 0) stiffness(:n, j) = stiffness(:n, j) &
+                                            + (share*dv*by_temperature(p)/lambda(p)*own%phi(j, p))*(gx*slope(1) + gy*slope(2))
+          end do
+          if (u == 0 .or. .not. finite) cycle
+          do j = 1, 16
+            stiffness(:n, u + j - 1) = stiffness(:n, u + j - 1) + dv*place%swelling(j, p)*(gx*slope(1) + gy*slope(2))
+          end do
+          ! gradients turn and stretch with the geometry: d(grad phi) = - grad(du)^T grad phi
+          do j = 1, 8
+            i = u + j - 1
+            associate (along => nx(j)*slope(1) + ny(j)*slope(2), cross => gx*nx(j) + gy*ny(j))
+              stiffness(:n, i) = stiffness(:n, i) - dv*(gx*along + cross*slope(1))
+              stiffness(:n, i + 8) = stiffness(:n, i + 8) - dv*(gy*along + cross*slope(2))
+            end associate
+          end do
+        end associate
+      end do
+    end associate
+  end subroutine add_flow
 
   !> Volume, where no other formulation gives it.
   subroutine measure(scene, group, law, section, x, state, before, totals)

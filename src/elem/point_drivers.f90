@@ -10,8 +10,9 @@ module point_drivers
   use fields, only: field_t, find_field, has_corners_only, on_nodes
   use kinds, only: wp
   use kinematics_api, only: first_history
-  use law_api, only: driver_count, driver_temperature, law_t
+  use law_api, only: driver_count, driver_t, driver_temperature, law_t
   use loads, only: multiplier_at
+  use materials, only: has_number
   use point_temperatures, only: nodal_temperatures, temperature_field
   use quadrature, only: line_rule, square_rule
   use scene, only: group_t, host_of, is_solid, role_contact, scene_t
@@ -73,7 +74,8 @@ contains
           drivers(g)%source(driver_temperature) = source_of(scene, g, temperature_field)
         end if
         do k = 2, n
-          drivers(g)%source(k) = source_of(scene, g, laws(law)%drivers(k - 1)%s)
+          if (is_asked_for(scene, g, laws(law)%drivers(k - 1))) &
+            drivers(g)%source(k) = source_of(scene, g, laws(law)%drivers(k - 1)%name)
         end do
         drivers(g)%vary = any(drivers(g)%source%kind == from_field .or. drivers(g)%source%kind == from_state)
         if (allocated(drivers(g)%body)) &
@@ -95,13 +97,25 @@ contains
     if (scene%groups(g)%material == 0) return
     associate (law => laws(scene%materials(scene%groups(g)%material)%law_id))
       do k = 1, driver_count(law) - 1
-        source = source_of(scene, g, law%drivers(k)%s)
+        if (.not. is_asked_for(scene, g, law%drivers(k))) cycle
+        source = source_of(scene, g, law%drivers(k)%name)
         if (source%kind /= from_nothing) cycle
-        name = law%drivers(k)%s
+        name = law%drivers(k)%name
         return
       end do
     end associate
   end function missing_driver
+
+  !> The material of a group has the number for which its law asks for a driver.
+  pure function is_asked_for(scene, g, driver) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g   !! place of the group
+    type(driver_t), intent(in) :: driver
+    logical :: yes
+
+    yes = driver%needs == 0
+    if (.not. yes) yes = has_number(scene%materials(scene%groups(g)%material), driver%needs)
+  end function is_asked_for
 
   !> Bodies behind the sides of a contact.
   pure subroutine find_bodies_behind(scene, group, drivers)
@@ -176,19 +190,17 @@ contains
     end do
   end subroutine start_drivers
 
-  !> Fields and states at the end of the step, as they are tried now.
-  subroutine advance_drivers(scene, laws, solution, now, time, drivers)
+  !> Fields and states that drive a group at the end of the step, as they are tried now.
+  subroutine advance_drivers(scene, laws, solution, now, time, g, drivers)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: now(:, :)              !! trial values of the nodal fields of one component (nnode, nfield)
     real(wp), intent(in) :: time                   !! end of the step [time]
+    integer, intent(in) :: g                       !! place of the group
     type(drivers_t), intent(inout) :: drivers(:)   !! (ngroup)
-    integer :: g
 
-    do g = 1, size(drivers)
-      if (drivers(g)%vary) call fill(scene, laws, solution, now, time, g, 2, drivers)
-    end do
+    if (drivers(g)%vary) call fill(scene, laws, solution, now, time, g, 2, drivers)
   end subroutine advance_drivers
 
   !> A field that can drive points: one component, on nodes.

@@ -15,8 +15,9 @@ module law_api
   use text, only: string_t
   implicit none
   private
-  public :: law_t, law_line_t, parameter_t, law_update_i, law_slide_i, law_flow_i, law_check_i, law_elastic_i, law_conduct_i
-  public :: conduction_t
+  public :: law_t, law_line_t, parameter_t, driver_t
+  public :: law_update_i, law_slide_i, law_flow_i, law_check_i, law_elastic_i, law_conduct_i
+  public :: law_store_i, law_swell_i, law_release_i
   public :: parameter, law_line, find_parameter, law_of_material, asks_for, is_complete
   public :: driver_count, driver_temperature
   public :: law_done, law_not_converged
@@ -55,9 +56,18 @@ module law_api
     logical :: whole = .false.
     !> Above 0 it turns a part of the law on: at all temperatures of a card, or at none.
     logical :: turns_on = .false.
+    !> Grows from each temperature of a card to the next: the card needs temperatures.
+    logical :: rises = .false.
     !> Name of another number whose default is 0 where this one is given.
     character(len=:), allocatable :: replaces
   end type parameter_t
+
+  !> What drives a law, by name.
+  type :: driver_t
+    character(len=:), allocatable :: name
+    !> Place of the number of a material without which it is not asked for, and 0; 0: always.
+    integer :: needs = 0
+  end type driver_t
 
   !> Kinds of line: values in order; one of several lines chosen by its first word; name-value pairs in any order.
   integer, parameter :: line_values = 1
@@ -74,13 +84,6 @@ module law_api
     logical :: curve = .false.
   end type law_line_t
 
-  !> Conduction of heat at a point.
-  type :: conduction_t
-    real(wp) :: conductivity = 0.0_wp   !! [power/length/temperature]
-    real(wp) :: capacity = 0.0_wp       !! [energy/length^3/temperature] per volume of the start
-    real(wp) :: source = 0.0_wp         !! heat taken up by a change of volume, per unit of volume strain [energy/length^3]
-  end type conduction_t
-
   type :: law_t
     character(len=:), allocatable :: name
     !> LAGAMINE's number (ITYPE).
@@ -91,10 +94,12 @@ module law_api
     !> History of a point beside stress and elastic strain, or beside what contact keeps. What a material does not need comes
     !> last and is left out.
     type(state_variable_t), allocatable :: history(:)
-    !> Names of its drivers after the temperature; not allocated where it has none.
-    type(string_t), allocatable :: drivers(:)
+    !> Its drivers after the temperature; not allocated where it has none.
+    type(driver_t), allocatable :: drivers(:)
     !> Its tangent is symmetric.
     logical :: symmetric = .true.
+    !> It is so also where its numbers depend on the temperature and that is an unknown.
+    logical :: symmetric_by_temperature = .true.
     !> Effects it asks for, names separated by blanks (page 6).
     character(len=:), allocatable :: effects
     procedure(law_update_i), nopass, pointer :: update => null()
@@ -103,8 +108,12 @@ module law_api
     procedure(law_flow_i), nopass, pointer :: flow_stress => null()
     !> Not associated for laws without isotropic elasticity.
     procedure(law_elastic_i), nopass, pointer :: elastic => null()
-    !> Only of laws for the conduction of heat.
+    !> Of laws for the conduction of heat.
     procedure(law_conduct_i), nopass, pointer :: conduct => null()
+    procedure(law_store_i), nopass, pointer :: store => null()
+    procedure(law_swell_i), nopass, pointer :: swell => null()
+    !> Heat that a point releases, of laws for the conduction of heat; not associated where there is none.
+    procedure(law_release_i), nopass, pointer :: release => null()
     !> Relations between the numbers of a card; not associated where there are none.
     procedure(law_check_i), nopass, pointer :: check => null()
   end type law_t
@@ -170,13 +179,41 @@ module law_api
       real(wp), intent(out) :: young, poisson   !! [stress], [-]
     end subroutine law_elastic_i
 
-    !> Conduction of heat at a temperature.
-    pure function law_conduct_i(material, temperature) result(conduction)
-      import :: conduction_t, material_t, wp
+    !> Conductivity of a block of n points, and its derivative by the temperature.
+    pure subroutine law_conduct_i(material, drivers, conductivity, slope)
+      import :: material_t, wp
       type(material_t), intent(in) :: material
-      real(wp), intent(in) :: temperature
-      type(conduction_t) :: conduction
-    end function law_conduct_i
+      real(wp), intent(in) :: drivers(:, :)      !! (ndriver, n) as they are now, temperature first
+      real(wp), intent(out) :: conductivity(:)   !! (n) [power/length/temperature]
+      real(wp), intent(out) :: slope(:)          !! (n) [power/length/temperature^2]
+    end subroutine law_conduct_i
+
+    !> Heat that a block of n points takes up from one state to another, and its derivative by the temperature at the end.
+    pure subroutine law_store_i(material, before, now, taken, capacity)
+      import :: material_t, wp
+      type(material_t), intent(in) :: material
+      real(wp), intent(in) :: before(:, :), now(:, :)   !! (ndriver, n) drivers, temperature first
+      real(wp), intent(out) :: taken(:)      !! (n) [energy/length^3] per volume of the start
+      real(wp), intent(out) :: capacity(:)   !! (n) [energy/length^3/temperature]
+    end subroutine law_store_i
+
+    !> Heat that a point releases in a step beside what flows, and its derivative by the temperature at the end.
+    pure subroutine law_release_i(material, drivers, committed, released, slope, history)
+      import :: material_t, wp
+      type(material_t), intent(in) :: material
+      real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) at the start and at the end of the step, temperature first
+      real(wp), intent(in) :: committed(:)    !! history at the start of the step (nhistory)
+      real(wp), intent(out) :: released       !! [energy/length^3] per volume of the start
+      real(wp), intent(out) :: slope          !! [energy/length^3/temperature]
+      real(wp), intent(out) :: history(:)     !! (nhistory)
+    end subroutine law_release_i
+
+    !> Heat taken up by a change of volume, per volume and unit of volume strain.
+    pure function law_swell_i(material) result(heat)
+      import :: material_t, wp
+      type(material_t), intent(in) :: material
+      real(wp) :: heat   !! [energy/length^3]
+    end function law_swell_i
 
     !> What is wrong with the numbers of a card taken together, beyond the range of each.
     pure subroutine law_check_i(material, problems)
@@ -189,10 +226,10 @@ module law_api
 contains
 
   !> A parameter in one line; `above` is a lower bound that is itself refused.
-  pure function parameter(name, unit, meaning, lower, above, upper, default, whole, turns_on, replaces) result(p)
+  pure function parameter(name, unit, meaning, lower, above, upper, default, whole, turns_on, rises, replaces) result(p)
     character(len=*), intent(in) :: name, unit, meaning
     real(wp), intent(in), optional :: lower, above, upper, default
-    logical, intent(in), optional :: whole, turns_on
+    logical, intent(in), optional :: whole, turns_on, rises
     character(len=*), intent(in), optional :: replaces
     type(parameter_t) :: p
 
@@ -211,6 +248,7 @@ contains
     end if
     if (present(whole)) p%whole = whole
     if (present(turns_on)) p%turns_on = turns_on
+    if (present(rises)) p%rises = rises
     p%replaces = ''
     if (present(replaces)) p%replaces = replaces
   end function parameter

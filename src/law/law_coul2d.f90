@@ -35,7 +35,7 @@ contains
                                                      lower=0.0_wp, upper=1.0_wp, default=huge(1.0_wp))], pairs=.true.)])
     allocate (row%history(0))
     allocate (row%drivers(1))
-    row%drivers(driver_flow - 1)%s = 'flow_stress'
+    row%drivers(driver_flow - 1)%name = 'flow_stress'
     row%symmetric = .false.
     row%effects = 'contact friction'
     row%slide => slide

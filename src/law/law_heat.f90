@@ -1,17 +1,22 @@
-!> HEAT: isotropic conduction of heat, constant numbers.
+!> HEAT and HEATH: isotropic conduction of heat.
 !>
-!> Heat flow -LAMBDA grad T, heat content RHOC per volume of the start and per degree. SOURCE is the heat that a change of volume
-!> takes up, per volume and unit of volume strain: 3 K ALPHA T of thermoelasticity (W. Thomson 1855; J.M.C. Duhamel).
+!> Heat flow -LAMBDA(T) grad T. HEAT has the heat capacity per volume of the start RHOC(T), HEATH the heat content H(T), which
+!> holds latent heats too; both linear between the temperatures of the card. The heat taken up from one temperature to another is
+!> the exact integral of the capacity, or the difference of the contents, so that no heat is lost at any step; outside its
+!> temperatures HEAT keeps its capacity, and HEATH that of its first or last interval.
+!> SOURCE is the heat that a change of volume takes up, per volume and unit of volume strain: 3 K ALPHA T of thermoelasticity
+!> (W. Thomson 1855; J.M.C. Duhamel). QUINNEY turns plastic work of the body into heat.
 module law_heat
-  use law_api, only: conduction_t, heat_law, law_line, law_t, parameter
   use kinds, only: wp
-  use materials, only: material_t
+  use law_api, only: heat_law, law_line, law_t, parameter, parameter_t
+  use materials, only: bracket_temperature, integral_over_temperature, material_t
+  use state_variables, only: state_variable, transfer_scalar
   implicit none
   private
-  public :: law_heat_row
+  public :: law_heat_row, law_heath_row
 
-  !> Places among the values of a material.
-  integer, parameter :: place_conductivity = 1, place_capacity = 2, place_source = 3
+  !> Places among the values of a material; the second is RHOC or H. Places of the drivers.
+  integer, parameter :: place_conductivity = 1, place_content = 2, place_source = 3, place_share = 4, driver_work = 2
 
 contains
 
@@ -20,28 +25,149 @@ contains
 
     row%name = 'HEAT'
     row%number = 9001
-    row%kind = heat_law
     row%purpose = 'isotropic conduction of heat'
-    row%source = 'Fourier'
     allocate (row%lines, source=[law_line([parameter('LAMBDA', 'power/length/temperature', 'conductivity', above=0.0_wp), &
                                            parameter('RHOC', 'energy/length^3/temperature', 'heat capacity per volume', &
                                                      above=0.0_wp)]), &
-                                 law_line([parameter('SOURCE', 'energy/length^3', &
-                                                     'heat taken up by a change of volume, per volume strain', default=0.0_wp)], &
-                                          pairs=.true.)])
-    allocate (row%history(0))
-    row%effects = ''
-    row%conduct => conduct
+                                 law_line(sources(), pairs=.true.)])
+    row%store => store_by_capacity
+    call common_parts(row)
   end function law_heat_row
 
-  !> The same at all temperatures.
-  pure function conduct(material, temperature) result(conduction)
-    type(material_t), intent(in) :: material
-    real(wp), intent(in) :: temperature
-    type(conduction_t) :: conduction
+  function law_heath_row() result(row)
+    type(law_t) :: row
 
-    conduction = conduction_t(material%values(place_conductivity), material%values(place_capacity), &
-                              material%values(place_source))
-  end function conduct
+    row%name = 'HEATH'
+    row%number = 9002
+    row%purpose = 'isotropic conduction of heat, by heat content'
+    allocate (row%lines, source=[law_line([parameter('LAMBDA', 'power/length/temperature', 'conductivity', above=0.0_wp), &
+                                           parameter('H', 'energy/length^3', 'heat content per volume', rises=.true.)]), &
+                                 law_line(sources(), pairs=.true.)])
+    row%store => store_by_content
+    call common_parts(row)
+  end function law_heath_row
+
+  subroutine common_parts(row)
+    type(law_t), intent(inout) :: row
+
+    row%kind = heat_law
+    row%source = 'Fourier'
+    row%effects = ''
+    row%symmetric_by_temperature = .false.
+    allocate (row%history(1), row%drivers(1))
+    row%history(1) = state_variable('work_heated', 'stress', transfer_scalar, needs=place_share)
+    row%drivers(driver_work - 1)%name = 'plastic_work'
+    row%drivers(driver_work - 1)%needs = place_share
+    row%conduct => conduct
+    row%swell => swell
+    row%release => release
+  end subroutine common_parts
+
+  !> SOURCE and QUINNEY.
+  function sources() result(list)
+    type(parameter_t), allocatable :: list(:)
+
+    allocate (list(2))
+    list(1) = parameter('SOURCE', 'energy/length^3', 'heat taken up by a change of volume, per volume strain', default=0.0_wp)
+    list(2) = parameter('QUINNEY', '-', 'share of the plastic work that becomes heat', lower=0.0_wp, upper=1.0_wp, default=0.0_wp)
+  end function sources
+
+  !> Conductivity, linear between the temperatures of the card, constant outside.
+  pure subroutine conduct(material, drivers, conductivity, slope)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: drivers(:, :)
+    real(wp), intent(out) :: conductivity(:), slope(:)
+    real(wp) :: share
+    integer :: n, k
+
+    slope = 0
+    if (.not. allocated(material%temperatures)) then
+      conductivity = material%values(place_conductivity)
+      return
+    end if
+    associate (t => material%temperatures, v => material%values_by_temperature)
+      do n = 1, size(conductivity)
+        call bracket_temperature(material, drivers(1, n), k, share)
+        conductivity(n) = v(place_conductivity, k)
+        if (.not. share > 0) cycle
+        slope(n) = (v(place_conductivity, k + 1) - v(place_conductivity, k))/(t(k + 1) - t(k))
+        conductivity(n) = conductivity(n) + share*(v(place_conductivity, k + 1) - v(place_conductivity, k))
+      end do
+    end associate
+  end subroutine conduct
+
+  !> The integral of RHOC.
+  pure subroutine store_by_capacity(material, before, now, taken, capacity)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: before(:, :), now(:, :)
+    real(wp), intent(out) :: taken(:), capacity(:)
+    real(wp) :: share
+    integer :: n, k
+
+    do n = 1, size(taken)
+      taken(n) = integral_over_temperature(material, place_content, before(1, n), now(1, n))
+      if (.not. allocated(material%temperatures)) then
+        capacity(n) = material%values(place_content)
+        cycle
+      end if
+      call bracket_temperature(material, now(1, n), k, share)
+      capacity(n) = material%values_by_temperature(place_content, k)
+      if (share > 0) capacity(n) = (1 - share)*capacity(n) + share*material%values_by_temperature(place_content, k + 1)
+    end do
+  end subroutine store_by_capacity
+
+  !> The difference of H.
+  pure subroutine store_by_content(material, before, now, taken, capacity)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: before(:, :), now(:, :)
+    real(wp), intent(out) :: taken(:), capacity(:)
+    integer :: n, a, b
+
+    associate (t => material%temperatures, h => material%values_by_temperature(place_content, :))
+      do n = 1, size(taken)
+        a = interval(t, before(1, n))
+        b = interval(t, now(1, n))
+        capacity(n) = (h(b + 1) - h(b))/(t(b + 1) - t(b))
+        if (a == b) then
+          taken(n) = capacity(n)*(now(1, n) - before(1, n))
+        else
+          taken(n) = h(b) + capacity(n)*(now(1, n) - t(b)) - h(a) - (h(a + 1) - h(a))/(t(a + 1) - t(a))*(before(1, n) - t(a))
+        end if
+      end do
+    end associate
+  end subroutine store_by_content
+
+  !> The interval of a table that holds a temperature; the first or the last where none does.
+  pure function interval(t, temperature) result(k)
+    real(wp), intent(in) :: t(:), temperature
+    integer :: k
+
+    do k = 1, size(t) - 2
+      if (temperature < t(k + 1)) return
+    end do
+    k = size(t) - 1
+  end function interval
+
+  !> The share QUINNEY of the plastic work (G.I. Taylor, H. Quinney 1934) that has not become heat yet: `work_heated` is the work
+  !> that has, so that none is lost where the motion is solved for after the temperature, and its heat comes a step later.
+  pure subroutine release(material, drivers, committed, released, slope, history)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: drivers(:, :), committed(:)
+    real(wp), intent(out) :: released, slope, history(:)
+
+    released = 0
+    slope = 0
+    if (size(history) == 0) return
+    history(1) = drivers(driver_work, 2)
+    released = material%values(place_share)*(drivers(driver_work, 2) - committed(1))
+  end subroutine release
+
+  !> SOURCE, that of the first temperature.
+  pure function swell(material) result(heat)
+    type(material_t), intent(in) :: material
+    real(wp) :: heat
+
+    heat = material%values(place_source)
+  end function swell
 
 end module law_heat

@@ -3,7 +3,7 @@
 !> An unknown is a component of a field at a place: a displacement of a node, a motion of a die's pilot or of the section, a
 !> temperature of a node. Each is free (it has an equation) or prescribed (its motion is known: elimination, no penalty).
 module dofs
-  use elem_api, only: elem_t, layout_of, layout_t, most_components
+  use elem_api, only: elem_t, field_nodes, layout_of, layout_t, most_components
   use fields, only: field_t, on_nodes, on_pilots, on_section, pilot_field, section_field
   use kinds, only: wp
   use loads, only: multiplier_at
@@ -126,7 +126,7 @@ contains
             select case (scene%fields(layout%field(u))%place)
             case (on_nodes)
               do e = 1, size(group%connectivity, 2)
-                number(:, group%connectivity(:layout%count(u), e)) = 1
+                number(:, group%connectivity(field_nodes(scene%fields(layout%field(u)), size(group%connectivity, 1)), e)) = 1
               end do
             case (on_pilots)
               number(:, group%die) = 1
@@ -309,6 +309,7 @@ contains
     type(elem_t), intent(in) :: elem
     integer, intent(in) :: g
     type(dofs_t), intent(inout) :: dofs
+    integer, allocatable :: local(:)
     integer :: e, u, c, at
 
     associate (own => dofs%groups(g))
@@ -318,10 +319,11 @@ contains
         associate (number => dofs%fields(own%layout%field(u))%number, n => own%layout%count(u))
           do c = 1, size(number, 1)
             at = own%layout%first(c, u)
+            local = field_nodes(scene%fields(own%layout%field(u)), size(own%nodes, 1))
             do e = 1, size(own%nodes, 2)
               select case (scene%fields(own%layout%field(u))%place)
               case (on_nodes)
-                own%dof(at:at + n - 1, e) = number(c, own%nodes(:n, e))
+                own%dof(at:at + n - 1, e) = number(c, own%nodes(local, e))
               case (on_pilots)
                 own%dof(at, e) = number(c, scene%groups(g)%die)
               case default

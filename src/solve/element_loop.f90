@@ -9,7 +9,7 @@ module element_loop
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
-  use point_drivers, only: drivers_t
+  use point_drivers, only: advance_drivers, drivers_t
   use scene, only: group_t, scene_t
   use solution, only: solution_t
   use sparsity, only: pattern_t
@@ -32,19 +32,20 @@ contains
 
   !> Compute all active groups at the motion `du` of the step. `report` holds the first failure met, in
   !> the order of groups and elements.
-  subroutine run_elements(scene, elems, kinematics, laws, dofs, drivers, active, pattern, instant, du, solution, buffers, timers, &
-                          report)
+  subroutine run_elements(scene, elems, kinematics, laws, dofs, active, pattern, instant, du, now, solution, drivers, buffers, &
+                          timers, report)
     type(scene_t), intent(in) :: scene
     type(elem_t), intent(in) :: elems(:)
     type(kinematics_t), intent(in) :: kinematics
     type(law_t), intent(in) :: laws(:)
     type(dofs_t), intent(in) :: dofs
-    type(drivers_t), intent(in) :: drivers(:) !! of the points of the groups (ngroup)
     logical, intent(in) :: active(:)          !! groups to compute (ngroup)
     type(pattern_t), intent(in) :: pattern
     type(instant_t), intent(in) :: instant
     real(wp), intent(in) :: du(:)             !! motion of every unknown (ndof)
+    real(wp), intent(in) :: now(:, :)         !! trial values of the fields that drive points (nnode, nfield)
     type(solution_t), intent(inout) :: solution
+    type(drivers_t), intent(inout) :: drivers(:)   !! of the points of the groups (ngroup)
     type(element_buffers_t), intent(inout) :: buffers
     type(ledger_t), intent(inout) :: timers
     type(report_t), intent(out) :: report
@@ -56,6 +57,7 @@ contains
       associate (group => scene%groups(g), row => elems(scene%groups(g)%elem_id), state => solution%groups(g))
         call timers%add(row%effect, timer)
         call timers%start(timer)
+        call advance_drivers(scene, laws, solution, now, instant%time, g, drivers)
         nelem = size(group%connectivity, 2)
         ndof = size(dofs%groups(g)%dof, 1)
         allocate (reports((nelem + block_size - 1)/block_size))

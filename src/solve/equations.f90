@@ -17,7 +17,7 @@ module equations
   use loads, only: multiplier_at
   use ordering, only: order_equations
   use pairs, only: pairs_differ, pairs_t, start_pairs
-  use point_drivers, only: advance_drivers, drivers_t, find_drivers, is_scalar, nodal_values
+  use point_drivers, only: drivers_t, find_drivers, is_scalar, nodal_values
   use scene, only: is_solid, role_body, role_second, role_side_load, role_spring, role_volume_load, scene_t
   use sections, only: section_forced
   use solution, only: present_coordinates, solution_t
@@ -223,7 +223,10 @@ contains
         if (.not. equations%solves(s)%active(g)) cycle
         symmetric = symmetric .and. (row%symmetric .or. .not. (row%follows .or. scene%finite))
         if (m == 0) cycle
-        symmetric = symmetric .and. equations%laws(scene%materials(m)%law_id)%symmetric
+        associate (law => equations%laws(scene%materials(m)%law_id))
+          symmetric = symmetric .and. law%symmetric &
+                      .and. (law%symmetric_by_temperature .or. .not. allocated(scene%materials(m)%temperatures))
+        end associate
         if (row%law_kind == solid_law) symmetric = symmetric .and. equations%kinematics%symmetric
       end associate
     end do
@@ -251,6 +254,12 @@ contains
     do k = 1, size(scene%multipliers)
       instant%multipliers_before(k) = multiplier_at(scene%multipliers(k), solution%time)
       instant%multipliers(k) = multiplier_at(scene%multipliers(k), instant%time)
+    end do
+    allocate (instant%flow%multipliers(size(scene%multipliers), instant%flow%n))
+    do c = 1, instant%flow%n
+      do k = 1, size(scene%multipliers)
+        instant%flow%multipliers(k, c) = multiplier_at(scene%multipliers(k), solution%time + instant%flow%share(c)*dt)
+      end do
     end do
     if (size(solution%fields) > size(mechanical_fields())) call list_values(equations%dofs, solution%fields, instant%values)
     if (size(solution%pairs) == 0) return
@@ -295,17 +304,18 @@ contains
     logical, intent(in) :: tangent
     type(report_t), intent(out) :: report
     type(instant_t) :: instant
+    real(wp), allocatable :: now(:, :)
     integer :: timer
 
     call fit_to_load(equations%team)
     call make_instant(scene, equations, solution, dt, du, tangent, instant)
-    if (any(equations%drivers%vary)) call drive_points(scene, solution, instant%time, du, equations)
+    call driving_values(scene, equations, solution, du, now)
     do
       call pair_up(scene, solution%pairs, equations)
       instant%pairs = solution%pairs
-      call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, equations%drivers, &
-                        equations%solves(equations%now)%active, equations%solves(equations%now)%pattern, instant, du, solution, &
-                        equations%buffers, equations%timers, report)
+      call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, &
+                        equations%solves(equations%now)%active, equations%solves(equations%now)%pattern, instant, du, now, &
+                        solution, equations%drivers, equations%buffers, equations%timers, report)
       if (report%status /= block_done) return
       if (.not. report%unpaired) exit
       call renew_pairs(scene, solution)
@@ -322,16 +332,20 @@ contains
     call equations%timers%stop(timer)
   end subroutine evaluate
 
-  !> Drivers of the points at the end of the step, as fields and states are tried now.
-  subroutine drive_points(scene, solution, time, du, equations)
+  !> Trial values of the fields that drive points at the end of the step (nnode, nfield); none where no point is driven by any.
+  subroutine driving_values(scene, equations, solution, du, now)
     type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: time       !! end of the step [time]
     real(wp), intent(in) :: du(:)      !! change of the unknowns in the step (ndof)
-    type(equations_t), intent(inout) :: equations
-    real(wp) :: now(size(scene%mesh%coordinates, 2), size(scene%fields))
+    real(wp), allocatable, intent(out) :: now(:, :)
     integer :: f, k
 
+    if (.not. any(equations%drivers%vary)) then
+      allocate (now(0, 0))
+      return
+    end if
+    allocate (now(size(scene%mesh%coordinates, 2), size(scene%fields)))
     call nodal_values(scene, solution, now)
     do f = 1, size(scene%fields)
       if (.not. is_scalar(scene%fields(f))) cycle
@@ -341,8 +355,7 @@ contains
         end do
       end associate
     end do
-    call advance_drivers(scene, equations%laws, solution, now, time, equations%drivers)
-  end subroutine drive_points
+  end subroutine driving_values
 
   !> Size of round-off in what acts on the own fields, once for a mesh: what a change of round-off makes through the diagonals of
   !> the matrices of the bodies.

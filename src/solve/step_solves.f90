@@ -37,6 +37,10 @@ contains
       call solve_step(scene, equations, solution, dt, outcome)
       return
     end if
+    ! what a failed attempt has left is not the state to begin with
+    do s = 1, size(solution%groups)
+      solution%groups(s)%trial = solution%groups(s)%committed
+    end do
     motion = 0
     if (solution%last_step > 0) call proportion(equations%dofs, solution%fields, dt/solution%last_step, motion)
     do turn = 1, most_turns

@@ -36,7 +36,7 @@ contains
     allocate (row%history, source=[state_variable('plastic_strain', '-', transfer_scalar), &
                                    state_variable('plastic_work', 'stress', transfer_scalar)])
     allocate (row%drivers(1))
-    row%drivers(driver_hydrogen - 1)%s = 'hydrogen'
+    row%drivers(driver_hydrogen - 1)%name = 'hydrogen'
     row%effects = 'plasticity'
     row%update => update
     row%flow_stress => flow_stress
