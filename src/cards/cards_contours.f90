@@ -8,6 +8,7 @@ module cards_contours
   use mesh, only: side_set_t
   use mesh_parts, only: body_t, mesh_parts_t
   use piece_rows, only: ends_meet, piece_words, read_piece
+  use plane_vectors, only: cross
   use remesher_options, only: has_contours
   use scene_draft, only: close_card, draft_t, head_location, words_of
   use text, only: string_t, to_text
@@ -93,15 +94,6 @@ contains
         area = area + 0.5_wp*cross(a, b) + 2*cross(m - a, b - a)/3
       end associate
     end do
-
-  contains
-
-    pure function cross(u, v) result(z)
-      real(wp), intent(in) :: u(2), v(2)
-      real(wp) :: z
-
-      z = u(1)*v(2) - u(2)*v(1)
-    end function cross
 
   end function area_in
 

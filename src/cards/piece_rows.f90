@@ -2,7 +2,7 @@
 module piece_rows
   use card_points, only: read_xy
   use deck_cursor, only: cursor_t
-  use die_arcs, only: arc_pieces
+  use circle_arcs, only: arc_pieces
   use kinds, only: wp
   use text, only: to_text
   use vectors, only: length_of

@@ -5,9 +5,9 @@
 !> in the die or not. It also ends where the contour does.
 module contact_contour
   use contact_ends, only: contact_end_t
-  use contact_scan, only: deepest_sample, in_pilot_axes, is_near, lies_inside, locate_end
+  use contact_scan, only: deepest_sample, is_near, lies_inside, locate_end
   use die_search, only: foot_t
-  use dies, only: die_t
+  use dies, only: die_t, in_pilot_axes
   use kinds, only: wp
   use law_api, only: contact_open
   use quadrature, only: line_rule

@@ -9,25 +9,12 @@ module contact_scan
   use vectors, only: length_of
   implicit none
   private
-  public :: in_pilot_axes, is_near, deepest_sample, lies_inside, locate_end
+  public :: is_near, deepest_sample, lies_inside, locate_end
 
   !> Places a side is sampled at.
   integer, parameter :: nsample = 20
 
 contains
-
-  !> Nodes of a side in the axes of the die's pilot (x, y, angle).
-  pure function in_pilot_axes(x, pilot) result(side)
-    real(wp), intent(in) :: x(:, :), pilot(3)
-    real(wp) :: side(2, size(x, 2))
-    integer :: k
-
-    do k = 1, size(x, 2)
-      associate (way => x(:, k) - pilot(1:2), c => cos(pilot(3)), s => sin(pilot(3)))
-        side(:, k) = [c*way(1) + s*way(2), -s*way(1) + c*way(2)]
-      end associate
-    end do
-  end function in_pilot_axes
 
   !> The side is no further from the die than `reach`.
   pure function is_near(die, side, reach) result(near)

@@ -5,8 +5,8 @@
 module contact_quality
   use contact_penalties, only: allowed_penetration
   use contact_point, only: at_penetration, at_status, contact_block
-  use contact_scan, only: deepest_sample, in_pilot_axes, is_near
-  use dies, only: die_t, present_die
+  use contact_scan, only: deepest_sample, is_near
+  use dies, only: die_t, in_pilot_axes, present_die
   use fields, only: pilot_field
   use kinds, only: wp
   use law_api, only: contact_open

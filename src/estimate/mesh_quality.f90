@@ -10,6 +10,7 @@
 !> Jacobian); R.D. Henshell, K.G. Shaw, Int. J. Num. Meth. Engng 9 (1975) 495-507 (the quarter point, where J is zero at a corner).
 module mesh_quality
   use kinds, only: pi, wp
+  use plane_vectors, only: cross
   use quadrature, only: square_rule
   use remeshing, only: aspect_ratio, is_upper, jacobian_ratio, largest_angle, least_angle, middle_share, ncriteria, scaled_jacobian
   use shape_functions, only: quad8, quad8_corner, quad8_side
@@ -90,13 +91,6 @@ contains
     if (.not. abs(a) > 0) ratio = 0
     if (b > abs(a)/huge(1.0_wp) .and. b > 0) ratio = a/b
   end function over
-
-  pure function cross(a, b) result(z)
-    real(wp), intent(in) :: a(2), b(2)
-    real(wp) :: z
-
-    z = a(1)*b(2) - a(2)*b(1)
-  end function cross
 
   !> Measures of all elements of a mesh (ncriteria, nelem).
   pure subroutine mesh_shape(coordinates, connectivity, measures)

@@ -5,9 +5,11 @@
 !> curvature and s = 1 for a turn to the left, -1 to the right,
 !> Y1(xi1) + s r l1 = Y2(xi2) + s r l2, where d(Y + s r l)/dxi = (1 - s r k) Y': two equations for two
 !> places, by Newton's method from the corner. Parts of parabolas are parabolas, so the arms stay exact.
-module die_fillets
-  use die_arcs, only: angle_between, arc_pieces
+module fillets
+  use circle_arcs, only: angle_between, arc_pieces
   use kinds, only: wp
+  use parabolas, only: curvature_on, part_of, point_on, tangent_on
+  use plane_vectors, only: left_of, turned
   use vectors, only: length_of
   implicit none
   private
@@ -37,7 +39,7 @@ contains
     rest = size(after, 3)
     i = size(before, 3)
     j = 1
-    turn = angle_between(tangent_at(before(:, :, i), 1.0_wp), tangent_at(after(:, :, j), -1.0_wp))
+    turn = angle_between(tangent_on(before(:, :, i), 1.0_wp), tangent_on(after(:, :, j), -1.0_wp))
     sense = sign(1.0_wp, turn)
     if (abs(sin(turn)) <= least_turn) then
       message = 'the pieces before and after a fillet meet in a corner; these go on smoothly'
@@ -49,19 +51,19 @@ contains
       message = 'the radius of the fillet is too large: its arc does not touch both neighbours within their length'
       return
     end if
-    first = at(before(:, :, i), place(1))
-    last = at(after(:, :, j), place(2))
-    centre = first + sense*radius*left_of(tangent_at(before(:, :, i), place(1)))
-    half = 0.5_wp*angle_between(tangent_at(before(:, :, i), place(1)), tangent_at(after(:, :, j), place(2)))
+    first = point_on(before(:, :, i), place(1))
+    last = point_on(after(:, :, j), place(2))
+    centre = first + sense*radius*left_of(tangent_on(before(:, :, i), place(1)))
+    half = 0.5_wp*angle_between(tangent_on(before(:, :, i), place(1)), tangent_on(after(:, :, j), place(2)))
     call arc_pieces(first, centre + turned(first - centre, half), last, tolerance, arc, message)
     if (message /= '') return
     rest = size(after, 3) - j + 1
     allocate (rounded(2, 3, i + size(arc, 3) + rest))
     rounded(:, :, :i) = before(:, :, :i)
-    rounded(:, :, i) = part(before(:, :, i), -1.0_wp, place(1))
+    rounded(:, :, i) = part_of(before(:, :, i), -1.0_wp, place(1))
     rounded(:, :, i + 1:i + size(arc, 3)) = arc
     rounded(:, :, i + size(arc, 3) + 1:) = after(:, :, j:)
-    rounded(:, :, i + size(arc, 3) + 1) = part(after(:, :, j), place(2), 1.0_wp)
+    rounded(:, :, i + size(arc, 3) + 1) = part_of(after(:, :, j), place(2), 1.0_wp)
     rounded(:, 3, i) = first
     rounded(:, 1, i + size(arc, 3) + 1) = last
   end subroutine round_corner
@@ -78,7 +80,7 @@ contains
 
     ! where the arms are straight the circle touches them so far from the corner
     back = abs(offset*tan(0.5_wp*turn))
-    place = [1 - back/length_of(tangent_at(before(:, :, i), 1.0_wp)), -1 + back/length_of(tangent_at(after(:, :, j), -1.0_wp))]
+    place = [1 - back/length_of(tangent_on(before(:, :, i), 1.0_wp)), -1 + back/length_of(tangent_on(after(:, :, j), -1.0_wp))]
     do iteration = 1, max_iterations + size(before, 3) + size(after, 3)
       ! a place before the start of its piece belongs to the piece before, and so on
       if (place(1) < -1 .and. i > 1) then
@@ -90,74 +92,24 @@ contains
         place(2) = -1
       end if
       place = max(-3.0_wp, min(3.0_wp, place))
-      along(:, 1) = (1 - offset*curvature(before(:, :, i), place(1)))*tangent_at(before(:, :, i), place(1))
-      along(:, 2) = -(1 - offset*curvature(after(:, :, j), place(2)))*tangent_at(after(:, :, j), place(2))
-      gap = at(after(:, :, j), place(2)) + offset*left_of(tangent_at(after(:, :, j), place(2))) &
-            - at(before(:, :, i), place(1)) - offset*left_of(tangent_at(before(:, :, i), place(1)))
+      along(:, 1) = (1 - offset*curvature_on(before(:, :, i), place(1)))*tangent_on(before(:, :, i), place(1))
+      along(:, 2) = -(1 - offset*curvature_on(after(:, :, j), place(2)))*tangent_on(after(:, :, j), place(2))
+      gap = point_on(after(:, :, j), place(2)) + offset*left_of(tangent_on(after(:, :, j), place(2))) &
+            - point_on(before(:, :, i), place(1)) - offset*left_of(tangent_on(before(:, :, i), place(1)))
       det = along(1, 1)*along(2, 2) - along(1, 2)*along(2, 1)
       if (.not. abs(det) > 0) exit
       change = [gap(1)*along(2, 2) - gap(2)*along(1, 2), along(1, 1)*gap(2) - along(2, 1)*gap(1)]/det
       place = place + change
       if (all(abs(change) <= place_tolerance)) then
-        rest = [length_of(at(before(:, :, i), place(1)) - before(:, 1, i)), &
-                length_of(after(:, 3, j) - at(after(:, :, j), place(2)))]
+        rest = [length_of(point_on(before(:, :, i), place(1)) - before(:, 1, i)), &
+                length_of(after(:, 3, j) - point_on(after(:, :, j), place(2)))]
         if (any(abs(place) > 1) .or. any(rest < least_rest*abs(offset))) exit
         ! a circle larger than the bend it lies in touches it from the wrong side
-        if (offset*curvature(before(:, :, i), place(1)) >= 1 .or. offset*curvature(after(:, :, j), place(2)) >= 1) exit
+        if (offset*curvature_on(before(:, :, i), place(1)) >= 1 .or. offset*curvature_on(after(:, :, j), place(2)) >= 1) exit
         return
       end if
     end do
     i = 0
   end subroutine touch
 
-  !> The part of a parabola between two of its places, exactly.
-  pure function part(piece, from, to) result(cut)
-    real(wp), intent(in) :: piece(2, 3), from, to
-    real(wp) :: cut(2, 3)
-
-    cut(:, 1) = at(piece, from)
-    cut(:, 2) = at(piece, 0.5_wp*(from + to))
-    cut(:, 3) = at(piece, to)
-    if (from <= -1) cut(:, 1) = piece(:, 1)
-    if (to >= 1) cut(:, 3) = piece(:, 3)
-  end function part
-
-  pure function at(piece, xi) result(y)
-    real(wp), intent(in) :: piece(2, 3), xi
-    real(wp) :: y(2)
-
-    y = 0.5_wp*xi*(xi - 1)*piece(:, 1) + (1 - xi*xi)*piece(:, 2) + 0.5_wp*xi*(xi + 1)*piece(:, 3)
-  end function at
-
-  pure function tangent_at(piece, xi) result(tangent)
-    real(wp), intent(in) :: piece(2, 3), xi
-    real(wp) :: tangent(2)
-
-    tangent = (xi - 0.5_wp)*piece(:, 1) - 2*xi*piece(:, 2) + (xi + 0.5_wp)*piece(:, 3)
-  end function tangent_at
-
-  pure function curvature(piece, xi) result(k)
-    real(wp), intent(in) :: piece(2, 3), xi
-    real(wp) :: k
-    real(wp) :: first(2), second(2)
-
-    first = tangent_at(piece, xi)
-    second = piece(:, 1) - 2*piece(:, 2) + piece(:, 3)
-    k = (first(1)*second(2) - first(2)*second(1))/length_of(first)**3
-  end function curvature
-
-  pure function left_of(v) result(n)
-    real(wp), intent(in) :: v(2)
-    real(wp) :: n(2)
-
-    n = [-v(2), v(1)]/length_of(v)
-  end function left_of
-
-  pure function turned(v, angle) result(w)
-    real(wp), intent(in) :: v(2), angle
-    real(wp) :: w(2)
-
-    w = [cos(angle)*v(1) - sin(angle)*v(2), sin(angle)*v(1) + cos(angle)*v(2)]
-  end function turned
-
-end module die_fillets
+end module fillets

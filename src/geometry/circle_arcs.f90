@@ -1,5 +1,5 @@
 !> Arcs of circle as parabolas within a tolerance.
-module die_arcs
+module circle_arcs
   use kinds, only: pi, wp
   use text, only: to_text
   use vectors, only: length_of
@@ -91,4 +91,4 @@ contains
     angle = atan2(a(1)*b(2) - a(2)*b(1), dot_product(a, b))
   end function angle_between
 
-end module die_arcs
+end module circle_arcs

@@ -5,10 +5,12 @@
 !> the vertex and n points along X - Y.
 module die_feet
   use kinds, only: eps, wp
+  use parabolas, only: curvature_on, point_on, tangent_on
+  use plane_vectors, only: cross, right_of
   use vectors, only: length_of
   implicit none
   private
-  public :: foot_t, projections, foot_inside, foot_at_vertex, tangent_at, climb, end_slack
+  public :: foot_t, projections, foot_inside, foot_at_vertex, climb, end_slack
 
   !> Foot of a point on a die, in the pilot's axes.
   type :: foot_t
@@ -110,16 +112,13 @@ contains
   pure subroutine foot_inside(piece, point, xi, foot)
     real(wp), intent(in) :: piece(2, 3), point(2), xi
     type(foot_t), intent(out) :: foot
-    real(wp) :: y(2), first(2), second(2), curvature
+    real(wp) :: curvature
 
-    y = 0.5_wp*xi*(xi - 1)*piece(:, 1) + (1 - xi*xi)*piece(:, 2) + 0.5_wp*xi*(xi + 1)*piece(:, 3)
-    first = tangent_at(piece, xi)
-    second = piece(:, 1) - 2*piece(:, 2) + piece(:, 3)
-    curvature = cross(first, second)/length_of(first)**3
+    curvature = curvature_on(piece, xi)
     foot%piece = 1
     foot%xi = xi
-    foot%normal = right_of(first)
-    foot%d = dot_product(point - y, foot%normal)
+    foot%normal = right_of(tangent_on(piece, xi))
+    foot%d = dot_product(point - point_on(piece, xi), foot%normal)
     ! the closest point is a minimum of the distance: not beyond the centre of curvature
     if (1 + curvature*foot%d <= 0) foot%piece = 0
     if (foot%piece > 0) foot%turn = curvature/(1 + curvature*foot%d)
@@ -131,8 +130,8 @@ contains
     type(foot_t), intent(out) :: foot
     real(wp) :: t1(2), t2(2), way(2), side
 
-    t1 = tangent_at(before, 1.0_wp)
-    t2 = tangent_at(after, -1.0_wp)
+    t1 = tangent_on(before, 1.0_wp)
+    t2 = tangent_on(after, -1.0_wp)
     way = point - before(:, 3)
     if (dot_product(way, t1) < 0 .or. dot_product(way, t2) > 0 .or. .not. length_of(way) > 0) return
     side = sense_of_turn(before, after)
@@ -153,8 +152,8 @@ contains
     real(wp) :: sense
     real(wp) :: t1(2), t2(2), turn
 
-    t1 = tangent_at(before, 1.0_wp)
-    t2 = tangent_at(after, -1.0_wp)
+    t1 = tangent_on(before, 1.0_wp)
+    t2 = tangent_on(after, -1.0_wp)
     turn = cross(t1, t2)/(length_of(t1)*length_of(t2))
     sense = 0
     if (abs(turn) > smooth_turn) then
@@ -173,30 +172,7 @@ contains
     real(wp), intent(in) :: piece(2, 3), point(2), xi
     real(wp) :: slope
 
-    slope = dot_product(0.5_wp*xi*(xi - 1)*piece(:, 1) + (1 - xi*xi)*piece(:, 2) + 0.5_wp*xi*(xi + 1)*piece(:, 3) - point, &
-                        tangent_at(piece, xi))
+    slope = dot_product(point_on(piece, xi) - point, tangent_on(piece, xi))
   end function climb
-
-  pure function tangent_at(piece, xi) result(tangent)
-    real(wp), intent(in) :: piece(2, 3), xi
-    real(wp) :: tangent(2)
-
-    tangent = (xi - 0.5_wp)*piece(:, 1) - 2*xi*piece(:, 2) + (xi + 0.5_wp)*piece(:, 3)
-  end function tangent_at
-
-  !> Unit vector to the right of a direction: the die's inner normal.
-  pure function right_of(v) result(n)
-    real(wp), intent(in) :: v(2)
-    real(wp) :: n(2)
-
-    n = [v(2), -v(1)]/length_of(v)
-  end function right_of
-
-  pure function cross(a, b) result(c)
-    real(wp), intent(in) :: a(2), b(2)
-    real(wp) :: c
-
-    c = a(1)*b(2) - a(2)*b(1)
-  end function cross
 
 end module die_feet

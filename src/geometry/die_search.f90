@@ -17,8 +17,8 @@
 !> nearest first; what is found is what trying all pieces in their order would find, to the last bit.
 module die_search
   use die_feet, only: climb, end_slack, foot_at_vertex, foot_inside, foot_t, projections
-  use dies, only: die_t
   use kinds, only: eps, wp
+  use piecewise_curves, only: adjacent_piece, box_gap, box_of_node, piecewise_curve_t
   implicit none
   private
   public :: foot_t, find_foot, find_foot_on, follow_foot, box_distance
@@ -43,8 +43,8 @@ module die_search
 contains
 
   !> Foot of a point, within `reach`.
-  pure subroutine find_foot(die, point, e_r, reach, foot)
-    type(die_t), intent(in) :: die
+  pure subroutine find_foot(curve, point, e_r, reach, foot)
+    class(piecewise_curve_t), intent(in) :: curve
     real(wp), intent(in) :: point(2)   !! in the pilot's axes [length]
     real(wp), intent(in) :: e_r(2)     !! inner normal of the part, in the pilot's axes
     real(wp), intent(in) :: reach      !! [length]
@@ -54,14 +54,14 @@ contains
     search%point = point
     search%e_r = e_r
     search%best = reach
-    call search_tree(die, search)
+    call search_tree(curve, search)
     if (search%foot%piece > 0) then
       if (.not. faces(search%foot, e_r)) then
         search%narrow = .true.
         search%sense = sign(1.0_wp, search%foot%d)
         search%best = reach
         search%foot = foot
-        call search_tree(die, search)
+        call search_tree(curve, search)
       end if
     end if
     foot = search%foot
@@ -76,14 +76,14 @@ contains
   end function faces
 
   !> Try all pieces that may hold a better foot, those nearest first.
-  pure subroutine search_tree(die, search)
-    type(die_t), intent(in) :: die
+  pure subroutine search_tree(curve, search)
+    class(piecewise_curve_t), intent(in) :: curve
     type(search_t), intent(inout) :: search
     integer :: waiting(most_waiting), n, node, near, far
     real(wp) :: gaps(most_waiting), gap(2), slack, box(4)
 
     ! a computed depth may be less than the distance of the box by round-off, or by the slack at the ends of pieces
-    box = box_of(die, 1)
+    box = box_of_node(curve, 1)
     slack = 4*end_slack*(maxval(abs(box)) + maxval(abs(search%point)))
     n = 1
     waiting(1) = 1
@@ -92,12 +92,12 @@ contains
       node = waiting(n)
       n = n - 1
       if (gaps(n + 1) > (search%best + slack)**2) cycle
-      if (node > size(die%tree, 2)) then
-        call try_piece(die, node - size(die%tree, 2), search)
+      if (node > size(curve%tree, 2)) then
+        call try_piece(curve, node - size(curve%tree, 2), search)
         cycle
       end if
-      gap(1) = box_gap(box_of(die, 2*node), [search%point, search%point])
-      gap(2) = box_gap(box_of(die, 2*node + 1), [search%point, search%point])
+      gap(1) = box_gap(box_of_node(curve, 2*node), [search%point, search%point])
+      gap(2) = box_gap(box_of_node(curve, 2*node + 1), [search%point, search%point])
       near = merge(0, 1, gap(1) <= gap(2))
       far = 1 - near
       waiting(n + 1:n + 2) = 2*node + [far, near]
@@ -107,22 +107,22 @@ contains
   end subroutine search_tree
 
   !> Feet on a piece, and at the vertex it ends with.
-  pure subroutine try_piece(die, k, search)
-    type(die_t), intent(in) :: die
+  pure subroutine try_piece(curve, k, search)
+    class(piecewise_curve_t), intent(in) :: curve
     integer, intent(in) :: k
     type(search_t), intent(inout) :: search
     type(foot_t) :: candidate
     real(wp) :: xi(3)
     integer :: n, r, next
 
-    call projections(die%pieces(:, :, k), search%point, n, xi)
+    call projections(curve%pieces(:, :, k), search%point, n, xi)
     do r = 1, n
-      call foot_inside(die%pieces(:, :, k), search%point, xi(r), candidate)
+      call foot_inside(curve%pieces(:, :, k), search%point, xi(r), candidate)
       call take(candidate, k, search)
     end do
-    next = neighbour(die, k, 1)
+    next = adjacent_piece(curve, k, 1)
     if (next == 0) return
-    call foot_at_vertex(die%pieces(:, :, k), die%pieces(:, :, next), search%point, candidate)
+    call foot_at_vertex(curve%pieces(:, :, k), curve%pieces(:, :, next), search%point, candidate)
     call take(candidate, k, search)
   end subroutine try_piece
 
@@ -147,22 +147,10 @@ contains
     search%foot%piece = piece
   end subroutine take
 
-  !> The piece before (-1) or after (1) a piece, 0 where the chain ends.
-  pure function neighbour(die, piece, way) result(next)
-    type(die_t), intent(in) :: die
-    integer, intent(in) :: piece, way
-    integer :: next
-
-    next = piece + way
-    if (next >= 1 .and. next <= size(die%pieces, 3)) return
-    next = 0
-    if (die%closed) next = merge(1, size(die%pieces, 3), way > 0)
-  end function neighbour
-
   !> Foot reached from a place of the chain by going along it as long as the point comes nearer; none when that leads to an
   !> end of the chain, beyond `reach`, or to where the die does not face the part.
-  pure subroutine follow_foot(die, point, e_r, reach, piece, xi, foot)
-    type(die_t), intent(in) :: die
+  pure subroutine follow_foot(curve, point, e_r, reach, piece, xi, foot)
+    class(piecewise_curve_t), intent(in) :: curve
     real(wp), intent(in) :: point(2), e_r(2), reach   !! as in `find_foot`
     integer, intent(in) :: piece                      !! where to begin
     real(wp), intent(in) :: xi
@@ -173,20 +161,20 @@ contains
 
     k = piece
     place = xi
-    way = merge(-1, 1, climb(die%pieces(:, :, k), point, place) > 0)
-    do steps = 1, size(die%pieces, 3)
-      if (box_gap(die%boxes(:, k), [point, point]) > reach**2) return
-      call projections(die%pieces(:, :, k), point, n, roots)
+    way = merge(-1, 1, climb(curve%pieces(:, :, k), point, place) > 0)
+    do steps = 1, size(curve%pieces, 3)
+      if (box_gap(curve%boxes(:, k), [point, point]) > reach**2) return
+      call projections(curve%pieces(:, :, k), point, n, roots)
       if (any(way*(roots(:n) - place) >= -end_slack)) then
         place = way*minval(way*roots(:n), mask=way*(roots(:n) - place) >= -end_slack)
-        call foot_inside(die%pieces(:, :, k), point, place, found)
+        call foot_inside(curve%pieces(:, :, k), point, place, found)
         exit
       end if
-      next = neighbour(die, k, way)
+      next = adjacent_piece(curve, k, way)
       if (next == 0) return
-      if (way*climb(die%pieces(:, :, next), point, -real(way, wp)) >= 0) then
+      if (way*climb(curve%pieces(:, :, next), point, -real(way, wp)) >= 0) then
         if (way < 0) k = next
-        call foot_at_vertex(die%pieces(:, :, k), die%pieces(:, :, neighbour(die, k, 1)), point, found)
+        call foot_at_vertex(curve%pieces(:, :, k), curve%pieces(:, :, adjacent_piece(curve, k, 1)), point, found)
         exit
       end if
       k = next
@@ -199,8 +187,8 @@ contains
   end subroutine follow_foot
 
   !> Foot of a point on one piece, or up to `beyond` outside its ends; of several the one nearest to `from`.
-  pure subroutine find_foot_on(die, piece, point, from, beyond, foot)
-    type(die_t), intent(in) :: die
+  pure subroutine find_foot_on(curve, piece, point, from, beyond, foot)
+    class(piecewise_curve_t), intent(in) :: curve
     integer, intent(in) :: piece
     real(wp), intent(in) :: point(2)       !! in the pilot's axes [length]
     real(wp), intent(in) :: from, beyond   !! parent coordinates
@@ -208,42 +196,15 @@ contains
     real(wp) :: roots(3)
     integer :: n
 
-    call projections(die%pieces(:, :, piece), point, n, roots, beyond)
+    call projections(curve%pieces(:, :, piece), point, n, roots, beyond)
     if (n == 0) return
-    call foot_inside(die%pieces(:, :, piece), point, roots(minloc(abs(roots(:n) - from), 1)), foot)
+    call foot_inside(curve%pieces(:, :, piece), point, roots(minloc(abs(roots(:n) - from), 1)), foot)
     if (foot%piece > 0) foot%piece = piece
   end subroutine find_foot_on
 
-  !> Box of a node of the tree; nothing is near one that holds no piece.
-  pure function box_of(die, node) result(box)
-    type(die_t), intent(in) :: die
-    integer, intent(in) :: node
-    real(wp) :: box(4)
-    integer :: piece
-
-    piece = node - size(die%tree, 2)
-    if (piece <= 0) then
-      box = die%tree(:, node)
-    else if (piece <= size(die%boxes, 2)) then
-      box = die%boxes(:, piece)
-    else
-      box = [huge(1.0_wp), huge(1.0_wp), -huge(1.0_wp), -huge(1.0_wp)]
-    end if
-  end function box_of
-
-  !> Square of the distance between two boxes (xmin, ymin, xmax, ymax), 0 when they meet; the first may be empty.
-  pure function box_gap(one, other) result(gap)
-    real(wp), intent(in) :: one(4), other(4)
-    real(wp) :: gap
-
-    gap = huge(gap)
-    if (one(1) > one(3)) return
-    gap = sum(max(one(1:2) - other(3:4), other(1:2) - one(3:4), 0.0_wp)**2)
-  end function box_gap
-
   !> Distance from a box (xmin, ymin, xmax, ymax) to the boxes of a die, in the pilot's axes; 0 when they meet.
-  pure function box_distance(die, box) result(distance)
-    type(die_t), intent(in) :: die
+  pure function box_distance(curve, box) result(distance)
+    class(piecewise_curve_t), intent(in) :: curve
     real(wp), intent(in) :: box(4)
     real(wp) :: distance
     real(wp) :: gaps(most_waiting), gap(2)
@@ -252,17 +213,17 @@ contains
     distance = huge(1.0_wp)
     n = 1
     waiting(1) = 1
-    gaps(1) = box_gap(box_of(die, 1), box)
+    gaps(1) = box_gap(box_of_node(curve, 1), box)
     do while (n > 0)
       node = waiting(n)
       n = n - 1
       if (.not. gaps(n + 1) < distance) cycle
-      if (node > size(die%tree, 2)) then
+      if (node > size(curve%tree, 2)) then
         distance = gaps(n + 1)
         cycle
       end if
-      gap(1) = box_gap(box_of(die, 2*node), box)
-      gap(2) = box_gap(box_of(die, 2*node + 1), box)
+      gap(1) = box_gap(box_of_node(curve, 2*node), box)
+      gap(2) = box_gap(box_of_node(curve, 2*node + 1), box)
       near = merge(0, 1, gap(1) <= gap(2))
       far = 1 - near
       waiting(n + 1:n + 2) = 2*node + [far, near]
