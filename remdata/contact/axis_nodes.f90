@@ -5,7 +5,8 @@
 !> would have the same depth. (The node has no part in the load of a uniform pressure, nor, to second order, in the volume.)
 module axis_nodes
   use arcs, only: arc_t, tangent_at
-  use arcs_on_die, only: closest_point_t, placed_piece
+  use arcs_on_die, only: placed_piece
+  use closest_point, only: closest_point_t
   use die_closest_points, only: find_closest_point
   use dies, only: die_t, is_deformable
   use fields, only: pilot_field
@@ -72,11 +73,11 @@ contains
     logical :: over
 
     call find_closest_point(die, pilot, point, [1, size(die%pieces, 3)], .true., closest, over)
-    if (.not. (over .and. closest%depth > depth)) return
+    if (.not. (over .and. closest%d > depth)) return
     piece = placed_piece(die, pilot, closest%piece)
     normal = tangent_at(piece, closest%xi)
     normal = [normal(2), -normal(1)]/length_of(normal)
-    if (abs(normal(2)) > least_cosine) point(2) = point(2) + (depth - closest%depth)/normal(2)
+    if (abs(normal(2)) > least_cosine) point(2) = point(2) + (depth - closest%d)/normal(2)
   end subroutine lift
 
 end module axis_nodes

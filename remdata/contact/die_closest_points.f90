@@ -9,8 +9,9 @@
 !> neighbour is skipped.
 module die_closest_points
   use arcs, only: arc_t, closest_xi, point_at, tangent_at
-  use arcs_on_die, only: closest_point_t, placed_piece
+  use arcs_on_die, only: placed_piece
   use boundary_sides, only: loop_t
+  use closest_point, only: closest_point_t
   use contact_intervals, only: along, contact_interval_t, side_point_t
   use dies, only: die_t
   use kinds, only: eps, wp
@@ -82,7 +83,7 @@ contains
       do k = 1, 2
         call find_closest_point(die, pilot, ends(:, k), [1, size(die%pieces, 3)], .true., closest_points(k), projected(k))
       end do
-      yes = all(projected) .and. closest_points(2)%depth - closest_points(1)%depth > sin(turn)*length_of(ends(:, 2) - ends(:, 1))
+      yes = all(projected) .and. closest_points(2)%d - closest_points(1)%d > sin(turn)*length_of(ends(:, 2) - ends(:, 1))
     end function is_steep
 
   end subroutine start_at_contact_point
@@ -278,7 +279,7 @@ contains
     end if
     normal = tangent_at(one, closest%xi)
     normal = [normal(2), -normal(1)]/length_of(normal)
-    closest%depth = dot_product(point - point_at(one, closest%xi), normal)
+    closest%d = dot_product(point - point_at(one, closest%xi), normal)
 
   contains
 

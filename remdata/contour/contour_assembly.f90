@@ -4,9 +4,10 @@
 !> used (annex 2, fig. 4): each arc has its curve and its range of xi.
 module contour_assembly
   use arcs, only: arc_t, cross, point_at, straight, tangent_at
-  use arcs_on_die, only: closest_point_t, follow_die
+  use arcs_on_die, only: follow_die
   use boundary_curves, only: boundary_curve_t, close_boundary, kind_end, kind_entry, kind_exit, kind_joint
   use boundary_sides, only: loop_t
+  use closest_point, only: closest_point_t
   use contact_intervals, only: along, contact_interval_t, is_shared, side_point_t
   use contact_overlaps, only: arcs_of_overlap, find_overlap, overlap_t
   use die_closest_points, only: section_t

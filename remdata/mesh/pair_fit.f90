@@ -7,7 +7,8 @@
 !> side.
 module pair_fit
   use arcs, only: arc_t, tangent_at
-  use arcs_on_die, only: closest_point_t, placed_piece
+  use arcs_on_die, only: placed_piece
+  use closest_point, only: closest_point_t
   use contour_assembly, only: contact_t
   use die_closest_points, only: find_closest_point
   use dies, only: die_t, is_deformable, place_on_nodes
@@ -145,7 +146,7 @@ contains
     piece = placed_piece(die, contact%pilot, after%piece)
     normal = tangent_at(piece, after%xi)
     normal = [normal(2), -normal(1)]/length_of(normal)
-    missing = before%depth - after%depth
+    missing = before%d - after%d
   end subroutine find_missing_depth
 
   !> Closest points of contact points on the new sides of their die: from them the solver measures the slip of the next step.

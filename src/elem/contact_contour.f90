@@ -6,7 +6,7 @@
 module contact_contour
   use contact_ends, only: contact_end_t
   use contact_scan, only: deepest_sample, is_near, lies_inside, locate_end
-  use die_search, only: foot_t
+  use curve_search, only: closest_point_t
   use dies, only: die_t, in_pilot_axes
   use kinds, only: wp
   use law_api, only: contact_open
@@ -75,14 +75,14 @@ contains
       real(wp), intent(in) :: closed, open, depths(2)
       logical, intent(in) :: begins
       type(contact_end_t) :: one
-      type(foot_t) :: foot
+      type(closest_point_t) :: closest
 
-      call locate_end(die, side%nodes, closed, open, depths, side%reach, one%place, foot)
+      call locate_end(die, side%nodes, closed, open, depths, side%reach, one%place, closest)
       one%begins = begins
       one%group = number
       one%side = side%number
-      one%piece = foot%piece
-      one%xi = foot%xi
+      one%piece = closest%piece
+      one%xi = closest%xi
       ends = [ends, one]
     end subroutine add
 

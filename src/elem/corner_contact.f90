@@ -17,7 +17,7 @@ module corner_contact
   use materials, only: material_t
   use rigid_contact, only: drift_t, ndof, outer, place_point, press, side_t, turned
   use shape_functions, only: line3
-  use side_corners, only: corner_t, deepest_corner, foot_at_corner
+  use side_corners, only: corner_t, deepest_corner, foot_at_corner => closest_at_corner
   implicit none
   private
   public :: press_corners, stretch_before

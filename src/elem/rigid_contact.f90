@@ -7,7 +7,7 @@
 !> A point may be one that moves along its side as that moves, as the place of a corner does: drift_t.
 module rigid_contact
   use contact_point, only: act, at_penetration, at_piece, at_status, at_xi, contact_point_t, meeting_t, most_unknowns, side_point
-  use die_search, only: foot_t
+  use closest_point, only: foot_t => closest_point_t
   use kinds, only: wp
   use law_api, only: contact_open, law_t
   use materials, only: material_t

@@ -1,7 +1,7 @@
 !> Corners of a die rounded by arcs of circle.
 !>
 !> The arc touches both arms in tangent: its centre is where the arms' offsets by the radius meet, on
-!> the side to which the chain turns. With l the unit vector at the left of the chain, k its signed
+!> the side to which the curve turns. With l the unit vector at the left of the curve, k its signed
 !> curvature and s = 1 for a turn to the left, -1 to the right,
 !> Y1(xi1) + s r l1 = Y2(xi2) + s r l2, where d(Y + s r l)/dxi = (1 - s r k) Y': two equations for two
 !> places, by Newton's method from the corner. Parts of parabolas are parabolas, so the arms stay exact.
@@ -26,7 +26,7 @@ contains
 
   !> Put an arc in place of the corner between the last piece of an arm and the first one of the next.
   pure subroutine round_corner(before, after, radius, tolerance, rounded, rest, message)
-    real(wp), intent(in) :: before(:, :, :), after(:, :, :)   !! (2, 3, npiece) in the order of the chain [length]
+    real(wp), intent(in) :: before(:, :, :), after(:, :, :)   !! (2, 3, npiece) in the order of the curve [length]
     real(wp), intent(in) :: radius, tolerance                 !! > 0 [length]
     real(wp), allocatable, intent(out) :: rounded(:, :, :)    !! what takes the place of both
     integer, intent(out) :: rest                              !! pieces of the next arm that are left, the last ones

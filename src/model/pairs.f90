@@ -1,7 +1,7 @@
 !> Who may meet whom: the pieces of deformable dies that points of sides are coupled with.
 !>
 !> A point in reach of a deformable die has the nodes of three pieces in a row among its element's
-!> unknowns, the middle one being that of its foot when the pairs were last renewed. A point far from
+!> unknowns, the middle one being that of its closest point when the pairs were last renewed. A point far from
 !> the die has none. The pattern of the matrix depends on the pairs, and on nothing else that moves.
 module pairs
   use dies, only: die_t

@@ -194,7 +194,7 @@ contains
     call equations%timers%stop(timer)
   end subroutine pair_up
 
-  !> Pairs around the feet just found; points without a foot keep theirs.
+  !> Pairs around the closest points just found; points without one keep theirs.
   pure subroutine renew_pairs(scene, solution)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution

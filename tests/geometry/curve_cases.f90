@@ -5,7 +5,7 @@ module curve_cases
   use sample_numbers, only: sample_t
   implicit none
   private
-  public :: curve_of, segment, polyline, bowl, direction, s_shape, random_chain, height_of, closest_by_trying
+  public :: curve_of, segment, polyline, bowl, direction, s_shape, random_curve, height_of, closest_by_trying
 
 contains
 
@@ -58,7 +58,7 @@ contains
   end function s_shape
 
   !> Three pieces over x from -3 to 3, each a segment or a parabola, joined in corners of either sense.
-  subroutine random_chain(sample, die)
+  subroutine random_curve(sample, die)
     type(sample_t), intent(inout) :: sample
     type(piecewise_curve_t), intent(out) :: die
     real(wp) :: pieces(2, 3, 3), heights(4), bend, straight
@@ -73,7 +73,7 @@ contains
       pieces(2, :, k) = [heights(k), 0.5_wp*(heights(k) + heights(k + 1)) + bend, heights(k + 1)]
     end do
     die = curve_of(pieces)
-  end subroutine random_chain
+  end subroutine random_curve
 
   pure function on_piece(piece, xi) result(y)
     real(wp), intent(in) :: piece(2, 3), xi
@@ -82,7 +82,7 @@ contains
     y = 0.5_wp*xi*(xi - 1)*piece(:, 1) + (1 - xi*xi)*piece(:, 2) + 0.5_wp*xi*(xi + 1)*piece(:, 3)
   end function on_piece
 
-  !> Height of a chain over x, where x is even along each piece.
+  !> Height of a curve over x, where x is even along each piece.
   pure function height_of(die, x) result(height)
     type(piecewise_curve_t), intent(in) :: die
     real(wp), intent(in) :: x

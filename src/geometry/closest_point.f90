@@ -1,29 +1,29 @@
-!> Feet of a point on the pieces of a die and at the vertices between them: where its distance has a minimum.
+!> Closest points on the pieces of a curve and at the vertices between them: where the distance of a point has a minimum.
 !>
-!> With n the die's inner normal at the foot Y, d = (X - Y).n is the penetration, negative for a gap.
-!> At a vertex the chain may turn away from a point and leave it in the fan of the vertex: then Y is
-!> the vertex and n points along X - Y.
-module die_feet
+!> With n the normal to the right of the curve at the closest point Y, the inner normal of a die, d = (X - Y).n is the depth of
+!> the point X, negative for a gap. At a vertex the curve may turn away from a point and leave it in the fan of the vertex, between
+!> the normals of both pieces: then Y is the vertex and n points along X - Y.
+module closest_point
   use kinds, only: eps, wp
   use parabolas, only: curvature_on, point_on, tangent_on
   use plane_vectors, only: cross, right_of
   use vectors, only: length_of
   implicit none
   private
-  public :: foot_t, projections, foot_inside, foot_at_vertex, climb, end_slack
+  public :: closest_point_t, stationary_points, closest_within_piece, closest_at_vertex, distance_slope, end_slack
 
-  !> Foot of a point on a die, in the pilot's axes.
-  type :: foot_t
-    !> Piece met, 0 when none is; its parent coordinate.
+  !> Closest point on a curve; on a die, in the pilot's axes.
+  type :: closest_point_t
+    !> Its piece, 0 where there is none, and parent coordinate.
     integer :: piece = 0
     real(wp) :: xi = 0.0_wp
-    !> Penetration, negative for a gap [length].
+    !> Depth of the point, negative for a gap [length].
     real(wp) :: d = 0.0_wp
-    !> Inner normal of the die there.
+    !> Unit normal to the right of the curve there.
     real(wp) :: normal(2) = 0.0_wp
     !> Turn of the normal as the point moves along the tangent: dn = turn (t.dX) t [1/length].
     real(wp) :: turn = 0.0_wp
-  end type foot_t
+  end type closest_point_t
 
   !> Ends of pieces belong to both neighbours, within round-off of xi: coordinates may be 1e5 times a piece.
   real(wp), parameter :: end_slack = 1.0e-10_wp
@@ -33,7 +33,7 @@ module die_feet
 contains
 
   !> Parent coordinates in [-1, 1], or up to `beyond` outside, where (Y(xi) - point).Y'(xi) = 0, a cubic.
-  pure subroutine projections(piece, point, n, xi, beyond)
+  pure subroutine stationary_points(piece, point, n, xi, beyond)
     real(wp), intent(in) :: piece(2, 3), point(2)
     integer, intent(out) :: n
     real(wp), intent(out) :: xi(3)
@@ -106,28 +106,28 @@ contains
       end do
     end function root_between
 
-  end subroutine projections
+  end subroutine stationary_points
 
-  !> Foot on a piece.
-  pure subroutine foot_inside(piece, point, xi, foot)
+  !> Closest point at a stationary point of a piece; its piece is 0 where the distance has a maximum there.
+  pure subroutine closest_within_piece(piece, point, xi, closest)
     real(wp), intent(in) :: piece(2, 3), point(2), xi
-    type(foot_t), intent(out) :: foot
+    type(closest_point_t), intent(out) :: closest
     real(wp) :: curvature
 
     curvature = curvature_on(piece, xi)
-    foot%piece = 1
-    foot%xi = xi
-    foot%normal = right_of(tangent_on(piece, xi))
-    foot%d = dot_product(point - point_on(piece, xi), foot%normal)
+    closest%piece = 1
+    closest%xi = xi
+    closest%normal = right_of(tangent_on(piece, xi))
+    closest%d = dot_product(point - point_on(piece, xi), closest%normal)
     ! the closest point is a minimum of the distance: not beyond the centre of curvature
-    if (1 + curvature*foot%d <= 0) foot%piece = 0
-    if (foot%piece > 0) foot%turn = curvature/(1 + curvature*foot%d)
-  end subroutine foot_inside
+    if (1 + curvature*closest%d <= 0) closest%piece = 0
+    if (closest%piece > 0) closest%turn = curvature/(1 + curvature*closest%d)
+  end subroutine closest_within_piece
 
-  !> Foot at the vertex between two pieces, when the point lies in its fan.
-  pure subroutine foot_at_vertex(before, after, point, foot)
+  !> Closest point at the vertex between two pieces, when the point lies in its fan.
+  pure subroutine closest_at_vertex(before, after, point, closest)
     real(wp), intent(in) :: before(2, 3), after(2, 3), point(2)
-    type(foot_t), intent(out) :: foot
+    type(closest_point_t), intent(out) :: closest
     real(wp) :: t1(2), t2(2), way(2), side
 
     t1 = tangent_on(before, 1.0_wp)
@@ -137,16 +137,16 @@ contains
     side = sense_of_turn(before, after)
     if (.not. abs(side) > 0) return
     ! a die that turns left (towards the part) has its fan inside, one that turns right outside
-    foot%piece = 1
-    foot%xi = 1
-    foot%d = side*length_of(way)
-    foot%normal = way/foot%d
-    foot%turn = 1/foot%d
-  end subroutine foot_at_vertex
+    closest%piece = 1
+    closest%xi = 1
+    closest%d = side*length_of(way)
+    closest%normal = way/closest%d
+    closest%turn = 1/closest%d
+  end subroutine closest_at_vertex
 
-  !> The chain turns left (1) or right (-1) at the vertex between two pieces, or goes on smoothly (0).
-  !> Where it turns back on itself its arms tell: a slot lies between them when the second is at the left of the
-  !> first, else a rib; arms on one line are a rib without thickness.
+  !> The curve turns left (1) or right (-1) at the vertex between two pieces, or goes on smoothly (0).
+  !> Where it turns back on itself the curvature of its pieces decides: a slot lies between them when the second is on the left of
+  !> the first, else a rib; pieces on one line are a rib without thickness.
   pure function sense_of_turn(before, after) result(sense)
     real(wp), intent(in) :: before(2, 3), after(2, 3)
     real(wp) :: sense
@@ -167,12 +167,12 @@ contains
     end if
   end function sense_of_turn
 
-  !> Half the derivative of the squared distance along a piece: above zero, the point is nearer to where one comes from.
-  pure function climb(piece, point, xi) result(slope)
+  !> Half the derivative of the squared distance along a piece [length^2]: above zero, the distance decreases backwards.
+  pure function distance_slope(piece, point, xi) result(slope)
     real(wp), intent(in) :: piece(2, 3), point(2), xi
     real(wp) :: slope
 
     slope = dot_product(point_on(piece, xi) - point, tangent_on(piece, xi))
-  end function climb
+  end function distance_slope
 
-end module die_feet
+end module closest_point
