@@ -4,10 +4,12 @@
 !> the previous mesh. Between the points where it is known the depth is linear in the arc length of the die. At a vertex of the die
 !> the two curves at depth are cut at their intersection, or extended to it.
 module arcs_on_die
-  use arcs, only: arc_t, cross, cut, length_between, point_at, straight, tangent_at
+  use arcs, only: arc_t, cut, straight
   use closest_point, only: closest_point_t
   use dies, only: die_t
   use kinds, only: eps, wp
+  use offset_parabolas, only: length_between, point_at, tangent_at
+  use plane_vectors, only: cross
   use vectors, only: length_of
   implicit none
   private

@@ -4,9 +4,9 @@
 !> contact ends where the depth of the side is zero (contact_scan): on the one side or on the other, as the node they share is
 !> in the die or not. It also ends where the contour does.
 module contact_contour
+  use closest_point, only: closest_point_t
   use contact_ends, only: contact_end_t
   use contact_scan, only: deepest_sample, is_near, lies_inside, locate_end
-  use curve_search, only: closest_point_t
   use dies, only: die_t, in_pilot_axes
   use kinds, only: wp
   use law_api, only: contact_open

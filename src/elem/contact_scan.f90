@@ -2,7 +2,8 @@
 !>
 !> Integration points are where contact is asked for; the side between them is what a user looks at.
 module contact_scan
-  use curve_search, only: closest_facing_point, closest_point_t, box_distance
+  use closest_point, only: closest_point_t
+  use curve_search, only: box_distance, closest_facing_point
   use dies, only: die_t
   use kinds, only: wp
   use shape_functions, only: line3

@@ -6,7 +6,7 @@
 !> (V - y).y' = 0, its depth is d = (V - y).e_R, along the side's own inner normal e_R. Where e_R
 !> leaves the corner's fan the side lies along a face, and the face's normal is taken.
 module side_corners
-  use closest_point, only: closest_point_t, stationary_points
+  use closest_point, only: closest_point_t, stationary_points, whole_piece
   use dies, only: die_t
   use kinds, only: wp
   use shape_functions, only: line3
@@ -49,7 +49,7 @@ contains
     do k = 1, size(die%corners, 2)
       one%vertex = die%corners(1:2, k)
       if (any(one%vertex < box(1:2)) .or. any(one%vertex > box(3:4))) cycle
-      call stationary_points(side, one%vertex, n, xi)
+      call stationary_points(side, one%vertex, whole_piece, n, xi)
       do r = 1, n
         if (xi(r) < from .or. .not. xi(r) < to) cycle
         one%place = xi(r)

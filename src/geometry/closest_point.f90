@@ -10,7 +10,7 @@ module closest_point
   use vectors, only: length_of
   implicit none
   private
-  public :: closest_point_t, stationary_points, closest_within_piece, closest_at_vertex, distance_slope, end_slack
+  public :: closest_point_t, stationary_points, closest_within_piece, closest_at_vertex, distance_slope, whole_piece, end_slack
 
   !> Closest point on a curve; on a die, in the pilot's axes.
   type :: closest_point_t
@@ -23,52 +23,53 @@ module closest_point
     real(wp) :: normal(2) = 0.0_wp
     !> Turn of the normal as the point moves along the tangent: dn = turn (t.dX) t [1/length].
     real(wp) :: turn = 0.0_wp
+    !> It is the vertex behind its piece, not a point within it.
+    logical :: at_vertex = .false.
   end type closest_point_t
 
   !> Ends of pieces belong to both neighbours, within round-off of xi: coordinates may be 1e5 times a piece.
-  real(wp), parameter :: end_slack = 1.0e-10_wp
+  real(wp), parameter :: end_slack = 1.0e-10_wp, whole_piece(2) = [-1 - end_slack, 1 + end_slack]
   !> Pieces are one smooth curve where their tangents turn by less than this sine: `end_slack` covers the fan.
   real(wp), parameter :: smooth_turn = 1.0e-12_wp
 
 contains
 
-  !> Parent coordinates in [-1, 1], or up to `beyond` outside, where (Y(xi) - point).Y'(xi) = 0, a cubic.
-  pure subroutine stationary_points(piece, point, n, xi, beyond)
-    real(wp), intent(in) :: piece(2, 3), point(2)
+  !> Parent coordinates between two others where the distance of a point is stationary: (Y(xi) - point).Y'(xi) = 0, a cubic.
+  pure subroutine stationary_points(piece, point, range, n, xi)
+    real(wp), intent(in) :: piece(2, 3)   !! (2, 3) points [length]
+    real(wp), intent(in) :: point(2)      !! (2) [length]
+    real(wp), intent(in) :: range(2)      !! (2) least and largest parent coordinate [-]
     integer, intent(out) :: n
-    real(wp), intent(out) :: xi(3)
-    real(wp), intent(in), optional :: beyond
-    real(wp) :: a(2), b(2), d(2), c(0:3), knots(4), delta, q, limit
+    real(wp), intent(out) :: xi(3)        !! (3) the first n, in ascending order [-]
+    real(wp) :: a(2), b(2), d(2), c(0:3), bounds(4), delta, q
     integer :: i
 
     a = 0.5_wp*(piece(:, 1) + piece(:, 3)) - piece(:, 2)
     b = 0.5_wp*(piece(:, 3) - piece(:, 1))
     d = piece(:, 2) - point
     c = [dot_product(d, b), dot_product(b, b) + 2*dot_product(d, a), 3*dot_product(a, b), 2*dot_product(a, a)]
-    limit = 1 + end_slack
-    if (present(beyond)) limit = limit + beyond
     n = 0
     if (c(3) <= 16*eps*dot_product(b, b)) then
       ! a segment, to round-off
-      if (abs(c(0)) > limit*dot_product(b, b)) return
+      if (c(0) > -range(1)*dot_product(b, b) .or. -c(0) > range(2)*dot_product(b, b)) return
       n = 1
       xi(1) = -c(0)/dot_product(b, b)
       return
     end if
     ! the cubic is monotone between its extremes: a root in each such interval with a change of sign
-    knots = [-limit, -limit, limit, limit]
+    bounds = range([1, 1, 2, 2])
     delta = c(2)**2 - 3*c(3)*c(1)
     if (delta > 0) then
       q = -(c(2) + sign(sqrt(delta), c(2)))
-      knots(2) = min(q/(3*c(3)), c(1)/q)
-      knots(3) = max(q/(3*c(3)), c(1)/q)
-      knots(2:3) = min(max(knots(2:3), knots(1)), knots(4))
+      bounds(2) = min(q/(3*c(3)), c(1)/q)
+      bounds(3) = max(q/(3*c(3)), c(1)/q)
+      bounds(2:3) = min(max(bounds(2:3), bounds(1)), bounds(4))
     end if
     do i = 1, 3
-      if (.not. knots(i + 1) > knots(i)) cycle
-      if (cubic(knots(i))*cubic(knots(i + 1)) > 0) cycle
+      if (.not. bounds(i + 1) > bounds(i)) cycle
+      if (cubic(bounds(i))*cubic(bounds(i + 1)) > 0) cycle
       n = n + 1
-      xi(n) = root_between(knots(i), knots(i + 1))
+      xi(n) = root_between(bounds(i), bounds(i + 1))
     end do
 
   contains
@@ -110,7 +111,9 @@ contains
 
   !> Closest point at a stationary point of a piece; its piece is 0 where the distance has a maximum there.
   pure subroutine closest_within_piece(piece, point, xi, closest)
-    real(wp), intent(in) :: piece(2, 3), point(2), xi
+    real(wp), intent(in) :: piece(2, 3)   !! (2, 3) points [length]
+    real(wp), intent(in) :: point(2)      !! (2) [length]
+    real(wp), intent(in) :: xi            !! [-]
     type(closest_point_t), intent(out) :: closest
     real(wp) :: curvature
 
@@ -126,7 +129,8 @@ contains
 
   !> Closest point at the vertex between two pieces, when the point lies in its fan.
   pure subroutine closest_at_vertex(before, after, point, closest)
-    real(wp), intent(in) :: before(2, 3), after(2, 3), point(2)
+    real(wp), intent(in) :: before(2, 3), after(2, 3)   !! (2, 3) points of the pieces [length]
+    real(wp), intent(in) :: point(2)                    !! (2) [length]
     type(closest_point_t), intent(out) :: closest
     real(wp) :: t1(2), t2(2), way(2), side
 
@@ -139,6 +143,7 @@ contains
     ! a die that turns left (towards the part) has its fan inside, one that turns right outside
     closest%piece = 1
     closest%xi = 1
+    closest%at_vertex = .true.
     closest%d = side*length_of(way)
     closest%normal = way/closest%d
     closest%turn = 1/closest%d
@@ -169,7 +174,9 @@ contains
 
   !> Half the derivative of the squared distance along a piece [length^2]: above zero, the distance decreases backwards.
   pure function distance_slope(piece, point, xi) result(slope)
-    real(wp), intent(in) :: piece(2, 3), point(2), xi
+    real(wp), intent(in) :: piece(2, 3)   !! (2, 3) points [length]
+    real(wp), intent(in) :: point(2)      !! (2) [length]
+    real(wp), intent(in) :: xi            !! [-]
     real(wp) :: slope
 
     slope = dot_product(point_on(piece, xi) - point, tangent_on(piece, xi))

@@ -16,12 +16,13 @@
 !> Beyond the ends of an open curve there is no die. A tree of boxes over the curve is searched
 !> nearest first; what is found is what trying all pieces in their order would find, to the last bit.
 module curve_search
-  use closest_point, only: distance_slope, end_slack, closest_at_vertex, closest_within_piece, closest_point_t, stationary_points
+  use closest_point, only: closest_at_vertex, closest_point_t, closest_within_piece, distance_slope, end_slack, stationary_points, &
+                           whole_piece
   use kinds, only: eps, wp
   use piecewise_curves, only: adjacent_piece, box_gap, box_of_node, piecewise_curve_t
   implicit none
   private
-  public :: closest_point_t, closest_facing_point, closest_on_piece, follow_closest_point, box_distance
+  public :: closest_facing_point, closest_on_pieces, closest_on_piece, follow_closest_point, box_distance
 
   !> A side that faces away by less than this cosine may still lie on the die: a side that folds.
   real(wp), parameter :: facing = 0.9_wp
@@ -45,8 +46,8 @@ contains
   !> Closest point that faces the part, within `reach`.
   pure subroutine closest_facing_point(curve, point, e_r, reach, closest)
     class(piecewise_curve_t), intent(in) :: curve
-    real(wp), intent(in) :: point(2)   !! in the pilot's axes [length]
-    real(wp), intent(in) :: e_r(2)     !! inner normal of the part, in the pilot's axes
+    real(wp), intent(in) :: point(2)   !! (2) in the pilot's axes [length]
+    real(wp), intent(in) :: e_r(2)     !! (2) inner normal of the part, in the pilot's axes [-]
     real(wp), intent(in) :: reach      !! [length]
     type(closest_point_t), intent(out) :: closest
     type(search_t) :: search
@@ -67,6 +68,40 @@ contains
     closest = search%closest
   end subroutine closest_facing_point
 
+  !> Closest point of all on adjacent pieces and the vertices between them, whichever way it faces.
+  pure subroutine closest_on_pieces(curve, point, first, count, closest)
+    class(piecewise_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: point(2)   !! (2) [length]
+    integer, intent(in) :: first       !! piece
+    integer, intent(in) :: count       !! of pieces; across the start of a closed curve when they are more than follow
+    type(closest_point_t), intent(out) :: closest
+    type(search_t) :: search
+    integer :: k, i
+
+    search%point = point
+    ! every closest point faces a part that has no normal
+    search%e_r = 0
+    search%best = huge(search%best)
+    associate (npiece => size(curve%pieces, 3), slack => slack_of(curve, point))
+      do i = 1, count
+        k = modulo(first + i - 2, npiece) + 1
+        if (sqrt(box_gap(curve%boxes(:, k), [point, point])) > search%best + slack) cycle
+        call try_piece(curve, k, search)
+        if (i < count .or. count == npiece) call try_vertex(curve, k, search)
+      end do
+    end associate
+    closest = search%closest
+  end subroutine closest_on_pieces
+
+  !> A computed depth may be less than the distance of the box by round-off, or by the slack at the ends of pieces [length].
+  pure function slack_of(curve, point) result(slack)
+    class(piecewise_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: point(2)
+    real(wp) :: slack
+
+    slack = 4*end_slack*(maxval(abs(box_of_node(curve, 1))) + maxval(abs(point)))
+  end function slack_of
+
   pure function faces(closest, e_r) result(seen)
     type(closest_point_t), intent(in) :: closest
     real(wp), intent(in) :: e_r(2)
@@ -80,20 +115,19 @@ contains
     class(piecewise_curve_t), intent(in) :: curve
     type(search_t), intent(inout) :: search
     integer :: waiting(most_waiting), n, node, near, far
-    real(wp) :: gaps(most_waiting), gap(2), slack, box(4)
+    real(wp) :: gaps(most_waiting), gap(2), slack
 
-    ! a computed depth may be less than the distance of the box by round-off, or by the slack at the ends of pieces
-    box = box_of_node(curve, 1)
-    slack = 4*end_slack*(maxval(abs(box)) + maxval(abs(search%point)))
+    slack = slack_of(curve, search%point)
     n = 1
     waiting(1) = 1
-    gaps(1) = box_gap(box, [search%point, search%point])
+    gaps(1) = box_gap(box_of_node(curve, 1), [search%point, search%point])
     do while (n > 0)
       node = waiting(n)
       n = n - 1
       if (gaps(n + 1) > (search%best + slack)**2) cycle
       if (node > size(curve%tree, 2)) then
         call try_piece(curve, node - size(curve%tree, 2), search)
+        call try_vertex(curve, node - size(curve%tree, 2), search)
         cycle
       end if
       gap(1) = box_gap(box_of_node(curve, 2*node), [search%point, search%point])
@@ -106,25 +140,35 @@ contains
     end do
   end subroutine search_tree
 
-  !> Closest points on a piece, and at the vertex it ends with.
+  !> Closest points on a piece.
   pure subroutine try_piece(curve, k, search)
     class(piecewise_curve_t), intent(in) :: curve
     integer, intent(in) :: k
     type(search_t), intent(inout) :: search
     type(closest_point_t) :: candidate
     real(wp) :: xi(3)
-    integer :: n, r, next
+    integer :: n, r
 
-    call stationary_points(curve%pieces(:, :, k), search%point, n, xi)
+    call stationary_points(curve%pieces(:, :, k), search%point, whole_piece, n, xi)
     do r = 1, n
       call closest_within_piece(curve%pieces(:, :, k), search%point, xi(r), candidate)
       call take(candidate, k, search)
     end do
+  end subroutine try_piece
+
+  !> Closest point at the vertex that a piece ends with.
+  pure subroutine try_vertex(curve, k, search)
+    class(piecewise_curve_t), intent(in) :: curve
+    integer, intent(in) :: k
+    type(search_t), intent(inout) :: search
+    type(closest_point_t) :: candidate
+    integer :: next
+
     next = adjacent_piece(curve, k, 1)
     if (next == 0) return
     call closest_at_vertex(curve%pieces(:, :, k), curve%pieces(:, :, next), search%point, candidate)
     call take(candidate, k, search)
-  end subroutine try_piece
+  end subroutine try_vertex
 
   !> The nearer of two; of two as near the one that faces the part, else the first along the curve.
   pure subroutine take(candidate, piece, search)
@@ -151,23 +195,25 @@ contains
   !> to an end of the curve, beyond `reach`, or to where the die does not face the part.
   pure subroutine follow_closest_point(curve, point, e_r, reach, piece, xi, closest)
     class(piecewise_curve_t), intent(in) :: curve
-    real(wp), intent(in) :: point(2), e_r(2), reach   !! as in `closest_facing_point`
-    integer, intent(in) :: piece                      !! where to begin
-    real(wp), intent(in) :: xi
+    real(wp), intent(in) :: point(2)   !! (2) in the pilot's axes [length]
+    real(wp), intent(in) :: e_r(2)     !! (2) inner normal of the part, in the pilot's axes [-]
+    real(wp), intent(in) :: reach      !! [length]
+    integer, intent(in) :: piece       !! where to begin
+    real(wp), intent(in) :: xi         !! there [-]
     type(closest_point_t), intent(out) :: closest
     type(closest_point_t) :: found
-    real(wp) :: place, roots(3)
+    real(wp) :: here, roots(3)
     integer :: k, next, way, n, steps
 
     k = piece
-    place = xi
-    way = merge(-1, 1, distance_slope(curve%pieces(:, :, k), point, place) > 0)
+    here = xi
+    way = merge(-1, 1, distance_slope(curve%pieces(:, :, k), point, here) > 0)
     do steps = 1, size(curve%pieces, 3)
       if (box_gap(curve%boxes(:, k), [point, point]) > reach**2) return
-      call stationary_points(curve%pieces(:, :, k), point, n, roots)
-      if (any(way*(roots(:n) - place) >= -end_slack)) then
-        place = way*minval(way*roots(:n), mask=way*(roots(:n) - place) >= -end_slack)
-        call closest_within_piece(curve%pieces(:, :, k), point, place, found)
+      call stationary_points(curve%pieces(:, :, k), point, whole_piece, n, roots)
+      if (any(way*(roots(:n) - here) >= -end_slack)) then
+        here = way*minval(way*roots(:n), mask=way*(roots(:n) - here) >= -end_slack)
+        call closest_within_piece(curve%pieces(:, :, k), point, here, found)
         exit
       end if
       next = adjacent_piece(curve, k, way)
@@ -178,7 +224,7 @@ contains
         exit
       end if
       k = next
-      place = -way
+      here = -way
     end do
     if (found%piece == 0 .or. .not. abs(found%d) < reach) return
     if (.not. faces(found, e_r)) return
@@ -190,13 +236,14 @@ contains
   pure subroutine closest_on_piece(curve, piece, point, from, beyond, closest)
     class(piecewise_curve_t), intent(in) :: curve
     integer, intent(in) :: piece
-    real(wp), intent(in) :: point(2)       !! in the pilot's axes [length]
-    real(wp), intent(in) :: from, beyond   !! parent coordinates
+    real(wp), intent(in) :: point(2)       !! (2) in the pilot's axes [length]
+    real(wp), intent(in) :: from, beyond   !! parent coordinates [-]
     type(closest_point_t), intent(out) :: closest
-    real(wp) :: roots(3)
+    real(wp) :: roots(3), limit
     integer :: n
 
-    call stationary_points(curve%pieces(:, :, piece), point, n, roots, beyond)
+    limit = whole_piece(2) + beyond
+    call stationary_points(curve%pieces(:, :, piece), point, [-limit, limit], n, roots)
     if (n == 0) return
     call closest_within_piece(curve%pieces(:, :, piece), point, roots(minloc(abs(roots(:n) - from), 1)), closest)
     if (closest%piece > 0) closest%piece = piece
@@ -205,7 +252,7 @@ contains
   !> Distance from a box (xmin, ymin, xmax, ymax) to the boxes of a curve; 0 when they meet [length].
   pure function box_distance(curve, box) result(distance)
     class(piecewise_curve_t), intent(in) :: curve
-    real(wp), intent(in) :: box(4)
+    real(wp), intent(in) :: box(4)   !! (4) xmin, ymin, xmax, ymax [length]
     real(wp) :: distance
     real(wp) :: gaps(most_waiting), gap(2)
     integer :: waiting(most_waiting), n, node, near, far

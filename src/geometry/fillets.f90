@@ -4,7 +4,7 @@
 !> the side to which the curve turns. With l the unit vector at the left of the curve, k its signed
 !> curvature and s = 1 for a turn to the left, -1 to the right,
 !> Y1(xi1) + s r l1 = Y2(xi2) + s r l2, where d(Y + s r l)/dxi = (1 - s r k) Y': two equations for two
-!> places, by Newton's method from the corner. Parts of parabolas are parabolas, so the arms stay exact.
+!> parent coordinates, by Newton's method from the corner. Parts of parabolas are parabolas, so the arms stay exact.
 module fillets
   use circle_arcs, only: angle_between, arc_pieces
   use kinds, only: wp
@@ -17,8 +17,8 @@ module fillets
 
   !> Arms go on smoothly, or fold back, when the sine of the turn is below this.
   real(wp), parameter :: least_turn = 1.0e-6_wp
-  !> Places are found to this share of a piece; what is left of an arm is longer than this share of the radius.
-  real(wp), parameter :: place_tolerance = 1.0e-13_wp, least_rest = 1.0e-9_wp
+  !> Parent coordinates are found to this share of a piece; what is left of an arm is longer than this share of the radius.
+  real(wp), parameter :: xi_tolerance = 1.0e-13_wp, least_rest = 1.0e-9_wp
   !> Newton's method takes one iteration on segments, a few more on parabolas; an arm is walked piece by piece.
   integer, parameter :: max_iterations = 50
 
@@ -28,11 +28,11 @@ contains
   pure subroutine round_corner(before, after, radius, tolerance, rounded, rest, message)
     real(wp), intent(in) :: before(:, :, :), after(:, :, :)   !! (2, 3, npiece) in the order of the curve [length]
     real(wp), intent(in) :: radius, tolerance                 !! > 0 [length]
-    real(wp), allocatable, intent(out) :: rounded(:, :, :)    !! what takes the place of both
+    real(wp), allocatable, intent(out) :: rounded(:, :, :)    !! (2, 3, npiece) what replaces both [length]
     integer, intent(out) :: rest                              !! pieces of the next arm that are left, the last ones
     character(len=:), allocatable, intent(out) :: message     !! empty when all is well
     real(wp), allocatable :: arc(:, :, :)
-    real(wp) :: turn, sense, place(2), first(2), last(2), centre(2), half
+    real(wp) :: turn, sense, xi(2), first(2), last(2), centre(2), half
     integer :: i, j
 
     message = ''
@@ -46,66 +46,66 @@ contains
       if (cos(turn) < 0) message = 'the pieces before and after a fillet meet in a corner; these fold back on one another'
       return
     end if
-    call touch(before, after, sense*radius, turn, i, j, place)
+    call touch(before, after, sense*radius, turn, i, j, xi)
     if (i == 0) then
       message = 'the radius of the fillet is too large: its arc does not touch both neighbours within their length'
       return
     end if
-    first = point_on(before(:, :, i), place(1))
-    last = point_on(after(:, :, j), place(2))
-    centre = first + sense*radius*left_of(tangent_on(before(:, :, i), place(1)))
-    half = 0.5_wp*angle_between(tangent_on(before(:, :, i), place(1)), tangent_on(after(:, :, j), place(2)))
+    first = point_on(before(:, :, i), xi(1))
+    last = point_on(after(:, :, j), xi(2))
+    centre = first + sense*radius*left_of(tangent_on(before(:, :, i), xi(1)))
+    half = 0.5_wp*angle_between(tangent_on(before(:, :, i), xi(1)), tangent_on(after(:, :, j), xi(2)))
     call arc_pieces(first, centre + turned(first - centre, half), last, tolerance, arc, message)
     if (message /= '') return
     rest = size(after, 3) - j + 1
     allocate (rounded(2, 3, i + size(arc, 3) + rest))
     rounded(:, :, :i) = before(:, :, :i)
-    rounded(:, :, i) = part_of(before(:, :, i), -1.0_wp, place(1))
+    rounded(:, :, i) = part_of(before(:, :, i), -1.0_wp, xi(1))
     rounded(:, :, i + 1:i + size(arc, 3)) = arc
     rounded(:, :, i + size(arc, 3) + 1:) = after(:, :, j:)
-    rounded(:, :, i + size(arc, 3) + 1) = part_of(after(:, :, j), place(2), 1.0_wp)
+    rounded(:, :, i + size(arc, 3) + 1) = part_of(after(:, :, j), xi(2), 1.0_wp)
     rounded(:, 3, i) = first
     rounded(:, 1, i + size(arc, 3) + 1) = last
   end subroutine round_corner
 
-  !> Pieces i and j and the places on them where a circle touches; i = 0 when there is none.
-  pure subroutine touch(before, after, offset, turn, i, j, place)
+  !> Pieces i and j and the parent coordinates on them where a circle touches; i = 0 when there is none.
+  pure subroutine touch(before, after, offset, turn, i, j, xi)
     real(wp), intent(in) :: before(:, :, :), after(:, :, :)
     real(wp), intent(in) :: offset         !! radius, its sign that of the turn
     real(wp), intent(in) :: turn           !! angle of the corner
     integer, intent(inout) :: i, j
-    real(wp), intent(out) :: place(2)
+    real(wp), intent(out) :: xi(2)
     real(wp) :: along(2, 2), gap(2), change(2), back, det, rest(2)
     integer :: iteration
 
     ! where the arms are straight the circle touches them so far from the corner
     back = abs(offset*tan(0.5_wp*turn))
-    place = [1 - back/length_of(tangent_on(before(:, :, i), 1.0_wp)), -1 + back/length_of(tangent_on(after(:, :, j), -1.0_wp))]
+    xi = [1 - back/length_of(tangent_on(before(:, :, i), 1.0_wp)), -1 + back/length_of(tangent_on(after(:, :, j), -1.0_wp))]
     do iteration = 1, max_iterations + size(before, 3) + size(after, 3)
-      ! a place before the start of its piece belongs to the piece before, and so on
-      if (place(1) < -1 .and. i > 1) then
+      ! a parent coordinate before the start of its piece belongs to the piece before, and so on
+      if (xi(1) < -1 .and. i > 1) then
         i = i - 1
-        place(1) = 1
+        xi(1) = 1
       end if
-      if (place(2) > 1 .and. j < size(after, 3)) then
+      if (xi(2) > 1 .and. j < size(after, 3)) then
         j = j + 1
-        place(2) = -1
+        xi(2) = -1
       end if
-      place = max(-3.0_wp, min(3.0_wp, place))
-      along(:, 1) = (1 - offset*curvature_on(before(:, :, i), place(1)))*tangent_on(before(:, :, i), place(1))
-      along(:, 2) = -(1 - offset*curvature_on(after(:, :, j), place(2)))*tangent_on(after(:, :, j), place(2))
-      gap = point_on(after(:, :, j), place(2)) + offset*left_of(tangent_on(after(:, :, j), place(2))) &
-            - point_on(before(:, :, i), place(1)) - offset*left_of(tangent_on(before(:, :, i), place(1)))
+      xi = max(-3.0_wp, min(3.0_wp, xi))
+      along(:, 1) = (1 - offset*curvature_on(before(:, :, i), xi(1)))*tangent_on(before(:, :, i), xi(1))
+      along(:, 2) = -(1 - offset*curvature_on(after(:, :, j), xi(2)))*tangent_on(after(:, :, j), xi(2))
+      gap = point_on(after(:, :, j), xi(2)) + offset*left_of(tangent_on(after(:, :, j), xi(2))) &
+            - point_on(before(:, :, i), xi(1)) - offset*left_of(tangent_on(before(:, :, i), xi(1)))
       det = along(1, 1)*along(2, 2) - along(1, 2)*along(2, 1)
       if (.not. abs(det) > 0) exit
       change = [gap(1)*along(2, 2) - gap(2)*along(1, 2), along(1, 1)*gap(2) - along(2, 1)*gap(1)]/det
-      place = place + change
-      if (all(abs(change) <= place_tolerance)) then
-        rest = [length_of(point_on(before(:, :, i), place(1)) - before(:, 1, i)), &
-                length_of(after(:, 3, j) - point_on(after(:, :, j), place(2)))]
-        if (any(abs(place) > 1) .or. any(rest < least_rest*abs(offset))) exit
+      xi = xi + change
+      if (all(abs(change) <= xi_tolerance)) then
+        rest = [length_of(point_on(before(:, :, i), xi(1)) - before(:, 1, i)), &
+                length_of(after(:, 3, j) - point_on(after(:, :, j), xi(2)))]
+        if (any(abs(xi) > 1) .or. any(rest < least_rest*abs(offset))) exit
         ! a circle larger than the bend it lies in touches it from the wrong side
-        if (offset*curvature_on(before(:, :, i), place(1)) >= 1 .or. offset*curvature_on(after(:, :, j), place(2)) >= 1) exit
+        if (offset*curvature_on(before(:, :, i), xi(1)) >= 1 .or. offset*curvature_on(after(:, :, j), xi(2)) >= 1) exit
         return
       end if
     end do

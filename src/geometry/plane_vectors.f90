@@ -10,8 +10,8 @@ contains
 
   !> Component of a x b normal to the plane: positive when b is on the left of a.
   pure function cross(a, b) result(c)
-    real(wp), intent(in) :: a(2)   !! (2) [of one unit, e.g. length]
-    real(wp), intent(in) :: b(2)   !! (2) [of one unit, e.g. length]
+    real(wp), intent(in) :: a(2)   !! (2) [of any unit]
+    real(wp), intent(in) :: b(2)   !! (2) [of any unit]
     real(wp) :: c
 
     c = a(1)*b(2) - a(2)*b(1)
