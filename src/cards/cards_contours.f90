@@ -130,7 +130,7 @@ contains
 
     if (.not. has_contours(draft%scene%remesher)) return
     do i = 1, size(draft%scene%remesher%contours)
-      if (size(draft%scene%remesher%contours(i)%row) == 0) return   ! a mistake that has been told
+      if (size(draft%scene%remesher%contours(i)%row) == 0) return   ! a mistake that has been reported
     end do
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword == 'BODY') exit

@@ -20,7 +20,8 @@ contains
   !> The side is no further from the die than `reach`.
   pure function is_near(die, side, reach) result(near)
     type(die_t), intent(in) :: die
-    real(wp), intent(in) :: side(2, 3), reach
+    real(wp), intent(in) :: side(2, 3)   !! nodes in the pilot's axes [length]
+    real(wp), intent(in) :: reach        !! [length]
     logical :: near
 
     near = box_distance(die, [minval(side, 2), maxval(side, 2)]) <= reach
@@ -47,12 +48,12 @@ contains
   !> depth has no zero between, a side lifted by its law, the guess is kept.
   pure subroutine locate_end(die, side, closed, open, depths, reach, place, closest)
     type(die_t), intent(in) :: die
-    real(wp), intent(in) :: side(2, 3)     !! nodes in the pilot's axes [length]
-    real(wp), intent(in) :: closed, open   !! places on the side
-    real(wp), intent(in) :: depths(2)      !! penetrations there, below zero for a gap [length]
-    real(wp), intent(in) :: reach          !! [length]
-    real(wp), intent(out) :: place         !! on the side
-    type(closest_point_t), intent(out) :: closest      !! on the die, its piece 0 where there is none
+    real(wp), intent(in) :: side(2, 3)              !! nodes in the pilot's axes [length]
+    real(wp), intent(in) :: closed, open            !! places on the side
+    real(wp), intent(in) :: depths(2)               !! penetrations there, below zero for a gap [length]
+    real(wp), intent(in) :: reach                   !! [length]
+    real(wp), intent(out) :: place                  !! on the side
+    type(closest_point_t), intent(out) :: closest   !! on the die, its piece 0 where there is none
     real(wp) :: inside, outside, middle
     type(closest_point_t) :: trial
     integer :: iteration
@@ -85,7 +86,7 @@ contains
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: side(2, 3)   !! nodes in the pilot's axes [length]
     real(wp), intent(in) :: place
-    real(wp), intent(in) :: reach        !! [length]
+    real(wp), intent(in) :: reach   !! [length]
     logical :: inside
     type(closest_point_t) :: closest
 

@@ -85,7 +85,7 @@ contains
 
   !> Turn from a to b, between -pi and pi.
   pure function angle_between(a, b) result(angle)
-    real(wp), intent(in) :: a(2), b(2)   !! (2) directions [of one unit]
+    real(wp), intent(in) :: a(2), b(2)   !! directions [of one unit]
     real(wp) :: angle
 
     angle = atan2(a(1)*b(2) - a(2)*b(1), dot_product(a, b))

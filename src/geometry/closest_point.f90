@@ -36,11 +36,11 @@ contains
 
   !> Parent coordinates between two others where the distance of a point is stationary: (Y(xi) - point).Y'(xi) = 0, a cubic.
   pure subroutine stationary_points(piece, point, range, n, xi)
-    real(wp), intent(in) :: piece(2, 3)   !! (2, 3) points [length]
-    real(wp), intent(in) :: point(2)      !! (2) [length]
-    real(wp), intent(in) :: range(2)      !! (2) least and largest parent coordinate [-]
+    real(wp), intent(in) :: piece(2, 3)   !! points [length]
+    real(wp), intent(in) :: point(2)      !! [length]
+    real(wp), intent(in) :: range(2)      !! least and largest parent coordinate [-]
     integer, intent(out) :: n
-    real(wp), intent(out) :: xi(3)        !! (3) the first n, in ascending order [-]
+    real(wp), intent(out) :: xi(3)   !! the first n, in ascending order [-]
     real(wp) :: a(2), b(2), d(2), c(0:3), bounds(4), delta, q
     integer :: i
 
@@ -111,8 +111,8 @@ contains
 
   !> Closest point at a stationary point of a piece; its piece is 0 where the distance has a maximum there.
   pure subroutine closest_within_piece(piece, point, xi, closest)
-    real(wp), intent(in) :: piece(2, 3)   !! (2, 3) points [length]
-    real(wp), intent(in) :: point(2)      !! (2) [length]
+    real(wp), intent(in) :: piece(2, 3)   !! points [length]
+    real(wp), intent(in) :: point(2)      !! [length]
     real(wp), intent(in) :: xi            !! [-]
     type(closest_point_t), intent(out) :: closest
     real(wp) :: curvature
@@ -129,8 +129,8 @@ contains
 
   !> Closest point at the vertex between two pieces, when the point lies in its fan.
   pure subroutine closest_at_vertex(before, after, point, closest)
-    real(wp), intent(in) :: before(2, 3), after(2, 3)   !! (2, 3) points of the pieces [length]
-    real(wp), intent(in) :: point(2)                    !! (2) [length]
+    real(wp), intent(in) :: before(2, 3), after(2, 3)   !! points of the pieces [length]
+    real(wp), intent(in) :: point(2)                    !! [length]
     type(closest_point_t), intent(out) :: closest
     real(wp) :: t1(2), t2(2), way(2), side
 
@@ -174,8 +174,8 @@ contains
 
   !> Half the derivative of the squared distance along a piece [length^2]: above zero, the distance decreases backwards.
   pure function distance_slope(piece, point, xi) result(slope)
-    real(wp), intent(in) :: piece(2, 3)   !! (2, 3) points [length]
-    real(wp), intent(in) :: point(2)      !! (2) [length]
+    real(wp), intent(in) :: piece(2, 3)   !! points [length]
+    real(wp), intent(in) :: point(2)      !! [length]
     real(wp), intent(in) :: xi            !! [-]
     real(wp) :: slope
 

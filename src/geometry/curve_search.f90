@@ -46,8 +46,8 @@ contains
   !> Closest point that faces the part, within `reach`.
   pure subroutine closest_facing_point(curve, point, e_r, reach, closest)
     class(piecewise_curve_t), intent(in) :: curve
-    real(wp), intent(in) :: point(2)   !! (2) in the pilot's axes [length]
-    real(wp), intent(in) :: e_r(2)     !! (2) inner normal of the part, in the pilot's axes [-]
+    real(wp), intent(in) :: point(2)   !! in the pilot's axes [length]
+    real(wp), intent(in) :: e_r(2)     !! inner normal of the part, in the pilot's axes [-]
     real(wp), intent(in) :: reach      !! [length]
     type(closest_point_t), intent(out) :: closest
     type(search_t) :: search
@@ -71,7 +71,7 @@ contains
   !> Closest point of all on adjacent pieces and the vertices between them, whichever way it faces.
   pure subroutine closest_on_pieces(curve, point, first, count, closest)
     class(piecewise_curve_t), intent(in) :: curve
-    real(wp), intent(in) :: point(2)   !! (2) [length]
+    real(wp), intent(in) :: point(2)   !! [length]
     integer, intent(in) :: first       !! piece
     integer, intent(in) :: count       !! of pieces; across the start of a closed curve when they are more than follow
     type(closest_point_t), intent(out) :: closest
@@ -195,8 +195,8 @@ contains
   !> to an end of the curve, beyond `reach`, or to where the die does not face the part.
   pure subroutine follow_closest_point(curve, point, e_r, reach, piece, xi, closest)
     class(piecewise_curve_t), intent(in) :: curve
-    real(wp), intent(in) :: point(2)   !! (2) in the pilot's axes [length]
-    real(wp), intent(in) :: e_r(2)     !! (2) inner normal of the part, in the pilot's axes [-]
+    real(wp), intent(in) :: point(2)   !! in the pilot's axes [length]
+    real(wp), intent(in) :: e_r(2)     !! inner normal of the part, in the pilot's axes [-]
     real(wp), intent(in) :: reach      !! [length]
     integer, intent(in) :: piece       !! where to begin
     real(wp), intent(in) :: xi         !! there [-]
@@ -236,7 +236,7 @@ contains
   pure subroutine closest_on_piece(curve, piece, point, from, beyond, closest)
     class(piecewise_curve_t), intent(in) :: curve
     integer, intent(in) :: piece
-    real(wp), intent(in) :: point(2)       !! (2) in the pilot's axes [length]
+    real(wp), intent(in) :: point(2)       !! in the pilot's axes [length]
     real(wp), intent(in) :: from, beyond   !! parent coordinates [-]
     type(closest_point_t), intent(out) :: closest
     real(wp) :: roots(3), limit
@@ -252,7 +252,7 @@ contains
   !> Distance from a box (xmin, ymin, xmax, ymax) to the boxes of a curve; 0 when they meet [length].
   pure function box_distance(curve, box) result(distance)
     class(piecewise_curve_t), intent(in) :: curve
-    real(wp), intent(in) :: box(4)   !! (4) xmin, ymin, xmax, ymax [length]
+    real(wp), intent(in) :: box(4)   !! xmin, ymin, xmax, ymax [length]
     real(wp) :: distance
     real(wp) :: gaps(most_waiting), gap(2)
     integer :: waiting(most_waiting), n, node, near, far

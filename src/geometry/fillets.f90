@@ -19,7 +19,7 @@ module fillets
   real(wp), parameter :: least_turn = 1.0e-6_wp
   !> Parent coordinates are found to this share of a piece; what is left of an arm is longer than this share of the radius.
   real(wp), parameter :: xi_tolerance = 1.0e-13_wp, least_rest = 1.0e-9_wp
-  !> Newton's method takes one iteration on segments, a few more on parabolas; an arm is walked piece by piece.
+  !> Newton's method takes one iteration on segments, a few more on parabolas; an arm is followed piece by piece.
   integer, parameter :: max_iterations = 50
 
 contains

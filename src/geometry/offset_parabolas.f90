@@ -172,7 +172,7 @@ contains
   !> itself, a variable one shifts them slightly.
   pure function closest_xi(arc, target) result(best)
     class(offset_parabola_t), intent(in) :: arc
-    real(wp), intent(in) :: target(2)   !! (2) [length]
+    real(wp), intent(in) :: target(2)   !! [length]
     real(wp) :: best
     real(wp) :: xi(3), candidates(5)
     integer :: i, n

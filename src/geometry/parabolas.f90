@@ -13,7 +13,7 @@ contains
 
   !> Point at a parent coordinate [length].
   pure function point_on(piece, xi) result(y)
-    real(wp), intent(in) :: piece(2, 3)   !! (2, 3) points [length]
+    real(wp), intent(in) :: piece(2, 3)   !! points [length]
     real(wp), intent(in) :: xi            !! [-]
     real(wp) :: y(2)
 
@@ -22,7 +22,7 @@ contains
 
   !> dy/dxi [length].
   pure function tangent_on(piece, xi) result(tangent)
-    real(wp), intent(in) :: piece(2, 3)   !! (2, 3) points [length]
+    real(wp), intent(in) :: piece(2, 3)   !! points [length]
     real(wp), intent(in) :: xi            !! [-]
     real(wp) :: tangent(2)
 
@@ -31,7 +31,7 @@ contains
 
   !> d2y/dxi2, the same everywhere [length].
   pure function bend_of(piece) result(second)
-    real(wp), intent(in) :: piece(2, 3)   !! (2, 3) points [length]
+    real(wp), intent(in) :: piece(2, 3)   !! points [length]
     real(wp) :: second(2)
 
     second = piece(:, 1) - 2*piece(:, 2) + piece(:, 3)
@@ -39,7 +39,7 @@ contains
 
   !> Curvature, positive where the parabola turns left [1/length].
   pure function curvature_on(piece, xi) result(curvature)
-    real(wp), intent(in) :: piece(2, 3)   !! (2, 3) points [length]
+    real(wp), intent(in) :: piece(2, 3)   !! points [length]
     real(wp), intent(in) :: xi            !! [-]
     real(wp) :: curvature
     real(wp) :: first(2)
@@ -50,7 +50,7 @@ contains
 
   !> The part between two parent coordinates, exactly: a part of a parabola is a parabola.
   pure function part_of(piece, from, to) result(part)
-    real(wp), intent(in) :: piece(2, 3)   !! (2, 3) points [length]
+    real(wp), intent(in) :: piece(2, 3)   !! points [length]
     real(wp), intent(in) :: from, to      !! [-]
     real(wp) :: part(2, 3)
 
@@ -63,7 +63,7 @@ contains
 
   !> A box that contains the parabola: that of its Bezier points (xmin, ymin, xmax, ymax) [length].
   pure function box_of_parabola(piece) result(box)
-    real(wp), intent(in) :: piece(2, 3)   !! (2, 3) points [length]
+    real(wp), intent(in) :: piece(2, 3)   !! points [length]
     real(wp) :: box(4)
     real(wp) :: bezier(2)
 

@@ -113,7 +113,7 @@ contains
 
   !> Square of the distance between two boxes (xmin, ymin, xmax, ymax), 0 when they meet; the first may be empty.
   pure function box_gap(one, other) result(gap)
-    real(wp), intent(in) :: one(4), other(4)   !! (4) [length]
+    real(wp), intent(in) :: one(4), other(4)   !! [length]
     real(wp) :: gap
 
     gap = huge(gap)

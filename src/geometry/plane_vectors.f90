@@ -10,8 +10,8 @@ contains
 
   !> Component of a x b normal to the plane: positive when b is on the left of a.
   pure function cross(a, b) result(c)
-    real(wp), intent(in) :: a(2)   !! (2) [of any unit]
-    real(wp), intent(in) :: b(2)   !! (2) [of any unit]
+    real(wp), intent(in) :: a(2)   !! [of any unit]
+    real(wp), intent(in) :: b(2)   !! [of any unit]
     real(wp) :: c
 
     c = a(1)*b(2) - a(2)*b(1)
@@ -19,7 +19,7 @@ contains
 
   !> Unit vector to the left of a direction.
   pure function left_of(v) result(n)
-    real(wp), intent(in) :: v(2)   !! (2) not zero [of any unit]
+    real(wp), intent(in) :: v(2)   !! not zero [of any unit]
     real(wp) :: n(2)
 
     n = [-v(2), v(1)]/length_of(v)
@@ -27,7 +27,7 @@ contains
 
   !> Unit vector to the right of a direction: the inner normal of a die.
   pure function right_of(v) result(n)
-    real(wp), intent(in) :: v(2)   !! (2) not zero [of any unit]
+    real(wp), intent(in) :: v(2)   !! not zero [of any unit]
     real(wp) :: n(2)
 
     n = [v(2), -v(1)]/length_of(v)
@@ -35,7 +35,7 @@ contains
 
   !> A vector turned by an angle, counterclockwise.
   pure function turned(v, angle) result(w)
-    real(wp), intent(in) :: v(2)    !! (2) [of any unit]
+    real(wp), intent(in) :: v(2)    !! [of any unit]
     real(wp), intent(in) :: angle   !! [radian]
     real(wp) :: w(2)
 

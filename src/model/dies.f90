@@ -1,10 +1,10 @@
-!> Dies: an ordered chain of parabolas, moved by a pilot when rigid, by the nodes of bodies when deformable.
+!> Dies: curves of parabolas, moved by a pilot when rigid, by the nodes of bodies when deformable.
 !>
-!> Walking along the chain the part is on the left and the die's body on the right (annex 3). A
+!> Along the curve the part is on the left and the die's body on the right (annex 3). A
 !> piece is the isoparametric parabola through three points, y(xi) = sum_k phi_k(xi) Y_k; a segment
 !> is one with its middle point in the middle. Pieces are stored in the axes of the pilot: a point
 !> X of the die stands at `c + R(theta) X` when the pilot is at c and has turned by theta. A deformable
-!> die is a chain of sides of bodies, walked against the walk around these; its pilot stays at the origin.
+!> die is a curve of sides of bodies, traversed in the sense opposite to their contour; its pilot stays at the origin.
 module dies
   use kinds, only: wp
   use parabolas, only: tangent_on
@@ -15,7 +15,7 @@ module dies
   private
   public :: die_t, finish_die, is_deformable, place_on_nodes, present_die, in_pilot_axes
 
-  !> A vertex where the chain turns by less than this sine is no corner: parabolas that follow a curve within a tolerance turn
+  !> A vertex where the curve turns by less than this sine is no corner: parabolas that follow a curve within a tolerance turn
   !> by up to 3 degrees where they meet.
   real(wp), parameter :: blunt = 0.1_wp
 
@@ -23,7 +23,7 @@ module dies
   type, extends(piecewise_curve_t) :: die_t
     character(len=:), allocatable :: name
     !> Corners of a rigid die that point to the part, open ends included: the point, and the tangents before and behind it
-    !> (x, y, t1x, t1y, t2x, t2y; ncorner), in the pilot's axes; the piece each belongs to, and the place on it.
+    !> (x, y, t1x, t1y, t2x, t2y; ncorner), in the pilot's axes; the piece each belongs to, and the parent coordinate on it [-].
     real(wp), allocatable :: corners(:, :)
     integer, allocatable :: corner_piece(:)
     real(wp), allocatable :: corner_xi(:)
@@ -49,7 +49,7 @@ contains
     if (.not. is_deformable(die)) call list_corners(die)
   end subroutine finish_die
 
-  !> Vertices where the chain turns right, away from the part. At an open end the body is taken to go down at a right angle.
+  !> Vertices where the curve turns right, away from the part. At an open end the body is taken to go down at a right angle.
   pure subroutine list_corners(die)
     type(die_t), intent(inout) :: die
     real(wp) :: list(6, size(die%pieces, 3) + 1), t1(2), t2(2)
@@ -102,7 +102,7 @@ contains
 
   !> Put the pieces of a deformable die where its nodes are.
   pure subroutine place_on_nodes(coordinates, die)
-    real(wp), intent(in) :: coordinates(:, :)   !! of all nodes (2, nnode) [length]
+    real(wp), intent(in) :: coordinates(:, :)   !! (2, nnode) of all nodes [length]
     type(die_t), intent(inout) :: die
     integer :: k
 
@@ -127,7 +127,7 @@ contains
   !> The die as its nodes now are; a rigid one is as it was: its pilot moves it.
   pure function present_die(die, coordinates) result(now)
     type(die_t), intent(in) :: die
-    real(wp), intent(in) :: coordinates(:, :)   !! of all nodes (2, nnode) [length]
+    real(wp), intent(in) :: coordinates(:, :)   !! (2, nnode) of all nodes [length]
     type(die_t) :: now
 
     now = die

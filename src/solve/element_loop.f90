@@ -35,15 +35,15 @@ contains
   subroutine run_elements(scene, elems, kinematics, laws, dofs, drivers, active, pattern, instant, du, solution, buffers, timers, &
                           report)
     type(scene_t), intent(in) :: scene
-    type(elem_t), intent(in) :: elems(:)
+    type(elem_t), intent(in) :: elems(:)   !! (nelem_row)
     type(kinematics_t), intent(in) :: kinematics
-    type(law_t), intent(in) :: laws(:)
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
     type(dofs_t), intent(in) :: dofs
-    type(drivers_t), intent(in) :: drivers(:) !! of the points of the groups (ngroup)
-    logical, intent(in) :: active(:)          !! groups to compute (ngroup)
+    type(drivers_t), intent(in) :: drivers(:)   !! (ngroup) of the points of the groups
+    logical, intent(in) :: active(:)            !! (ngroup) groups to compute
     type(pattern_t), intent(in) :: pattern
     type(instant_t), intent(in) :: instant
-    real(wp), intent(in) :: du(:)             !! motion of every unknown (ndof)
+    real(wp), intent(in) :: du(:)   !! (ndof) motion of every unknown [unknown]
     type(solution_t), intent(inout) :: solution
     type(element_buffers_t), intent(inout) :: buffers
     type(ledger_t), intent(inout) :: timers
@@ -141,8 +141,8 @@ contains
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(elem_t), intent(in) :: row
-    real(wp), intent(in) :: displacement(:, :)
-    real(wp), allocatable, intent(out) :: x(:, :, :)
+    real(wp), intent(in) :: displacement(:, :)         !! (2, nnode) [length]
+    real(wp), allocatable, intent(out) :: x(:, :, :)   !! (2, row%nnode, nelem) [length]
 
     allocate (x(2, row%nnode, size(group%connectivity, 2)))
     call gather_geometry(scene, row, scene%finite, group%connectivity, displacement, x)
@@ -152,8 +152,8 @@ contains
   subroutine gather_forces(pattern, buffers, is_own, force, magnitude)
     type(pattern_t), intent(in) :: pattern
     type(element_buffers_t), intent(in) :: buffers
-    logical, intent(in) :: is_own(:)                       !! (ndof)
-    real(wp), intent(inout) :: force(:), magnitude(:)      !! (ndof) [force]
+    logical, intent(in) :: is_own(:)                    !! (ndof)
+    real(wp), intent(inout) :: force(:), magnitude(:)   !! (ndof) [force]
     integer :: d, k
 
     !$omp parallel do private(k) schedule(static) if (pattern%nnz > worth_gathering)
@@ -173,7 +173,7 @@ contains
   subroutine gather_matrix(pattern, buffers, values)
     type(pattern_t), intent(in) :: pattern
     type(element_buffers_t), intent(in) :: buffers
-    real(wp), intent(out) :: values(:)
+    real(wp), intent(out) :: values(:)   !! (nnz) [residual/unknown]
     integer :: n, k
 
     !$omp parallel do private(k) schedule(static) if (pattern%nnz > worth_gathering)
@@ -189,11 +189,11 @@ contains
   !> Add K du to the internal force for a motion of prescribed unknowns not yet in `du` (the rest of `motion` is zero).
   subroutine add_prescribed(dofs, active, pattern, buffers, motion, force)
     type(dofs_t), intent(in) :: dofs
-    logical, intent(in) :: active(:)   !! groups that act in the solve (ngroup)
+    logical, intent(in) :: active(:)   !! (ngroup) groups that act in the solve
     type(pattern_t), intent(in) :: pattern
     type(element_buffers_t), intent(in) :: buffers
-    real(wp), intent(in) :: motion(:)
-    real(wp), intent(inout) :: force(:)
+    real(wp), intent(in) :: motion(:)     !! (ndof) [unknown]
+    real(wp), intent(inout) :: force(:)   !! (ndof) [residual]
     integer :: g, e, i, j, m, ndof
 
     do g = 1, size(dofs%groups)
