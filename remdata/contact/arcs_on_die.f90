@@ -4,20 +4,16 @@
 !> the previous mesh. Between the points where it is known the depth is linear in the arc length of the die. At a vertex of the die
 !> the two curves at depth are cut at their intersection, or extended to it.
 module arcs_on_die
-  use arcs, only: arc_t, cross, cut, length_between, point_at, straight, tangent_at
+  use arcs, only: arc_t, cut, straight
+  use closest_point, only: closest_point_t
   use dies, only: die_t
   use kinds, only: eps, wp
+  use offset_parabolas, only: length_between, point_at, tangent_at
+  use plane_vectors, only: cross
   use vectors, only: length_of
   implicit none
   private
-  public :: closest_point_t, placed_piece, follow_die
-
-  !> A closest point on a die, and the depth there.
-  type :: closest_point_t
-    integer :: piece = 0
-    real(wp) :: xi = 0.0_wp
-    real(wp) :: depth = 0.0_wp   !! [length]
-  end type closest_point_t
+  public :: placed_piece, follow_die
 
   !> Pieces are smooth at their joint where the tangent turns by less: the gap is this share of a depth.
   real(wp), parameter :: smooth_turn = 1.0e-7_wp
@@ -90,7 +86,7 @@ contains
         if (pass == 1) then
           total = total + part
         else
-          one%depth = from%depth + (to%depth - from%depth)*[done, done + part]/total
+          one%depth = from%d + (to%d - from%d)*[done, done + part]/total
           call append(one, list, n)
         end if
         done = done + part

@@ -4,17 +4,16 @@
 !> node there, and it may penetrate the die. The contour of a new mesh would pass through it, and integration points of that mesh
 !> would have the same depth. (The node has no part in the load of a uniform pressure, nor, to second order, in the volume.)
 module axis_nodes
-  use arcs, only: arc_t, tangent_at
-  use arcs_on_die, only: closest_point_t, placed_piece
+  use closest_point, only: closest_point_t
   use die_closest_points, only: find_closest_point
   use dies, only: die_t, is_deformable
   use fields, only: pilot_field
   use kinds, only: wp
+  use plane_vectors, only: turned
   use quadrature, only: line_rule
   use scene, only: axisymmetric, scene_t
   use solution, only: solution_t
   use state_variables, only: find_variable
-  use vectors, only: length_of
   implicit none
   private
   public :: limit_depths
@@ -67,16 +66,13 @@ contains
     real(wp), intent(in) :: pilot(3), depth
     real(wp), intent(inout) :: point(2)
     type(closest_point_t) :: closest
-    type(arc_t) :: piece
     real(wp) :: normal(2)
     logical :: over
 
     call find_closest_point(die, pilot, point, [1, size(die%pieces, 3)], .true., closest, over)
-    if (.not. (over .and. closest%depth > depth)) return
-    piece = placed_piece(die, pilot, closest%piece)
-    normal = tangent_at(piece, closest%xi)
-    normal = [normal(2), -normal(1)]/length_of(normal)
-    if (abs(normal(2)) > least_cosine) point(2) = point(2) + (depth - closest%depth)/normal(2)
+    if (.not. (over .and. closest%d > depth)) return
+    normal = turned(closest%normal, pilot(3))
+    if (abs(normal(2)) > least_cosine) point(2) = point(2) + (depth - closest%d)/normal(2)
   end subroutine lift
 
 end module axis_nodes

@@ -5,7 +5,7 @@
 !> depth), but no beginning and no end of contact is left for the mesh to resolve. A small gap is wider but only one or two elements
 !> long, as a coarse side leaves where it folds: it keeps its shape, and its ends are not resolved by the mesh either.
 module contact_gaps
-  use arcs_on_die, only: closest_point_t
+  use closest_point, only: closest_point_t
   use boundary_sides, only: loop_t
   use contact_intervals, only: along, coincide, contact_interval_t, side_point_t, sort_intervals, wrap_start
   use die_closest_points, only: find_closest_point, point_on_side
@@ -116,7 +116,7 @@ contains
           if (along(side_point) <= along(interval%to) .or. along(side_point) >= along(until)) cycle
           call find_closest_point(die, pilot, point_on_side(loop, x, side_point), [1, size(die%pieces, 3)], .true., closest, &
                                   projected)
-          narrow = narrow .and. projected .and. abs(closest%depth) <= widest*chord
+          narrow = narrow .and. projected .and. abs(closest%d) <= widest*chord
           if (.not. narrow) return
         end do
       end do

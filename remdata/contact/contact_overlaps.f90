@@ -5,8 +5,9 @@
 !> equilibrium before. So the contour follows the die itself over this distance, to where the old side leaves it.
 module contact_overlaps
   use arcs, only: arc_t
-  use arcs_on_die, only: closest_point_t, follow_die
+  use arcs_on_die, only: follow_die
   use boundary_sides, only: loop_t
+  use closest_point, only: closest_point_t
   use contact_intervals, only: side_point_t
   use die_closest_points, only: distance_along, find_closest_point, point_on_side
   use dies, only: die_t, is_deformable
@@ -60,8 +61,8 @@ contains
       here%xi = start + (towards - start)*real(k, wp)/samples
       call project(here, closest, projected)
       if (.not. projected) return
-      if (.not. closest%depth > 0) exit
-      deepest = max(deepest, closest%depth)
+      if (.not. closest%d > 0) exit
+      deepest = max(deepest, closest%d)
       last = here%xi
     end do
     length = length_of(point_on_side(loop, x, side_point_t(here%side, 1.0_wp)) &
@@ -73,7 +74,7 @@ contains
       here%xi = 0.5_wp*(low + high)
       if (.not. (here%xi > min(low, high) .and. here%xi < max(low, high))) exit
       call project(here, closest, projected)
-      if (closest%depth > 0) then
+      if (closest%d > 0) then
         low = here%xi
       else
         high = here%xi
@@ -82,7 +83,7 @@ contains
     call project(here, closest, projected)
     if (.not. projected .or. abs(towards - here%xi) <= shortest_part) return
     if (.not. towards*distance_along(die, end_point, closest) > 0) return
-    closest%depth = 0
+    closest%d = 0
     overlap = overlap_t(.true., here, closest)
 
   contains

@@ -8,12 +8,15 @@
 !> Closest points are searched between those of the ends, along the die, and must be in sequence: a point that folded back over its
 !> neighbour is skipped.
 module die_closest_points
-  use arcs, only: arc_t, closest_xi, point_at, tangent_at
-  use arcs_on_die, only: closest_point_t, placed_piece
+  use arcs, only: arc_t
   use boundary_sides, only: loop_t
+  use closest_point, only: closest_point_t, closest_within_piece
   use contact_intervals, only: along, contact_interval_t, side_point_t
+  use curve_search, only: closest_on_pieces
   use dies, only: die_t
   use kinds, only: eps, wp
+  use offset_parabolas, only: closest_xi, offset_parabola_t, point_at
+  use plane_vectors, only: turned
   use quadrature, only: line_rule, rule_t
   use side_tags, only: same_tags, side_tags_t
   use vectors, only: length_of
@@ -29,8 +32,6 @@ module die_closest_points
 
   !> Pieces are extrapolated past their ends, in half pieces, where a point lies behind a corner of the die.
   real(wp), parameter :: beyond = 2.0_wp
-  !> Tolerance on the orthogonality of the projection, as a share of the piece.
-  real(wp), parameter :: projection_tolerance = 1.0e-9_wp
   !> Closest points nearer than this, in half pieces, coincide.
   real(wp), parameter :: coincidence_tolerance = 1.0e-9_wp
 
@@ -82,7 +83,7 @@ contains
       do k = 1, 2
         call find_closest_point(die, pilot, ends(:, k), [1, size(die%pieces, 3)], .true., closest_points(k), projected(k))
       end do
-      yes = all(projected) .and. closest_points(2)%depth - closest_points(1)%depth > sin(turn)*length_of(ends(:, 2) - ends(:, 1))
+      yes = all(projected) .and. closest_points(2)%d - closest_points(1)%d > sin(turn)*length_of(ends(:, 2) - ends(:, 1))
     end function is_steep
 
   end subroutine start_at_contact_point
@@ -237,59 +238,68 @@ contains
     if (distance <= -npiece) distance = distance + 2*npiece
   end function distance_along
 
-  !> Closest point on some pieces, and its depth. In a corner of the die, where the point projects on no piece, the piece before the
-  !> corner is extrapolated where contact ends, the piece behind it where contact begins.
+  !> Closest point on some pieces, and its depth, the same number as the solver's. A point near the vertex between two pieces
+  !> belongs to both: the piece before the vertex is taken where contact ends, the piece behind it where contact begins. In the fan
+  !> of a corner, or past an end, that piece is extrapolated, and the depth is that in its extrapolation: the contour passes through
+  !> the point.
   pure subroutine find_closest_point(die, pilot, point, pieces, begins, closest, projected)
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: pilot(3), point(2)   !! (x, y, angle) of the die now [length and radian]; coordinates [length]
     integer, intent(in) :: pieces(2)             !! first and last; across the start of a closed die when the last is lower
     logical, intent(in) :: begins
     type(closest_point_t), intent(out) :: closest
-    logical, intent(out) :: projected   !! the point lies over the piece, not in a corner
-    type(arc_t) :: one
-    real(wp) :: xi, distance, least, normal(2), slack, local(2)
-    integer :: k, piece, npiece, count
+    logical, intent(out) :: projected   !! the point lies over the piece, not in the fan of a corner
+    type(offset_parabola_t) :: one
+    real(wp) :: local(2), least, slack, past_ends, xi
+    integer :: i, k, piece, npiece, count
 
-    associate (offset => point - pilot(1:2), c => cos(pilot(3)), s => sin(pilot(3)))
-      local = [c*offset(1) + s*offset(2), -s*offset(1) + c*offset(2)]
-    end associate
+    local = turned(point - pilot(1:2), -pilot(3))
     slack = 16*eps*max(maxval(abs(point)), maxval(abs(pilot(1:2))), maxval(abs(local)))
     npiece = size(die%pieces, 3)
     count = modulo(pieces(2) - pieces(1), npiece) + 1
     if (.not. die%closed .and. pieces(2) < pieces(1)) count = 1
+    call closest_on_pieces(die, local, pieces(1), count, closest)
+    projected = closest%piece > 0 .and. .not. closest%at_vertex
     least = huge(least)
-    do k = 0, count - 1
+    if (closest%piece > 0) least = abs(closest%d)
+    past_ends = min(length_of(local - die%pieces(:, 1, pieces(1))), &
+                    length_of(local - die%pieces(:, 3, modulo(pieces(1) + count - 2, npiece) + 1)))
+    if (past_ends < least - slack) then
+      projected = .false.
+      least = past_ends
+    end if
+    do i = 1, count
+      k = merge(count - i, i - 1, begins)
       piece = modulo(pieces(1) + k - 1, npiece) + 1
+      if (projected .and. piece == closest%piece) exit
       if (length_of(max(die%boxes(1:2, piece) - local, local - die%boxes(3:4, piece), 0.0_wp)) > least + slack) cycle
-      one = placed_piece(die, pilot, piece)
-      xi = closest_xi(one, point)
-      distance = length_of(point_at(one, xi) - point)
-      ! the point of a vertex is that of two pieces
-      if (distance > least + slack .or. distance >= least - slack .and. .not. begins) cycle
-      least = distance
+      one%points = die%pieces(:, :, piece)
+      xi = closest_xi(one, local)
+      if (length_of(point_at(one, xi) - local) > least + slack) cycle
       closest%piece = piece
       closest%xi = xi
+      exit
     end do
-    one = placed_piece(die, pilot, closest%piece)
-    projected = is_over()
-    if (.not. projected) then
-      one%range = [-beyond, beyond]
-      closest%xi = closest_xi(one, point)
+    if (projected) then
+      closest%xi = min(max(closest%xi, -1.0_wp), 1.0_wp)
+    else
+      call extrapolate_piece(die, local, closest)
     end if
-    normal = tangent_at(one, closest%xi)
-    normal = [normal(2), -normal(1)]/length_of(normal)
-    closest%depth = dot_product(point - point_at(one, closest%xi), normal)
-
-  contains
-
-    pure function is_over() result(yes)
-      logical :: yes
-      real(wp) :: tangent(2)
-
-      tangent = tangent_at(one, closest%xi)
-      yes = abs(dot_product(point - point_at(one, closest%xi), tangent)) <= projection_tolerance*dot_product(tangent, tangent)
-    end function is_over
-
   end subroutine find_closest_point
+
+  !> Closest point on the extrapolation of its piece.
+  pure subroutine extrapolate_piece(die, local, closest)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: local(2)   !! point in the pilot's axes
+    type(closest_point_t), intent(inout) :: closest
+    type(offset_parabola_t) :: longer
+    integer :: piece
+
+    piece = closest%piece
+    longer%points = die%pieces(:, :, piece)
+    longer%range = [-beyond, beyond]
+    call closest_within_piece(longer%points, local, closest_xi(longer, local), closest)
+    closest%piece = piece
+  end subroutine extrapolate_piece
 
 end module die_closest_points

@@ -3,7 +3,7 @@
 !> The body that faces a die made of sides has its own nodes there: entries and exits of its contour. The body whose sides form the
 !> die carries the same pressure from the closest points of these ends on.
 module body_contact_ends
-  use arcs_on_die, only: closest_point_t
+  use closest_point, only: closest_point_t
   use boundary_sides, only: loop_t
   use contact_intervals, only: side_point_t
   use contour_assembly, only: contact_t

@@ -3,15 +3,18 @@
 !> The arcs of part and die follow each other from one beginning or end of contact to the next. The order of nodes in a list is not
 !> used (annex 2, fig. 4): each arc has its curve and its range of xi.
 module contour_assembly
-  use arcs, only: arc_t, cross, point_at, straight, tangent_at
-  use arcs_on_die, only: closest_point_t, follow_die
+  use arcs, only: arc_t, straight
+  use arcs_on_die, only: follow_die
   use boundary_curves, only: boundary_curve_t, close_boundary, kind_end, kind_entry, kind_exit, kind_joint
   use boundary_sides, only: loop_t
+  use closest_point, only: closest_point_t
   use contact_intervals, only: along, contact_interval_t, is_shared, side_point_t
   use contact_overlaps, only: arcs_of_overlap, find_overlap, overlap_t
   use die_closest_points, only: section_t
   use dies, only: die_t, is_deformable
   use kinds, only: wp
+  use offset_parabolas, only: point_at, tangent_at
+  use plane_vectors, only: cross
   use side_tags, only: same_tags, side_tags_t
   use vectors, only: length_of
   implicit none

@@ -3,12 +3,13 @@
 !> On free sides xi is the same on both. Inside a contact interval a point is mapped to the closest position in that interval, never
 !> to the opposite face of a thin part.
 module contour_match
-  use arcs, only: arc_t, closest_xi, point_at
+  use arcs, only: arc_t
   use boundary_curves, only: boundary_curve_t, point_on, position_t
   use boundary_sides, only: loop_t
   use contact_intervals, only: along, side_point_t
   use contour_assembly, only: contact_t
   use kinds, only: wp
+  use offset_parabolas, only: closest_xi, point_at
   use vectors, only: length_of
   implicit none
   private

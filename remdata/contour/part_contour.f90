@@ -285,7 +285,7 @@ contains
           associate (closest => section%closest_points(merge(1, size(section%closest_points), which == 1)))
             limit%piece = closest%piece
             limit%die_xi = closest%xi
-            limit%depth = closest%depth
+            limit%depth = closest%d
           end associate
         end associate
       end associate

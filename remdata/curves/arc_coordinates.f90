@@ -4,8 +4,9 @@
 !> and has one root at most. Only roots in the arc's own range of xi count: near an end of contact this is the comparison of xi with
 !> that of the end on the parabola of the part and on that of the die (fig. 5).
 module arc_coordinates
-  use arcs, only: arc_t, exact_point, point_at, second_of, tangent_at
+  use arcs, only: arc_t
   use kinds, only: eps, wp
+  use offset_parabolas, only: exact_point, point_at, second_of, tangent_at
   implicit none
   private
   public :: turning_points, xi_at_coordinate, crossings_of_arc, most_crossings

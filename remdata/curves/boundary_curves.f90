@@ -3,9 +3,11 @@
 !> Each arc has its own curve and its own range of xi, so that a position on the contour is an arc and a xi: nothing is deduced from
 !> the order of nodes in a list, which annex 2 (fig. 4) shows to fail where contact begins and ends.
 module boundary_curves
-  use arcs, only: arc_t, closest_xi, cross, length_between, point_at, tangent_at, xi_at_length
+  use arcs, only: arc_t
   use boundary_sides, only: loop_t
   use kinds, only: wp
+  use offset_parabolas, only: closest_xi, length_between, point_at, tangent_at, xi_at_length
+  use plane_vectors, only: cross
   use vectors, only: length_of
   implicit none
   private

@@ -4,9 +4,11 @@
 !> overlap by the depth of contact: arcs that follow a deformable die may cross that die, and so may sides that face it, where
 !> contact covers too little of a side to be a contact interval.
 module contour_laps
-  use arcs, only: arc_t, cross, point_at, tangent_at
+  use arcs, only: arc_t
   use boundary_curves, only: boundary_curve_t, joint_after, joint_point, kind_entry, kind_exit
   use kinds, only: eps, wp
+  use offset_parabolas, only: point_at, tangent_at
+  use plane_vectors, only: cross
   use vectors, only: length_of
   implicit none
   private

@@ -4,10 +4,11 @@
 !> [volume]. On a parabola the integrands are of degree 3 and 5 in xi, for which Gauss's four points are exact (degree 7); at
 !> a depth the range is halved until the sum no longer changes. Loops around holes count negative.
 module contour_volume
-  use arcs, only: arc_t, point_at, tangent_at
+  use arcs, only: arc_t
   use boundary_curves, only: boundary_curve_t
   use boundary_sides, only: loop_t
   use kinds, only: eps, wp
+  use offset_parabolas, only: point_at, tangent_at
   use quadrature, only: gauss_line
   use vectors, only: length_of
   implicit none

@@ -6,13 +6,13 @@
 !> the new sides that it had in the old ones. A node at the joint with another side of its body, or another die, moves along that
 !> side.
 module pair_fit
-  use arcs, only: arc_t, tangent_at
-  use arcs_on_die, only: closest_point_t, placed_piece
+  use closest_point, only: closest_point_t
   use contour_assembly, only: contact_t
   use die_closest_points, only: find_closest_point
   use dies, only: die_t, is_deformable, place_on_nodes
   use kinds, only: wp
   use new_scene, only: middle_position
+  use plane_vectors, only: turned
   use part_contour, only: contour_t
   use quadrature, only: line_rule
   use scene, only: scene_t
@@ -133,7 +133,6 @@ contains
     real(wp), intent(out) :: normal(2), missing
     logical, intent(out) :: over
     type(closest_point_t) :: before, after
-    type(arc_t) :: piece
     logical :: projected
 
     normal = 0
@@ -142,10 +141,8 @@ contains
     call find_closest_point(die, contact%pilot, point, [1, size(die%pieces, 3)], .true., after, projected)
     over = over .and. projected
     if (.not. over) return
-    piece = placed_piece(die, contact%pilot, after%piece)
-    normal = tangent_at(piece, after%xi)
-    normal = [normal(2), -normal(1)]/length_of(normal)
-    missing = before%depth - after%depth
+    normal = turned(after%normal, contact%pilot(3))
+    missing = before%d - after%d
   end subroutine find_missing_depth
 
   !> Closest points of contact points on the new sides of their die: from them the solver measures the slip of the next step.

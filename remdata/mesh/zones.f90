@@ -4,11 +4,11 @@
 !> boundary curves have the part on their left, so it runs forward along the curve from corner to corner. All of every boundary
 !> curve must be followed once: then the zones fill the part. A side between two materials follows the path of their interface.
 module zones
-  use arcs, only: exact_point
   use block_mesh, only: polygon_area
   use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, position_t
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
+  use offset_parabolas, only: exact_point
   use text, only: to_text
   use zone_marks, only: name_length
   implicit none

@@ -3,10 +3,12 @@
 !> A curve of radius R requires elements of R times the angle one element may turn by; a contact interval requires a number of
 !> elements across it. Along a boundary curve the sizes grow by no more than the gradation.
 module contour_needs
-  use arcs, only: arc_t, cross, length_between, point_at, tangent_at
+  use arcs, only: arc_t
   use boundary_curves, only: boundary_curve_t, joint_after, kind_end, kind_entry, turn_at
   use graded_sizes, only: slope_of
   use kinds, only: wp
+  use offset_parabolas, only: length_between, point_at, tangent_at
+  use plane_vectors, only: cross
   use size_field, only: need_t, size_limits_t
   use vectors, only: length_of
   implicit none

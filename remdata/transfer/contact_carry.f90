@@ -1,11 +1,12 @@
 !> Transfer of the contact state to the new sides: along each contact interval, from its beginning to its end.
 module contact_carry
-  use arcs, only: arc_t, length_between
+  use arcs, only: arc_t
   use boundary_curves, only: arc_length_at, boundary_length
   use boundary_sides, only: loop_t
   use contact_intervals, only: contact_interval_t
   use kinds, only: wp
   use new_scene, only: middle_position
+  use offset_parabolas, only: length_between
   use part_contour, only: contour_t
   use quadrature, only: line_rule
   use scene, only: axisymmetric, scene_t

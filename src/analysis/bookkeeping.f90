@@ -1,4 +1,4 @@
-!> What an accepted step is worth: work, reactions, sums over the scene, the worst it has borne.
+!> What an accepted step is worth: work, reactions, sums over the scene, the worst values so far.
 module bookkeeping
   use contact_contour, only: sample_depth
   use contact_penalties, only: allowed_penetration
@@ -27,7 +27,7 @@ contains
   !> What acts from outside on an unknown is the internal force there, without the elements that are loads.
   subroutine book_work(equations, du, solution)
     type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: du(:)
+    real(wp), intent(in) :: du(:)   !! (ndof) motion of the step [unknown]
     type(solution_t), intent(inout) :: solution
     real(wp) :: applied(equations%dofs%ndof)
     integer :: f, g, k, c, d, m
@@ -67,12 +67,12 @@ contains
 
   end subroutine book_work
 
-  !> What supports and imposed motions bear: internal force less nodal forces; pressures are in it already.
+  !> What supports and imposed motions carry: internal force less nodal forces; pressures are in it already.
   subroutine book_reactions(scene, equations, time, fields)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: time
-    type(field_t), intent(inout) :: fields(:)
+    type(field_t), intent(inout) :: fields(:)   !! (nfield)
     real(wp) :: external(equations%dofs%ndof)
     integer :: f, k, c, d
 
@@ -90,7 +90,7 @@ contains
     end do
   end subroutine book_reactions
 
-  !> What deformable dies bear: the force of all contacts on them, and its moment about the origin, with the sign of a reaction.
+  !> What deformable dies carry: the force of all contacts on them, and its moment about the origin, with the sign of a reaction.
   !> What a die gets the sides that face it give.
   subroutine book_deformable_dies(scene, equations, solution, error)
     type(scene_t), intent(in) :: scene

@@ -1,5 +1,5 @@
 !> Whether a new mesh is good enough: what the restart on it found against the limits of REMSH ACCEPT, and which stage of the remesh
-!> is to blame where it is not.
+!> is responsible where it is not.
 module judge_remesh
   use acceptance, only: acceptance_t
   use errors, only: error_t, exit_no_convergence, fail
@@ -16,7 +16,7 @@ module judge_remesh
   !> Elements of a smaller scaled Jacobian are distorted (the remesher makes none).
   real(wp), parameter :: bad_shape = 0.2_wp
   !> Pressures that miss the force of a die by more than this share of the largest have been lost on the way. (Found: 0.27 where a
-  !> point in a corner bore much of the force; Newton's method finds the rest.)
+  !> point in a corner carried much of the force; Newton's method finds the rest.)
   real(wp), parameter :: lost_pressure = 0.5_wp
 
   character(len=*), parameter :: advice_after_refusal = &
@@ -130,7 +130,7 @@ contains
     end if
   end subroutine find_fault
 
-  !> The mesh, where an element is distorted; the contour, where it is not where it bore the pressures;
+  !> The mesh, where an element is distorted; the contour, where it is not where it carried the pressures;
   !> the transfer of contact, where the pressures do not make the forces of the dies any more; else that of the state.
   pure function stage_to_blame(scene, balance) result(stage)
     type(scene_t), intent(in) :: scene

@@ -62,7 +62,7 @@ contains
 
   subroutine list_lines(listing, lines)
     type(listing_t), intent(in) :: listing
-    type(string_t), intent(in) :: lines(:)
+    type(string_t), intent(in) :: lines(:)   !! (nline)
     integer :: k
 
     do k = 1, size(lines)

@@ -161,7 +161,7 @@ contains
     type(outcome_t) :: outcome
 
     allocate (run%balance)
-    ! what points of contact that are gone had borne is remembered apart
+    ! what points of contact that are gone had carried is kept apart
     solution%friction_apart = solution%friction_work - run%totals%friction_work
     run%totals%friction_work = solution%friction_work
     run%balance%before = run%totals

@@ -2,7 +2,7 @@
 !>
 !> At a point: the penalty made from PENETR gives a pressure p the depth PENETR side p/(E/100), so depth over allowed is 100 p/E,
 !> whatever PENETR and the length of the side are. A multiplier takes that depth away (AUGMENT), or a larger penalty (AKP).
-!> Between points: the side is as deep as its parabola differs from the die, which no pressure at its points mends, but more
+!> Between points: the side is as deep as its parabola differs from the die, which no pressure at its points corrects, but more
 !> points and shorter sides do.
 module penetration_advice
   use kinds, only: wp
@@ -15,7 +15,7 @@ module penetration_advice
 
   !> Places among the values of every contact law (contact_penalties).
   integer, parameter :: at_penetr = 1, at_akp = 2, at_augment = 4
-  !> Penetrations are told as too large beyond this share above the allowed.
+  !> Penetrations are reported as too large beyond this share above the allowed.
   real(wp), parameter :: slack = 1.0e-6_wp
   !> Most integration points that a side may have.
   integer, parameter :: most_points = 17

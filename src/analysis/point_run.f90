@@ -29,7 +29,7 @@ module point_run
 
 contains
 
-  !> Read the deck, follow the path, write `NAME.point.csv`, tell what came out.
+  !> Read the deck, follow the path, write `NAME.point.csv`, report the result.
   subroutine run_point(options, error)
     type(run_options_t), intent(in) :: options
     type(error_t), allocatable, intent(out) :: error

@@ -34,9 +34,9 @@ contains
   pure subroutine advance_point(point, dt, temperature, stress_given, values, iterations, status)
     type(point_t), intent(inout) :: point
     real(wp), intent(in) :: dt
-    real(wp), intent(in) :: temperature(2)   !! at the start and at the end of the step
+    real(wp), intent(in) :: temperature(2)   !! at the start and at the end of the step [temperature]
     logical, intent(in) :: stress_given(4)   !! the Cauchy stress, not the strain
-    real(wp), intent(in) :: values(4)
+    real(wp), intent(in) :: values(4)        !! Cauchy stress where it is given [stress], strain elsewhere [-]
     integer, intent(out) :: iterations
     integer, intent(out) :: status
     real(wp) :: strain(4), residual(4), matrix(4, 4), change(4), state(size(point%state)), before, share

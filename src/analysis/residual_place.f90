@@ -1,4 +1,4 @@
-!> How large a residual force is, and where it sits: it tells whether a remesh went wrong, and which stage of it.
+!> How large a residual force is, and where it acts: it shows whether a remesh went wrong, and which stage of it.
 module residual_place
   use dofs, only: dofs_t
   use fields, only: displacement_field
@@ -11,7 +11,7 @@ module residual_place
   public :: least_shape, place_residual, residual_place_t
 
   type :: residual_place_t
-    !> Node that bears most of it, 0 where there is none.
+    !> Node that carries most of it, 0 where there is none.
     integer :: node = 0
     !> Its norm over that of the forces at the nodes of sides that face dies, at supports and at loads. (Over those at all nodes a
     !> loss of all contact would look the smaller, the finer the mesh.)

@@ -1,4 +1,4 @@
-!> What a restart on a new mesh tells of the remesh, for scripts: `NAME.gNN.restart.json`, and `restart` in `summary.json`.
+!> What a restart on a new mesh reports about the remesh, for scripts: `NAME.gNN.restart.json`, and `restart` in `summary.json`.
 module restart_report
   use errors, only: error_t
   use history, only: circumference

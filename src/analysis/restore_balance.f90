@@ -29,7 +29,7 @@ module restore_balance
   private
   public :: balance_t, restore_equilibrium
 
-  !> What the restart tells of the remesh.
+  !> What the restart reports about the remesh.
   type :: balance_t
     logical :: restored = .false.
     !> The remesh is refused, by the fault of this stage.
@@ -141,13 +141,13 @@ contains
     call return_to_chosen(equations%solves(equations%now)%solver)
     call solve_correction(equations, residual, correction, error)
     work = abs(dot_product(residual, correction))
-    ! what no linear correction removes is as large as it can be; Newton's method then tells more
+    ! what no linear correction removes is as large as it can be; Newton's method then shows more
     if (allocated(error)) work = huge(work)
   end subroutine work_of_correction
 
   !> Distance from equilibrium in the norm of energy, as errors of the stress are measured (page on errors; Zienkiewicz and Zhu,
   !> Int. J. Num. Meth. Eng. 24 (1987) 337-357): sqrt(r . K^-1 r/2 over the elastic energy). Unlike a norm of forces it does not
-  !> depend on how fine the mesh is, nor on how few nodes bear the load.
+  !> depend on how fine the mesh is, nor on how few nodes carry the load.
   pure function relative_distance(work, energy) result(distance)
     real(wp), intent(in) :: work, energy
     real(wp) :: distance
@@ -156,7 +156,7 @@ contains
     if (work > 0) distance = sqrt(0.5_wp*min(work/max(energy, tiny(energy)), huge(energy)))
   end function relative_distance
 
-  !> The penalty of contact goes with the length of sides: at the depth that was kept, sides of another length bear another
+  !> The penalty of contact goes with the length of sides: at the depth that was kept, sides of another length carry another
   !> pressure. The multiplier takes the difference, so that every point begins with the pressure that was carried, be it closed or
   !> one that lies between closed and open ones of the old mesh.
   subroutine keep_pressures(scene, solution)
@@ -196,8 +196,8 @@ contains
   end subroutine book_carried
 
   !> Depth found on the new contour against the depth that was carried, over what contact allows and what a parabola through three
-  !> nodes may miss: the mean over the pressures that a die bears, of the die where it is worst. (A single point may be far off
-  !> where contact ends: it bears next to nothing.)
+  !> nodes may miss: the mean over the pressures that a die carries, of the die where it is worst. (A single point may be far off
+  !> where contact ends: it carries next to nothing.)
   pure function depth_change(scene, solution) result(change)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution

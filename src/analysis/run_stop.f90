@@ -67,7 +67,7 @@ contains
     end do
   end subroutine residual_at_nodes
 
-  !> Leave files that tell how the run ended.
+  !> Leave files that state how the run ended.
   subroutine finish(scene, solution, run, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution

@@ -240,7 +240,7 @@ contains
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
     type(totals_t), intent(in) :: totals
-    type(string_t), allocatable, intent(out) :: lines(:)
+    type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
     integer :: t
 
     allocate (lines(0))

@@ -18,7 +18,7 @@ contains
 
   subroutine unknowns_lines(scene, lines, error)
     type(scene_t), intent(in) :: scene
-    type(string_t), allocatable, intent(out) :: lines(:)
+    type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
     type(error_t), allocatable, intent(out) :: error
     type(equations_t) :: equations
     real(wp) :: bytes, seconds, entries, operations

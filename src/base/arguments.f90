@@ -36,7 +36,7 @@ contains
   !> An option that `program` does not know.
   subroutine refuse_option(word, known, program, error)
     character(len=*), intent(in) :: word, program
-    type(string_t), intent(in) :: known(:)
+    type(string_t), intent(in) :: known(:)   !! (nknown)
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: nearest
 

@@ -1,4 +1,4 @@
-!> Interfaces of the dense kernels that are used, of the switch of OpenBLAS's own threads, and of what it tells of itself.
+!> Interfaces of the dense kernels that are used, of the switch of OpenBLAS's own threads, and of what it reports about itself.
 module blas
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr
   use kinds, only: wp
@@ -13,8 +13,10 @@ module blas
       import :: wp
       character, intent(in) :: transa, transb
       integer, intent(in) :: m, n, k, lda, ldb, ldc
-      real(wp), intent(in) :: alpha, beta, a(lda, *), b(ldb, *)
-      real(wp), intent(inout) :: c(ldc, *)
+      real(wp), intent(in) :: alpha, beta
+      real(wp), intent(in) :: a(lda, *)      !! (lda, :) [of any unit]
+      real(wp), intent(in) :: b(ldb, *)      !! (ldb, :) [of any unit]
+      real(wp), intent(inout) :: c(ldc, *)   !! (ldc, :) [of any unit]
     end subroutine dgemm
 
     !> y := alpha op(A) x + beta y.
@@ -22,8 +24,10 @@ module blas
       import :: wp
       character, intent(in) :: trans
       integer, intent(in) :: m, n, lda, incx, incy
-      real(wp), intent(in) :: alpha, beta, a(lda, *), x(*)
-      real(wp), intent(inout) :: y(*)
+      real(wp), intent(in) :: alpha, beta
+      real(wp), intent(in) :: a(lda, *)   !! (lda, :) [of any unit]
+      real(wp), intent(in) :: x(*)        !! (:) [of any unit]
+      real(wp), intent(inout) :: y(*)     !! (:) [of any unit]
     end subroutine dgemv
 
     !> B := alpha op(A)^-1 B, or from the right, A triangular.
@@ -31,8 +35,9 @@ module blas
       import :: wp
       character, intent(in) :: side, uplo, transa, diag
       integer, intent(in) :: m, n, lda, ldb
-      real(wp), intent(in) :: alpha, a(lda, *)
-      real(wp), intent(inout) :: b(ldb, *)
+      real(wp), intent(in) :: alpha
+      real(wp), intent(in) :: a(lda, *)      !! (lda, :) [of any unit]
+      real(wp), intent(inout) :: b(ldb, *)   !! (ldb, :) [of any unit]
     end subroutine dtrsm
 
     !> x := op(A)^-1 x, A triangular.
@@ -40,8 +45,8 @@ module blas
       import :: wp
       character, intent(in) :: uplo, trans, diag
       integer, intent(in) :: n, lda, incx
-      real(wp), intent(in) :: a(lda, *)
-      real(wp), intent(inout) :: x(*)
+      real(wp), intent(in) :: a(lda, *)   !! (lda, :) [of any unit]
+      real(wp), intent(inout) :: x(*)     !! (:) [of any unit]
     end subroutine dtrsv
 
     subroutine openblas_set_num_threads(n) bind(c, name='openblas_set_num_threads')

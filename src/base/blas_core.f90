@@ -45,7 +45,7 @@ contains
   !> Cores that a processor with these flags can run, the best first.
   pure subroutine core_of_flags(flags, cores)
     character(len=*), intent(in) :: flags
-    type(string_t), allocatable, intent(out) :: cores(:)
+    type(string_t), allocatable, intent(out) :: cores(:)   !! (ncore)
     integer :: k
 
     allocate (cores(0))

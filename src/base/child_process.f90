@@ -98,9 +98,9 @@ contains
 
   !> Run a program and wait for its end; a name without a slash is looked for as a shell does.
   subroutine run_child(words, said, limit, ending)
-    type(string_t), intent(in) :: words(:)      !! the program and its arguments
-    character(len=*), intent(in) :: said        !! file for what it prints
-    real(wp), intent(in) :: limit               !! longest time for it [s]
+    type(string_t), intent(in) :: words(:)   !! (nword) the program and its arguments
+    character(len=*), intent(in) :: said     !! file for what it prints
+    real(wp), intent(in) :: limit            !! longest time for it [s]
     type(ending_t), intent(out) :: ending
     character(kind=c_char, len=:), allocatable, target :: all_words
     type(c_ptr) :: pointers(size(words) + 1)
@@ -118,9 +118,9 @@ contains
 
   !> Words as C takes the arguments of a program: pointers to their first letters, and one to nothing.
   subroutine words_for_c(words, text, pointers)
-    type(string_t), intent(in) :: words(:)
+    type(string_t), intent(in) :: words(:)                                    !! (nword)
     character(kind=c_char, len=:), allocatable, target, intent(out) :: text   !! holds the letters, and must last
-    type(c_ptr), intent(out) :: pointers(:)                                   !! (words + 1)
+    type(c_ptr), intent(out) :: pointers(:)                                   !! (nword + 1)
     integer :: first, k
 
     text = ''

@@ -23,7 +23,7 @@ module file_kinds
 
   !> Paths are seen from the working directory; a link itself is meant, not what it leads to; the type of a file is asked for.
   integer(c_int), parameter :: working_directory = -100, no_follow = 256, file_type = 1
-  !> The four bits of a mode that tell the type, and its values.
+  !> The four bits of a mode that hold the type, and its values.
   integer, parameter :: type_place = 12, type_length = 4
   integer, parameter :: type_character = 2, type_directory = 4, type_block = 6, type_regular = 8, type_link = 10
 

@@ -1,4 +1,4 @@
-!> What the system tells of the processors: what they can do, which of them this process may use, how busy they are.
+!> What the system reports about the processors: what they can do, which of them this process may use, how busy they are.
 !>
 !> Read from /proc, which Linux has; where it is not there, or says something else, nothing is known and nothing is made of it.
 module processors

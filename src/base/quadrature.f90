@@ -37,7 +37,8 @@ contains
   !> weights sum to 2.
   pure subroutine line_rule(rule, xi, weight)
     type(rule_t), intent(in) :: rule
-    real(wp), allocatable, intent(out) :: xi(:), weight(:)   !! (rule%n)
+    real(wp), allocatable, intent(out) :: xi(:)       !! (rule%n) parent coordinates [-]
+    real(wp), allocatable, intent(out) :: weight(:)   !! (rule%n) [-]
     integer :: i
 
     if (rule%family == rule_gauss) then
@@ -65,7 +66,8 @@ contains
   !> Gauss points of the line, 1 to 4; weights sum to 2.
   pure subroutine gauss_line(n, xi, weight)
     integer, intent(in) :: n
-    real(wp), allocatable, intent(out) :: xi(:), weight(:)   !! (n)
+    real(wp), allocatable, intent(out) :: xi(:)       !! (n) parent coordinates [-]
+    real(wp), allocatable, intent(out) :: weight(:)   !! (n) [-]
     real(wp) :: a, b, wa, wb
 
     select case (n)
@@ -95,7 +97,8 @@ contains
   !> Product Gauss rule of `npoint` = 1, 4, 9 or 16 points; xi runs fastest. Weights sum to 4.
   pure subroutine square_rule(npoint, xi, weight)
     integer, intent(in) :: npoint
-    real(wp), allocatable, intent(out) :: xi(:, :), weight(:)
+    real(wp), allocatable, intent(out) :: xi(:, :)    !! (2, npoint) parent coordinates [-]
+    real(wp), allocatable, intent(out) :: weight(:)   !! (npoint) [-]
     real(wp), allocatable :: x(:), w(:)
     integer :: i, j, k, n
 

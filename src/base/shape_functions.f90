@@ -13,15 +13,16 @@ module shape_functions
 
   !> Parent coordinates of the corners.
   real(wp), parameter :: quad8_corner(2, 4) = reshape([-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp], [2, 4])
-  !> Local nodes of the four sides: first end, middle, second end, walking counter-clockwise.
+  !> Local nodes of the four sides: first end, middle, second end, counterclockwise.
   integer, parameter :: quad8_side(3, 4) = reshape([1, 5, 2, 2, 6, 3, 3, 7, 4, 4, 8, 1], [3, 4])
 
 contains
 
-  !> Values `phi(8)` and parent derivatives `dphi(2,8)` at (xi, eta).
+  !> Values and parent derivatives at (xi, eta).
   pure subroutine quad8(xi, eta, phi, dphi)
     real(wp), intent(in) :: xi, eta
-    real(wp), intent(out) :: phi(8), dphi(2, 8)
+    real(wp), intent(out) :: phi(8)       !! [-]
+    real(wp), intent(out) :: dphi(2, 8)   !! [-]
     integer :: i
     real(wp) :: a, b
 
@@ -46,18 +47,18 @@ contains
     end do
   end subroutine quad8
 
-  !> Bilinear values `phi(4)` at (xi, eta), corners in the order of `quad8`.
+  !> Bilinear values at (xi, eta), corners in the order of `quad8`.
   pure subroutine quad4(xi, eta, phi)
     real(wp), intent(in) :: xi, eta
-    real(wp), intent(out) :: phi(4)
+    real(wp), intent(out) :: phi(4)   !! [-]
 
     phi = 0.25_wp*(1 + quad8_corner(1, :)*xi)*(1 + quad8_corner(2, :)*eta)
   end subroutine quad4
 
-  !> Values `phi(3)` and derivatives `dphi(3)` at xi on the line.
+  !> Values and derivatives at xi on the line.
   pure subroutine line3(xi, phi, dphi)
     real(wp), intent(in) :: xi
-    real(wp), intent(out) :: phi(3), dphi(3)
+    real(wp), intent(out) :: phi(3), dphi(3)   !! [-]
 
     phi = [0.5_wp*xi*(xi - 1), 1 - xi*xi, 0.5_wp*xi*(xi + 1)]
     dphi = [xi - 0.5_wp, -2*xi, xi + 0.5_wp]

@@ -303,7 +303,7 @@ contains
   end function join_path
 
   !> From now on SIGINT and SIGTERM no longer end the program: they are only written down. A reader that
-  !> goes away (SIGPIPE) and a file that may not grow (SIGXFSZ) are told by the write that fails.
+  !> goes away (SIGPIPE) and a file that may not grow (SIGXFSZ) are reported by the write that fails.
   subroutine catch_signals()
     type(c_funptr) :: previous, ignore
 
@@ -331,7 +331,7 @@ contains
 
   !> Is there a variable of one of these names, be it empty?
   function in_environment(names) result(is_set)
-    character(len=*), intent(in) :: names(:)
+    character(len=*), intent(in) :: names(:)   !! (nname)
     logical :: is_set
     integer :: k, status
 

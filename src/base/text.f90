@@ -95,7 +95,7 @@ contains
 
   !> Words in one line, `separator` between them.
   pure function join(words, separator) result(s)
-    type(string_t), intent(in) :: words(:)
+    type(string_t), intent(in) :: words(:)   !! (nword)
     character(len=*), intent(in) :: separator
     character(len=:), allocatable :: s
     integer :: i
@@ -109,7 +109,7 @@ contains
 
   !> One more text at the end of a list.
   pure subroutine add_text(list, s)
-    type(string_t), allocatable, intent(inout) :: list(:)
+    type(string_t), allocatable, intent(inout) :: list(:)   !! (n)
     character(len=*), intent(in) :: s
     type(string_t) :: item
 
@@ -117,10 +117,10 @@ contains
     list = [list, item]
   end subroutine add_text
 
-  !> The known word closest to `word`, or '' when none is close enough to be a slip of the finger.
+  !> The known word closest to `word`, or '' when none is close enough to be a typing error.
   pure function nearest_word(word, known) result(nearest)
     character(len=*), intent(in) :: word
-    type(string_t), intent(in) :: known(:)
+    type(string_t), intent(in) :: known(:)   !! (nknown)
     character(len=:), allocatable :: nearest
     integer :: i, d, best
 

@@ -11,7 +11,7 @@ module vectors
 contains
 
   pure function length_of(v) result(length)
-    real(wp), intent(in) :: v(:)
+    real(wp), intent(in) :: v(:)   !! (n) [of any unit]
     real(wp) :: length
 
     length = sqrt(dot_product(v, v))

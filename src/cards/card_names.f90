@@ -87,7 +87,7 @@ contains
     if (k > 0) then
       self%used(k) = .true.
     else if (word /= '') then
-      ! What was meant is not told as unused on top.
+      ! What was meant is not reported as unused as well.
       call self%mention(nearest_word(word, self%words))
     end if
   end subroutine find

@@ -22,9 +22,9 @@ module cards_blocks
   real(wp), parameter :: least_side = 1.0e-9_wp
   !> Nodes of joined sides coincide, to this share of the side's length.
   real(wp), parameter :: join_tolerance = 1.0e-6_wp
-  !> Half a turn: which way round is not told by the centre (round-off of the angle).
+  !> Half a turn: the sense of rotation is not given by the centre (round-off of the angle).
   real(wp), parameter :: half_turn_tolerance = 1.0e-9_wp
-  !> More divisions of a side are a slip of the finger.
+  !> More divisions of a side are an error of input.
   integer, parameter :: most_divisions = 2000
   !> Last over first element size.
   real(wp), parameter :: largest_ratio = 1.0e6_wp
@@ -218,7 +218,7 @@ contains
     end do
   end subroutine join_blocks
 
-  !> Merge the nodes of two sides, the second walked backwards.
+  !> Merge the nodes of two sides, the second traversed backwards.
   subroutine join_sides(cursor, a, b, parts)
     type(cursor_t), intent(inout) :: cursor
     integer, intent(in) :: a(:, :), b(:, :)

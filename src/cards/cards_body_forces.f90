@@ -63,7 +63,7 @@ contains
     end do
   end subroutine read_body_forces
 
-  !> The body whose elements bear the load.
+  !> The body whose elements carry the load.
   subroutine read_body(cursor, draft, group)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft

@@ -8,6 +8,7 @@ module cards_contours
   use mesh, only: side_set_t
   use mesh_parts, only: body_t, mesh_parts_t
   use piece_rows, only: ends_meet, piece_words, read_piece
+  use plane_vectors, only: cross
   use remesher_options, only: has_contours
   use scene_draft, only: close_card, draft_t, head_location, words_of
   use text, only: string_t, to_text
@@ -94,15 +95,6 @@ contains
       end associate
     end do
 
-  contains
-
-    pure function cross(u, v) result(z)
-      real(wp), intent(in) :: u(2), v(2)
-      real(wp) :: z
-
-      z = u(1)*v(2) - u(2)*v(1)
-    end function cross
-
   end function area_in
 
   !> Its sets of sides are empty until there is a mesh.
@@ -138,7 +130,7 @@ contains
 
     if (.not. has_contours(draft%scene%remesher)) return
     do i = 1, size(draft%scene%remesher%contours)
-      if (size(draft%scene%remesher%contours(i)%row) == 0) return   ! a mistake that has been told
+      if (size(draft%scene%remesher%contours(i)%row) == 0) return   ! a mistake that has been reported
     end do
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword == 'BODY') exit

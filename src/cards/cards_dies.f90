@@ -5,7 +5,7 @@ module cards_dies
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use die_fillets, only: round_corner
+  use fillets, only: round_corner
   use dies, only: die_t, finish_die
   use kinds, only: wp
   use piece_rows, only: ends_meet, piece_words, read_piece

@@ -106,9 +106,9 @@ contains
 
   !> Fields that cards call by a word of their own, and these words.
   pure subroutine field_words(fields, place, words)
-    type(field_t), intent(in) :: fields(:)
-    integer, allocatable, intent(out) :: place(:)          !! in the scene's list
-    type(string_t), allocatable, intent(out) :: words(:)
+    type(field_t), intent(in) :: fields(:)                 !! (nfield)
+    integer, allocatable, intent(out) :: place(:)          !! (nword) position in the scene's list
+    type(string_t), allocatable, intent(out) :: words(:)   !! (nword)
     integer :: k, n
 
     allocate (place(0))

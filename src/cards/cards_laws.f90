@@ -14,7 +14,7 @@ module cards_laws
   private
   public :: read_laws, read_material
 
-  !> A table longer than this is a slip of the finger.
+  !> A table longer than this is an error of input.
   integer, parameter :: most_points = 100000
 
 contains
@@ -114,7 +114,7 @@ contains
     allocate (material%curves, source=reshape(curves, [2, size(material%curve, 2), n]))
   end subroutine read_temperatures
 
-  !> All lines of a law, laid out as `find_parameter` tells.
+  !> All lines of a law, laid out as `find_parameter` answers.
   subroutine read_lines(cursor, law, material)
     type(cursor_t), intent(inout) :: cursor
     type(law_t), intent(in) :: law

@@ -55,17 +55,17 @@ contains
     end do
   end subroutine read_side_dies
 
-  !> Sides end to end, each and all in the sense of a die: walking along it, its body is on the right. A closed chain begins
+  !> Sides end to end, each and all in the sense of a die: along it, its body is on the right. A closed curve begins
   !> with the first side given. Sides that do not follow are left out.
   pure subroutine chain_of_sides(sides, chain)
-    integer, intent(in) :: sides(:, :)                  !! (3, n), walked with their body on the left
+    integer, intent(in) :: sides(:, :)                  !! (3, n), traversed with their body on the left
     integer, allocatable, intent(out) :: chain(:, :)    !! (3, m)
     logical :: taken(size(sides, 2))
     integer :: order(size(sides, 2)), k, n
 
     n = 0
     taken = .false.
-    ! an open chain begins where no side follows in the walk around the body
+    ! an open curve begins where no side follows along the contour of the body
     do k = 1, size(sides, 2)
       if (.not. any(sides(1, :) == sides(3, k))) exit
     end do

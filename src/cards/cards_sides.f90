@@ -156,7 +156,7 @@ contains
   subroutine refuse_inner_sides(cursor, draft, sides)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft
-    integer, intent(in) :: sides(:, :)
+    integer, intent(in) :: sides(:, :)   !! (3, nside)
     integer :: k
 
     do k = 1, size(sides, 2)

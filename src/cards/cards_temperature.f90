@@ -79,7 +79,7 @@ contains
   !> A formulation on the body has the temperature among its unknowns.
   pure function has_field(draft, g) result(yes)
     type(draft_t), intent(in) :: draft
-    integer, intent(in) :: g   !! place of a body
+    integer, intent(in) :: g   !! number of a body
     logical :: yes
     integer :: k
 

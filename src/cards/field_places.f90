@@ -17,9 +17,9 @@ contains
   subroutine refuse_without_field(cursor, draft, field, nodes, label, own)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft
-    integer, intent(in) :: field            !! place in the scene's list
-    integer, intent(in) :: nodes(:)
-    character(len=*), intent(in) :: label   !! the place, as messages name it
+    integer, intent(in) :: field            !! position in the scene's list
+    integer, intent(in) :: nodes(:)         !! (n)
+    character(len=*), intent(in) :: label   !! the nodes, as messages name them
     logical, intent(in) :: own
     logical, allocatable :: has(:), is_own(:)
     integer :: g

@@ -11,8 +11,8 @@ contains
 
   !> A line for each law, those for solids first: name, number, what it is for, purpose.
   pure subroutine law_list(laws, lines)
-    type(law_t), intent(in) :: laws(:)
-    type(string_t), allocatable, intent(out) :: lines(:)
+    type(law_t), intent(in) :: laws(:)                     !! (nlaw)
+    type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
     integer :: kind, i
 
     allocate (lines(0))
@@ -42,7 +42,7 @@ contains
 
   subroutine law_card(law, lines)
     type(law_t), intent(in) :: law
-    type(string_t), allocatable, intent(out) :: lines(:)
+    type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
     integer :: i, k
 
     allocate (lines(0))

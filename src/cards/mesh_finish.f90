@@ -121,7 +121,7 @@ contains
                                                      draft%scene%plane_state, group%variables)
   end subroutine fill_group
 
-  !> A side on the boundary is that of one element: its middle node tells.
+  !> A side on the boundary is that of one element: its middle node shows it.
   subroutine count_sharing(draft, nnode)
     type(draft_t), intent(inout) :: draft
     integer, intent(in) :: nnode
@@ -175,7 +175,7 @@ contains
     if (draft%scene%plane_state /= axisymmetric) return
     do i = 1, size(kept)
       if (draft%scene%mesh%coordinates(1, i) >= -axis_tolerance*draft%mesh_size) cycle
-      ! A block is told of once.
+      ! A block is reported once.
       if (parts%location(kept(i))%line == last%line .and. parts%location(kept(i))%file == last%file) cycle
       last = parts%location(kept(i))
       call diagnostics%add(last, merge('NODES', 'BLOCK', kept(i) <= parts%nexplicit), &

@@ -48,8 +48,8 @@ contains
 
   !> Order that makes labels ascend; equal labels keep theirs. Merge sort from the bottom up.
   pure subroutine sort_labels(labels, order)
-    integer, intent(in) :: labels(:)
-    integer, allocatable, intent(out) :: order(:)
+    integer, intent(in) :: labels(:)                !! (n)
+    integer, allocatable, intent(out) :: order(:)   !! (n)
     integer :: width, first, middle, last, i, j, k
     integer :: other(size(labels))
 
@@ -93,9 +93,10 @@ contains
 
   end subroutine sort_labels
 
-  !> Place of a label among ascending ones, 0 when it is not there.
+  !> Position of a label among ascending ones, 0 when it is not there.
   pure function find_label(sorted, label) result(k)
-    integer, intent(in) :: sorted(:), label
+    integer, intent(in) :: sorted(:)   !! (n) labels
+    integer, intent(in) :: label
     integer :: k
     integer :: low, high
 
@@ -113,9 +114,10 @@ contains
     k = 0
   end function find_label
 
-  !> The node that stands for a node after all merging.
+  !> The node that represents a node after all merging.
   pure function root_of(parent, node) result(root)
-    integer, intent(in) :: parent(:), node
+    integer, intent(in) :: parent(:)   !! (nnode)
+    integer, intent(in) :: node
     integer :: root
 
     root = node
@@ -126,7 +128,7 @@ contains
 
   !> Make two nodes one; the first made stays.
   pure subroutine merge_nodes(parent, a, b)
-    integer, intent(inout) :: parent(:)
+    integer, intent(inout) :: parent(:)   !! (nnode)
     integer, intent(in) :: a, b
     integer :: i, j
 

@@ -2,7 +2,7 @@
 module piece_rows
   use card_points, only: read_xy
   use deck_cursor, only: cursor_t
-  use die_arcs, only: arc_pieces
+  use circle_arcs, only: arc_pieces
   use kinds, only: wp
   use text, only: to_text
   use vectors, only: length_of
@@ -10,7 +10,7 @@ module piece_rows
   private
   public :: piece_words, read_piece, ends_meet
 
-  !> A piece begins where the last one ended, to this share of the chain's size.
+  !> A piece begins where the last one ended, to this share of the curve's size.
   real(wp), parameter :: gap_tolerance = 1.0e-9_wp
   !> The middle point of a parabola lies over the middle half of its chord, or the parabola folds.
   real(wp), parameter :: middle_half(2) = [0.25_wp, 0.75_wp]
@@ -69,7 +69,7 @@ contains
 
   !> The last of several pieces ends where the first begins, to round-off.
   pure function ends_meet(pieces) result(yes)
-    real(wp), intent(in) :: pieces(:, :, :)
+    real(wp), intent(in) :: pieces(:, :, :)   !! (2, 3, npiece) [length]
     logical :: yes
     integer :: n
 

@@ -15,7 +15,7 @@ module point_reader
   private
   public :: read_point
 
-  !> More steps than this between two rows are a slip of the finger.
+  !> More steps than this between two rows are an error of input.
   integer, parameter :: most_steps = 1000000
 
 contains
@@ -80,7 +80,7 @@ contains
     end do
   end subroutine read_path
 
-  !> A temperature is told where the law wants one, and nowhere else.
+  !> A temperature is given where the law wants one, and nowhere else.
   subroutine check_temperature(cursor, draft, path)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft

@@ -1,7 +1,7 @@
 !> A remeshed scene: the deck's cards on another mesh.
 !>
 !> Bodies, sets of sides and their names are the deck's; nodes and elements are those of the remesh. Cards name
-!> places where they were in the deck's own mesh: `origin` of the new nodes tells where their matter was then.
+!> places where they were in the deck's own mesh: `origin` of the new nodes is where their material was then.
 module remeshed_parts
   use diagnostics, only: location_t
   use mesh, only: nearest_node
@@ -77,7 +77,7 @@ contains
   !> Elements on sides in the order of the remesh, in which their state is stored.
   pure subroutine order_as_remeshed(remesh, groups)
     type(remesh_t), intent(in) :: remesh
-    type(group_t), intent(inout) :: groups(:)
+    type(group_t), intent(inout) :: groups(:)   !! (ngroup)
     integer :: g
 
     do g = 1, min(size(groups), size(remesh%groups))

@@ -1,4 +1,4 @@
-!> A scene in the making: what the families of cards tell one another while a deck is read.
+!> A scene in the making: what the families of cards hand to one another while a deck is read.
 module scene_draft
   use card_names, only: names_t
   use deck_cursor, only: cursor_t
@@ -112,9 +112,9 @@ contains
     where = location_t(card%head%file, card%head%line, 1)
   end function head_location
 
-  !> Place of an element in the list of elements, 0 when there is none of that name.
+  !> Position of an element in the list of elements, 0 when there is none of that name.
   pure function find_elem(elems, name) result(k)
-    type(elem_t), intent(in) :: elems(:)
+    type(elem_t), intent(in) :: elems(:)   !! (nelem_row)
     character(len=*), intent(in) :: name
     integer :: k
 
@@ -127,7 +127,7 @@ contains
   !> A list of words for `cursor%name`, from words separated by blanks.
   pure subroutine words_of(line, words)
     character(len=*), intent(in) :: line
-    type(string_t), allocatable, intent(out) :: words(:)
+    type(string_t), allocatable, intent(out) :: words(:)   !! (nword)
     integer :: i, n, first, pass
 
     do pass = 1, 2

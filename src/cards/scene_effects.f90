@@ -19,8 +19,8 @@ contains
   !> All effects in a fixed order. The scene is without mistakes.
   subroutine list_effects(deck, laws, elems, diagnostics, scene)
     type(deck_t), intent(in) :: deck
-    type(law_t), intent(in) :: laws(:)
-    type(elem_t), intent(in) :: elems(:)
+    type(law_t), intent(in) :: laws(:)     !! (nlaw)
+    type(elem_t), intent(in) :: elems(:)   !! (nelem_row)
     type(diagnostics_t), intent(in) :: diagnostics
     type(scene_t), intent(inout) :: scene
     integer :: g, k

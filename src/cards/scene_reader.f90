@@ -1,4 +1,4 @@
-!> From the cards of a deck to a scene. Cards may come in any order; all mistakes are told in one go.
+!> From the cards of a deck to a scene. Cards may come in any order; all mistakes are reported together.
 module scene_reader
   use cards_blocks, only: join_blocks, read_blocks
   use cards_body_forces, only: read_body_forces
@@ -106,7 +106,7 @@ contains
 
   !> Keywords that have a meaning, those of body elements last.
   subroutine known_cards(keywords)
-    type(string_t), allocatable, intent(out) :: keywords(:)
+    type(string_t), allocatable, intent(out) :: keywords(:)   !! (nkeyword)
     type(elem_t), allocatable :: elems(:)
     type(string_t), allocatable :: more(:)
     integer :: k

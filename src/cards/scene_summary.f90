@@ -21,7 +21,7 @@ contains
 
   subroutine scene_lines(scene, lines)
     type(scene_t), intent(in) :: scene
-    type(string_t), allocatable, intent(out) :: lines(:)
+    type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
     type(elem_t), allocatable :: elems(:)
     type(solver_row_t), allocatable :: solvers(:)
     integer :: k

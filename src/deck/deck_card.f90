@@ -37,7 +37,7 @@ contains
   !> An error for each card whose keyword is none of the known.
   subroutine refuse_unknown(deck, known_keywords, diagnostics)
     type(deck_t), intent(in) :: deck
-    type(string_t), intent(in) :: known_keywords(:)
+    type(string_t), intent(in) :: known_keywords(:)   !! (nkeyword)
     type(diagnostics_t), intent(inout) :: diagnostics
     character(len=:), allocatable :: nearest
     integer :: i, k

@@ -90,7 +90,7 @@ contains
   subroutine read_name(self, what, known, index)
     class(cursor_t), intent(inout) :: self
     character(len=*), intent(in) :: what
-    type(string_t), intent(in) :: known(:)
+    type(string_t), intent(in) :: known(:)   !! (nknown)
     integer, intent(out) :: index
     type(deck_field_t) :: field
     character(len=:), allocatable :: nearest
@@ -343,7 +343,7 @@ contains
     end if
   end function nfield
 
-  !> Step onto the next field. One which is missing is told; one whose mistake is known turns the cursor silent.
+  !> Step onto the next field. One which is missing is reported; one whose mistake is known turns the cursor silent.
   subroutine take(self, what, field)
     class(cursor_t), intent(inout) :: self
     character(len=*), intent(in) :: what

@@ -23,9 +23,9 @@ contains
 
   !> `stored` becomes the overrides in force, old and new; `options` are the same in their parts.
   subroutine merge_overrides(stored, new, options, diagnostics)
-    type(string_t), allocatable, intent(inout) :: stored(:)
-    type(string_t), intent(in) :: new(:)
-    type(override_t), allocatable, intent(inout) :: options(:)
+    type(string_t), allocatable, intent(inout) :: stored(:)      !! (noverride) texts NAME=VALUE
+    type(string_t), intent(in) :: new(:)                         !! (nnew) texts NAME=VALUE
+    type(override_t), allocatable, intent(inout) :: options(:)   !! (noverride)
     type(diagnostics_t), intent(inout) :: diagnostics
     type(string_t), allocatable :: all(:)
     type(override_t), allocatable :: parts(:)
@@ -110,7 +110,7 @@ contains
   subroutine define(line, where, options, parameters, diagnostics)
     character(len=*), intent(in) :: line
     type(location_t), intent(in) :: where
-    type(override_t), intent(inout) :: options(:)
+    type(override_t), intent(inout) :: options(:)   !! (noverride)
     type(parameters_t), intent(inout) :: parameters
     type(diagnostics_t), intent(inout) :: diagnostics
     type(deck_field_t), allocatable :: fields(:), given(:)
@@ -186,7 +186,7 @@ contains
   !> Nothing is silently ignored: a parameter must be used, an override must have its PARAM.
   subroutine refuse_unused(parameters, options, diagnostics)
     type(parameters_t), intent(in) :: parameters
-    type(override_t), intent(in) :: options(:)
+    type(override_t), intent(in) :: options(:)   !! (noverride)
     type(diagnostics_t), intent(inout) :: diagnostics
     character(len=:), allocatable :: nearest
     integer :: i

@@ -38,7 +38,7 @@ module deck_expression
 
 contains
 
-  !> Value of an expression. On failure `message` tells the cause at character `position`;
+  !> Value of an expression. On failure `message` states the cause at character `position`;
   !> it is empty when the cause is a parameter whose own mistake is known already.
   subroutine evaluate(expression, parameters, value, failed, message, position)
     character(len=*), intent(in) :: expression
@@ -454,7 +454,7 @@ contains
     end if
   end subroutine expected
 
-  !> The first mistake of an expression is the one to tell.
+  !> The first mistake of an expression is the one to report.
   pure subroutine stop_at(p, at, message)
     type(parser_t), intent(inout) :: p
     integer, intent(in) :: at

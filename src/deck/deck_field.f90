@@ -80,7 +80,7 @@ contains
     character(len=*), intent(in) :: line, keyword
     integer, intent(in) :: start
     type(location_t), intent(in) :: where
-    type(deck_field_t), allocatable, intent(inout) :: fields(:)
+    type(deck_field_t), allocatable, intent(inout) :: fields(:)   !! (nfield)
     type(diagnostics_t), intent(inout) :: diagnostics
     type(deck_field_t), allocatable :: longer(:)
     integer :: n, first, last, i

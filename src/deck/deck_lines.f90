@@ -16,7 +16,7 @@ contains
   !> What each line is, up to END; after it there must be nothing.
   subroutine classify(source, kinds, diagnostics)
     type(source_t), intent(in) :: source
-    integer, allocatable, intent(out) :: kinds(:)
+    integer, allocatable, intent(out) :: kinds(:)   !! (nline)
     type(diagnostics_t), intent(inout) :: diagnostics
     character(len=:), allocatable :: word, hint
     type(location_t) :: where
@@ -95,7 +95,7 @@ contains
 
   end subroutine classify
 
-  !> Keywords are 1 to 6 capital letters or digits. One in small letters is told and then taken.
+  !> Keywords are 1 to 6 capital letters or digits. One in small letters is reported and then taken.
   subroutine check_keyword(word, where, refused, diagnostics)
     character(len=*), intent(in) :: word
     type(location_t), intent(in) :: where
@@ -127,8 +127,8 @@ contains
   !> Names on PARAM lines, for the messages about names that are not defined (yet).
   subroutine declared_names(source, kinds, names)
     type(source_t), intent(in) :: source
-    integer, intent(in) :: kinds(:)
-    type(string_t), allocatable, intent(out) :: names(:)
+    integer, intent(in) :: kinds(:)                        !! (nline)
+    type(string_t), allocatable, intent(out) :: names(:)   !! (nname)
     character(len=:), allocatable :: rest
     integer :: i, n
 

@@ -19,7 +19,7 @@ contains
   !> All mistakes go to `diagnostics`; the cards that could be read are delivered all the same.
   subroutine read_deck(path, overrides, deck, diagnostics)
     character(len=*), intent(in) :: path
-    type(string_t), intent(in) :: overrides(:)
+    type(string_t), intent(in) :: overrides(:)   !! (noverride)
     type(deck_t), intent(out) :: deck
     type(diagnostics_t), intent(inout) :: diagnostics
     type(source_t) :: source
@@ -34,7 +34,7 @@ contains
   !> `text` must not be a component of `deck` itself, which is emptied first.
   subroutine read_deck_text(text, path, overrides, deck, diagnostics)
     character(len=*), intent(in) :: text, path
-    type(string_t), intent(in) :: overrides(:)
+    type(string_t), intent(in) :: overrides(:)   !! (noverride)
     type(deck_t), intent(out) :: deck
     type(diagnostics_t), intent(inout) :: diagnostics
     type(source_t) :: source

@@ -90,7 +90,7 @@ contains
   !> The canonical text of a source and the overrides in force.
   subroutine write_text(source, overrides, diagnostics, content)
     type(source_t), intent(in) :: source
-    type(string_t), intent(in) :: overrides(:)
+    type(string_t), intent(in) :: overrides(:)   !! (noverride)
     type(diagnostics_t), intent(in) :: diagnostics
     character(len=:), allocatable, intent(out) :: content
     integer :: pass, length, i, file, line
@@ -199,7 +199,7 @@ contains
       case ('END')
         source%ended = .true.
       case ('INCLU')
-        ! In small letters it is a mistake, which the reader of cards tells.
+        ! In small letters it is a mistake, which the reader of cards reports.
         source%complete = source%complete .and. index(source%lines(n + 1)%text, 'INCLU') == 1
         if (index(source%lines(n + 1)%text, 'INCLU') /= 1) cycle
         source%nline = n

@@ -1,4 +1,4 @@
-!> Collector of the mistakes of a deck, so that all are told in one go.
+!> Collector of the mistakes of a deck, so that all are reported together.
 module diagnostics
   use errors, only: error_t, exit_input, fail
   use text, only: string_t, to_text
@@ -96,7 +96,7 @@ contains
   end function number_of_mistakes
 
   !> All mistakes as one error, in the order of the files and lines; unallocated when there is none.
-  !> The same mistake of a file included twice is told once.
+  !> The same mistake of a file included twice is reported once.
   pure subroutine to_error(self, error)
     class(diagnostics_t), intent(in) :: self
     type(error_t), allocatable, intent(out) :: error

@@ -4,10 +4,10 @@
 !> contact ends where the depth of the side is zero (contact_scan): on the one side or on the other, as the node they share is
 !> in the die or not. It also ends where the contour does.
 module contact_contour
+  use closest_point, only: closest_point_t
   use contact_ends, only: contact_end_t
-  use contact_scan, only: deepest_sample, in_pilot_axes, is_near, lies_inside, locate_end
-  use die_search, only: foot_t
-  use dies, only: die_t
+  use contact_scan, only: deepest_sample, is_near, lies_inside, locate_end
+  use dies, only: die_t, in_pilot_axes
   use kinds, only: wp
   use law_api, only: contact_open
   use quadrature, only: line_rule
@@ -25,17 +25,17 @@ module contact_contour
 
 contains
 
-  !> Places where contact begins and ends, side after side.
+  !> Points of the contour where contact begins and ends, side after side.
   subroutine find_contact_ends(group, number, die, pilot, first, x, status, penetration, ends)
     type(group_t), intent(in) :: group
-    integer, intent(in) :: number                           !! of the group in the scene
+    integer, intent(in) :: number   !! of the group in the scene
     type(die_t), intent(in) :: die
-    real(wp), intent(in) :: pilot(3)                        !! (x, y, angle) now
-    real(wp), intent(in) :: first(:, :)                     !! nodes of the mesh as it began (2, nnode) [length]
-    real(wp), intent(in) :: x(:, :)                         !! and now
-    integer, intent(in) :: status(:, :)                     !! of the points (npoint, nside)
-    real(wp), intent(in) :: penetration(:, :)               !! [length]
-    type(contact_end_t), allocatable, intent(inout) :: ends(:)   !! those of this group are added
+    real(wp), intent(in) :: pilot(3)                             !! (x, y, angle) now [length and radian]
+    real(wp), intent(in) :: first(:, :)                          !! (2, nnode) nodes of the mesh as it began [length]
+    real(wp), intent(in) :: x(:, :)                              !! (2, nnode) and now [length]
+    integer, intent(in) :: status(:, :)                          !! (npoint, nside) of the points
+    real(wp), intent(in) :: penetration(:, :)                    !! (npoint, nside) [length]
+    type(contact_end_t), allocatable, intent(inout) :: ends(:)   !! (nend) those of this group are added
     type(side_t) :: side, next
     real(wp), allocatable :: xi(:), weight(:)
     integer :: e, p, n, after
@@ -75,14 +75,14 @@ contains
       real(wp), intent(in) :: closed, open, depths(2)
       logical, intent(in) :: begins
       type(contact_end_t) :: one
-      type(foot_t) :: foot
+      type(closest_point_t) :: closest
 
-      call locate_end(die, side%nodes, closed, open, depths, side%reach, one%place, foot)
+      call locate_end(die, side%nodes, closed, open, depths, side%reach, one%place, closest)
       one%begins = begins
       one%group = number
       one%side = side%number
-      one%piece = foot%piece
-      one%xi = foot%xi
+      one%piece = closest%piece
+      one%xi = closest%xi
       ends = [ends, one]
     end subroutine add
 
@@ -92,9 +92,11 @@ contains
   pure subroutine sample_depth(group, die, pilot, first, x, allowed, depth, ratio)
     type(group_t), intent(in) :: group
     type(die_t), intent(in) :: die
-    real(wp), intent(in) :: pilot(3), first(:, :), x(:, :)   !! as above
-    real(wp), intent(in) :: allowed                          !! penetration over the side, 0 when none is stated
-    real(wp), intent(out) :: depth                           !! [length], 0 when all is outside
+    real(wp), intent(in) :: pilot(3)      !! (x, y, angle) now [length and radian]
+    real(wp), intent(in) :: first(:, :)   !! (2, nnode) nodes of the mesh as it began [length]
+    real(wp), intent(in) :: x(:, :)       !! (2, nnode) and now [length]
+    real(wp), intent(in) :: allowed       !! penetration over the side, 0 when none is stated
+    real(wp), intent(out) :: depth        !! [length], 0 when all is outside
     real(wp), intent(out) :: ratio
     type(side_t) :: side
     real(wp) :: deepest

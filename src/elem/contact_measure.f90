@@ -29,8 +29,8 @@ contains
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     integer, intent(in) :: times
-    real(wp), intent(inout) :: committed(:, :, :)
-    real(wp), intent(in) :: trial(:, :, :)
+    real(wp), intent(inout) :: committed(:, :, :)   !! (nstate, npoint, nside) [unit of each component]
+    real(wp), intent(in) :: trial(:, :, :)          !! (nstate, npoint, nside) [unit of each component]
     logical, intent(out) :: changed
     type(penalties_t) :: given
     real(wp) :: allowed
@@ -89,7 +89,10 @@ contains
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(law_t), intent(in) :: law
-    real(wp), intent(in) :: section(3), x(:, :, :), state(:, :, :), before(:, :, :)
+    real(wp), intent(in) :: section(3)        !! thickness at the origin [length], and its slopes [-]
+    real(wp), intent(in) :: x(:, :, :)        !! (2, 3, nside) [length]
+    real(wp), intent(in) :: state(:, :, :)    !! (nstate, npoint, nside) [unit of each component]
+    real(wp), intent(in) :: before(:, :, :)   !! (nstate, npoint, nside) one step before [unit of each component]
     type(totals_t), intent(out) :: totals
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: side, penalty(2), from, to

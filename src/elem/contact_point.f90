@@ -77,7 +77,7 @@ contains
 
   !> Points without contact: what they have slipped and worn stays.
   pure subroutine rest(state)
-    real(wp), intent(inout) :: state(:, :)
+    real(wp), intent(inout) :: state(:, :)   !! (nstate, npoint) [unit of each component]
 
     state([at_pressure, at_tau, at_status, at_penetration, at_piece, at_xi, at_augmentation], :) = 0
   end subroutine rest
@@ -93,11 +93,11 @@ contains
 
   !> Position, length, inner normal and thickness of a point of the side, and their derivatives.
   pure subroutine side_point(phi, dphi, section, x, du, nunknown, point)
-    real(wp), intent(in) :: phi(3), dphi(3)
-    real(wp), intent(in) :: section(3)   !! at the end of the step (sections)
-    real(wp), intent(in) :: x(2, 3)      !! nodes at the start of the step [length]
-    real(wp), intent(in) :: du(6)        !! their motion, x then y
-    integer, intent(in) :: nunknown      !! local unknowns, the section's three among them
+    real(wp), intent(in) :: phi(3), dphi(3)   !! [-]
+    real(wp), intent(in) :: section(3)        !! at the end of the step: thickness at the origin [length], and its slopes [-]
+    real(wp), intent(in) :: x(2, 3)           !! nodes at the start of the step [length]
+    real(wp), intent(in) :: du(6)             !! their motion, x then y [length]
+    integer, intent(in) :: nunknown           !! local unknowns, the section's three among them
     type(contact_point_t), intent(out) :: point
     real(wp) :: y(2, 3)
 
@@ -127,17 +127,17 @@ contains
   pure subroutine act(law, material, dt, drivers, penalty, point, meeting, weight, tangent_wanted, committed, trial, q, dq)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: dt                       !! length of the step [time]
-    real(wp), intent(in) :: drivers(:, :)            !! (ndriver, 2) of the law, at the start and at the end of the step
-    real(wp), intent(in) :: penalty(2)               !! normal and tangential [stress/length]
+    real(wp), intent(in) :: dt              !! length of the step [time]
+    real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) of the law at both ends of the step [unit of each driver]
+    real(wp), intent(in) :: penalty(2)      !! normal and tangential [stress/length]
     type(contact_point_t), intent(in) :: point
     type(meeting_t), intent(in) :: meeting
     real(wp), intent(in) :: weight
     logical, intent(in) :: tangent_wanted
-    real(wp), intent(in) :: committed(:)             !! (nstate)
-    real(wp), intent(inout) :: trial(:)              !! (nstate)
-    real(wp), intent(out) :: q(2)                    !! [force, per radian when axisymmetric]
-    real(wp), intent(out) :: dq(2, most_unknowns)    !! set where the tangent is wanted and there is contact
+    real(wp), intent(in) :: committed(:)            !! (nstate) [unit of each component]
+    real(wp), intent(inout) :: trial(:)             !! (nstate) [unit of each component]
+    real(wp), intent(out) :: q(2)                   !! per radian when axisymmetric [force]
+    real(wp), intent(out) :: dq(2, most_unknowns)   !! set where the tangent is wanted and there is contact [force/unknown]
     real(wp) :: dslip(most_unknowns), t(2), slip, depth, gap, share, pressure, stress(2), law_tangent(3, 3), area
     real(wp) :: traction(2), dp, dtau
     integer :: status, j
@@ -179,7 +179,8 @@ contains
 
   !> Work that friction took in a step, per present area: the way slipped is that not stored in the tangential penalty.
   pure function dissipated(before, after, penalty) result(work)
-    real(wp), intent(in) :: before(:), after(:), penalty
+    real(wp), intent(in) :: before(:), after(:)   !! (nstate) [unit of each component]
+    real(wp), intent(in) :: penalty               !! tangential [stress/length]
     real(wp) :: work
 
     work = 0
@@ -189,9 +190,12 @@ contains
 
   !> Area before the step over the present one, at points of a side.
   pure function thinning(from, to, section, thickening, x, du) result(share)
-    real(wp), intent(in) :: from(:), to(:)              !! places on the side, before the step and now
-    real(wp), intent(in) :: section(3), thickening(3)   !! at the end of the step, and its change in it
-    real(wp), intent(in) :: x(2, 3), du(6)              !! nodes at the start of the step, and their motion, x then y
+    real(wp), intent(in) :: from(:)         !! (npoint) parent coordinates on the side before the step [-]
+    real(wp), intent(in) :: to(:)           !! (npoint) parent coordinates now [-]
+    real(wp), intent(in) :: section(3)      !! at the end of the step: thickness at the origin [length], and its slopes [-]
+    real(wp), intent(in) :: thickening(3)   !! its change in the step: thickness [length], slopes [-]
+    real(wp), intent(in) :: x(2, 3)         !! nodes at the start of the step [length]
+    real(wp), intent(in) :: du(6)           !! their motion, x then y [length]
     real(wp) :: share(size(to))
     real(wp) :: y(2, 3), area
     integer :: p
@@ -206,9 +210,11 @@ contains
     end do
   end function thinning
 
-  !> Area of a side per unit of xi at a place on it: length times thickness.
+  !> Area of a side per unit of xi at a parent coordinate: length times thickness.
   pure function area_at(xi, section, x) result(area)
-    real(wp), intent(in) :: xi, section(3), x(2, 3)
+    real(wp), intent(in) :: xi           !! [-]
+    real(wp), intent(in) :: section(3)   !! thickness at the origin [length], and its slopes [-]
+    real(wp), intent(in) :: x(2, 3)      !! nodes [length]
     real(wp) :: area
     real(wp) :: phi(3), dphi(3)
 
@@ -234,7 +240,8 @@ contains
   !> Share of the step after which a point that was open, its gap known, overlaps the die by `overlap_aim` of the side;
   !> one that overlaps by less than `overlap_limit` is left alone.
   pure function share_to_contact(committed, trial, side) result(share)
-    real(wp), intent(in) :: committed(:), trial(:), side
+    real(wp), intent(in) :: committed(:), trial(:)   !! (nstate) [unit of each component]
+    real(wp), intent(in) :: side                     !! length of the side [length]
     real(wp) :: share
     real(wp) :: gap
 
@@ -248,8 +255,10 @@ contains
 
   !> Stresses shown at a point on the axis, where none act: on the line through its two neighbours.
   pure subroutine show_on_axis(xi, x, side, trial)
-    real(wp), intent(in) :: xi(:), x(3), side
-    real(wp), intent(inout) :: trial(:, :)
+    real(wp), intent(in) :: xi(:)            !! (npoint) [-]
+    real(wp), intent(in) :: x(3)             !! radii of the nodes [length]
+    real(wp), intent(in) :: side             !! length of the side [length]
+    real(wp), intent(inout) :: trial(:, :)   !! (nstate, npoint) [unit of each component]
     real(wp) :: phi(3), dphi(3), share
     integer :: p, step, n
 

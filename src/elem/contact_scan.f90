@@ -2,37 +2,26 @@
 !>
 !> Integration points are where contact is asked for; the side between them is what a user looks at.
 module contact_scan
-  use die_search, only: find_foot, foot_t, box_distance
+  use closest_point, only: closest_point_t
+  use curve_search, only: box_distance, closest_facing_point
   use dies, only: die_t
   use kinds, only: wp
   use shape_functions, only: line3
   use vectors, only: length_of
   implicit none
   private
-  public :: in_pilot_axes, is_near, deepest_sample, lies_inside, locate_end
+  public :: is_near, deepest_sample, lies_inside, locate_end
 
   !> Places a side is sampled at.
   integer, parameter :: nsample = 20
 
 contains
 
-  !> Nodes of a side in the axes of the die's pilot (x, y, angle).
-  pure function in_pilot_axes(x, pilot) result(side)
-    real(wp), intent(in) :: x(:, :), pilot(3)
-    real(wp) :: side(2, size(x, 2))
-    integer :: k
-
-    do k = 1, size(x, 2)
-      associate (way => x(:, k) - pilot(1:2), c => cos(pilot(3)), s => sin(pilot(3)))
-        side(:, k) = [c*way(1) + s*way(2), -s*way(1) + c*way(2)]
-      end associate
-    end do
-  end function in_pilot_axes
-
   !> The side is no further from the die than `reach`.
   pure function is_near(die, side, reach) result(near)
     type(die_t), intent(in) :: die
-    real(wp), intent(in) :: side(2, 3), reach
+    real(wp), intent(in) :: side(2, 3)   !! nodes in the pilot's axes [length]
+    real(wp), intent(in) :: reach        !! [length]
     logical :: near
 
     near = box_distance(die, [minval(side, 2), maxval(side, 2)]) <= reach
@@ -44,42 +33,42 @@ contains
     real(wp), intent(in) :: side(2, 3)   !! nodes in the pilot's axes [length]
     real(wp), intent(in) :: reach        !! [length]
     real(wp) :: depth
-    type(foot_t) :: foot
+    type(closest_point_t) :: closest
     integer :: k
 
     depth = -reach
     do k = 1, nsample
-      call foot_of_place(die, side, -1 + 2*real(k - 1, wp)/(nsample - 1), reach, foot)
-      if (foot%piece > 0) depth = max(depth, foot%d)
+      call closest_to_side_point(die, side, -1 + 2*real(k - 1, wp)/(nsample - 1), reach, closest)
+      if (closest%piece > 0) depth = max(depth, closest%d)
     end do
   end function deepest_sample
 
   !> Where contact ends between a place of a side in contact and an open one: a linear guess from the penetrations there, then
   !> the zero of the depth by bisection and secants on the side itself. Where the die ends first that is the place; where the
   !> depth has no zero between, a side lifted by its law, the guess is kept.
-  pure subroutine locate_end(die, side, closed, open, depths, reach, place, foot)
+  pure subroutine locate_end(die, side, closed, open, depths, reach, place, closest)
     type(die_t), intent(in) :: die
-    real(wp), intent(in) :: side(2, 3)     !! nodes in the pilot's axes [length]
-    real(wp), intent(in) :: closed, open   !! places on the side
-    real(wp), intent(in) :: depths(2)      !! penetrations there, below zero for a gap [length]
-    real(wp), intent(in) :: reach          !! [length]
-    real(wp), intent(out) :: place         !! on the side
-    type(foot_t), intent(out) :: foot      !! on the die, its piece 0 where there is none
+    real(wp), intent(in) :: side(2, 3)              !! nodes in the pilot's axes [length]
+    real(wp), intent(in) :: closed, open            !! places on the side
+    real(wp), intent(in) :: depths(2)               !! penetrations there, below zero for a gap [length]
+    real(wp), intent(in) :: reach                   !! [length]
+    real(wp), intent(out) :: place                  !! on the side
+    type(closest_point_t), intent(out) :: closest   !! on the die, its piece 0 where there is none
     real(wp) :: inside, outside, middle
-    type(foot_t) :: trial
+    type(closest_point_t) :: trial
     integer :: iteration
     integer, parameter :: halvings = 50    ! to round-off of a place
 
     place = closed
     if (depths(1) > depths(2)) place = closed + (open - closed)*max(0.0_wp, min(1.0_wp, depths(1)/(depths(1) - depths(2))))
-    call foot_of_place(die, side, closed, reach, foot)
-    call foot_of_place(die, side, open, reach, trial)
-    if (is_inside(foot) .neqv. is_inside(trial)) then
+    call closest_to_side_point(die, side, closed, reach, closest)
+    call closest_to_side_point(die, side, open, reach, trial)
+    if (is_inside(closest) .neqv. is_inside(trial)) then
       inside = closed
       outside = open
       do iteration = 1, halvings
         middle = 0.5_wp*(inside + outside)
-        call foot_of_place(die, side, middle, reach, trial)
+        call closest_to_side_point(die, side, middle, reach, trial)
         if (is_inside(trial)) then
           inside = middle
         else
@@ -88,8 +77,8 @@ contains
       end do
       place = inside
     end if
-    call foot_of_place(die, side, place, reach, trial)
-    if (trial%piece > 0) foot = trial
+    call closest_to_side_point(die, side, place, reach, trial)
+    if (trial%piece > 0) closest = trial
   end subroutine locate_end
 
   !> A place of a side is in the die.
@@ -97,31 +86,31 @@ contains
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: side(2, 3)   !! nodes in the pilot's axes [length]
     real(wp), intent(in) :: place
-    real(wp), intent(in) :: reach        !! [length]
+    real(wp), intent(in) :: reach   !! [length]
     logical :: inside
-    type(foot_t) :: foot
+    type(closest_point_t) :: closest
 
-    call foot_of_place(die, side, place, reach, foot)
-    inside = is_inside(foot)
+    call closest_to_side_point(die, side, place, reach, closest)
+    inside = is_inside(closest)
   end function lies_inside
 
-  pure function is_inside(foot) result(inside)
-    type(foot_t), intent(in) :: foot
+  pure function is_inside(closest) result(inside)
+    type(closest_point_t), intent(in) :: closest
     logical :: inside
 
-    inside = foot%piece > 0 .and. foot%d >= 0
+    inside = closest%piece > 0 .and. closest%d >= 0
   end function is_inside
 
-  !> Foot of a place of a side.
-  pure subroutine foot_of_place(die, side, place, reach, foot)
+  !> Closest point to a position on a side.
+  pure subroutine closest_to_side_point(die, side, place, reach, closest)
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: side(2, 3), place, reach
-    type(foot_t), intent(out) :: foot
+    type(closest_point_t), intent(out) :: closest
     real(wp) :: phi(3), dphi(3), tangent(2)
 
     call line3(place, phi, dphi)
     tangent = matmul(side, dphi)
-    call find_foot(die, matmul(side, phi), [-tangent(2), tangent(1)]/length_of(tangent), reach, foot)
-  end subroutine foot_of_place
+    call closest_facing_point(die, matmul(side, phi), [-tangent(2), tangent(1)]/length_of(tangent), reach, closest)
+  end subroutine closest_to_side_point
 
 end module contact_scan

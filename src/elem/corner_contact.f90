@@ -17,7 +17,7 @@ module corner_contact
   use materials, only: material_t
   use rigid_contact, only: drift_t, ndof, outer, place_point, press, side_t, turned
   use shape_functions, only: line3
-  use side_corners, only: corner_t, deepest_corner, foot_at_corner
+  use side_corners, only: corner_t, deepest_corner, foot_at_corner => closest_at_corner
   implicit none
   private
   public :: press_corners, stretch_before
@@ -34,12 +34,14 @@ contains
     type(die_t), intent(in) :: die
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: drivers(:, :, :)  !! (ndriver, 2, npoint) of the law
+    real(wp), intent(in) :: drivers(:, :, :)   !! (ndriver, 2, npoint) of the law [unit of each driver]
     logical, intent(in) :: axisym
     type(side_t), intent(in) :: side
-    real(wp), intent(in) :: xi(:)             !! (npoint)
-    real(wp), intent(in) :: committed(:, :)   !! (nstate, npoint)
-    real(wp), intent(inout) :: trial(:, :), force(ndof), stiffness(ndof, ndof)
+    real(wp), intent(in) :: xi(:)                      !! (npoint) [-]
+    real(wp), intent(in) :: committed(:, :)            !! (nstate, npoint) [unit of each component]
+    real(wp), intent(inout) :: trial(:, :)             !! (nstate, npoint) [unit of each component]
+    real(wp), intent(inout) :: force(ndof)             !! [force]
+    real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
     type(report_t), intent(inout) :: report
     type(corner_t) :: corner
     real(wp) :: nodes(2, 3), from, to, worn(1)
@@ -145,11 +147,11 @@ contains
     end do
   end subroutine follow_corner
 
-  !> The stretch of the side between a point and the one before; the last one goes on to the end of the side.
+  !> The part of the side between a point and the one before; the last one goes on to the end of the side.
   pure subroutine stretch_before(xi, p, from, to)
-    real(wp), intent(in) :: xi(:)
+    real(wp), intent(in) :: xi(:)   !! (npoint) [-]
     integer, intent(in) :: p
-    real(wp), intent(out) :: from, to
+    real(wp), intent(out) :: from, to   !! [-]
 
     from = -1
     if (p > 1) from = xi(p - 1)

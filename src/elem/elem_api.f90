@@ -155,7 +155,7 @@ module elem_api
       import :: law_t, state_variable_t
       type(law_t), intent(in) :: law
       integer, intent(in) :: plane_state
-      type(state_variable_t), allocatable, intent(out) :: variables(:)
+      type(state_variable_t), allocatable, intent(out) :: variables(:)   !! (nvariable)
     end subroutine elem_variables_i
 
     !> Forces, matrices and trial state of elements first ... first + nb - 1 of a group.
@@ -169,15 +169,16 @@ module elem_api
       type(instant_t), intent(in) :: instant
       type(layout_t), intent(in) :: layout
       integer, intent(in) :: first
-      real(wp), intent(in) :: x(:, :, :)              !! (2, nnode, nb) at the start of the step [length]
-      real(wp), intent(in) :: du(:, :)                !! (ndof, nb) motion of the step
-      real(wp), intent(in) :: start(:, :)             !! (ndof, nb) values at the start of the step; (0, nb) in mechanics alone
-      real(wp), intent(in) :: drivers(:, :, :, :)     !! (ndriver, 2, npoint, nb) of the law at both ends of the step, the
-                                                      !! temperature first; no rows where the law asks for none
-      real(wp), intent(in), contiguous :: committed(:, :, :)   !! (nstate, npoint, nb)
-      real(wp), intent(inout), contiguous :: trial(:, :, :)
-      real(wp), intent(out) :: force(:, :)            !! (ndof, nb) [force, per radian when axisymmetric]
-      real(wp), intent(inout) :: stiffness(:, :, :)   !! (ndof, ndof, nb), written when instant%tangent
+      real(wp), intent(in) :: x(:, :, :)    !! (2, nnode, nb) at the start of the step [length]
+      real(wp), intent(in) :: du(:, :)      !! (ndof, nb) motion of the step [unknown]
+      real(wp), intent(in) :: start(:, :)   !! (ndof, nb) values at the start of the step; (0, nb) in mechanics alone [unknown]
+      !> (ndriver, 2, npoint, nb) of the law at both ends of the step, the temperature first; no rows where the law asks for none
+      !> [unit of each driver].
+      real(wp), intent(in) :: drivers(:, :, :, :)
+      real(wp), intent(in), contiguous :: committed(:, :, :)   !! (nstate, npoint, nb) [unit of each component]
+      real(wp), intent(inout), contiguous :: trial(:, :, :)    !! (nstate, npoint, nb) [unit of each component]
+      real(wp), intent(out) :: force(:, :)                     !! (ndof, nb) per radian when axisymmetric [residual]
+      real(wp), intent(inout) :: stiffness(:, :, :)            !! (ndof, ndof, nb), written when instant%tangent [residual/unknown]
       type(report_t), intent(out) :: report
     end subroutine elem_compute_i
 
@@ -188,19 +189,21 @@ module elem_api
       type(scene_t), intent(in) :: scene
       type(group_t), intent(in) :: group
       integer, intent(in) :: times
-      real(wp), intent(inout) :: committed(:, :, :)
-      real(wp), intent(in) :: trial(:, :, :)
+      real(wp), intent(inout) :: committed(:, :, :)   !! (nstate, npoint, nelem) [unit of each component]
+      real(wp), intent(in) :: trial(:, :, :)          !! (nstate, npoint, nelem) [unit of each component]
       logical, intent(out) :: changed
     end subroutine elem_augment_i
 
-    !> Sums over a group at an accepted instant; x (2, nnode, nelem) and the section are the geometry then.
+    !> Sums over a group at an accepted instant; x and the section are the geometry then.
     subroutine elem_measure_i(scene, group, law, section, x, state, before, totals)
       import :: group_t, law_t, scene_t, totals_t, wp
       type(scene_t), intent(in) :: scene
       type(group_t), intent(in) :: group
       type(law_t), intent(in) :: law
-      real(wp), intent(in) :: section(3), x(:, :, :)
-      real(wp), intent(in) :: state(:, :, :), before(:, :, :)  !! at the accepted instant, and one step before
+      real(wp), intent(in) :: section(3)        !! thickness at the origin [length], and its slopes [-]
+      real(wp), intent(in) :: x(:, :, :)        !! (2, nnode, nelem) [length]
+      real(wp), intent(in) :: state(:, :, :)    !! (nstate, npoint, nelem) at the accepted instant [unit of each component]
+      real(wp), intent(in) :: before(:, :, :)   !! (nstate, npoint, nelem) one step before [unit of each component]
       type(totals_t), intent(out) :: totals
     end subroutine elem_measure_i
   end interface
@@ -222,7 +225,7 @@ contains
   !> Motion of the section in the step, 0 where it is no unknown.
   pure function section_motion(layout, du) result(motion)
     type(layout_t), intent(in) :: layout
-    real(wp), intent(in) :: du(:)   !! of the local unknowns of an element (ndof)
+    real(wp), intent(in) :: du(:)   !! (ndof) motion of the local unknowns of an element [unknown]
     real(wp) :: motion(3)
     integer :: first
 
@@ -308,13 +311,13 @@ contains
           .and. (unknown%option < 0 .or. unknown%option == option)
   end function applies
 
-  !> Where the unknowns of an element of so many nodes stand.
+  !> Positions of the unknowns of an element of so many nodes.
   pure function layout_of(elem, nnode, option, plane_state, fields) result(layout)
     type(elem_t), intent(in) :: elem
-    integer, intent(in) :: nnode        !! of the element, with those it is paired with
-    integer, intent(in) :: option       !! of the group
+    integer, intent(in) :: nnode    !! of the element, with those it is paired with
+    integer, intent(in) :: option   !! of the group
     integer, intent(in) :: plane_state
-    type(field_t), intent(in) :: fields(:)   !! of the scene
+    type(field_t), intent(in) :: fields(:)   !! (nfield) of the scene
     type(layout_t) :: layout
     integer :: u, c, n, f
 
@@ -359,7 +362,7 @@ contains
   !> Local place of the first unknown of a field, 0 where the element has none.
   pure function first_unknown(layout, field) result(first)
     type(layout_t), intent(in) :: layout
-    integer, intent(in) :: field   !! place in the scene's list
+    integer, intent(in) :: field   !! position in the scene's list
     integer :: first
     integer :: k
 
@@ -372,7 +375,7 @@ contains
   !> The fields that the elements of the groups of a scene have among their unknowns: those of mechanics first, declared where
   !> some element has them, then others in the order of the groups.
   pure subroutine declare_fields(elems, scene)
-    type(elem_t), intent(in) :: elems(:)
+    type(elem_t), intent(in) :: elems(:)   !! (nelem_row)
     type(scene_t), intent(inout) :: scene
     integer :: g, u, k
 

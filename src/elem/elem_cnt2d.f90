@@ -17,12 +17,13 @@
 !> Forces are integrated consistently over the side. The reaction acts on the pilot: force, and
 !> moment about it. Everything is linearised exactly, the curvature of the die included.
 module elem_cnt2d
+  use closest_point, only: foot_t => closest_point_t
   use contact_measure, only: augment, measure
   use contact_point, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, contact_point_t, no_surface, &
                            penalties, point_variables, rest, share_to_contact, show_on_axis, side_length, &
                            thinning, touching
   use corner_contact, only: press_corners
-  use die_search, only: box_distance, find_foot, follow_foot, foot_t
+  use curve_search, only: box_distance, find_foot => closest_facing_point, follow_foot => follow_closest_point
   use dies, only: die_t
   use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_pilot, of_section, report_t, section_motion
   use kinds, only: wp

@@ -21,7 +21,8 @@ module elem_cntdf
   use contact_point, only: act, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, meeting_t, &
                            most_unknowns, no_surface, penalties, point_variables, rest, share_to_contact, &
                            show_on_axis, side_length, side_point, thinning
-  use die_search, only: box_distance, find_foot, find_foot_on, foot_t
+  use closest_point, only: foot_t => closest_point_t
+  use curve_search, only: box_distance, find_foot => closest_facing_point, find_foot_on => closest_on_piece
   use dies, only: die_t
   use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
   use elem_cnt2d, only: elem_cnt2d_row

@@ -6,9 +6,9 @@ module elem_registry
   public :: list_elems
 
   interface
-    !> All elements, in a fixed order: an element's place is its `elem_id`.
+    !> All elements, in a fixed order: an element's position is its `elem_id`.
     module subroutine list_elems(elems)
-      type(elem_t), allocatable, intent(out) :: elems(:)
+      type(elem_t), allocatable, intent(out) :: elems(:)   !! (nelem_row)
     end subroutine list_elems
   end interface
 end module elem_registry

@@ -32,7 +32,8 @@ contains
 
   !> 1, x and y made orthonormal in the mean over the element.
   pure subroutine find_fields(dv, x, own)
-    real(wp), intent(in) :: dv(:), x(:, :)        !! volumes and places (2, npoint) of the points
+    real(wp), intent(in) :: dv(:)     !! (npoint) [volume]
+    real(wp), intent(in) :: x(:, :)   !! (2, npoint) positions of the points [length]
     type(dilatation_t), intent(out) :: own
     integer :: k, l, n
 
@@ -68,8 +69,8 @@ contains
   pure subroutine share_dilatation(finite, own, dv, f, valid)
     logical, intent(in) :: finite
     type(dilatation_t), intent(in) :: own
-    real(wp), intent(in) :: dv(:)         !! volumes at the end of the step
-    real(wp), intent(inout) :: f(:, :)    !! (5, npoint)
+    real(wp), intent(in) :: dv(:)        !! (npoint) at the end of the step [volume]
+    real(wp), intent(inout) :: f(:, :)   !! (5, npoint) [-]
     logical, intent(out) :: valid
     real(wp), dimension(size(dv)) :: change, before, after
     integer :: p
@@ -93,8 +94,10 @@ contains
   !> Volumes for which the stresses of the points count, and the stress s that makes the forces with the volumes dv.
   pure subroutine share_pressure(own, dv, stress, m, shared)
     type(dilatation_t), intent(in) :: own
-    real(wp), intent(in) :: dv(:), stress(:, :)         !! (npoint), (4, npoint)
-    real(wp), intent(out) :: m(:), shared(:, :)         !! (npoint), (4, npoint)
+    real(wp), intent(in) :: dv(:)           !! (npoint) [volume]
+    real(wp), intent(in) :: stress(:, :)    !! (4, npoint) [stress]
+    real(wp), intent(out) :: m(:)           !! (npoint) [volume]
+    real(wp), intent(out) :: shared(:, :)   !! (4, npoint) [stress]
     real(wp) :: pressure(size(dv)), field(size(dv))
     integer :: p
 
@@ -112,11 +115,13 @@ contains
   pure subroutine add_mean_matrix(finite, own, g, dv, m, stress, shared, tangent, geometric, stiffness)
     logical, intent(in) :: finite
     type(dilatation_t), intent(in) :: own
-    real(wp), intent(in) :: g(:, :, :), dv(:), m(:)              !! (5, ndof, npoint), (npoint), (npoint)
-    real(wp), intent(in) :: stress(:, :), shared(:, :)           !! of the law, and that of the forces (4, npoint)
-    real(wp), intent(in) :: tangent(:, :, :)                     !! d stress/d h_bar (4, 5, npoint)
-    real(wp), intent(in) :: geometric(:, :, :)                   !! s tr h - s h^T as a matrix on h (5, 5, npoint)
-    real(wp), intent(inout) :: stiffness(:, :)
+    real(wp), intent(in) :: g(:, :, :)           !! (5, ndof, npoint) [1/length]
+    real(wp), intent(in) :: dv(:), m(:)          !! (npoint) [volume]
+    real(wp), intent(in) :: stress(:, :)         !! (4, npoint) of the law [stress]
+    real(wp), intent(in) :: shared(:, :)         !! (4, npoint) that of the forces [stress]
+    real(wp), intent(in) :: tangent(:, :, :)     !! (4, 5, npoint) d stress/d h_bar [stress]
+    real(wp), intent(in) :: geometric(:, :, :)   !! (5, 5, npoint) s tr h - s h^T as a matrix on h [stress]
+    real(wp), intent(inout) :: stiffness(:, :)   !! (ndof, ndof) [force/length]
     real(wp), dimension(size(g, 2), size(dv)) :: t, theta
     real(wp), dimension(size(g, 2)) :: more, row, column
     real(wp) :: gt(size(g, 2), 5), a(5, 5), q(5), pressure, both

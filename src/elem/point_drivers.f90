@@ -52,7 +52,7 @@ contains
   !> Where the drivers of all groups come from. A name that nothing in the scene has is an error of the deck (missing_driver).
   subroutine find_drivers(scene, laws, drivers)
     type(scene_t), intent(in) :: scene
-    type(law_t), intent(in) :: laws(:)
+    type(law_t), intent(in) :: laws(:)                        !! (nlaw)
     type(drivers_t), allocatable, intent(out) :: drivers(:)   !! (ngroup)
     integer :: g, k, n, law
 
@@ -141,7 +141,7 @@ contains
   !> Source of a name for a group.
   pure function source_of(scene, g, name) result(source)
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: g   !! place of the group
+    integer, intent(in) :: g   !! number of the group
     character(len=*), intent(in) :: name
     type(driver_source_t) :: source
     integer :: k, v, f
@@ -174,7 +174,7 @@ contains
   !> All drivers at the accepted state, for the step that begins there.
   subroutine start_drivers(scene, laws, solution, drivers)
     type(scene_t), intent(in) :: scene
-    type(law_t), intent(in) :: laws(:)
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
     type(solution_t), intent(in) :: solution
     type(drivers_t), intent(inout) :: drivers(:)   !! (ngroup)
     real(wp) :: now(size(scene%mesh%coordinates, 2), size(scene%fields))
@@ -193,7 +193,7 @@ contains
   !> Fields and states that drive a group at the end of the step, as they are tried now.
   subroutine advance_drivers(scene, laws, solution, now, time, g, drivers)
     type(scene_t), intent(in) :: scene
-    type(law_t), intent(in) :: laws(:)
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: now(:, :)              !! trial values of the nodal fields of one component (nnode, nfield)
     real(wp), intent(in) :: time                   !! end of the step [time]
@@ -215,7 +215,7 @@ contains
   pure subroutine nodal_values(scene, solution, now)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
-    real(wp), intent(out) :: now(:, :)   !! (nnode, nfield)
+    real(wp), intent(out) :: now(:, :)   !! (nnode, nfield) [unit of each field]
     integer :: f
 
     now = 0
@@ -231,7 +231,7 @@ contains
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: now(:, :)   !! nodal values then (nnode, nfield)
     real(wp), intent(in) :: time
-    integer, intent(in) :: g, at        !! place of the group; 1: start, 2: end of the step
+    integer, intent(in) :: g, at   !! number of the group; 1: start, 2: end of the step
     type(drivers_t), intent(inout) :: drivers(:)
     integer :: k, e
 
@@ -267,7 +267,7 @@ contains
     type(field_t), intent(in) :: field
     real(wp), intent(in) :: now(:)   !! (nnode)
     type(group_t), intent(in) :: group
-    integer, intent(in) :: e         !! element
+    integer, intent(in) :: e   !! element
     real(wp) :: values(group%rule%n)
     real(wp), allocatable :: xi(:), place(:, :), weight(:)
     real(wp) :: nodal(8), phi(8), dphi(2, 8), phi3(3), dphi3(3)

@@ -41,8 +41,9 @@ contains
     type(group_t), intent(in) :: group
     type(instant_t), intent(in) :: instant
     type(layout_t), intent(in) :: layout
-    real(wp), intent(in) :: phi(:, :)            !! shape functions (8, npoint)
-    real(wp), intent(in) :: du(:), start(:)      !! local unknowns (ndof)
+    real(wp), intent(in) :: phi(:, :)            !! (8, npoint) shape functions [-]
+    real(wp), intent(in) :: du(:)                !! (ndof) motion of the local unknowns [unknown]
+    real(wp), intent(in) :: start(:)             !! (ndof) their values at the start of the step [unknown]
     real(wp), intent(out) :: temperature(:, :)   !! (2, npoint) [temperature]
     integer :: u, first, last
 

@@ -32,10 +32,12 @@ contains
     end do
   end subroutine quad8_rule
 
-  !> Cartesian derivatives nx(8), ny(8) and the determinant of the Jacobian.
+  !> Cartesian derivatives and the determinant of the Jacobian.
   pure subroutine derivatives(dphi, x, nx, ny, detj)
-    real(wp), intent(in) :: dphi(2, 8), x(2, 8)
-    real(wp), intent(out) :: nx(8), ny(8), detj
+    real(wp), intent(in) :: dphi(2, 8)      !! [-]
+    real(wp), intent(in) :: x(2, 8)         !! nodes [length]
+    real(wp), intent(out) :: nx(8), ny(8)   !! [1/length]
+    real(wp), intent(out) :: detj           !! [length^2]
     real(wp) :: j11, j12, j21, j22
 
     j11 = dot_product(dphi(1, :), x(1, :))

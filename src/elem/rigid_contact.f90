@@ -7,7 +7,7 @@
 !> A point may be one that moves along its side as that moves, as the place of a corner does: drift_t.
 module rigid_contact
   use contact_point, only: act, at_penetration, at_piece, at_status, at_xi, contact_point_t, meeting_t, most_unknowns, side_point
-  use die_search, only: foot_t
+  use closest_point, only: foot_t => closest_point_t
   use kinds, only: wp
   use law_api, only: contact_open, law_t
   use materials, only: material_t
@@ -61,16 +61,18 @@ contains
   pure subroutine press(law, material, drivers, side, xi, point, foot, allowed, weight, committed, trial, force, stiffness, drift)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: drivers(:, :)          !! (ndriver, 2) of the law
+    real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) of the law [unit of each driver]
     type(side_t), intent(in) :: side
-    real(wp), intent(in) :: xi                     !! place on the side
+    real(wp), intent(in) :: xi   !! place on the side
     type(contact_point_t), intent(in) :: point
-    type(foot_t), intent(in) :: foot               !! in the pilot's axes
-    real(wp), intent(in) :: allowed                !! depth that needs no pressure [length]
+    type(foot_t), intent(in) :: foot   !! in the pilot's axes
+    real(wp), intent(in) :: allowed    !! depth that needs no pressure [length]
     real(wp), intent(in) :: weight
-    real(wp), intent(in) :: committed(:)
-    real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
-    type(drift_t), intent(in), optional :: drift   !! of a point that is not fixed on its side
+    real(wp), intent(in) :: committed(:)               !! (nstate) [unit of each component]
+    real(wp), intent(inout) :: trial(:)                !! (nstate) [unit of each component]
+    real(wp), intent(inout) :: force(ndof)             !! [force]
+    real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
+    type(drift_t), intent(in), optional :: drift       !! of a point that is not fixed on its side
     type(meeting_t) :: meeting
     real(wp) :: phi(3), dphi(3), lever(2), q(2), moment, dlever(2, ndof), dmoment(ndof), dq(2, most_unknowns)
     integer :: j, k
@@ -150,14 +152,15 @@ contains
   end subroutine meet
 
   pure function turned(v, angle) result(w)
-    real(wp), intent(in) :: v(2), angle
+    real(wp), intent(in) :: v(2)    !! [of any unit]
+    real(wp), intent(in) :: angle   !! [radian]
     real(wp) :: w(2)
 
     w = [cos(angle)*v(1) - sin(angle)*v(2), sin(angle)*v(1) + cos(angle)*v(2)]
   end function turned
 
   pure function outer(a, b) result(c)
-    real(wp), intent(in) :: a(2), b(ndof)
+    real(wp), intent(in) :: a(2), b(ndof)   !! [of any unit]
     real(wp) :: c(2, ndof)
 
     c = spread(a, 2, ndof)*spread(b, 1, 2)

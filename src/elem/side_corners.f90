@@ -6,14 +6,14 @@
 !> (V - y).y' = 0, its depth is d = (V - y).e_R, along the side's own inner normal e_R. Where e_R
 !> leaves the corner's fan the side lies along a face, and the face's normal is taken.
 module side_corners
-  use die_feet, only: foot_t, projections
+  use closest_point, only: closest_point_t, stationary_points, whole_piece
   use dies, only: die_t
   use kinds, only: wp
   use shape_functions, only: line3
   use vectors, only: length_of
   implicit none
   private
-  public :: corner_t, deepest_corner, foot_at_corner
+  public :: corner_t, deepest_corner, closest_at_corner
 
   !> The corner deepest in a stretch of a side.
   type :: corner_t
@@ -49,7 +49,7 @@ contains
     do k = 1, size(die%corners, 2)
       one%vertex = die%corners(1:2, k)
       if (any(one%vertex < box(1:2)) .or. any(one%vertex > box(3:4))) cycle
-      call projections(side, one%vertex, n, xi)
+      call stationary_points(side, one%vertex, whole_piece, n, xi)
       do r = 1, n
         if (xi(r) < from .or. .not. xi(r) < to) cycle
         one%place = xi(r)
@@ -81,15 +81,15 @@ contains
     corner%d = dot_product(matmul(side, phi) - corner%vertex, corner%normal)
   end subroutine measure_corner
 
-  !> A corner as the foot of the side's point.
-  pure function foot_at_corner(corner) result(foot)
+  !> A corner as the closest point to the side's point.
+  pure function closest_at_corner(corner) result(closest)
     type(corner_t), intent(in) :: corner
-    type(foot_t) :: foot
+    type(closest_point_t) :: closest
 
-    foot%piece = corner%piece
-    foot%xi = corner%xi
-    foot%d = corner%d
-    foot%normal = corner%normal
-  end function foot_at_corner
+    closest%piece = corner%piece
+    closest%xi = corner%xi
+    closest%d = corner%d
+    closest%normal = corner%normal
+  end function closest_at_corner
 
 end module side_corners

@@ -19,8 +19,15 @@ contains
   pure subroutine add_section(finite, wanted, rule, section, x, du, nx, ny, dv, stress, tangent, force, stiffness)
     logical, intent(in) :: finite, wanted
     type(quad8_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: section(3, 2), x(2, 8), du(:), nx(:, :), ny(:, :), dv(:), stress(:, :), tangent(:, :, :)
-    real(wp), intent(inout) :: force(19), stiffness(19, 19)
+    real(wp), intent(in) :: section(3, 2)          !! thickness [length] and slopes [-]: of the geometry, and their motion
+    real(wp), intent(in) :: x(2, 8)                !! nodes at the start of the step [length]
+    real(wp), intent(in) :: du(:)                  !! (ndof) motion of the local unknowns [unknown]
+    real(wp), intent(in) :: nx(:, :), ny(:, :)     !! (8, npoint) [1/length]
+    real(wp), intent(in) :: dv(:)                  !! (npoint) [volume]
+    real(wp), intent(in) :: stress(:, :)           !! (4, npoint) [stress]
+    real(wp), intent(in) :: tangent(:, :, :)       !! (4, 5, npoint) [stress]
+    real(wp), intent(inout) :: force(19)           !! [residual]
+    real(wp), intent(inout) :: stiffness(19, 19)   !! [residual/unknown]
     real(wp) :: g(5, 19), m(5, 5)
     integer :: p
 
@@ -44,9 +51,15 @@ contains
     logical, intent(in) :: finite, wanted
     type(quad8_rule_t), intent(in) :: rule
     type(dilatation_t), intent(in) :: own
-    real(wp), intent(in) :: section(3, 2), x(2, 8), du(:), nx(:, :), ny(:, :), dv(:), stress(:, :), tangent(:, :, :)
-    real(wp), intent(out) :: force(:)
-    real(wp), intent(inout) :: stiffness(:, :)
+    real(wp), intent(in) :: section(3, 2)        !! thickness [length] and slopes [-]: of the geometry, and their motion
+    real(wp), intent(in) :: x(2, 8)              !! nodes at the start of the step [length]
+    real(wp), intent(in) :: du(:)                !! (ndof) motion of the local unknowns [unknown]
+    real(wp), intent(in) :: nx(:, :), ny(:, :)   !! (8, npoint) [1/length]
+    real(wp), intent(in) :: dv(:)                !! (npoint) [volume]
+    real(wp), intent(in) :: stress(:, :)         !! (4, npoint) [stress]
+    real(wp), intent(in) :: tangent(:, :, :)     !! (4, 5, npoint) [stress]
+    real(wp), intent(out) :: force(:)            !! (ndof) [residual]
+    real(wp), intent(inout) :: stiffness(:, :)   !! (ndof, ndof) [residual/unknown]
     real(wp) :: g(5, 19, size(dv)), geometry(5, 5, size(dv)), m(size(dv)), shared(4, size(dv))
     integer :: p, n
 
@@ -117,7 +130,7 @@ contains
 
   !> sigma tr h - sigma h^T as a matrix on h = (xx, xy, yx, yy, zz).
   pure function geometric(s) result(m)
-    real(wp), intent(in) :: s(4)
+    real(wp), intent(in) :: s(4)   !! [stress]
     real(wp) :: m(5, 5)
 
     m(:, 1) = [0.0_wp, s(3), 0.0_wp, s(2), s(4)]

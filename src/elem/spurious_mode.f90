@@ -42,8 +42,8 @@ contains
   pure subroutine find_spurious_mode(scene, group, x, motion, share, element)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
-    real(wp), intent(in) :: x(:, :, :)       !! places at the end of the motion (2, 8, nelem)
-    real(wp), intent(in) :: motion(:, :)     !! of all nodes (2, nnode)
+    real(wp), intent(in) :: x(:, :, :)     !! (2, 8, nelem) nodes at the end of the motion [length]
+    real(wp), intent(in) :: motion(:, :)   !! (2, nnode) of all nodes [length]
     real(wp), intent(out) :: share
     integer, intent(out) :: element
     type(quad8_rule_t) :: seen, all

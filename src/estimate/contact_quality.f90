@@ -1,12 +1,12 @@
 !> How well the sides of a mesh can follow the dies they touch.
 !>
-!> Two things that no pressure mends: a side whose parabola is deeper in the die between its points than at them, and a corner of
+!> Two things that no pressure corrects: a side whose parabola is deeper in the die between its points than at them, and a corner of
 !> the die that sticks into a side. Both are measured over the penetration that the side's law allows.
 module contact_quality
   use contact_penalties, only: allowed_penetration
   use contact_point, only: at_penetration, at_status, contact_block
-  use contact_scan, only: deepest_sample, in_pilot_axes, is_near
-  use dies, only: die_t, present_die
+  use contact_scan, only: deepest_sample, is_near
+  use dies, only: die_t, in_pilot_axes, present_die
   use fields, only: pilot_field
   use kinds, only: wp
   use law_api, only: contact_open

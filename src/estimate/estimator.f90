@@ -26,7 +26,7 @@ module estimator
     integer :: material = 0
     type(patches_t) :: patches
     integer, allocatable :: connectivity(:, :)   !! (8, nelem)
-    !> Group, element of the group, place among all solid elements, rule (nelem).
+    !> Group, element of the group, number among all solid elements, rule (nelem).
     integer, allocatable :: group(:), element(:), place(:), rule(:)
   end type part_t
 
@@ -54,7 +54,7 @@ contains
   !> Patches of all materials.
   pure subroutine set_up_estimator(scene, laws, self)
     type(scene_t), intent(in) :: scene
-    type(law_t), intent(in) :: laws(:)
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
     type(estimator_t), intent(out) :: self
     integer :: m, n
     integer :: list(size(scene%materials))

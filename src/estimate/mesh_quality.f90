@@ -2,7 +2,7 @@
 !>
 !> With the parent axes' tangents a = dx/dxi, b = dx/deta and J = a x b, an element has
 !> - corner angles between its sides, by their tangents, so that curved sides count: above 180 degrees where it is concave;
-!> - the place of its middle nodes: twice the distance of their projection on the chord from the chord's middle, over the chord
+!> - the position of its middle nodes: twice the distance of their projection on the chord from the chord's middle, over the chord
 !>   (1/3 is the end of the middle third);
 !> - the Jacobian ratio min J / max |J| and the scaled Jacobian min J/(|a||b|), both over corners and 3 x 3 points;
 !> - the aspect ratio of its two medians.
@@ -10,6 +10,7 @@
 !> Jacobian); R.D. Henshell, K.G. Shaw, Int. J. Num. Meth. Engng 9 (1975) 495-507 (the quarter point, where J is zero at a corner).
 module mesh_quality
   use kinds, only: pi, wp
+  use plane_vectors, only: cross
   use quadrature, only: square_rule
   use remeshing, only: aspect_ratio, is_upper, jacobian_ratio, largest_angle, least_angle, middle_share, ncriteria, scaled_jacobian
   use shape_functions, only: quad8, quad8_corner, quad8_side
@@ -45,7 +46,7 @@ contains
   !> All measures of an element, in the order of the criteria; angles in degrees.
   pure function element_shape(places, x) result(measures)
     type(shape_places_t), intent(in) :: places
-    real(wp), intent(in) :: x(2, 8)       !! nodes [length]
+    real(wp), intent(in) :: x(2, 8)   !! nodes [length]
     real(wp) :: measures(ncriteria)
     real(wp), dimension(2, nplace) :: a, b
     real(wp) :: det(nplace), sides(nplace), angle(ncorner), chord(2), arm(2), place, medians(2)
@@ -91,18 +92,11 @@ contains
     if (b > abs(a)/huge(1.0_wp) .and. b > 0) ratio = a/b
   end function over
 
-  pure function cross(a, b) result(z)
-    real(wp), intent(in) :: a(2), b(2)
-    real(wp) :: z
-
-    z = a(1)*b(2) - a(2)*b(1)
-  end function cross
-
-  !> Measures of all elements of a mesh (ncriteria, nelem).
+  !> Measures of all elements of a mesh.
   pure subroutine mesh_shape(coordinates, connectivity, measures)
     real(wp), intent(in) :: coordinates(:, :)   !! (2, nnode) [length]
     integer, intent(in) :: connectivity(:, :)   !! (8, nelem)
-    real(wp), intent(out) :: measures(:, :)
+    real(wp), intent(out) :: measures(:, :)     !! (ncriteria, nelem) [unit of each criterion]
     type(shape_places_t) :: places
     integer :: e
 
@@ -114,7 +108,7 @@ contains
 
   !> Which criteria an element fails.
   pure function is_bad(measures, limits) result(bad)
-    real(wp), intent(in) :: measures(ncriteria), limits(ncriteria)
+    real(wp), intent(in) :: measures(ncriteria), limits(ncriteria)   !! [unit of each criterion]
     logical :: bad(ncriteria)
 
     bad = merge(measures > limits, measures < limits, is_upper)

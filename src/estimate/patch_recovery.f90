@@ -3,7 +3,7 @@
 !> Around every corner node of the mesh a complete quadratic polynomial is fitted, by least squares, to the values at the 2 x 2
 !> points of the elements that meet there. Nodes where fewer than three elements meet, on the boundary and on material lines, take
 !> the mean of the polynomials of their neighbours that have one; where there is none the patch is widened by a row. Patches whose
-!> points do not tell a quadratic get a linear polynomial. In an element the polynomials of its four corners are blended by the
+!> points do not determine a quadratic get a linear polynomial. In an element the polynomials of its four corners are blended by the
 !> bilinear shape functions, so that a field that is quadratic in x and y comes out exactly on elements of any shape.
 !> Sources: O.C. Zienkiewicz, J.Z. Zhu, Int. J. Num. Meth. Engng 33 (1992) 1331-1364 and 1365-1382 (patches, points); T. Blacker,
 !> T. Belytschko, Int. J. Num. Meth. Engng 37 (1994) 517-536 (blending).
@@ -16,7 +16,7 @@ module patch_recovery
   !> Terms of the polynomials: 1, x, y, x^2, x y, y^2.
   integer, parameter :: nterm = 6
   !> Sums of products of two terms: x^a y^b up to the fourth degree in the order 1, x, y, x^2, x y, y^2, x^3, x^2 y, ... y^4,
-  !> and the place of each product among them.
+  !> and the position of each product among them.
   integer, parameter :: nmoment = 15
   integer, parameter :: moment(nterm, nterm) = reshape([1, 2, 3, 4, 5, 6, &
                                                         2, 4, 5, 7, 8, 9, &
@@ -28,7 +28,7 @@ module patch_recovery
   integer, parameter :: nsample = 4, nvalue = 8
   !> Elements that a node needs for a patch of its own.
   integer, parameter :: least_elements = 3
-  !> A term that keeps less than this share of itself beside the others is not told from them.
+  !> A term that keeps less than this share of itself beside the others is not distinguished from them.
   real(wp), parameter :: dependent = 1.0e-8_wp
 
   !> Patches of a set of elements; only their nodes matter.
@@ -48,9 +48,9 @@ module patch_recovery
 
 contains
 
-  !> Patches of elements (8, nelem).
+  !> Patches of elements.
   pure subroutine find_patches(connectivity, patches)
-    integer, intent(in) :: connectivity(:, :)
+    integer, intent(in) :: connectivity(:, :)   !! (8, nelem)
     type(patches_t), intent(out) :: patches
     integer, allocatable :: start(:), around(:), seen_element(:), seen_vertex(:)
     integer :: v, nvertex, pass, reach, at, i, k
@@ -179,7 +179,7 @@ contains
     end do
   end subroutine list_elements
 
-  !> Terms of the polynomials at a place.
+  !> Terms of the polynomials at a point.
   pure function terms(x) result(t)
     real(wp), intent(in) :: x(2)
     real(wp) :: t(nterm)
@@ -190,9 +190,9 @@ contains
   !> Polynomials of all vertices from values at the 2 x 2 points.
   pure subroutine fit_patches(patches, coordinates, place, value, polynomials)
     type(patches_t), intent(in) :: patches
-    real(wp), intent(in), contiguous :: coordinates(:, :)    !! of all nodes (2, nnode) [length]
-    real(wp), intent(in), contiguous :: place(:, :, :)       !! points (2, 4, nelem) [length]
-    real(wp), intent(in), contiguous :: value(:, :, :)       !! (nvalue, 4, nelem)
+    real(wp), intent(in), contiguous :: coordinates(:, :)   !! (2, nnode) [length]
+    real(wp), intent(in), contiguous :: place(:, :, :)      !! (2, 4, nelem) points [length]
+    real(wp), intent(in), contiguous :: value(:, :, :)      !! (nvalue, 4, nelem) [unit of each value]
     type(polynomials_t), intent(out) :: polynomials
     real(wp) :: moments(nmoment), gram(nterm, nterm), right(nvalue, nterm), sums(nvalue), t(nterm), scale
     real(wp), allocatable :: points(:, :)   ! terms at the points of a patch
@@ -242,7 +242,7 @@ contains
   end subroutine fit_patches
 
   !> Solve for the coefficients, in place, by Cholesky's factors (their diagonal inverted); of a lower degree where the points do
-  !> not tell one.
+  !> not determine one.
   pure subroutine solve_normal(gram, right)
     real(wp), intent(inout) :: gram(nterm, nterm), right(nvalue, nterm)
     real(wp) :: diagonal
@@ -278,7 +278,7 @@ contains
     right(:, degree_end + 1:) = 0
   end subroutine solve_normal
 
-  !> The mean of the donors' polynomials, moved to the place and scale of this vertex.
+  !> The mean of the donors' polynomials, moved to the position and scale of this vertex.
   pure subroutine take_mean(patches, v, polynomials)
     type(patches_t), intent(in) :: patches
     integer, intent(in) :: v
@@ -307,9 +307,9 @@ contains
     type(patches_t), intent(in) :: patches
     type(polynomials_t), intent(in) :: polynomials
     integer, intent(in) :: e
-    real(wp), intent(in), contiguous :: place(:, :)   !! points (2, n) [length]
-    real(wp), intent(in), contiguous :: blend(:, :)   !! bilinear shape functions of the corners there (4, n)
-    real(wp), intent(out) :: value(nvalue, size(place, 2))
+    real(wp), intent(in), contiguous :: place(:, :)          !! (2, n) points [length]
+    real(wp), intent(in), contiguous :: blend(:, :)          !! (4, n) bilinear shape functions of the corners there [-]
+    real(wp), intent(out) :: value(nvalue, size(place, 2))   !! (nvalue, n) [unit of each value]
     real(wp) :: coefficient(nvalue, nterm), centre(2), scale, t(nterm, size(place, 2))
     integer :: k, i, v, p
 

@@ -65,7 +65,7 @@ contains
     end if
   end function fields_of_rule
 
-  !> Weights of the values at points for the best bilinear fit at a place; 1, xi, eta, xi eta are orthogonal under the rule.
+  !> Weights of the values at points for the best bilinear fit at a point; 1, xi, eta, xi eta are orthogonal under the rule.
   pure function bilinear_fit(xi, weight, place) result(share)
     real(wp), intent(in) :: xi(:, :), weight(:), place(2)
     real(wp) :: share(size(weight))
@@ -79,15 +79,15 @@ contains
   pure subroutine missing_squares(patches, fields, rule_of, section, coordinates, connectivity, value, weights, &
                                   missing, whole, volume)
     type(patches_t), intent(in) :: patches
-    type(fields_t), intent(in) :: fields(:)          !! of all rules
-    integer, intent(in) :: rule_of(:)                !! of each element, place in `fields` (nelem)
-    real(wp), intent(in) :: section(3)               !! thickness (sections)
+    type(fields_t), intent(in) :: fields(:)                 !! (nrule) of all rules
+    integer, intent(in) :: rule_of(:)                       !! (nelem) of each element, position in `fields`
+    real(wp), intent(in) :: section(3)                      !! thickness (sections) [length] and its slopes [-]
     real(wp), intent(in), contiguous :: coordinates(:, :)   !! (2, nnode) [length]
-    integer, intent(in) :: connectivity(:, :)        !! (8, nelem)
-    real(wp), intent(in), contiguous :: value(:, :, :)      !! at own points (ncomp, up to 9, nelem)
-    real(wp), intent(in) :: weights(:, :)            !! of the square of deviator and of pressure (2, nelem) [1/stress]
-    real(wp), intent(out) :: missing(:, :), whole(:, :)   !! stress [energy], strain [volume] (2, nelem)
-    real(wp), intent(out) :: volume(:)               !! (nelem)
+    integer, intent(in) :: connectivity(:, :)               !! (8, nelem)
+    real(wp), intent(in), contiguous :: value(:, :, :)      !! (ncomp, 9, nelem) at own points, up to 9 [unit of each component]
+    real(wp), intent(in) :: weights(:, :)                   !! (2, nelem) of the square of deviator and of pressure [1/stress]
+    real(wp), intent(out) :: missing(:, :), whole(:, :)     !! (2, nelem) stress [energy], strain [volume]
+    real(wp), intent(out) :: volume(:)                      !! (nelem) [volume]
     type(polynomials_t) :: polynomials
     real(wp) :: place(2, nsample, size(connectivity, 2)), at_samples(ncomp, nsample, size(connectivity, 2))
     real(wp) :: x(2, 8), here(2, npoint), own(ncomp, npoint), better(ncomp, npoint), a(2), b(2), dv

@@ -24,7 +24,7 @@ contains
   pure subroutine find_triggers(scene, solution, found)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
-    type(trigger_t), allocatable, intent(out) :: found(:)
+    type(trigger_t), allocatable, intent(out) :: found(:)   !! (ntrigger)
     real(wp) :: limit
     integer :: k
 

@@ -37,21 +37,21 @@ module kinematics_api
       type(material_t), intent(in) :: material
       real(wp), intent(in) :: dt
       integer, intent(in) :: n, nstate
-      real(wp), intent(in) :: drivers(:, :, :)   !! (ndriver, 2, n) of the law, at the start and at the end of the step
-      real(wp), intent(in) :: f(5, n)
-      real(wp), intent(in) :: committed(nstate, n)
-      real(wp), intent(out) :: trial(nstate, n)
-      real(wp), intent(out) :: tangent(4, 5, n)  !! [stress]
-      integer, intent(out) :: status(n)          !! answers of the law
+      real(wp), intent(in) :: drivers(:, :, :)       !! (ndriver, 2, n) of the law at both ends of the step [unit of each driver]
+      real(wp), intent(in) :: f(5, n)                !! [-]
+      real(wp), intent(in) :: committed(nstate, n)   !! [unit of each component]
+      real(wp), intent(out) :: trial(nstate, n)      !! [unit of each component]
+      real(wp), intent(out) :: tangent(4, 5, n)      !! [stress]
+      integer, intent(out) :: status(n)              !! answers of the law
     end subroutine kinematics_update_i
   end interface
 
 contains
 
-  !> State of a solid point made of a law: stress, elastic strain, history, with places filled in.
+  !> State of a solid point made of a law: stress, elastic strain, history, with their components filled in.
   pure subroutine solid_variables(law, variables)
     type(law_t), intent(in) :: law
-    type(state_variable_t), allocatable, intent(out) :: variables(:)
+    type(state_variable_t), allocatable, intent(out) :: variables(:)   !! (nvariable)
     integer :: k, next
 
     variables = [state_variable('stress', 'stress', transfer_tensor, 4), &

@@ -6,9 +6,9 @@ module kinematics_registry
   public :: list_kinematics
 
   interface
-    !> All kinematics, in a fixed order: a member's place is its `kinematics_id`.
+    !> All kinematics, in a fixed order: a member's position is its `kinematics_id`.
     module subroutine list_kinematics(rows)
-      type(kinematics_t), allocatable, intent(out) :: rows(:)
+      type(kinematics_t), allocatable, intent(out) :: rows(:)   !! (nrow)
     end subroutine list_kinematics
   end interface
 end module kinematics_registry

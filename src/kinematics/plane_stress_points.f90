@@ -28,12 +28,12 @@ contains
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt
     integer, intent(in) :: n, nstate
-    real(wp), intent(in) :: drivers(:, :, :)   !! (ndriver, 2, n) of the law
-    real(wp), intent(inout) :: f(5, n)
-    real(wp), intent(in) :: committed(nstate, n)
-    real(wp), intent(out) :: trial(nstate, n)
-    real(wp), intent(out) :: tangent(4, 5, n)
-    integer, intent(out) :: status(n)
+    real(wp), intent(in) :: drivers(:, :, :)       !! (ndriver, 2, n) of the law at both ends of the step [unit of each driver]
+    real(wp), intent(inout) :: f(5, n)             !! [-]
+    real(wp), intent(in) :: committed(nstate, n)   !! [unit of each component]
+    real(wp), intent(out) :: trial(nstate, n)      !! [unit of each component]
+    real(wp), intent(out) :: tangent(4, 5, n)      !! [stress]
+    integer, intent(out) :: status(n)              !! answers of the law
     real(wp) :: strain(n), low(n), high(n), step
     integer :: i, iteration
     logical :: met(n)

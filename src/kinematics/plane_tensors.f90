@@ -14,12 +14,12 @@ module plane_tensors
 
 contains
 
-  !> e = ln(b)/2 and de(4,5): derivative of e (shear row doubled: engineering) along db = h b + b h^T,
+  !> e = ln(b)/2 and its derivative `de` (shear row doubled: engineering) along db = h b + b h^T,
   !> h with the components xx, xy, yx, yy, zz.
   pure subroutine half_log(b, e, de)
-    real(wp), intent(in) :: b(4)
-    real(wp), intent(out) :: e(4)
-    real(wp), intent(out) :: de(4, 5)
+    real(wp), intent(in) :: b(4)        !! [-]
+    real(wp), intent(out) :: e(4)       !! [-]
+    real(wp), intent(out) :: de(4, 5)   !! [-]
     real(wp) :: m, q, s, det, t2, c, gamma, r2
     real(wp) :: dm(4), dq(4), ds(4), da(4), dc(4)
 
@@ -55,7 +55,7 @@ contains
 
   !> exp(2 e).
   pure function exp_twice(e) result(b)
-    real(wp), intent(in) :: e(4)
+    real(wp), intent(in) :: e(4)   !! [-]
     real(wp) :: b(4)
     real(wp) :: m, q, r2, factor, c, s
 

@@ -20,7 +20,7 @@ module step_frame
 contains
 
   pure function frame_of_step(f) result(frame)
-    real(wp), intent(in) :: f(5)
+    real(wp), intent(in) :: f(5)   !! components xx, xy, yx, yy, zz [-]
     type(frame_t) :: frame
     real(wp) :: n, d, r2
 
@@ -51,7 +51,7 @@ contains
   !> R t R^T of a tensor xx, yy, xy, zz; `back`: R^T t R. A strain with the engineering shear has `shear` = 2.
   pure function turned(frame, t, back, shear) result(u)
     type(frame_t), intent(in) :: frame
-    real(wp), intent(in) :: t(4)
+    real(wp), intent(in) :: t(4)   !! [of any unit]
     logical, intent(in), optional :: back
     real(wp), intent(in), optional :: shear
     real(wp) :: u(4)
@@ -78,7 +78,7 @@ contains
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     type(frame_t), intent(in) :: frame
-    real(wp), intent(inout) :: history(:)
+    real(wp), intent(inout) :: history(:)   !! (nhistory) [unit of each component]
     integer :: k, row
 
     row = 1
@@ -94,10 +94,12 @@ contains
   !> Turn a law's answer forward; `tangent` becomes d tau / d h (4 components of h) instead of the law's own.
   pure subroutine turn_answer(frame, e, de, law_tangent, tau, elastic, tangent)
     type(frame_t), intent(in) :: frame
-    real(wp), intent(in) :: e(4), de(4, 4)         !! trial strain in the fixed frame, engineering shear, and its derivative by h
-    real(wp), intent(in) :: law_tangent(4, 4)      !! [stress]
-    real(wp), intent(inout) :: tau(4), elastic(4)  !! elastic strain with the engineering shear
-    real(wp), intent(out) :: tangent(4, 4)
+    real(wp), intent(in) :: e(4)                !! trial strain in the fixed frame, engineering shear [-]
+    real(wp), intent(in) :: de(4, 4)            !! its derivative by h [-]
+    real(wp), intent(in) :: law_tangent(4, 4)   !! [stress]
+    real(wp), intent(inout) :: tau(4)           !! [stress]
+    real(wp), intent(inout) :: elastic(4)       !! elastic strain with the engineering shear [-]
+    real(wp), intent(out) :: tangent(4, 4)      !! [stress]
     real(wp) :: spin_e(4), spin_tau(4)
     integer :: j
 

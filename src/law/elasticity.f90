@@ -18,7 +18,8 @@ contains
   end subroutine moduli
 
   pure function hooke_stress(bulk, shear, strain) result(stress)
-    real(wp), intent(in) :: bulk, shear, strain(4)
+    real(wp), intent(in) :: bulk, shear   !! [stress]
+    real(wp), intent(in) :: strain(4)     !! engineering shear [-]
     real(wp) :: stress(4)
     real(wp) :: volume
 

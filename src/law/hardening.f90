@@ -15,10 +15,10 @@ module hardening
     !> Yield stress and its slope at an equivalent plastic strain.
     pure subroutine yield_i(a, curve, p, sy, slope)
       import :: wp
-      real(wp), intent(in) :: a(:)            !! (most_numbers) of the form
-      real(wp), intent(in) :: curve(:, :)     !! (2, npoint): plastic strain, yield stress [stress]
-      real(wp), intent(in) :: p               !! equivalent plastic strain [-]
-      real(wp), intent(out) :: sy, slope      !! [stress], d(sy)/dp [stress]
+      real(wp), intent(in) :: a(:)          !! (most_numbers) of the form [unit of each number]
+      real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
+      real(wp), intent(in) :: p             !! equivalent plastic strain [-]
+      real(wp), intent(out) :: sy, slope    !! [stress], d(sy)/dp [stress]
     end subroutine yield_i
   end interface
 
@@ -26,8 +26,10 @@ contains
 
   !> Yield a(1), modulus a(2).
   pure subroutine yield_linear(a, curve, p, sy, slope)
-    real(wp), intent(in) :: a(:), curve(:, :), p
-    real(wp), intent(out) :: sy, slope
+    real(wp), intent(in) :: a(:)          !! (most_numbers) [unit of each number]
+    real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
+    real(wp), intent(in) :: p             !! [-]
+    real(wp), intent(out) :: sy, slope    !! [stress]
 
     sy = a(1) + a(2)*p
     slope = a(2)
@@ -35,8 +37,10 @@ contains
 
   !> E. Voce (1948): yield a(1), rise a(2) at the rate a(3), modulus a(4) that remains.
   pure subroutine yield_voce(a, curve, p, sy, slope)
-    real(wp), intent(in) :: a(:), curve(:, :), p
-    real(wp), intent(out) :: sy, slope
+    real(wp), intent(in) :: a(:)          !! (most_numbers) [unit of each number]
+    real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
+    real(wp), intent(in) :: p             !! [-]
+    real(wp), intent(out) :: sy, slope    !! [stress]
 
     sy = a(1) + a(2)*(1 - exp(-a(3)*p)) + a(4)*p
     slope = a(2)*a(3)*exp(-a(3)*p) + a(4)
@@ -44,8 +48,10 @@ contains
 
   !> H.W. Swift (1952): a(1) (a(2) + p)**a(3).
   pure subroutine yield_swift(a, curve, p, sy, slope)
-    real(wp), intent(in) :: a(:), curve(:, :), p
-    real(wp), intent(out) :: sy, slope
+    real(wp), intent(in) :: a(:)          !! (most_numbers) [unit of each number]
+    real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
+    real(wp), intent(in) :: p             !! [-]
+    real(wp), intent(out) :: sy, slope    !! [stress]
 
     sy = a(1)*(a(2) + p)**a(3)
     slope = a(3)*sy/(a(2) + p)
@@ -53,8 +59,10 @@ contains
 
   !> Linear between the points of the curve, and constant after the last one.
   pure subroutine yield_table(a, curve, p, sy, slope)
-    real(wp), intent(in) :: a(:), curve(:, :), p
-    real(wp), intent(out) :: sy, slope
+    real(wp), intent(in) :: a(:)          !! (most_numbers) [unit of each number]
+    real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
+    real(wp), intent(in) :: p             !! [-]
+    real(wp), intent(out) :: sy, slope    !! [stress]
     integer :: i, n
 
     n = size(curve, 2)
@@ -72,8 +80,10 @@ contains
 
   !> Norton-Hoff: a(1) p**a(2) exp(-a(3) p). The slope is asked for above p = 0 only.
   pure subroutine yield_norton(a, curve, p, sy, slope)
-    real(wp), intent(in) :: a(:), curve(:, :), p
-    real(wp), intent(out) :: sy, slope
+    real(wp), intent(in) :: a(:)          !! (most_numbers) [unit of each number]
+    real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
+    real(wp), intent(in) :: p             !! [-]
+    real(wp), intent(out) :: sy, slope    !! [stress]
 
     sy = a(1)*p**a(2)*exp(-a(3)*p)
     slope = 0
@@ -82,8 +92,10 @@ contains
 
   !> G'Sell-Jonas: a(1) (1 - exp(-a(2) p)) exp(a(3) p**2). The slope is asked for above p = 0 only.
   pure subroutine yield_gsell(a, curve, p, sy, slope)
-    real(wp), intent(in) :: a(:), curve(:, :), p
-    real(wp), intent(out) :: sy, slope
+    real(wp), intent(in) :: a(:)          !! (most_numbers) [unit of each number]
+    real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
+    real(wp), intent(in) :: p             !! [-]
+    real(wp), intent(out) :: sy, slope    !! [stress]
     real(wp) :: rise
 
     ! 1 - exp(-w p): without loss of digits near 0, without overflow far out
@@ -96,11 +108,11 @@ contains
   !> A form between two sets of numbers: (1 - share) of the first, share of the second.
   pure subroutine yield_between(yield, a, b, share, curve_a, curve_b, p, sy, slope)
     procedure(yield_i) :: yield
-    real(wp), intent(in) :: a(:), b(:)                     !! (most_numbers)
-    real(wp), intent(in) :: share
-    real(wp), intent(in) :: curve_a(:, :), curve_b(:, :)   !! (2, npoint)
-    real(wp), intent(in) :: p
-    real(wp), intent(out) :: sy, slope
+    real(wp), intent(in) :: a(:), b(:)                     !! (most_numbers) [unit of each number]
+    real(wp), intent(in) :: share                          !! [-]
+    real(wp), intent(in) :: curve_a(:, :), curve_b(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
+    real(wp), intent(in) :: p                              !! [-]
+    real(wp), intent(out) :: sy, slope                     !! [stress]
     real(wp) :: sy_b, slope_b
 
     call yield(a, curve_a, p, sy, slope)

@@ -129,15 +129,15 @@ module law_api
                                  status)
       import :: material_t, wp
       type(material_t), intent(in) :: material
-      real(wp), intent(in) :: dt                   !! length of the step [time]
-      real(wp), intent(in) :: drivers(:, :, :)     !! (ndriver, 2, n) at the start and at the end of the step, temperature first
-      real(wp), intent(in) :: trial_strain(:, :)   !! (4, n) [-]
-      real(wp), intent(in) :: committed(:, :)      !! (nhistory, n)
-      real(wp), intent(out) :: stress(:, :)        !! (4, n) [stress]
-      real(wp), intent(out) :: elastic_strain(:, :) !! (4, n) [-]
-      real(wp), intent(out) :: history(:, :)       !! (nhistory, n)
-      real(wp), intent(out) :: tangent(:, :, :)    !! (4, 4, n) [stress]
-      integer, intent(out) :: status(:)            !! (n) law_done or another answer
+      real(wp), intent(in) :: dt                      !! length of the step [time]
+      real(wp), intent(in) :: drivers(:, :, :)        !! (ndriver, 2, n) at both ends of it, temperature first [unit of each driver]
+      real(wp), intent(in) :: trial_strain(:, :)      !! (4, n) [-]
+      real(wp), intent(in) :: committed(:, :)         !! (nhistory, n) [unit of each component]
+      real(wp), intent(out) :: stress(:, :)           !! (4, n) [stress]
+      real(wp), intent(out) :: elastic_strain(:, :)   !! (4, n) [-]
+      real(wp), intent(out) :: history(:, :)          !! (nhistory, n) [unit of each component]
+      real(wp), intent(out) :: tangent(:, :, :)       !! (4, 4, n) [stress]
+      integer, intent(out) :: status(:)               !! (n) law_done or another answer
     end subroutine law_update_i
 
     !> Contact law at one point: pressure and friction from penetration and slip.
@@ -148,27 +148,27 @@ module law_api
                                 pressure, tau, history, tangent, status)
       import :: material_t, wp
       type(material_t), intent(in) :: material
-      real(wp), intent(in) :: dt              !! length of the step [time]
-      real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) at the start and at the end of the step, temperature first
-      real(wp), intent(in) :: penalty(2)      !! normal and tangential stiffness [stress/length]
-      real(wp), intent(in) :: augmentation    !! multiplier carried from earlier augmentations [stress]
-      real(wp), intent(in) :: penetration     !! d > 0 inside the die [length]
-      real(wp), intent(in) :: slip(2)         !! relative slip of the step [length]
-      real(wp), intent(in) :: tau_committed(2) !! friction stress at the start of the step [stress]
-      real(wp), intent(in) :: committed(:)    !! history at the start of the step (nhistory)
-      real(wp), intent(out) :: pressure, tau(2)  !! [stress]
-      real(wp), intent(out) :: history(:)     !! (nhistory)
-      real(wp), intent(out) :: tangent(3, 3)  !! [stress/length]
-      integer, intent(out) :: status          !! contact_open, contact_stick or contact_slip
+      real(wp), intent(in) :: dt                  !! length of the step [time]
+      real(wp), intent(in) :: drivers(:, :)       !! (ndriver, 2) at both ends of the step, temperature first [unit of each driver]
+      real(wp), intent(in) :: penalty(2)          !! normal and tangential stiffness [stress/length]
+      real(wp), intent(in) :: augmentation        !! multiplier carried from earlier augmentations [stress]
+      real(wp), intent(in) :: penetration         !! d > 0 inside the die [length]
+      real(wp), intent(in) :: slip(2)             !! relative slip of the step [length]
+      real(wp), intent(in) :: tau_committed(2)    !! friction stress at the start of the step [stress]
+      real(wp), intent(in) :: committed(:)        !! (nhistory) history at the start of the step [unit of each component]
+      real(wp), intent(out) :: pressure, tau(2)   !! [stress]
+      real(wp), intent(out) :: history(:)         !! (nhistory) [unit of each component]
+      real(wp), intent(out) :: tangent(3, 3)      !! [stress/length]
+      integer, intent(out) :: status              !! contact_open, contact_stick or contact_slip
     end subroutine law_slide_i
 
     !> Von Mises stress at which a point flows as it is now: what bounds the friction on it.
     pure function law_flow_i(material, drivers, history) result(flow)
       import :: material_t, wp
       type(material_t), intent(in) :: material
-      real(wp), intent(in) :: drivers(:)      !! (ndriver) as they are now, temperature first
-      real(wp), intent(in) :: history(:)      !! of the law (nhistory)
-      real(wp) :: flow                        !! [stress]
+      real(wp), intent(in) :: drivers(:)   !! (ndriver) as they are now, temperature first [unit of each driver]
+      real(wp), intent(in) :: history(:)   !! (nhistory) of the law [unit of each component]
+      real(wp) :: flow                     !! [stress]
     end function law_flow_i
 
     !> Isotropic elastic constants at a temperature.
@@ -218,8 +218,8 @@ module law_api
     !> What is wrong with the numbers of a card taken together, beyond the range of each.
     pure subroutine law_check_i(material, problems)
       import :: material_t, string_t
-      type(material_t), intent(in) :: material               !! at one temperature
-      type(string_t), allocatable, intent(out) :: problems(:) !! a line each, none where all is well
+      type(material_t), intent(in) :: material                  !! at one temperature
+      type(string_t), allocatable, intent(out) :: problems(:)   !! (nproblem) a line each, none where all is well
     end subroutine law_check_i
   end interface
 
@@ -255,7 +255,7 @@ contains
 
   !> A line of a card; with `word` it is one of several to choose from.
   pure function law_line(parameters, word, pairs, curve) result(line)
-    type(parameter_t), intent(in) :: parameters(:)
+    type(parameter_t), intent(in) :: parameters(:)   !! (nparameter)
     character(len=*), intent(in), optional :: word
     logical, intent(in), optional :: pairs, curve
     type(law_line_t) :: line

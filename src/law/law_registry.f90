@@ -7,9 +7,9 @@ module law_registry
   public :: list_laws, law_names
 
   interface
-    !> All laws, in a fixed order: a law's place is its `law_id`.
+    !> All laws, in a fixed order: a law's position is its `law_id`.
     module subroutine list_laws(laws)
-      type(law_t), allocatable, intent(out) :: laws(:)
+      type(law_t), allocatable, intent(out) :: laws(:)   !! (nlaw)
     end subroutine list_laws
   end interface
 
@@ -17,8 +17,8 @@ contains
 
   !> Names of laws of a kind, for messages and choices.
   subroutine law_names(laws, names)
-    type(law_t), intent(in) :: laws(:)
-    type(string_t), allocatable, intent(out) :: names(:)
+    type(law_t), intent(in) :: laws(:)                     !! (nlaw)
+    type(string_t), allocatable, intent(out) :: names(:)   !! (nname)
     integer :: i
 
     allocate (names(size(laws)))

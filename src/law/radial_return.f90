@@ -42,9 +42,15 @@ contains
   !> One point: trial elastic strain to stress, elastic strain, history (plastic strain, plastic work, ...), tangent.
   pure subroutine return_point(flow, below, above, dt, trial_strain, committed, stress, elastic_strain, history, tangent, status)
     type(flow_t), intent(in) :: flow
-    real(wp), intent(in) :: below(:, :), above(:, :)   !! tables of the temperatures below and above
-    real(wp), intent(in) :: dt, trial_strain(4), committed(:)
-    real(wp), intent(out) :: stress(4), elastic_strain(4), history(:), tangent(4, 4)
+    real(wp), intent(in) :: below(:, :)          !! (2, npoint) plastic strain [-], yield stress [stress] at the temperature below
+    real(wp), intent(in) :: above(:, :)          !! (2, npoint) plastic strain [-], yield stress [stress] at the temperature above
+    real(wp), intent(in) :: dt                   !! [time]
+    real(wp), intent(in) :: trial_strain(4)      !! [-]
+    real(wp), intent(in) :: committed(:)         !! (nhistory) [unit of each component]
+    real(wp), intent(out) :: stress(4)           !! [stress]
+    real(wp), intent(out) :: elastic_strain(4)   !! [-]
+    real(wp), intent(out) :: history(:)          !! (nhistory) [unit of each component]
+    real(wp), intent(out) :: tangent(4, 4)       !! [stress]
     integer, intent(out) :: status
     real(wp) :: driving(4), back(4), mean, q, g3, start, limit, factor, exponent, sy, slope, dp
 
@@ -104,7 +110,10 @@ contains
   !> Stress to flow at a plastic strain and rate.
   pure function flow_stress_at(flow, below, above, p, rate) result(stress)
     type(flow_t), intent(in) :: flow
-    real(wp), intent(in) :: below(:, :), above(:, :), p, rate
+    real(wp), intent(in) :: below(:, :)   !! (2, npoint) plastic strain [-], yield stress [stress] at the temperature below
+    real(wp), intent(in) :: above(:, :)   !! (2, npoint) plastic strain [-], yield stress [stress] at the temperature above
+    real(wp), intent(in) :: p             !! [-]
+    real(wp), intent(in) :: rate          !! [1/time]
     real(wp) :: stress
     real(wp) :: slope, factor, exponent
 

@@ -20,8 +20,8 @@ contains
   !> Factor, and exponent = d ln(factor)/d ln(rate). Numbers `c`: COWPER (r0, P); JOHNSON (r0, C); POWER (m).
   pure subroutine rate_factor(form, c, rate, factor, exponent)
     integer, intent(in) :: form
-    real(wp), intent(in) :: c(2)
-    real(wp), intent(in) :: rate     !! [1/time], at least 0
+    real(wp), intent(in) :: c(2)   !! of the form [unit of each number]
+    real(wp), intent(in) :: rate   !! [1/time], at least 0
     real(wp), intent(out) :: factor, exponent
     real(wp) :: part
 

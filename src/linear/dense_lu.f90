@@ -13,12 +13,13 @@ module dense_lu
 
 contains
 
-  !> One thread. `regular` becomes false when a pivot is zero or no number.
+  !> One thread. `regular` becomes false when a pivot is zero or not a number.
   subroutine eliminate(p, n, pivot, row, border, keep, regular)
-    integer, intent(in) :: p, n                              !! pivots, order
-    real(wp), intent(inout) :: pivot(n, p), row(p, n - p)    !! pivot columns, rest of the pivot rows
-    real(wp), intent(inout) :: border(n - p, n - p)
-    real(wp), intent(in) :: keep                             !! 1, or 0 where `border` holds nothing yet
+    integer, intent(in) :: p, n                       !! pivots, order
+    real(wp), intent(inout) :: pivot(n, p)            !! pivot columns [residual/unknown]
+    real(wp), intent(inout) :: row(p, n - p)          !! rest of the pivot rows [residual/unknown]
+    real(wp), intent(inout) :: border(n - p, n - p)   !! [residual/unknown]
+    real(wp), intent(in) :: keep                      !! 1, or 0 where `border` holds nothing yet
     logical, intent(inout) :: regular
 
     call split_columns(n, p, pivot, n, regular)
@@ -30,7 +31,9 @@ contains
   !> The same by all threads of the team, called by one of them.
   subroutine eliminate_shared(p, n, pivot, row, border, keep, regular)
     integer, intent(in) :: p, n
-    real(wp), intent(inout) :: pivot(n, p), row(p, n - p), border(n - p, n - p)
+    real(wp), intent(inout) :: pivot(n, p)            !! pivot columns [residual/unknown]
+    real(wp), intent(inout) :: row(p, n - p)          !! rest of the pivot rows [residual/unknown]
+    real(wp), intent(inout) :: border(n - p, n - p)   !! [residual/unknown]
     real(wp), intent(in) :: keep
     logical, intent(inout) :: regular
     integer :: k, w, j, v

@@ -16,12 +16,14 @@ module elimination_tree
 
 contains
 
-  !> Fronts in postorder: front f eliminates the unknowns at places first(f) ... first(f+1)-1, has `order(f)` rows and sends
-  !> what is left to parent(f), 0 for a root. place(neq) keeps the fill of `position`.
+  !> Fronts in postorder: front f eliminates the unknowns at positions first(f) ... first(f+1)-1, has `order(f)` rows and sends
+  !> what is left to parent(f), 0 for a root. `place` keeps the fill of `position`.
   subroutine find_fronts(pattern, position, place, first, order, parent)
     class(matrix_pattern_t), intent(in) :: pattern
-    integer, intent(in) :: position(:)
-    integer, allocatable, intent(out) :: place(:), first(:), order(:), parent(:)
+    integer, intent(in) :: position(:)                         !! (neq) of each unknown in the order of elimination
+    integer, allocatable, intent(out) :: place(:)              !! (neq) the same in the order of the fronts
+    integer, allocatable, intent(out) :: first(:)              !! (nfront + 1)
+    integer, allocatable, intent(out) :: order(:), parent(:)   !! (nfront)
     integer, allocatable :: start(:), lower(:), up(:), renumbered(:), count(:)
     integer, allocatable :: column_first(:), pivots(:), into(:), new(:)
     integer :: j, s, n, nsuper, nfront
@@ -75,12 +77,13 @@ contains
     where (parent > 0) parent = new(max(parent, 1))
   end subroutine find_fronts
 
-  !> Neighbours of every unknown in the places given: those before it, or those after it.
+  !> Neighbours of every unknown in the order given: those before it, or those after it.
   subroutine list_neighbours(pattern, place, after, start, list)
     class(matrix_pattern_t), intent(in) :: pattern
-    integer, intent(in) :: place(:)
+    integer, intent(in) :: place(:)   !! (neq) position of each unknown in the order
     logical, intent(in) :: after
-    integer, allocatable, intent(out) :: start(:), list(:)
+    integer, allocatable, intent(out) :: start(:)   !! (neq + 2) entries start(k) ... start(k + 1) - 1 of the list are those of k
+    integer, allocatable, intent(out) :: list(:)    !! (nneighbour)
     integer :: k, i, j, pass
 
     allocate (start(pattern%neq + 2), source=0)
@@ -118,7 +121,7 @@ contains
 
   end subroutine list_neighbours
 
-  !> Parent of every column in the elimination tree, 0 for a root; paths are shortened as they are walked.
+  !> Parent of every column in the elimination tree, 0 for a root; paths are shortened as they are followed.
   pure subroutine grow_tree(start, lower, up)
     integer, intent(in) :: start(:), lower(:)
     integer, allocatable, intent(out) :: up(:)
@@ -140,7 +143,7 @@ contains
     end do
   end subroutine grow_tree
 
-  !> renumbered(j): place of column j when every subtree is numbered without gaps.
+  !> renumbered(j): position of column j when every subtree is numbered without gaps.
   pure subroutine postorder(up, renumbered)
     integer, intent(in) :: up(:)
     integer, allocatable, intent(out) :: renumbered(:)
@@ -229,7 +232,7 @@ contains
     end do
   end function root_of
 
-  !> New places of the columns, merged fronts together, and the first place of every front.
+  !> New positions of the columns, merged fronts together, and the first position of every front.
   pure subroutine renumber(nsuper, column_first, into, new, first)
     integer, intent(in) :: nsuper, column_first(:), into(:)
     integer, intent(out) :: new(:)

@@ -38,7 +38,7 @@ module linear_api
       import :: error_t, factors_t, matrix_pattern_t
       class(factors_t), intent(inout) :: self
       class(matrix_pattern_t), intent(in) :: pattern
-      integer, intent(in) :: position(:)   !! place of every equation in the order of elimination (neq)
+      integer, intent(in) :: position(:)   !! (neq) position of every equation in the order of elimination
       type(error_t), allocatable, intent(out) :: error
     end subroutine plan_i
 

@@ -41,7 +41,7 @@ module linear_solver
 
 contains
 
-  !> Take the solver at this place of the list.
+  !> Take the solver at this position of the list.
   subroutine choose_solver(solver, place)
     type(linear_solver_t), intent(inout) :: solver
     integer, intent(in) :: place

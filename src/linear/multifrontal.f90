@@ -24,7 +24,7 @@ module multifrontal
 
 contains
 
-  !> Find fronts and their places.
+  !> Find fronts and their positions.
   subroutine plan(solver, pattern, position, error)
     type(multifrontal_t), intent(inout) :: solver
     class(matrix_pattern_t), intent(in) :: pattern
@@ -48,10 +48,10 @@ contains
     end if
   end subroutine plan
 
-  !> Factorise; `regular` is false when a pivot is zero or no number.
+  !> Factorise; `regular` is false when a pivot is zero or not a number.
   subroutine decompose(solver, values, regular)
     type(multifrontal_t), intent(inout) :: solver
-    real(wp), intent(in) :: values(:)
+    real(wp), intent(in) :: values(:)   !! (nnz) [residual/unknown]
     logical, intent(out) :: regular
     logical :: sound(solver%layout%nfront)
 
@@ -152,7 +152,7 @@ contains
   !> x := A^-1 x.
   subroutine substitute(solver, x)
     type(multifrontal_t), intent(inout) :: solver
-    real(wp), intent(inout) :: x(:)   !! (neq)
+    real(wp), intent(inout) :: x(:)   !! (neq) [residual] in, [unknown] out
     real(wp) :: y(size(x))
 
     y(solver%layout%place) = x

@@ -1,5 +1,5 @@
 !> When a new mesh is refused: limits of the restart on it, and the steps it is on probation for. (Chapter 12 of the thesis: slow
-!> convergence and very short steps tell that a remesh went wrong.)
+!> convergence and very short steps show that a remesh went wrong.)
 module acceptance
   use kinds, only: wp
   implicit none
@@ -20,7 +20,7 @@ module acceptance
     !> Change of the force of a die over the largest on any, and of the elastic energy, which goes with the square of forces.
     real(wp) :: force_change = 0.1_wp, energy_change = 0.2_wp
     !> Change of the depth in a die, in the mean of its pressures, over the penetration the deck allows and a thousandth of the side
-    !> (found: up to 0.3): above 1 the contour is another one than that which bore the pressures.
+    !> (found: up to 0.3): above 1 the contour is another one than that which carried the pressures.
     real(wp) :: depth_change = 1.0_wp
     !> Least step on probation over the least before: seven cuts in a row are forgiven (1/128), an eighth is not. (The first step
     !> returns to the yield surface what was carried past it, and finds the new points of contact; six cuts have been found on
@@ -28,7 +28,7 @@ module acceptance
     real(wp) :: step_ratio = 0.005_wp
   end type acceptance_t
 
-  !> Lengths that the step strategy stood at: a step shortened to hit a time, or the moment when contact begins, tells nothing of
+  !> Lengths that the step strategy stood at: a step shortened to hit a time, or the moment when contact begins, says nothing about
   !> the mesh.
   type :: probation_t
     !> In the last steps accepted, the latest last; 0 before the first [time].

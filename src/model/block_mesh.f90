@@ -32,14 +32,14 @@ module block_mesh
 
 contains
 
-  !> Nodes (2, nnode), elements (8, nelem) and the four sides, each walked with the block on its left.
-  !> Nodes run along side 1 first, row after row; elements likewise.
+  !> Nodes, elements and the four sides, each traversed with the block on its left.
+  !> Nodes are numbered along side 1 first, row after row; elements likewise.
   pure subroutine mesh_block(block, coordinates, connectivity, side_first, side_nodes)
     type(block_t), intent(in) :: block
-    real(wp), allocatable, intent(out) :: coordinates(:, :)
-    integer, allocatable, intent(out) :: connectivity(:, :)
-    integer, intent(out) :: side_first(5)                 !! side k holds columns side_first(k) ... side_first(k+1) - 1
-    integer, allocatable, intent(out) :: side_nodes(:, :) !! (3, n)
+    real(wp), allocatable, intent(out) :: coordinates(:, :)   !! (2, nnode) [length]
+    integer, allocatable, intent(out) :: connectivity(:, :)   !! (8, nelem)
+    integer, intent(out) :: side_first(5)                     !! side k holds columns side_first(k) ... side_first(k+1) - 1
+    integer, allocatable, intent(out) :: side_nodes(:, :)     !! (3, nside)
     real(wp), allocatable :: s(:), t(:)
     integer :: number(0:2*block%divisions(1), 0:2*block%divisions(2))
     integer :: i, j, k, n, nx, ny
@@ -82,7 +82,7 @@ contains
   pure subroutine grading(n, ratio, s)
     integer, intent(in) :: n
     real(wp), intent(in) :: ratio
-    real(wp), allocatable, intent(out) :: s(:)
+    real(wp), allocatable, intent(out) :: s(:)   !! (2*n + 1) [-]
     real(wp) :: length, factor
     integer :: i
 
@@ -153,7 +153,7 @@ contains
 
   !> Smallest Jacobian of an element over its Gauss points and its corners, relative to its largest one.
   pure function least_jacobian(x, npoint) result(least)
-    real(wp), intent(in) :: x(2, 8)
+    real(wp), intent(in) :: x(2, 8)   !! nodes [length]
     integer, intent(in) :: npoint
     real(wp) :: least
     real(wp), allocatable :: xi(:, :), weight(:)
@@ -173,9 +173,9 @@ contains
     least = minval(detj)/max(maxval(abs(detj)), tiny(1.0_wp))
   end function least_jacobian
 
-  !> Area of a polygon, negative when it is walked clockwise.
+  !> Area of a polygon, negative when it is traversed clockwise.
   pure function polygon_area(x) result(area)
-    real(wp), intent(in) :: x(:, :)
+    real(wp), intent(in) :: x(:, :)   !! (2, ncorner) [length]
     real(wp) :: area
     integer :: i, j
 

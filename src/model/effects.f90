@@ -17,9 +17,9 @@ module effects
 
 contains
 
-  !> Place of an effect, 0 when it is not listed.
+  !> Position of an effect in a list, 0 when it is not listed.
   pure function find_effect(effects, name) result(k)
-    type(effect_t), intent(in) :: effects(:)
+    type(effect_t), intent(in) :: effects(:)   !! (neffect)
     character(len=*), intent(in) :: name
     integer :: k
 

@@ -44,7 +44,7 @@ module fields
     !> What acts on it and is below this is round-off (set at the first evaluation of a mesh).
     real(wp) :: floor = 0.0_wp
     !> Value at the accepted instant, its change in the last accepted step, what acted from outside at that instant, and what
-    !> supports and imposed values bore, without the loads on the same place (ncomp, place).
+    !> supports and imposed values carried, without the loads on the same place (ncomp, place).
     real(wp), allocatable :: value(:, :), last_increment(:, :), applied(:, :), reaction(:, :)
   end type field_t
 
@@ -64,9 +64,9 @@ contains
                                   declared=.true.)
   end function mechanical_fields
 
-  !> Place of a field in a list, 0 where it is not.
+  !> Position of a field in a list, 0 where it is not.
   pure function find_field(list, name) result(k)
-    type(field_t), intent(in) :: list(:)
+    type(field_t), intent(in) :: list(:)   !! (nfield)
     character(len=*), intent(in) :: name
     integer :: k
 
@@ -96,8 +96,8 @@ contains
 
   !> Values in the middle of the sides of 8-node elements, where a field has none of its own: the mean of the ends.
   pure subroutine fill_middle_nodes(connectivity, values)
-    integer, intent(in) :: connectivity(:, :)    !! (8, nelem)
-    real(wp), intent(inout) :: values(:, :)      !! (ncomp, nnode)
+    integer, intent(in) :: connectivity(:, :)   !! (8, nelem)
+    real(wp), intent(inout) :: values(:, :)     !! (ncomp, nnode) [unit of the field]
     integer :: e, k
 
     do e = 1, size(connectivity, 2)

@@ -7,7 +7,7 @@ module materials
 
   type :: material_t
     character(len=:), allocatable :: name
-    !> Name of the LAW it is made of, and its place in the list of laws.
+    !> Name of the LAW it is made of, and its position in the list of laws.
     character(len=:), allocatable :: law
     integer :: law_id = 0
     !> Values of the law's parameters, in the order the law declares them; at the first temperature where several are given.
@@ -28,7 +28,7 @@ contains
   pure subroutine values_at(material, temperature, values)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: temperature
-    real(wp), intent(out) :: values(:)   !! (nvalue)
+    real(wp), intent(out) :: values(:)   !! (nvalue) [unit of each value]
     integer :: k
     real(wp) :: share
 
@@ -64,7 +64,7 @@ contains
   !> Integral of one value from a temperature to another: exact for what `values_at` gives.
   pure function integral_over_temperature(material, place, from, to) result(integral)
     type(material_t), intent(in) :: material
-    integer, intent(in) :: place              !! of the value
+    integer, intent(in) :: place   !! of the value
     real(wp), intent(in) :: from, to
     real(wp) :: integral
     real(wp) :: low, high, a, b

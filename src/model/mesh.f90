@@ -6,7 +6,7 @@ module mesh
   private
   public :: mesh_t, node_set_t, side_set_t, find_side_set, nodes_of_sides, nearest_node
 
-  !> Sides of elements on a boundary, each walked with the part on its left.
+  !> Sides of elements on a boundary, each traversed with the part on its left.
   type :: side_set_t
     character(len=:), allocatable :: name
     !> Nodes (3, n): first end, middle, second end.
@@ -21,7 +21,7 @@ module mesh
   type :: mesh_t
     !> Coordinates (2, nnode) at the start of this mesh [length].
     real(wp), allocatable :: coordinates(:, :)
-    !> Where the matter of each node was when the deck's own mesh began (2, nnode) [length]: cards name places there.
+    !> Where the material of each node was when the deck's own mesh began (2, nnode) [length]: cards name positions there.
     real(wp), allocatable :: origin(:, :)
     !> Number the user knows the node by (nnode).
     integer, allocatable :: labels(:)
@@ -45,8 +45,9 @@ contains
 
   !> Nodes of some sides, each once, in the order met.
   pure subroutine nodes_of_sides(sides, nnode, nodes)
-    integer, intent(in) :: sides(:, :), nnode
-    integer, allocatable, intent(out) :: nodes(:)
+    integer, intent(in) :: sides(:, :)   !! (3, nside)
+    integer, intent(in) :: nnode
+    integer, allocatable, intent(out) :: nodes(:)   !! (n)
     logical :: seen(nnode)
     integer :: i, j, n
     integer :: list(size(sides))
@@ -64,11 +65,12 @@ contains
     nodes = list(:n)
   end subroutine nodes_of_sides
 
-  !> Node closest to a point; `distance` tells how far it is.
+  !> Node closest to a point, and its distance.
   pure subroutine nearest_node(coordinates, point, node, distance)
-    real(wp), intent(in) :: coordinates(:, :), point(2)
+    real(wp), intent(in) :: coordinates(:, :)   !! (2, nnode) [length]
+    real(wp), intent(in) :: point(2)            !! [length]
     integer, intent(out) :: node
-    real(wp), intent(out) :: distance
+    real(wp), intent(out) :: distance   !! [length]
     integer :: i
     real(wp) :: d
 

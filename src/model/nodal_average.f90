@@ -31,8 +31,8 @@ contains
 
   !> Add the elements of a group.
   pure subroutine add_elements(connectivity, values, average)
-    integer, intent(in) :: connectivity(:, :)       !! (8, nelem)
-    real(wp), intent(in) :: values(:, :)            !! at the points (npoint, nelem), in the unit of the field
+    integer, intent(in) :: connectivity(:, :)   !! (8, nelem)
+    real(wp), intent(in) :: values(:, :)        !! (npoint, nelem) at the points [unit of the field]
     type(nodal_average_t), intent(inout) :: average
     real(wp), allocatable :: xi(:, :), weight(:)
     real(wp) :: fit(4), corner(4), at(8), least, largest

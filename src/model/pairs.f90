@@ -1,7 +1,7 @@
 !> Who may meet whom: the pieces of deformable dies that points of sides are coupled with.
 !>
 !> A point in reach of a deformable die has the nodes of three pieces in a row among its element's
-!> unknowns, the middle one being that of its foot when the pairs were last renewed. A point far from
+!> unknowns, the middle one being that of its closest point when the pairs were last renewed. A point far from
 !> the die has none. The pattern of the matrix depends on the pairs, and on nothing else that moves.
 module pairs
   use dies, only: die_t
@@ -25,7 +25,7 @@ contains
   !> No pairs yet, for all groups that face a deformable die.
   pure subroutine start_pairs(scene, pairs)
     type(scene_t), intent(in) :: scene
-    type(pairs_t), allocatable, intent(out) :: pairs(:)
+    type(pairs_t), allocatable, intent(out) :: pairs(:)   !! (npair) of the groups that face a deformable die
     integer :: g
 
     allocate (pairs(maxval([0, scene%groups%pairs])))
@@ -38,7 +38,7 @@ contains
   end subroutine start_pairs
 
   pure function pairs_differ(one, other) result(differ)
-    type(pairs_t), intent(in) :: one(:), other(:)
+    type(pairs_t), intent(in) :: one(:), other(:)   !! (npair) of the groups that face a deformable die
     logical :: differ
     integer :: k
 
@@ -52,8 +52,8 @@ contains
   !> no piece the side's first node stands, with which nothing new is coupled.
   pure function paired_nodes(die, side, middle) result(nodes)
     type(die_t), intent(in) :: die
-    integer, intent(in) :: side(:)     !! nodes of the side
-    integer, intent(in) :: middle(:)   !! middle piece of each point
+    integer, intent(in) :: side(:)     !! (3) nodes of the side
+    integer, intent(in) :: middle(:)   !! (npoint) middle piece of each point
     integer :: nodes(size(side) + nodes_per_point*size(middle))
     integer :: p, k, n, piece
 
@@ -69,7 +69,7 @@ contains
     end do
   end function paired_nodes
 
-  !> The k-th piece in reach of a point, 0 where the chain has ended or the point has no pair.
+  !> The k-th piece in reach of a point, 0 where the die has ended or the point has no pair.
   pure function piece_in_reach(die, middle, k) result(piece)
     type(die_t), intent(in) :: die
     integer, intent(in) :: middle, k

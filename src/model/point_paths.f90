@@ -37,7 +37,7 @@ contains
   !> f = dx(n+1)/dx(n), components xx, xy, yx, yy, zz, of a step between two strains.
   pure function step_gradient(finite, from, to) result(f)
     logical, intent(in) :: finite
-    real(wp), intent(in) :: from(4), to(4)
+    real(wp), intent(in) :: from(4), to(4)   !! components xx, yy, xy, zz [-]
     real(wp) :: f(5)
 
     if (finite) then
@@ -51,7 +51,7 @@ contains
   !> d h / d strain, h = dF F^-1 with the components xx, xy, yx, yy, zz.
   pure function gradient_of_strain(finite, strain) result(g)
     logical, intent(in) :: finite
-    real(wp), intent(in) :: strain(4)
+    real(wp), intent(in) :: strain(4)   !! [-]
     real(wp) :: g(5, 4)
 
     g = 0

@@ -18,11 +18,11 @@ module probes
     integer :: kind = 0
     !> Node kind: 1 = x, 2 = y, 3 = displacement x, 4 = displacement y. Reaction kind: 1 = x, 2 = y.
     integer :: quantity = 0
-    !> Field of the node kind that is not the displacement (place in the scene's list), 0 for this.
+    !> Field of the node kind that is not the displacement (position in the scene's list), 0 for this.
     integer :: field = 0
     !> Nodes asked for (one for the node kind).
     integer, allocatable :: nodes(:)
-    !> From the node to the place asked for, which a node of the deck's own mesh stands for (0) [length].
+    !> From the node to the position asked for; 0 where that is a node of the deck's own mesh [length].
     real(wp) :: offset(2) = 0.0_wp
     !> Group, element and point, and component of the state, for the kinds that read the state.
     integer :: group = 0, element = 0, point = 0, component = 0

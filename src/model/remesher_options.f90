@@ -23,7 +23,7 @@ module remesher_options
     !> Error of the strains an element is made for, elements at most.
     real(wp) :: strain_error = 0.05_wp
     integer :: most_elements = 0
-    !> Elements across a stretch of contact (0: as they come), angle a side of an element may turn by [radian].
+    !> Elements across a contact interval (0: as they come), angle a side of an element may turn by [radian].
     integer :: across_contact = 4
     real(wp) :: turn = pi/12
     !> Who makes the mesh.

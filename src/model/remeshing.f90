@@ -7,7 +7,7 @@ module remeshing
   public :: ncriteria, criterion_names, is_upper, never
   public :: least_angle, largest_angle, middle_share, jacobian_ratio, scaled_jacobian, aspect_ratio
 
-  !> Criteria of the shape of an element, by place in the lists below (mesh_quality measures them).
+  !> Criteria of the shape of an element, by position in the lists below (mesh_quality measures them).
   integer, parameter :: least_angle = 1, largest_angle = 2, middle_share = 3, jacobian_ratio = 4, scaled_jacobian = 5, &
                         aspect_ratio = 6, ncriteria = 6
   character(len=*), parameter :: criterion_names(ncriteria) = ['least_angle    ', 'largest_angle  ', 'middle_share   ', &
@@ -40,7 +40,7 @@ module remeshing
     type(stroke_t), allocatable :: strokes(:)
   end type remesh_rules_t
 
-  !> A limit that was passed: its name, the value found, and where it is worst (0: no such place).
+  !> A limit that was passed: its name, the value found, and where it is worst (0: none).
   type :: trigger_t
     character(len=:), allocatable :: name
     real(wp) :: value = 0.0_wp, limit = 0.0_wp

@@ -35,16 +35,16 @@ module scene
   type :: group_t
     character(len=:), allocatable :: name
     integer :: role = 0
-    !> Body whose elements these are (place in the scene's list), for further formulations and loads on the volume; 0 for others.
+    !> Body whose elements these are (position in the scene's list), for further formulations and loads on the volume; 0 for others.
     integer :: host = 0
-    !> Member of the ELEM family, by name and place in its list.
+    !> Member of the ELEM family, by name and position in its list.
     character(len=:), allocatable :: elem
     integer :: elem_id = 0
-    !> Material (place in the scene's list); 0 for elements without a law.
+    !> Material (position in the scene's list); 0 for elements without a law.
     integer :: material = 0
     !> Integration points of an element: of the square for bodies, of the line for sides.
     type(rule_t) :: rule
-    !> Option of the ELEM that the card asks for (place in the row's list), 0 for none.
+    !> Option of the ELEM that the card asks for (position in the row's list), 0 for none.
     integer :: option = 0
     !> Nodes (nnode, nelem).
     integer, allocatable :: connectivity(:, :)
@@ -76,7 +76,7 @@ module scene
     !> Section (sections) at the start, and in generalised plane strain what drives its three components.
     real(wp) :: section(3) = 0.0_wp
     type(section_drive_t) :: section_drives(3)
-    !> Member of the kinematics family, by name and place in its list.
+    !> Member of the kinematics family, by name and position in its list.
     character(len=:), allocatable :: kinematics
     integer :: kinematics_id = 0
     !> The geometry follows the displacements.
@@ -114,7 +114,7 @@ contains
   !> The body whose elements a group has: its own, or those of its host.
   pure function host_of(scene, g) result(host)
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: g   !! place of the group
+    integer, intent(in) :: g   !! number of the group
     integer :: host
 
     host = scene%groups(g)%host

@@ -30,7 +30,8 @@ contains
 
   !> Thickness of the section `a` at a point.
   pure function thickness_at(a, point) result(t)
-    real(wp), intent(in) :: a(3), point(2)
+    real(wp), intent(in) :: a(3)       !! thickness at the origin [length], and its slopes [-]
+    real(wp), intent(in) :: point(2)   !! [length]
     real(wp) :: t
 
     t = a(1) + a(2)*point(1) + a(3)*point(2)

@@ -42,7 +42,7 @@ module solution
     real(wp) :: friction_work = 0.0_wp, friction_apart = 0.0_wp
     !> Volume at the start, for the drift; 0 before it is measured.
     real(wp) :: initial_volume = 0.0_wp
-    !> What the scene has borne so far, worst of all accepted steps.
+    !> Worst values of all accepted steps so far.
     real(wp) :: worst_linear_residual = 0.0_wp, worst_penetration = 0.0_wp, worst_penetration_ratio = 0.0_wp
     real(wp) :: least_dissipation = 0.0_wp
     !> Largest share of a motion that the points of an element did not see (spurious_mode), and the element.

@@ -46,7 +46,7 @@ contains
 
   !> Components of all variables together.
   pure function total_components(variables) result(n)
-    type(state_variable_t), intent(in) :: variables(:)
+    type(state_variable_t), intent(in) :: variables(:)   !! (nvariable)
     integer :: n
 
     n = sum(variables%ncomp)
@@ -54,7 +54,7 @@ contains
 
   !> Position of a variable in the list, 0 when it is not declared.
   pure function find_variable(variables, name) result(k)
-    type(state_variable_t), intent(in) :: variables(:)
+    type(state_variable_t), intent(in) :: variables(:)   !! (nvariable)
     character(len=*), intent(in) :: name
     integer :: k
 
@@ -79,8 +79,8 @@ contains
 
   !> Names of all components in order: `plastic_strain`, `stress_xx`, `stress_yy`, ...
   pure subroutine component_names(variables, names)
-    type(state_variable_t), intent(in) :: variables(:)
-    type(string_t), allocatable, intent(out) :: names(:)
+    type(state_variable_t), intent(in) :: variables(:)     !! (nvariable)
+    type(string_t), allocatable, intent(out) :: names(:)   !! (ncomponent)
     character(len=2), parameter :: suffix(4) = ['xx', 'yy', 'xy', 'zz']
     integer :: i, c, n
 

@@ -9,21 +9,21 @@ module zone_marks
 
   integer, parameter :: name_length = 32
 
-  !> What a point is: the corner of the contour nearest to a place, the matter that was there at the start, where the contour
-  !> crosses a line, or a place inside.
+  !> What a point is: the corner of the contour nearest to a position, the material that was there at the start, where the contour
+  !> crosses a line, or a position inside.
   integer, parameter :: mark_corner = 1, mark_matter = 2, mark_crossing = 3, mark_inside = 4
 
   !> A ZPNT card.
   type :: zone_mark_t
     character(len=name_length) :: name = ''
     integer :: form = 0
-    !> The place; of a crossing the value of the line's coordinate twice [length].
+    !> The position; of a crossing the value of the line's coordinate twice [length].
     real(wp) :: x(2) = 0.0_wp
     !> Crossing of x = value (1) or y = value (2): the one with the largest (1) or the least (-1) other coordinate.
     integer :: axis = 0, pick = 0
-    !> The place is that of matter at the start, wherever it is now.
+    !> The position is that of material at the start, wherever it is now.
     logical :: by_matter = .false.
-    !> The die that the place rides on, 0 for none.
+    !> The die that the position moves with, 0 for none.
     integer :: die = 0
     !> A point inside that smoothing leaves where it is.
     logical :: stays = .false.
@@ -36,7 +36,7 @@ module zone_marks
     integer :: group = 0, marks(4) = 0
   end type zone_card_t
 
-  !> A BODY card: a closed contour walked with the part on its left.
+  !> A BODY card: a closed contour traversed with the part on its left.
   type :: contour_card_t
     integer :: group = 0
     !> Parabolas (2, 3, npiece) [length], and the row of the card each comes of: the number of its side of the body.

@@ -19,7 +19,7 @@ contains
   pure subroutine note_contact(scene, solution, set, changed)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
-    integer, allocatable, intent(inout) :: set(:)
+    integer, allocatable, intent(inout) :: set(:)   !! (n) status of all points of contact
     logical, intent(out) :: changed
     integer, allocatable :: now(:)
 

@@ -22,8 +22,8 @@ contains
   !> The few unknowns that carry the force of a whole die are held to a norm of their own.
   pure function pilots_in_equilibrium(equations, fields, external, residual) result(in_equilibrium)
     type(equations_t), intent(in) :: equations
-    type(field_t), intent(in) :: fields(:)
-    real(wp), intent(in) :: external(:), residual(:)   !! (ndof) [force]
+    type(field_t), intent(in) :: fields(:)             !! (nfield)
+    real(wp), intent(in) :: external(:), residual(:)   !! (ndof) [residual]
     logical :: in_equilibrium
     integer :: k, c, d
 
@@ -44,8 +44,9 @@ contains
   !> round-off. Moments on pilots depend on where the pilot stands: they are no measure of the forces.
   pure function relative_residual(equations, fields, external, residual, du) result(norm)
     type(equations_t), intent(in) :: equations
-    type(field_t), intent(in) :: fields(:)
-    real(wp), intent(in) :: external(:), residual(:), du(:)   !! (ndof)
+    type(field_t), intent(in) :: fields(:)             !! (nfield)
+    real(wp), intent(in) :: external(:), residual(:)   !! (ndof) [residual]
+    real(wp), intent(in) :: du(:)                      !! (ndof) motion of the step [unknown]
     real(wp) :: norm
     integer :: q
 
@@ -77,8 +78,8 @@ contains
   !> Correction over the motion of the step, angles of pilots left out.
   pure function relative_motion(equations, fields, correction, du) result(norm)
     type(equations_t), intent(in) :: equations
-    type(field_t), intent(in) :: fields(:)
-    real(wp), intent(in) :: correction(:), du(:)   !! (ndof)
+    type(field_t), intent(in) :: fields(:)         !! (nfield)
+    real(wp), intent(in) :: correction(:), du(:)   !! (ndof) [unknown]
     real(wp) :: norm
     integer :: q
 
@@ -102,7 +103,7 @@ contains
   !> Weights by which residuals of several quantities are added up in one norm: 1 where there is one.
   subroutine weigh_quantities(equations, external, residual)
     type(equations_t), intent(inout) :: equations
-    real(wp), intent(in) :: external(:), residual(:)   !! (ndof)
+    real(wp), intent(in) :: external(:), residual(:)   !! (ndof) [residual]
     real(wp) :: reference
     integer :: q
 
@@ -118,7 +119,7 @@ contains
   !> mesh's size.
   pure function free_force(equations, v) result(norm)
     type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: v(:)   !! (ndof)
+    real(wp), intent(in) :: v(:)   !! (ndof) [residual]
     real(wp) :: norm
     integer :: q, n
 
@@ -138,7 +139,8 @@ contains
   !> Work of residuals along a correction: of the motion, where the solve has one (the energy that a line search looks at).
   pure function slope_along(equations, correction, residual) result(slope)
     type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: correction(:), residual(:)   !! (ndof)
+    real(wp), intent(in) :: correction(:)   !! (ndof) [unknown]
+    real(wp), intent(in) :: residual(:)     !! (ndof) [residual]
     real(wp) :: slope
     integer :: q
 

@@ -60,7 +60,7 @@ contains
   !> Number the unknowns of a scene.
   subroutine number_dofs(scene, elems, dofs)
     type(scene_t), intent(in) :: scene
-    type(elem_t), intent(in) :: elems(:)
+    type(elem_t), intent(in) :: elems(:)   !! (nelem_row)
     type(dofs_t), intent(out) :: dofs
     integer :: f, g, k
 
@@ -282,8 +282,8 @@ contains
   !> Unknowns of the elements that face deformable dies, with the pairs of now.
   subroutine number_pairs(scene, elems, pairs, dofs)
     type(scene_t), intent(in) :: scene
-    type(elem_t), intent(in) :: elems(:)
-    type(pairs_t), intent(in) :: pairs(:)
+    type(elem_t), intent(in) :: elems(:)    !! (nelem_row)
+    type(pairs_t), intent(in) :: pairs(:)   !! (npair)
     type(dofs_t), intent(inout) :: dofs
     integer :: g, e
 
@@ -340,10 +340,10 @@ contains
   pure subroutine prescribed_motion(scene, dofs, fields, from_rest, t0, t1, motion)
     type(scene_t), intent(in) :: scene
     type(dofs_t), intent(in) :: dofs
-    type(field_t), intent(in) :: fields(:)   !! with their values at t0
+    type(field_t), intent(in) :: fields(:)   !! (nfield) with their values at t0
     logical, intent(in) :: from_rest
-    real(wp), intent(in) :: t0, t1           !! [time]
-    real(wp), intent(out) :: motion(:)
+    real(wp), intent(in) :: t0, t1       !! [time]
+    real(wp), intent(out) :: motion(:)   !! (nprescribed) [unknown]
     integer :: k
 
     do k = 1, size(dofs%prescribed)

@@ -35,9 +35,9 @@ contains
   subroutine run_elements(scene, elems, kinematics, laws, dofs, active, pattern, instant, du, now, solution, drivers, buffers, &
                           timers, report)
     type(scene_t), intent(in) :: scene
-    type(elem_t), intent(in) :: elems(:)
+    type(elem_t), intent(in) :: elems(:)   !! (nelem_row)
     type(kinematics_t), intent(in) :: kinematics
-    type(law_t), intent(in) :: laws(:)
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
     type(dofs_t), intent(in) :: dofs
     logical, intent(in) :: active(:)          !! groups to compute (ngroup)
     type(pattern_t), intent(in) :: pattern
@@ -143,8 +143,8 @@ contains
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(elem_t), intent(in) :: row
-    real(wp), intent(in) :: displacement(:, :)
-    real(wp), allocatable, intent(out) :: x(:, :, :)
+    real(wp), intent(in) :: displacement(:, :)         !! (2, nnode) [length]
+    real(wp), allocatable, intent(out) :: x(:, :, :)   !! (2, row%nnode, nelem) [length]
 
     allocate (x(2, row%nnode, size(group%connectivity, 2)))
     call gather_geometry(scene, row, scene%finite, group%connectivity, displacement, x)
@@ -154,8 +154,8 @@ contains
   subroutine gather_forces(pattern, buffers, is_own, force, magnitude)
     type(pattern_t), intent(in) :: pattern
     type(element_buffers_t), intent(in) :: buffers
-    logical, intent(in) :: is_own(:)                       !! (ndof)
-    real(wp), intent(inout) :: force(:), magnitude(:)      !! (ndof) [force]
+    logical, intent(in) :: is_own(:)                    !! (ndof)
+    real(wp), intent(inout) :: force(:), magnitude(:)   !! (ndof) [force]
     integer :: d, k
 
     !$omp parallel do private(k) schedule(static) if (pattern%nnz > worth_gathering)
@@ -175,7 +175,7 @@ contains
   subroutine gather_matrix(pattern, buffers, values)
     type(pattern_t), intent(in) :: pattern
     type(element_buffers_t), intent(in) :: buffers
-    real(wp), intent(out) :: values(:)
+    real(wp), intent(out) :: values(:)   !! (nnz) [residual/unknown]
     integer :: n, k
 
     !$omp parallel do private(k) schedule(static) if (pattern%nnz > worth_gathering)
@@ -191,11 +191,11 @@ contains
   !> Add K du to the internal force for a motion of prescribed unknowns not yet in `du` (the rest of `motion` is zero).
   subroutine add_prescribed(dofs, active, pattern, buffers, motion, force)
     type(dofs_t), intent(in) :: dofs
-    logical, intent(in) :: active(:)   !! groups that act in the solve (ngroup)
+    logical, intent(in) :: active(:)   !! (ngroup) groups that act in the solve
     type(pattern_t), intent(in) :: pattern
     type(element_buffers_t), intent(in) :: buffers
-    real(wp), intent(in) :: motion(:)
-    real(wp), intent(inout) :: force(:)
+    real(wp), intent(in) :: motion(:)     !! (ndof) [unknown]
+    real(wp), intent(inout) :: force(:)   !! (ndof) [residual]
     integer :: g, e, i, j, m, ndof
 
     do g = 1, size(dofs%groups)

@@ -120,7 +120,7 @@ contains
   !> The solve that a field belongs to is under way.
   pure subroutine take_turn(equations, field)
     type(equations_t), intent(inout) :: equations
-    integer, intent(in) :: field   !! place in the scene's list
+    integer, intent(in) :: field   !! position in the scene's list
     integer :: s
 
     do s = 1, size(equations%solves)
@@ -194,7 +194,7 @@ contains
     call equations%timers%stop(timer)
   end subroutine pair_up
 
-  !> Pairs around the feet just found; points without a foot keep theirs.
+  !> Pairs around the closest points just found; points without one keep theirs.
   pure subroutine renew_pairs(scene, solution)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
@@ -212,7 +212,7 @@ contains
   pure function is_symmetric(scene, equations, s) result(symmetric)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
-    integer, intent(in) :: s   !! place of the solve
+    integer, intent(in) :: s   !! number of the solve
     logical :: symmetric
     integer :: g
 
@@ -300,7 +300,8 @@ contains
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
-    real(wp), intent(in) :: dt, du(:)
+    real(wp), intent(in) :: dt      !! [time]
+    real(wp), intent(in) :: du(:)   !! (ndof) [unknown]
     logical, intent(in) :: tangent
     type(report_t), intent(out) :: report
     type(instant_t) :: instant
@@ -404,12 +405,12 @@ contains
     end do
   end function sum_of_diagonals
 
-  !> Forces on nodes and pilots, and loads of the section, at a time (ndof).
+  !> Forces on nodes and pilots, and loads of the section, at a time.
   pure subroutine external_forces(scene, dofs, time, force)
     type(scene_t), intent(in) :: scene
     type(dofs_t), intent(in) :: dofs
     real(wp), intent(in) :: time
-    real(wp), intent(out) :: force(:)
+    real(wp), intent(out) :: force(:)   !! (ndof) [residual]
     integer :: k, d
 
     force = 0
@@ -436,11 +437,11 @@ contains
     end do
   end subroutine external_forces
 
-  !> Correction of the free unknowns for a residual (ndof); prescribed ones are not touched.
+  !> Correction of the free unknowns for a residual; prescribed ones are not touched.
   subroutine solve_correction(equations, residual, correction, error)
     type(equations_t), intent(inout) :: equations
-    real(wp), intent(in) :: residual(:)
-    real(wp), intent(out) :: correction(:)
+    real(wp), intent(in) :: residual(:)      !! (ndof) [residual]
+    real(wp), intent(out) :: correction(:)   !! (ndof) [unknown]
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: rhs(equations%solves(equations%now)%neq), x(equations%solves(equations%now)%neq)
     integer :: d, timer

@@ -50,9 +50,11 @@ contains
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt
-    real(wp), intent(in) :: external(:), residual(:), missing(:), correction(:)
+    real(wp), intent(in) :: external(:), residual(:)   !! (ndof) [residual]
+    real(wp), intent(in) :: missing(:)                 !! (ndof) prescribed motion still missing [unknown]
+    real(wp), intent(in) :: correction(:)              !! (ndof) [unknown]
     type(manner_t), intent(in) :: manner
-    real(wp), intent(inout) :: du(:)
+    real(wp), intent(inout) :: du(:)   !! (ndof) [unknown]
     real(wp), intent(out) :: s
     type(report_t), intent(out) :: report
     real(wp) :: start(size(du)), trial, slope0, slope, enough, best, norm, norm0, near(2), far(2)

@@ -69,9 +69,9 @@ contains
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt
     type(outcome_t), intent(out) :: outcome
-    real(wp), intent(in), optional :: left(:)   !! part of the residual to be left, per unknown (0)
-    real(wp), intent(in), optional :: given(:)  !! motion of the unknowns of other solves; of all where Newton's method goes on
-    logical, intent(in), optional :: go_on      !! from `given` for the own unknowns too
+    real(wp), intent(in), optional :: left(:)    !! (ndof) part of the residual to be left, 0 where absent [residual]
+    real(wp), intent(in), optional :: given(:)   !! (ndof) motion of other solves' unknowns; of all with go_on [unknown]
+    logical, intent(in), optional :: go_on       !! from `given` for the own unknowns too
     real(wp), dimension(equations%dofs%ndof) :: external, missing, residual, correction
     type(group_state_t) :: before(size(scene%groups))
     type(iteration_t) :: line

@@ -24,13 +24,13 @@ module ordering
 
 contains
 
-  !> position(neq): place of each equation in the order of elimination. Equations of no node come last.
+  !> Position of each equation in the order of elimination. Equations of no node come last.
   subroutine order_equations(connectivity, nnode, dofs, equation_of, position, error)
-    integer, intent(in) :: connectivity(:, :)   !! nodes of the solid elements, and of links between bodies (nnode, nelem)
+    integer, intent(in) :: connectivity(:, :)   !! (nnode, nelem) of the solid elements, and of links between bodies
     integer, intent(in) :: nnode                !! of the mesh
     type(dofs_t), intent(in) :: dofs
-    integer, intent(in) :: equation_of(:)       !! of each unknown, 0 where there is none (ndof)
-    integer, allocatable, intent(out) :: position(:)
+    integer, intent(in) :: equation_of(:)              !! (ndof) of each unknown, 0 where there is none
+    integer, allocatable, intent(out) :: position(:)   !! (neq)
     type(error_t), allocatable, intent(out) :: error
     integer(c_int), allocatable :: xadj(:), adjncy(:), perm(:), place(:)
     integer, allocatable :: node_at(:)

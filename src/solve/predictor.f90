@@ -30,9 +30,9 @@ contains
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt
-    real(wp), intent(in), optional :: given(:)  !! motion of the unknowns of other solves (ndof)
-    logical, intent(in), optional :: go_on      !! start from `given` for the own unknowns too
-    real(wp), intent(out) :: du(:), missing(:)
+    real(wp), intent(in), optional :: given(:)   !! (ndof) motion of the unknowns of other solves [unknown]
+    logical, intent(in), optional :: go_on       !! start from `given` for the own unknowns too
+    real(wp), intent(out) :: du(:), missing(:)   !! (ndof) [unknown]
     type(report_t), intent(out) :: report
     logical :: fixed(size(du))
     real(wp) :: motion(size(equations%dofs%prescribed))
@@ -79,9 +79,9 @@ contains
   !> The last accepted motion of all unknowns times `ratio`.
   pure subroutine proportion(dofs, fields, ratio, du)
     type(dofs_t), intent(in) :: dofs
-    type(field_t), intent(in) :: fields(:)
+    type(field_t), intent(in) :: fields(:)   !! (nfield)
     real(wp), intent(in) :: ratio
-    real(wp), intent(out) :: du(:)
+    real(wp), intent(out) :: du(:)   !! (ndof) [unknown]
     integer :: f, k, c
 
     do f = 1, size(fields)

@@ -37,9 +37,9 @@ contains
   !> The solves of a scene: one for each quantity in the order of the fields from the last to the first (temperature before
   !> motion, which it drives), or a single one.
   subroutine list_solves(fields, coupling, solves)
-    type(field_t), intent(in) :: fields(:)
+    type(field_t), intent(in) :: fields(:)   !! (nfield)
     integer, intent(in) :: coupling
-    type(solve_t), allocatable, intent(out) :: solves(:)
+    type(solve_t), allocatable, intent(out) :: solves(:)   !! (nsolve)
     logical :: left(size(fields))
     integer :: f, n
 

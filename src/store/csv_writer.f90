@@ -22,10 +22,10 @@ module csv_writer
   type :: csv_t
     private
     character(len=:), allocatable :: path
-    character(len=:), allocatable :: row  !! the cells of the row in the making
+    character(len=:), allocatable :: row   !! the cells of the row in the making
     integer :: ncolumn = 0
     integer :: ncell = 0
-    integer(i8) :: length = 0             !! of the file so far, in bytes
+    integer(i8) :: length = 0   !! of the file so far, in bytes
     logical :: ready = .false.
     type(error_t), allocatable :: first_error
   contains
@@ -49,11 +49,11 @@ module csv_writer
 
 contains
 
-  !> A new table with these column titles, `name [unit]`, in the place of an older one.
+  !> A new table with these column titles, `name [unit]`, replacing an older one.
   subroutine create(self, path, columns, error)
     class(csv_t), intent(inout) :: self
     character(len=*), intent(in) :: path
-    type(string_t), intent(in) :: columns(:)
+    type(string_t), intent(in) :: columns(:)   !! (ncolumn)
     type(error_t), allocatable, intent(out) :: error
 
     call begin(self, path, columns)
@@ -66,7 +66,7 @@ contains
   subroutine resume(self, path, columns, step, error)
     class(csv_t), intent(inout) :: self
     character(len=*), intent(in) :: path
-    type(string_t), intent(in) :: columns(:)
+    type(string_t), intent(in) :: columns(:)   !! (ncolumn)
     integer, intent(in) :: step
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: old
@@ -146,7 +146,7 @@ contains
 
   subroutine put_reals(self, values)
     class(csv_t), intent(inout) :: self
-    real(wp), intent(in) :: values(:)
+    real(wp), intent(in) :: values(:)   !! (n) [unit of each column]
     integer :: i
 
     do i = 1, size(values)
@@ -156,7 +156,7 @@ contains
 
   subroutine put_integers(self, values)
     class(csv_t), intent(inout) :: self
-    integer, intent(in) :: values(:)
+    integer, intent(in) :: values(:)   !! (n)
     integer :: i
 
     do i = 1, size(values)

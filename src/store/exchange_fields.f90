@@ -13,7 +13,7 @@ contains
 
   subroutine write_fields(file, fields)
     type(hdf5_file_t), intent(inout) :: file
-    type(field_t), intent(in) :: fields(:)
+    type(field_t), intent(in) :: fields(:)   !! (nfield)
     type(string_t), allocatable :: texts(:, :)
     integer :: k
 
@@ -54,7 +54,7 @@ contains
   !> Fields as elements declared them, without values.
   subroutine read_declared_fields(file, fields)
     type(hdf5_file_t), intent(inout) :: file
-    type(field_t), allocatable, intent(out) :: fields(:)
+    type(field_t), allocatable, intent(out) :: fields(:)   !! (nfield)
     type(string_t), allocatable, dimension(:) :: name, unit, dual, dual_unit, quantity, transfer, word
     type(field_t) :: mechanical(3)
     integer, allocatable :: place(:), ncomp(:), angle(:), flags(:, :)
@@ -118,7 +118,7 @@ contains
   !> Values of the fields of a solution that was started from its scene.
   subroutine read_field_values(file, fields)
     type(hdf5_file_t), intent(inout) :: file
-    type(field_t), intent(inout) :: fields(:)
+    type(field_t), intent(inout) :: fields(:)   !! (nfield)
     integer :: k
 
     do k = 1, size(fields)

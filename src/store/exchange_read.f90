@@ -187,7 +187,7 @@ contains
   subroutine read_pairs(file, place, npiece, pairs)
     type(hdf5_file_t), intent(inout) :: file
     character(len=*), intent(in) :: place
-    integer, intent(in) :: npiece            !! of the die
+    integer, intent(in) :: npiece   !! of the die
     type(pairs_t), intent(inout) :: pairs
     integer, allocatable :: piece(:, :)
 
@@ -201,7 +201,7 @@ contains
   subroutine read_contact_ends(file, scene, ends, error)
     type(hdf5_file_t), intent(inout) :: file
     type(scene_t), intent(in) :: scene
-    type(contact_end_t), allocatable, intent(out) :: ends(:)
+    type(contact_end_t), allocatable, intent(out) :: ends(:)   !! (nend)
     type(error_t), allocatable, intent(out) :: error
     integer, allocatable :: begins(:), group(:), side(:), piece(:)
     real(wp), allocatable :: place(:), xi(:)

@@ -42,7 +42,7 @@ contains
   subroutine require_integers(file, place, values, low, high)
     type(hdf5_file_t), intent(inout) :: file
     character(len=*), intent(in) :: place
-    integer, intent(in) :: values(:)
+    integer, intent(in) :: values(:)   !! (n)
     integer, intent(in) :: low, high
     integer :: k
 
@@ -61,7 +61,7 @@ contains
   subroutine require_table(file, place, values, low, high)
     type(hdf5_file_t), intent(inout) :: file
     character(len=*), intent(in) :: place
-    integer, intent(in) :: values(:, :)
+    integer, intent(in) :: values(:, :)   !! (nrow, ncolumn)
     integer, intent(in) :: low, high
     integer :: k
 
@@ -81,7 +81,7 @@ contains
   subroutine require_reals(file, place, values, low, high)
     type(hdf5_file_t), intent(inout) :: file
     character(len=*), intent(in) :: place
-    real(wp), intent(in) :: values(:)
+    real(wp), intent(in) :: values(:)   !! (n) [of any unit]
     real(wp), intent(in) :: low, high
     integer :: k
 
@@ -128,7 +128,7 @@ contains
   subroutine read_list(file, place, list)
     type(hdf5_file_t), intent(inout) :: file
     character(len=*), intent(in) :: place
-    real(wp), intent(out) :: list(:)
+    real(wp), intent(out) :: list(:)   !! (n) [of any unit]
     real(wp), allocatable :: values(:)
 
     list = 0
@@ -137,11 +137,11 @@ contains
     if (.not. file%failed()) list = values
   end subroutine read_list
 
-  !> An array that takes the place of one of the same extents.
+  !> An array that replaces one of the same extents.
   subroutine read_matrix(file, place, matrix)
     type(hdf5_file_t), intent(inout) :: file
     character(len=*), intent(in) :: place
-    real(wp), intent(inout) :: matrix(:, :)
+    real(wp), intent(inout) :: matrix(:, :)   !! (nrow, ncolumn) [of any unit]
     real(wp), allocatable :: values(:, :)
 
     call file%require_shape(place, shape(matrix))
@@ -153,7 +153,7 @@ contains
   subroutine read_numbers(file, place, list)
     type(hdf5_file_t), intent(inout) :: file
     character(len=*), intent(in) :: place
-    integer, intent(out) :: list(:)
+    integer, intent(out) :: list(:)   !! (n)
     integer, allocatable :: values(:)
 
     list = 0

@@ -30,7 +30,7 @@ contains
     character(len=*), intent(in) :: path, deck_path, deck_text
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
-    type(contact_end_t), intent(in) :: ends(:)   !! where contact begins and ends now
+    type(contact_end_t), intent(in) :: ends(:)   !! (nend) where contact begins and ends now
     type(error_t), allocatable, intent(out) :: error
     type(hdf5_file_t) :: file
 

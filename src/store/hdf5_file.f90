@@ -165,7 +165,7 @@ module hdf5_file
     module subroutine list(self, path, names)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      type(string_t), allocatable, intent(out) :: names(:)
+      type(string_t), allocatable, intent(out) :: names(:)   !! (nname)
     end subroutine list
 
     !> Let `path` stand for what is at the root of another file, named as seen from the folder of this one.
@@ -214,19 +214,19 @@ module hdf5_file
     module subroutine write_reals(self, path, values)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      real(wp), intent(in), target, contiguous :: values(:)
+      real(wp), intent(in), target, contiguous :: values(:)   !! (n) [of any unit]
     end subroutine write_reals
 
     module subroutine write_reals_2(self, path, values)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      real(wp), intent(in), target, contiguous :: values(:, :)
+      real(wp), intent(in), target, contiguous :: values(:, :)   !! (n1, n2) [of any unit]
     end subroutine write_reals_2
 
     module subroutine write_reals_3(self, path, values)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      real(wp), intent(in), target, contiguous :: values(:, :, :)
+      real(wp), intent(in), target, contiguous :: values(:, :, :)   !! (n1, n2, n3) [of any unit]
     end subroutine write_reals_3
 
     module subroutine write_integer(self, path, value)
@@ -238,13 +238,13 @@ module hdf5_file
     module subroutine write_integers(self, path, values)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      integer, intent(in), target, contiguous :: values(:)
+      integer, intent(in), target, contiguous :: values(:)   !! (n)
     end subroutine write_integers
 
     module subroutine write_integers_2(self, path, values)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      integer, intent(in), target, contiguous :: values(:, :)
+      integer, intent(in), target, contiguous :: values(:, :)   !! (n1, n2)
     end subroutine write_integers_2
 
     module subroutine write_text(self, path, value)
@@ -256,18 +256,18 @@ module hdf5_file
     module subroutine write_words(self, path, values)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      type(string_t), intent(in) :: values(:)
+      type(string_t), intent(in) :: values(:)   !! (n)
     end subroutine write_words
   end interface
 
   ! Reading datasets: hdf5_file_read. Reals are finite numbers, or the dataset is refused.
   interface
-    !> Refuse a dataset that has not these extents (negative: any). Ask before reading where memory is made for what is told
-    !> elsewhere, and where what is read takes the place of an array of known shape.
+    !> Refuse a dataset that has not these extents (negative: any). Ask before reading where memory is allocated for a count stated
+    !> elsewhere, and where what is read replaces an array of known shape.
     module subroutine require_shape(self, path, wanted)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      integer, intent(in) :: wanted(:)
+      integer, intent(in) :: wanted(:)   !! (rank)
     end subroutine require_shape
 
     module subroutine read_real(self, path, value)
@@ -279,19 +279,19 @@ module hdf5_file
     module subroutine read_reals(self, path, values)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      real(wp), allocatable, intent(out), target :: values(:)
+      real(wp), allocatable, intent(out), target :: values(:)   !! (n) [of any unit]
     end subroutine read_reals
 
     module subroutine read_reals_2(self, path, values)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      real(wp), allocatable, intent(out), target :: values(:, :)
+      real(wp), allocatable, intent(out), target :: values(:, :)   !! (n1, n2) [of any unit]
     end subroutine read_reals_2
 
     module subroutine read_reals_3(self, path, values)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      real(wp), allocatable, intent(out), target :: values(:, :, :)
+      real(wp), allocatable, intent(out), target :: values(:, :, :)   !! (n1, n2, n3) [of any unit]
     end subroutine read_reals_3
 
     module subroutine read_integer(self, path, value)
@@ -303,13 +303,13 @@ module hdf5_file
     module subroutine read_integers(self, path, values)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      integer, allocatable, intent(out), target :: values(:)
+      integer, allocatable, intent(out), target :: values(:)   !! (n)
     end subroutine read_integers
 
     module subroutine read_integers_2(self, path, values)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      integer, allocatable, intent(out), target :: values(:, :)
+      integer, allocatable, intent(out), target :: values(:, :)   !! (n1, n2)
     end subroutine read_integers_2
 
     module subroutine read_text(self, path, value)
@@ -321,7 +321,7 @@ module hdf5_file
     module subroutine read_words(self, path, values)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      type(string_t), allocatable, intent(out) :: values(:)
+      type(string_t), allocatable, intent(out) :: values(:)   !! (n)
     end subroutine read_words
   end interface
 

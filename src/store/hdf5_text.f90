@@ -26,8 +26,8 @@ contains
 
   !> All words in a row, each as wide as the longest (at least 1: HDF5 has no text of width 0).
   pure subroutine letters_of(words, letters)
-    type(string_t), intent(in) :: words(:)
-    character(len=1), allocatable, intent(out) :: letters(:)
+    type(string_t), intent(in) :: words(:)                     !! (n)
+    character(len=1), allocatable, intent(out) :: letters(:)   !! (n*width)
     integer :: width, i, j
 
     width = 1
@@ -45,8 +45,8 @@ contains
 
   !> The words in `letters`, without the nulls behind them; `words` has the right size already.
   pure subroutine get_words(letters, words)
-    character(len=1), intent(in) :: letters(:)
-    type(string_t), intent(inout) :: words(:)
+    character(len=1), intent(in) :: letters(:)   !! (n*width)
+    type(string_t), intent(inout) :: words(:)    !! (n)
     integer :: width, length, i, j
 
     width = size(letters)/max(size(words), 1)

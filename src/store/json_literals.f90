@@ -101,7 +101,7 @@ contains
   end function logical_literal
 
   pure function integers_literal(values) result(s)
-    integer, intent(in) :: values(:)
+    integer, intent(in) :: values(:)   !! (n)
     character(len=:), allocatable :: s
     type(string_t) :: items(size(values))
     integer :: i
@@ -113,7 +113,7 @@ contains
   end function integers_literal
 
   function reals_literal(values) result(s)
-    real(wp), intent(in) :: values(:)
+    real(wp), intent(in) :: values(:)   !! (n) [of any unit]
     character(len=:), allocatable :: s
     type(string_t) :: items(size(values))
     integer :: i
@@ -125,7 +125,7 @@ contains
   end function reals_literal
 
   pure function words_literal(values) result(s)
-    type(string_t), intent(in) :: values(:)
+    type(string_t), intent(in) :: values(:)   !! (n)
     character(len=:), allocatable :: s
     type(string_t) :: items(size(values))
     integer :: i

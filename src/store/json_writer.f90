@@ -24,9 +24,9 @@ module json_writer
   type :: json_t
     private
     character(len=:), allocatable :: buffer
-    integer :: length = 0                        !! of the text in `buffer`
-    character(len=:), allocatable :: open_kinds  !! '{' or '[' for each level open
-    logical :: empty = .true.                    !! nothing yet in the innermost level
+    integer :: length = 0                         !! of the text in `buffer`
+    character(len=:), allocatable :: open_kinds   !! '{' or '[' for each level open
+    logical :: empty = .true.                     !! nothing yet in the innermost level
     type(error_t), allocatable :: first_error
   contains
     procedure :: begin_object
@@ -167,7 +167,7 @@ contains
   subroutine add_integers(self, name, values)
     class(json_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    integer, intent(in) :: values(:)
+    integer, intent(in) :: values(:)   !! (n)
 
     call self%put(json_literal(values), name)
   end subroutine add_integers
@@ -175,7 +175,7 @@ contains
   subroutine add_reals(self, name, values)
     class(json_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    real(wp), intent(in) :: values(:)
+    real(wp), intent(in) :: values(:)   !! (n) [of any unit]
 
     call self%put(json_literal(values), name)
   end subroutine add_reals
@@ -183,7 +183,7 @@ contains
   subroutine add_words(self, name, values)
     class(json_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    type(string_t), intent(in) :: values(:)
+    type(string_t), intent(in) :: values(:)   !! (n)
 
     call self%put(json_literal(values), name)
   end subroutine add_words
@@ -218,7 +218,7 @@ contains
 
   subroutine item_reals(self, values)
     class(json_t), intent(inout) :: self
-    real(wp), intent(in) :: values(:)
+    real(wp), intent(in) :: values(:)   !! (n) [of any unit]
 
     call self%put(json_literal(values))
   end subroutine item_reals

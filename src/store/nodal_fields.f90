@@ -20,7 +20,7 @@ contains
   !> Names of all fields, in a fixed order.
   pure subroutine list_nodal_fields(scene, names)
     type(scene_t), intent(in) :: scene
-    type(string_t), allocatable, intent(out) :: names(:)
+    type(string_t), allocatable, intent(out) :: names(:)   !! (nname)
     type(string_t), allocatable :: own(:)
     integer :: g, c
 
@@ -39,9 +39,9 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     character(len=*), intent(in) :: name
-    real(wp), allocatable, intent(out) :: at(:)   !! (nnode), in the unit of the field
+    real(wp), allocatable, intent(out) :: at(:)   !! (nnode) [unit of the field]
     type(nodal_average_t) :: average
-    integer, allocatable :: elements(:)           !! of all materials at a node
+    integer, allocatable :: elements(:)   !! of all materials at a node
     integer :: m, nnode
 
     nnode = size(scene%mesh%coordinates, 2)
@@ -83,7 +83,7 @@ contains
 
   !> von Mises' equivalent stress of stresses.
   pure function mises(stress) result(q)
-    real(wp), intent(in) :: stress(:, :, :)                !! (4, npoint, nelem) [stress]
+    real(wp), intent(in) :: stress(:, :, :)   !! (4, npoint, nelem) [stress]
     real(wp) :: q(size(stress, 2), size(stress, 3))
 
     q = sqrt(0.5_wp*((stress(1, :, :) - stress(2, :, :))**2 + (stress(2, :, :) - stress(4, :, :))**2 &

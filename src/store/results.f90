@@ -40,7 +40,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     character(len=*), intent(in) :: stem
-    integer, intent(in) :: after            !! -1: nothing stays
+    integer, intent(in) :: after   !! -1: nothing stays
     logical, intent(in) :: new_mesh
     type(results_t), intent(out) :: results
     type(error_t), allocatable, intent(out) :: error
@@ -152,7 +152,7 @@ contains
     type(solution_t), intent(in) :: solution
     type(results_t), intent(inout) :: results
     type(error_t), allocatable, intent(out) :: error
-    real(wp), intent(in), optional :: residual(:, :)  !! residual force of a step that failed (2, nnode)
+    real(wp), intent(in), optional :: residual(:, :)   !! (2, nnode) residual force of a step that failed [force]
     type(hdf5_file_t) :: file
     type(xdmf_grid_t) :: grid
     character(len=:), allocatable :: path
@@ -203,7 +203,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     character(len=*), intent(in) :: stem
-    real(wp), intent(in) :: residual(:, :)
+    real(wp), intent(in) :: residual(:, :)   !! (2, nnode) [force]
     type(error_t), allocatable, intent(out) :: error
     type(results_t) :: failed
 

@@ -14,7 +14,7 @@ import tempfile
 
 # Floors from top to bottom. Names are folders of src/; `main` is src/main.f90. A folder may use itself and what is below.
 FLOORS = ["main", "analysis", "report", "solve", "estimate", "cards", "elem", "kinematics", "law", "store", "model", "deck",
-          "linear", "base"]
+          "linear", "geometry", "base"]
 
 # Arrows that point downward and are forbidden all the same, with the reason that is printed.
 FORBIDDEN = {
@@ -293,6 +293,7 @@ CASES = [
     ("kinematics on a law", {"src/kinematics/bad.f90": module("bad", "law_epla")}, "only through law_api"),
     ("solve on a linear solver", {"src/solve/bad.f90": module("bad", "linear_mumps")},
      "solve may not use linear_mumps of linear: only through linear_solver, matrix_pattern"),
+    ("geometry on the model", {"src/geometry/bad.f90": module("bad", "mesh")}, "model is above geometry"),
     ("linear solver on the model", {"src/linear/bad.f90": module("bad", "mesh")}, "model is above linear"),
     ("remdata on a linear solver", {"remdata/mesh/bad.f90": module("bad", "linear_mumps")}, "REMDATA solves nothing"),
     ("kinematics on files", {"src/kinematics/bad.f90": module("bad", "files")}, "kinematics knows no file"),

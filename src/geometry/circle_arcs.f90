@@ -1,5 +1,5 @@
 !> Arcs of circle as parabolas within a tolerance.
-module die_arcs
+module circle_arcs
   use kinds, only: pi, wp
   use text, only: to_text
   use vectors, only: length_of
@@ -7,7 +7,7 @@ module die_arcs
   private
   public :: arc_pieces, angle_between
 
-  !> More parabolas for one arc are a slip of the finger.
+  !> More parabolas for one arc are an error of input.
   integer, parameter :: most_parabolas = 10000
   !> Three points lie on a line when the sine of the angle between two chords is below this.
   real(wp), parameter :: on_a_line = 1.0e-9_wp
@@ -19,9 +19,9 @@ contains
   !> With its ends at angles -a, a and its middle at 0 the isoparametric parabola has
   !> r(xi)^2/R^2 = 1 - (1 - cos a)^2 xi^2 (1 - xi^2): it is inside the circle, by most at xi^2 = 1/2.
   pure subroutine arc_pieces(first, middle, last, tolerance, pieces, message)
-    real(wp), intent(in) :: first(2), middle(2), last(2)   !! [length]
+    real(wp), intent(in) :: first(2), middle(2), last(2)    !! [length]
     real(wp), intent(in) :: tolerance                       !! > 0 [length]
-    real(wp), allocatable, intent(out) :: pieces(:, :, :)   !! (2, 3, npiece)
+    real(wp), allocatable, intent(out) :: pieces(:, :, :)   !! (2, 3, npiece) [length]
     character(len=:), allocatable, intent(out) :: message   !! empty when all is well
     real(wp) :: a(2), b(2), area, centre(2), radius, turn, start
     integer :: n, k
@@ -35,7 +35,7 @@ contains
         centre = first + [b(2)*dot_product(a, a) - a(2)*dot_product(b, b), &
                           a(1)*dot_product(b, b) - b(1)*dot_product(a, a)]/(2*area)
         radius = length_of(first - centre)
-        ! The way round that passes through the middle point.
+        ! the sense of rotation in which the arc passes through the middle point
         turn = angle_between(first - centre, last - centre)
         if (area > 0 .and. turn < 0) turn = turn + 2*pi
         if (area < 0 .and. turn > 0) turn = turn - 2*pi
@@ -85,10 +85,10 @@ contains
 
   !> Turn from a to b, between -pi and pi.
   pure function angle_between(a, b) result(angle)
-    real(wp), intent(in) :: a(2), b(2)
+    real(wp), intent(in) :: a(2), b(2)   !! directions [of one unit]
     real(wp) :: angle
 
     angle = atan2(a(1)*b(2) - a(2)*b(1), dot_product(a, b))
   end function angle_between
 
-end module die_arcs
+end module circle_arcs

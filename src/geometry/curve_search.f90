@@ -1,0 +1,283 @@
+!> The point of a curve of parabolas closest to a point; for contact, the one that faces the part.
+!>
+!> A die's curve is oriented, so the side a point is on is known: with n the die's inner normal at
+!> the closest point Y, d = (X - Y).n is the penetration, negative for a gap. Depth so measured is
+!> continuous wherever the part's side turns, and linear in front of a flat die; the original
+!> (annex 3, figs. 3-5) looks along the part's own normal instead, where an intersection can appear at any
+!> depth and several may compete. Only closest points that face the part count (true contact, eq. 11): with
+!> e_R the part's inner normal, e_R.n must be below `facing`.
+!>
+!> A closest point that faces the part may lie behind another wall: a point beside a thin rib, on a side that
+!> looks away from the rib, faces the rib's far wall. The closest point of all shows whether the point
+!> is inside the body; one that contradicts it is not taken. Only what came through a wall since
+!> the last accepted instant still belongs to that wall: `follow_closest_point` continues from the closest point of that
+!> instant, in the direction of decreasing distance, so that a step cannot carry a point through a rib.
+!>
+!> Beyond the ends of an open curve there is no die. A tree of boxes over the curve is searched
+!> nearest first; what is found is what trying all pieces in their order would find, to the last bit.
+module curve_search
+  use closest_point, only: closest_at_vertex, closest_point_t, closest_within_piece, distance_slope, end_slack, stationary_points, &
+                           whole_piece
+  use kinds, only: eps, wp
+  use piecewise_curves, only: adjacent_piece, box_gap, box_of_node, piecewise_curve_t
+  implicit none
+  private
+  public :: closest_facing_point, closest_on_pieces, closest_on_piece, follow_closest_point, box_distance
+
+  !> A side that faces away by less than this cosine may still lie on the die: a side that folds.
+  real(wp), parameter :: facing = 0.9_wp
+  !> Nodes waiting in a search are one for each row of the tree at most: pieces are counted by 32 bits.
+  integer, parameter :: most_waiting = 40
+
+  !> Which closest points are sought.
+  type :: search_t
+    real(wp) :: point(2)
+    !> Inner normal of the part; whether only points that face it count, and of them only gaps (-1) or penetrations (1).
+    real(wp) :: e_r(2)
+    logical :: narrow = .false.
+    real(wp) :: sense = 0.0_wp
+    !> Distance of the best one so far [length].
+    real(wp) :: best
+    type(closest_point_t) :: closest
+  end type search_t
+
+contains
+
+  !> Closest point that faces the part, within `reach`.
+  pure subroutine closest_facing_point(curve, point, e_r, reach, closest)
+    class(piecewise_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: point(2)   !! in the pilot's axes [length]
+    real(wp), intent(in) :: e_r(2)     !! inner normal of the part, in the pilot's axes [-]
+    real(wp), intent(in) :: reach      !! [length]
+    type(closest_point_t), intent(out) :: closest
+    type(search_t) :: search
+
+    search%point = point
+    search%e_r = e_r
+    search%best = reach
+    call search_tree(curve, search)
+    if (search%closest%piece > 0) then
+      if (.not. faces(search%closest, e_r)) then
+        search%narrow = .true.
+        search%sense = sign(1.0_wp, search%closest%d)
+        search%best = reach
+        search%closest = closest
+        call search_tree(curve, search)
+      end if
+    end if
+    closest = search%closest
+  end subroutine closest_facing_point
+
+  !> Closest point of all on adjacent pieces and the vertices between them, whichever way it faces.
+  pure subroutine closest_on_pieces(curve, point, first, count, closest)
+    class(piecewise_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: point(2)   !! [length]
+    integer, intent(in) :: first       !! piece
+    integer, intent(in) :: count       !! of pieces; across the start of a closed curve when they are more than follow
+    type(closest_point_t), intent(out) :: closest
+    type(search_t) :: search
+    integer :: k, i
+
+    search%point = point
+    ! every closest point faces a part that has no normal
+    search%e_r = 0
+    search%best = huge(search%best)
+    associate (npiece => size(curve%pieces, 3), slack => slack_of(curve, point))
+      do i = 1, count
+        k = modulo(first + i - 2, npiece) + 1
+        if (sqrt(box_gap(curve%boxes(:, k), [point, point])) > search%best + slack) cycle
+        call try_piece(curve, k, search)
+        if (i < count .or. count == npiece) call try_vertex(curve, k, search)
+      end do
+    end associate
+    closest = search%closest
+  end subroutine closest_on_pieces
+
+  !> A computed depth may be less than the distance of the box by round-off, or by the slack at the ends of pieces [length].
+  pure function slack_of(curve, point) result(slack)
+    class(piecewise_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: point(2)
+    real(wp) :: slack
+
+    slack = 4*end_slack*(maxval(abs(box_of_node(curve, 1))) + maxval(abs(point)))
+  end function slack_of
+
+  pure function faces(closest, e_r) result(seen)
+    type(closest_point_t), intent(in) :: closest
+    real(wp), intent(in) :: e_r(2)
+    logical :: seen
+
+    seen = .not. dot_product(closest%normal, e_r) > facing
+  end function faces
+
+  !> Try all pieces that may hold a closer point, those nearest first.
+  pure subroutine search_tree(curve, search)
+    class(piecewise_curve_t), intent(in) :: curve
+    type(search_t), intent(inout) :: search
+    integer :: waiting(most_waiting), n, node, near, far
+    real(wp) :: gaps(most_waiting), gap(2), slack
+
+    slack = slack_of(curve, search%point)
+    n = 1
+    waiting(1) = 1
+    gaps(1) = box_gap(box_of_node(curve, 1), [search%point, search%point])
+    do while (n > 0)
+      node = waiting(n)
+      n = n - 1
+      if (gaps(n + 1) > (search%best + slack)**2) cycle
+      if (node > size(curve%tree, 2)) then
+        call try_piece(curve, node - size(curve%tree, 2), search)
+        call try_vertex(curve, node - size(curve%tree, 2), search)
+        cycle
+      end if
+      gap(1) = box_gap(box_of_node(curve, 2*node), [search%point, search%point])
+      gap(2) = box_gap(box_of_node(curve, 2*node + 1), [search%point, search%point])
+      near = merge(0, 1, gap(1) <= gap(2))
+      far = 1 - near
+      waiting(n + 1:n + 2) = 2*node + [far, near]
+      gaps(n + 1:n + 2) = gap([far + 1, near + 1])
+      n = n + 2
+    end do
+  end subroutine search_tree
+
+  !> Closest points on a piece.
+  pure subroutine try_piece(curve, k, search)
+    class(piecewise_curve_t), intent(in) :: curve
+    integer, intent(in) :: k
+    type(search_t), intent(inout) :: search
+    type(closest_point_t) :: candidate
+    real(wp) :: xi(3)
+    integer :: n, r
+
+    call stationary_points(curve%pieces(:, :, k), search%point, whole_piece, n, xi)
+    do r = 1, n
+      call closest_within_piece(curve%pieces(:, :, k), search%point, xi(r), candidate)
+      call take(candidate, k, search)
+    end do
+  end subroutine try_piece
+
+  !> Closest point at the vertex that a piece ends with.
+  pure subroutine try_vertex(curve, k, search)
+    class(piecewise_curve_t), intent(in) :: curve
+    integer, intent(in) :: k
+    type(search_t), intent(inout) :: search
+    type(closest_point_t) :: candidate
+    integer :: next
+
+    next = adjacent_piece(curve, k, 1)
+    if (next == 0) return
+    call closest_at_vertex(curve%pieces(:, :, k), curve%pieces(:, :, next), search%point, candidate)
+    call take(candidate, k, search)
+  end subroutine try_vertex
+
+  !> The nearer of two; of two as near the one that faces the part, else the first along the curve.
+  pure subroutine take(candidate, piece, search)
+    type(closest_point_t), intent(in) :: candidate
+    integer, intent(in) :: piece
+    type(search_t), intent(inout) :: search
+    logical :: seen, seen_before
+
+    if (candidate%piece == 0 .or. abs(candidate%d) > search%best) return
+    seen = faces(candidate, search%e_r)
+    if (search%narrow .and. (candidate%d*search%sense < 0 .or. .not. seen)) return
+    if (.not. abs(candidate%d) < search%best) then
+      if (search%closest%piece == 0) return
+      seen_before = faces(search%closest, search%e_r)
+      if (seen_before .and. .not. seen) return
+      if ((seen_before .eqv. seen) .and. piece >= search%closest%piece) return
+    end if
+    search%best = abs(candidate%d)
+    search%closest = candidate
+    search%closest%piece = piece
+  end subroutine take
+
+  !> Closest point reached from a position on the curve by going along it as long as the distance decreases; none when that leads
+  !> to an end of the curve, beyond `reach`, or to where the die does not face the part.
+  pure subroutine follow_closest_point(curve, point, e_r, reach, piece, xi, closest)
+    class(piecewise_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: point(2)   !! in the pilot's axes [length]
+    real(wp), intent(in) :: e_r(2)     !! inner normal of the part, in the pilot's axes [-]
+    real(wp), intent(in) :: reach      !! [length]
+    integer, intent(in) :: piece       !! where to begin
+    real(wp), intent(in) :: xi         !! there [-]
+    type(closest_point_t), intent(out) :: closest
+    type(closest_point_t) :: found
+    real(wp) :: here, roots(3)
+    integer :: k, next, way, n, steps
+
+    k = piece
+    here = xi
+    way = merge(-1, 1, distance_slope(curve%pieces(:, :, k), point, here) > 0)
+    do steps = 1, size(curve%pieces, 3)
+      if (box_gap(curve%boxes(:, k), [point, point]) > reach**2) return
+      call stationary_points(curve%pieces(:, :, k), point, whole_piece, n, roots)
+      if (any(way*(roots(:n) - here) >= -end_slack)) then
+        here = way*minval(way*roots(:n), mask=way*(roots(:n) - here) >= -end_slack)
+        call closest_within_piece(curve%pieces(:, :, k), point, here, found)
+        exit
+      end if
+      next = adjacent_piece(curve, k, way)
+      if (next == 0) return
+      if (way*distance_slope(curve%pieces(:, :, next), point, -real(way, wp)) >= 0) then
+        if (way < 0) k = next
+        call closest_at_vertex(curve%pieces(:, :, k), curve%pieces(:, :, adjacent_piece(curve, k, 1)), point, found)
+        exit
+      end if
+      k = next
+      here = -way
+    end do
+    if (found%piece == 0 .or. .not. abs(found%d) < reach) return
+    if (.not. faces(found, e_r)) return
+    closest = found
+    closest%piece = k
+  end subroutine follow_closest_point
+
+  !> Closest point on one piece, or up to `beyond` outside its ends; of several the one nearest to `from`.
+  pure subroutine closest_on_piece(curve, piece, point, from, beyond, closest)
+    class(piecewise_curve_t), intent(in) :: curve
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: point(2)       !! in the pilot's axes [length]
+    real(wp), intent(in) :: from, beyond   !! parent coordinates [-]
+    type(closest_point_t), intent(out) :: closest
+    real(wp) :: roots(3), limit
+    integer :: n
+
+    limit = whole_piece(2) + beyond
+    call stationary_points(curve%pieces(:, :, piece), point, [-limit, limit], n, roots)
+    if (n == 0) return
+    call closest_within_piece(curve%pieces(:, :, piece), point, roots(minloc(abs(roots(:n) - from), 1)), closest)
+    if (closest%piece > 0) closest%piece = piece
+  end subroutine closest_on_piece
+
+  !> Distance from a box (xmin, ymin, xmax, ymax) to the boxes of a curve; 0 when they meet [length].
+  pure function box_distance(curve, box) result(distance)
+    class(piecewise_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: box(4)   !! xmin, ymin, xmax, ymax [length]
+    real(wp) :: distance
+    real(wp) :: gaps(most_waiting), gap(2)
+    integer :: waiting(most_waiting), n, node, near, far
+
+    distance = huge(1.0_wp)
+    n = 1
+    waiting(1) = 1
+    gaps(1) = box_gap(box_of_node(curve, 1), box)
+    do while (n > 0)
+      node = waiting(n)
+      n = n - 1
+      if (.not. gaps(n + 1) < distance) cycle
+      if (node > size(curve%tree, 2)) then
+        distance = gaps(n + 1)
+        cycle
+      end if
+      gap(1) = box_gap(box_of_node(curve, 2*node), box)
+      gap(2) = box_gap(box_of_node(curve, 2*node + 1), box)
+      near = merge(0, 1, gap(1) <= gap(2))
+      far = 1 - near
+      waiting(n + 1:n + 2) = 2*node + [far, near]
+      gaps(n + 1:n + 2) = gap([far + 1, near + 1])
+      n = n + 2
+    end do
+    distance = sqrt(distance)
+  end function box_distance
+
+end module curve_search

@@ -1,0 +1,2 @@
+! The same numbers as the tests of the laws.
+include '../law/sample_numbers.f90'
