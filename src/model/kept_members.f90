@@ -73,7 +73,7 @@ contains
       if (k > 0) values = self%members(k)%reals
     else
       call self%add(name, k)
-      allocate (self%members(k)%reals, source=values)
+      if (allocated(values)) allocate (self%members(k)%reals, source=values)
     end if
   end subroutine visit_reals
 
@@ -87,9 +87,9 @@ contains
     real(wp), allocatable :: flat(:)
 
     if (.not. self%is_meant(carried)) return
-    allocate (flat, source=reshape(values, [size(values)]))
+    if (allocated(values)) allocate (flat, source=reshape(values, [size(values)]))
     call self%visit_reals(name, flat, carried, extents)
-    values = reshape(flat, shape(values))
+    if (allocated(values)) values = reshape(flat, shape(values))
   end subroutine visit_reals_2
 
   subroutine visit_reals_3(self, name, values, carried, extents, unit, low, high)
@@ -102,9 +102,9 @@ contains
     real(wp), allocatable :: flat(:)
 
     if (.not. self%is_meant(carried)) return
-    allocate (flat, source=reshape(values, [size(values)]))
+    if (allocated(values)) allocate (flat, source=reshape(values, [size(values)]))
     call self%visit_reals(name, flat, carried, extents)
-    values = reshape(flat, shape(values))
+    if (allocated(values)) values = reshape(flat, shape(values))
   end subroutine visit_reals_3
 
   subroutine visit_integer(self, name, value, carried, low, high)
@@ -134,7 +134,7 @@ contains
       if (k > 0) values = self%members(k)%integers
     else
       call self%add(name, k)
-      allocate (self%members(k)%integers, source=values)
+      if (allocated(values)) allocate (self%members(k)%integers, source=values)
     end if
   end subroutine visit_integers
 
@@ -147,9 +147,9 @@ contains
     integer, allocatable :: flat(:)
 
     if (.not. self%is_meant(carried)) return
-    allocate (flat, source=reshape(values, [size(values)]))
+    if (allocated(values)) allocate (flat, source=reshape(values, [size(values)]))
     call self%visit_integers(name, flat, carried, extents)
-    values = reshape(flat, shape(values))
+    if (allocated(values)) values = reshape(flat, shape(values))
   end subroutine visit_integers_2
 
   subroutine visit_text(self, name, value, carried)
@@ -165,7 +165,7 @@ contains
       if (k > 0) value = self%members(k)%text
     else
       call self%add(name, k)
-      self%members(k)%text = value
+      if (allocated(value)) self%members(k)%text = value
     end if
   end subroutine visit_text
 

@@ -51,10 +51,10 @@ contains
 
     call visitor%member('name', self%name, kept)
     deformable = is_deformable(self)
-    call visitor%member('deformable', deformable, kept)
     carried = kept
     if (deformable) carried = of_the_mesh
     call visitor%member('pieces', self%pieces, carried, '2, 3, piece', 'length')
+    call visitor%member('deformable', deformable, kept)
     if (deformable) call visitor%member('nodes', self%nodes, of_the_mesh, '3, piece', low=1)
     call visitor%fixed('start', self%pilot, kept, 'length')
     call visitor%derived('boxes', of_the_pieces)

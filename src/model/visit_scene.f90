@@ -8,7 +8,7 @@ module visit_scene
   use visit_material, only: visit_material_members
   use visit_parts, only: visit_die, visit_fixation, visit_mesh
   use visit_remesher, only: visit_remesher_options
-  use visitors, only: kept, visitor_t
+  use visitors, only: kept, recomputed, visitor_t
   implicit none
   private
   public :: visit_scene_members
@@ -26,7 +26,7 @@ contains
     call visitor%enter('scene')
     call visitor%member('plane_state', self%plane_state, kept, low=1, high=size(plane_state_names))
     call visitor%member('finite', self%finite, kept)
-    call visitor%member('generation', self%generation, kept, low=1)
+    call visitor%member('generation', self%generation, recomputed, low=1)
     call visitor%leave('scene')
     call visitor%enter('mesh')
     call visit_mesh(visitor, self%mesh)
