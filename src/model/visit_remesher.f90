@@ -4,7 +4,7 @@ module visit_remesher
   use kinds, only: pi, wp
   use remesher_options, only: by_gmsh, remesher_options_t
   use visitors, only: kept, not_carried, visitor_t
-  use zone_marks, only: contour_card_t, mark_corner, mark_inside, zone_card_t, zone_mark_t
+  use zone_marks, only: contour_card_t, mark_corner, mark_inside, name_length, zone_card_t, zone_mark_t
   implicit none
   private
   public :: visit_contact_ends, visit_remesher_options
@@ -67,11 +67,22 @@ contains
     end do
   end subroutine visit_remesher_options
 
+  !> A name of constant length.
+  subroutine visit_name(visitor, name)
+    class(visitor_t), intent(inout) :: visitor
+    character(len=name_length), intent(inout) :: name
+    character(len=:), allocatable :: text
+
+    text = trim(name)
+    call visitor%member('name', text, kept)
+    name = text
+  end subroutine visit_name
+
   subroutine visit_zone_mark(visitor, self)
     class(visitor_t), intent(inout) :: visitor
     type(zone_mark_t), intent(inout) :: self
 
-    call visitor%fixed('name', self%name, kept)
+    call visit_name(visitor, self%name)
     call visitor%member('form', self%form, kept, low=mark_corner, high=mark_inside)
     call visitor%fixed('position', self%x, kept, 'length')
     call visitor%member('axis', self%axis, kept, low=0, high=2)
@@ -85,7 +96,7 @@ contains
     class(visitor_t), intent(inout) :: visitor
     type(zone_card_t), intent(inout) :: self
 
-    call visitor%fixed('name', self%name, kept)
+    call visit_name(visitor, self%name)
     call visitor%member('group', self%group, kept, low=1)
     call visitor%fixed('points', self%marks, kept, low=1)
   end subroutine visit_zone_card

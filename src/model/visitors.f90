@@ -4,8 +4,8 @@
 !> carries them over. Writing, reading, the description of the file and the carry over a remesh are visitors, so that no member is
 !> listed a second time. A component that is not kept is named by `derived`, with the reason.
 !>
-!> Members of one number or text are handed over by `member`, arrays that are allocated too; arrays of constant size and texts of
-!> constant length by `fixed`. A type within a type stands between `enter` and `leave`. Lists of a type begin with `list`.
+!> Members of one number or text are handed over by `member`, arrays that are allocated too; arrays of constant size by `fixed`. A
+!> type within a type stands between `enter` and `leave`. Lists of a type begin with `list`.
 module visitors
   use kinds, only: wp
   use text, only: to_text
@@ -34,10 +34,9 @@ module visitors
     procedure(visit_integers_2_i), deferred :: visit_integers_2
     procedure(visit_text_i), deferred :: visit_text
     procedure :: visit_flag
-    generic :: fixed => visit_fixed_reals, visit_fixed_integers, visit_fixed_text
+    generic :: fixed => visit_fixed_reals, visit_fixed_integers
     procedure :: visit_fixed_reals
     procedure :: visit_fixed_integers
-    procedure :: visit_fixed_text
     !> A text that may be long: a whole deck.
     procedure(visit_text_i), deferred :: long_text
     procedure :: enter
@@ -171,18 +170,6 @@ contains
     call self%member(name, copy, carried, to_text(size(values)), low, high)
     if (size(copy) == size(values)) values = copy
   end subroutine visit_fixed_integers
-
-  subroutine visit_fixed_text(self, name, value, carried)
-    class(visitor_t), intent(inout) :: self
-    character(len=*), intent(in) :: name
-    character(len=*), intent(inout) :: value
-    character(len=*), intent(in) :: carried
-    character(len=:), allocatable :: copy
-
-    copy = trim(value)
-    call self%member(name, copy, carried)
-    value = copy
-  end subroutine visit_fixed_text
 
   !> What follows belongs to the part `name`, until `leave`.
   subroutine enter(self, name)
