@@ -132,7 +132,7 @@ contains
     call place_on_nodes(scene%mesh%coordinates, sides)
     call add_die(scene, sides)
     call add_contact(scene, 1, 1, 2)
-    call add_contact(scene, 3, 2, 2)
+    call add_contact(scene, 3, 2, -3)
     second = scene%groups(1)
     second%role = role_second
     second%host = 1
