@@ -121,9 +121,12 @@ contains
     ! A deck that could not be opened has no other mistakes.
     if (sound .or. size(deck%cards) > 0) call read_scene(deck, scene, diagnostics, remesh)
     call diagnostics%error(error)
-    if (allocated(remesh) .and. .not. allocated(unfit)) then
-      if (scene%generation /= remesh%generation) &
+    if (allocated(remesh)) then
+      if (scene%generation /= remesh%generation) then
+        ! the deck was read without elements of blocks: what is wrong with it says nothing
+        if (allocated(error)) deallocate (error)
         call fail(unfit, exit_input, options%resume//': its groups or sides are not those of the deck')
+      end if
     end if
     if (.not. allocated(error) .and. allocated(unfit)) call move_alloc(unfit, error)
     if (.not. allocated(error)) call fingerprint_text(deck, text)

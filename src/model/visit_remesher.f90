@@ -2,7 +2,7 @@
 module visit_remesher
   use contact_ends, only: contact_end_t
   use kinds, only: pi, wp
-  use remesher_options, only: by_gmsh, remesher_options_t
+  use remesher_options, only: by_gmsh, own_mesh_t, remesher_options_t
   use visitors, only: kept, not_carried, visitor_t
   use zone_marks, only: contour_card_t, mark_corner, mark_inside, name_length, zone_card_t, zone_mark_t
   implicit none
@@ -37,6 +37,9 @@ contains
     call visitor%member('turn', self%turn, kept, 'radian', low=tiny(1.0_wp), high=pi/2)
     call visitor%member('mesher', self%mesher, kept, low=0, high=by_gmsh)
     call visitor%member('tries', self%tries, kept, low=0)
+    call visitor%enter('own_mesh')
+    call visit_own_mesh(visitor, self%own_mesh)
+    call visitor%leave('own_mesh')
     call visitor%derived('accept', 'the solver reads it from the deck')
     n = 0
     if (allocated(self%marks)) n = size(self%marks)
@@ -66,6 +69,15 @@ contains
       call visitor%leave('contours')
     end do
   end subroutine visit_remesher_options
+
+  subroutine visit_own_mesh(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(own_mesh_t), intent(inout) :: self
+
+    call visitor%member('elements', self%elements, kept, low=0)
+    call visitor%member('smallest', self%smallest, kept, 'length', low=0.0_wp)
+    call visitor%member('largest', self%largest, kept, 'length', low=0.0_wp)
+  end subroutine visit_own_mesh
 
   !> A name of constant length.
   subroutine visit_name(visitor, name)

@@ -85,6 +85,7 @@ contains
     remesh%step = solution%step
     remesh%coordinates = scene%mesh%coordinates
     remesh%origin = scene%mesh%origin
+    remesh%own_mesh = scene%remesher%own_mesh
     allocate (remesh%sides, source=scene%mesh%sides)
     allocate (remesh%groups(size(scene%groups)))
     do g = 1, size(scene%groups)

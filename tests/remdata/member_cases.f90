@@ -7,7 +7,7 @@ module member_cases
   use kept_members, only: member_memory_t
   use kinds, only: wp
   use loads, only: fixation_t
-  use remesher_options, only: by_gmsh
+  use remesher_options, only: by_gmsh, own_mesh_t
   use remeshing, only: trigger_t
   use scene, only: group_t, role_second, scene_t
   use solution, only: solution_t
@@ -186,6 +186,7 @@ contains
         options%turn = 0.4_wp
         options%mesher = by_gmsh
         options%tries = 6
+        options%own_mesh = own_mesh_t(12, 0.3_wp, 0.6_wp)
         allocate (options%marks(1), options%zones(1), options%contours(1))
         options%marks(1) = zone_mark_t(name='corner', form=mark_crossing, x=[0.3_wp, 0.4_wp], axis=1, pick=-1, by_matter=.true., &
                                        die=1, stays=.true.)

@@ -109,6 +109,9 @@ contains
       if (remesh%generation == 1) deallocate (remesh)
       call read_scene(deck, scene, diagnostics, remesh)
       call diagnostics%error(error)
+      if (allocated(remesh) .and. .not. allocated(error)) then
+        if (scene%generation /= remesh%generation) call fail(error, exit_input, 'its groups or sides are not those of the deck')
+      end if
     end if
     if (.not. allocated(error)) then
       at_rest = lacks_mesh(scene)
