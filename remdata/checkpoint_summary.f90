@@ -1,13 +1,14 @@
-!> `remdata --about`: the contents of a checkpoint, for scripts: a key and its value on each line.
+!> `remdata --about`: the contents of a checkpoint, for scripts: a key and its value on each line. `remdata --schema`: what is in a
+!> checkpoint, for people.
 module checkpoint_summary
   use cycle_situation, only: due_reason
   use errors, only: error_t
   use exact_numbers, only: exact_text
-  use exchange, only: checkpoint_facts_t, read_facts
-  use text, only: to_text
+  use exchange, only: checkpoint_facts_t, describe_checkpoint, read_facts
+  use text, only: string_t, to_text
   implicit none
   private
-  public :: print_about
+  public :: print_about, print_schema
 
 contains
 
@@ -33,6 +34,16 @@ contains
     why = due_reason(facts)
     if (len(why) > 0) call say('due', why)
   end subroutine print_about
+
+  subroutine print_schema()
+    type(string_t), allocatable :: lines(:)
+    integer :: k
+
+    call describe_checkpoint(lines)
+    do k = 1, size(lines)
+      write (*, '(a)') lines(k)%s
+    end do
+  end subroutine print_schema
 
   subroutine say(word, its_value)
     character(len=*), intent(in) :: word, its_value

@@ -1,7 +1,7 @@
 !> The remesher: arguments -> new mesh and state -> exit code. With `--next`: what a cycle of solver and remesher does next.
 program remdata
   use, intrinsic :: iso_fortran_env, only: error_unit
-  use checkpoint_summary, only: print_about
+  use checkpoint_summary, only: print_about, print_schema
   use cycle_answer, only: answer_next
   use cycle_options, only: asks_for_next
   use errors, only: error_t, exit_done
@@ -44,6 +44,8 @@ contains
       write (*, '(a)') remesh_usage()
     else if (options%version) then
       call tell_version()
+    else if (options%schema) then
+      call print_schema()
     else if (options%about) then
       call print_about(options%checkpoint, error)
     else

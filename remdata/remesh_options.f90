@@ -19,6 +19,8 @@ module remesh_options
     real(wp) :: limit = 300.0_wp
     !> Only print the contents of the checkpoint.
     logical :: about = .false.
+    !> Only print what is in a checkpoint of this program.
+    logical :: schema = .false.
     logical :: quiet = .false., help = .false., version = .false.
   end type remesh_options_t
 
@@ -41,6 +43,8 @@ contains
         options%version = .true.
       case ('--about')
         options%about = .true.
+      case ('--schema')
+        options%schema = .true.
       case ('--quiet')
         options%quiet = .true.
       case ('--out')
@@ -67,7 +71,7 @@ contains
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
           call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--quiet'), string_t('--out'), &
                                     string_t('--transfer'), string_t('--finer'), string_t('--limit'), &
-                                    string_t('--about')], 'remdata', error)
+                                    string_t('--about'), string_t('--schema')], 'remdata', error)
         else if (allocated(options%checkpoint)) then
           call fail(error, exit_input, 'one checkpoint at a time: found '''//options%checkpoint//''' and '''//word//'''')
         else
@@ -75,7 +79,7 @@ contains
         end if
       end select
     end do
-    if (allocated(error) .or. options%help .or. options%version) return
+    if (allocated(error) .or. options%help .or. options%version .or. options%schema) return
     if (.not. allocated(options%checkpoint)) then
       call fail(error, exit_input, 'no checkpoint given', 'remdata --help shows how to call')
     else if (options%about) then
@@ -95,6 +99,7 @@ contains
     text = 'remdata: a new mesh and the state on it, from a checkpoint of lagamine'//nl//nl// &
            'remdata CHECKPOINT --out NEW [--transfer N] [--finer F] [--limit SECONDS] [--quiet]'//nl// &
            'remdata --about CHECKPOINT'//nl// &
+           'remdata --schema'//nl// &
            'remdata --next DIR/NAME [--tries N] [--fresh] [--ran WHAT --code N --said FILE [--from NAME] [--late S]]'//nl// &
            'remdata --help | --version'//nl//nl// &
            '  --out NEW       checkpoint of the new mesh, for lagamine --resume; facts in NEW.json'//nl// &
@@ -102,6 +107,7 @@ contains
            '  --finer F       divide the wanted sizes of elements by F'//nl// &
            '  --limit SECONDS longest time for Gmsh, where it makes the mesh (default 300)'//nl// &
            '  --about         check the file and print what it holds, a word and its value a line'//nl// &
+           '  --schema        print what is in a checkpoint: every member with unit, range, and what a remesh does with it'//nl// &
            '  --quiet         print errors only'//nl// &
            '  --next DIR/NAME say what lagacycle does next for deck NAME with results in DIR, a word and its value a line;'//nl// &
            '                  --ran check, lagamine or remdata and what follows: how the program ended that it called'//nl//nl// &

@@ -16,10 +16,11 @@ module remesh_scene
   use fields, only: displacement_field, on_nodes, pilot_field
   use first_contours, only: contours_of_cards
   use gmsh_call, only: find_gmsh, gmsh_t
-  use hdf5_file, only: hdf5_file_t
+  use kept_members, only: member_memory_t
   use kinds, only: wp
   use material_interfaces, only: interface_t, interfaces_of
   use material_volumes, only: compare_materials
+  use member_reader, only: member_reader_t
   use mesh_prediction, only: predict
   use mesh_without_zones, only: make_mesh_without_zones
   use new_mesh_check, only: check_new_mesh, check_shape
@@ -39,6 +40,7 @@ module remesh_scene
   use transfer_nodes, only: carry_at_nodes
   use transfer_report, only: transfer_report_t
   use transfer_states, only: carry_states
+  use visit_solution, only: visit_solution_members
   use zone_mesh, only: mesh_settings_t, mesh_zones, new_mesh_t
   use zone_plan, only: plan_zones
   use zones, only: plan_t
@@ -129,17 +131,17 @@ contains
     type(solution_t), intent(out) :: solution
     type(contact_end_t), allocatable, intent(out) :: ends(:)
     type(error_t), allocatable, intent(out) :: error
-    type(hdf5_file_t) :: file
+    type(member_reader_t) :: reader
     type(error_t), allocatable :: ignored
 
-    call open_checkpoint(path, file, error)
+    call open_checkpoint(path, reader, error)
     if (allocated(error)) return
-    call read_deck_of_checkpoint(file, deck_path, deck_text, error)
-    if (.not. allocated(error)) call read_bare_scene(file, scene, error)
+    call read_deck_of_checkpoint(reader, deck_path, deck_text, error)
+    if (.not. allocated(error)) call read_bare_scene(reader, scene, error)
     if (.not. allocated(error)) call start_solution(scene, solution)
-    if (.not. allocated(error)) call read_state(file, scene, solution, error)
-    if (.not. allocated(error)) call read_contact_ends(file, scene, ends, error)
-    call file%close(ignored)
+    if (.not. allocated(error)) call read_state(reader, scene, solution, error)
+    if (.not. allocated(error)) call read_contact_ends(reader, scene, ends, error)
+    call reader%file%close(ignored)
   end subroutine read_all
 
   !> With small strains the geometry is that of the start: bodies are meshed in their initial position, and their displacements
@@ -339,31 +341,17 @@ contains
     call move_alloc(zone_error, error)
   end subroutine make_free_mesh
 
-  !> Time, dies, work: quantities that do not depend on the mesh.
-  pure subroutine carry_progress(before, after)
+  !> Time, dies, work: what does not depend on the mesh (visit_solution says of each member how it is carried).
+  subroutine carry_progress(before, after)
     type(solution_t), intent(in) :: before
     type(solution_t), intent(inout) :: after
-    integer :: f
+    type(member_memory_t) :: memory
+    type(solution_t), allocatable :: shown   ! a visitor may change what it visits
 
-    after%time = before%time
-    after%step = before%step
-    after%last_step = before%last_step
-    after%next_step = before%next_step
-    after%probation = before%probation
-    do f = 1, size(after%fields)
-      if (after%fields(f)%place /= on_nodes) after%fields(f) = before%fields(f)
-    end do
-    after%iterations = before%iterations
-    after%cutbacks = before%cutbacks
-    after%external_work = before%external_work
-    after%friction_work = before%friction_work
-    after%initial_volume = before%initial_volume
-    after%worst_linear_residual = before%worst_linear_residual
-    after%worst_penetration = before%worst_penetration
-    after%worst_penetration_ratio = before%worst_penetration_ratio
-    after%worst_sample = before%worst_sample
-    after%worst_sample_ratio = before%worst_sample_ratio
-    after%least_dissipation = before%least_dissipation
+    allocate (shown, source=before)
+    call visit_solution_members(memory, shown)
+    memory%gives = .true.
+    call visit_solution_members(memory, after)
     after%estimate%last_stop = before%step
     after%unbalanced = .true.
   end subroutine carry_progress

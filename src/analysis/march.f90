@@ -216,6 +216,8 @@ contains
     type(run_t), intent(inout) :: run
 
     if (run%spurious_told .or. .not. solution%worst_spurious > spurious_limit) return
+    ! an element of an earlier mesh was told of there
+    if (solution%spurious_element == 0) return
     run%spurious_told = .true.
     call list_note(run%listing, 'note: step '//to_text(solution%step)//': element '//to_text(solution%spurious_element)//' of ' &
                    //scene%groups(solution%spurious_group)%name//' moves in the way that 4 integration points do not see ('// &

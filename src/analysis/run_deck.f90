@@ -7,17 +7,18 @@ module run_deck
   use equations, only: equations_t
   use errors, only: error_t, exit_done, exit_input, exit_machine, exit_remesh, fail
   use exchange, only: open_checkpoint, read_deck_of_checkpoint, read_remesh, read_state, write_checkpoint
-  use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use law_api, only: law_t
   use law_manual, only: law_card, law_list
   use law_registry, only: law_names, list_laws
   use listing, only: close_listing, end_progress, list_lines, list_note, list_resumed, open_listing
   use march, only: march_to_end
+  use member_reader, only: member_reader_t
   use run_record, only: run_t
   use run_options, only: run_options_t, stem_of
   use run_version, only: blas_words, version_text
   use remesh, only: remesh_t
+  use remeshing, only: drop_triggers
   use scene, only: lacks_mesh, scene_t
   use scene_reader, only: read_scene
   use scene_summary, only: scene_lines
@@ -42,7 +43,7 @@ contains
     type(scene_t) :: scene
     type(solution_t) :: solution
     type(run_t) :: run
-    type(hdf5_file_t) :: checkpoint
+    type(member_reader_t) :: checkpoint
     type(error_t), allocatable :: ignored
     logical :: at_rest
 
@@ -54,8 +55,10 @@ contains
     if (.not. (allocated(error) .or. options%check)) then
       call start_solution(scene, solution)
       if (run%resume) call read_state(checkpoint, scene, solution, error)
+      ! what made the run stop is of the past: it goes on
+      call drop_triggers(solution%estimate)
     end if
-    call checkpoint%close(ignored)
+    call checkpoint%file%close(ignored)
     if (allocated(error)) return
     if (options%check) then
       call print_check(scene, error)
@@ -101,7 +104,7 @@ contains
     type(scene_t), intent(out) :: scene
     character(len=:), allocatable, intent(out) :: text
     logical, intent(out) :: at_rest   !! there is a new mesh, but no step has been made
-    type(hdf5_file_t), intent(inout) :: checkpoint   !! open afterwards, where one is resumed
+    type(member_reader_t), intent(inout) :: checkpoint   !! open afterwards, where one is resumed
     type(error_t), allocatable, intent(out) :: error
     type(diagnostics_t), target :: diagnostics
     type(remesh_t), allocatable :: remesh
@@ -118,9 +121,12 @@ contains
     ! A deck that could not be opened has no other mistakes.
     if (sound .or. size(deck%cards) > 0) call read_scene(deck, scene, diagnostics, remesh)
     call diagnostics%error(error)
-    if (allocated(remesh) .and. .not. allocated(unfit)) then
-      if (scene%generation /= remesh%generation) &
+    if (allocated(remesh)) then
+      if (scene%generation /= remesh%generation) then
+        ! the deck was read without elements of blocks: what is wrong with it says nothing
+        if (allocated(error)) deallocate (error)
         call fail(unfit, exit_input, options%resume//': its groups or sides are not those of the deck')
+      end if
     end if
     if (.not. allocated(error) .and. allocated(unfit)) call move_alloc(unfit, error)
     if (.not. allocated(error)) call fingerprint_text(deck, text)
@@ -130,22 +136,22 @@ contains
   end subroutine read_input
 
   !> The mesh of a checkpoint, which must come from the same deck; not allocated when it is the deck's own.
-  subroutine read_mesh_of(file, text, remesh, error)
-    type(hdf5_file_t), intent(inout) :: file
+  subroutine read_mesh_of(checkpoint, text, remesh, error)
+    type(member_reader_t), intent(inout) :: checkpoint
     character(len=*), intent(in) :: text
     type(remesh_t), allocatable, intent(out) :: remesh
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: old_path, old_text
 
-    call read_deck_of_checkpoint(file, old_path, old_text, error)
+    call read_deck_of_checkpoint(checkpoint, old_path, old_text, error)
     if (allocated(error)) return
     if (old_text /= text) then
-      call fail(error, exit_input, file%path()//': made from another deck than the one given (it was '//old_path//')', &
+      call fail(error, exit_input, checkpoint%file%path()//': made from another deck than the one given (it was '//old_path//')', &
                 'resume with the same deck and the same -p options')
       return
     end if
     allocate (remesh)
-    call read_remesh(file, remesh, error)
+    call read_remesh(checkpoint, remesh, error)
     if (remesh%generation == 1) deallocate (remesh)
   end subroutine read_mesh_of
 

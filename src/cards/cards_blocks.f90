@@ -31,12 +31,13 @@ module cards_blocks
 
 contains
 
-  !> All BLOCK cards: a body each, and the four sets of its sides.
-  subroutine read_blocks(deck, draft, parts, diagnostics)
+  !> All BLOCK cards: a body each, and the four sets of its sides; without elements where another mesh takes their place.
+  subroutine read_blocks(deck, draft, parts, diagnostics, with_mesh)
     type(deck_t), intent(inout), target :: deck
     type(draft_t), intent(inout) :: draft
     type(mesh_parts_t), intent(inout) :: parts
     type(diagnostics_t), intent(inout), target :: diagnostics
+    logical, intent(in) :: with_mesh
     type(cursor_t) :: cursor
     type(body_t) :: body
     type(block_t) :: block
@@ -52,7 +53,7 @@ contains
       call close_card(draft, cursor, deck%cards(i))
       parts%sound = parts%sound .and. .not. cursor%failed()
       if (cursor%failed()) block = unit_block()
-      call append_block(block, head_location(deck%cards(i)), body, draft, parts)
+      call append_block(block, with_mesh, head_location(deck%cards(i)), body, draft, parts)
     end do
   end subroutine read_blocks
 
@@ -148,8 +149,9 @@ contains
   end subroutine check_curve
 
   !> Nodes, elements and sides of a block after those that are there.
-  subroutine append_block(block, where, body, draft, parts)
+  subroutine append_block(block, with_mesh, where, body, draft, parts)
     type(block_t), intent(in) :: block
+    logical, intent(in) :: with_mesh
     type(location_t), intent(in) :: where
     type(body_t), intent(inout) :: body
     type(draft_t), intent(inout) :: draft
@@ -161,7 +163,13 @@ contains
     integer :: first(5), k, n, new
 
     n = size(parts%labels)
-    call mesh_block(block, coordinates, body%connectivity, first, sides)
+    if (with_mesh) then
+      call mesh_block(block, coordinates, body%connectivity, first, sides)
+    else
+      first = 1
+      if (allocated(body%connectivity)) deallocate (body%connectivity)
+      allocate (body%connectivity(8, 0), coordinates(2, 0), sides(3, 0))
+    end if
     new = size(coordinates, 2)
     body%connectivity = body%connectivity + n
     body%across = block%divisions(1)

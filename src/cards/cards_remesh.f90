@@ -46,7 +46,7 @@ contains
       call read_rows(cursor, draft)
       call close_card(draft, cursor, deck%cards(k))
     end if
-    call complete_options(draft%own_mesh, draft%scene%remesher)
+    call complete_options(draft%scene%remesher)
   end subroutine read_remesh
 
   !> Each row once, but STROKE, and at least one that asks for something.

@@ -16,7 +16,8 @@ module remeshed_parts
 
 contains
 
-  !> Put the remesh in place of the parts that the cards have made. Labels of nodes now mean the nearest node of the new mesh.
+  !> Put the remesh in place of the parts that the cards have made, blocks without elements among them. Where it does not fit them
+  !> the scene keeps its generation. Labels of nodes now mean the nearest node of the new mesh.
   subroutine replace_parts(remesh, draft, parts)
     type(remesh_t), intent(in) :: remesh
     type(draft_t), intent(inout) :: draft
@@ -25,7 +26,11 @@ contains
     real(wp) :: distance
     integer :: i, k, nnode
 
-    if (.not. fits(remesh, draft, parts)) return
+    if (.not. fits(remesh, draft, parts)) then
+      ! blocks have no elements now: nothing is looked up in them
+      parts%sound = .false.
+      return
+    end if
     do i = 1, size(draft%labelled_nodes)
       call nearest_node(remesh%origin, parts%coordinates(:, draft%labelled_nodes(i)), k, distance)
       draft%labelled_nodes(i) = k

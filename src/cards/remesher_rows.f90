@@ -8,8 +8,8 @@ module remesher_rows
   use deck_cursor, only: cursor_t
   use kinds, only: pi, wp
   use mesh_parts, only: mesh_parts_t
-  use remesher_options, only: by_gmsh, has_zones, remesher_options_t
-  use scene_draft, only: own_mesh_t, words_of
+  use remesher_options, only: by_gmsh, has_zones, own_mesh_t, remesher_options_t
+  use scene_draft, only: words_of
   use text, only: string_t
   implicit none
   private
@@ -152,15 +152,16 @@ contains
   end function measure_own_mesh
 
   !> What was not given is taken from the deck's own mesh.
-  pure subroutine complete_options(own, options)
-    type(own_mesh_t), intent(in) :: own
+  pure subroutine complete_options(options)
     type(remesher_options_t), intent(inout) :: options
 
-    if (.not. options%largest > 0) then
-      options%smallest = smallest_share*own%smallest
-      options%largest = largest_share*own%largest
-    end if
-    if (options%most_elements == 0) options%most_elements = growth*own%elements
+    associate (own => options%own_mesh)
+      if (.not. options%largest > 0) then
+        options%smallest = smallest_share*own%smallest
+        options%largest = largest_share*own%largest
+      end if
+      if (options%most_elements == 0) options%most_elements = growth*own%elements
+    end associate
   end subroutine complete_options
 
 end module remesher_rows

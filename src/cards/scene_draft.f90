@@ -15,14 +15,7 @@ module scene_draft
   use text, only: string_t
   implicit none
   private
-  public :: draft_t, own_mesh_t, start_draft, only_card, close_card, find_elem, words_of, head_location
-
-  !> The mesh that the cards make, before any remesh took its place.
-  type :: own_mesh_t
-    integer :: elements = 0
-    !> Sizes of the smallest and the largest element [length].
-    real(wp) :: smallest = 0.0_wp, largest = 0.0_wp
-  end type own_mesh_t
+  public :: draft_t, start_draft, only_card, close_card, find_elem, words_of, head_location
 
   type :: draft_t
     type(scene_t) :: scene
@@ -44,7 +37,6 @@ module scene_draft
     logical :: groups_sound = .true.
     !> Length of the diagonal of the box around the mesh [length].
     real(wp) :: mesh_size = 0.0_wp
-    type(own_mesh_t) :: own_mesh
   end type draft_t
 
 contains

@@ -67,12 +67,16 @@ contains
     allocate (draft%scene%mesh%sides(0))
     call read_nodes(deck, draft, parts, diagnostics)
     call read_elements(deck, draft, parts, diagnostics)
-    call read_blocks(deck, draft, parts, diagnostics)
+    call read_blocks(deck, draft, parts, diagnostics, .not. present(remesh))
     call read_contours(deck, draft, parts, diagnostics)
     call read_side_sets(deck, draft, parts, diagnostics)
     call join_blocks(deck, draft, parts, diagnostics)
-    draft%own_mesh = measure_own_mesh(parts)
-    if (present(remesh)) call replace_parts(remesh, draft, parts)
+    if (present(remesh)) then
+      draft%scene%remesher%own_mesh = remesh%own_mesh
+      call replace_parts(remesh, draft, parts)
+    else
+      draft%scene%remesher%own_mesh = measure_own_mesh(parts)
+    end if
     ! without a mesh cards are read as where it has mistakes: nothing is looked up in it
     if (has_contours(draft%scene%remesher) .and. .not. present(remesh)) parts%sound = .false.
     call finish_mesh(draft, parts, diagnostics)

@@ -2,6 +2,7 @@
 module remesh
   use kinds, only: wp
   use mesh, only: side_set_t
+  use remesher_options, only: own_mesh_t
   implicit none
   private
   public :: remesh_t, elements_t
@@ -25,5 +26,7 @@ module remesh
     !> All groups and all sets of sides of the scene, in its order.
     type(elements_t), allocatable :: groups(:)
     type(side_set_t), allocatable :: sides(:)
+    !> The deck's own mesh, which is not made again.
+    type(own_mesh_t) :: own_mesh
   end type remesh_t
 end module remesh

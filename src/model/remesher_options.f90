@@ -5,11 +5,18 @@ module remesher_options
   use zone_marks, only: contour_card_t, zone_card_t, zone_mark_t
   implicit none
   private
-  public :: remesher_options_t, has_zones, has_contours
+  public :: own_mesh_t, remesher_options_t, has_zones, has_contours
   public :: as_it_comes, by_zones, by_gmsh
 
   !> Who makes a mesh: zones, and Gmsh where they fail; zones alone; Gmsh alone.
   integer, parameter :: as_it_comes = 0, by_zones = 1, by_gmsh = 2
+
+  !> The mesh that the cards make, before any remesh took its place.
+  type :: own_mesh_t
+    integer :: elements = 0
+    !> Sizes of the smallest and the largest element [length].
+    real(wp) :: smallest = 0.0_wp, largest = 0.0_wp
+  end type own_mesh_t
 
   type :: remesher_options_t
     !> A REMSH card is there.
@@ -31,6 +38,8 @@ module remesher_options
     !> When a mesh is refused, and other ways tried then.
     type(acceptance_t) :: accept
     integer :: tries = 4
+    !> What sizes and numbers follow that the deck does not give.
+    type(own_mesh_t) :: own_mesh
     !> Zones that cards give, and the points they name; without them blocks are zones.
     type(zone_mark_t), allocatable :: marks(:)
     type(zone_card_t), allocatable :: zones(:)

@@ -4,6 +4,7 @@ module remeshing
   implicit none
   private
   public :: remesh_rules_t, stroke_t, trigger_t, estimate_t
+  public :: drop_triggers
   public :: ncriteria, criterion_names, is_upper, never
   public :: least_angle, largest_angle, middle_share, jacobian_ratio, scaled_jacobian, aspect_ratio
 
@@ -61,5 +62,15 @@ module remeshing
     !> Why a new mesh is due; none while the present one is good.
     type(trigger_t), allocatable :: triggers(:)
   end type estimate_t
+
+contains
+
+  !> No new mesh is due any more.
+  pure subroutine drop_triggers(estimate)
+    type(estimate_t), intent(inout) :: estimate
+
+    deallocate (estimate%triggers)
+    allocate (estimate%triggers(0))
+  end subroutine drop_triggers
 
 end module remeshing

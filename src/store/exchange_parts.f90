@@ -6,14 +6,12 @@ module exchange_parts
   use block_mesh, only: least_jacobian
   use dies, only: is_deformable
   use exchange_rules, only: require, require_range
-  use exchange_schema, only: group_place, set_place
+  use exchange_schema, only: group_place
   use fields, only: displacement_field
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use mesh, only: side_set_t
-  use remesh, only: remesh_t
-  use remesher_options, only: has_contours, has_zones
-  use scene, only: axisymmetric, group_t, is_solid, role_body, role_second, role_volume_load, scene_t
+  use scene, only: axisymmetric, group_t, is_solid, role_second, role_volume_load, scene_t
   use shape_functions, only: quad8, quad8_side
   use quadrature, only: rule_number, square_rule
   use solution, only: solution_t
@@ -21,7 +19,7 @@ module exchange_parts
   use text, only: to_text
   implicit none
   private
-  public :: check_parts, check_remesh, check_shapes
+  public :: check_parts, check_shapes
 
   !> Sides of the elements of matter, each known by its middle node: how many elements have it, and its ends as the first of them
   !> walks (2, nnode).
@@ -47,38 +45,21 @@ contains
       if (.not. is_solid(scene%groups(g))) call check_group(file, group_place(g), scene, scene%groups(g), known)
     end do
     do k = 1, size(scene%dies)
-      call require(file, 'dies_in_order', count_name(scene, k) == 1, 'holds '''//scene%dies(k)%name//''' twice')
-      if (is_deformable(scene%dies(k))) call check_sides(file, 'dies/'//scene%dies(k)%name//'/nodes', scene%dies(k)%nodes, known)
+      call require(file, 'dies/'//to_text(k)//'/name', count_name(scene, k) == 1, 'holds the name of another die')
+      if (is_deformable(scene%dies(k))) call check_sides(file, 'dies/'//to_text(k)//'/nodes', scene%dies(k)%nodes, known)
     end do
-    if (has_zones(scene%remesher)) then
-      do k = 1, size(scene%remesher%zones)
-        call require_solid(file, 'remesher/zones/numbers', scene, scene%remesher%zones(k)%group)
+    associate (options => scene%remesher)
+      do k = 1, size(options%marks)
+        call require_range(file, 'remesher/points/'//to_text(k)//'/die', options%marks(k)%die, 0, size(scene%dies))
       end do
-      call require_range(file, 'remesher/points/numbers', scene%remesher%marks%die, 0, size(scene%dies))
-    end if
-    if (has_contours(scene%remesher)) then
-      do k = 1, size(scene%remesher%contours)
-        call require_solid(file, 'remesher/contours/group', scene, scene%remesher%contours(k)%group)
+      do k = 1, size(options%zones)
+        call require_solid(file, 'remesher/zones/'//to_text(k)//'/group', scene, options%zones(k)%group)
       end do
-    end if
+      do k = 1, size(options%contours)
+        call require_solid(file, 'remesher/contours/'//to_text(k)//'/group', scene, options%contours(k)%group)
+      end do
+    end associate
   end subroutine check_parts
-
-  !> The mesh that takes the place of the deck's.
-  subroutine check_remesh(file, remesh)
-    type(hdf5_file_t), intent(inout) :: file
-    type(remesh_t), intent(in) :: remesh
-    type(sides_t) :: known
-    integer :: g
-
-    call begin_sides(size(remesh%coordinates, 2), known)
-    do g = 1, size(remesh%groups)
-      if (remesh%groups(g)%role /= role_body) cycle
-      call require(file, group_place(g)//'/connectivity', size(remesh%groups(g)%connectivity, 1) == 8, 'has no 8-node elements')
-      if (.not. file%failed()) &
-        call enter_sides(file, group_place(g)//'/connectivity', remesh%groups(g)%connectivity, known)
-    end do
-    call check_sets(file, remesh%sides, known)
-  end subroutine check_remesh
 
   !> Elements as they are at the instant of the checkpoint: the solver accepts no step in which one of them is turned inside out.
   subroutine check_shapes(file, scene, solution)
@@ -132,6 +113,7 @@ contains
 
     call require(file, place//'/npoint', any(rule_number(group%rule) == [1, 4, 9, 16]), &
                  'holds '//to_text(rule_number(group%rule))//', where 1, 4, 9 or 16 points are wanted')
+    call require(file, place//'/connectivity', size(group%connectivity, 1) == 8, 'has no 8-node elements')
     if (file%failed()) return
     do e = 1, size(group%connectivity, 2)
       if (least_jacobian(coordinates(:, group%connectivity(:, e)), group%rule%n) > 0) cycle
@@ -172,7 +154,7 @@ contains
     integer :: k
 
     do k = 1, size(sets)
-      call check_sides(file, set_place(k)//'/nodes', sets(k)%nodes, known)
+      call check_sides(file, 'mesh/sides/'//to_text(k)//'/nodes', sets(k)%nodes, known)
     end do
   end subroutine check_sets
 

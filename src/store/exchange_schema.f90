@@ -1,65 +1,84 @@
-!> The schema of the checkpoint: its version, the places of its datasets, and how a file is opened.
+!> The schema of the checkpoint: its version, the visit of what stands beside scene and solution, and how a file is opened.
 module exchange_schema
   use errors, only: error_t, exit_input, fail
+  use hash, only: sha256
   use hdf5_atomic, only: open_verified
-  use hdf5_file, only: hdf5_file_t
+  use member_reader, only: member_reader_t
   use text, only: to_text
+  use visitors, only: kept, visitor_t
   implicit none
   private
-  public :: fixation_place, group_place, open_checkpoint, schema_name, schema_version, set_place
+  public :: deck_source, deck_source_t, group_place, open_checkpoint, schema_name, schema_version, visit_deck_source
 
-  !> Raised whenever a dataset changes its name, shape or meaning.
-  integer, parameter :: schema_version = 7
+  !> Raised whenever a member changes its name, shape or meaning.
+  integer, parameter :: schema_version = 8
   character(len=*), parameter :: schema_name = 'lagamine checkpoint'
+
+  !> The deck a checkpoint is made from.
+  type :: deck_source_t
+    character(len=:), allocatable :: path
+    !> All that the deck says, files and parameters put in; and its hash.
+    character(len=:), allocatable :: text, sha256
+  end type deck_source_t
 
 contains
 
-  subroutine open_checkpoint(path, file, error)
+  subroutine open_checkpoint(path, reader, error)
     character(len=*), intent(in) :: path
-    type(hdf5_file_t), intent(inout) :: file
+    type(member_reader_t), intent(inout) :: reader
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: schema
     type(error_t), allocatable :: ignored
     integer :: version
 
-    call open_verified(file, path, error)
+    reader%place = ''
+    call open_verified(reader%file, path, error)
     if (allocated(error)) return
     schema = ''
     version = 0
-    if (file%has_attribute('/', 'schema')) call file%read_attribute('/', 'schema', schema)
-    if (file%has_attribute('/', 'schema_version')) call file%read_attribute('/', 'schema_version', version)
-    call file%status(error)
-    if (allocated(error)) then
-      call file%close(ignored)
-    else if (schema /= schema_name) then
-      call file%close(ignored)
-      call fail(error, exit_input, path//': not a checkpoint of lagamine')
-    else if (version /= schema_version) then
-      call file%close(ignored)
-      call fail(error, exit_input, path//': checkpoint of schema '//to_text(version)//', this program reads schema ' &
-                //to_text(schema_version))
-    end if
+    associate (file => reader%file)
+      if (file%has_attribute('/', 'schema')) call file%read_attribute('/', 'schema', schema)
+      if (file%has_attribute('/', 'schema_version')) call file%read_attribute('/', 'schema_version', version)
+      call file%status(error)
+      if (allocated(error)) then
+        call file%close(ignored)
+      else if (schema /= schema_name) then
+        call file%close(ignored)
+        call fail(error, exit_input, path//': not a checkpoint of lagamine')
+      else if (version /= schema_version) then
+        call file%close(ignored)
+        call fail(error, exit_input, path//': checkpoint of schema '//to_text(version)//', this program reads schema ' &
+                  //to_text(schema_version))
+      end if
+    end associate
   end subroutine open_checkpoint
 
+  pure function deck_source(path, text) result(source)
+    character(len=*), intent(in) :: path, text
+    type(deck_source_t) :: source
+
+    source%path = path
+    source%text = text
+    source%sha256 = sha256(text)
+  end function deck_source
+
+  subroutine visit_deck_source(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(deck_source_t), intent(inout) :: self
+
+    call visitor%enter('deck')
+    call visitor%long_text('path', self%path, kept)
+    call visitor%long_text('text', self%text, kept)
+    call visitor%member('sha256', self%sha256, kept)
+    call visitor%leave('deck')
+  end subroutine visit_deck_source
+
+  !> Where a group of elements stands.
   pure function group_place(g) result(place)
     integer, intent(in) :: g
     character(len=:), allocatable :: place
 
     place = 'groups/'//to_text(g)
   end function group_place
-
-  pure function set_place(k) result(place)
-    integer, intent(in) :: k
-    character(len=:), allocatable :: place
-
-    place = 'mesh/sides/'//to_text(k)
-  end function set_place
-
-  pure function fixation_place(k) result(place)
-    integer, intent(in) :: k
-    character(len=:), allocatable :: place
-
-    place = 'mesh/fixations/'//to_text(k)
-  end function fixation_place
 
 end module exchange_schema

@@ -1,5 +1,6 @@
 !> Attributes: small texts and numbers beside a dataset or a group.
 submodule(hdf5_file) hdf5_file_attributes
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use, intrinsic :: iso_c_binding, only: c_loc, c_ptr
   use hdf5, only: h5aclose_f, h5acreate_f, h5adelete_f, h5aexists_f, h5aget_space_f, h5aget_type_f, h5aopen_f, h5aread_f, &
     h5awrite_f, h5oclose_f, h5oopen_f, h5s_scalar_f, h5sclose_f, h5screate_f, h5sget_simple_extent_ndims_f, h5t_float_f, &
@@ -72,6 +73,9 @@ contains
     value = 0
     call open_attribute(self, path, name, h5t_float_f, attribute, width)
     call read_value(self, path, name, attribute, h5t_native_double, c_loc(value))
+    if (ieee_is_finite(value)) return
+    call self%record_error(exit_input, "attribute '"//name//"' of '"//path//"' holds a number that is not finite")
+    value = 0
   end procedure read_real_attribute
 
   module procedure has_attribute

@@ -7,7 +7,7 @@ module nodal_fields
   use nodal_average, only: add_elements, begin_average, limited_average, nodal_average_t
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
-  use state_variables, only: component_names
+  use state_variables, only: component_names, find_variable
   use text, only: string_t
   implicit none
   private
@@ -71,7 +71,10 @@ contains
       if (.not. is_solid(scene%groups(g)) .or. scene%groups(g)%material /= material) cycle
       associate (state => solution%groups(g)%committed, nodes => scene%groups(g)%connectivity)
         if (name == mises_name) then
-          call add_elements(nodes, mises(state(1:4, :, :)), average)
+          ! bodies of heat alone have none
+          c = find_variable(scene%groups(g)%variables, 'stress')
+          if (c > 0) c = scene%groups(g)%variables(c)%first
+          if (c > 0) call add_elements(nodes, mises(state(c:c + 3, :, :)), average)
         else
           call component_names(scene%groups(g)%variables, own)
           c = place_of(name, own)

@@ -64,7 +64,7 @@ def no_pressure(file):
 def die_off(way):
     """The die stands away from where the contour was fitted to it."""
     def fault(file):
-        upper = list(file["dies_in_order"].asstr()).index("upper")
+        upper = next(int(k) - 1 for k, die in file["dies"].items() if die.attrs["name"] == b"upper")
         file["fields/pilot/value"][upper, 1] += way
     return fault
 
@@ -94,7 +94,8 @@ def not_a_number(file):
 
 def tiny_steps(file):
     """As of a mesh that converges in very short steps only."""
-    file["progress/next_step"][()] = 1e-3 * file["progress/next_step"][()]
+    progress = file["progress"].attrs
+    progress["next_step"] = 1e-3 * progress["next_step"]
 
 
 def no_strength(file):

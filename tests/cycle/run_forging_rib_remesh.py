@@ -164,8 +164,9 @@ def ends_of_contact(checks, out, generation):
         nodes = old["mesh/coordinates"][()] + old["fields/displacement/value"][()]
         contour = boundary(new["mesh/coordinates"][()] + new["fields/displacement/value"][()], new["groups/1/connectivity"][()] - 1)
         contact = nodes[old["groups/2/connectivity"][()] - 1]
-        sides, places = old["contact_ends/side"][()] - 1, old["contact_ends/place"][()]
-        begins = old["contact_ends/begins"][()] != 0
+        ends = [old[f"contact_ends/{k}"].attrs for k in range(1, 1 + old["contact_ends"].attrs["count"])]
+        sides, places = [end["side"] - 1 for end in ends], [end["position"] for end in ends]
+        begins = [end["begins"] != 0 for end in ends]
     size = numpy.max(numpy.ptp(nodes, axis=0))
     told = facts(out, generation, "start")
     limits = told["contour"]["limits"]

@@ -112,8 +112,7 @@ class Mesh:
 
             self.x = rows("mesh/coordinates", 2) + rows("fields/displacement/value", 2)
             groups = [rows(f"groups/{k}/connectivity", 8) - 1 for k in range(1, 1 + sum(len(m) for m in materials))]
-            self.sets = {one["name"][()].decode(): one["nodes"][()].reshape(-1, 3) - 1
-                         for one in (file[f"mesh/sides/{k}"] for k in range(1, 1 + int(file["mesh/nset"][()])))}
+            self.sets = {one.attrs["name"].decode(): one["nodes"][()].reshape(-1, 3) - 1 for one in file["mesh/sides"].values()}
         self.elements = [np.concatenate([groups[k] for k in m]) for m in materials]
         self.axisymmetric = axisymmetric
         owner, self.interface, alone = {}, [], {}

@@ -33,7 +33,8 @@ def seal(path):
 def columns_of(file, group, name):
     """Columns (from 0) of a state variable in `groups/N/state` (element, point, component), of the group called so."""
     place = file[f"groups/{group}"]
-    names = [word.decode() if isinstance(word, bytes) else str(word) for word in place["variables"][()]]
-    sizes = [int(n) for n in place["components"][()]]
+    variables = [place[f"variables/{k}"].attrs for k in range(1, 1 + place["variables"].attrs["count"])]
+    names = [variable["name"].decode() for variable in variables]
+    sizes = [int(variable["components"]) for variable in variables]
     first = sum(sizes[:names.index(name)])
     return slice(first, first + sizes[names.index(name)])

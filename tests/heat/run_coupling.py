@@ -169,7 +169,7 @@ def same_bits(checks, decks):
         again = os.path.join(checks.folder, f"{name}-again")
         shutil.copytree(whole, again)
         with h5py.File(old, "r") as file:
-            step = int(file["progress/step"][()])
+            step = int(file["progress"].attrs["step"])
         checks.that(0 < step < len(history(whole)["step"]), f"{name}: a checkpoint on the way", step)
         if call(checks, deck, again, "--threads", "1", "--resume", os.path.join(again, os.path.basename(old))):
             wrong = result_differences(whole, again)

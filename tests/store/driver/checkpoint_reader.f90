@@ -12,7 +12,7 @@ program checkpoint_reader
   use errors, only: error_t, exit_done, exit_input, fail
   use exchange, only: checkpoint_facts_t, open_checkpoint, read_bare_scene, read_contact_ends, read_deck_of_checkpoint, &
     read_facts, read_remesh, read_state
-  use hdf5_file, only: hdf5_file_t
+  use member_reader, only: member_reader_t
   use remesh, only: remesh_t
   use scene, only: lacks_mesh, scene_t
   use scene_reader, only: read_scene
@@ -57,21 +57,21 @@ contains
   subroutine as_remesher(path, error)
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
-    type(hdf5_file_t) :: file
+    type(member_reader_t) :: reader
     type(scene_t) :: scene
     type(solution_t) :: solution
     type(contact_end_t), allocatable :: ends(:)
     type(error_t), allocatable :: ignored
     character(len=:), allocatable :: name, text
 
-    call open_checkpoint(path, file, error)
+    call open_checkpoint(path, reader, error)
     if (allocated(error)) return
-    call read_deck_of_checkpoint(file, name, text, error)
-    if (.not. allocated(error)) call read_bare_scene(file, scene, error)
+    call read_deck_of_checkpoint(reader, name, text, error)
+    if (.not. allocated(error)) call read_bare_scene(reader, scene, error)
     if (.not. allocated(error)) call start_solution(scene, solution)
-    if (.not. allocated(error)) call read_state(file, scene, solution, error)
-    if (.not. allocated(error)) call read_contact_ends(file, scene, ends, error)
-    call file%close(ignored)
+    if (.not. allocated(error)) call read_state(reader, scene, solution, error)
+    if (.not. allocated(error)) call read_contact_ends(reader, scene, ends, error)
+    call reader%file%close(ignored)
   end subroutine as_remesher
 
   subroutine about(path, error)
@@ -85,7 +85,7 @@ contains
   subroutine as_solver(path, error)
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
-    type(hdf5_file_t) :: file
+    type(member_reader_t) :: reader
     type(deck_t), target :: deck
     type(diagnostics_t), target :: diagnostics
     type(scene_t) :: scene
@@ -95,28 +95,31 @@ contains
     character(len=:), allocatable :: name, text, own
     logical :: at_rest
 
-    call open_checkpoint(path, file, error)
+    call open_checkpoint(path, reader, error)
     if (allocated(error)) return
     call read_deck(deck_path, [string_t ::], deck, diagnostics)
     call fingerprint_text(deck, own)
-    call read_deck_of_checkpoint(file, name, text, error)
+    call read_deck_of_checkpoint(reader, name, text, error)
     if (.not. allocated(error)) then
       if (text /= own) call fail(error, exit_input, 'another deck')
     end if
     allocate (remesh)
-    if (.not. allocated(error)) call read_remesh(file, remesh, error)
+    if (.not. allocated(error)) call read_remesh(reader, remesh, error)
     if (.not. allocated(error)) then
       if (remesh%generation == 1) deallocate (remesh)
       call read_scene(deck, scene, diagnostics, remesh)
       call diagnostics%error(error)
+      if (allocated(remesh) .and. .not. allocated(error)) then
+        if (scene%generation /= remesh%generation) call fail(error, exit_input, 'its groups or sides are not those of the deck')
+      end if
     end if
     if (.not. allocated(error)) then
       at_rest = lacks_mesh(scene)
       if (allocated(remesh)) at_rest = remesh%step == 0
       call start_solution(scene, solution)
-      if (.not. at_rest) call read_state(file, scene, solution, error)
+      if (.not. at_rest) call read_state(reader, scene, solution, error)
     end if
-    call file%close(ignored)
+    call reader%file%close(ignored)
   end subroutine as_solver
 
   pure function first_line(text) result(line)

@@ -1,0 +1,95 @@
+!> The members of a solution, for who writes, reads, describes or carries them (visitors).
+module visit_solution
+  use acceptance, only: probation_steps, probation_t
+  use kinds, only: wp
+  use pairs, only: pairs_t
+  use solution, only: group_state_t, solution_t
+  use visit_estimate, only: visit_estimate_members
+  use visit_field, only: visit_field_values
+  use visitors, only: by_variable, kept, of_the_mesh, recomputed, visitor_t
+  implicit none
+  private
+  public :: visit_solution_members
+
+contains
+
+  !> Lists and arrays are those of a solution that was started: none of them changes its extents.
+  subroutine visit_solution_members(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(solution_t), intent(inout) :: self
+    integer :: k, n
+
+    call visitor%enter('progress')
+    call visitor%member('time', self%time, kept, 'time', low=0.0_wp)
+    call visitor%member('step', self%step, kept, low=0)
+    call visitor%member('last_step', self%last_step, kept, 'time', low=0.0_wp)
+    call visitor%member('next_step', self%next_step, kept, 'time', low=0.0_wp)
+    call visitor%member('unbalanced', self%unbalanced, recomputed)
+    call visitor%member('iterations', self%iterations, kept, low=0)
+    call visitor%member('cutbacks', self%cutbacks, kept, low=0)
+    call visitor%member('external_work', self%external_work, kept, 'energy')
+    call visitor%member('friction_work', self%friction_work, kept, 'energy')
+    call visitor%member('friction_apart', self%friction_apart, recomputed, 'energy')
+    call visitor%member('initial_volume', self%initial_volume, kept, 'volume', low=0.0_wp)
+    call visitor%member('worst_linear_residual', self%worst_linear_residual, kept, '-')
+    call visitor%member('worst_penetration', self%worst_penetration, kept, 'length')
+    call visitor%member('worst_penetration_ratio', self%worst_penetration_ratio, kept, '-')
+    call visitor%member('least_dissipation', self%least_dissipation, kept, 'energy')
+    call visitor%member('worst_spurious', self%worst_spurious, kept, '-')
+    call visitor%member('spurious_group', self%spurious_group, kept, low=0)
+    call visitor%member('spurious_element', self%spurious_element, of_the_mesh, low=0)
+    call visitor%member('worst_sample', self%worst_sample, kept, 'length')
+    call visitor%member('worst_sample_ratio', self%worst_sample_ratio, kept, '-')
+    call visitor%leave('progress')
+    call visitor%enter('probation')
+    call visit_probation(visitor, self%probation)
+    call visitor%leave('probation')
+    call visitor%enter('estimate')
+    call visit_estimate_members(visitor, self%estimate)
+    call visitor%leave('estimate')
+    do k = 1, size(self%fields)
+      call visitor%enter('fields/'//self%fields(k)%name)
+      call visit_field_values(visitor, self%fields(k))
+      call visitor%leave('fields')
+    end do
+    do k = 1, size(self%groups)
+      call visitor%enter_item('groups', k)
+      call visit_group_state(visitor, self%groups(k))
+      call visitor%leave('groups')
+    end do
+    n = size(self%pairs)
+    call visitor%list('pairs', n)
+    do k = 1, size(self%pairs)
+      call visitor%enter_item('pairs', k)
+      call visit_pairs(visitor, self%pairs(k))
+      call visitor%leave('pairs')
+    end do
+  end subroutine visit_solution_members
+
+  subroutine visit_probation(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(probation_t), intent(inout) :: self
+
+    call visitor%fixed('recent_steps', self%recent, kept, 'time', low=0.0_wp)
+    call visitor%member('left', self%left, kept, low=0, high=probation_steps)
+    call visitor%member('before', self%before, kept, 'time', low=0.0_wp)
+    call visitor%member('least', self%least, kept, 'time', low=0.0_wp)
+  end subroutine visit_probation
+
+  subroutine visit_group_state(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(group_state_t), intent(inout) :: self
+
+    call visitor%member('state', self%committed, by_variable, 'component, point, element')
+    call visitor%derived('trial', 'every step begins it as the committed state')
+  end subroutine visit_group_state
+
+  !> They decide the order in which the matrix is eliminated: a run that goes on needs them, to the last bit.
+  subroutine visit_pairs(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(pairs_t), intent(inout) :: self
+
+    call visitor%member('piece', self%piece, of_the_mesh, 'point, element', low=0)
+  end subroutine visit_pairs
+
+end module visit_solution

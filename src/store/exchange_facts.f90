@@ -1,0 +1,75 @@
+!> What a checkpoint tells scripts of itself, once it was found whole and of this schema.
+module exchange_facts
+  use errors, only: error_t
+  use exchange_read, only: read_bare_scene, read_state
+  use exchange_schema, only: open_checkpoint
+  use kinds, only: wp
+  use member_reader, only: member_reader_t
+  use scene, only: is_solid, scene_t
+  use solution, only: solution_t, start_solution
+  use text, only: string_t
+  implicit none
+  private
+  public :: checkpoint_facts_t, read_facts
+
+  !> A checkpoint in short: where the run stands, on which mesh, and why a new one is due (no triggers: it is not).
+  type :: checkpoint_facts_t
+    integer :: generation = 1, step = 0, elements = 0
+    real(wp) :: time = 0.0_wp
+    !> State carried over to a new mesh, not yet in equilibrium.
+    logical :: unbalanced = .false.
+    integer :: transfer = 0
+    !> Steps the mesh is still on probation for, and other ways tried where it is refused.
+    integer :: probation = 0, tries = 0
+    !> Estimated errors of stress and strain, negative where they were not asked for [-].
+    real(wp) :: error_stress = -1.0_wp, error_strain = -1.0_wp
+    type(string_t), allocatable :: triggers(:)
+    real(wp), allocatable :: values(:), limits(:)
+  end type checkpoint_facts_t
+
+contains
+
+  subroutine read_facts(path, facts, error)
+    character(len=*), intent(in) :: path
+    type(checkpoint_facts_t), intent(out) :: facts
+    type(error_t), allocatable, intent(out) :: error
+    type(member_reader_t) :: reader
+    type(scene_t) :: scene
+    type(solution_t) :: solution
+    type(error_t), allocatable :: ignored
+    integer :: g, k
+
+    call open_checkpoint(path, reader, error)
+    if (allocated(error)) return
+    call read_bare_scene(reader, scene, error)
+    if (.not. allocated(error)) then
+      call start_solution(scene, solution)
+      call read_state(reader, scene, solution, error)
+    end if
+    call reader%file%close(ignored)
+    if (allocated(error)) return
+    facts%generation = scene%generation
+    do g = 1, size(scene%groups)
+      if (is_solid(scene%groups(g))) facts%elements = facts%elements + size(scene%groups(g)%connectivity, 2)
+    end do
+    facts%time = solution%time
+    facts%step = solution%step
+    facts%unbalanced = solution%unbalanced
+    facts%transfer = scene%remesher%transfer
+    facts%tries = scene%remesher%tries
+    facts%probation = solution%probation%left
+    if (scene%remesh%estimate) then
+      facts%error_stress = solution%estimate%stress
+      facts%error_strain = solution%estimate%strain
+    end if
+    associate (triggers => solution%estimate%triggers)
+      allocate (facts%triggers(size(triggers)))
+      do k = 1, size(triggers)
+        facts%triggers(k)%s = triggers(k)%name
+      end do
+      facts%values = triggers%value
+      facts%limits = triggers%limit
+    end associate
+  end subroutine read_facts
+
+end module exchange_facts
