@@ -41,23 +41,26 @@ contains
     end do
   end function numbers_after_name
 
-  !> A set of sides that move: the name of a SIDES card, or that of a block and its sides.
-  subroutine read_sides(cursor, draft, most, label, sides)
+  !> A set of sides that move, or have another field: the name of a SIDES card, or that of a block and its sides.
+  subroutine read_sides(cursor, draft, most, label, sides, field)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
     integer, intent(in) :: most                          !! so many numbers at most belong to the place
     character(len=:), allocatable, intent(out) :: label
     integer, allocatable, intent(out) :: sides(:, :)     !! (3, n), empty while the mesh has mistakes
+    integer, intent(in), optional :: field               !! that they must have; without it the displacement
     integer, allocatable :: nodes(:)
-    integer :: k
+    integer :: k, f
 
     label = ''
+    f = displacement_field
+    if (present(field)) f = field
     allocate (sides(3, 0))
     call draft%places%find(cursor, 'a BLOCK or a set of sides', k)
     if (k == 0) return
     call read_sides_of(cursor, draft, k, most, label, sides)
     call nodes_of_sides(sides, size(draft%scene%mesh%labels), nodes)
-    call refuse_without_field(cursor, draft, displacement_field, nodes, label, own=.true.)
+    if (f > 0) call refuse_without_field(cursor, draft, f, nodes, label, own=.true.)
   end subroutine read_sides
 
   !> What follows the name of a place made of sides.

@@ -6,6 +6,7 @@ module scene_reader
   use cards_dies, only: read_dies
   use cards_fields, only: read_coupling, read_formulations, read_imposed_values, read_start_values
   use cards_head, only: read_kinematics, read_title
+  use cards_heat, only: read_exchanges
   use cards_laws, only: read_laws
   use cards_loads, only: read_loads, read_multipliers
   use cards_pilots, only: read_pilots
@@ -89,6 +90,7 @@ contains
     call read_zones(deck, draft, diagnostics)
     call read_contacts(deck, draft, diagnostics)
     call read_pressures(deck, draft, diagnostics)
+    call read_exchanges(deck, draft, diagnostics)
     call read_body_forces(deck, draft, diagnostics)
     call read_loads(deck, draft, diagnostics)
     call read_imposed_values(deck, draft, diagnostics)
@@ -117,7 +119,7 @@ contains
 
     call list_elems(elems)
     call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE START ' &
-                  //'FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG LIC STRAT NORMS SOLVR STOP SAVE CKPT PROBE ESTIM REMSH ' &
+                  //'FLUX CONVE RADIA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG LIC STRAT NORMS SOLVR STOP SAVE CKPT PROBE ESTIM REMSH ' &
                   //'ZPNT ZONE', keywords)
     allocate (more(1))
     do k = 1, size(elems)

@@ -36,13 +36,13 @@ module elem_pl8tm
   end type functions_t
 
   !> Geometry of an element in a step at its points.
-  type :: place_t
+  type :: heat_points_t
     real(wp) :: dv(9), dv0(9)                 !! volumes at the end of the step and at the start of the mesh
     real(wp) :: gx(8, 9), gy(8, 9)            !! gradients of the functions of the temperature
     real(wp) :: nx(8, 9), ny(8, 9)            !! gradients of the shape functions
     real(wp) :: strain(9), swelling(16, 9)    !! volume strain of the step, and its derivative along the displacements
     logical :: valid = .true.
-  end type place_t
+  end type heat_points_t
 
 contains
 
@@ -106,7 +106,7 @@ contains
     type(report_t), intent(out) :: report
     type(quad8_rule_t) :: rule
     type(functions_t) :: own
-    type(place_t) :: place
+    type(heat_points_t) :: place
     real(wp) :: motion(16)
     integer :: e, k, u
 
@@ -178,7 +178,7 @@ contains
     type(functions_t), intent(in) :: own
     real(wp), intent(in) :: x0(2, 8), x(2, 8)   !! nodes at the start of the mesh, and of the step [length]
     real(wp), intent(in) :: motion(16)          !! of the nodes, x then y [length]
-    type(place_t), intent(out) :: place
+    type(heat_points_t), intent(out) :: place
     real(wp) :: y(2, 8), nx(8), ny(8), detj, before, thickness, jacobian(2, 2), section(3)
     integer :: p
 
@@ -222,7 +222,7 @@ contains
     integer, intent(in) :: npoint
     type(functions_t), intent(in) :: own
     logical, intent(in) :: lumped
-    type(place_t), intent(in) :: place
+    type(heat_points_t), intent(in) :: place
     real(wp), intent(in) :: drivers(:, :, :)              !! (ndriver, 2, npoint)
     real(wp), intent(in) :: change(:), start(:)           !! of the temperatures in the step, and they at its start (n)
     real(wp), intent(inout) :: force(:), stiffness(:, :)
@@ -272,7 +272,7 @@ contains
     type(material_t), intent(in) :: material
     integer, intent(in) :: npoint
     type(functions_t), intent(in) :: own
-    type(place_t), intent(in) :: place
+    type(heat_points_t), intent(in) :: place
     real(wp), intent(in) :: drivers(:, :, :)
     real(wp), intent(in) :: change(:), start(:)
     integer, intent(in) :: u                              !! local place of the first displacement, 0 where there is none
@@ -314,7 +314,7 @@ contains
     logical, intent(in) :: finite
     integer, intent(in) :: npoint
     type(functions_t), intent(in) :: own
-    type(place_t), intent(in) :: place
+    type(heat_points_t), intent(in) :: place
     real(wp), intent(in) :: drivers(:, :, :), change(:), start(:)
     integer, intent(in) :: u
     real(wp), intent(inout) :: force(:), stiffness(:, :)

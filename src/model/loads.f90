@@ -4,7 +4,8 @@ module loads
   use kinds, only: wp
   implicit none
   private
-  public :: multiplier_t, fixation_t, die_motion_t, die_force_t, nodal_force_t, multiplier_at
+  public :: multiplier_t, fixation_t, die_motion_t, die_force_t, nodal_force_t, exchange_t
+  public :: multiplier_at, value_in_table
 
   !> Piecewise linear in time, constant outside its points.
   type :: multiplier_t
@@ -52,7 +53,42 @@ module loads
     integer :: field = displacement_field
   end type nodal_force_t
 
+  !> Heat that passes a side (elem_heat_sides).
+  type :: exchange_t
+    !> Heat flow per area, coefficient of convection, or emissivity times the constant of radiation; times a multiplier, 0 for none.
+    real(wp) :: amplitude = 0.0_wp
+    integer :: multiplier = 0
+    !> By what it is multiplied at a temperature of the surface (2, npoint); not allocated where it is the same at all.
+    real(wp), allocatable :: table(:, :)
+    !> Temperature of the surroundings, times a multiplier, 0 for none; what makes temperatures absolute.
+    real(wp) :: surroundings = 0.0_wp
+    integer :: surroundings_multiplier = 0
+    real(wp) :: zero = 0.0_wp
+  end type exchange_t
+
 contains
+
+  !> Value and slope of a function at an abscissa.
+  pure subroutine value_in_table(points, x, value, slope)
+    real(wp), intent(in) :: points(:, :)     !! (2, npoint) [-]
+    real(wp), intent(in) :: x
+    real(wp), intent(out) :: value, slope
+    integer :: i, n
+
+    n = size(points, 2)
+    slope = 0
+    if (x <= points(1, 1)) then
+      value = points(2, 1)
+    else if (x >= points(1, n)) then
+      value = points(2, n)
+    else
+      do i = 2, n - 1
+        if (x <= points(1, i)) exit
+      end do
+      slope = (points(2, i) - points(2, i - 1))/(points(1, i) - points(1, i - 1))
+      value = points(2, i - 1) + slope*(x - points(1, i - 1))
+    end if
+  end subroutine value_in_table
 
   !> Value of a multiplier at a time.
   pure function multiplier_at(multiplier, time) result(value)

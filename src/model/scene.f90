@@ -4,7 +4,7 @@ module scene
   use effects, only: effect_t
   use fields, only: field_t
   use kinds, only: wp
-  use loads, only: die_force_t, die_motion_t, fixation_t, multiplier_t, nodal_force_t
+  use loads, only: die_force_t, die_motion_t, exchange_t, fixation_t, multiplier_t, nodal_force_t
   use materials, only: material_t
   use mesh, only: mesh_t
   use probes, only: probe_t
@@ -61,6 +61,8 @@ module scene
     !> times multiplier.
     integer :: multiplier = 0
     real(wp) :: amplitude = 0.0_wp
+    !> Heat that passes the sides.
+    type(exchange_t) :: exchange
     !> Direction of a force on the volume: 1 = x, 2 = y; 0 where unused.
     integer :: direction = 0
     !> Temperature given to the body: amplitude times multiplier; multiplier 0 where none is.

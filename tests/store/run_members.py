@@ -16,6 +16,7 @@ SOURCE = os.environ.get("LAGAMINE_SOURCE", os.path.dirname(os.path.dirname(os.pa
 ROOTS = ("scene_t", "solution_t", "contact_end_t", "deck_source_t")
 
 TYPE = re.compile(r"^\s*type\s*(?:,[^:]*)?(?:::)?\s*(\w+)\s*$", re.I)
+EXTENDS = re.compile(r"extends\(\s*(\w+)\s*\)", re.I)
 DECLARATION = re.compile(r"^\s*(?P<what>[a-z]\w*\s*(?:\((?:[^()]|\([^()]*\))*\))?[^:]*)::\s*(?P<names>.*)$", re.I)
 ROUTINE = re.compile(r"^\s*(?:pure\s+)?subroutine\s+(\w+)", re.I)
 SELF = re.compile(r"^\s*type\((\w+)\)\s*,\s*intent\(inout\)\s*::\s*self\b", re.I | re.M)
@@ -53,7 +54,7 @@ def names_declared(text):
 
 def read_source(files):
     """Types: name -> {component: type of it or ''}. Routines that visit: (name, type, statements)."""
-    types, routines = {}, []
+    types, routines, parents = {}, [], {}
     for lines in files.values():
         here, body = None, None
         for line in lines:
@@ -72,6 +73,9 @@ def read_source(files):
             found = TYPE.match(line)
             if found:
                 here = types.setdefault(found.group(1).lower(), {})
+                above = EXTENDS.search(line)
+                if above:
+                    parents[found.group(1).lower()] = above.group(1).lower()
             elif ROUTINE.match(line):
                 body = [line]
             elif body is not None:
@@ -82,6 +86,8 @@ def read_source(files):
                     if of_type and VISITOR.search(text):
                         routines.append((ROUTINE.match(body[0]).group(1).lower(), of_type.group(1).lower(), body))
                     body = None
+    for name, parent in parents.items():
+        types[name].update(types[parent])
     return types, routines
 
 

@@ -46,7 +46,7 @@ class Reader:
 
     def start(self):
         self.process = subprocess.Popen(self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                        text=True, bufsize=1)
+                                        text=True, errors="backslashreplace", bufsize=1)
 
     def ask(self, path):
         """Exit codes, message; codes None with the reason where there is no answer."""

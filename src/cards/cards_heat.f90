@@ -1,0 +1,163 @@
+!> FLUX, CONVE and RADIA: heat that passes sides of bodies.
+module cards_heat
+  use card_places, only: numbers_after_name, read_sides
+  use cards_sides, only: append_group, refuse_inner_sides, start_group
+  use deck_cursor, only: cursor_t
+  use deck_reader, only: deck_t
+  use diagnostics, only: diagnostics_t
+  use fields, only: find_field
+  use kinds, only: wp
+  use loads, only: exchange_t
+  use quadrature, only: rule_gauss, rule_t
+  use scene, only: group_t
+  use scene_draft, only: close_card, draft_t, words_of
+  use text, only: string_t
+  implicit none
+  private
+  public :: read_exchanges
+
+  !> Gauss points of a side.
+  integer, parameter :: npoint = 3
+
+contains
+
+  !> All cards `FLUX place Q q [lic]`, `CONVE place H h [lic] TS temperature [lic]` and
+  !> `RADIA place EPS emissivity SIGMA constant ZERO temperature TS temperature [lic]`; rows after them, pairs of a temperature of the
+  !> surface and a factor.
+  subroutine read_exchanges(deck, draft, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    type(group_t) :: group
+    character(len=:), allocatable :: label
+    integer :: i, g, f
+
+    do i = 1, size(deck%cards)
+      associate (keyword => deck%cards(i)%keyword)
+        if (all(keyword /= [character(len=5) :: 'FLUX', 'CONVE', 'RADIA'])) cycle
+        call cursor%open(deck%cards(i), diagnostics)
+        call start_group(keyword, draft, group)
+        group%rule = rule_t(rule_gauss, npoint)
+        f = 0
+        if (draft%groups_sound) f = find_field(draft%scene%fields, 'temperature')
+        call read_sides(cursor, draft, numbers_after_name(deck%cards(i)), label, group%connectivity, field=f)
+        if (draft%groups_sound .and. f == 0) call cursor%fail('no body of this scene has a temperature among its unknowns (PL8TM)')
+        call refuse_inner_sides(cursor, draft, group%connectivity)
+        call read_numbers(cursor, draft, keyword, group%exchange)
+        call read_table(cursor, group%exchange)
+        group%name = label//'/'//keyword
+        do g = 1, size(draft%scene%groups)
+          if (draft%scene%groups(g)%name == group%name) call cursor%fail('this is already given at ' &
+                                                                         //diagnostics%place(draft%group_where(g)))
+        end do
+      end associate
+      call close_card(draft, cursor, deck%cards(i))
+      if (cursor%failed()) then
+        draft%groups_sound = .false.
+      else
+        call append_group(draft, group, cursor%where())
+      end if
+    end do
+  end subroutine read_exchanges
+
+  !> Words with their numbers, each once, in any order.
+  subroutine read_numbers(cursor, draft, keyword, exchange)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+    character(len=*), intent(in) :: keyword
+    type(exchange_t), intent(inout) :: exchange
+    type(string_t), allocatable :: words(:)
+    logical, allocatable :: given(:)
+    real(wp) :: emissivity, constant
+    integer :: k
+
+    select case (keyword)
+    case ('FLUX')
+      call words_of('Q', words)
+    case ('CONVE')
+      call words_of('H TS', words)
+    case default
+      call words_of('EPS SIGMA ZERO TS', words)
+    end select
+    allocate (given(size(words)), source=.false.)
+    emissivity = 0
+    constant = 0
+    do while (cursor%more() .or. .not. all(given))
+      call cursor%name('a word of the card', words, k)
+      if (k == 0) return
+      if (given(k)) call cursor%fail(''''//words(k)%s//''' is given twice')
+      given(k) = .true.
+      select case (words(k)%s)
+      case ('Q')
+        call cursor%real('the heat flow per area, into the body', exchange%amplitude, unit='power/area')
+        call read_multiplier(cursor, draft, words, exchange%multiplier)
+      case ('H')
+        call cursor%real('the coefficient of convection', exchange%amplitude, lower=0.0_wp, unit='power/area/temperature')
+        call read_multiplier(cursor, draft, words, exchange%multiplier)
+      case ('EPS')
+        call cursor%real('the emissivity', emissivity, lower=0.0_wp, upper=1.0_wp, unit='-')
+      case ('SIGMA')
+        call cursor%real('the constant of Stefan and Boltzmann', constant, lower=0.0_wp, strict_lower=.true., &
+                         unit='power/area/temperature^4')
+      case ('ZERO')
+        call cursor%real('the temperature to add to make one absolute', exchange%zero, unit='temperature')
+      case ('TS')
+        call cursor%real('the temperature of the surroundings', exchange%surroundings, unit='temperature')
+        call read_multiplier(cursor, draft, words, exchange%surroundings_multiplier)
+      end select
+      if (cursor%failed()) return
+    end do
+    if (keyword == 'RADIA') exchange%amplitude = emissivity*constant
+  end subroutine read_numbers
+
+  !> The name of a LIC, where a word that is none of the card's follows; else 0.
+  subroutine read_multiplier(cursor, draft, words, multiplier)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+    type(string_t), intent(in) :: words(:)   !! (nword) of the card
+    integer, intent(out) :: multiplier
+    integer :: k
+
+    multiplier = 0
+    if (.not. cursor%more()) return
+    do k = 1, size(words)
+      if (cursor%peek_word() == words(k)%s) return
+    end do
+    call draft%multipliers%find(cursor, 'the name of a LIC', k)
+    if (k > 0) multiplier = draft%multipliers%item(k)
+  end subroutine read_multiplier
+
+  !> Rows of pairs of a temperature, ascending, and a factor.
+  subroutine read_table(cursor, exchange)
+    type(cursor_t), intent(inout) :: cursor
+    type(exchange_t), intent(inout) :: exchange
+    real(wp), allocatable :: points(:), longer(:)
+    real(wp) :: pair(2)
+    integer :: n
+
+    n = 0
+    allocate (points(16))
+    do while (cursor%more_rows() .and. .not. cursor%failed())
+      call cursor%next_row('pairs of a temperature of the surface and a factor')
+      do while (cursor%more() .and. .not. cursor%failed())
+        if (n == 0) then
+          call cursor%real('a temperature of the surface', pair(1), unit='temperature')
+        else
+          call cursor%real('a temperature above the one before', pair(1), lower=points(n - 1), strict_lower=.true., &
+                           unit='temperature')
+        end if
+        call cursor%real('the factor there', pair(2), unit='-')
+        if (n + 2 > size(points)) then
+          allocate (longer(2*size(points)))
+          longer(:n) = points(:n)
+          call move_alloc(longer, points)
+        end if
+        points(n + 1:n + 2) = pair
+        n = n + 2
+      end do
+    end do
+    if (n > 0) exchange%table = reshape(points(:n), [2, n/2])
+  end subroutine read_table
+
+end module cards_heat

@@ -1,0 +1,256 @@
+!> FLUX, CONVE and RADIA: heat that passes the sides of bodies.
+!>
+!> Heat that comes in per area, q: FLUX an amplitude (by the temperature T of the surface, where a table is given) times a
+!> multiplier; CONVE h (Ts - T), the coefficient h like the amplitude of FLUX, Ts the temperature of the surroundings; RADIA
+!> h (Ta^4 - (T + Z)^4), h emissivity times Stefan's and Boltzmann's constant, Ta = Ts + Z, Z what makes the temperatures of the
+!> deck absolute (J. Stefan 1879; L. Boltzmann 1884). F_i = -sum_k w_k integral phi_i q dA at the instants k of the flow rule
+!> (elem_api), on the side as it is at the end of the step; linearised exactly, along the displacements too. Where temperatures
+!> stand on corners all is lumped at the ends of the side, as the capacity is: no temperature leaves those around it.
+module elem_heat_sides
+  use elem_api, only: elem_t, first_unknown, instant_t, layout_t, mode_restore, report_t, that_reads
+  use elem_pl8tm, only: of_temperature
+  use fields, only: displacement_field
+  use kinds, only: wp
+  use kinematics_api, only: kinematics_t
+  use law_api, only: law_t
+  use loads, only: exchange_t, value_in_table
+  use quadrature, only: line_rule
+  use scene, only: group_t, role_side_load, scene_t
+  use sections, only: thickness_at
+  use shape_functions, only: line3
+  use state_variables, only: state_variable_t
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: elem_flux_row, elem_conve_row, elem_radia_row, flow_in
+
+  !> Kinds of exchange.
+  integer, parameter :: by_flux = 1, by_convection = 2, by_radiation = 3
+  !> The temperature is the first of the element's unknowns.
+  integer, parameter :: temperature = 1
+
+contains
+
+  function elem_flux_row() result(row)
+    type(elem_t) :: row
+
+    row = common_row('FLUX', 'heat flow through a side')
+    row%compute => compute_flux
+  end function elem_flux_row
+
+  function elem_conve_row() result(row)
+    type(elem_t) :: row
+
+    row = common_row('CONVE', 'convection from a side')
+    row%compute => compute_convection
+  end function elem_conve_row
+
+  function elem_radia_row() result(row)
+    type(elem_t) :: row
+
+    row = common_row('RADIA', 'radiation from a side')
+    row%compute => compute_radiation
+  end function elem_radia_row
+
+  function common_row(name, purpose) result(row)
+    character(len=*), intent(in) :: name, purpose
+    type(elem_t) :: row
+
+    row%name = name
+    row%purpose = purpose
+    row%nnode = 3
+    row%role = role_side_load
+    allocate (row%unknowns, source=[that_reads('temperature'), that_reads('displacement')])
+    row%unknowns(1)%acts = .true.
+    row%follows = .true.
+    row%effect = 'heat exchange'
+    allocate (row%options(0))
+    row%variables => variables
+  end function common_row
+
+  pure subroutine variables(law, plane_state, list)
+    type(law_t), intent(in) :: law
+    integer, intent(in) :: plane_state
+    type(state_variable_t), allocatable, intent(out) :: list(:)   !! (0)
+
+    allocate (list(0))
+  end subroutine variables
+
+  subroutine compute_flux(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
+                          force, stiffness, report)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(kinematics_t), intent(in) :: kinematics
+    type(law_t), intent(in) :: law
+    type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: first
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :), drivers(:, :, :, :)
+    real(wp), intent(in), contiguous :: committed(:, :, :)
+    real(wp), intent(inout), contiguous :: trial(:, :, :)
+    real(wp), intent(out) :: force(:, :)
+    real(wp), intent(inout) :: stiffness(:, :, :)
+    type(report_t), intent(out) :: report  !! a side never fails
+
+    call exchange(by_flux, scene, group, kinematics, instant, layout, x, du, start, force, stiffness)
+  end subroutine compute_flux
+
+  subroutine compute_convection(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
+                                force, stiffness, report)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(kinematics_t), intent(in) :: kinematics
+    type(law_t), intent(in) :: law
+    type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: first
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :), drivers(:, :, :, :)
+    real(wp), intent(in), contiguous :: committed(:, :, :)
+    real(wp), intent(inout), contiguous :: trial(:, :, :)
+    real(wp), intent(out) :: force(:, :)
+    real(wp), intent(inout) :: stiffness(:, :, :)
+    type(report_t), intent(out) :: report
+
+    call exchange(by_convection, scene, group, kinematics, instant, layout, x, du, start, force, stiffness)
+  end subroutine compute_convection
+
+  subroutine compute_radiation(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
+                               force, stiffness, report)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(kinematics_t), intent(in) :: kinematics
+    type(law_t), intent(in) :: law
+    type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: first
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :), drivers(:, :, :, :)
+    real(wp), intent(in), contiguous :: committed(:, :, :)
+    real(wp), intent(inout), contiguous :: trial(:, :, :)
+    real(wp), intent(out) :: force(:, :)
+    real(wp), intent(inout) :: stiffness(:, :, :)
+    type(report_t), intent(out) :: report
+
+    call exchange(by_radiation, scene, group, kinematics, instant, layout, x, du, start, force, stiffness)
+  end subroutine compute_radiation
+
+  !> Heat flows out of the nodes of all sides of a block, and their derivatives.
+  subroutine exchange(kind, scene, group, kinematics, instant, layout, x, du, start, force, stiffness)
+    integer, intent(in) :: kind
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(kinematics_t), intent(in) :: kinematics
+    type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
+    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
+    real(wp), intent(out) :: force(:, :)
+    real(wp), intent(inout) :: stiffness(:, :, :)
+    real(wp), allocatable :: xi(:), weight(:)
+    real(wp) :: y(2, 3), phi(3), dphi(3), own(3), tangent(2), length, thickness, area, darea(6), section(3), t(3), q, slope, part
+    real(wp) :: share(3)
+    integer :: e, p, k, j, n, u, i
+
+    force = 0
+    if (instant%tangent) stiffness = 0
+    if (instant%mode == mode_restore) return
+    n = layout%count(temperature)
+    u = first_unknown(layout, displacement_field)
+    section = scene%section
+    if (kinematics%finite) section = instant%section
+    call line_rule(group%rule, xi, weight)
+    do e = 1, size(x, 3)
+      y = x(:, :, e)
+      if (u > 0 .and. kinematics%finite) y = y + transpose(reshape(du(u:u + 5, e), [3, 2]))
+      do p = 1, size(xi)
+        call line3(xi(p), phi, dphi)
+        tangent = matmul(y, dphi)
+        length = length_of(tangent)
+        thickness = thickness_at(section, matmul(y, phi))
+        area = weight(p)*length*thickness
+        darea(1:3) = weight(p)*(dphi*tangent(1)/length*thickness + length*section(2)*phi)
+        darea(4:6) = weight(p)*(dphi*tangent(2)/length*thickness + length*section(3)*phi)
+        own = phi
+        if (n == 2) own(1:2) = 0.5_wp*[1 - xi(p), 1 + xi(p)]
+        do k = 1, instant%flow%n
+          t(:n) = start(:n, e) + instant%flow%share(k)*du(:n, e)
+          if (n == 2) then
+            do i = 1, 2
+              share = 0
+              share(i) = own(i)
+              call add(t(i), unit_of(i))
+            end do
+          else
+            share = own
+            call add(dot_product(own, t), own)
+          end if
+        end do
+      end do
+    end do
+
+  contains
+
+    !> The heat at a temperature: to the nodes by `share`; the temperature depends on theirs by `along`.
+    subroutine add(here, along)
+      real(wp), intent(in) :: here, along(3)
+
+      call flow_in(kind, group%exchange, instant%flow%multipliers(:, k), here, q, slope)
+      part = instant%flow%weight(k)
+      force(:n, e) = force(:n, e) - share(:n)*(part*q*area)
+      if (.not. instant%tangent) return
+      do j = 1, n
+        stiffness(:n, j, e) = stiffness(:n, j, e) - share(:n)*(part*instant%flow%share(k)*slope*area*along(j))
+      end do
+      if (u == 0 .or. .not. kinematics%finite) return
+      do j = 1, 6
+        stiffness(:n, u + j - 1, e) = stiffness(:n, u + j - 1, e) - share(:n)*(part*q*darea(j))
+      end do
+    end subroutine add
+
+    pure function unit_of(place) result(vector)
+      integer, intent(in) :: place
+      real(wp) :: vector(3)
+
+      vector = 0
+      vector(place) = 1
+    end function unit_of
+
+  end subroutine exchange
+
+  !> Heat that comes in per area at a temperature of the surface, and its derivative.
+  pure subroutine flow_in(kind, exchange, multipliers, t, q, slope)
+    integer, intent(in) :: kind
+    type(exchange_t), intent(in) :: exchange
+    real(wp), intent(in) :: multipliers(:)   !! (nmultiplier) at the instant
+    real(wp), intent(in) :: t                !! [temperature]
+    real(wp), intent(out) :: q, slope        !! [power/area], [power/area/temperature]
+    real(wp) :: h, dh, surroundings
+
+    h = exchange%amplitude
+    dh = 0
+    if (allocated(exchange%table)) then
+      call value_in_table(exchange%table, t, h, dh)
+      h = exchange%amplitude*h
+      dh = exchange%amplitude*dh
+    end if
+    if (exchange%multiplier > 0) then
+      h = h*multipliers(exchange%multiplier)
+      dh = dh*multipliers(exchange%multiplier)
+    end if
+    surroundings = exchange%surroundings
+    if (exchange%surroundings_multiplier > 0) surroundings = surroundings*multipliers(exchange%surroundings_multiplier)
+    select case (kind)
+    case (by_convection)
+      q = h*(surroundings - t)
+      slope = dh*(surroundings - t) - h
+    case (by_radiation)
+      ! the difference of fourth powers without the loss of digits
+      associate (a => surroundings + exchange%zero, b => t + exchange%zero)
+        q = h*(a - b)*(a + b)*(a**2 + b**2)
+        slope = dh*(a - b)*(a + b)*(a**2 + b**2) - 4*h*b**3
+      end associate
+    case default
+      q = h
+      slope = dh
+    end select
+  end subroutine flow_in
+
+end module elem_heat_sides
