@@ -1,12 +1,12 @@
 !> The solver: arguments -> run -> exit code.
 program lagamine
-  use, intrinsic :: iso_fortran_env, only: error_unit
   use blas, only: blas_build, blas_core_name
   use errors, only: error_t, exit_done
   use point_run, only: run_point
   use run_deck, only: print_law, run_options_on_deck
   use run_options, only: read_options, run_options_t, usage_text
   use run_version, only: blas_words, print_version
+  use standard_streams, only: claim_standard_streams, print_error, print_line
   use start_again, only: start_as_fits
   use system, only: program_stop
   use threads, only: number_of_threads, set_threads
@@ -16,14 +16,15 @@ program lagamine
   integer :: code
 
   code = exit_done
+  call claim_standard_streams()
   call read_options(options, error)
   if (allocated(error)) then
     code = error%code
   else if (options%help) then
-    write (*, '(a)') usage_text()
+    call print_line(usage_text(), error)
   else if (options%version) then
     call settle_libraries()
-    call print_version('lagamine', blas_words(blas_build(), blas_core_name()), number_of_threads())
+    call print_version('lagamine', blas_words(blas_build(), blas_core_name()), number_of_threads(), error)
   else if (allocated(options%law)) then
     call print_law(options%law, error)
   else if (options%point) then
@@ -34,8 +35,8 @@ program lagamine
   end if
   if (allocated(error)) then
     code = error%code
-    write (error_unit, '(a)') error%message
-    if (allocated(error%advice)) write (error_unit, '(a)') error%advice
+    call print_error(error%message)
+    if (allocated(error%advice)) call print_error(error%advice)
   end if
   call program_stop(code)
 
