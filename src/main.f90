@@ -2,6 +2,8 @@
 program lagamine
   use blas, only: blas_build, blas_core_name
   use errors, only: error_t, exit_done
+  use kinds, only: wp
+  use memory_limits, only: require_memory
   use point_run, only: run_point
   use run_deck, only: print_law, run_options_on_deck
   use run_options, only: read_options, run_options_t, usage_text
@@ -11,13 +13,16 @@ program lagamine
   use system, only: program_stop
   use threads, only: number_of_threads, set_threads
   implicit none
+  !> What any call takes at least [bytes].
+  real(wp), parameter :: least_memory = 16*2.0_wp**20
   type(run_options_t) :: options
   type(error_t), allocatable :: error
   integer :: code
 
   code = exit_done
   call claim_standard_streams()
-  call read_options(options, error)
+  call require_memory(0.0_wp, 'the program', error, address_space=least_memory)
+  if (.not. allocated(error)) call read_options(options, error)
   if (allocated(error)) then
     code = error%code
   else if (options%help) then

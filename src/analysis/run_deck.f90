@@ -1,7 +1,7 @@
 !> `lagamine DECK`: from a deck to its results.
 module run_deck
   use atomic, only: refuse_place
-  use blas, only: blas_build, blas_core_name, keep_blas_to_one_thread
+  use blas, only: blas_buffer, blas_build, blas_core_name, keep_blas_to_one_thread
   use contact_ends, only: contact_end_t
   use deck_reader, only: deck_t, fingerprint_text, read_deck
   use diagnostics, only: diagnostics_t
@@ -16,6 +16,7 @@ module run_deck
   use listing, only: close_listing, end_progress, list_lines, list_note, list_resumed, open_listing
   use march, only: march_to_end
   use member_reader, only: member_reader_t
+  use memory_limits, only: require_memory
   use run_record, only: run_t
   use run_options, only: run_options_t, stem_of
   use run_version, only: blas_words, version_text
@@ -187,6 +188,8 @@ contains
 
     started = wall_seconds()
     call start_team(run%equations%team, options%threads)
+    call require_memory(0.0_wp, 'the threads of a run', error, address_space=run%equations%team%most*blas_buffer)
+    if (allocated(error)) return
     call open_listing(run%stem//'.log', run%resume, options%quiet, options%progress, solution%time/scene%strategy%end_time, &
                       run%listing, error)
     if (allocated(error)) return
