@@ -5,6 +5,7 @@ module checkpoint_summary
   use errors, only: error_t
   use exact_numbers, only: exact_text
   use exchange, only: checkpoint_facts_t, describe_checkpoint, read_facts
+  use standard_streams, only: print_line, print_lines
   use text, only: string_t, to_text
   implicit none
   private
@@ -21,34 +22,26 @@ contains
 
     call read_facts(path, facts, error)
     if (allocated(error)) return
-    call say('generation', to_text(facts%generation))
-    call say('step', to_text(facts%step))
-    call say('time', exact_text(facts%time))
-    call say('unbalanced', to_text(merge(1, 0, facts%unbalanced)))
-    call say('elements', to_text(facts%elements))
-    call say('transfer', to_text(facts%transfer))
-    call say('probation', to_text(facts%probation))
-    call say('tries', to_text(facts%tries))
-    if (facts%error_stress >= 0) call say('error_stress_pct', to_text(100*facts%error_stress, 4))
-    if (facts%error_strain >= 0) call say('error_strain_pct', to_text(100*facts%error_strain, 4))
+    call print_line('generation '//to_text(facts%generation), error)
+    call print_line('step '//to_text(facts%step), error)
+    call print_line('time '//exact_text(facts%time), error)
+    call print_line('unbalanced '//to_text(merge(1, 0, facts%unbalanced)), error)
+    call print_line('elements '//to_text(facts%elements), error)
+    call print_line('transfer '//to_text(facts%transfer), error)
+    call print_line('probation '//to_text(facts%probation), error)
+    call print_line('tries '//to_text(facts%tries), error)
+    if (facts%error_stress >= 0) call print_line('error_stress_pct '//to_text(100*facts%error_stress, 4), error)
+    if (facts%error_strain >= 0) call print_line('error_strain_pct '//to_text(100*facts%error_strain, 4), error)
     why = due_reason(facts)
-    if (len(why) > 0) call say('due', why)
+    if (len(why) > 0) call print_line('due '//why, error)
   end subroutine print_about
 
-  subroutine print_schema()
+  subroutine print_schema(error)
+    type(error_t), allocatable, intent(inout) :: error
     type(string_t), allocatable :: lines(:)
-    integer :: k
 
     call describe_checkpoint(lines)
-    do k = 1, size(lines)
-      write (*, '(a)') lines(k)%s
-    end do
+    call print_lines(lines, error)
   end subroutine print_schema
-
-  subroutine say(word, its_value)
-    character(len=*), intent(in) :: word, its_value
-
-    write (*, '(a)') word//' '//its_value
-  end subroutine say
 
 end module checkpoint_summary

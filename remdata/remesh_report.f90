@@ -7,6 +7,7 @@ module remesh_report
   use material_volumes, only: materials_kept_t
   use remesh_facts, only: remesh_facts_t
   use run_version, only: version_text
+  use standard_streams, only: print_line
   use text, only: string_t, to_text
   use transfer_report, only: carried_quantity_t, in_words, report_lines
   implicit none
@@ -18,43 +19,43 @@ module remesh_report
 
 contains
 
-  !> A few lines on the terminal.
-  subroutine print_facts(facts, seconds)
+  !> A few lines on the terminal; none after an error.
+  subroutine print_facts(facts, seconds, error)
     type(remesh_facts_t), intent(in) :: facts
     real(wp), intent(in) :: seconds
+    type(error_t), allocatable, intent(inout) :: error
     type(string_t), allocatable :: lines(:)
-    integer :: k, status
+    integer :: k
 
-    write (*, '(a)', iostat=status) 'mesh '//to_text(facts%generation)//' at step '//to_text(facts%step)//', time ' &
+    call print_line('mesh '//to_text(facts%generation)//' at step '//to_text(facts%step)//', time ' &
       //to_text(facts%time)//': '//to_text(facts%old_elements)//' -> '//to_text(facts%new_elements)//' elements, '// &
-      to_text(seconds, 3)//' s'
-    if (status /= 0) return
-    write (*, '(a)') '  contour: largest move '//to_text(facts%contour%largest_move, 3)//', free sides shifted by ' &
-      //to_text(facts%contour%largest_shift, 3)//', volume '//to_text(100*facts%contour%volume_error, 3)//' %'
+      to_text(seconds, 3)//' s', error)
+    call print_line('  contour: largest move '//to_text(facts%contour%largest_move, 3)//', free sides shifted by ' &
+      //to_text(facts%contour%largest_shift, 3)//', volume '//to_text(100*facts%contour%volume_error, 3)//' %', error)
     do k = 1, size(facts%contour%limits)
       associate (limit => facts%contour%limits(k))
-        write (*, '(a)') '  contact '//trim(merge('begins', 'ends  ', limit%kind == kind_entry))//' at x = ' &
-          //to_text(limit%point(1))//', y = '//to_text(limit%point(2))
+        call print_line('  contact '//trim(merge('begins', 'ends  ', limit%kind == kind_entry))//' at x = ' &
+          //to_text(limit%point(1))//', y = '//to_text(limit%point(2)), error)
       end associate
     end do
-    write (*, '(a)') '  by '//facts%mesher//', shape: scaled Jacobian from '//to_text(facts%mesh%scaled_jacobian, 3)//', angles ' &
-      //to_text(facts%mesh%least_angle, 3)//' to '//to_text(facts%mesh%largest_angle, 4)//' degrees'
-    if (facts%mesh%off_ends > without_node) write (*, '(a)') '  an end of contact has no node: the nearest one is ' &
-      //to_text(facts%mesh%off_ends, 3)//' of the contour away, too close to it for another element'
-    if (facts%fit > 0) write (*, '(a)') '  sides of bodies in contact fitted to each other: nodes moved by ' &
-      //to_text(facts%fit, 3)//' of a side at most'
-    write (*, '(a)') '  errors expected: '//to_text(facts%expected%mean, 3)//' times the limit in the mean, ' &
-      //to_text(facts%expected%worst, 3)//' at worst; '//to_text(facts%expected%elements, 3)//' times the elements it takes'
-    if (facts%coarser > 1) write (*, '(a)') '  sizes '//to_text(facts%coarser, 3) &
-      //' times the requested ones, for the limit on the number of elements'
+    call print_line('  by '//facts%mesher//', shape: scaled Jacobian from '//to_text(facts%mesh%scaled_jacobian, 3)//', angles ' &
+      //to_text(facts%mesh%least_angle, 3)//' to '//to_text(facts%mesh%largest_angle, 4)//' degrees', error)
+    if (facts%mesh%off_ends > without_node) call print_line('  an end of contact has no node: the nearest one is ' &
+      //to_text(facts%mesh%off_ends, 3)//' of the contour away, too close to it for another element', error)
+    if (facts%fit > 0) call print_line('  sides of bodies in contact fitted to each other: nodes moved by ' &
+      //to_text(facts%fit, 3)//' of a side at most', error)
+    call print_line('  errors expected: '//to_text(facts%expected%mean, 3)//' times the limit in the mean, ' &
+      //to_text(facts%expected%worst, 3)//' at worst; '//to_text(facts%expected%elements, 3)//' times the elements it takes', error)
+    if (facts%coarser > 1) call print_line('  sizes '//to_text(facts%coarser, 3) &
+      //' times the requested ones, for the limit on the number of elements', error)
     if (.not. allocated(facts%transfer%rows)) return   ! a first mesh
     call report_lines(facts%transfer, lines)
     do k = 1, size(lines)
-      write (*, '(a)') '  '//lines(k)%s
+      call print_line('  '//lines(k)%s, error)
     end do
     if (.not. allocated(facts%contacts)) return
     do k = 1, size(facts%contacts)
-      write (*, '(a)') '  '//in_words(facts%contacts(k))
+      call print_line('  '//in_words(facts%contacts(k)), error)
     end do
   end subroutine print_facts
 

@@ -1,29 +1,35 @@
 !> The solver: arguments -> run -> exit code.
 program lagamine
-  use, intrinsic :: iso_fortran_env, only: error_unit
   use blas, only: blas_build, blas_core_name
   use errors, only: error_t, exit_done
+  use kinds, only: wp
+  use memory_limits, only: require_memory
   use point_run, only: run_point
   use run_deck, only: print_law, run_options_on_deck
   use run_options, only: read_options, run_options_t, usage_text
   use run_version, only: blas_words, print_version
+  use standard_streams, only: claim_standard_streams, print_error, print_line
   use start_again, only: start_as_fits
   use system, only: program_stop
   use threads, only: number_of_threads, set_threads
   implicit none
+  !> What any call takes at least [bytes].
+  real(wp), parameter :: least_memory = 16*2.0_wp**20
   type(run_options_t) :: options
   type(error_t), allocatable :: error
   integer :: code
 
   code = exit_done
-  call read_options(options, error)
+  call claim_standard_streams()
+  call require_memory(0.0_wp, 'the program', error, address_space=least_memory)
+  if (.not. allocated(error)) call read_options(options, error)
   if (allocated(error)) then
     code = error%code
   else if (options%help) then
-    write (*, '(a)') usage_text()
+    call print_line(usage_text(), error)
   else if (options%version) then
     call settle_libraries()
-    call print_version('lagamine', blas_words(blas_build(), blas_core_name()), number_of_threads())
+    call print_version('lagamine', blas_words(blas_build(), blas_core_name()), number_of_threads(), error)
   else if (allocated(options%law)) then
     call print_law(options%law, error)
   else if (options%point) then
@@ -34,8 +40,8 @@ program lagamine
   end if
   if (allocated(error)) then
     code = error%code
-    write (error_unit, '(a)') error%message
-    if (allocated(error%advice)) write (error_unit, '(a)') error%advice
+    call print_error(error%message)
+    if (allocated(error%advice)) call print_error(error%advice)
   end if
   call program_stop(code)
 

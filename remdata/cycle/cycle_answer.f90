@@ -15,6 +15,7 @@ module cycle_answer
   use cycle_options, only: cycle_options_t, read_cycle_options
   use cycle_situation, only: ended_known, situation_t
   use errors, only: error_t, exit_bug, exit_done, fail
+  use standard_streams, only: print_line
   use text, only: to_text
   implicit none
   private
@@ -44,61 +45,64 @@ contains
       action = next_action(situation)
       call carry_out(situation, action, line, error)
       if (allocated(error)) return
-      if (line /= '') call print_word('say', line)
+      if (line /= '') call print_word('say', line, error)
       ! how the program ended has had its consequence
       if (action%kind == act_refuse) options%ended%program = ended_known
       if (is_inner(action)) cycle
       if (allocated(action%error)) then
         code = action%error%code
-        call print_error(action%error)
+        call print_refusal(action%error, error)
       else
-        call print_action(action)
+        call print_action(action, error)
       end if
       return
     end do
     call fail(error, exit_bug, options%stem//': the same is done over and over (action '//to_text(action%kind)//')')
   end subroutine answer_next
 
-  subroutine print_action(action)
+  subroutine print_action(action, error)
     type(action_t), intent(in) :: action
+    type(error_t), allocatable, intent(inout) :: error
 
-    if (action%from /= '') call print_word('from', action%from)
-    if (action%new /= '') call print_word('new', action%new)
-    if (action%transfer >= 0) call print_word('transfer', to_text(action%transfer))
-    if (action%finer > 0) call print_word('finer', to_text(action%finer))
+    if (action%from /= '') call print_word('from', action%from, error)
+    if (action%new /= '') call print_word('new', action%new, error)
+    if (action%transfer >= 0) call print_word('transfer', to_text(action%transfer), error)
+    if (action%finer > 0) call print_word('finer', to_text(action%finer), error)
     select case (action%kind)
     case (act_start)
-      call print_word('do', 'start')
+      call print_word('do', 'start', error)
     case (act_check)
-      call print_word('do', 'check')
+      call print_word('do', 'check', error)
     case (act_resume)
-      call print_word('do', 'resume')
+      call print_word('do', 'resume', error)
     case (act_remesh)
-      call print_word('do', 'remesh')
+      call print_word('do', 'remesh', error)
     case (act_end)
-      call print_word('do', 'end')
+      call print_word('do', 'end', error)
     end select
   end subroutine print_action
 
   !> Why the cycle ends: a word for each line.
-  subroutine print_error(error)
-    type(error_t), intent(in) :: error
+  subroutine print_refusal(refusal, error)
+    type(error_t), intent(in) :: refusal
+    type(error_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: rest
     integer :: last
 
-    rest = error%message//new_line('a')
-    if (allocated(error%advice)) rest = rest//error%advice//new_line('a')
+    rest = refusal%message//new_line('a')
+    if (allocated(refusal%advice)) rest = rest//refusal%advice//new_line('a')
     do while (len(rest) > 0)
       last = index(rest, new_line('a'))
-      call print_word('error', rest(:last - 1))
+      call print_word('error', rest(:last - 1), error)
       rest = rest(last + 1:)
     end do
-  end subroutine print_error
+  end subroutine print_refusal
 
-  subroutine print_word(word, its_value)
+  subroutine print_word(word, its_value, error)
     character(len=*), intent(in) :: word, its_value
+    type(error_t), allocatable, intent(inout) :: error
 
-    write (*, '(a)') word//' '//its_value
+    call print_line(word//' '//its_value, error)
   end subroutine print_word
 
 end module cycle_answer

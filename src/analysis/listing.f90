@@ -1,15 +1,16 @@
 !> The listing (`NAME.log`) and the line that shows progress on a terminal.
 module listing
-  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
   use dies, only: is_deformable
   use elem_api, only: totals_t
   use equations, only: equations_t
   use errors, only: error_t, exit_machine, fail
+  use file_kinds, only: refuse_to_replace
   use kinds, only: wp
   use newton, only: outcome_t
   use restore_balance, only: balance_t
   use scene, only: scene_t
   use solution, only: solution_t
+  use standard_streams, only: print_error, print_line, print_part
   use system, only: is_terminal, wall_seconds
   use text, only: string_t, to_text
   implicit none
@@ -41,6 +42,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer :: status
 
+    call refuse_to_replace(path, error)
+    if (allocated(error)) return
     if (resume) then
       open (newunit=listing%unit, file=path, action='write', position='append', iostat=status)
     else
@@ -170,7 +173,7 @@ contains
     character(len=*), intent(in) :: note
 
     write (listing%unit, '(a)') note
-    write (error_unit, '(a)') note
+    call print_error(note)
   end subroutine list_note
 
   !> One line: step, time, iterations, share done, time left.
@@ -181,7 +184,7 @@ contains
     integer, intent(in) :: iterations
     real(wp) :: now, share, left
     character(len=120) :: line
-    integer :: status
+    type(error_t), allocatable :: unseen
 
     if (.not. listing%live) return
     now = wall_seconds()
@@ -193,20 +196,20 @@ contains
            //'  '//to_text(100*share, 3)//' %  '//to_text(now - listing%started, 3)//' s, left ' &
            //to_text(min(left, 1.0e9_wp), 3)//' s'
     if (listing%terminal) then
-      write (*, '(a)', advance='no', iostat=status) achar(13)//line(:79)
+      call print_part(achar(13)//line(:79), unseen)
     else
-      write (*, '(a)', iostat=status) trim(line)
+      call print_line(trim(line), unseen)
     end if
-    if (status == 0) flush (output_unit, iostat=status)
     ! nobody is there to see it
-    if (status /= 0) listing%live = .false.
+    if (allocated(unseen)) listing%live = .false.
   end subroutine show_progress
 
   !> Leave the progress line.
   subroutine end_progress(listing)
     type(listing_t), intent(in) :: listing
+    type(error_t), allocatable :: ignored
 
-    if (listing%live .and. listing%terminal .and. listing%shown > 0) write (*, '(a)') ''
+    if (listing%live .and. listing%terminal .and. listing%shown > 0) call print_line('', ignored)
   end subroutine end_progress
 
 end module listing

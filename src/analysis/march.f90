@@ -2,6 +2,7 @@
 module march
   use accept_step, only: accept
   use acceptance, only: begin_probation, is_on_probation, note_cut, note_step
+  use blas, only: blas_buffer
   use bookkeeping, only: measure_scene
   use equations, only: set_up
   use errors, only: error_t
@@ -10,6 +11,7 @@ module march
   use judge_remesh, only: limit_lines, refuse_remesh
   use kinds, only: eps, wp
   use listing, only: list_balance, list_cut, list_event, list_lines, list_note, list_step, show_progress
+  use memory_limits, only: require_memory
   use newton, only: outcome_t
   use point_drivers, only: start_drivers
   use probation, only: is_too_short, pass_probation, refuse_after_all
@@ -130,6 +132,8 @@ contains
 
     new_mesh = solution%unbalanced
     call set_up(scene, run%equations, error)
+    if (.not. allocated(error)) call require_memory(8*sum(run%equations%solves%solver%estimated_entries), &
+      'the factors of the matrix', error, address_space=run%equations%team%most*blas_buffer)
     if (allocated(error)) return
     call start_drivers(scene, run%equations%laws, solution, run%equations%drivers)
     call measure_scene(scene, run%equations, solution, run%totals)

@@ -4,6 +4,7 @@ module point_run
   use deck_reader, only: deck_t, read_deck
   use diagnostics, only: diagnostics_t
   use errors, only: error_t, exit_no_convergence, fail
+  use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
   use kinds, only: wp
   use kinematics_api, only: kinematics_t, solid_variables
   use kinematics_registry, only: list_kinematics
@@ -13,6 +14,7 @@ module point_run
   use point_reader, only: read_point
   use point_step, only: advance_point, point_t
   use run_options, only: run_options_t, stem_of
+  use standard_streams, only: print_line
   use state_variables, only: component_names, state_variable_t, total_components
   use system, only: join_path, make_directory
   use text, only: string_t, to_text
@@ -34,40 +36,54 @@ contains
     type(run_options_t), intent(in) :: options
     type(error_t), allocatable, intent(out) :: error
     type(point_path_t) :: path
+    type(folder_lock_t) :: lock
+
+    call read_path(options, path, error)
+    if (allocated(error)) return
+    if (.not. options%check) then
+      call make_directory(options%out, error)
+      if (.not. allocated(error)) call lock_folder(options%out, 'lagamine', lock, error)
+    end if
+    if (.not. allocated(error)) call follow_path(options, path, error)
+    call unlock_folder(lock)
+  end subroutine run_point
+
+  !> From the first ramp to the last.
+  subroutine follow_path(options, path, error)
+    type(run_options_t), intent(in) :: options
+    type(point_path_t), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
     type(point_t) :: point
     type(state_variable_t), allocatable :: variables(:)
     type(csv_t) :: table
     type(counts_t) :: counts
-    type(error_t), allocatable :: late
+    type(error_t), allocatable :: late, unseen
     character(len=:), allocatable :: file
     real(wp) :: temperature, time
     integer :: k
 
-    call read_path(options, path, error)
-    if (allocated(error)) return
     call place_point(path, point, variables)
-    if (.not. options%quiet) call tell_path(path, point)
-    if (options%check) return
-    call make_directory(options%out, error)
-    if (allocated(error)) return
+    if (.not. options%quiet) call tell_path(path, point, error)
+    if (options%check .or. allocated(error)) return
     file = join_path(options%out, stem_of(options%deck)//'.point.csv')
     call begin_table(variables, file, table, error)
     if (allocated(error)) return
     temperature = path%temperature
     time = 0
     call write_row(table, time, temperature, counts, 0, point, error)
-    if (.not. options%quiet) call tell_point(time, point, heading=.true.)
+    if (.not. options%quiet) call tell_point(time, point, unseen, heading=.true.)
     do k = 1, size(path%ramps)
       if (allocated(error)) exit
       call follow(path%ramps(k), point, time, temperature, counts, table, error)
-      if (.not. options%quiet) call tell_point(time, point)
+      if (.not. options%quiet) call tell_point(time, point, unseen)
     end do
     call table%close(late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
     if (allocated(error) .or. options%quiet) return
-    write (*, '(a)') 'done: '//to_text(counts%steps)//' steps, '//to_text(counts%iterations)//' iterations, ' &
-      //to_text(counts%cuts)//' cuts; table in '//file
-  end subroutine run_point
+    call print_line('done: '//to_text(counts%steps)//' steps, '//to_text(counts%iterations)//' iterations, ' &
+                    //to_text(counts%cuts)//' cuts; table in '//file, unseen)
+    if (allocated(unseen)) call move_alloc(unseen, error)
+  end subroutine follow_path
 
   subroutine read_path(options, path, error)
     type(run_options_t), intent(in) :: options
@@ -194,26 +210,33 @@ contains
     call table%status(error)
   end subroutine write_row
 
-  subroutine tell_path(path, point)
+  subroutine tell_path(path, point, error)
     type(point_path_t), intent(in) :: path
     type(point_t), intent(in) :: point
+    type(error_t), allocatable, intent(inout) :: error
 
-    write (*, '(a)') path%title
-    write (*, '(a)') 'a point of '//path%material%name//' ('//point%law%name//': '//point%law%purpose//'), kinematics ' &
-      //point%kinematics%name//', '//to_text(size(path%ramps))//' ramps, '//to_text(sum(path%ramps%steps))//' steps until time ' &
-      //to_text(path%ramps(size(path%ramps))%time)
+    call print_line(path%title, error)
+    call print_line('a point of '//path%material%name//' ('//point%law%name//': '//point%law%purpose//'), kinematics ' &
+                    //point%kinematics%name//', '//to_text(size(path%ramps))//' ramps, '//to_text(sum(path%ramps%steps)) &
+                    //' steps until time '//to_text(path%ramps(size(path%ramps))%time), error)
   end subroutine tell_path
 
   !> A line for the screen: time, strains, stresses.
-  subroutine tell_point(time, point, heading)
+  subroutine tell_point(time, point, error, heading)
     real(wp), intent(in) :: time
     type(point_t), intent(in) :: point
+    type(error_t), allocatable, intent(inout) :: error
     logical, intent(in), optional :: heading
     character(len=11), parameter :: titles(10) = [character(len=11) :: 'time', 'strain xx', 'yy', 'shear xy', 'zz', 'stress xx', &
                                                   'yy', 'xy', 'zz', 'von Mises']
+    character(len=120) :: line
 
-    if (present(heading)) write (*, '(10(1x, a11))') adjustr(titles)
-    write (*, '(10(1x, es11.4))') time, point%strain, point%state(1:4), von_mises(point%state(1:4))
+    if (present(heading)) then
+      write (line, '(10(1x, a11))') adjustr(titles)
+      call print_line(line, error)
+    end if
+    write (line, '(10(1x, es11.4))') time, point%strain, point%state(1:4), von_mises(point%state(1:4))
+    call print_line(line, error)
   end subroutine tell_point
 
   pure function von_mises(s) result(q)

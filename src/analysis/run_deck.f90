@@ -1,12 +1,14 @@
 !> `lagamine DECK`: from a deck to its results.
 module run_deck
-  use blas, only: blas_build, blas_core_name, keep_blas_to_one_thread
+  use atomic, only: refuse_place
+  use blas, only: blas_buffer, blas_build, blas_core_name, keep_blas_to_one_thread
   use contact_ends, only: contact_end_t
   use deck_reader, only: deck_t, fingerprint_text, read_deck
   use diagnostics, only: diagnostics_t
   use equations, only: equations_t
   use errors, only: error_t, exit_done, exit_input, exit_machine, exit_remesh, fail
   use exchange, only: open_checkpoint, read_deck_of_checkpoint, read_remesh, read_state, write_checkpoint
+  use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
   use kinds, only: wp
   use law_api, only: law_t
   use law_manual, only: law_card, law_list
@@ -14,6 +16,7 @@ module run_deck
   use listing, only: close_listing, end_progress, list_lines, list_note, list_resumed, open_listing
   use march, only: march_to_end
   use member_reader, only: member_reader_t
+  use memory_limits, only: require_memory
   use run_record, only: run_t
   use run_options, only: run_options_t, stem_of
   use run_version, only: blas_words, version_text
@@ -23,8 +26,9 @@ module run_deck
   use scene_reader, only: read_scene
   use scene_summary, only: scene_lines
   use solution, only: solution_t, start_solution
+  use standard_streams, only: print_lines
   use summary, only: run_facts_t, summary_lines, write_summary
-  use system, only: catch_signals, join_path, make_directory, remove_file, wall_seconds
+  use system, only: catch_signals, directory_exists, join_path, make_directory, remove_file, wall_seconds
   use text, only: join, nearest_word, string_t
   use threads, only: start_team
   use unknowns_summary, only: unknowns_lines
@@ -39,6 +43,21 @@ contains
     type(run_options_t), intent(in) :: options
     integer, intent(out) :: code
     type(error_t), allocatable, intent(out) :: error
+    type(folder_lock_t) :: lock
+
+    code = exit_done
+    call catch_signals()
+    ! a checkpoint there is read only when nobody can replace it
+    if (directory_exists(options%out) .and. .not. options%check) call lock_folder(options%out, 'lagamine', lock, error)
+    if (.not. allocated(error)) call read_and_run(options, lock, code, error)
+    call unlock_folder(lock)
+  end subroutine run_options_on_deck
+
+  subroutine read_and_run(options, lock, code, error)
+    type(run_options_t), intent(in) :: options
+    type(folder_lock_t), intent(inout) :: lock
+    integer, intent(out) :: code
+    type(error_t), allocatable, intent(out) :: error
     type(deck_t), target :: deck
     type(scene_t) :: scene
     type(solution_t) :: solution
@@ -48,7 +67,6 @@ contains
     logical :: at_rest
 
     code = exit_done
-    call catch_signals()
     call keep_blas_to_one_thread()
     call read_input(options, deck, scene, run%deck_text, at_rest, checkpoint, error)
     run%resume = allocated(options%resume) .and. .not. at_rest
@@ -65,6 +83,7 @@ contains
       return
     end if
     call make_directory(options%out, error)
+    if (.not. allocated(error)) call lock_folder(options%out, 'lagamine', lock, error)
     if (allocated(error)) return
     run%deck_path = options%deck
     run%folder = options%out
@@ -76,7 +95,7 @@ contains
       call run_and_report(options, scene, solution, run, error)
       code = run%exit_code
     end if
-  end subroutine run_options_on_deck
+  end subroutine read_and_run
 
   !> Bodies that have contours alone: a checkpoint for the remesher, who makes the first mesh.
   subroutine ask_for_mesh(options, scene, solution, run, error)
@@ -166,15 +185,18 @@ contains
     type(error_t), allocatable :: late
     type(string_t), allocatable :: lines(:)
     real(wp) :: started
-    integer :: k, status
 
     started = wall_seconds()
     call start_team(run%equations%team, options%threads)
+    call require_memory(0.0_wp, 'the threads of a run', error, address_space=run%equations%team%most*blas_buffer)
+    if (allocated(error)) return
     call open_listing(run%stem//'.log', run%resume, options%quiet, options%progress, solution%time/scene%strategy%end_time, &
                       run%listing, error)
     if (allocated(error)) return
     ! what an earlier call came to says nothing of this one: no summary, no end
     call remove_file(join_path(run%folder, 'summary.json'), error)
+    ! written only after a while
+    if (.not. allocated(error)) call refuse_place(run%stem//'.ckp.h5', error)
     if (allocated(error)) return
     if (run%resume) call list_resumed(run%listing, options%resume, solution)
     call scene_lines(scene, lines)
@@ -199,11 +221,10 @@ contains
     call write_summary(join_path(run%folder, 'summary.json'), facts, scene, run%equations, solution, run%totals, &
                        run%balance, late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
-    if (.not. (options%quiet .or. options%progress)) then
-      do k = 1, size(lines)
-        write (*, '(a)', iostat=status) lines(k)%s
-        if (status /= 0) exit  ! the reader has gone away
-      end do
+    if (.not. (options%quiet .or. options%progress .or. allocated(error))) then
+      call print_lines(lines, late)
+      ! a script must see first why a run has stopped
+      if (allocated(late) .and. run%exit_code == exit_done) call move_alloc(late, error)
     end if
   end subroutine run_and_report
 
@@ -217,8 +238,8 @@ contains
     allocate (more(0))
     if (.not. lacks_mesh(scene)) call unknowns_lines(scene, more, error)
     if (allocated(error)) return
-    call print_lines(lines)
-    call print_lines(more)
+    call print_lines(lines, error)
+    call print_lines(more, error)
   end subroutine print_check
 
   !> --law: the card of a law, or all laws in a list where no name is given.
@@ -233,13 +254,13 @@ contains
     call list_laws(laws)
     if (name == '') then
       call law_list(laws, lines)
-      call print_lines(lines)
+      call print_lines(lines, error)
       return
     end if
     do k = 1, size(laws)
       if (laws(k)%name /= name) cycle
       call law_card(laws(k), lines)
-      call print_lines(lines)
+      call print_lines(lines, error)
       return
     end do
     call law_names(laws, names)
@@ -248,14 +269,5 @@ contains
     call law_list(laws, lines)
     call fail(error, exit_input, 'no law is called '''//name//''''//nearest, 'the laws:'//new_line('a')//join(lines, new_line('a')))
   end subroutine print_law
-
-  subroutine print_lines(lines)
-    type(string_t), intent(in) :: lines(:)
-    integer :: k
-
-    do k = 1, size(lines)
-      write (*, '(a)') lines(k)%s
-    end do
-  end subroutine print_lines
 
 end module run_deck

@@ -3,6 +3,7 @@ module unknowns_summary
   use equations, only: equations_t, set_up
   use errors, only: error_t
   use kinds, only: wp
+  use memory_limits, only: megabytes, memory_left
   use scene, only: is_solid, scene_t
   use text, only: string_t, to_text
   implicit none
@@ -21,7 +22,8 @@ contains
     type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
     type(error_t), allocatable, intent(out) :: error
     type(equations_t) :: equations
-    real(wp) :: bytes, seconds, entries, operations
+    real(wp) :: bytes, seconds, entries, operations, left, addresses
+    character(len=:), allocatable :: by_what
     integer :: g, s, nelem, nonzeros
 
     call set_up(scene, equations, error)
@@ -44,14 +46,16 @@ contains
       end associate
     end do
     seconds = seconds_per_element*nelem + operations/flops_per_second
-    allocate (lines(4))
+    call memory_left(left, addresses, by_what)
+    allocate (lines(5))
     lines(1)%s = ''
     lines(2)%s = 'Unknowns: '//to_text(equations%dofs%ndof)//', of them '//to_text(sum(equations%solves%neq)) &
                  //' free; matrix '//trim(merge('symmetric  ', 'unsymmetric', all(equations%solves%pattern%symmetric)))//', ' &
                  //to_text(nonzeros)//' nonzeros'
     lines(3)%s = 'Factors: '//to_text(entries, 3)//' entries, ' &
                  //to_text(operations, 3)//' operations; memory about '//to_text(bytes/2.0_wp**20, 3)//' MB'
-    lines(4)%s = 'Expected: about '//to_text(seconds, 2)//' s per iteration on one core'
+    lines(4)%s = 'Memory left: '//megabytes(left)//' '//by_what//trim(merge(', too little', '            ', bytes > left))
+    lines(5)%s = 'Expected: about '//to_text(seconds, 2)//' s per iteration on one core'
   end subroutine unknowns_lines
 
 end module unknowns_summary

@@ -5,7 +5,12 @@ module blas
   use system, only: text_of_c
   implicit none
   private
+  public :: blas_buffer
   public :: dgemm, dgemv, dtrsm, dtrsv, keep_blas_to_one_thread, blas_core_name, blas_build
+
+  !> Address space that OpenBLAS asks for, for ever if it is refused, in each thread that calls it first [bytes] (its BUFFER_SIZE,
+  !> at most; little of it is used).
+  real(wp), parameter :: blas_buffer = 132*2.0_wp**20
 
   interface
     !> C := alpha op(A) op(B) + beta C.

@@ -4,12 +4,13 @@
 !> C library of a POSIX system; what a status says is read as Linux, the BSDs and macOS write it.
 module child_process
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_loc, c_long, c_null_char, c_null_ptr, c_ptr
+  use errors, only: error_t, exit_machine, exit_signal, fail
   use kinds, only: wp
-  use system, only: wall_seconds
-  use text, only: string_t
+  use system, only: reason, wall_seconds
+  use text, only: string_t, to_text
   implicit none
   private
-  public :: ending_t, run_child, own_process, words_for_c
+  public :: ending_t, run_child, own_process, words_for_c, become_for, nap
 
   !> How a child ended.
   type :: ending_t
@@ -28,7 +29,7 @@ module child_process
   !> What a shell answers for a program that it cannot start.
   integer(c_int), parameter :: not_started = 127
   !> How often a child that runs is looked after.
-  integer(c_long), parameter :: nap = 5000000_c_long
+  real(wp), parameter :: look_again = 0.005_wp
   integer(c_int), parameter :: mode = int(o'666', c_int)
 
   interface
@@ -36,6 +37,18 @@ module child_process
       import :: c_int
       integer(c_int) :: process
     end function c_fork
+
+    function c_getppid() bind(c, name='getppid') result(process)
+      import :: c_int
+      integer(c_int) :: process
+    end function c_getppid
+
+    function c_prctl(option, number) bind(c, name='prctl') result(status)
+      import :: c_int, c_long
+      integer(c_int), value :: option
+      integer(c_long), value :: number
+      integer(c_int) :: status
+    end function c_prctl
 
     function c_getpid() bind(c, name='getpid') result(process)
       import :: c_int
@@ -142,6 +155,38 @@ contains
     number = int(c_getpid())
   end function own_process
 
+  !> This process becomes another program, for a parent: it is told to stop (SIGTERM) when that one ends, and does not begin when it
+  !> has ended already. After `limit` seconds, if there is a limit, the system ends it (SIGALRM). Comes back only with an error.
+  subroutine become_for(parent, limit, words, error)
+    integer, intent(in) :: parent           !! number of the process that must be there
+    integer, intent(in) :: limit            !! [s], 0: none
+    type(string_t), intent(in) :: words(:)  !! (words) the program and its arguments
+    type(error_t), allocatable, intent(out) :: error
+    integer(c_int), parameter :: signal_at_end_of_parent = 1
+    integer(c_long), parameter :: signal_terminate = 15
+    character(kind=c_char, len=:), allocatable, target :: all_words
+    type(c_ptr) :: pointers(size(words) + 1)
+    integer(c_int) :: ignored
+
+    ignored = c_prctl(signal_at_end_of_parent, signal_terminate)
+    if (c_getppid() /= parent) then
+      call fail(error, exit_signal + int(signal_kill), 'process '//to_text(parent)//' has ended: '//words(1)%s//' is not started')
+      return
+    end if
+    if (limit > 0) ignored = c_alarm(int(limit, c_int))
+    call words_for_c(words, all_words, pointers)
+    ignored = c_execvp(words(1)%s//c_null_char, pointers)
+    call fail(error, exit_machine, "cannot start '"//words(1)%s//"': "//reason())
+  end subroutine become_for
+
+  !> Do nothing for a while [s].
+  subroutine nap(seconds)
+    real(wp), intent(in) :: seconds
+    integer(c_int) :: ignored
+
+    ignored = c_nanosleep(timespec_t(int(seconds, c_long), int(1.0e9_wp*mod(seconds, 1.0_wp), c_long)), c_null_ptr)
+  end subroutine nap
+
   !> The child's part: it never comes back. Should its parent be killed, the alarm ends it.
   subroutine become(program_name, words, said, seconds)
     character(kind=c_char, len=*), intent(in) :: program_name, said
@@ -178,7 +223,7 @@ contains
         ending%late = .true.
         ignored = c_kill(process, signal_kill)
       else
-        ignored = c_nanosleep(timespec_t(0_c_long, nap), c_null_ptr)
+        call nap(look_again)
       end if
     end do
     ending%signal = iand(int(status), 127)

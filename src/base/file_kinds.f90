@@ -3,10 +3,10 @@
 !> Binding to `statx` of Linux, whose structure is the same on every processor (that of `stat` is not).
 module file_kinds
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_int16_t, c_int32_t, c_int64_t, c_null_char
-  use errors, only: error_t, exit_input, fail
+  use errors, only: error_t, exit_machine, fail
   implicit none
   private
-  public :: file_kind, kind_in_words, refuse_to_replace
+  public :: file_kind, kind_in_words, refuse_to_replace, same_file
   public :: nothing, regular_file, directory, symbolic_link, device, pipe_or_socket
 
   !> Kinds of file.
@@ -18,11 +18,12 @@ module file_kinds
     integer(c_int64_t) :: attributes
     integer(c_int32_t) :: links, user, group
     integer(c_int16_t) :: mode, spare
-    integer(c_int64_t) :: others(28)
+    integer(c_int64_t) :: number, before(12), device, after(14)
   end type status_t
 
-  !> Paths are seen from the working directory; a link itself is meant, not what it leads to; the type of a file is asked for.
-  integer(c_int), parameter :: working_directory = -100, no_follow = 256, file_type = 1
+  !> Paths are seen from the working directory; a link itself is meant, not what it leads to, or an open file; its type and number
+  !> are asked for.
+  integer(c_int), parameter :: working_directory = -100, no_follow = 256, empty_path = 4096, file_type = 1, file_number = 256
   !> The four bits of a mode that hold the type, and its values.
   integer, parameter :: type_place = 12, type_length = 4
   integer, parameter :: type_character = 2, type_directory = 4, type_block = 6, type_regular = 8, type_link = 10
@@ -56,6 +57,20 @@ contains
     if (kind /= symbolic_link) return
     if (c_statx(working_directory, path//c_null_char, 0_c_int, file_type, status) == 0) kind = kind_of(status)
   end function file_kind
+
+  !> Is an open file the one that has this name?
+  function same_file(path, descriptor) result(same)
+    character(len=*), intent(in) :: path
+    integer, intent(in) :: descriptor   !! its number in this process; below 0: none
+    logical :: same
+    type(status_t) :: named, opened
+
+    same = .false.
+    if (descriptor < 0) return
+    if (c_statx(working_directory, path//c_null_char, no_follow, file_number, named) /= 0) return
+    if (c_statx(int(descriptor, c_int), c_null_char, empty_path, file_number, opened) /= 0) return
+    same = named%number == opened%number .and. named%device == opened%device
+  end function same_file
 
   pure function kind_of(status) result(kind)
     type(status_t), intent(in) :: status
@@ -104,8 +119,8 @@ contains
 
     kind = file_kind(path, itself=.true.)
     if (kind == nothing .or. kind == regular_file) return
-    call fail(error, exit_input, "'"//path//"' is "//kind_in_words(kind)//': output replaces regular files only', &
-              'remove it, or choose another folder with --out')
+    call fail(error, exit_machine, "'"//path//"' is "//kind_in_words(kind)//': output replaces regular files only', &
+              'move it away, or choose another name with --out')
   end subroutine refuse_to_replace
 
 end module file_kinds

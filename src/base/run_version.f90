@@ -1,6 +1,8 @@
 !> The version all programs carry, and what they are made of.
 module run_version
   use, intrinsic :: iso_fortran_env, only: compiler_version
+  use errors, only: error_t
+  use standard_streams, only: print_line
   use text, only: to_text
   implicit none
   private
@@ -11,14 +13,20 @@ module run_version
 contains
 
   !> What --version prints: versions of the libraries that were built with, the BLAS and the threads as they are now.
-  subroutine print_version(program_name, blas, threads)
+  subroutine print_version(program_name, blas, threads, error)
     character(len=*), intent(in) :: program_name
     character(len=*), intent(in) :: blas       !! as `blas_words` has it
     integer, intent(in) :: threads             !! the most a run has
+    type(error_t), allocatable, intent(inout) :: error
 
-    write (*, '(a)') program_name//' '//version_text, 'compiler: '//compiler_version(), &
-      'MUMPS: '//or_unknown(mumps_version), 'METIS: '//or_unknown(metis_version), 'HDF5: '//or_unknown(hdf5_version), &
-      'BLAS: '//blas, 'threads: '//to_text(threads), 'Gmsh: '//or_unknown(gmsh_version)
+    call print_line(program_name//' '//version_text, error)
+    call print_line('compiler: '//compiler_version(), error)
+    call print_line('MUMPS: '//or_unknown(mumps_version), error)
+    call print_line('METIS: '//or_unknown(metis_version), error)
+    call print_line('HDF5: '//or_unknown(hdf5_version), error)
+    call print_line('BLAS: '//blas, error)
+    call print_line('threads: '//to_text(threads), error)
+    call print_line('Gmsh: '//or_unknown(gmsh_version), error)
   end subroutine print_version
 
   !> Name and version of the BLAS, without the options of its build, and the core whose kernels it uses.

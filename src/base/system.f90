@@ -3,15 +3,15 @@
 module system
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_funloc, c_funptr, c_int, c_intptr_t, &
     c_long, c_null_char, c_null_funptr, c_ptr, c_size_t
-  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
   use errors, only: error_t, exit_machine, fail
+  use file_kinds, only: file_kind, nothing, refuse_to_replace
   use kinds, only: i8, wp
   implicit none
   private
   public :: is_terminal, peak_memory_mb, cpu_seconds, wall_seconds
   public :: file_exists, directory_exists, make_directory, rename_file, link_file, remove_file, flush_to_disk
   public :: split_path, base_name, directory_of, join_path
-  public :: catch_signals, caught_signal, program_stop
+  public :: catch_signals, caught_signal, signals_to_errors, program_stop, reason, last_failure
   public :: set_environment, in_environment, from_environment, text_of_c
 
   !> The numbers POSIX gives to the two requests to stop.
@@ -214,11 +214,13 @@ contains
     call fail(error, exit_machine, "cannot make the directory '"//path//"': "//why)
   end subroutine make_directory
 
-  !> Give a file another name; a file that has that name is replaced, in one step that cannot be half done.
+  !> Give a file another name; a regular file that has that name is replaced, in one step that cannot be half done.
   subroutine rename_file(from, to, error)
     character(len=*), intent(in) :: from, to
     type(error_t), allocatable, intent(out) :: error
 
+    call refuse_to_replace(to, error)
+    if (allocated(error)) return
     if (c_rename(from//c_null_char, to//c_null_char) /= 0) &
       call fail(error, exit_machine, "cannot rename '"//from//"' to '"//to//"': "//reason())
   end subroutine rename_file
@@ -232,12 +234,14 @@ contains
       call fail(error, exit_machine, "cannot link '"//from//"' to '"//to//"': "//reason())
   end subroutine link_file
 
-  !> Remove a file; one that is not there is fine.
+  !> Remove a regular file; one that is not there is fine.
   subroutine remove_file(path, error)
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
 
-    if (.not. file_exists(path)) return
+    if (file_kind(path, itself=.true.) == nothing) return
+    call refuse_to_replace(path, error)
+    if (allocated(error)) return
     if (c_unlink(path//c_null_char) /= 0) call fail(error, exit_machine, "cannot remove '"//path//"': "//reason())
   end subroutine remove_file
 
@@ -302,14 +306,19 @@ contains
     if (directory(len(directory):) == '/') path = directory//name
   end function join_path
 
-  !> From now on SIGINT and SIGTERM no longer end the program: they are only written down. A reader that
-  !> goes away (SIGPIPE) and a file that may not grow (SIGXFSZ) are reported by the write that fails.
-  subroutine catch_signals()
+  !> From now on a reader that goes away (SIGPIPE) and a file that may not grow (SIGXFSZ) are told by the write that fails.
+  subroutine signals_to_errors()
     type(c_funptr) :: previous, ignore
 
     ignore = transfer(signal_ignore, c_null_funptr)
     previous = c_signal(signal_pipe, ignore)
     previous = c_signal(signal_file_size, ignore)
+  end subroutine signals_to_errors
+
+  !> From now on SIGINT and SIGTERM no longer end the program: they are only written down.
+  subroutine catch_signals()
+    type(c_funptr) :: previous
+
     previous = c_signal(signal_interrupt, c_funloc(record_signal))
     previous = c_signal(signal_terminate, c_funloc(record_signal))
   end subroutine catch_signals
@@ -370,18 +379,23 @@ contains
   subroutine program_stop(code)
     integer, intent(in) :: code
 
-    flush (output_unit)
-    flush (error_unit)
     call c_exit(int(code, c_int))
   end subroutine program_stop
 
-  !> Why the last call to the C library failed, in the system's words.
+  !> Why the last call to the C library failed: the system's number.
+  function last_failure() result(number)
+    integer :: number
+    integer(c_int), pointer :: kept
+
+    call c_f_pointer(c_errno(), kept)
+    number = int(kept)
+  end function last_failure
+
+  !> The same in the system's words.
   function reason() result(words)
     character(len=:), allocatable :: words
-    integer(c_int), pointer :: number
 
-    call c_f_pointer(c_errno(), number)
-    words = text_of_c(c_strerror(number))
+    words = text_of_c(c_strerror(int(last_failure(), c_int)))
     if (words == '') words = 'unknown reason'
   end function reason
 

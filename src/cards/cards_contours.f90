@@ -56,22 +56,30 @@ contains
     type(contour_card_t), intent(inout) :: contour
     type(string_t), allocatable :: forms(:)
     integer, allocatable :: row(:)
-    integer :: form, k, n
+    real(wp), allocatable :: pieces(:, :, :)
+    integer :: ends(max(nrow, 1))
+    integer :: form, i, k, n
 
     call words_of(piece_words, forms)
     if (allocated(contour%pieces)) deallocate (contour%pieces, contour%row)
-    allocate (contour%pieces(2, 3, 0), row(0))
+    allocate (pieces(2, 3, 0))
+    n = 0
     do k = 1, max(nrow, 1)
       call cursor%next_row('one of '//piece_words//' and its points')
       call cursor%name('one of '//piece_words, forms, form)
-      n = size(contour%pieces, 3)
-      if (form > 0) call read_piece(cursor, form, contour%pieces)
-      row = [row, spread(k, 1, size(contour%pieces, 3) - n)]
+      if (form > 0) call read_piece(cursor, form, n, pieces)
+      ends(k) = n
+    end do
+    contour%pieces = pieces(:, :, :n)
+    allocate (row(n))
+    i = 0
+    do k = 1, size(ends)
+      row(i + 1:ends(k)) = k
+      i = ends(k)
     end do
     call move_alloc(row, contour%row)
     call cursor%end_row()
     if (cursor%failed()) return
-    n = size(contour%pieces, 3)
     if (.not. ends_meet(contour%pieces)) then
       call cursor%fail('the contour must end where it began, at '//to_text(contour%pieces(1, 1, 1), 10)//' ' &
                        //to_text(contour%pieces(2, 1, 1), 10))
@@ -104,20 +112,27 @@ contains
     type(body_t), intent(inout) :: body
     type(draft_t), intent(inout) :: draft
     type(mesh_parts_t), intent(inout) :: parts
-    type(side_set_t) :: set
-    integer :: k
+    type(side_set_t), allocatable :: sides(:)
+    type(location_t), allocatable :: joined(:)
+    integer :: k, n
 
     if (allocated(body%labels)) deallocate (body%labels, body%location, body%connectivity)
     allocate (body%labels(0), body%location(1), body%connectivity(8, 0))
     body%location = where
     parts%bodies = [parts%bodies, body]
-    do k = 1, nrow
-      set%name = body%name//'.'//to_text(k)
-      if (allocated(set%nodes)) deallocate (set%nodes)
-      allocate (set%nodes(3, 0))
-      draft%scene%mesh%sides = [draft%scene%mesh%sides, set]
-      parts%joined = [parts%joined, location_t()]
+    n = size(draft%scene%mesh%sides)
+    allocate (sides(n + nrow), joined(n + nrow))
+    do k = 1, n
+      call move_alloc(draft%scene%mesh%sides(k)%name, sides(k)%name)
+      call move_alloc(draft%scene%mesh%sides(k)%nodes, sides(k)%nodes)
     end do
+    joined(:n) = parts%joined
+    do k = 1, nrow
+      sides(n + k)%name = body%name//'.'//to_text(k)
+      allocate (sides(n + k)%nodes(3, 0))
+    end do
+    call move_alloc(sides, draft%scene%mesh%sides)
+    call move_alloc(joined, parts%joined)
   end subroutine append_body
 
   !> The remesher makes the first mesh of all bodies or of none, and to a size.

@@ -22,6 +22,8 @@ module cards_dies
   type :: chain_t
     !> Piece the last row of pieces began with; 0 before the first.
     integer :: first = 0
+    !> Pieces so far: the die's array has room for more.
+    integer :: npiece = 0
     !> A fillet waits for the piece after it.
     logical :: fillet = .false.
     real(wp) :: radius = 0.0_wp, tolerance = 0.0_wp
@@ -66,6 +68,7 @@ contains
         call cursor%next_row('a piece')
       end do
       if (chain%fillet) call cursor%fail('a fillet stands between two pieces: none comes after it')
+      die%pieces = die%pieces(:, :, :chain%npiece)
       if (ends_meet(die%pieces)) die%pieces(:, 3, size(die%pieces, 3)) = die%pieces(:, 1, 1)
       call close_card(draft, cursor, deck%cards(i))
       call finish_die(die)
@@ -106,8 +109,8 @@ contains
       chain%fillet = .true.
       return
     end if
-    n = size(die%pieces, 3)
-    call read_piece(cursor, form, die%pieces)
+    n = chain%npiece
+    call read_piece(cursor, form, chain%npiece, die%pieces)
     if (cursor%failed()) then
       chain%fillet = .false.
       return
@@ -116,8 +119,8 @@ contains
     chain%first = n + 1
     if (.not. chain%fillet) return
     chain%fillet = .false.
-    call round_corner(die%pieces(:, :, first:n), die%pieces(:, :, n + 1:), chain%radius, chain%tolerance, rounded, rest, &
-                      message)
+    call round_corner(die%pieces(:, :, first:n), die%pieces(:, :, n + 1:chain%npiece), chain%radius, chain%tolerance, &
+                      rounded, rest, message)
     if (message /= '') then
       call cursor%fail(message)
       return
@@ -125,7 +128,8 @@ contains
     allocate (whole(2, 3, first - 1 + size(rounded, 3)))
     whole(:, :, :first - 1) = die%pieces(:, :, :first - 1)
     whole(:, :, first:) = rounded
-    chain%first = size(whole, 3) - rest + 1
+    chain%npiece = size(whole, 3)
+    chain%first = chain%npiece - rest + 1
     call move_alloc(whole, die%pieces)
   end subroutine read_row
 

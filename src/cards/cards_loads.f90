@@ -25,6 +25,7 @@ contains
     type(diagnostics_t), intent(inout), target :: diagnostics
     type(cursor_t) :: cursor
     type(multiplier_t) :: multiplier
+    real(wp), allocatable :: pairs(:, :)
     real(wp) :: time, value
     integer :: i, n
 
@@ -34,25 +35,29 @@ contains
       call cursor%open(deck%cards(i), diagnostics)
       call draft%multipliers%define(cursor, 'the name of the multiplier', 'LIC', size(draft%scene%multipliers) + 1, &
                                     diagnostics, multiplier%name)
-      if (allocated(multiplier%time)) deallocate (multiplier%time, multiplier%value)
-      allocate (multiplier%time(0), multiplier%value(0))
+      allocate (pairs(2, 0))
+      n = 0
       call cursor%next_row('pairs of time and value')
       do while (.not. cursor%failed())
-        n = size(multiplier%time)
         if (n == 0) then
           call cursor%real('a first time', time, upper=0.0_wp, unit='time')
         else
-          call cursor%real('a time later than the one before', time, lower=multiplier%time(n), strict_lower=.true., unit='time')
+          call cursor%real('a time later than the one before', time, lower=pairs(1, n), strict_lower=.true., unit='time')
         end if
         call cursor%real('the value at this time', value)
         if (cursor%failed()) exit
-        multiplier%time = [multiplier%time, time]
-        multiplier%value = [multiplier%value, value]
+        ! twice the room when there is none: a long card is read in a time that grows with its rows
+        if (n == size(pairs, 2)) pairs = reshape(pairs, [2, max(2*n, 16)], pad=[0.0_wp])
+        n = n + 1
+        pairs(:, n) = [time, value]
         if (cursor%more()) cycle
         if (.not. cursor%more_rows()) exit
         call cursor%next_row('pairs of time and value')
       end do
       call close_card(draft, cursor, deck%cards(i))
+      multiplier%time = pairs(1, :n)
+      multiplier%value = pairs(2, :n)
+      deallocate (pairs)
       ! One that could not be read has no times: what depends on them is not judged.
       if (cursor%failed()) multiplier%time = multiplier%time(:0)
       draft%scene%multipliers = [draft%scene%multipliers, multiplier]

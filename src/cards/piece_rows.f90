@@ -21,21 +21,22 @@ module piece_rows
 
 contains
 
-  !> A piece: its points, for an arc its tolerance.
-  subroutine read_piece(cursor, form, pieces)
+  !> A piece: its points, for an arc its tolerance. It comes after the first `n` of `pieces`, which has room for more of them.
+  subroutine read_piece(cursor, form, n, pieces)
     type(cursor_t), intent(inout) :: cursor
     integer, intent(in) :: form
-    real(wp), allocatable, intent(inout) :: pieces(:, :, :)   !! (2, 3, npiece) [length]
+    integer, intent(inout) :: n
+    real(wp), allocatable, intent(inout) :: pieces(:, :, :)   !! (2, 3, n or more) [length]
     real(wp) :: first(2), middle(2), last(2), tolerance, gap, extent, share
     real(wp), allocatable :: more(:, :, :)
     character(len=:), allocatable :: message
-    integer :: n
 
     call read_xy(cursor, 'the first point', first)
-    n = size(pieces, 3)
     if (n > 0 .and. .not. cursor%failed()) then
       gap = length_of(first - pieces(:, 3, n))
-      extent = max(maxval(abs(pieces)), maxval(abs(first)))
+      extent = maxval(abs(first))
+      ! seldom: all of the chain need not be looked at for each piece
+      if (gap > gap_tolerance*extent) extent = max(extent, maxval(abs(pieces(:, :, :n))))
       if (gap > gap_tolerance*extent) &
         call cursor%fail('the piece must begin where the last one ended, at '//to_text(pieces(1, 3, n), 10)//' ' &
                          //to_text(pieces(2, 3, n), 10)//'; it begins '//to_text(gap)//' away from there')
@@ -64,8 +65,23 @@ contains
       if (message /= '') call cursor%fail(message)
     end select
     if (cursor%failed()) return
-    pieces = reshape([pieces, more], [2, 3, n + size(more, 3)])
+    call make_room(n, n + size(more, 3), pieces)
+    pieces(:, :, n + 1:n + size(more, 3)) = more
+    n = n + size(more, 3)
   end subroutine read_piece
+
+  !> Room for `needed` pieces, with the first `n` kept; twice as much as there was, so that a long card is read in a time that grows
+  !> with its rows.
+  pure subroutine make_room(n, needed, pieces)
+    integer, intent(in) :: n, needed
+    real(wp), allocatable, intent(inout) :: pieces(:, :, :)   !! (2, 3, n or more) [length]
+    real(wp), allocatable :: longer(:, :, :)
+
+    if (needed <= size(pieces, 3)) return
+    allocate (longer(2, 3, max(needed, 2*size(pieces, 3))))
+    longer(:, :, :n) = pieces(:, :, :n)
+    call move_alloc(longer, pieces)
+  end subroutine make_room
 
   !> The last of several pieces ends where the first begins, to round-off.
   pure function ends_meet(pieces) result(yes)

@@ -19,8 +19,9 @@ endfunction()
 
 # A member of a family seldom needs every argument of the family's interface: no warning for those. gfortran takes the descriptor of
 # an array that is allocated by assignment for uninitialised (GCC bug 77504): a warning, not an error.
+# Memory that temporaries do not get ends the program in words (-fcheck=mem, src/base/memory_limits.f90), not in a crash.
 flags_of(GNU
-  STRICT -std=f2008 -pedantic -Wall -Wextra -Wno-unused-dummy-argument -Wimplicit-interface -Wconversion -fimplicit-none
+  STRICT -fcheck=mem -std=f2008 -pedantic -Wall -Wextra -Wno-unused-dummy-argument -Wimplicit-interface -Wconversion -fimplicit-none
   CHECKS -g -O1 -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -fbacktrace
   NATIVE -march=native
   WERROR -Werror -Wno-error=maybe-uninitialized)

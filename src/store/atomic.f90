@@ -3,11 +3,12 @@
 !> for HDF5 see `hdf5_atomic`.
 module atomic
   use errors, only: error_t, exit_input, exit_machine, fail
+  use file_kinds, only: file_kind, kind_in_words, nothing, refuse_to_replace, regular_file
   use kinds, only: i8
   use system, only: directory_of, file_exists, flush_to_disk, link_file, remove_file, rename_file
   implicit none
   private
-  public :: temporary_name, previous_name, replace_file, copy_to_temporary, write_text, read_text
+  public :: temporary_name, previous_name, refuse_place, replace_file, copy_to_temporary, write_text, read_text
 
 contains
 
@@ -32,6 +33,15 @@ contains
       name = path(:dot - 1)//'.1'//path(dot:)
     end if
   end function previous_name
+
+  !> Can a file be put under the name `path`, by way of its temporary name? Only where regular files are, or nothing.
+  subroutine refuse_place(path, error)
+    character(len=*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+
+    call refuse_to_replace(path, error)
+    if (.not. allocated(error)) call refuse_to_replace(temporary_name(path), error)
+  end subroutine refuse_place
 
   !> Put `temporary_name(path)`, written and closed, in the place of `path`. With `keep_previous`
   !> the older file stays as `previous_name(path)`; a file called `path` is there at every moment.
@@ -103,6 +113,8 @@ contains
     integer(i8) :: length
     integer :: unit, status
 
+    call refuse_place(path, error)
+    if (allocated(error)) return
     open (newunit=unit, file=temporary_name(path), status='replace', action='write', access='stream', form='unformatted', &
       iostat=status, iomsg=why)
     if (status /= 0) then
@@ -130,9 +142,15 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(len=200) :: why
     integer(i8) :: length
-    integer :: unit, status
+    integer :: kind, unit, status
 
     text = ''
+    kind = file_kind(path)
+    if (kind /= nothing .and. kind /= regular_file) then
+      ! a pipe would have to be waited for
+      call fail(error, exit_input, "cannot read '"//path//"': it is "//kind_in_words(kind)//', expected a regular file')
+      return
+    end if
     open (newunit=unit, file=path, status='old', action='read', access='stream', form='unformatted', iostat=status, iomsg=why)
     if (status == 0) then
       inquire (unit=unit, size=length)

@@ -5,7 +5,7 @@
 !> A table taken up again with `resume` is cut after the step of the checkpoint, so that an
 !> interrupted run leaves the very file of an uninterrupted one.
 module csv_writer
-  use atomic, only: read_text, write_text
+  use atomic, only: read_text, refuse_place, write_text
   use errors, only: error_t, exit_bug, exit_input, exit_machine, fail
   use exact_numbers, only: exact_text
   use kinds, only: i8, wp
@@ -77,7 +77,8 @@ contains
       return
     end if
     call begin(self, path, columns)
-    call read_text(path, old, error)
+    call refuse_place(path, error)
+    if (.not. allocated(error)) call read_text(path, old, error)
     if (.not. allocated(error)) then
       if (index(old, header(columns)) == 1) then
         length = kept_length(old, size(columns), step)

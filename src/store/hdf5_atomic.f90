@@ -9,7 +9,7 @@
 !> Hash and structure are two gates: the first finds every accident, whatever HDF5 would make of it; the second stands also where
 !> somebody has written the file anew, hash and all.
 module hdf5_atomic
-  use atomic, only: replace_file, temporary_name
+  use atomic, only: refuse_place, replace_file, temporary_name
   use errors, only: error_t, exit_bug, exit_machine
   use hdf5_file, only: hdf5_file_t
   use system, only: file_exists, remove_file
@@ -25,7 +25,8 @@ contains
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
 
-    call file%create(temporary_name(path), error)
+    call refuse_place(path, error)
+    if (.not. allocated(error)) call file%create(temporary_name(path), error)
   end subroutine create_atomic
 
   !> Close the file, read it back, put it in the place of the older one, which stays as

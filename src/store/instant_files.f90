@@ -4,7 +4,7 @@
 !> An instant that has been saved is never written to again. A kill or a power cut at any moment loses nothing: a file that grows by
 !> appending would be lost as a whole, HDF5 keeps no journal.
 module instant_files
-  use atomic, only: copy_to_temporary, replace_file, temporary_name
+  use atomic, only: copy_to_temporary, refuse_place, replace_file, temporary_name
   use errors, only: error_t
   use hdf5_file, only: hdf5_file_t
   use system, only: base_name, remove_file
@@ -100,6 +100,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: ignored
 
+    call refuse_place(path, error)
+    if (allocated(error)) return
     call file%create(temporary_name(path), error)
     if (allocated(error)) call remove_file(temporary_name(path), ignored)
   end subroutine begin_file

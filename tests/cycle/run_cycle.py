@@ -74,7 +74,8 @@ def ends_the_same(checks, deck, out, whole, what, **environment):
     if checks.that(result.returncode == DONE, f"{what}: the same command goes on", said(result)):
         wrong = differences(whole, out)
         checks.that(not wrong, f"{what}: as in one go", "; ".join(wrong[:5]))
-    checks.that(not os.path.exists(os.path.join(out, "case.lock")), f"{what}: no lock is left")
+    left = [name for name in ("lagamine.lock", "case.said") if os.path.exists(os.path.join(out, name))]
+    checks.that(not left, f"{what}: nothing is left of the cycle's own", left)
 
 
 def undisturbed(checks, deck, out):
@@ -144,21 +145,18 @@ def files_of(folder):
     return sorted(os.path.join(place, name) for place, _, names in os.walk(folder) for name in names)
 
 
-def program_at_work(out):
+def program_at_work(process):
     """Number and name of the program that lagacycle has called, None when there is none."""
     try:
-        for name in os.listdir(os.path.join(out, "case.lock")):
-            if name.startswith("child."):
-                with open(os.path.join(out, "case.lock", name), encoding="ascii") as file:
-                    number = int(file.read())
-                with open(f"/proc/{number}/comm", encoding="utf-8") as file:
-                    return number, file.read().strip()
-    except (OSError, ValueError):
-        pass
-    return None
+        with open(f"/proc/{process.pid}/task/{process.pid}/children", encoding="ascii") as file:
+            number = int(file.read().split()[0])
+        with open(f"/proc/{number}/comm", encoding="utf-8") as file:
+            return number, file.read().strip()
+    except (OSError, ValueError, IndexError):
+        return None
 
 
-def kill_one(draw, process, out, victim, wait):
+def kill_one(draw, process, victim, wait):
     """Kill lagacycle, or the next lagamine or remdata it calls, after so many seconds; which one, None when it had ended."""
     end = time.monotonic() + wait
     while time.monotonic() < end and process.poll() is None:
@@ -167,7 +165,7 @@ def kill_one(draw, process, out, victim, wait):
         if victim == "lagacycle":
             process.kill()
             return victim
-        found = program_at_work(out)
+        found = program_at_work(process)
         if found and found[1] == victim:
             time.sleep(draw.uniform(0, 0.03) if victim == "remdata" else 0)
             try:
@@ -189,7 +187,7 @@ def kills(checks, draw, deck, whole, number, seconds, **environment):
             victim = draw.choice(sorted(hits))
             wait = draw.uniform(0, seconds * (0.5 if victim == "remdata" else 1))
             process = begin(deck, out, **environment)
-            hit = kill_one(draw, process, out, victim, wait)
+            hit = kill_one(draw, process, victim, wait)
             code = process.wait(timeout=LONGEST_RUN)
             if not hit:
                 seconds = 0.7 * seconds     # the machine is quicker than when they were measured
@@ -223,45 +221,81 @@ def stops(checks, draw, deck, whole, seconds):
 
 
 def two_at_once(checks, deck, whole):
-    """A second cycle in the same folder is refused while the first goes on; a lock of one that is gone is no hindrance."""
+    """A second cycle, and a run by hand, in the same folder are refused while the first goes on; a lock of one that is gone is no
+    hindrance, whatever its file tells."""
     out = checks.path("twice")
     process = begin(deck, out)
-    while not os.path.exists(os.path.join(out, "case.lock", "pid")) and process.poll() is None:
-        time.sleep(0.001)
-    result = cycle(deck, out)
-    checks.that(result.returncode == INPUT and "another lagacycle" in result.stderr, "two at once: refused", said(result))
+    wait_for_holder(out, process)
+    with open(os.path.join(out, "lagamine.lock"), encoding="utf-8") as file:
+        checks.that(file.read().split()[:3] == ["lagacycle", str(process.pid), os.uname().nodename], "two at once: the lock's file tells")
+    for what, result in {"lagacycle": cycle(deck, out), "lagamine": run([deck, "--out", out, "--threads", "1"])}.items():
+        lines = result.stderr.splitlines()
+        checks.that(result.returncode == MACHINE and len(lines) == 2 and f"'{out}' is in use by lagacycle (process {process.pid} on "
+                    in lines[0] and "since" in lines[0], f"two at once: {what} is refused, with the one at work", said(result))
     checks.that(process.wait(timeout=LONGEST_RUN) == DONE, "two at once: the first one is done")
     checks.that(not differences(whole, out), "two at once: as in one go", differences(whole, out)[:5])
-    for number in ("999999", str(os.getpid()), ""):
-        lock = os.path.join(out, "case.lock")
-        os.mkdir(lock)
-        write(os.path.join(lock, "pid"), number)
-        write(os.path.join(lock, "machine"), os.uname().nodename)
+    for words in ("lagacycle 999999 %s 2000-01-01 00:00:00+0000 17", f"lagacycle {os.getpid()} %s 2000-01-01 00:00:00+0000 17", "", "\0"):
+        write(os.path.join(out, "lagamine.lock"), words.replace("%s", os.uname().nodename))
         result = cycle(deck, out)
-        checks.that(result.returncode == DONE, f"a lock of process '{number}', no lagacycle: taken over", said(result))
+        checks.that(result.returncode == DONE, f"a lock's file that says '{words}', of no process: taken over", said(result))
+    for name, make in {"a pipe": os.mkfifo, "a folder": os.mkdir, "a link": lambda path: os.symlink("/dev/null", path)}.items():
+        place = checks.path("lock-" + name.split()[1])
+        os.makedirs(place)
+        make(os.path.join(place, "lagamine.lock"))
+        for what, result in {"lagacycle": cycle(deck, place), "lagamine": run([deck, "--out", place, "--threads", "1"])}.items():
+            checks.that(result.returncode == MACHINE and "lagamine.lock" in result.stderr and len(os.listdir(place)) == 1,
+                        f"{name} where the lock's file should be: {what} refuses", said(result))
 
 
-def foreign_processes(checks, deck):
-    """Processes that a lagacycle which is gone may have started, or others that have their numbers now, are not ended: a solver that
-    seems to be at work is waited for, a lagacycle that seems to be is refused."""
+def wait_for_holder(out, process):
+    """Until the lock's file tells who has it."""
+    while process.poll() is None:
+        try:
+            with open(os.path.join(out, "lagamine.lock"), encoding="utf-8") as file:
+                if file.read().endswith("\n"):
+                    return
+        except OSError:
+            pass
+        time.sleep(0.001)
+
+
+# A solver that a signal does not end: it is at work for a while after its cycle has been killed.
+STUBBORN = """#!/bin/sh
+trap '' TERM
+sleep "$LAGS"
+exec "$REALSOLVER" "$@"
+"""
+
+
+def foreign_processes(checks, deck, whole):
+    """What a killed lagacycle has left at work is waited for, for it has inherited the lock; a run by hand is refused meanwhile. A
+    process that has a number from the lock's file is not touched."""
     out = checks.path("foreign")
-    lock = os.path.join(out, "case.lock")
-    other = [sys.executable, "-c", "import sys, time; time.sleep(float(sys.argv[2]))"]
-    with subprocess.Popen([*other, "case", "6"]) as solver:
-        write(os.path.join(lock, "pid"), "999999")
-        write(os.path.join(lock, "machine"), os.uname().nodename)
-        write(os.path.join(lock, "child.999999"), str(solver.pid))
+    script = write(checks.path("bin", "stubborn"), STUBBORN)
+    os.chmod(script, 0o755)
+    process = begin(deck, out, LAGAMINE=script, REALSOLVER=LAGAMINE, LAGS="6")
+    wait_for_holder(out, process)
+    while not (program_at_work(process) or (0, ""))[1].startswith(("stubborn", "sleep")) and process.poll() is None:
+        time.sleep(0.001)
+    left = program_at_work(process)
+    process.kill()
+    process.wait()
+    result = run([deck, "--out", out, "--threads", "1"])
+    checks.that(result.returncode == MACHINE and f"what lagacycle (process {process.pid} on " in result.stderr,
+                "a program left at work: lagamine is refused", said(result))
+    result = cycle(deck, out)
+    checks.that(result.returncode == DONE and "waiting for the end of what an earlier lagacycle has started" in result.stdout,
+                "a program left at work: waited for", said(result))
+    checks.that(left and not os.path.exists(f"/proc/{left[0]}"), "a program left at work: has ended by itself", left)
+    checks.that(not differences(whole, out), "a program left at work: as in one go", differences(whole, out)[:5])
+    with subprocess.Popen([sys.executable, "-c", "import time; time.sleep(100)", "lagacycle", "case"]) as other:
+        with open(f"/proc/{other.pid}/stat", encoding="utf-8") as file:
+            started = file.read().rpartition(")")[2].split()[19]
+        write(os.path.join(out, "lagamine.lock"), f"lagacycle {other.pid} {os.uname().nodename} 2000-01-01 00:00:00+0000 {started}\n")
+        write(os.path.join(out, "case.lock", "child.1"), str(other.pid))
         result = cycle(deck, out)
-        checks.that(solver.poll() == 0, "a process whose number a lock holds: ended by itself", solver.poll())
-        checks.that(result.returncode == DONE and f"waiting for the end of process {solver.pid}" in result.stdout,
-                    "a process whose number a lock holds: waited for", said(result))
-    with subprocess.Popen([*other, "lagacycle", "100"]) as owner:
-        write(os.path.join(lock, "pid"), str(owner.pid))
-        write(os.path.join(lock, "machine"), os.uname().nodename)
-        result = cycle(deck, out)
-        checks.that(result.returncode == INPUT and str(owner.pid) in result.stderr and owner.poll() is None,
-                    "a process that may hold the lock: refused, not ended", said(result))
-        owner.kill()
+        checks.that(result.returncode == DONE and other.poll() is None, "a process of a number in the lock's file: left alone", said(result))
+        other.kill()
 
 
 # A remesher that fails in a given way in its first calls ($FAILS of them).
@@ -292,7 +326,7 @@ def remesher_fails_once(checks, deck):
     """However the remesher fails, another way is tried, and the cycle ends."""
     bad = "not a checkpoint"
     ways = {"crash": "signal 11", "hang": "no answer", "text": bad, "half": bad, "old": bad, "nothing": bad, "3": "exit code 3",
-            "5": "exit code 5", "6": "exit code 6", "full": "signal 25"}
+            "5": "exit code 5", "6": "exit code 6", "full": "exit code 5"}
     for way, word in ways.items():
         out = checks.path("once-" + way)
         result = cycle(deck, out, "--limit", "2", **failing(checks, "once-" + way, way, 1))
@@ -470,7 +504,7 @@ def main():
     kills(checks, draw, deck, whole, numbers[0], seconds)
     stops(checks, draw, deck, whole, seconds)
     two_at_once(checks, deck, whole)
-    foreign_processes(checks, deck)
+    foreign_processes(checks, deck, whole)
     remesher_fails_once(checks, deck)
     an_earlier_save(checks, draw, deck, seconds)
     all_ways_fail(checks, deck)

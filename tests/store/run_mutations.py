@@ -363,18 +363,19 @@ def attributes(file, rng):
     import numpy as np  # pylint: disable=import-outside-toplevel
     thing = file[rng.choice(["/", *names_of(file)])]
     kind = rng.choice(["array", "words", "null", "int64", "schema", "version", "gone", "more"])
+    version = int(file.attrs["schema_version"])
     if kind == "array":
-        thing.attrs["schema_version"] = np.full((1000,), 6, "<i4")
+        thing.attrs["schema_version"] = np.full((1000,), version, "<i4")
     elif kind == "words":
         thing.attrs["unit"] = "length"        # of variable length
     elif kind == "null":
         thing.attrs["unit"] = h5py.Empty("i4")
     elif kind == "int64":
-        thing.attrs["schema_version"] = np.int64(6)
+        thing.attrs["schema_version"] = np.int64(version)
     elif kind == "schema":
         file.attrs["schema"] = np.bytes_(rng.choice([b"", b"x", b"lagamine checkpoints", b"y" * 60000]))
     elif kind == "version":
-        file.attrs["schema_version"] = np.int32(rng.choice([-1, 0, 5, 7, 2**31 - 1]))
+        file.attrs["schema_version"] = np.int32(rng.choice([-1, 0, version - 1, version + 1, 2**31 - 1]))
     elif kind == "gone":
         del file.attrs[rng.choice(["schema", "schema_version"])]
     else:

@@ -2,6 +2,7 @@
 import argparse
 import importlib
 import os
+import stat
 import subprocess
 import sys
 import tempfile
@@ -18,8 +19,8 @@ class _Parser(argparse.ArgumentParser):
     """Mistakes in one line, as the other programs have it."""
 
     def error(self, message: str) -> NoReturn:
-        print(f"{self.prog}: {message}", file=sys.stderr)
-        print(f"{self.prog} --help shows how to call", file=sys.stderr)
+        tell(f"{self.prog}: {message}")
+        tell(f"{self.prog} --help shows how to call")
         sys.exit(EXIT_INPUT)
 
 
@@ -46,6 +47,54 @@ class _Version(argparse.Action):
 
 
 def main(arguments: Sequence[str], version: str) -> int:
+    """The exit code of the program; an output that cannot be written is a failure of the machine."""
+    claim_standard_streams()
+    code = EXIT_DONE
+    try:
+        try:
+            code = run_program(arguments, version)
+        except SystemExit as ending:       # argparse's --help, --version and mistakes
+            code = ending.code
+        sys.stdout.flush()
+    except BrokenPipeError:
+        discard(1)                         # the reader has gone away
+    except OSError as error:
+        discard(1)
+        tell(f"cannot write to the standard output: {error.strerror}")
+        code = code or EXIT_MACHINE
+    return code
+
+
+def claim_standard_streams() -> None:
+    """A stream that the program was started without is taken by a file that nothing can be written to: the next file opened would
+    have its number otherwise."""
+    while True:
+        descriptor = os.open(os.devnull, os.O_RDONLY)
+        if descriptor > 2:
+            os.close(descriptor)
+            break
+    if sys.stdout is None:
+        sys.stdout = open(1, "w", encoding="utf-8", closefd=False)
+    if sys.stderr is None:
+        sys.stderr = open(2, "w", encoding="utf-8", closefd=False)
+
+
+def discard(stream: int) -> None:
+    """What is left in the buffer of a standard stream goes nowhere, and Python does not fail when it tries again at its end."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, stream)
+    os.close(nowhere)
+
+
+def tell(message: str) -> None:
+    """What went wrong, on the stream of errors. Where that cannot be written, the exit code has to do."""
+    try:
+        print(message, file=sys.stderr, flush=True)
+    except OSError:
+        discard(2)
+
+
+def run_program(arguments: Sequence[str], version: str) -> int:
     """Read the arguments, make the page, tell the short result."""
     parser = _Parser("lagareport", description="The results of a run as one self-contained HTML page with pictures.",
                      epilog=EXIT_CODES)
@@ -61,21 +110,22 @@ def main(arguments: Sequence[str], version: str) -> int:
     for stream in (sys.stdout, sys.stderr):
         stream.reconfigure(errors="replace")     # a title may hold letters that the terminal has not
     try:
+        target = options.out or os.path.join(options.folder, "report.html")
+        refuse_to_replace(target)
         run = Run(options.folder)
         # Only now: matplotlib takes its time, and what is refused is refused at once.
         from .album import make_pictures
         from .page import page
         pictures = make_pictures(run, options.field, options.mirror)
-        target = options.out or os.path.join(options.folder, "report.html")
         write(target, page(run, pictures, version).encode("utf-8"))
         if options.png:
             write_pngs(options.png, pictures)
         for picture in pictures:
             picture.close()
     except ReportError as error:
-        print(error, file=sys.stderr)
+        tell(str(error))
         if error.advice:
-            print(error.advice, file=sys.stderr)
+            tell(error.advice)
         return error.code
     if not options.quiet:
         print_short(run)
@@ -93,8 +143,22 @@ def write_pngs(folder: str, pictures: Sequence) -> None:
         write(os.path.join(folder, picture.name + ".png"), picture.png())
 
 
+def refuse_to_replace(path: str) -> None:
+    """Output may be put where nothing is, and in the place of a regular file; anything else is left as it is."""
+    try:
+        mode = os.lstat(path).st_mode
+    except OSError:
+        return
+    if stat.S_ISREG(mode):
+        return
+    kinds = {stat.S_IFDIR: "a directory", stat.S_IFLNK: "a symbolic link", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device"}
+    raise ReportError(f"'{path}' is {kinds.get(stat.S_IFMT(mode), 'a pipe or a socket')}: output replaces regular files only",
+                      EXIT_MACHINE, "move it away, or choose another name with --out")
+
+
 def write(path: str, content: bytes) -> None:
     """Write a file under a temporary name, then rename it: never half a file."""
+    refuse_to_replace(path)
     temporary = None
     try:
         handle, temporary = tempfile.mkstemp(prefix=".lagareport-", dir=os.path.dirname(os.path.abspath(path)))
