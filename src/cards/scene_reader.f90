@@ -51,7 +51,9 @@ contains
     type(draft_t) :: draft
     type(mesh_parts_t) :: parts
     type(string_t), allocatable :: keywords(:)
+    logical :: has_own_mesh
 
+    has_own_mesh = .not. present(remesh)
     call start_draft(draft)
     call start_parts(parts)
     call known_cards(keywords)
@@ -68,7 +70,7 @@ contains
     allocate (draft%scene%mesh%sides(0))
     call read_nodes(deck, draft, parts, diagnostics)
     call read_elements(deck, draft, parts, diagnostics)
-    call read_blocks(deck, draft, parts, diagnostics, .not. present(remesh))
+    call read_blocks(deck, draft, parts, diagnostics, has_own_mesh)
     call read_contours(deck, draft, parts, diagnostics)
     call read_side_sets(deck, draft, parts, diagnostics)
     call join_blocks(deck, draft, parts, diagnostics)
@@ -79,7 +81,7 @@ contains
       draft%scene%remesher%own_mesh = measure_own_mesh(parts)
     end if
     ! without a mesh cards are read as where it has mistakes: nothing is looked up in it
-    if (has_contours(draft%scene%remesher) .and. .not. present(remesh)) parts%sound = .false.
+    if (has_contours(draft%scene%remesher) .and. has_own_mesh) parts%sound = .false.
     call finish_mesh(draft, parts, diagnostics)
     if (size(parts%bodies) == 0) call refuse_empty(deck, diagnostics)
 

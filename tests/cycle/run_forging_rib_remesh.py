@@ -103,7 +103,7 @@ def instants(out):
 def pieces_of_die(out):
     """Pieces of the die in the pilot's axes."""
     with h5py.File(glob.glob(os.path.join(out, "*.g02.start.h5"))[0], "r") as file:
-        return file["dies/upper/pieces"][()]
+        return next(die["pieces"][()] for die in file["dies"].values() if die.attrs["name"] == b"upper")
 
 
 def filling(checks, out):

@@ -430,7 +430,8 @@ STRUCTURE = [change_integer_member] * 5 + [change_real_member] * 3 + [change_tex
 # ---- checkpoints to begin with
 
 def call(checks, words, codes, limit=300):
-    result = subprocess.run(words, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=limit,
+    result = subprocess.run(words, text=True, errors="backslashreplace", stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, timeout=limit,
                             check=False)
     checks.that(result.returncode in codes, " ".join(os.path.basename(word) for word in words), said(result))
 
@@ -529,7 +530,8 @@ class Fuzz:
                       [bin_path("lagamine"), deck, "--resume", self.bad, "--out", out, "--threads", "1", "--quiet"]):
             limit = int(LONGEST * self.options.patience)
             try:
-                result = subprocess.run(words, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                result = subprocess.run(words, text=True, errors="backslashreplace", stdin=subprocess.DEVNULL,
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                         timeout=WAIT * limit, check=False,
                                         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit)))
             except subprocess.TimeoutExpired:
