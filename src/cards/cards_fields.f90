@@ -164,28 +164,32 @@ contains
       call draft%multipliers%find(cursor, 'the name of a LIC', k)
       fixation%amplitude = 1
       if (f > 0 .and. cursor%more()) call cursor%real('the amplitude', fixation%amplitude, unit=draft%scene%fields(f)%unit)
-      if (.not. cursor%failed()) call refuse_second_value(cursor, draft, f, place)
+      fixation%multiplier = 0
+      if (k > 0) fixation%multiplier = draft%multipliers%item(k)
+      if (.not. cursor%failed()) call refuse_second_value(cursor, draft, f, place, fixation)
       call close_card(draft, cursor, deck%cards(i))
       if (cursor%failed()) cycle
       fixation%nodes = place%nodes
       fixation%field = f
       fixation%component = 1
-      fixation%multiplier = draft%multipliers%item(k)
       fixation%label = 'IMPOS '//place%label//' '//draft%scene%fields(f)%word//' '//draft%multipliers%words(k)%s
       draft%scene%fixations = [draft%scene%fixations, fixation]
     end do
   end subroutine read_imposed_values
 
-  !> A node has one imposed value of a field.
-  subroutine refuse_second_value(cursor, draft, field, place)
+  !> A node has one imposed value of a field; the same one may be given twice, where two places meet.
+  subroutine refuse_second_value(cursor, draft, field, place, fixation)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft
     integer, intent(in) :: field
     type(place_t), intent(in) :: place
+    type(fixation_t), intent(in) :: fixation   !! the one that is read
     integer :: k, i
 
     do k = 1, size(draft%scene%fixations)
       if (draft%scene%fixations(k)%field /= field) cycle
+      if (draft%scene%fixations(k)%multiplier == fixation%multiplier &
+          .and. .not. abs(draft%scene%fixations(k)%amplitude - fixation%amplitude) > 0) cycle
       do i = 1, size(place%nodes)
         if (.not. any(draft%scene%fixations(k)%nodes == place%nodes(i))) cycle
         call cursor%fail('a node of '//place%label//' has a value of '//draft%scene%fields(field)%word//' already, by ' &

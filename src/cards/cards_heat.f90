@@ -1,4 +1,4 @@
-!> FLUX, CONVE and RADIA: heat that passes sides of bodies.
+!> FLUX, CONVE and RADIA: heat that passes sides of bodies; THETA: its balance in time.
 module cards_heat
   use card_places, only: numbers_after_name, read_sides
   use cards_sides, only: append_group, refuse_inner_sides, start_group
@@ -10,11 +10,11 @@ module cards_heat
   use loads, only: exchange_t
   use quadrature, only: rule_gauss, rule_t
   use scene, only: group_t
-  use scene_draft, only: close_card, draft_t, words_of
+  use scene_draft, only: close_card, draft_t, only_card, words_of
   use text, only: string_t
   implicit none
   private
-  public :: read_exchanges
+  public :: read_exchanges, read_time_scheme
 
   !> Gauss points of a side.
   integer, parameter :: npoint = 3
@@ -159,5 +159,31 @@ contains
     end do
     if (n > 0) exchange%table = reshape(points(:n), [2, n/2])
   end subroutine read_table
+
+  !> `THETA theta [MEAN]`: balance of heat at the share theta of each step, or in the mean of its ends.
+  subroutine read_time_scheme(deck, draft, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    type(string_t), allocatable :: words(:)
+    integer :: k
+
+    call only_card(deck, 'THETA', .false., diagnostics, k)
+    if (k == 0) return
+    call cursor%open(deck%cards(k), diagnostics)
+    call cursor%real('theta, 1/2 (second order, with oscillations after a shock) to 1 (implicit Euler)', &
+                     draft%scene%strategy%theta, lower=0.5_wp, upper=1.0_wp)
+    if (cursor%more()) then
+      call words_of('MEAN', words)
+      call cursor%name('MEAN, or nothing', words, k)
+      draft%scene%strategy%theta_mean = k > 0
+    end if
+    if (draft%groups_sound) then
+      if (find_field(draft%scene%fields, 'temperature') == 0) &
+        call cursor%fail('no body of this scene has a temperature among its unknowns (PL8TM)')
+    end if
+    call close_card(draft, cursor, deck%cards(k))
+  end subroutine read_time_scheme
 
 end module cards_heat

@@ -6,7 +6,7 @@ module scene_reader
   use cards_dies, only: read_dies
   use cards_fields, only: read_coupling, read_formulations, read_imposed_values, read_start_values
   use cards_head, only: read_kinematics, read_title
-  use cards_heat, only: read_exchanges
+  use cards_heat, only: read_exchanges, read_time_scheme
   use cards_laws, only: read_laws
   use cards_loads, only: read_loads, read_multipliers
   use cards_pilots, only: read_pilots
@@ -100,6 +100,7 @@ contains
     call read_pilots(deck, draft, diagnostics)
     call read_strategy(deck, draft, diagnostics)
     call read_coupling(deck, draft, diagnostics)
+    call read_time_scheme(deck, draft, diagnostics)
     call read_remesh(deck, draft, diagnostics)
     call refuse_half_contours(deck, draft, parts, diagnostics)
     call read_probes(deck, draft, diagnostics)
@@ -121,8 +122,8 @@ contains
 
     call list_elems(elems)
     call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE START ' &
-                  //'FLUX CONVE RADIA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG LIC STRAT NORMS SOLVR STOP SAVE CKPT PROBE ESTIM REMSH ' &
-                  //'ZPNT ZONE', keywords)
+                  //'FLUX CONVE RADIA THETA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG LIC STRAT NORMS SOLVR STOP SAVE CKPT PROBE ' &
+                  //'ESTIM REMSH ZPNT ZONE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle

@@ -108,6 +108,8 @@ module elem_api
     logical :: unpaired = .false.
     !> Largest change of penetration at a point already in contact, over the side.
     real(wp) :: jump = 0.0_wp
+    !> Square of the norm of what sources within the elements act with, and answers of the elements balance [power^2].
+    real(wp) :: source = 0.0_wp
   end type report_t
 
   !> Sums over a group at an accepted instant (per radian when axisymmetric), and extremes.

@@ -137,7 +137,7 @@ contains
         call add_content(instant, law, material, rule%npoint, own, group%option == bilinear, place, drivers(:, :, :, e), &
                          du(:own%n, e), start(:own%n, e), force(:, e), stiffness(:, :, e))
         call add_released(instant, law, material, rule%npoint, own, place, drivers(:, :, :, e), du(:own%n, e), &
-                          start(:own%n, e), u, committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e))
+                          start(:own%n, e), u, committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e), report%source)
         do k = 1, instant%flow%n
           call add_flow(instant, k, law, material, kinematics%finite, rule%npoint, own, place, drivers(:, :, :, e), du(:own%n, e), &
                         start(:own%n, e), u, force(:, e), stiffness(:, :, e))
@@ -266,7 +266,7 @@ contains
 
   !> Heat that a change of volume takes up, less that released at the points, per time.
   pure subroutine add_released(instant, law, material, npoint, own, place, drivers, change, start, u, committed, trial, force, &
-                               stiffness)
+                               stiffness, source)
     type(instant_t), intent(in) :: instant
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
@@ -279,14 +279,16 @@ contains
     real(wp), intent(in) :: committed(:, :)               !! (nstate, npoint)
     real(wp), intent(inout) :: trial(:, :)
     real(wp), intent(inout) :: force(:), stiffness(:, :)
-    real(wp) :: given(max(1, size(drivers, 1)), 2), released, slope, per_strain, share
+    real(wp), intent(inout) :: source                     !! square of the norm of the sources [power^2]
+    real(wp) :: given(max(1, size(drivers, 1)), 2), released, slope, per_strain, share, heat(own%n)
     integer :: p, j, n
 
     n = own%n
+    heat = 0
     per_strain = law%swell(material)
     do p = 1, npoint
       share = place%dv0(p)/instant%dt
-      force(:n) = force(:n) + own%phi(:n, p)*(per_strain*share*place%strain(p))
+      heat = heat + own%phi(:n, p)*(per_strain*share*place%strain(p))
       if (instant%tangent .and. u > 0) then
         do j = 1, 16
           stiffness(:n, u + j - 1) = stiffness(:n, u + j - 1) + own%phi(:n, p)*(per_strain*share*place%swelling(j, p))
@@ -297,12 +299,14 @@ contains
       if (size(drivers, 1) > 0) given = drivers(:, :, p)
       given(driver_temperature, :) = [dot_product(own%phi(:n, p), start), dot_product(own%phi(:n, p), start + change)]
       call law%release(material, given, committed(:, p), released, slope, trial(:, p))
-      force(:n) = force(:n) - own%phi(:n, p)*(released*share)
+      heat = heat - own%phi(:n, p)*(released*share)
       if (.not. instant%tangent .or. .not. abs(slope) > 0) cycle
       do j = 1, n
         stiffness(:n, j) = stiffness(:n, j) - own%phi(:n, p)*(slope*share*own%phi(j, p))
       end do
     end do
+    force(:n) = force(:n) + heat
+    source = source + sum(heat**2)
   end subroutine add_released
 
   !> Heat conducted at one of the instants of the flow rule.

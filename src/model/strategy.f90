@@ -30,6 +30,9 @@ module strategy
     integer :: linear_solver = 1
     !> Of no account where a scene has fields of one quantity.
     integer :: coupling = coupling_once
+    !> Balance of heat: at the share theta of the step, or in the mean of its ends with theta for the later one.
+    real(wp) :: theta = 1.0_wp
+    logical :: theta_mean = .false.
     !> Fields are saved every so many steps, and at these times.
     integer :: save_every = 0
     real(wp), allocatable :: save_times(:)

@@ -64,6 +64,7 @@ contains
 
       own = free_norm(equations, q, residual, 1/equations%size)
       reference = max(norm_of(equations, q, external), norm_of(equations, q, residual), norm_of(equations, q, equations%magnitude))
+      if (.not. is_motion(equations, q)) reference = max(reference, equations%source)
       round_off = floor_of(equations, fields, q)
       if (is_motion(equations, q)) round_off = round_off*max(1.0_wp, norm_of(equations, q, du)/equations%size)
       if (own <= round_off) then

@@ -78,6 +78,7 @@ contains
           report%strain = max(report%strain, reports(b)%strain)
           report%jump = max(report%jump, reports(b)%jump)
           report%event = min(report%event, reports(b)%event)
+          report%source = report%source + reports(b)%source
           report%unpaired = report%unpaired .or. reports(b)%unpaired
           if (report%status /= block_done .or. reports(b)%status == block_done) cycle
           report%status = reports(b)%status

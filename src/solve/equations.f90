@@ -3,7 +3,7 @@ module equations
   use contact_point, only: at_piece
   use dies, only: is_deformable, place_on_nodes
   use dofs, only: dofs_t, number_dofs, number_pairs
-  use elem_api, only: block_done, elem_t, instant_t, mode_advance, report_t
+  use elem_api, only: block_done, elem_t, flow_rule_t, instant_t, mode_advance, report_t
   use elem_registry, only: list_elems
   use element_loop, only: element_buffers_t, gather_forces, gather_matrix, run_elements
   use errors, only: error_t
@@ -22,6 +22,7 @@ module equations
   use sections, only: section_forced
   use solution, only: present_coordinates, solution_t
   use solves, only: list_solves, number_equations, quantities_of, set_up_pattern, solve_t
+  use strategy, only: strategy_t
   use threads, only: fit_to_load, team_t
   use timers, only: ledger_t
   use vectors, only: length_of
@@ -44,6 +45,8 @@ module equations
     type(team_t) :: team
     !> Internal force (element forces summed) at the last evaluation, and the sum of their sizes (ndof).
     real(wp), allocatable :: force(:), magnitude(:)
+    !> Norm of the sources within elements at the last evaluation (elem_api) [power].
+    real(wp) :: source = 0.0_wp
     !> Weights of the quantities in norms over several of them (convergence).
     real(wp), allocatable :: weight(:)
     !> Nodes of the solid elements, and the pairs that unknowns and pattern are of.
@@ -255,6 +258,7 @@ contains
       instant%multipliers_before(k) = multiplier_at(scene%multipliers(k), solution%time)
       instant%multipliers(k) = multiplier_at(scene%multipliers(k), instant%time)
     end do
+    instant%flow = flow_rule(scene%strategy)
     allocate (instant%flow%multipliers(size(scene%multipliers), instant%flow%n))
     do c = 1, instant%flow%n
       do k = 1, size(scene%multipliers)
@@ -276,6 +280,20 @@ contains
       if (is_deformable(instant%dies(k))) call place_on_nodes(coordinates, instant%dies(k))
     end do
   end subroutine make_instant
+
+  !> Instants at which heat flows in a step: the end, a share theta of it, or start and end with a weight each.
+  pure function flow_rule(strategy) result(rule)
+    type(strategy_t), intent(in) :: strategy
+    type(flow_rule_t) :: rule
+
+    if (strategy%theta_mean .and. strategy%theta < 1) then
+      rule%n = 2
+      rule%weight = [1 - strategy%theta, strategy%theta]
+      rule%share = [0.0_wp, 1.0_wp]
+    else
+      rule%share(1) = strategy%theta
+    end if
+  end function flow_rule
 
   !> Values of all unknowns (ndof).
   pure subroutine list_values(dofs, fields, values)
@@ -321,6 +339,7 @@ contains
       if (.not. report%unpaired) exit
       call renew_pairs(scene, solution)
     end do
+    equations%source = sqrt(report%source)
     call equations%timers%add('assembly', timer)
     call equations%timers%start(timer)
     associate (solve => equations%solves(equations%now))

@@ -1,0 +1,215 @@
+#!/usr/bin/env python3
+"""Heat that passes sides, and numbers by temperature, against closed forms.
+
+usage: run_exchange.py [-v] [-k]
+
+- `t2` (NAFEMS, The Standard NAFEMS Benchmarks, T2): a wall of 1000 K on one side that radiates to 300 K on the other, 927.0 K there:
+  the root of LAMBDA (1000 - T)/L = EPS SIGMA (T^4 - 300^4).
+- `t3` (NAFEMS T3): a side that follows 100 sin(pi t/40): 36.603 after 32 s, by the series of H.S. Carslaw, J.C. Jaeger.
+- `annulus` (NAFEMS, heat flow into a part of the bore): 332.97 K.
+- `fins`: convection with coefficients by temperature, at both ends of a wall, to surroundings that change in time; steady at the end:
+  flows agree, q = h(T1) (Ts - T1) = LAMBDA (T1 - T2)/L = h(T2) (T2 - Tr), by bisection.
+- `cylinder`: cooled by convection, Biot numbers 1 and 20: the series of Bessel's functions, and the order in time.
+- `wall_by_temperature`: LAMBDA linear in T: Kirchhoff's transform, T from a (T - T1) + b (T^2 - T1^2)/2 linear in place.
+- `shell`: heat flow through a sphere and a tube, by order of convergence, and its balance.
+- `stefan`: freezing of a half space (F. Neumann): LAMBDA jumps and RHOC holds the latent heat: within 1 %.
+- `squeezed`: a block of perfect plasticity pressed to a plastic strain of 1 without loss of heat: QUINNEY sigma p/(rho c), in all ways of
+  coupling.
+"""
+import math
+import os
+import sys
+
+sys.dont_write_bytecode = True
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [HERE, os.path.join(os.path.dirname(HERE), "patch"), os.path.join(os.path.dirname(HERE), "runs")]
+from patch_support import Checks, Run, np  # noqa: E402
+from run_heat import NORMS, mean_error, orders  # noqa: E402
+
+HEAD = "TITLE {title}\nSTATE {state}\nKINEM SMALL\n"
+STEADY = "STRAT 1.E14 1. 1.E14 9 3\nSTOP 1.E14\n"
+TIGHT = "NORMS FORCE 1.E-11 DISPL 1.E-11\n"
+
+
+def root(function, low, high):
+    """Root of a function by bisection."""
+    rising = function(high) > 0
+    for _ in range(200):
+        middle = 0.5*(low + high)
+        if (function(middle) > 0) == rising:
+            high = middle
+        else:
+            low = middle
+    return 0.5*(low + high)
+
+
+def wall(rule="4", divisions=5):
+    """A block of 0.1 by 0.01."""
+    return f"BLOCK wall PL8TM {rule.split()[0]} steel {rule.partition(' ')[2]}\n   0. 0. 0.1 0. 0.1 0.01 0. 0.01\n   {divisions} 1. 1 1.\n"
+
+
+def radiation(checks):
+    """T2, in kelvin and in degrees Celsius."""
+    exact = root(lambda t: 0.98*5.67e-8*(t**4 - 300.0**4) - 55.6*(1000 - t)/0.1, 300.0, 1000.0)
+    checks.small(abs(exact - 927.01), 0.01, "t2: the equation gives the published value")
+    for rule in ("4", "9", "4 BILINEAR"):
+        for zero in (0.0, 273.15):
+            run = Run(checks, f"t2-{rule}-{zero}".replace(" ", ""), HEAD.format(title="t2", state="PLSTN") + wall(rule)
+                      + "LAW steel HEAT\n   55.6 3.6E6\n"
+                      f"START T {1000 - zero}\nIMPOS wall 4 T on {1000 - zero}\n"
+                      f"RADIA wall 2 EPS 0.98 SIGMA 5.67E-8 ZERO {zero} TS {300 - zero}\nLIC on\n   0. 1.\n" + STEADY + TIGHT
+                      + "PROBE tb NODE T 0.1 0.\nEND\n")
+            if run.ok:
+                checks.small(abs(run.history["tb"][-1] + zero - exact), 1e-8*exact, f"{run.name}: {exact:.4f} K")
+
+
+def wave(checks):
+    """T3."""
+    rows = "".join(f"   {0.1*k:.4f} {math.sin(math.pi*0.1*k/40):.15f}\n" for k in range(321))
+    run = Run(checks, "t3", HEAD.format(title="t3", state="PLSTN") + wall("4", 10) + "LAW steel HEAT\n   35. 7200*440.5\n"
+              "IMPOS wall 4 T cold\nIMPOS wall 2 T wave 100.\nLIC cold\n   0. 0.\nLIC wave\n" + rows
+              + "STRAT 0.05 0.01 0.05 9 3\nSTOP 32.\n" + NORMS + "PROBE p NODE T 0.08 0.\nPROBE q NODE T 0.06 0.\nEND\n")
+    if run.ok:
+        checks.small(abs(run.history["p"][-1]/36.60312 - 1), 2e-3, "t3: 36.603 at 0.08")
+        checks.small(abs(run.history["q"][-1]/8.66777 - 1), 1e-2, "t3: 8.668 at 0.06")
+
+
+def annulus(checks):
+    """Heat flow into a part of a bore."""
+    blocks = ""
+    for name, low, high, n in (("low", 0.0, 0.04, 8), ("mid", 0.04, 0.10, 12), ("top", 0.10, 0.14, 8)):
+        blocks += f"BLOCK {name} PL8TM 4 steel\n   0.02 {low} 0.10 {low} 0.10 {high} 0.02 {high}\n   16 1. {n} 1.\n"
+    run = Run(checks, "annulus", HEAD.format(title="annulus", state="AXISYM") + blocks + "JOIN low 3 mid 1\nJOIN mid 3 top 1\n"
+              "LAW steel HEAT\n   52. 3.6E6\nSTART T 273.15\nFLUX mid 4 Q 5.E5\nIMPOS low 1 2 T on 273.15\nIMPOS mid 2 T on 273.15\n"
+              "IMPOS top 2 3 T on 273.15\nLIC on\n   0. 1.\n" + STEADY + TIGHT + "PROBE p NODE T 0.04 0.04\nEND\n")
+    if run.ok:
+        checks.small(abs(run.history["p"][-1] - 332.97), 0.005, "annulus: 332.97 K")
+
+
+def convection(checks):
+    """Both ends of a wall in a medium."""
+    length, conductivity = 0.1, 20.0
+
+    def h(t):
+        return float(np.interp(t, [0, 200, 400, 900], [50, 120, 300, 310]))
+
+    def residual(t1):
+        q = h(t1)*(900 - t1)
+        t2 = t1 - q*length/conductivity
+        return q - 2*h(t2)*(t2 - 40)
+
+    t1 = root(residual, 100.0, 900.0)
+    t2 = t1 - h(t1)*(900 - t1)*length/conductivity
+    table = "   0. 50. 200. 120.\n   400. 300. 900. 310.\n"
+    for rule in ("4", "9", "4 BILINEAR"):
+        run = Run(checks, f"fins-{rule}".replace(" ", ""), HEAD.format(title="fins", state="PLSTS 0.5") + wall(rule)
+                  + f"LAW steel HEAT\n   {conductivity} 3.6E6\nSTART T 300.\n"
+                  f"CONVE wall 4 H 1. TS 900. up\n{table}CONVE wall 2 TS 20. H 2. up\n{table}LIC up\n   0. 0. 1. 1.\n".replace(
+                      "TS 20. H 2. up", "TS 40. H 2.") + STEADY + TIGHT + "PROBE a NODE T 0. 0.\nPROBE b NODE T 0.1 0.\nEND\n")
+        if run.ok:
+            found = np.array([run.history["a"][-1], run.history["b"][-1]])
+            checks.small(np.max(np.abs(found/np.array([t1, t2]) - 1)), 1e-9, f"{run.name}: {t1:.3f} and {t2:.3f}")
+
+
+def bessel(order, x):
+    """Bessel's function of the first kind, order 0 or 1, by its integral."""
+    angle = (np.arange(400) + 0.5)*np.pi/400
+    return np.mean(np.cos(order*angle - x*np.sin(angle)))
+
+
+def cooled(biot, fourier, place, terms=40):
+    """(T - Ts)/(T0 - Ts) in a long cylinder (Carslaw and Jaeger, section 7.7), place over the radius."""
+    total, low = 0.0, 1e-9
+    step = 0.01
+    found = 0
+    while found < terms and low < 200:
+        if (low*bessel(1, low) - biot*bessel(0, low))*((low + step)*bessel(1, low + step) - biot*bessel(0, low + step)) <= 0:
+            z = root(lambda v: v*bessel(1, v) - biot*bessel(0, v), low, low + step)
+            total += 2*biot*bessel(0, z*place)*math.exp(-z*z*fourier)/((z*z + biot*biot)*bessel(0, z))
+            found += 1
+            if z*z*fourier > 40:
+                break
+        low += step
+    return total
+
+
+def cylinder(checks):
+    """Cooling of a long cylinder."""
+    known = {(1, 0.1): (0.976817, 0.920502, 0.684565), (1, 0.5): (0.548586, 0.495884, 0.352786), (20, 0.1): (0.878959, 0.665699, 0.064472)}
+    for (biot, fourier), values in known.items():
+        exact = [cooled(biot, fourier, r) for r in (0.0, 0.5, 1.0)]
+        checks.small(max(abs(a - b) for a, b in zip(exact, values)), 1e-5, f"cylinder, Biot {biot}, Fourier {fourier}: series")
+        errors = []
+        for steps in (100, 200):
+            run = Run(checks, f"cylinder-{biot}-{fourier}-{steps}", HEAD.format(title="cylinder", state="AXISYM")
+                      + "BLOCK bar PL8TM 4 steel\n   0. 0. 1. 0. 1. 0.1 0. 0.1\n   20 0.3 1 1.\nLAW steel HEAT\n   1. 1.\nSTART T 1.\n"
+                      f"CONVE bar 2 H {biot}. TS 0.\nSTRAT {fourier/steps} 1.E-9 {fourier/steps} 9 3\nSTOP {fourier}\n" + NORMS
+                      + "PROBE a NODE T 0. 0.\nPROBE c NODE T 1. 0.\nEND\n")
+            if run.ok:
+                errors.append(max(abs(run.history["a"][-1] - exact[0]), abs(run.history["c"][-1] - exact[2])))
+        if len(errors) == 2:
+            checks.small(errors[1], 5e-3, f"cylinder, Biot {biot}, Fourier {fourier}")
+            checks.that(1.7 < errors[0]/errors[1] < 2.3, "cylinder: order 1 in time", errors)
+
+
+def by_temperature(checks):
+    """Kirchhoff's transform."""
+    a, b, hot, cold = 10.0, 0.05, 800.0, 100.0
+
+    def exact(x, _):
+        total = a*(hot - cold) + 0.5*b*(hot**2 - cold**2)
+        c = a*cold + 0.5*b*cold**2 + total*(1 - x/0.1)
+        return (-a + np.sqrt(a*a + 2*b*c))/b
+
+    errors = []
+    for divisions in (8, 16, 32):
+        run = Run(checks, f"kirchhoff-{divisions}", HEAD.format(title="kirchhoff", state="PLSTN") + wall("9", divisions)
+                  + f"LAW steel HEAT\n   TEMP 0.\n   {a} 1.\n   TEMP 1000.\n   {a + 1000*b} 1.\n"
+                  f"START T {cold}\nIMPOS wall 4 T on {hot}\nIMPOS wall 2 T on {cold}\nLIC on\n   0. 1.\n" + STEADY + TIGHT + "END\n")
+        if run.ok:
+            errors.append(mean_error(run, exact))
+    if len(errors) == 3:
+        orders(checks, errors, 3, "LAMBDA by temperature")
+
+
+def stefan(checks):
+    """Two-phase freezing."""
+    solid, liquid = 3.0e6, 2.5759e6
+    width = 0.1
+    run = Run(checks, "stefan", HEAD.format(title="stefan", state="PLSTN") + "BLOCK wall PL8TM 4 alu BILINEAR\n"
+              "   0. 0. 0.1 0. 0.1 0.005 0. 0.005\n   200 1. 1 1.\nLAW alu HEATH\n"
+              f"   TEMP 0.\n   210. 0.\n   TEMP {660 - width}\n   210. {(660 - width)*solid}\n"
+              f"   TEMP {660 + width}\n   95. {(660 - width)*solid + 1.08e9}\n"
+              f"   TEMP 800.\n   95. {(660 - width)*solid + 1.08e9 + (140 - width)*liquid}\n"
+              "START T 740.\nIMPOS wall 4 T on 580.\nLIC on\n   0. 1.\nSTRAT 0.005 1.E-6 0.01 9 3\nSTOP 6.\nPROBE p NODE T 0.01 0.\nEND\n")
+    if run.ok:
+        for time, exact in ((0.5, 726.60), (1.0, 707.14), (3.0, 672.55), (6.0, 651.83)):
+            k = int(np.argmin(np.abs(np.array(run.history["time"]) - time)))
+            checks.small(abs(run.history["p"][k]/exact - 1), 1e-2, f"stefan: {exact} after {time} s")
+
+
+def plastic(checks):
+    """Heat of plastic work: perfectly plastic, pressed to ln(length) = -1 and a little more for the elastic part."""
+    young, flow, capacity, share = 200000.0, 700.0, 3.60318, 0.9   # N, mm, K: rho c of 7833 kg/m3 and 460 J/kg/K
+    stretch = math.exp(-1 - flow/young)
+    for way in ("ONCE", "CONVERGE", "MONOLITHIC"):
+        run = Run(checks, f"plastic-{way}", "TITLE plastic\nSTATE PLSTS 1.\nKINEM LOG\nBLOCK bar PL8LS 4 steel\n"
+                  f"   0. 0. 1. 0. 1. 1. 0. 1.\n   1 1. 1 1.\nLAW steel EPLA\n   {young} 0.3\n   LINEAR {flow} 0.\n"
+                  f"ADDEL bar PL8TM heat\nLAW heat HEAT\n   0.001 {capacity}\n   QUINNEY {share}\nFIXED bar 4 X\nFIXED bar 1 Y\n"
+                  f"MOVE bar 2 X pull {stretch - 1}\nLIC pull\n   0. 0. 1. 1.\nSTOP 1.\nSTRAT 0.01 1.E-5 0.01 9 3\n"
+                  f"NORMS FORCE 1.E-9 DISPL 1.E-9\nSOLVE {way}\nPROBE t NODE T 1. 1.\nPROBE p POINT plastic_strain 0.5 0.5\nEND\n")
+        if run.ok:
+            p, t = run.history["p"][-2 if way == "ONCE" else -1], run.history["t"][-1]
+            checks.small(abs(t/(share*flow*p/capacity) - 1), 1e-4, f"plastic work to heat, {way}: {share*flow/capacity:.2f} at strain {p:.3f}")
+
+
+def main():
+    """All cases."""
+    checks = Checks()
+    for case in (radiation, wave, annulus, convection, cylinder, by_temperature, stefan, plastic):
+        case(checks)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
