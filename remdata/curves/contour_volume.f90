@@ -9,6 +9,7 @@ module contour_volume
   use boundary_sides, only: loop_t
   use kinds, only: eps, wp
   use offset_parabolas, only: point_at, tangent_at
+  use plane_vectors, only: cross, right_of
   use quadrature, only: gauss_line
   use vectors, only: length_of
   implicit none
@@ -107,7 +108,7 @@ contains
           sum = sum + 0.25_wp*(b - a)*w(i)*p(1)**2*t(2)
         else
           p = p - origin
-          sum = sum + 0.25_wp*(b - a)*w(i)*(p(1)*t(2) - p(2)*t(1))
+          sum = sum + 0.25_wp*(b - a)*w(i)*cross(p, t)
         end if
       end do
     end function by_rule
@@ -194,7 +195,7 @@ contains
     real(wp) :: t(2)
 
     t = tangent_at(side, xi)
-    n = [t(2), -t(1)]/length_of(t)
+    n = right_of(t)
   end function outward
 
 end module contour_volume

@@ -19,6 +19,7 @@
 !> ```
 module flat_quads
   use kinds, only: wp
+  use plane_vectors, only: cross
   use vectors, only: length_of
   implicit none
   private
@@ -170,7 +171,7 @@ contains
       associate (before => nodes(modulo(k - 2, 4) + 1), node => nodes(k), after => nodes(mod(k, 4) + 1))
         to = x(:, after) - x(:, node)
         from = x(:, before) - x(:, node)
-        least = min(least, (to(1)*from(2) - to(2)*from(1))/(length_of(to)*length_of(from)))
+        least = min(least, cross(to, from)/(length_of(to)*length_of(from)))
         if (is_flat(next, smooth, before, node, after)) least = 0
       end associate
     end do

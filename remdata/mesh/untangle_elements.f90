@@ -7,6 +7,7 @@
 module untangle_elements
   use graded_sizes, only: list_elements
   use kinds, only: wp
+  use plane_vectors, only: cross
   use shape_functions, only: quad8, quad8_corner
   implicit none
   private
@@ -115,7 +116,7 @@ contains
         chord = end - start
         bulge = middle - 0.5_wp*(start + end)
         ! along the chord and to its left, as shares of its length
-        share = [dot_product(bulge, chord), chord(1)*bulge(2) - chord(2)*bulge(1)]/dot_product(chord, chord)
+        share = [dot_product(bulge, chord), cross(chord, bulge)]/dot_product(chord, chord)
         chord = end - now
         middle = 0.5_wp*(now + end) + share(1)*chord + share(2)*[-chord(2), chord(1)]
       end associate
@@ -136,7 +137,7 @@ contains
     do k = 1, 8
       a = matmul(x, dphi(1, :, k))
       b = matmul(x, dphi(2, :, k))
-      det = a(1)*b(2) - a(2)*b(1)
+      det = cross(a, b)
       if (det > 0) then
         least = min(least, det/sqrt(dot_product(a, a)*dot_product(b, b)))
       else

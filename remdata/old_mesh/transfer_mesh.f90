@@ -2,6 +2,7 @@
 module transfer_mesh
   use box_tree, only: box_tree_t, build_tree
   use kinds, only: wp
+  use parabolas, only: box_of_parabola
   use quadrature, only: square_rule
   use shape_functions, only: quad8, quad8_side
   implicit none
@@ -97,18 +98,17 @@ contains
     end do
   end subroutine build_element_trees
 
-  !> Box that contains an element with curved sides: a parabola lies in the triangle of its ends and the intersection of the
-  !> tangents at its ends, which is 2 middle - (first + last)/2.
+  !> Box that contains an element with curved sides.
   pure function box_of(x) result(box)
     real(wp), intent(in) :: x(2, 8)
-    real(wp) :: box(4), tip(2)
+    real(wp) :: box(4)
     integer :: s
 
-    box = [minval(x(:, 1:4), 2), maxval(x(:, 1:4), 2)]
-    do s = 1, 4
-      tip = 2*x(:, quad8_side(2, s)) - 0.5_wp*(x(:, quad8_side(1, s)) + x(:, quad8_side(3, s)))
-      box(1:2) = min(box(1:2), tip)
-      box(3:4) = max(box(3:4), tip)
+    box = box_of_parabola(x(:, quad8_side(:, 1)))
+    do s = 2, 4
+      associate (side => box_of_parabola(x(:, quad8_side(:, s))))
+        box = [min(box(1:2), side(1:2)), max(box(3:4), side(3:4))]
+      end associate
     end do
   end function box_of
 

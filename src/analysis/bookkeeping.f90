@@ -9,6 +9,7 @@ module bookkeeping
   use errors, only: error_t, exit_bug, fail
   use fields, only: displacement_field, field_t, on_nodes, pilot_field, section_field
   use kinds, only: wp
+  use plane_vectors, only: cross
   use scene, only: scene_t
   use solution, only: present_coordinates, solution_t
   use spurious_mode, only: find_spurious_mode, has_spurious_mode
@@ -118,7 +119,7 @@ contains
             magnitude = magnitude + length_of(force)
             if (i <= size(scene%groups(g)%connectivity, 1)) cycle
             x = scene%mesh%coordinates(:, nodes(i, e)) + solution%fields(displacement_field)%value(:, nodes(i, e))
-            applied = applied + [force, x(1)*force(2) - x(2)*force(1)]
+            applied = applied + [force, cross(x, force)]
           end do
         end do
       end associate

@@ -9,6 +9,7 @@ module cards_blocks
   use kinds, only: pi, wp
   use mesh, only: side_set_t
   use mesh_parts, only: body_t, merge_nodes, mesh_parts_t
+  use plane_vectors, only: angle_between
   use scene_draft, only: close_card, draft_t, head_location, words_of
   use text, only: string_t, to_text
   use vectors, only: length_of
@@ -137,7 +138,7 @@ contains
       if (abs(length_of(a) - length_of(b)) > radius_tolerance*max(length_of(a), length_of(b))) then
         call cursor%fail('both ends of an arc must be equally far from its centre: they are at '//to_text(length_of(a), 10) &
                          //' and '//to_text(length_of(b), 10))
-      else if (pi - abs(atan2(a(1)*b(2) - a(2)*b(1), dot_product(a, b))) < half_turn_tolerance) then
+      else if (pi - abs(angle_between(a, b)) < half_turn_tolerance) then
         call cursor%fail('an arc of a side must be shorter than half a circle')
       end if
     else

@@ -6,8 +6,8 @@ module contact_scan
   use curve_search, only: box_distance, closest_facing_point
   use dies, only: die_t
   use kinds, only: wp
+  use plane_vectors, only: left_of
   use shape_functions, only: line3
-  use vectors, only: length_of
   implicit none
   private
   public :: is_near, deepest_sample, lies_inside, locate_end
@@ -110,7 +110,7 @@ contains
 
     call line3(place, phi, dphi)
     tangent = matmul(side, dphi)
-    call closest_facing_point(die, matmul(side, phi), [-tangent(2), tangent(1)]/length_of(tangent), reach, closest)
+    call closest_facing_point(die, matmul(side, phi), left_of(tangent), reach, closest)
   end subroutine closest_to_side_point
 
 end module contact_scan

@@ -87,8 +87,8 @@ contains
   !> The first driver that the law of a group asks for and nothing in the scene gives, '' where there is none.
   pure function missing_driver(scene, laws, g) result(name)
     type(scene_t), intent(in) :: scene
-    type(law_t), intent(in) :: laws(:)
-    integer, intent(in) :: g   !! place of the group
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
+    integer, intent(in) :: g             !! number of the group
     character(len=:), allocatable :: name
     type(driver_source_t) :: source
     integer :: k
@@ -195,9 +195,9 @@ contains
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)   !! (nlaw)
     type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: now(:, :)              !! trial values of the nodal fields of one component (nnode, nfield)
-    real(wp), intent(in) :: time                   !! end of the step [time]
-    integer, intent(in) :: g                       !! place of the group
+    real(wp), intent(in) :: now(:, :)   !! (nnode, nfield) trial values of the nodal fields of one component [unit of each field]
+    real(wp), intent(in) :: time   !! end of the step [time]
+    integer, intent(in) :: g   !! number of the group
     type(drivers_t), intent(inout) :: drivers(:)   !! (ngroup)
 
     if (drivers(g)%vary) call fill(scene, laws, solution, now, time, g, 2, drivers)

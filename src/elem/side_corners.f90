@@ -9,8 +9,8 @@ module side_corners
   use closest_point, only: closest_point_t, stationary_points, whole_piece
   use dies, only: die_t
   use kinds, only: wp
+  use plane_vectors, only: left_of
   use shape_functions, only: line3
-  use vectors, only: length_of
   implicit none
   private
   public :: corner_t, deepest_corner, closest_at_corner
@@ -70,7 +70,7 @@ contains
 
     call line3(corner%place, phi, dphi)
     tangent = matmul(side, dphi)
-    inner = [-tangent(2), tangent(1)]/length_of(tangent)
+    inner = left_of(tangent)
     corner%found = dot_product(inner, t1) >= -beside .and. dot_product(inner, t2) <= beside
     corner%own = dot_product(inner, t1) >= 0 .and. dot_product(inner, t2) <= 0
     corner%normal = -inner

@@ -9,6 +9,7 @@
 module recovered_errors
   use kinds, only: wp
   use patch_recovery, only: fit_patches, ncomp => nvalue, patches_t, polynomials_t, recover
+  use plane_vectors, only: cross
   use quad8_geometry, only: quad8_rule, quad8_rule_t
   use quadrature, only: square_rule
   use sections, only: thickness_at
@@ -118,7 +119,7 @@ contains
         do q = 1, npoint
           a = [dot_product(x(1, :), f%points%dphi(1, :, q)), dot_product(x(2, :), f%points%dphi(1, :, q))]
           b = [dot_product(x(1, :), f%points%dphi(2, :, q)), dot_product(x(2, :), f%points%dphi(2, :, q))]
-          dv = (a(1)*b(2) - a(2)*b(1))*f%points%weight(q)*thickness_at(section, here(:, q))
+          dv = cross(a, b)*f%points%weight(q)*thickness_at(section, here(:, q))
           missing(:, e) = missing(:, e) + dv*squares(better(:, q) - own(:, q), weights(:, e))
           whole(:, e) = whole(:, e) + dv*squares(better(:, q), weights(:, e))
           volume(e) = volume(e) + dv

@@ -1,11 +1,12 @@
 !> Arcs of circle as parabolas within a tolerance.
 module circle_arcs
   use kinds, only: pi, wp
+  use plane_vectors, only: angle_between, cross
   use text, only: to_text
   use vectors, only: length_of
   implicit none
   private
-  public :: arc_pieces, angle_between
+  public :: arc_pieces
 
   !> More parabolas for one arc are an error of input.
   integer, parameter :: most_parabolas = 10000
@@ -29,7 +30,7 @@ contains
     message = ''
     a = middle - first
     b = last - first
-    area = a(1)*b(2) - a(2)*b(1)
+    area = cross(a, b)
     if (length_of(a) > 0) then
       if (abs(area) > on_a_line*length_of(a)*length_of(b)) then
         centre = first + [b(2)*dot_product(a, a) - a(2)*dot_product(b, b), &
@@ -82,13 +83,5 @@ contains
     q = 0.25_wp*(2*sin(0.5_wp*a)**2)**2
     d = q/(1 + sqrt(1 - q))
   end function deviation
-
-  !> Turn from a to b, between -pi and pi.
-  pure function angle_between(a, b) result(angle)
-    real(wp), intent(in) :: a(2), b(2)   !! directions [of one unit]
-    real(wp) :: angle
-
-    angle = atan2(a(1)*b(2) - a(2)*b(1), dot_product(a, b))
-  end function angle_between
 
 end module circle_arcs

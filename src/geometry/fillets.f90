@@ -6,10 +6,10 @@
 !> Y1(xi1) + s r l1 = Y2(xi2) + s r l2, where d(Y + s r l)/dxi = (1 - s r k) Y': two equations for two
 !> parent coordinates, by Newton's method from the corner. Parts of parabolas are parabolas, so the arms stay exact.
 module fillets
-  use circle_arcs, only: angle_between, arc_pieces
+  use circle_arcs, only: arc_pieces
   use kinds, only: wp
   use parabolas, only: curvature_on, part_of, point_on, tangent_on
-  use plane_vectors, only: left_of, turned
+  use plane_vectors, only: angle_between, left_of, turned
   use vectors, only: length_of
   implicit none
   private

@@ -4,7 +4,7 @@ module plane_vectors
   use vectors, only: length_of
   implicit none
   private
-  public :: cross, left_of, right_of, turned
+  public :: cross, angle_between, left_of, right_of, turned
 
 contains
 
@@ -16,6 +16,14 @@ contains
 
     c = a(1)*b(2) - a(2)*b(1)
   end function cross
+
+  !> Turn from a to b, between -pi and pi [radian].
+  pure function angle_between(a, b) result(angle)
+    real(wp), intent(in) :: a(2), b(2)   !! directions [of any unit]
+    real(wp) :: angle
+
+    angle = atan2(cross(a, b), dot_product(a, b))
+  end function angle_between
 
   !> Unit vector to the left of a direction.
   pure function left_of(v) result(n)

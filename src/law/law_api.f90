@@ -183,7 +183,7 @@ module law_api
     pure subroutine law_conduct_i(material, drivers, conductivity, slope)
       import :: material_t, wp
       type(material_t), intent(in) :: material
-      real(wp), intent(in) :: drivers(:, :)      !! (ndriver, n) as they are now, temperature first
+      real(wp), intent(in) :: drivers(:, :)      !! (ndriver, n) as they are now, temperature first [unit of each driver]
       real(wp), intent(out) :: conductivity(:)   !! (n) [power/length/temperature]
       real(wp), intent(out) :: slope(:)          !! (n) [power/length/temperature^2]
     end subroutine law_conduct_i
@@ -192,20 +192,20 @@ module law_api
     pure subroutine law_store_i(material, before, now, taken, capacity)
       import :: material_t, wp
       type(material_t), intent(in) :: material
-      real(wp), intent(in) :: before(:, :), now(:, :)   !! (ndriver, n) drivers, temperature first
-      real(wp), intent(out) :: taken(:)      !! (n) [energy/length^3] per volume of the start
-      real(wp), intent(out) :: capacity(:)   !! (n) [energy/length^3/temperature]
+      real(wp), intent(in) :: before(:, :), now(:, :)   !! (ndriver, n) drivers, temperature first [unit of each driver]
+      real(wp), intent(out) :: taken(:)                 !! (n) [energy/length^3] per volume of the start
+      real(wp), intent(out) :: capacity(:)              !! (n) [energy/length^3/temperature]
     end subroutine law_store_i
 
     !> Heat that a point releases in a step beside what flows, and its derivative by the temperature at the end.
     pure subroutine law_release_i(material, drivers, committed, released, slope, history)
       import :: material_t, wp
       type(material_t), intent(in) :: material
-      real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) at the start and at the end of the step, temperature first
-      real(wp), intent(in) :: committed(:)    !! history at the start of the step (nhistory)
+      real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) at both ends of the step, temperature first [unit of each driver]
+      real(wp), intent(in) :: committed(:)    !! (nhistory) at the start of the step [unit of each component]
       real(wp), intent(out) :: released       !! [energy/length^3] per volume of the start
       real(wp), intent(out) :: slope          !! [energy/length^3/temperature]
-      real(wp), intent(out) :: history(:)     !! (nhistory)
+      real(wp), intent(out) :: history(:)     !! (nhistory) [unit of each component]
     end subroutine law_release_i
 
     !> Heat taken up by a change of volume, per volume and unit of volume strain.

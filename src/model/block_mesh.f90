@@ -7,6 +7,7 @@
 !> Source: W.J. Gordon, C.A. Hall, Int. J. Num. Meth. Engng 7 (1973) 461-477.
 module block_mesh
   use kinds, only: wp
+  use plane_vectors, only: angle_between
   use shape_functions, only: quad8, quad8_corner, quad8_side
   use quadrature, only: square_rule
   use vectors, only: length_of
@@ -139,7 +140,7 @@ contains
       else if (block%form(k) == side_arc) then
         a = first - point
         b = last - point
-        turn = u*atan2(a(1)*b(2) - a(2)*b(1), dot_product(a, b))
+        turn = u*angle_between(a, b)
         radius = (1 - u)*length_of(a) + u*length_of(b)
         direction = a/length_of(a)
         x = point + radius*[cos(turn)*direction(1) - sin(turn)*direction(2), sin(turn)*direction(1) + cos(turn)*direction(2)]

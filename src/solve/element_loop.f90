@@ -39,13 +39,13 @@ contains
     type(kinematics_t), intent(in) :: kinematics
     type(law_t), intent(in) :: laws(:)   !! (nlaw)
     type(dofs_t), intent(in) :: dofs
-    logical, intent(in) :: active(:)          !! groups to compute (ngroup)
+    logical, intent(in) :: active(:)   !! (ngroup) groups to compute
     type(pattern_t), intent(in) :: pattern
     type(instant_t), intent(in) :: instant
-    real(wp), intent(in) :: du(:)             !! motion of every unknown (ndof)
-    real(wp), intent(in) :: now(:, :)         !! trial values of the fields that drive points (nnode, nfield)
+    real(wp), intent(in) :: du(:)       !! (ndof) motion of every unknown [unknown]
+    real(wp), intent(in) :: now(:, :)   !! (nnode, nfield) trial values of the fields that drive points [unit of each field]
     type(solution_t), intent(inout) :: solution
-    type(drivers_t), intent(inout) :: drivers(:)   !! of the points of the groups (ngroup)
+    type(drivers_t), intent(inout) :: drivers(:)   !! (ngroup) of the points of the groups
     type(element_buffers_t), intent(inout) :: buffers
     type(ledger_t), intent(inout) :: timers
     type(report_t), intent(out) :: report

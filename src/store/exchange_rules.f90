@@ -63,7 +63,7 @@ contains
   subroutine require_reals(file, place, values, low, high)
     type(hdf5_file_t), intent(inout) :: file
     character(len=*), intent(in) :: place
-    real(wp), intent(in) :: values(:)   !! (n)
+    real(wp), intent(in) :: values(:)   !! (n) [of any unit]
     real(wp), intent(in), optional :: low, high
     real(wp) :: lowest, highest
     integer :: k

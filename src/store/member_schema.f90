@@ -46,7 +46,7 @@ contains
   subroutine visit_reals(self, name, values, carried, extents, unit, low, high)
     class(member_schema_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    real(wp), allocatable, intent(inout) :: values(:)         !! (extents) [unit]
+    real(wp), allocatable, intent(inout) :: values(:)   !! (extents) [unit]
     character(len=*), intent(in) :: carried, extents
     character(len=*), intent(in), optional :: unit
     real(wp), intent(in), optional :: low, high
@@ -57,7 +57,7 @@ contains
   subroutine visit_reals_2(self, name, values, carried, extents, unit, low, high)
     class(member_schema_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    real(wp), allocatable, intent(inout) :: values(:, :)      !! (extents) [unit]
+    real(wp), allocatable, intent(inout) :: values(:, :)   !! (n1, n2) as `extents` names them [unit]
     character(len=*), intent(in) :: carried, extents
     character(len=*), intent(in), optional :: unit
     real(wp), intent(in), optional :: low, high
@@ -68,7 +68,7 @@ contains
   subroutine visit_reals_3(self, name, values, carried, extents, unit, low, high)
     class(member_schema_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    real(wp), allocatable, intent(inout) :: values(:, :, :)   !! (extents) [unit]
+    real(wp), allocatable, intent(inout) :: values(:, :, :)   !! (n1, n2, n3) as `extents` names them [unit]
     character(len=*), intent(in) :: carried, extents
     character(len=*), intent(in), optional :: unit
     real(wp), intent(in), optional :: low, high
@@ -91,7 +91,7 @@ contains
   subroutine visit_integers(self, name, values, carried, extents, low, high)
     class(member_schema_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    integer, allocatable, intent(inout) :: values(:)          !! (extents)
+    integer, allocatable, intent(inout) :: values(:)   !! (extents)
     character(len=*), intent(in) :: carried, extents
     integer, intent(in), optional :: low, high
 
@@ -101,7 +101,7 @@ contains
   subroutine visit_integers_2(self, name, values, carried, extents, low, high)
     class(member_schema_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    integer, allocatable, intent(inout) :: values(:, :)       !! (extents)
+    integer, allocatable, intent(inout) :: values(:, :)   !! (n1, n2) as `extents` names them
     character(len=*), intent(in) :: carried, extents
     integer, intent(in), optional :: low, high
 
