@@ -22,8 +22,8 @@ module cards_heat
 contains
 
   !> All cards `FLUX place Q q [lic]`, `CONVE place H h [lic] TS temperature [lic]` and
-  !> `RADIA place EPS emissivity SIGMA constant ZERO temperature TS temperature [lic]`; rows after them, pairs of a temperature of the
-  !> surface and a factor.
+  !> `RADIA place EPS emissivity SIGMA constant ZERO temperature TS temperature [lic]`; rows after them: pairs of a temperature of
+  !> the surface and a factor.
   subroutine read_exchanges(deck, draft, diagnostics)
     type(deck_t), intent(inout), target :: deck
     type(draft_t), intent(inout) :: draft

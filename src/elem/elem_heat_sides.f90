@@ -219,7 +219,7 @@ contains
   pure subroutine flow_in(kind, exchange, multipliers, t, q, slope)
     integer, intent(in) :: kind
     type(exchange_t), intent(in) :: exchange
-    real(wp), intent(in) :: multipliers(:)   !! (nmultiplier) at the instant
+    real(wp), intent(in) :: multipliers(:)   !! (nmultiplier) at the instant [-]
     real(wp), intent(in) :: t                !! [temperature]
     real(wp), intent(out) :: q, slope        !! [power/area], [power/area/temperature]
     real(wp) :: h, dh, surroundings

@@ -16,7 +16,7 @@ module elem_pl8ls
   use law_api, only: driver_count, driver_temperature, law_done, law_t, solid_law
   use mean_dilatation, only: dilatation_t, share_dilatation, share_pressure
   use plane_stress_points, only: update_plane_stress
-  use point_temperatures, only: find_temperatures, nodal_temperatures, temperature_field, temperature_place
+  use point_temperatures, only: find_temperatures, nodal_temperatures, projected_functions, temperature_field, temperature_place
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
   use scene, only: generalised_plane_strain, group_t, plane_stress, role_body, scene_t
   use sections, only: thickness_at
@@ -87,6 +87,7 @@ contains
     real(wp), dimension(8, group%rule%n, size(x, 3)) :: nx, ny, zx
     real(wp) :: dv(group%rule%n, size(x, 3)), f(5, group%rule%n, size(x, 3)), tangent(4, 5, group%rule%n, size(x, 3))
     real(wp) :: given(driver_count(law), 2, group%rule%n*size(x, 3)), section(3, 2)
+    real(wp) :: functions(8, group%rule%n)
     integer :: status(group%rule%n, size(x, 3))
     real(wp) :: strain
     logical :: valid
@@ -121,9 +122,11 @@ contains
       end if
     end do
 
+    functions = 0
+    if (temperature_place(layout) > 0) functions = projected_functions(rule)
     do e = 1, nb
       p = (e - 1)*group%rule%n
-      call find_temperatures(group, instant, layout, rule%phi, du(:, e), start(:, e), &
+      call find_temperatures(group, instant, layout, functions, du(:, e), start(:, e), &
                              given(driver_temperature, :, p + 1:p + group%rule%n))
       if (size(given, 1) > 1) given(2:, :, p + 1:p + group%rule%n) = drivers(2:, :, :, e)
     end do
@@ -196,7 +199,7 @@ contains
       end do
       do e = 1, nb
         do k = 1, layout%count(u)
-          low(:, :, e) = high(:, :, e)*spread(matmul(shape(:, k), rule%phi(:, :group%rule%n)), 1, 4)
+          low(:, :, e) = high(:, :, e)*spread(matmul(shape(:, k), functions), 1, 4)
           call forces_of(e, .false., low(:, :, e), dv(:, e), stiffness(:n, layout%first(1, u) + k - 1, e), unused)
         end do
       end do
