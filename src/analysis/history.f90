@@ -6,6 +6,7 @@ module history
   use elem_api, only: totals_t
   use errors, only: error_t
   use fields, only: displacement_field, pilot_field, section_field
+  use heat_books, only: has_heat, heat_imbalance
   use kinds, only: pi, wp
   use newton, only: outcome_t
   use probes, only: probe_maximum, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
@@ -51,7 +52,7 @@ contains
 
     allocate (columns(14 + 6*size(scene%dies) - 3*count(is_deformable(scene%dies)) &
                       + merge(6, 0, scene%plane_state == generalised_plane_strain) &
-                      + merge(2, 0, scene%remesh%estimate) + size(scene%probes)))
+                      + merge(2, 0, scene%remesh%estimate) + merge(4, 0, has_heat(scene)) + size(scene%probes)))
     n = 0
     call add('time [time]')
     call add('step [-]')
@@ -87,6 +88,12 @@ contains
     if (scene%remesh%estimate) then
       call add('error_stress [-]')
       call add('error_strain [-]')
+    end if
+    if (has_heat(scene)) then
+      call add('heat_stored [energy]')
+      call add('heat_in [energy]')
+      call add('heat_released [energy]')
+      call add('heat_imbalance [-]')
     end if
     do k = 1, size(scene%probes)
       call add(scene%probes(k)%name//' ['//scene%probes(k)%unit//']')
@@ -132,6 +139,10 @@ contains
       call table%put(solution%fields(section_field)%applied(:, 1))
     end if
     if (scene%remesh%estimate) call table%put([solution%estimate%stress, solution%estimate%strain])
+    if (has_heat(scene)) then
+      call table%put(factor*[solution%heat_stored, solution%heat_in, solution%heat_released])
+      call table%put(heat_imbalance(solution))
+    end if
     do k = 1, size(scene%probes)
       call table%put(probe_value(scene, solution, scene%probes(k)))
     end do

@@ -5,6 +5,7 @@ module summary
   use equations, only: equations_t
   use errors, only: error_t
   use hash, only: sha256
+  use heat_books, only: has_heat, heat_imbalance
   use history, only: circumference
   use json_writer, only: json_t
   use kinds, only: i8, wp
@@ -88,6 +89,7 @@ contains
     call json%add('worst_linear_residual', solution%worst_linear_residual)
     call json%add('least_dissipation', solution%least_dissipation)
     call json%add('energy_imbalance', energy_imbalance(solution, totals))
+    if (has_heat(scene)) call json%add('heat_imbalance', heat_imbalance(solution))
     call json%add('spurious_mode', solution%worst_spurious)
     call json%end_object()
     call add_advice(json, scene, solution)
@@ -96,6 +98,11 @@ contains
     call json%add('elastic', circumference(scene)*totals%elastic_energy)
     call json%add('plastic', circumference(scene)*totals%plastic_work)
     call json%add('friction', circumference(scene)*totals%friction_work)
+    if (has_heat(scene)) then
+      call json%add('heat_stored', circumference(scene)*solution%heat_stored)
+      call json%add('heat_in', circumference(scene)*solution%heat_in)
+      call json%add('heat_released', circumference(scene)*solution%heat_released)
+    end if
     call json%end_object()
     call json%end_object()
     call json%write_file(path, error)
@@ -252,6 +259,11 @@ contains
              //to_text(100*(totals%unloaded_volume/solution%initial_volume - 1), 3)//' %), energy imbalance ' &
              //to_text(100*energy_imbalance(solution, totals), 3)//' %, worst linear residual ' &
              //to_text(solution%worst_linear_residual, 2))
+    if (has_heat(scene)) &
+      call put('  heat taken up '//to_text(circumference(scene)*solution%heat_stored, 4)//', come in ' &
+               //to_text(circumference(scene)*solution%heat_in, 4)//', released ' &
+               //to_text(circumference(scene)*solution%heat_released, 4)//'; imbalance ' &
+               //to_text(100*heat_imbalance(solution), 2)//' % of what passed')
     if (size(scene%dies) == 0) then
       call put('  no contact')
     else

@@ -110,6 +110,8 @@ module elem_api
     real(wp) :: jump = 0.0_wp
     !> Square of the norm of what sources within the elements act with, and answers of the elements balance [power^2].
     real(wp) :: source = 0.0_wp
+    !> Heat that the elements took up in the step, and that sources released in them [energy].
+    real(wp) :: heat_stored = 0.0_wp, heat_released = 0.0_wp
   end type report_t
 
   !> Sums over a group at an accepted instant (per radian when axisymmetric), and extremes.

@@ -135,9 +135,9 @@ contains
       end if
       associate (material => scene%materials(group%material))
         call add_content(instant, law, material, rule%npoint, own, group%option == bilinear, place, drivers(:, :, :, e), &
-                         du(:own%n, e), start(:own%n, e), force(:, e), stiffness(:, :, e))
+                         du(:own%n, e), start(:own%n, e), force(:, e), stiffness(:, :, e), report%heat_stored)
         call add_released(instant, law, material, rule%npoint, own, place, drivers(:, :, :, e), du(:own%n, e), &
-                          start(:own%n, e), u, committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e), report%source)
+                          start(:own%n, e), u, committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e), report)
         do k = 1, instant%flow%n
           call add_flow(instant, k, law, material, kinematics%finite, rule%npoint, own, place, drivers(:, :, :, e), du(:own%n, e), &
                         start(:own%n, e), u, force(:, e), stiffness(:, :, e))
@@ -215,7 +215,7 @@ contains
   end subroutine place_element
 
   !> Heat taken up in the step, per time: at the points, or lumped at the corners.
-  pure subroutine add_content(instant, law, material, npoint, own, lumped, place, drivers, change, start, force, stiffness)
+  pure subroutine add_content(instant, law, material, npoint, own, lumped, place, drivers, change, start, force, stiffness, stored)
     type(instant_t), intent(in) :: instant
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
@@ -226,6 +226,7 @@ contains
     real(wp), intent(in) :: drivers(:, :, :)              !! (ndriver, 2, npoint)
     real(wp), intent(in) :: change(:), start(:)           !! of the temperatures in the step, and they at its start (n)
     real(wp), intent(inout) :: force(:), stiffness(:, :)
+    real(wp), intent(inout) :: stored                     !! heat taken up [energy]
     real(wp) :: before(max(1, size(drivers, 1)), 9), now(max(1, size(drivers, 1)), 9), taken(9), capacity(9), volume
     integer :: p, j, n, m
 
@@ -251,11 +252,13 @@ contains
       do j = 1, n
         volume = dot_product(own%phi(j, :npoint), place%dv0(:npoint))
         force(j) = force(j) + volume*taken(j)
+        stored = stored + volume*taken(j)*instant%dt
         if (instant%tangent) stiffness(j, j) = stiffness(j, j) + volume*capacity(j)
       end do
     else
       do p = 1, npoint
         force(:n) = force(:n) + own%phi(:n, p)*(taken(p)*place%dv0(p))
+        stored = stored + taken(p)*place%dv0(p)*instant%dt
         if (.not. instant%tangent) cycle
         do j = 1, n
           stiffness(:n, j) = stiffness(:n, j) + own%phi(:n, p)*(capacity(p)*place%dv0(p)*own%phi(j, p))
@@ -266,7 +269,7 @@ contains
 
   !> Heat that a change of volume takes up, less that released at the points, per time.
   pure subroutine add_released(instant, law, material, npoint, own, place, drivers, change, start, u, committed, trial, force, &
-                               stiffness, source)
+                               stiffness, report)
     type(instant_t), intent(in) :: instant
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
@@ -279,7 +282,7 @@ contains
     real(wp), intent(in) :: committed(:, :)               !! (nstate, npoint)
     real(wp), intent(inout) :: trial(:, :)
     real(wp), intent(inout) :: force(:), stiffness(:, :)
-    real(wp), intent(inout) :: source                     !! square of the norm of the sources [power^2]
+    type(report_t), intent(inout) :: report
     real(wp) :: given(max(1, size(drivers, 1)), 2), released, slope, per_strain, share, heat(own%n)
     integer :: p, j, n
 
@@ -306,7 +309,8 @@ contains
       end do
     end do
     force(:n) = force(:n) + heat
-    source = source + sum(heat**2)
+    report%source = report%source + sum(heat**2)
+    report%heat_released = report%heat_released - sum(heat)*instant%dt
   end subroutine add_released
 
   !> Heat conducted at one of the instants of the flow rule.

@@ -1,8 +1,8 @@
 !> The temperature at the points of a body: what drives its law.
 !>
 !> It is that of a TEMPE card, the same everywhere, or the field `temperature` of the run. Strains of the 8-node element are linear
-!> to the order that counts, a temperature on eight nodes is quadratic: a thermal strain of second degree would make stresses that no
-!> strain can answer. The temperature at the points is therefore its projection on the bilinear functions: that through its
+!> to the order that counts, a temperature on eight nodes is quadratic: a thermal strain of second degree would make stresses that
+!> no strain can answer. The temperature at the points is therefore its projection on the bilinear functions: that through its
 !> values at 2 x 2 Gauss points, where the part of second degree (Legendre's) vanishes. Source: J. Barlow, Int. J. Num. Meth.
 !> Engng 10 (1976) 243-251.
 module point_temperatures

@@ -40,6 +40,9 @@ module solution
     !> Work of friction since the start, and the part of it that no point of the present mesh remembers; per radian when
     !> axisymmetric.
     real(wp) :: friction_work = 0.0_wp, friction_apart = 0.0_wp
+    !> Heat since the start: taken up, come in through sides and imposed temperatures, released by sources; and what passed, the
+    !> sum of the sizes of the last two by step. Per radian when axisymmetric.
+    real(wp) :: heat_stored = 0.0_wp, heat_in = 0.0_wp, heat_released = 0.0_wp, heat_passed = 0.0_wp
     !> Volume at the start, for the drift; 0 before it is measured.
     real(wp) :: initial_volume = 0.0_wp
     !> Worst values of all accepted steps so far.

@@ -79,6 +79,8 @@ contains
           report%jump = max(report%jump, reports(b)%jump)
           report%event = min(report%event, reports(b)%event)
           report%source = report%source + reports(b)%source
+          report%heat_stored = report%heat_stored + reports(b)%heat_stored
+          report%heat_released = report%heat_released + reports(b)%heat_released
           report%unpaired = report%unpaired .or. reports(b)%unpaired
           if (report%status /= block_done .or. reports(b)%status == block_done) cycle
           report%status = reports(b)%status

@@ -7,7 +7,7 @@ module equations
   use elem_registry, only: list_elems
   use element_loop, only: element_buffers_t, gather_forces, gather_matrix, run_elements
   use errors, only: error_t
-  use fields, only: displacement_field, field_t, mechanical_fields, on_nodes, pilot_field, section_field
+  use fields, only: displacement_field, field_t, find_field, mechanical_fields, on_nodes, pilot_field, section_field
   use kinds, only: eps, wp
   use kinematics_api, only: kinematics_t
   use kinematics_registry, only: list_kinematics
@@ -47,6 +47,8 @@ module equations
     real(wp), allocatable :: force(:), magnitude(:)
     !> Norm of the sources within elements at the last evaluation (elem_api) [power].
     real(wp) :: source = 0.0_wp
+    !> Heat taken up by all elements in the step, and released in them, at the last evaluation of their solve [energy].
+    real(wp) :: heat_stored = 0.0_wp, heat_released = 0.0_wp
     !> Weights of the quantities in norms over several of them (convergence).
     real(wp), allocatable :: weight(:)
     !> Nodes of the solid elements, and the pairs that unknowns and pattern are of.
@@ -340,6 +342,10 @@ contains
       call renew_pairs(scene, solution)
     end do
     equations%source = sqrt(report%source)
+    if (solves_heat(scene, equations)) then
+      equations%heat_stored = report%heat_stored
+      equations%heat_released = report%heat_released
+    end if
     call equations%timers%add('assembly', timer)
     call equations%timers%start(timer)
     associate (solve => equations%solves(equations%now))
@@ -351,6 +357,18 @@ contains
     end associate
     call equations%timers%stop(timer)
   end subroutine evaluate
+
+  !> The temperature is among the fields of the solve under way.
+  pure function solves_heat(scene, equations) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    logical :: yes
+    integer :: f
+
+    f = find_field(scene%fields, 'temperature')
+    yes = f > 0
+    if (yes) yes = equations%solves(equations%now)%own(f)
+  end function solves_heat
 
   !> Trial values of the fields that drive points at the end of the step (nnode, nfield); none where no point is driven by any.
   subroutine driving_values(scene, equations, solution, du, now)

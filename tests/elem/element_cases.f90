@@ -9,13 +9,15 @@ module element_cases
   use kinematics_registry, only: list_kinematics
   use law_api, only: driver_count, law_of_material, law_t
   use law_cases, only: elastic_material, law_row, material_of, plastic_material
+  use loads, only: exchange_t
   use materials, only: material_t
   use quadrature, only: rule_of_number
   use scene, only: axisymmetric, scene_t
   use state_variables, only: total_components
   implicit none
   private
-  public :: case_t, solid_case, material_case, contact_case, pressure_case, body_force_case, heat_case, evaluate, accept
+  public :: case_t, solid_case, material_case, contact_case, pressure_case, body_force_case, heat_case, heat_side_case
+  public :: evaluate, accept
   public :: add_temperature
   public :: difference_matrix, layout_of_case, totals_of
   public :: die_of, segment, shape_of_test, elem_row, kinematics_row
@@ -88,6 +90,7 @@ contains
     case%instant%dt = 1
     allocate (case%start(0, 1))
     allocate (case%instant%multipliers(1), source=1.0_wp)
+    allocate (case%instant%flow%multipliers(1, 2), source=1.0_wp)
     case%scene%groups(1)%rule = rule_of_number(npoint)
     allocate (case%drivers(0, 2, abs(npoint), 1))
     case%scene%groups(1)%role = case%elem%role
@@ -200,6 +203,21 @@ contains
     case%scene%fields(displacement_field)%declared = moves
     case%start = spread([(0.0_wp, i=1, ndof_of(case))], 2, 1)
   end function heat_case
+
+  !> A side that heat passes: FLUX, CONVE or RADIA, with displacements among its unknowns; all at the temperature 0.
+  function heat_side_case(elem, plane_state, kinematics, exchange, at_corners, npoint, x) result(case)
+    character(len=*), intent(in) :: elem, kinematics
+    integer, intent(in) :: plane_state, npoint
+    type(exchange_t), intent(in) :: exchange
+    logical, intent(in) :: at_corners
+    real(wp), intent(in) :: x(2, 3)
+    type(case_t) :: case
+
+    call begin_case(elem, kinematics, plane_state, npoint, x, case)
+    case%scene%groups(1)%exchange = exchange
+    allocate (case%committed(0, npoint, 1))
+    call add_temperature(case, at_corners)
+  end function heat_side_case
 
   !> The scene has temperatures among its fields, at corners only or at all nodes; all 0.
   subroutine add_temperature(case, at_corners)
