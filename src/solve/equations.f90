@@ -395,8 +395,8 @@ contains
     end do
   end subroutine driving_values
 
-  !> Size of round-off in what acts on the own fields, once for a mesh: what a change of round-off makes through the diagonals of
-  !> the matrices of the bodies.
+  !> Size of round-off in what acts on the own fields: what a change of round-off makes through the diagonals of the matrices of
+  !> the bodies. For motions once for a mesh; others have values, and matrices with the length of the step, that change.
   pure subroutine set_floors(scene, equations, fields)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
@@ -405,8 +405,9 @@ contains
 
     do f = 1, size(fields)
       if (.not. (fields(f)%declared .and. equations%solves(equations%now)%own(f))) cycle
-      if (fields(f)%place /= on_nodes .or. fields(f)%floor > 0) cycle
+      if (fields(f)%place /= on_nodes) cycle
       if (f == displacement_field) then
+        if (fields(f)%floor > 0) cycle
         fields(f)%floor = round_off_motion*equations%size*sqrt(sum_of_diagonals(scene, equations, f))
       else
         fields(f)%floor = round_off_motion*maxval(abs(fields(f)%value))*sqrt(sum_of_diagonals(scene, equations, f))

@@ -82,7 +82,7 @@ def list_of_laws(checks):
     result = run(["--law"])
     checks.that(result.returncode == DONE and result.stderr == "", "--law: done", said(result))
     with open(os.path.join(SOURCE, "decks", "README.md"), encoding="utf-8") as manual:
-        names = re.findall(r"(?m)^\| `([\w-]+)` \| (solids|contact) \|", manual.read())
+        names = re.findall(r"(?m)^\| `([\w-]+)` \| (solids|contact|heat) \|", manual.read())
     rows = [line.split(None, 3) for line in result.stdout.splitlines()]
     checks.that(sorted((row[0], row[2]) for row in rows) == sorted(names), "--law: the laws of the manual, no more", result.stdout)
     for row in rows:
