@@ -11,7 +11,7 @@ module cards_heat
   use quadrature, only: rule_gauss, rule_t
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, only_card, words_of
-  use text, only: string_t
+  use text, only: join, string_t
   implicit none
   private
   public :: read_exchanges, read_time_scheme
@@ -83,8 +83,8 @@ contains
     allocate (given(size(words)), source=.false.)
     emissivity = 0
     constant = 0
-    do while (cursor%more() .or. .not. all(given))
-      call cursor%name('a word of the card', words, k)
+    do while (cursor%more())
+      call cursor%name('one of '//join(words, ' '), words, k)
       if (k == 0) return
       if (given(k)) call cursor%fail(''''//words(k)%s//''' is given twice')
       given(k) = .true.
@@ -107,6 +107,9 @@ contains
         call read_multiplier(cursor, draft, words, exchange%surroundings_multiplier)
       end select
       if (cursor%failed()) return
+    end do
+    do k = 1, size(words)
+      if (.not. given(k)) call cursor%fail('expected '//words(k)%s//' and its number, found none')
     end do
     if (keyword == 'RADIA') exchange%amplitude = emissivity*constant
   end subroutine read_numbers

@@ -288,9 +288,9 @@ contains
 
     n = own%n
     heat = 0
-    per_strain = law%swell(material)
     do p = 1, npoint
       share = place%dv0(p)/instant%dt
+      per_strain = law%swell(material, dot_product(own%phi(:n, p), start))
       heat = heat + own%phi(:n, p)*(per_strain*share*place%strain(p))
       if (instant%tangent .and. u > 0) then
         do j = 1, 16

@@ -209,9 +209,10 @@ module law_api
     end subroutine law_release_i
 
     !> Heat taken up by a change of volume, per volume and unit of volume strain.
-    pure function law_swell_i(material) result(heat)
+    pure function law_swell_i(material, temperature) result(heat)
       import :: material_t, wp
       type(material_t), intent(in) :: material
+      real(wp), intent(in) :: temperature   !! at the start of the step
       real(wp) :: heat   !! [energy/length^3]
     end function law_swell_i
 

@@ -8,8 +8,8 @@
 !> (W. Thomson 1855; J.M.C. Duhamel). QUINNEY turns plastic work of the body into heat.
 module law_heat
   use kinds, only: wp
-  use law_api, only: heat_law, law_line, law_t, parameter, parameter_t
-  use materials, only: bracket_temperature, integral_over_temperature, material_t
+  use law_api, only: driver_temperature, heat_law, law_line, law_t, parameter, parameter_t
+  use materials, only: bracket_temperature, integral_over_temperature, material_t, values_at
   use state_variables, only: state_variable, transfer_scalar
   implicit none
   private
@@ -69,7 +69,8 @@ contains
 
     allocate (list(2))
     list(1) = parameter('SOURCE', 'energy/length^3', 'heat taken up by a change of volume, per volume strain', default=0.0_wp)
-    list(2) = parameter('QUINNEY', '-', 'share of the plastic work that becomes heat', lower=0.0_wp, upper=1.0_wp, default=0.0_wp)
+    list(2) = parameter('QUINNEY', '-', 'share of the plastic work that becomes heat', lower=0.0_wp, upper=1.0_wp, default=0.0_wp, &
+                        turns_on=.true.)
   end function sources
 
   !> Conductivity, linear between the temperatures of the card, constant outside.
@@ -155,19 +156,26 @@ contains
     real(wp), intent(in) :: drivers(:, :), committed(:)
     real(wp), intent(out) :: released, slope, history(:)
 
+    real(wp) :: values(size(material%values))
+
     released = 0
     slope = 0
     if (size(history) == 0) return
+    ! the share changes little with the temperature: that of the start of the step
+    call values_at(material, drivers(driver_temperature, 1), values)
     history(1) = drivers(driver_work, 2)
-    released = material%values(place_share)*(drivers(driver_work, 2) - committed(1))
+    released = values(place_share)*(drivers(driver_work, 2) - committed(1))
   end subroutine release
 
-  !> SOURCE, that of the first temperature.
-  pure function swell(material) result(heat)
+  !> SOURCE, at the temperature of the start of the step.
+  pure function swell(material, temperature) result(heat)
     type(material_t), intent(in) :: material
+    real(wp), intent(in) :: temperature
     real(wp) :: heat
+    real(wp) :: values(size(material%values))
 
-    heat = material%values(place_source)
+    call values_at(material, temperature, values)
+    heat = values(place_source)
   end function swell
 
 end module law_heat
