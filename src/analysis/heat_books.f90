@@ -3,7 +3,7 @@ module heat_books
   use equations, only: equations_t
   use fields, only: find_field
   use kinds, only: wp
-  use scene, only: role_side_load, scene_t
+  use scene, only: role_side_load, role_volume_load, scene_t
   use solution, only: solution_t
   implicit none
   private
@@ -47,7 +47,7 @@ contains
     solution%heat_passed = solution%heat_passed + gross + abs(equations%heat_released)
   end subroutine book_heat
 
-  !> Heat that comes in through the sides of a group, 0 for groups that are no such sides.
+  !> Heat that comes in through the sides of a group, or from a source in its volume; 0 for other groups.
   pure function heat_through(scene, equations, g) result(power)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
@@ -56,7 +56,7 @@ contains
     integer :: f, u, e, m, first, last
 
     power = 0
-    if (scene%groups(g)%role /= role_side_load) return
+    if (all(scene%groups(g)%role /= [role_side_load, role_volume_load])) return
     f = find_field(scene%fields, 'temperature')
     associate (layout => equations%dofs%groups(g)%layout, dof => equations%dofs%groups(g)%dof)
       do u = 1, layout%nfield

@@ -1,15 +1,16 @@
-!> FLUX, CONVE and RADIA: heat that passes sides of bodies; THETA: its balance in time.
+!> FLUX, CONVE, RADIA and HEATS: heat that passes sides of bodies, or comes from their volume; THETA: its balance in time.
 module cards_heat
   use card_places, only: numbers_after_name, read_sides
   use cards_sides, only: append_group, refuse_inner_sides, start_group
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
+  use field_places, only: refuse_without_field
   use fields, only: find_field
   use kinds, only: wp
   use loads, only: exchange_t
   use quadrature, only: rule_gauss, rule_t
-  use scene, only: group_t
+  use scene, only: group_t, is_solid
   use scene_draft, only: close_card, draft_t, only_card, words_of
   use text, only: join, string_t
   implicit none
@@ -23,7 +24,7 @@ contains
 
   !> All cards `FLUX place Q q [lic]`, `CONVE place H h [lic] TS temperature [lic]` and
   !> `RADIA place EPS emissivity SIGMA constant ZERO temperature TS temperature [lic]`; rows after them: pairs of a temperature of
-  !> the surface and a factor.
+  !> the surface and a factor. `HEATS body Q q [lic]` likewise.
   subroutine read_exchanges(deck, draft, diagnostics)
     type(deck_t), intent(inout), target :: deck
     type(draft_t), intent(inout) :: draft
@@ -35,15 +36,19 @@ contains
 
     do i = 1, size(deck%cards)
       associate (keyword => deck%cards(i)%keyword)
-        if (all(keyword /= [character(len=5) :: 'FLUX', 'CONVE', 'RADIA'])) cycle
+        if (all(keyword /= [character(len=5) :: 'FLUX', 'CONVE', 'RADIA', 'HEATS'])) cycle
         call cursor%open(deck%cards(i), diagnostics)
         call start_group(keyword, draft, group)
         group%rule = rule_t(rule_gauss, npoint)
         f = 0
         if (draft%groups_sound) f = find_field(draft%scene%fields, 'temperature')
-        call read_sides(cursor, draft, numbers_after_name(deck%cards(i)), label, group%connectivity, field=f)
+        if (keyword == 'HEATS') then
+          call read_body(cursor, draft, f, label, group)
+        else
+          call read_sides(cursor, draft, numbers_after_name(deck%cards(i)), label, group%connectivity, field=f)
+          call refuse_inner_sides(cursor, draft, group%connectivity)
+        end if
         if (draft%groups_sound .and. f == 0) call cursor%fail('no body of this scene has a temperature among its unknowns (PL8TM)')
-        call refuse_inner_sides(cursor, draft, group%connectivity)
         call read_numbers(cursor, draft, keyword, group%exchange)
         call read_table(cursor, group%exchange)
         group%name = label//'/'//keyword
@@ -61,6 +66,34 @@ contains
     end do
   end subroutine read_exchanges
 
+  !> The body whose elements release heat.
+  subroutine read_body(cursor, draft, field, label, group)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+    integer, intent(in) :: field   !! the temperature, 0 where the scene has none
+    character(len=:), allocatable, intent(out) :: label
+    type(group_t), intent(inout) :: group
+    integer :: k, g
+
+    label = ''
+    allocate (group%connectivity(8, 0))
+    call draft%places%find(cursor, 'the name of a body', k)
+    if (k == 0) return
+    label = draft%places%words(k)%s
+    do g = 1, size(draft%scene%groups)
+      if (.not. is_solid(draft%scene%groups(g)) .or. draft%scene%groups(g)%name /= label) cycle
+      group%host = g
+      group%rule = draft%scene%groups(g)%rule
+      group%connectivity = draft%scene%groups(g)%connectivity
+    end do
+    if (.not. draft%mesh_sound) return
+    if (group%host == 0) then
+      call cursor%fail(''''//label//''' is a '//draft%places%keywords(k)%s//', expected a body')
+    else if (field > 0) then
+      call refuse_without_field(cursor, draft, field, [group%connectivity], label, own=.true.)
+    end if
+  end subroutine read_body
+
   !> Words with their numbers, each once, in any order.
   subroutine read_numbers(cursor, draft, keyword, exchange)
     type(cursor_t), intent(inout) :: cursor
@@ -73,7 +106,7 @@ contains
     integer :: k
 
     select case (keyword)
-    case ('FLUX')
+    case ('FLUX', 'HEATS')
       call words_of('Q', words)
     case ('CONVE')
       call words_of('H TS', words)
@@ -90,7 +123,11 @@ contains
       given(k) = .true.
       select case (words(k)%s)
       case ('Q')
-        call cursor%real('the heat flow per area, into the body', exchange%amplitude, unit='power/area')
+        if (keyword == 'FLUX') then
+          call cursor%real('the heat flow per area, into the body', exchange%amplitude, unit='power/area')
+        else
+          call cursor%real('the heat released per volume', exchange%amplitude, unit='power/volume')
+        end if
         call read_multiplier(cursor, draft, words, exchange%multiplier)
       case ('H')
         call cursor%real('the coefficient of convection', exchange%amplitude, lower=0.0_wp, unit='power/area/temperature')

@@ -122,8 +122,8 @@ contains
 
     call list_elems(elems)
     call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE START ' &
-                  //'FLUX CONVE RADIA THETA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG LIC STRAT NORMS SOLVR STOP SAVE CKPT PROBE ' &
-                  //'ESTIM REMSH ZPNT ZONE', keywords)
+                  //'FLUX CONVE RADIA HEATS THETA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG LIC STRAT NORMS SOLVR STOP SAVE CKPT ' &
+                  //'PROBE ESTIM REMSH ZPNT ZONE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle

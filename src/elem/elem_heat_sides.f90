@@ -22,7 +22,7 @@ module elem_heat_sides
   use vectors, only: length_of
   implicit none
   private
-  public :: elem_flux_row, elem_conve_row, elem_radia_row, flow_in
+  public :: elem_flux_row, elem_conve_row, elem_radia_row, flow_in, by_flux
 
   !> Kinds of exchange.
   integer, parameter :: by_flux = 1, by_convection = 2, by_radiation = 3

@@ -3,6 +3,7 @@ submodule(elem_registry) elem_members
   use elem_body_forces, only: elem_bforc_row, elem_centr_row
   use elem_cnt2d, only: elem_cnt2d_row
   use elem_cntdf, only: elem_cntdf_row
+  use elem_heat_source, only: elem_heats_row
   use elem_heat_sides, only: elem_conve_row, elem_flux_row, elem_radia_row
   use elem_pl8ls, only: elem_pl8ls_row
   use elem_pl8tm, only: elem_pl8tm_row
@@ -12,7 +13,7 @@ submodule(elem_registry) elem_members
 contains
 
   module procedure list_elems
-    allocate (elems(11))
+    allocate (elems(12))
     elems(1) = elem_pl8ls_row()
     elems(2) = elem_cnt2d_row()
     elems(3) = elem_cntdf_row()
@@ -24,6 +25,7 @@ contains
     elems(9) = elem_flux_row()
     elems(10) = elem_conve_row()
     elems(11) = elem_radia_row()
+    elems(12) = elem_heats_row()
   end procedure list_elems
 
 end submodule elem_members

@@ -25,6 +25,7 @@ module elem_pl8tm
   implicit none
   private
   public :: elem_pl8tm_row, of_temperature
+  public :: functions_t, heat_points_t, functions_of, place_element
 
   !> Place of the option BILINEAR; the temperature is the first field of the element's unknowns.
   integer, parameter :: bilinear = 1, temperature = 1
@@ -121,7 +122,7 @@ contains
       return
     end if
     call quad8_rule(group%rule%n, rule)
-    call functions_of(group, rule, own)
+    call functions_of(group%option == bilinear, rule, own)
     u = first_unknown(layout, displacement_field)
     motion = 0
     do e = 1, size(x, 3)
@@ -147,22 +148,22 @@ contains
   end subroutine compute
 
   !> Functions of the temperature at the points of the rule.
-  pure subroutine functions_of(group, rule, own)
-    type(group_t), intent(in) :: group
+  pure subroutine functions_of(at_corners, rule, own)
+    logical, intent(in) :: at_corners
     type(quad8_rule_t), intent(in) :: rule
     type(functions_t), intent(out) :: own
     real(wp), allocatable :: xi(:, :), weight(:)
     integer :: p
 
-    if (group%option /= bilinear) then
+    if (.not. at_corners) then
       own%n = 8
       own%phi = rule%phi
       own%dphi = rule%dphi
       return
     end if
     own%n = 4
-    call square_rule(group%rule%n, xi, weight)
-    do p = 1, group%rule%n
+    call square_rule(rule%npoint, xi, weight)
+    do p = 1, rule%npoint
       call quad4(xi(1, p), xi(2, p), own%phi(:4, p))
       own%dphi(1, :4, p) = 0.25_wp*quad8_corner(1, :)*(1 + quad8_corner(2, :)*xi(2, p))
       own%dphi(2, :4, p) = 0.25_wp*quad8_corner(2, :)*(1 + quad8_corner(1, :)*xi(1, p))

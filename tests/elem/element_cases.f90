@@ -204,13 +204,13 @@ contains
     case%start = spread([(0.0_wp, i=1, ndof_of(case))], 2, 1)
   end function heat_case
 
-  !> A side that heat passes: FLUX, CONVE or RADIA, with displacements among its unknowns; all at the temperature 0.
+  !> A side that heat passes, FLUX, CONVE or RADIA, or a volume that releases it, HEATS, with displacements among its unknowns; all at the temperature 0.
   function heat_side_case(elem, plane_state, kinematics, exchange, at_corners, npoint, x) result(case)
     character(len=*), intent(in) :: elem, kinematics
     integer, intent(in) :: plane_state, npoint
     type(exchange_t), intent(in) :: exchange
     logical, intent(in) :: at_corners
-    real(wp), intent(in) :: x(2, 3)
+    real(wp), intent(in) :: x(:, :)   !! (2, 3) or (2, 8)
     type(case_t) :: case
 
     call begin_case(elem, kinematics, plane_state, npoint, x, case)

@@ -11,7 +11,7 @@ usage: run_exchange.py [-v] [-k]
   flows agree, q = h(T1) (Ts - T1) = LAMBDA (T1 - T2)/L = h(T2) (T2 - Tr), by bisection.
 - `cylinder`: cooled by convection, Biot numbers 1 and 20: the series of Bessel's functions, and the order in time.
 - `wall_by_temperature`: LAMBDA linear in T: Kirchhoff's transform, T from a (T - T1) + b (T^2 - T1^2)/2 linear in place.
-- `shell`: heat flow through a sphere and a tube, by order of convergence, and its balance.
+- `source`: heat from the volume, a parabola; a body that only warms up.
 - `stefan`: freezing of a half space (F. Neumann): LAMBDA jumps and RHOC holds the latent heat: within 1 %.
 - `squeezed`: a block of perfect plasticity pressed to a plastic strain of 1 without loss of heat: QUINNEY sigma p/(rho c), in all ways of
   coupling.
@@ -172,6 +172,25 @@ def by_temperature(checks):
         orders(checks, errors, 3, "LAMBDA by temperature")
 
 
+def source(checks):
+    """Heat from the volume: a parabola between sides at 0, which 8-node temperatures hold exactly; and a body that only warms up."""
+    for rule in ("4", "9"):
+        run = Run(checks, f"source-{rule}", HEAD.format(title="source", state="PLSTN 0.5") + wall(rule)
+                  + "LAW steel HEAT\n   20. 3.6E6\nHEATS wall Q 2.E5 on\nIMPOS wall 2 T even\nIMPOS wall 4 T even\nLIC on\n   0. 0.5 1. 1.\n"
+                  "LIC even\n   0. 0.\n" + STEADY + TIGHT + "PROBE a NODE T 0.02 0.\nPROBE b NODE T 0.05 0.\nEND\n")
+        if run.ok:
+            found = np.array([run.history["a"][-1], run.history["b"][-1]])
+            exact = np.array([2e5/40*x*(0.1 - x) for x in (0.02, 0.05)])
+            checks.small(np.max(np.abs(found/exact - 1)), 1e-10, f"{run.name}: parabola")
+    for rule in ("4", "4 BILINEAR"):
+        run = Run(checks, f"warm-{rule}".replace(" ", ""), HEAD.format(title="warm", state="AXISYM") + wall(rule)
+                  + "LAW steel HEAT\n   20. 2.\nHEATS wall Q 3. on\n   0. 1. 10. 1.\nLIC on\n   0. 1. 1. 2.\nSTRAT 0.1 1.E-3 0.1 4 3\nSTOP 1.\n"
+                  "THETA 0.5\n" + TIGHT + "PROBE a NODE T 0.02 0.\nEND\n")
+        if run.ok:
+            checks.small(abs(run.history["a"][-1]/2.25 - 1), 1e-10, f"{run.name}: integral of the source")
+            checks.small(np.max(np.abs(run.history["heat_imbalance"])), 1e-11, f"{run.name}: books")
+
+
 def stefan(checks):
     """Two-phase freezing."""
     solid, liquid = 3.0e6, 2.5759e6
@@ -206,7 +225,7 @@ def plastic(checks):
 def main():
     """All cases."""
     checks = Checks()
-    for case in (radiation, wave, annulus, convection, cylinder, by_temperature, stefan, plastic):
+    for case in (radiation, wave, annulus, convection, cylinder, by_temperature, source, stefan, plastic):
         case(checks)
     checks.end()
 
