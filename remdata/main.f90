@@ -33,7 +33,7 @@ program remdata
     call start_program(error)
   else
     call read_remesh_options(options, error)
-    if (.not. allocated(error)) call do_as_told(error)
+    if (.not. allocated(error)) call carry_out(error)
   end if
   if (allocated(error)) then
     code = error%code
@@ -44,13 +44,13 @@ program remdata
 
 contains
 
-  subroutine do_as_told(error)
+  subroutine carry_out(error)
     type(error_t), allocatable, intent(out) :: error
 
     if (options%help) then
       call print_line(remesh_usage(), error)
     else if (options%version) then
-      call tell_version(error)
+      call show_version(error)
     else if (options%schema) then
       call print_schema(error)
     else if (options%about) then
@@ -58,7 +58,7 @@ contains
     else
       call run(error)
     end if
-  end subroutine do_as_told
+  end subroutine carry_out
 
   subroutine run(error)
     type(error_t), allocatable, intent(out) :: error
@@ -78,13 +78,13 @@ contains
   end subroutine run
 
   !> The BLAS is the solver's, with the kernels that it takes there.
-  subroutine tell_version(error)
+  subroutine show_version(error)
     type(error_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: build, core
 
     call ask_blas(build, core)
     call start_as_fits(1, core)
     call print_version('remdata', blas_words(build, core), number_of_threads(), error)
-  end subroutine tell_version
+  end subroutine show_version
 
 end program remdata

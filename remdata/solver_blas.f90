@@ -1,5 +1,5 @@
-!> The BLAS of the solver, as --version tells it. REMDATA calls none and is not linked with it, lest every start loads it: here it
-!> is loaded for this question alone.
+!> The BLAS of the solver, as --version shows it. REMDATA calls none and is not linked with it, so that it is not loaded at every
+!> start: it is loaded here for this question alone.
 module solver_blas
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_procpointer, c_funptr, c_int, c_null_char, c_ptr
   use run_version, only: blas_library

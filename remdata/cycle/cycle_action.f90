@@ -1,4 +1,4 @@
-!> What a cycle may do next, and the making of such actions.
+!> The actions a cycle may take next, and their constructors.
 module cycle_action
   use cycle_situation, only: checkpoint_file_t
   use errors, only: error_t, fail
@@ -12,8 +12,8 @@ module cycle_action
 
   !> For the script: the solver from the beginning, its check of a checkpoint, the solver from a checkpoint, the remesher, the end.
   integer, parameter :: act_start = 1, act_check = 2, act_resume = 3, act_remesh = 4, act_end = 5
-  !> Inner: the checkpoint before takes the place of one that is not whole; the checkpoint at which the old mesh stops is kept; a
-  !> new mesh is entered in the table; a try is, as refused; it is entered that the old mesh goes on.
+  !> Inner: the checkpoint before replaces one that is not whole; the checkpoint at which the old mesh stops is kept; a new mesh is
+  !> entered in the table; a refused try is entered; the continuation of the old mesh is entered.
   integer, parameter :: act_roll_back = 6, act_keep_end = 7, act_accept = 8, act_refuse = 9, act_keep_old_mesh = 10
 
   type :: action_t
@@ -25,13 +25,13 @@ module cycle_action
     real(wp) :: finer = 0.0_wp
     !> For the user; '' for nothing.
     character(len=:), allocatable :: say
-    !> Of a try: the way it was made, and of one that is refused what came of it, the stage to blame, why.
+    !> Of a try: the way it was made; of a refused one also its result, the responsible stage, and the reason.
     character(len=:), allocatable :: way, result, stage, reason
-    !> What the restart on it found belongs in its row.
+    !> The measures of the restart on it belong in its row.
     logical :: with_restart = .true.
-    !> A refused mesh is in the run's checkpoint: the old one comes back.
+    !> A refused mesh is in the run's checkpoint: the old one is restored.
     logical :: back = .false.
-    !> Why the end is not a good one.
+    !> Why the cycle failed.
     type(error_t), allocatable :: error
   end type action_t
 

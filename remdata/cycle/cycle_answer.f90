@@ -21,12 +21,12 @@ module cycle_answer
   private
   public :: answer_next
 
-  !> More inner actions one after the other than there are kinds of them: something goes in a circle.
+  !> More inner actions one after the other than there are kinds of them: the decisions repeat themselves.
   integer, parameter :: most_in_a_row = 12
 
 contains
 
-  !> Read the folder, decide, tidy up, until there is something for the script.
+  !> Read the folder, decide and do the inner actions, until there is an action for the script.
   subroutine answer_next(code, error)
     integer, intent(out) :: code   !! with which the cycle ends; 0: it goes on, or is done
     type(error_t), allocatable, intent(out) :: error
@@ -46,7 +46,7 @@ contains
       call carry_out(situation, action, line, error)
       if (allocated(error)) return
       if (line /= '') call print_word('say', line, error)
-      ! how the program ended has had its consequence
+      ! the end of the program has been dealt with
       if (action%kind == act_refuse) options%ended%program = ended_known
       if (is_inner(action)) cycle
       if (allocated(action%error)) then

@@ -1,5 +1,5 @@
-!> What an action changes in the folder of a cycle: rows of the table, checkpoints that are kept, tries that go. Every file is
-!> written whole, in an order that leaves a situation `cycle_decision` knows, wherever it is cut.
+!> What an action changes in the folder of a cycle: rows of the table, checkpoints that are kept, tries that are removed. Every
+!> file is written whole, in an order that leaves a situation `cycle_decision` knows, wherever the cycle is killed.
 module cycle_bookkeeping
   use atomic, only: previous_name, read_text, temporary_name, write_text
   use cycle_action, only: act_accept, act_keep_end, act_keep_old_mesh, act_refuse, act_remesh, act_resume, act_roll_back, action_t
@@ -19,7 +19,7 @@ module cycle_bookkeeping
 
 contains
 
-  !> Do what the action asks of the folder. `line` is for the user; '' for nothing.
+  !> Carry out the action in the folder. `line` is for the user; '' for nothing.
   subroutine carry_out(s, action, line, error)
     type(situation_t), intent(in) :: s
     type(action_t), intent(in) :: action
@@ -102,7 +102,7 @@ contains
     if (.not. allocated(error)) call remove_file(path, error)
   end subroutine remove_try
 
-  !> What the solver found on an earlier try at the same mesh.
+  !> Remove the solver's reports on an earlier try at the same mesh.
   subroutine remove_judgement(s, error)
     type(situation_t), intent(in) :: s
     type(error_t), allocatable, intent(out) :: error
@@ -181,7 +181,7 @@ contains
     line = line_of_cells(cells)
   end function row_of
 
-  !> The line for the user that a mesh is there to stay.
+  !> The line for the user that a mesh is accepted.
   function accepted_line(s, action) result(line)
     type(situation_t), intent(in) :: s
     type(action_t), intent(in) :: action

@@ -1,4 +1,4 @@
-!> What a cycle does next, from where it stands: pure, so that every situation can be tested without a run.
+!> The next action of a cycle, from its situation: pure, so that every situation can be tested without a run.
 !>
 !> Some actions only tidy the folder (`is_inner`); the situation is then read anew and decided again. The others are for the script:
 !> a program to call, or the end. A cycle that was killed at any moment is in one of these situations too.
@@ -65,7 +65,7 @@ contains
     end if
   end function opening
 
-  !> The solver is through, or cannot go on: soon after a new mesh that is the mesh's fault.
+  !> The solver has finished, or cannot go on: soon after a new mesh the mesh is held responsible.
   pure function after_lagamine(s) result(action)
     type(situation_t), intent(in) :: s
     type(action_t) :: action
@@ -91,7 +91,7 @@ contains
     end associate
   end function after_lagamine
 
-  !> Nothing stands against going on: with the run, or with the mesh that is due.
+  !> The cycle can go on: with the run, or with the mesh that is due.
   pure function onward(s) result(action)
     type(situation_t), intent(in) :: s
     type(action_t) :: action
@@ -193,7 +193,7 @@ contains
                         to_text(s%current%facts%generation)//', '//place_of(s%current))
   end function resume_run
 
-  !> Did somebody stop the program by HUP, INT, KILL or TERM? A crash is its own fault.
+  !> Was the program stopped by HUP, INT, KILL or TERM? Other signals are crashes.
   pure function stopped_from_outside(s) result(stopped)
     type(situation_t), intent(in) :: s
     logical :: stopped

@@ -1,4 +1,4 @@
-!> Where a cycle stands, read from the files in its folder. Each of them is whole or not there.
+!> The situation of a cycle, read from the files in its folder. Each of them is whole or missing.
 module cycle_folder
   use atomic, only: previous_name, read_text, write_text
   use cycle_options, only: cycle_options_t
@@ -63,7 +63,7 @@ contains
     if (.not. allocated(error)) call parse_table(text, path, rows, error)
   end subroutine read_table
 
-  !> The mesh that the run is on while its try is still there: its first steps are through, or the run could not go on in them.
+  !> The mesh that the run is on while its try is still there: its first steps are done, or the run failed in them.
   !> Otherwise the one that is due.
   subroutine read_new_mesh(s)
     type(situation_t), intent(inout) :: s
@@ -163,7 +163,7 @@ contains
     if (is_same) is_same = first == second
   end function is_same
 
-  !> `summary.json` tells of the end of the scene, where the checkpoint stands.
+  !> `summary.json` reports the end of the scene, at the step of the checkpoint.
   function is_finished(s) result(finished)
     type(situation_t), intent(in) :: s
     logical :: finished

@@ -1,6 +1,6 @@
-!> What the script of a cycle asks of the system, through `remdata`: the lock of its folder, and a program that ends with it.
+!> Services of the system for the script of a cycle: the lock of its folder, and a program that ends when the script ends.
 !>
-!>     remdata --lock DIR --for PROCESS [--quiet]                by the open file that LAGAMINE_LOCK tells of; 1: open it again
+!>     remdata --lock DIR --for PROCESS [--quiet]                by the open file that LAGAMINE_LOCK names; 1: open it again
 !>     remdata --start PROCESS SECONDS PROGRAM WORDS...          becomes the program; SECONDS 0: no limit
 module cycle_processes
   use arguments, only: argument
@@ -15,10 +15,10 @@ module cycle_processes
   private
   public :: asks_for_lock, asks_for_start, lock_cycle, start_program
 
-  !> Exit code: the script opens the file again.
+  !> Exit code: the script must open the file again.
   integer, parameter :: exit_again = 1
-  !> What an earlier cycle has left at work is told of, and waited for, as long [s].
-  real(wp), parameter :: told_after = 3.0_wp, longest_wait = 600.0_wp, look_again = 0.1_wp
+  !> Programs of an earlier cycle still at work: reported after, waited for at most, checked every so often [s].
+  real(wp), parameter :: reported_after = 3.0_wp, longest_wait = 600.0_wp, look_again = 0.1_wp
 
 contains
 
@@ -34,14 +34,14 @@ contains
     asks = word_at(1) == '--start' .and. command_argument_count() >= 4
   end function asks_for_start
 
-  !> Lock the folder for the script. What a killed one has left at work ends by itself, and is waited for.
+  !> Lock the folder for the script. Programs that a killed script has left at work end by themselves, and are waited for.
   subroutine lock_cycle(code, error)
     integer, intent(out) :: code
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: folder
     real(wp) :: begun, waited
     integer :: process, state
-    logical :: told
+    logical :: reported
 
     code = exit_done
     folder = word_at(2)
@@ -49,7 +49,7 @@ contains
     if (allocated(error)) return
     call catch_signals()
     begun = wall_seconds()
-    told = word_at(5) == '--quiet'
+    reported = word_at(5) == '--quiet'
     do
       call lock_for_cycle(folder, 'lagacycle', process, state, error)
       if (state == is_replaced) code = exit_again
@@ -63,9 +63,9 @@ contains
         call fail(error, exit_machine, "what an earlier lagacycle has started in '"//folder//"' is still at work")
         return
       end if
-      if (.not. told .and. waited > told_after) then
+      if (.not. reported .and. waited > reported_after) then
         call print_line("waiting for the end of what an earlier lagacycle has started in '"//folder//"'", error)
-        told = .true.
+        reported = .true.
       end if
       call nap(look_again)
     end do

@@ -12,7 +12,7 @@ module cycle_refusal
 
 contains
 
-  !> The remesher has made no mesh.
+  !> The remesher made no mesh.
   pure function refuse_made(s, way) result(action)
     type(situation_t), intent(in) :: s
     character(len=*), intent(in) :: way
@@ -38,7 +38,7 @@ contains
     action%with_restart = .false.
   end function refuse_made
 
-  !> The solver did not take the mesh up.
+  !> The solver did not accept the mesh.
   pure function refuse_restart(s) result(action)
     type(situation_t), intent(in) :: s
     type(action_t) :: action
@@ -56,8 +56,8 @@ contains
     action%with_restart = .false.
   end function refuse_restart
 
-  !> The mesh balanced, and its first steps speak against it. The old mesh comes back before the row is written: killed in between,
-  !> the try is made again, and refused again.
+  !> The mesh reached equilibrium, but failed in its first steps. The old mesh is restored before the row is written: after a kill
+  !> in between, the try is made and refused again.
   pure function refuse_first_steps(s) result(action)
     type(situation_t), intent(in) :: s
     type(action_t) :: action

@@ -1,5 +1,5 @@
-!> Where a cycle stands: what its folder holds, how the program that was called last ended, what was tried. Plain data, filled by
-!> `cycle_folder` from files and by hand in tests; `cycle_decision` says what comes next.
+!> The situation of a cycle: what its folder holds, how the program that was called last ended, what was tried. Plain data, filled
+!> by `cycle_folder` from files and by hand in tests; `cycle_decision` decides the next action.
 module cycle_situation
   use cycle_table, only: try_row_t
   use exchange, only: checkpoint_facts_t
@@ -12,7 +12,7 @@ module cycle_situation
   public :: due_reason, is_due, is_in_distress, is_first_mesh, is_read, first_line
   public :: try_name, mesh_name, current_name
 
-  !> What was called last: nothing yet, `lagamine --check`, the solver, the remesher; or what came of it is dealt with.
+  !> What was called last: nothing yet, `lagamine --check`, the solver, the remesher; or its end has been dealt with.
   integer, parameter :: ended_nothing = 0, ended_check = 1, ended_lagamine = 2, ended_remdata = 3, ended_known = 4
 
   !> Name of the checkpoint of a run, after the name of its deck.
@@ -50,9 +50,9 @@ module cycle_situation
     type(checkpoint_file_t) :: made
     !> The remesher's facts are there, which it writes last.
     logical :: has_facts = .false.
-    !> Stages to blame as told by the remesher, the restart and the first steps, '' for none.
+    !> Responsible stages as reported by the remesher, the restart and the first steps, '' for none.
     character(len=:), allocatable :: made_stage, restart_stage, steps_stage
-    !> The restart found the mesh not good enough.
+    !> The restart refused the mesh.
     logical :: restart_refused = .false.
     !> There is a file of a try, perhaps of another one.
     logical :: has_tries = .false.
@@ -72,7 +72,7 @@ module cycle_situation
     !> `new%old_end` is the run's checkpoint.
     logical :: end_is_kept = .false.
     type(try_row_t), allocatable :: rows(:)
-    !> `summary.json` tells of the end of the scene, at this step on this mesh.
+    !> `summary.json` reports the end of the scene, at this step on this mesh.
     logical :: finished = .false.
     !> There is room on the disk for one more checkpoint.
     logical :: has_room = .true.
@@ -133,7 +133,7 @@ contains
     if (is_first_mesh(facts)) why = no_mesh_yet
   end function due_reason
 
-  !> The first line of what a program said that is no note.
+  !> The first line of a program's messages that is not a note.
   pure function first_line(said) result(line)
     character(len=*), intent(in) :: said
     character(len=:), allocatable :: line

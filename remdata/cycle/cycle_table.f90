@@ -1,5 +1,5 @@
-!> The table of a cycle, `cycle.csv`: a row for every try at a new mesh. It is the memory of the cycle: what was refused at a stop
-!> is not tried again there. No cell holds a comma or a quote.
+!> The table of a cycle, `cycle.csv`: a row for every try at a new mesh. What was refused at a stop is not tried
+!> again there. No cell holds a comma or a quote.
 module cycle_table
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
@@ -8,7 +8,7 @@ module cycle_table
   private
   public :: try_row_t, table_heading, number_of_columns, parse_table, line_of_cells
   public :: way_deck, way_transfer, way_finer, way_earlier, way_old_mesh
-  public :: number_refused, was_refused, has_new_mesh, keeps_old_mesh, can_blame_transfer, took_earlier
+  public :: number_refused, was_refused, has_new_mesh, keeps_old_mesh, transfer_is_responsible, took_earlier
 
   !> What is done for a new mesh, as the column `action` names it: as the deck says, another state transfer, finer elements, from
   !> the checkpoint one save earlier; or the old mesh goes on for a while.
@@ -19,20 +19,20 @@ module cycle_table
     'generation [-],try [-],stop_step [-],stop_time [time],step [-],trigger,action,result,accepted,stage,'// &
     'old_elements [-],new_elements [-],error_before [%],error_after [%],first_residual [-],iterations [-],force_change [%],'// &
     'energy_change [%],depth_change [-],least_step_ratio [-],remdata [s],restart [s],reason'
-  !> Places of columns in it.
+  !> Numbers of columns in it.
   integer, parameter :: at_generation = 1, at_stop_step = 3, at_stop_time = 4, at_action = 7, at_accepted = 9, at_stage = 10
   integer, parameter :: number_of_columns = 23
 
   !> Times are the same up to this share: the table has all their digits.
   real(wp), parameter :: same_time = 1.0e-12_wp
 
-  !> Of a row, what decisions look at.
+  !> The columns of a row that decisions depend on.
   type :: try_row_t
     integer :: generation = 0                !! of the new mesh
     integer :: stop_step = 0                 !! step at which the old mesh stopped
     real(wp) :: stop_time = 0.0_wp           !! [time]
     character(len=:), allocatable :: action  !! one of the ways above
-    character(len=:), allocatable :: stage   !! to blame, '' when accepted
+    character(len=:), allocatable :: stage   !! responsible, '' when accepted
     logical :: accepted = .false.
   end type try_row_t
 
@@ -95,7 +95,7 @@ contains
     good = row%accepted .or. cells(at_accepted)%s == 'n'
   end subroutine parse_row
 
-  !> Cells as a line of the table; what would part them is replaced.
+  !> Cells as a line of the table; characters that would separate cells are replaced.
   pure function line_of_cells(cells) result(line)
     type(string_t), intent(in) :: cells(:)   !! (ncell)
     character(len=:), allocatable :: line
@@ -172,8 +172,8 @@ contains
     end do
   end function keeps_old_mesh
 
-  !> Was a try at this stop refused for what came of the transfer? Another one cannot mend what comes before it.
-  pure function can_blame_transfer(rows, generation, stop_step) result(can)
+  !> Was a try at this stop refused by the transfer or a later stage? Another method of transfer cannot repair an earlier stage.
+  pure function transfer_is_responsible(rows, generation, stop_step) result(can)
     type(try_row_t), intent(in) :: rows(:)   !! (ntry)
     integer, intent(in) :: generation, stop_step
     logical :: can
@@ -184,7 +184,7 @@ contains
       if (rows(k)%generation /= generation .or. rows(k)%stop_step /= stop_step .or. rows(k)%accepted) cycle
       can = can .or. all(rows(k)%stage /= [character(len=10) :: 'contour', 'mesh', 'checkpoint'])
     end do
-  end function can_blame_transfer
+  end function transfer_is_responsible
 
   !> Was a mesh made from the save before a stop at this time, or at a later one?
   pure function took_earlier(rows, time) result(took)

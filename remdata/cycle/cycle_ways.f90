@@ -1,8 +1,8 @@
 !> Ways to a new mesh, in the order they are tried at a stop of the old one, and whether the try at hand is there.
 module cycle_ways
   use cycle_situation, only: checkpoint_file_t, is_first_mesh, is_in_distress, is_read, situation_t
-  use cycle_table, only: can_blame_transfer, keeps_old_mesh, number_refused, took_earlier, was_refused, way_deck, way_earlier, &
-    way_finer, way_old_mesh, way_transfer
+  use cycle_table, only: keeps_old_mesh, number_refused, took_earlier, transfer_is_responsible, was_refused, way_deck, &
+                         way_earlier, way_finer, way_old_mesh, way_transfer
   implicit none
   private
   public :: next_way, old_state, old_mesh_goes_on, is_whole
@@ -24,7 +24,7 @@ contains
       do k = 1, size(ways)
         way = trim(ways(k))
         if (was_refused(s%rows, generation, stop_step, way)) cycle
-        if (way == way_transfer .and. .not. can_blame_transfer(s%rows, generation, stop_step)) cycle
+        if (way == way_transfer .and. .not. transfer_is_responsible(s%rows, generation, stop_step)) cycle
         if (way == way_earlier .and. .not. has_earlier(s)) cycle
         ! once, and not where the old mesh could go no further or there is none
         if (way == way_old_mesh) then
@@ -75,7 +75,8 @@ contains
     goes_on = keeps_old_mesh(s%rows, s%new%generation, s%new%old_end%facts%step) .and. .not. cannot_go_on(s)
   end function old_mesh_goes_on
 
-  !> The try's checkpoint is whole, with its facts, and of the right generation and instant. What never bore a load is in balance.
+  !> The try's checkpoint is whole, with its facts, and of the right generation and instant.
+  !> A mesh that never carried a load is in equilibrium.
   pure function is_whole(s, way) result(whole)
     type(situation_t), intent(in) :: s
     character(len=*), intent(in) :: way

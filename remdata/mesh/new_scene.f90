@@ -1,7 +1,7 @@
 !> The scene on the new mesh: groups, sets of sides, elements on sides and dies made of sides as the deck has them.
 module new_scene
   use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, position_at_arc_length, position_t
-  use cards_side_dies, only: chain_of_sides
+  use cards_side_dies, only: curve_of_sides
   use dies, only: is_deformable, place_on_nodes
   use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
@@ -184,7 +184,7 @@ contains
         ! a scene without a mesh has no sides: its deck finds them on the first one
         if (size(die%nodes, 2) == 0) cycle
         call gather_sides(old%mesh%sides, old%dies(k)%nodes(2, :), new%mesh%sides, sides)
-        call chain_of_sides(sides, die%nodes)
+        call curve_of_sides(sides, die%nodes)
         if (size(die%nodes, 2) == 0 .or. size(die%nodes, 2) < size(sides, 2)) then
           call fail(error, exit_no_convergence, 'remdata: the sides of DIE '//die%name//' do not form one curve on the new mesh')
           return

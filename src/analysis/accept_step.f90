@@ -1,4 +1,4 @@
-!> What happens when a step is accepted: the trial state becomes the state, and every check is made.
+!> Acceptance of a step: the trial state becomes the state, and every check is made.
 module accept_step
   use bookkeeping, only: book_work, book_reactions, book_deformable_dies, measure_scene, book_spurious_mode, sample_contacts
   use elem_api, only: totals_t
@@ -21,7 +21,7 @@ module accept_step
 
 contains
 
-  !> Commit the step, book its work, measure the scene, check it. An error is a bug of ours: exit 6.
+  !> Commit the step, add up its work, measure the scene, check it. An error is a bug of the program: exit 6.
   subroutine accept(scene, equations, dt, outcome, solution, totals, error)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -55,7 +55,7 @@ contains
     call commit(scene, equations, solution)
   end subroutine accept
 
-  !> Commit an equilibrium restored at fixed time on a new mesh: no work is booked, no step counted, and the motion of the step
+  !> Commit an equilibrium restored at fixed time on a new mesh: no work is added, no step counted, and the motion of the step
   !> before stays the one to go on with.
   subroutine accept_balance(scene, equations, outcome, solution, totals, error)
     type(scene_t), intent(in) :: scene
@@ -141,7 +141,7 @@ contains
       if (size(solution%groups(g)%trial) == 0) cycle
       scale = max(scale, maxval(abs(solution%groups(g)%trial)))
       if (.not. all(abs(solution%groups(g)%trial) <= huge(1.0_wp))) then
-        call fail(error, exit_bug, 'step '//to_text(solution%step)//': not a number in the state of group '//to_text(g))
+        call fail(error, exit_bug, 'step '//to_text(solution%step)//': NaN or infinity in the state of group '//to_text(g))
         return
       end if
     end do

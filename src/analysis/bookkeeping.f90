@@ -1,4 +1,4 @@
-!> What an accepted step is worth: work, reactions, sums over the scene, the worst values so far.
+!> Totals of an accepted step: work, reactions, sums over the scene, the worst values so far.
 module bookkeeping
   use contact_contour, only: sample_depth
   use contact_penalties, only: allowed_penetration
@@ -25,7 +25,7 @@ module bookkeeping
 contains
 
   !> External work by the trapezoidal rule: forces from outside on nodes and pilots times their motion.
-  !> What acts from outside on an unknown is the internal force there, without the elements that are loads.
+  !> The external force on an unknown is the internal force there, without the elements that are loads.
   subroutine book_work(equations, du, solution)
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: du(:)   !! (ndof) motion of the step [unknown]
@@ -176,7 +176,7 @@ contains
     totals%friction_work = totals%friction_work + solution%friction_apart
   end subroutine measure_scene
 
-  !> The motion of the step that the points of an element did not see: the worst of all steps is kept.
+  !> The spurious mode of the step, a motion without strain at the points: the worst of all steps is kept.
   subroutine book_spurious_mode(scene, equations, solution)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations

@@ -19,7 +19,7 @@ module history
 
 contains
 
-  !> Factor from per radian to what people see.
+  !> Factor from per radian to the full circumference.
   pure function circumference(scene) result(factor)
     type(scene_t), intent(in) :: scene
     real(wp) :: factor

@@ -1,5 +1,5 @@
-!> Whether a new mesh is good enough: what the restart on it found against the limits of REMSH ACCEPT, and which stage of the remesh
-!> is responsible where it is not.
+!> Whether a new mesh is good enough: the measures of the restart on it against the limits of REMSH ACCEPT, and which stage of the
+!> remesh is responsible where it is not.
 module judge_remesh
   use acceptance, only: acceptance_t
   use errors, only: error_t, exit_no_convergence, fail
@@ -15,8 +15,8 @@ module judge_remesh
 
   !> Elements of a smaller scaled Jacobian are distorted (the remesher makes none).
   real(wp), parameter :: bad_shape = 0.2_wp
-  !> Pressures that miss the force of a die by more than this share of the largest have been lost on the way. (Found: 0.27 where a
-  !> point in a corner carried much of the force; Newton's method finds the rest.)
+  !> Pressures that miss the force of a die by more than this share of the largest were lost in the transfer. (Found: 0.27 where
+  !> a point in a corner carried much of the force; Newton's method finds the rest.)
   real(wp), parameter :: lost_pressure = 0.5_wp
 
   character(len=*), parameter :: advice_after_refusal = &
@@ -32,7 +32,7 @@ contains
     change = worst_change(balance, balance%pilot_after)
   end function force_change
 
-  !> The same of the forces that the carried pressures make, before anything moves.
+  !> The same of the forces of the carried pressures, before the first iteration.
   pure function carried_change(balance) result(change)
     type(balance_t), intent(in) :: balance
     real(wp) :: change
@@ -66,7 +66,7 @@ contains
       change = abs(balance%after%elastic_energy - balance%before%elastic_energy)/balance%before%elastic_energy
   end function energy_change
 
-  !> What was found, each with its limit.
+  !> The measures, each with its limit.
   function limit_lines(scene, balance) result(lines)
     type(scene_t), intent(in) :: scene
     type(balance_t), intent(in) :: balance
@@ -98,9 +98,9 @@ contains
                                           //to_text(bad_shape, 3)
     balance%refused = len(what) > 0
     if (.not. balance%refused) return
-    balance%stage = stage_to_blame(scene, balance)
+    balance%stage = responsible_stage(scene, balance)
     call fail(error, exit_no_convergence, 'mesh '//to_text(scene%generation)//' refused at step '//to_text(solution%step)//': ' &
-              //what//'; stage to blame: '//balance%stage, advice_after_refusal)
+              //what//'; responsible stage: '//balance%stage, advice_after_refusal)
   end subroutine refuse_remesh
 
   !> The first limit that is passed, in words; empty when all hold.
@@ -111,7 +111,7 @@ contains
 
     what = ''
     if (balance%depth_change > accept%depth_change) then
-      what = 'sides lie '//to_text(balance%depth_change, 3)//' times what is allowed from where they bore their pressure, ' &
+      what = 'sides lie '//to_text(balance%depth_change, 3)//' times what is allowed from where they carried their pressure, ' &
              //'at most '//to_text(accept%depth_change, 3)
     else if (balance%first_residual > accept%first_residual) then
       what = 'the first residual is '//to_text(balance%first_residual, 3)//' of the stress, in the norm of energy, at most ' &
@@ -132,7 +132,7 @@ contains
 
   !> The mesh, where an element is distorted; the contour, where it is not where it carried the pressures;
   !> the transfer of contact, where the pressures do not make the forces of the dies any more; else that of the state.
-  pure function stage_to_blame(scene, balance) result(stage)
+  pure function responsible_stage(scene, balance) result(stage)
     type(scene_t), intent(in) :: scene
     type(balance_t), intent(in) :: balance
     character(len=:), allocatable :: stage
@@ -146,7 +146,7 @@ contains
     else
       stage = 'transfer'
     end if
-  end function stage_to_blame
+  end function responsible_stage
 
   !> `0.05 (limit 0.25)`.
   pure function held(value, limit) result(s)

@@ -74,7 +74,7 @@ contains
     flush (listing%unit)
   end subroutine list_lines
 
-  !> The listing is a diary: what was written before stays, also of steps that are now made again. The empty line ends one that
+  !> The listing is only appended to: earlier text stays, also of steps that are now repeated. The empty line ends one that
   !> was cut in the middle.
   subroutine list_resumed(listing, path, solution)
     type(listing_t), intent(in) :: listing
@@ -118,7 +118,7 @@ contains
     end do
   end subroutine list_iterations
 
-  !> Equilibrium restored on a new mesh: what it took, and what it changed.
+  !> Equilibrium restored on a new mesh: its iterations, and what it changed.
   subroutine list_balance(listing, scene, solution, balance, outcome)
     type(listing_t), intent(in) :: listing
     type(scene_t), intent(in) :: scene
@@ -141,7 +141,7 @@ contains
     flush (listing%unit)
   end subroutine list_balance
 
-  !> A step that was cut: why, where, and what comes next.
+  !> A step that was cut: why, where, and the next length.
   subroutine list_cut(listing, scene, solution, dt, next, outcome)
     type(listing_t), intent(in) :: listing
     type(scene_t), intent(in) :: scene
@@ -167,7 +167,7 @@ contains
     write (listing%unit, '(a)') 'event: contact begins, step '//to_text(solution%step + 1)//' shortened to '//to_text(dt)
   end subroutine list_event
 
-  !> Something the user should know: in the listing, and on the terminal.
+  !> A note for the user: in the listing, and on the terminal.
   subroutine list_note(listing, note)
     type(listing_t), intent(in) :: listing
     character(len=*), intent(in) :: note
@@ -200,7 +200,7 @@ contains
     else
       call print_line(trim(line), unseen)
     end if
-    ! nobody is there to see it
+    ! the output cannot be written
     if (allocated(unseen)) listing%live = .false.
   end subroutine show_progress
 

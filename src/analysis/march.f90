@@ -32,12 +32,12 @@ module march
   private
   public :: march_to_end
 
-  !> A step shortened to an event is shortened by something, so that the event is met in a few trials.
+  !> A step shortened to an event is shortened by at least this much, so that the event is met in a few trials.
   real(wp), parameter :: largest_event = 0.95_wp
 
 contains
 
-  !> March from where the solution stands to the end of the scene, or to where it must stop.
+  !> March from the instant of the solution to the end of the scene, or to where it must stop.
   subroutine march_to_end(scene, solution, run, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
@@ -79,9 +79,9 @@ contains
       call note_step(solution%probation, length)
       call estimate(scene, run%estimator, run%equations%timers, solution)
       call list_step(run%listing, solution, outcome, run%totals)
-      ! at the end a new mesh would have nothing to do
+      ! at the end no new mesh is needed
       if (.not. at_end(scene, solution)) call look_at_mesh(scene, run%equations%timers, run%listing, solution)
-      call tell_spurious_mode(scene, solution, run)
+      call report_spurious_mode(scene, solution, run)
       call show_progress(run%listing, scene, solution, outcome%iterations)
       if (on_probation) call judge_steps(scene, solution, outcome, run, error)
       if (allocated(error)) exit
@@ -155,7 +155,7 @@ contains
     end if
   end subroutine start
 
-  !> Equilibrium on a new mesh, judged; what is there then is what later steps stand on.
+  !> Equilibrium on a new mesh, judged; later steps begin from it.
   subroutine balance_new_mesh(scene, solution, run, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
@@ -165,7 +165,7 @@ contains
     type(outcome_t) :: outcome
 
     allocate (run%balance)
-    ! what points of contact that are gone had carried is kept apart
+    ! friction work that the new points of contact do not hold is kept apart
     solution%friction_apart = solution%friction_work - run%totals%friction_work
     run%totals%friction_work = solution%friction_work
     run%balance%before = run%totals
@@ -186,7 +186,7 @@ contains
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
   end subroutine balance_new_mesh
 
-  !> A step on probation was accepted: is the mesh refused by it, or was it the last that is looked at?
+  !> A step on probation was accepted: the mesh may be refused by it, or the probation may end.
   subroutine judge_steps(scene, solution, outcome, run, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
@@ -201,7 +201,7 @@ contains
     end if
   end subroutine judge_steps
 
-  !> The mesh is refused after all, with what the run cannot go on for if there is an error already.
+  !> The mesh is refused after all; an error that is there already is the reason why the run cannot go on.
   subroutine refuse_mesh(scene, solution, outcome, run, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -213,19 +213,19 @@ contains
     call refuse_after_all(scene, run%equations, solution, outcome, run%stem, error)
   end subroutine refuse_mesh
 
-  !> A note, once, when an element has moved in a way that its points do not see.
-  subroutine tell_spurious_mode(scene, solution, run)
+  !> A note, once, when an element has moved in the spurious mode, without strain at its points.
+  subroutine report_spurious_mode(scene, solution, run)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(run_t), intent(inout) :: run
 
-    if (run%spurious_told .or. .not. solution%worst_spurious > spurious_limit) return
-    ! an element of an earlier mesh was told of there
+    if (run%spurious_reported .or. .not. solution%worst_spurious > spurious_limit) return
+    ! an element of an earlier mesh was reported there
     if (solution%spurious_element == 0) return
-    run%spurious_told = .true.
+    run%spurious_reported = .true.
     call list_note(run%listing, 'note: step '//to_text(solution%step)//': element '//to_text(solution%spurious_element)//' of ' &
                    //scene%groups(solution%spurious_group)%name//' moves in the way that 4 integration points do not see ('// &
                    to_text(100*solution%worst_spurious, 3)//' % of its strain); PL8LS with 9 points and MEAN has no such motion')
-  end subroutine tell_spurious_mode
+  end subroutine report_spurious_mode
 
 end module march

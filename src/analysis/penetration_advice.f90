@@ -1,4 +1,4 @@
-!> What to do where the part is deeper in a die than its contact law allows (`PENETR`, a share of the side).
+!> Advice where the part is deeper in a die than its contact law allows (`PENETR`, a share of the side).
 !>
 !> At a point: the penalty made from PENETR gives a pressure p the depth PENETR side p/(E/100), so depth over allowed is 100 p/E,
 !> whatever PENETR and the length of the side are. A multiplier takes that depth away (AUGMENT), or a larger penalty (AKP).
@@ -13,7 +13,7 @@ module penetration_advice
   private
   public :: advice_at_points, advice_between_points, states_penetration
 
-  !> Places among the values of every contact law (contact_penalties).
+  !> Numbers among the values of every contact law (contact_penalties).
   integer, parameter :: at_penetr = 1, at_akp = 2, at_augment = 4
   !> Penetrations are reported as too large beyond this share above the allowed.
   real(wp), parameter :: slack = 1.0e-6_wp
@@ -69,7 +69,7 @@ contains
     advice = advice//shorter
   end function advice_between_points
 
-  !> A contact law of the scene says how deep the part may be.
+  !> A contact law of the scene limits the depth of the part.
   pure function states_penetration(scene) result(states)
     type(scene_t), intent(in) :: scene
     logical :: states
@@ -77,7 +77,7 @@ contains
     states = any_law(scene, at_penetr, without=.false.)
   end function states_penetration
 
-  !> Is there a contact whose law has, or is without, a value above 0 at this place? Laws that allow no depth are not asked.
+  !> Is there a contact whose law has, or is without, a value above 0 at this number? Laws that allow no depth do not count.
   pure function any_law(scene, place, without) result(there)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: place

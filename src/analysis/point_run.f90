@@ -1,4 +1,4 @@
-!> `lagamine --point DECK`: one material point along a path of strains and stresses, its answer as a table.
+!> `lagamine --point DECK`: one material point along a path of strains and stresses, its response as a table.
 module point_run
   use csv_writer, only: csv_t
   use deck_reader, only: deck_t, read_deck
@@ -63,7 +63,7 @@ contains
     integer :: k
 
     call place_point(path, point, variables)
-    if (.not. options%quiet) call tell_path(path, point, error)
+    if (.not. options%quiet) call print_path(path, point, error)
     if (options%check .or. allocated(error)) return
     file = join_path(options%out, stem_of(options%deck)//'.point.csv')
     call begin_table(variables, file, table, error)
@@ -71,11 +71,11 @@ contains
     temperature = path%temperature
     time = 0
     call write_row(table, time, temperature, counts, 0, point, error)
-    if (.not. options%quiet) call tell_point(time, point, unseen, heading=.true.)
+    if (.not. options%quiet) call print_point(time, point, unseen, heading=.true.)
     do k = 1, size(path%ramps)
       if (allocated(error)) exit
       call follow(path%ramps(k), point, time, temperature, counts, table, error)
-      if (.not. options%quiet) call tell_point(time, point, unseen)
+      if (.not. options%quiet) call print_point(time, point, unseen)
     end do
     call table%close(late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
@@ -97,7 +97,7 @@ contains
     call diagnostics%error(error)
   end subroutine read_path
 
-  !> The point at rest, and what its state is made of.
+  !> The point at rest, and the variables of its state.
   subroutine place_point(path, point, variables)
     type(point_path_t), intent(in) :: path
     type(point_t), intent(out) :: point
@@ -118,7 +118,7 @@ contains
     end do
   end subroutine place_point
 
-  !> All steps of a ramp, one row of the table each. A step that finds no answer is cut.
+  !> All steps of a ramp, one row of the table each. A step without a solution is cut.
   subroutine follow(ramp, point, time, temperature, counts, table, error)
     type(ramp_t), intent(in) :: ramp
     type(point_t), intent(inout) :: point
@@ -153,7 +153,7 @@ contains
         share = share/2
         if (share*ramp%steps >= least_share) cycle
         time = begun + at*(ramp%time - begun)
-        call fail(error, exit_no_convergence, ramp%where_defined//': PATH: no answer after time '//to_text(time) &
+        call fail(error, exit_no_convergence, ramp%where_defined//': PATH: no solution after time '//to_text(time) &
                   //', step '//to_text(counts%steps + 1)//', even when the step is cut by '//to_text(nint(1/least_share)), &
                   'a given stress may be out of reach, or take smaller steps')
         return
@@ -210,7 +210,7 @@ contains
     call table%status(error)
   end subroutine write_row
 
-  subroutine tell_path(path, point, error)
+  subroutine print_path(path, point, error)
     type(point_path_t), intent(in) :: path
     type(point_t), intent(in) :: point
     type(error_t), allocatable, intent(inout) :: error
@@ -219,10 +219,10 @@ contains
     call print_line('a point of '//path%material%name//' ('//point%law%name//': '//point%law%purpose//'), kinematics ' &
                     //point%kinematics%name//', '//to_text(size(path%ramps))//' ramps, '//to_text(sum(path%ramps%steps)) &
                     //' steps until time '//to_text(path%ramps(size(path%ramps))%time), error)
-  end subroutine tell_path
+  end subroutine print_path
 
   !> A line for the screen: time, strains, stresses.
-  subroutine tell_point(time, point, error, heading)
+  subroutine print_point(time, point, error, heading)
     real(wp), intent(in) :: time
     type(point_t), intent(in) :: point
     type(error_t), allocatable, intent(inout) :: error
@@ -237,7 +237,7 @@ contains
     end if
     write (line, '(10(1x, es11.4))') time, point%strain, point%state(1:4), von_mises(point%state(1:4))
     call print_line(line, error)
-  end subroutine tell_point
+  end subroutine print_point
 
   pure function von_mises(s) result(q)
     real(wp), intent(in) :: s(4)

@@ -17,13 +17,13 @@ module point_step
   !> Least share of a correction that is tried, and by how much the residual must fall (Armijo).
   real(wp), parameter :: least_share = 2.0_wp**(-30), decrease = 1.0e-4_wp
 
-  !> A point of a body: what it is made of, its strains (xx, yy, xy, zz; point_paths) and its state.
+  !> A point of a body: its material and law, its strains (xx, yy, xy, zz; point_paths) and its state.
   type :: point_t
     type(law_t) :: law
     type(material_t) :: material
     type(kinematics_t) :: kinematics
     real(wp) :: strain(4) = 0.0_wp
-    !> Strain per time of the last step: where the search begins; zero where the path turns.
+    !> Strain per time of the last step: the first guess; zero where the path turns.
     real(wp) :: rate(4) = 0.0_wp
     real(wp), allocatable :: state(:)
   end type point_t
@@ -56,7 +56,7 @@ contains
       end if
       call solve(of_unknowns(matrix), residual, change, singular)
       if (singular) exit
-      ! at a corner of the answer, such as yield, the step is too long by as much as moduli differ
+      ! at a corner of the response, such as yield, the step is too long by the ratio of the moduli
       before = norm2(residual)
       share = min(1.0_wp, largest_change/max(largest_change, maxval(abs(change))))
       do while (share > least_share)
@@ -71,7 +71,7 @@ contains
 
   contains
 
-    !> Stress that counts as none.
+    !> Stress that counts as zero.
     pure function allowed(stress, matrix) result(size)
       real(wp), intent(in) :: stress(4), matrix(4, 4)
       real(wp) :: size

@@ -1,5 +1,6 @@
-!> The first steps on a new mesh, held against those before it: a mesh that balanced and then allows only very short steps, or none,
-!> is refused after all. Nothing is saved then: the run stands where it was saved last, and its caller goes back to the old mesh.
+!> The first steps on a new mesh, compared with those before it: a mesh that reached equilibrium but then allows only very short
+!> steps, or none, is refused after all. Nothing is saved then: the run stands at its last save, and its caller goes back to the old
+!> mesh.
 module probation
   use acceptance, only: end_probation, probation_steps, step_ratio
   use equations, only: equations_t
@@ -17,12 +18,12 @@ module probation
   private
   public :: is_too_short, pass_probation, refuse_after_all
 
-  !> A residual of which more than this is at sides of contact is the fault of contact.
+  !> Contact is responsible for a residual of which more than this share is at its sides.
   real(wp), parameter :: most_of_it = 0.5_wp
 
 contains
 
-  !> Steps have become shorter than a mesh on probation may ask for.
+  !> Steps have become shorter than is allowed on probation.
   pure function is_too_short(scene, solution) result(short)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -31,7 +32,7 @@ contains
     short = step_ratio(solution%probation) < scene%remesher%accept%step_ratio
   end function is_too_short
 
-  !> The mesh has made its steps, or as many as it was there for: it stays.
+  !> The mesh has made its steps on probation, or the run ends before: it is accepted.
   subroutine pass_probation(scene, stem, listing, solution, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: stem
@@ -69,7 +70,7 @@ contains
     end if
     stage = stage_of(scene, equations, solution, outcome)
     call fail(error, exit_no_convergence, 'mesh '//to_text(scene%generation)//' refused on probation after step ' &
-              //to_text(solution%step)//': '//what//'; stage to blame: '//stage, advice_after_refusal)
+              //to_text(solution%step)//': '//what//'; responsible stage: '//stage, advice_after_refusal)
     call write_verdict(scene, solution, stem, stage, late)
     if (allocated(late)) call move_alloc(late, error)
   end subroutine refuse_after_all
@@ -108,7 +109,7 @@ contains
     end if
   end function stage_of
 
-  !> `NAME.gNN.probation.json`: there before any checkpoint says that the probation is over.
+  !> `NAME.gNN.probation.json`: written before any checkpoint states that the probation is over.
   subroutine write_verdict(scene, solution, stem, stage, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution

@@ -1,4 +1,4 @@
-!> How large a residual force is, and where it acts: it shows whether a remesh went wrong, and which stage of it.
+!> How large a residual force is, and where it acts: it shows whether a remesh failed, and at which stage.
 module residual_place
   use dofs, only: dofs_t
   use fields, only: displacement_field
@@ -54,7 +54,7 @@ contains
       end do
     end do
     if (.not. any(square > 0)) return
-    ! nothing holds or loads the body: its own stresses are all there is
+    ! nothing holds or loads the body: there are only residual stresses
     if (.not. reference > 0) reference = largest
     if (reference > 0) place%relative = sqrt(sum(square)/reference)
     place%node = maxloc(square, 1)

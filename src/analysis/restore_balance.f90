@@ -1,10 +1,10 @@
 !> Equilibrium on a new mesh, at fixed time and fixed dies.
 !>
-!> State that was carried over does not balance exactly. Newton's method removes the residual; where it does not manage at
-!> once, in parts: a share of the first residual is left as a force from outside, and taken away half by half. What this takes, and
-!> what it changes, is published and judged (chapter 12 of the thesis).
+!> State that was carried over does not balance exactly. Newton's method removes the residual; where it fails to
+!> do so at once, in parts: a share of the first residual is left as an external force, and halved again and again. The iterations
+!> this takes, and what it changes, are reported and judged (chapter 12 of the thesis).
 !>
-!> In no time nothing flows: the laws answer elastically. If they flowed, whatever is corrected could only unload where
+!> In zero time nothing flows: the laws respond elastically. If they flowed, whatever is corrected could only unload where
 !> everything flows, and the dies would lose force (2 to 15 % in an upsetting on a mesh that has folded). What this leaves outside
 !> the yield surface the first step of the march returns, while the dies move on.
 module restore_balance
@@ -32,10 +32,10 @@ module restore_balance
   !> What the restart reports about the remesh.
   type :: balance_t
     logical :: restored = .false.
-    !> The remesh is refused, by the fault of this stage.
+    !> The remesh is refused; this stage is responsible.
     logical :: refused = .false.
     character(len=:), allocatable :: stage
-    !> The first residual: by the energy of the linear correction it asks for, and where it sits.
+    !> The first residual: by the energy of its linear correction, and where it acts.
     real(wp) :: first_residual = 0.0_wp
     type(residual_place_t) :: place
     !> Least scaled Jacobian of an element of the mesh.
@@ -52,7 +52,7 @@ module restore_balance
     real(wp), allocatable :: pressed(:)
     !> Change of the depth in a die, in the mean of its pressures, over the penetration allowed and a thousandth of the side.
     real(wp) :: depth_change = 0.0_wp
-    !> Why Newton's method gave up; not allocated where it did not.
+    !> Why Newton's method failed; not allocated where it did not.
     character(len=:), allocatable :: reason
     !> Seconds on the wall.
     real(wp) :: wall = 0.0_wp
@@ -66,7 +66,7 @@ module restore_balance
 
 contains
 
-  !> Restore equilibrium. When it is not `restored`, the solution stands where the last part left it.
+  !> Restore equilibrium. When it is not `restored`, the solution is that of the last part.
   subroutine restore_equilibrium(scene, equations, solution, balance, outcome)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -128,7 +128,7 @@ contains
     balance%wall = wall_seconds() - started
   end subroutine restore_equilibrium
 
-  !> Twice the elastic energy of the linear correction that a residual asks for: r . K^-1 r.
+  !> Twice the elastic energy of the linear correction of a residual: r . K^-1 r.
   subroutine work_of_correction(equations, residual, work)
     type(equations_t), intent(inout) :: equations
     real(wp), intent(in) :: residual(:)
@@ -141,7 +141,7 @@ contains
     call return_to_chosen(equations%solves(equations%now)%solver)
     call solve_correction(equations, residual, correction, error)
     work = abs(dot_product(residual, correction))
-    ! what no linear correction removes is as large as it can be; Newton's method then shows more
+    ! a residual that no linear correction removes counts as the largest; Newton's method then shows more
     if (allocated(error)) work = huge(work)
   end subroutine work_of_correction
 
@@ -197,7 +197,7 @@ contains
 
   !> Depth found on the new contour against the depth that was carried, over what contact allows and what a parabola through three
   !> nodes may miss: the mean over the pressures that a die carries, of the die where it is worst. (A single point may be far off
-  !> where contact ends: it carries next to nothing.)
+  !> where contact ends: it carries almost nothing.)
   pure function depth_change(scene, solution) result(change)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution

@@ -38,7 +38,7 @@ module run_deck
 
 contains
 
-  !> Do what the options ask for; `code` is the program's exit code when `error` stays unallocated.
+  !> Carry out the options; `code` is the program's exit code when `error` stays unallocated.
   subroutine run_options_on_deck(options, code, error)
     type(run_options_t), intent(in) :: options
     integer, intent(out) :: code
@@ -47,7 +47,7 @@ contains
 
     code = exit_done
     call catch_signals()
-    ! a checkpoint there is read only when nobody can replace it
+    ! a checkpoint there is read only when no other process can replace it
     if (directory_exists(options%out) .and. .not. options%check) call lock_folder(options%out, 'lagamine', lock, error)
     if (.not. allocated(error)) call read_and_run(options, lock, code, error)
     call unlock_folder(lock)
@@ -73,7 +73,7 @@ contains
     if (.not. (allocated(error) .or. options%check)) then
       call start_solution(scene, solution)
       if (run%resume) call read_state(checkpoint, scene, solution, error)
-      ! what made the run stop is of the past: it goes on
+      ! the reason why the run stopped is dropped: it goes on
       call drop_triggers(solution%estimate)
     end if
     call checkpoint%file%close(ignored)
@@ -97,7 +97,7 @@ contains
     end if
   end subroutine read_and_run
 
-  !> Bodies that have contours alone: a checkpoint for the remesher, who makes the first mesh.
+  !> Bodies that have contours alone: a checkpoint for the remesher, which makes the first mesh.
   subroutine ask_for_mesh(options, scene, solution, run, error)
     type(run_options_t), intent(in) :: options
     type(scene_t), intent(in) :: scene
@@ -142,7 +142,7 @@ contains
     call diagnostics%error(error)
     if (allocated(remesh)) then
       if (scene%generation /= remesh%generation) then
-        ! the deck was read without elements of blocks: what is wrong with it says nothing
+        ! the deck was read without elements of blocks: its errors do not count
         if (allocated(error)) deallocate (error)
         call fail(unfit, exit_input, options%resume//': its groups or sides are not those of the deck')
       end if
@@ -193,7 +193,7 @@ contains
     call open_listing(run%stem//'.log', run%resume, options%quiet, options%progress, solution%time/scene%strategy%end_time, &
                       run%listing, error)
     if (allocated(error)) return
-    ! what an earlier call came to says nothing of this one: no summary, no end
+    ! the result of an earlier call is not that of this one: its summary and end are removed
     call remove_file(join_path(run%folder, 'summary.json'), error)
     ! written only after a while
     if (.not. allocated(error)) call refuse_place(run%stem//'.ckp.h5', error)
@@ -223,7 +223,7 @@ contains
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
     if (.not. (options%quiet .or. options%progress .or. allocated(error))) then
       call print_lines(lines, late)
-      ! a script must see first why a run has stopped
+      ! scripts read first why a run has stopped
       if (allocated(late) .and. run%exit_code == exit_done) call move_alloc(late, error)
     end if
   end subroutine run_and_report

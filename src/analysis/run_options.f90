@@ -16,7 +16,7 @@ module run_options
     character(len=:), allocatable :: law
     type(string_t), allocatable :: overrides(:)
     logical :: check = .false., point = .false., quiet = .false., help = .false., version = .false.
-    !> Progress and nothing else, also where the output is no terminal.
+    !> Progress only, also where the output is no terminal.
     logical :: progress = .false.
     integer :: threads = 0   !! 0: as many as there are free processors
   end type run_options_t

@@ -37,12 +37,12 @@ module run_record
     type(csv_t) :: table
     type(results_t) :: results
     type(totals_t) :: totals
-    !> How the run got into equilibrium on a new mesh; not allocated where it did not have to.
+    !> How equilibrium was restored on a new mesh; not allocated where it was not.
     type(balance_t), allocatable :: balance
     !> A new mesh was refused, at the restart or on probation.
     logical :: mesh_refused = .false.
     !> The note on a spurious mode has been given.
-    logical :: spurious_told = .false.
+    logical :: spurious_reported = .false.
     integer :: exit_code = exit_done
     character(len=:), allocatable :: stop_reason
   end type run_t

@@ -19,7 +19,7 @@ module run_stop
 
 contains
 
-  !> The smallest step has failed: say why, where, and what to try; leave a picture of the residual.
+  !> The smallest step has failed: report why, where, and what to try; write the field of the residual.
   subroutine stop_here(scene, solution, dt, outcome, run, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -80,7 +80,7 @@ contains
     if (allocated(error)) then
       run%exit_code = error%code
       run%stop_reason = error%message
-      ! a mesh that is refused leaves what was saved
+      ! a refused mesh changes none of the saved results
       if (error%code == exit_no_convergence .and. solution%step > 0 .and. .not. run%mesh_refused) then
         call save_all(scene, solution, run, late)
       end if

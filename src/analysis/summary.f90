@@ -20,7 +20,7 @@ module summary
   private
   public :: run_facts_t, write_summary, summary_lines
 
-  !> What the run knows of itself.
+  !> Facts of the run.
   type :: run_facts_t
     character(len=:), allocatable :: version, deck, deck_text, status, stop_reason, blas
     !> Parameters set on the command line, NAME=VALUE.
@@ -172,7 +172,7 @@ contains
     end if
   end function energy_imbalance
 
-  !> Calls and seconds of each effect: an effect's time is booked by the elements that carry it.
+  !> Calls and seconds of each effect: an effect's time is that of its elements.
   subroutine add_effects(json, scene, equations)
     type(json_t), intent(inout) :: json
     type(scene_t), intent(in) :: scene

@@ -1,4 +1,4 @@
-!> The mesh under watch: its errors after every step, and whether a new one is due (cards ESTIM, REMSH).
+!> Supervision of the mesh: its errors after every step, and whether a new one is due (cards ESTIM, REMSH).
 module watch_mesh
   use estimator, only: estimate_errors, estimator_t
   use listing, only: list_lines, listing_t

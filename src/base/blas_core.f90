@@ -1,7 +1,7 @@
 !> Which kernels OpenBLAS should take on this processor.
 !>
 !> OpenBLAS knows processors by their family and model; on one younger than itself it falls back to its oldest kernels, whatever
-!> the processor can do. Then a core is asked for by the instruction sets. A core that OpenBLAS has picked for processors with AVX2,
+!> the processor can do. Then a core is chosen by the instruction sets. A core that OpenBLAS has picked for processors with AVX2,
 !> and one that is not known here, stays.
 module blas_core
   use text, only: string_t
@@ -16,7 +16,7 @@ module blas_core
                                                    'Generic', 'generic', 'Unknown']
   character(len=12), parameter :: cores_avx(4) = [character(len=12) :: 'Sandybridge', 'Bulldozer', 'Piledriver', 'Steamroller']
 
-  !> What is asked for, the best first, and what the processor must have for it (flags of /proc/cpuinfo).
+  !> Cores to ask for, the best first, and what the processor must have for each (flags of /proc/cpuinfo).
   character(len=*), parameter :: candidates(3) = [character(len=12) :: 'SkylakeX', 'Haswell', 'Sandybridge']
   character(len=*), parameter :: needs(3) = [character(len=48) :: 'avx512f avx512cd avx512bw avx512dq avx512vl', 'avx2 fma', 'avx']
 

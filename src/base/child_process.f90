@@ -1,7 +1,7 @@
-!> Another program, run as a process of its own and waited for, but not for ever.
+!> Another program, run as a process of its own and waited for within a limit of time.
 !>
-!> Whatever becomes of it, a crash or an endless loop, ends in a few words and not in the end of this program. Bindings to the
-!> C library of a POSIX system; what a status says is read as Linux, the BSDs and macOS write it.
+!> A crash or an endless loop of it becomes a message and does not end this program. Bindings to the
+!> C library of a POSIX system; a status is read as Linux, the BSDs and macOS write it.
 module child_process
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_loc, c_long, c_null_char, c_null_ptr, c_ptr
   use errors, only: error_t, exit_machine, exit_signal, fail
@@ -26,9 +26,9 @@ module child_process
   end type timespec_t
 
   integer(c_int), parameter :: output = 1, errors = 2, signal_kill = 9, no_hang = 1
-  !> What a shell answers for a program that it cannot start.
+  !> Exit code of a shell for a program that it cannot start.
   integer(c_int), parameter :: not_started = 127
-  !> How often a child that runs is looked after.
+  !> Interval at which a running child is checked.
   real(wp), parameter :: look_again = 0.005_wp
   integer(c_int), parameter :: mode = int(o'666', c_int)
 
@@ -155,8 +155,9 @@ contains
     number = int(c_getpid())
   end function own_process
 
-  !> This process becomes another program, for a parent: it is told to stop (SIGTERM) when that one ends, and does not begin when it
-  !> has ended already. After `limit` seconds, if there is a limit, the system ends it (SIGALRM). Comes back only with an error.
+  !> This process becomes another program, for a parent: the system signals it to stop (SIGTERM) when the parent ends, and it does
+  !> not begin when the parent has ended already. After `limit` seconds, if there is a limit, the system ends it (SIGALRM). Returns
+  !> only with an error.
   subroutine become_for(parent, limit, words, error)
     integer, intent(in) :: parent           !! number of the process that must be there
     integer, intent(in) :: limit            !! [s], 0: none
@@ -187,7 +188,7 @@ contains
     ignored = c_nanosleep(timespec_t(int(seconds, c_long), int(1.0e9_wp*mod(seconds, 1.0_wp), c_long)), c_null_ptr)
   end subroutine nap
 
-  !> The child's part: it never comes back. Should its parent be killed, the alarm ends it.
+  !> The child's part: it never returns. Should its parent be killed, the alarm ends it.
   subroutine become(program_name, words, said, seconds)
     character(kind=c_char, len=*), intent(in) :: program_name, said
     type(c_ptr), intent(in) :: words(:)

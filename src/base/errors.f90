@@ -1,4 +1,4 @@
-!> What went wrong, in one line, with the exit code for scripts.
+!> An error: a message of one line, and the exit code for scripts.
 !> An unallocated `error_t` means success; only the mains stop a program.
 module errors
   implicit none

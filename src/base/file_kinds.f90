@@ -1,4 +1,4 @@
-!> What stands under a name in the file system: only regular files are read back, and only they are replaced by output.
+!> Kind of file that has a name in the file system: only regular files are read back, and only they are replaced by output.
 !>
 !> Binding to `statx` of Linux, whose structure is the same on every processor (that of `stat` is not).
 module file_kinds
@@ -41,7 +41,7 @@ module file_kinds
 
 contains
 
-  !> What stands under a name. A link is looked through, unless `itself`; one that leads nowhere is `symbolic_link` all the same.
+  !> Kind of file that has a name. A link is followed, unless `itself`; one that leads nowhere is `symbolic_link` all the same.
   function file_kind(path, itself) result(kind)
     character(len=*), intent(in) :: path
     logical, intent(in), optional :: itself

@@ -1,11 +1,11 @@
 !> One program at a time writes its results into a folder.
 !>
 !> The lock is the kernel's, on the file `lagamine.lock` in the folder: it ends with the last process that holds the file open,
-!> however that one ends. So there is no stale lock; a file that is left behind by a kill means nothing. What the file says
-!> (program, process, machine, since when) is for the message alone.
+!> however that one ends. So there is no stale lock; a file that is left behind by a kill locks nothing. The text of the file
+!> (program, process, machine, since when) is for messages alone.
 !>
-!> `lagacycle` holds the file open, under the number in LAGAMINE_LOCK, for all programs it starts: who has inherited the open file
-!> has the lock. The kernel is asked for that, the variable only says which number it is.
+!> `lagacycle` holds the file open, under the number in LAGAMINE_LOCK, for all programs it starts: a process that has inherited the
+!> open file has the lock. The kernel decides that, the variable only holds the number of the open file.
 module folder_lock
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_size_t
   use child_process, only: nap, own_process
@@ -28,7 +28,7 @@ module folder_lock
 
   character(len=*), parameter :: lock_name = 'lagamine.lock', inherited_number = 'LAGAMINE_LOCK'
 
-  !> What comes of a try to lock a folder for a cycle: done; the file has been removed or replaced since it was opened; programs
+  !> Results of a try to lock a folder for a cycle: done; the file has been removed or replaced since it was opened; programs
   !> that a cycle which is gone has started are still at work.
   integer, parameter :: is_locked = 0, is_replaced = 1, is_left_at_work = 2
 
@@ -78,8 +78,8 @@ module folder_lock
 
 contains
 
-  !> Lock a folder that is there for a program, unless it has been, or fail with who has it. What has been inherited from a cycle is
-  !> enough.
+  !> Lock a folder that is there for a program, unless it has been, or fail with the name of its holder. A lock inherited from a
+  !> cycle is enough.
   subroutine lock_folder(folder, program_name, lock, error)
     character(len=*), intent(in) :: folder, program_name
     type(folder_lock_t), intent(inout) :: lock
@@ -103,7 +103,7 @@ contains
         return
       end if
       call try_lock(descriptor, lock%path, locked, error)
-      ! who held it may have removed it meanwhile
+      ! its holder may have removed it meanwhile
       kept = same_file(lock%path, int(descriptor))
       if (locked .and. kept) exit
       ignored = c_close(descriptor)
@@ -155,7 +155,7 @@ contains
     if (.not. is_gone(holder)) call refuse(folder, holder, error)
   end subroutine lock_for_cycle
 
-  !> Number of the open file that the environment tells of, -1 where it tells of none.
+  !> Number of the open file that the environment names, -1 where it names none.
   function inherited() result(descriptor)
     integer(c_int) :: descriptor
     character(len=:), allocatable :: word
@@ -168,7 +168,7 @@ contains
     if (status /= 0) descriptor = -1
   end function inherited
 
-  !> Not locked and no error: somebody else has it.
+  !> Not locked and no error: another process has the lock.
   subroutine try_lock(descriptor, path, locked, error)
     integer(c_int), intent(in) :: descriptor
     character(len=*), intent(in) :: path
@@ -207,7 +207,7 @@ contains
     end if
   end subroutine refuse
 
-  !> Write into the file who has the lock. A disk that is full has no room for it, and keeps the lock all the same.
+  !> Write the holder of the lock into the file. On a full disk this fails, and the lock holds all the same.
   subroutine sign(descriptor, program_name, process)
     integer(c_int), intent(in) :: descriptor
     character(len=*), intent(in) :: program_name
@@ -226,7 +226,7 @@ contains
     if (status == 0) written = c_write_at(descriptor, line, len(line, c_size_t), 0_c_size_t)
   end subroutine sign
 
-  !> What the file says; it says nothing for a moment when it is just being signed.
+  !> The text of the file; it is empty for a moment while the holder writes it.
   function holder_of(path) result(holder)
     character(len=*), intent(in) :: path
     type(holder_t) :: holder
@@ -247,7 +247,7 @@ contains
     end do
   end function holder_of
 
-  !> Has the process that signed ended? Of another machine, or where it cannot be told: no.
+  !> Has the process that signed ended? On another machine, or where it cannot be found out: no.
   function is_gone(holder) result(gone)
     type(holder_t), intent(in) :: holder
     logical :: gone

@@ -1,7 +1,7 @@
 !> Memory that this process may still take: by its own limit (RLIMIT_AS, `ulimit -v`), by that of its control group, by what the
-!> machine has free. And what an allocation that is refused all the same ends in.
+!> machine has free. And the end of the program when an allocation is refused all the same.
 !>
-!> Libraries do not survive a refusal (OpenBLAS asks for its buffer for ever), so what will be needed is asked for beforehand. The
+!> Libraries do not survive a refusal (OpenBLAS asks for its buffer without end), so the memory needed is checked beforehand. The
 !> run-time library of gfortran would end the program with a message and a code of its own: its two procedures for that are
 !> replaced here, the linker takes the first of a name.
 module memory_limits
@@ -15,7 +15,7 @@ module memory_limits
   public :: require_memory, memory_left, megabytes
 
   real(wp), parameter :: mega = 2.0_wp**20
-  !> What the small things take that nobody counts [bytes].
+  !> Memory of small things that is not counted one by one [bytes].
   real(wp), parameter :: reserve = 8*mega
 
   type, bind(c) :: limit_t
@@ -38,7 +38,7 @@ module memory_limits
 
 contains
 
-  !> An error when there is not so much memory left, and some more.
+  !> An error when less memory is left than this and the reserve.
   subroutine require_memory(bytes, purpose, error, address_space)
     real(wp), intent(in) :: bytes            !! that will be written to, perhaps allocated already: counts for machine and group
     character(len=*), intent(in) :: purpose

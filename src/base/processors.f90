@@ -1,6 +1,6 @@
 !> What the system reports about the processors: what they can do, which of them this process may use, how busy they are.
 !>
-!> Read from /proc, which Linux has; where it is not there, or says something else, nothing is known and nothing is made of it.
+!> Read from /proc, which Linux has; where it is missing, or has another format, nothing is known and nothing is changed.
 module processors
   use kinds, only: i8, wp
   use system, only: cpu_seconds, wall_seconds
@@ -70,7 +70,7 @@ contains
            + (after%own - before%own)/(after%instant - before%instant)
   end function free_processors
 
-  !> Processors that no other process is at work on right now. A single look: the times of the processors say more, later.
+  !> Processors that no other process is at work on right now. A single reading: the times of the processors are more exact, later.
   function free_at_start(times) result(free)
     type(processor_use_t), intent(in) :: times
     real(wp) :: free

@@ -1,6 +1,6 @@
 !> Lines for the standard output and the stream of errors, each written at once; what cannot be written is an error.
 !>
-!> Fortran's own unit ends the program with a message of the run-time library, or loses the lines without a word, depending on when
+!> Fortran's own unit ends the program with a message of the run-time library, or loses the lines silently, depending on when
 !> its buffer is emptied. So lines go to the system directly.
 module standard_streams
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_size_t
@@ -42,7 +42,7 @@ contains
 
   !> To be called first. A stream that the program was started without is taken by /dev/null, open for reading only: the next file
   !> opened would have its number otherwise, and lines meant for the terminal would go into it; this way they are refused.
-  !> A reader that goes away is told by the write that fails.
+  !> The write that fails reports a reader that goes away.
   subroutine claim_standard_streams()
     integer(c_int), parameter :: read_only = 0
     integer(c_int) :: descriptor, ignored
@@ -55,7 +55,7 @@ contains
     call signals_to_errors()
   end subroutine claim_standard_streams
 
-  !> A line for the standard output; none once there is an error. A reader who has gone away (`| head`) wants no more: no error.
+  !> A line for the standard output; none once there is an error. A reader that has gone away (`| head`) is no error.
   subroutine print_line(line, error)
     character(len=*), intent(in) :: line
     type(error_t), allocatable, intent(inout) :: error
@@ -86,7 +86,7 @@ contains
     call fail(error, exit_machine, 'cannot write to the standard output: '//reason())
   end subroutine print_part
 
-  !> What went wrong, or what the user should know, on the stream of errors. Where that cannot be written, the exit code has to do.
+  !> An error or a note, on the stream of errors. Where that cannot be written, only the exit code shows the error.
   subroutine print_error(message)
     character(len=*), intent(in) :: message
     logical :: ignored

@@ -1,5 +1,5 @@
-!> What libraries read from the environment when they are loaded, before the program begins, is set, and the program then takes
-!> its own place: the same process with the same arguments and files, as `exec` does. Called before anything is read or written.
+!> What libraries read from the environment when they are loaded, before the program begins, is set, and the program then replaces
+!> itself: the same process with the same arguments and files, as `exec` does. Called before anything is read or written.
 !>
 !> A variable that the user has set stays as it is. What is set here is found set the second time, so there is no third.
 module start_again
@@ -19,7 +19,7 @@ module start_again
   !> take 3 to 15 ms, all of it kept from those that are waited for when the machine has other work too.
   character(len=*), parameter :: rounds_of_waiting = '10000'
 
-  !> Remembers that it was here that the core of OpenBLAS was asked for, and which.
+  !> Variable that holds the core of OpenBLAS asked for here; OpenBLAS's own variable.
   character(len=*), parameter :: asked_here = 'LAGAMINE_BLAS_CORE', core_setting = 'OPENBLAS_CORETYPE'
 
   interface
@@ -41,7 +41,7 @@ module start_again
 
 contains
 
-  !> Start again if the libraries would do better otherwise; comes back when they would not, or when that cannot be.
+  !> Start again if the libraries need other settings; returns when they do not, or when it is not possible.
   subroutine start_as_fits(threads, blas_core)
     integer, intent(in) :: threads               !! the most there will be
     character(len=*), intent(in) :: blas_core    !! kernels that OpenBLAS has picked, '' where it is not there
@@ -90,7 +90,7 @@ contains
     again = .not. allocated(error)
   end subroutine put
 
-  !> Comes back only where the system has no /proc or the program's file is gone.
+  !> Returns only where the system has no /proc or the program's file is gone.
   subroutine take_own_place()
     character(kind=c_char, len=:), allocatable, target :: text
     character(kind=c_char, len=4096) :: path

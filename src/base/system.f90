@@ -1,4 +1,4 @@
-!> What Fortran has no word for: directories, signals, the terminal, memory, the disk.
+!> System services that Fortran lacks: directories, signals, the terminal, memory, the disk.
 !> Thin bindings to the C library of a POSIX system (errno is found as glibc and musl keep it).
 module system
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_funloc, c_funptr, c_int, c_intptr_t, &
@@ -306,7 +306,7 @@ contains
     if (directory(len(directory):) == '/') path = directory//name
   end function join_path
 
-  !> From now on a reader that goes away (SIGPIPE) and a file that may not grow (SIGXFSZ) are told by the write that fails.
+  !> From now on a reader that goes away (SIGPIPE) and a file that may not grow (SIGXFSZ) are reported by the write that fails.
   subroutine signals_to_errors()
     type(c_funptr) :: previous, ignore
 
@@ -315,7 +315,7 @@ contains
     previous = c_signal(signal_file_size, ignore)
   end subroutine signals_to_errors
 
-  !> From now on SIGINT and SIGTERM no longer end the program: they are only written down.
+  !> From now on SIGINT and SIGTERM no longer end the program: they are only recorded.
   subroutine catch_signals()
     type(c_funptr) :: previous
 
@@ -375,7 +375,7 @@ contains
       call fail(error, exit_machine, 'cannot set the environment variable '//name//': '//reason())
   end subroutine set_environment
 
-  !> End the program with an exit code and without a word, which `stop` cannot do in Fortran 2008.
+  !> End the program with an exit code and without a message, which `stop` cannot do in Fortran 2008.
   subroutine program_stop(code)
     integer, intent(in) :: code
 

@@ -21,7 +21,7 @@ module threads
     type(processor_use_t), private :: last
   end type team_t
 
-  !> Seconds between two looks at the load: some ten ticks of the system's clock.
+  !> Seconds between two readings of the load: some ten ticks of the system's clock.
   real(wp), parameter :: look_every = 0.25_wp
 
   !> With one of these set, the user has settled how many threads there are, or where.
@@ -30,7 +30,7 @@ module threads
 
 contains
 
-  !> Use n threads; 0 leaves what the environment says.
+  !> Use n threads; 0 keeps the number of the environment.
   subroutine set_threads(n)
     integer, intent(in) :: n
 
@@ -60,7 +60,7 @@ contains
     if (team%by_load) call set_threads(threads_for(free_at_start(team%last), team%most))
   end subroutine start_team
 
-  !> Look at the load now and then, and change the number of threads to it. Not for use inside parallel regions.
+  !> Read the load at intervals, and adapt the number of threads to it. Not for use inside parallel regions.
   subroutine fit_to_load(team)
     type(team_t), intent(inout) :: team
     type(processor_use_t) :: now

@@ -1,4 +1,4 @@
-!> Where the time goes: a ledger of named entries, each with its calls and its seconds on the wall.
+!> Time by tasks: a table of named entries, each with its calls and its seconds on the wall.
 !> Entries may overlap and nest, an entry in itself included (then the outermost counts the time).
 !> Not for use inside parallel regions.
 module timers

@@ -19,7 +19,7 @@ module card_names
     !> Keyword of the card that defines it, and its place.
     type(string_t), allocatable :: keywords(:)
     type(location_t), allocatable :: location(:)
-    !> Place of the thing named in a list of the scene.
+    !> Number of the thing named in a list of the scene.
     integer, allocatable :: item(:)
     logical, allocatable :: used(:)
   contains
@@ -74,7 +74,7 @@ contains
     self%used = [self%used, .false.]
   end subroutine define
 
-  !> Read the name of a thing that some card defines: its place in `words`, 0 after a mistake.
+  !> Read the name of a thing that some card defines: its number in `words`, 0 after a mistake.
   subroutine find(self, cursor, what, k)
     class(names_t), intent(inout) :: self
     type(cursor_t), intent(inout) :: cursor
@@ -87,7 +87,7 @@ contains
     if (k > 0) then
       self%used(k) = .true.
     else if (word /= '') then
-      ! What was meant is not reported as unused as well.
+      ! The name that was meant is not reported as unused as well.
       call self%mention(nearest_word(word, self%words))
     end if
   end subroutine find

@@ -15,7 +15,7 @@ module card_places
   private
   public :: place_t, read_sides, read_place, numbers_after_name, node_text
 
-  !> `POINT x y` means the node there; one further off than this share of the mesh's size is a slip.
+  !> `POINT x y` means the node there; one further off than this share of the mesh's size is a typing error.
   real(wp), parameter :: point_tolerance = 1.0e-3_wp
 
   type :: place_t
@@ -194,7 +194,7 @@ contains
       call cursor%fail('there is no node at this point; the nearest is '//node_text(draft, node)//', '//to_text(distance)//' away')
   end subroutine read_point
 
-  !> A node as people know it: label and coordinates.
+  !> A node for messages: label and coordinates.
   pure function node_text(draft, node) result(s)
     type(draft_t), intent(in) :: draft
     integer, intent(in) :: node

@@ -154,7 +154,7 @@ contains
       if (size(parts%bodies) > size(draft%scene%remesher%contours)) then
         call diagnostics%add(where, 'BODY', 'a deck has bodies by their contours or bodies with elements, not both')
       else if (.not. draft%scene%remesher%largest > 0) then
-        call diagnostics%add(where, 'BODY', 'there is nothing to tell the size of its elements: expected a REMSH card with SIZE')
+        call diagnostics%add(where, 'BODY', 'the size of its elements is not given: expected a REMSH card with SIZE')
       end if
     end associate
   end subroutine refuse_half_contours

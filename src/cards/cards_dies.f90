@@ -18,16 +18,16 @@ module cards_dies
   !> Row of the card after those of pieces.
   integer, parameter :: fillet = 4
 
-  !> What rows before say of the next one.
-  type :: chain_t
-    !> Piece the last row of pieces began with; 0 before the first.
+  !> State of reading the rows of a card.
+  type :: die_rows_t
+    !> First piece of the last row of pieces; 0 before the first row.
     integer :: first = 0
     !> Pieces so far: the die's array has room for more.
     integer :: npiece = 0
-    !> A fillet waits for the piece after it.
+    !> The last row was a fillet; the piece after it is still to come.
     logical :: fillet = .false.
     real(wp) :: radius = 0.0_wp, tolerance = 0.0_wp
-  end type chain_t
+  end type die_rows_t
 
 contains
 
@@ -40,7 +40,7 @@ contains
     type(string_t), allocatable :: forms(:)
     type(die_t), allocatable :: dies(:)
     type(die_t) :: die
-    type(chain_t) :: chain
+    type(die_rows_t) :: rows
     integer :: i, n
 
     call words_of(piece_words//' FILLT', forms)
@@ -60,15 +60,15 @@ contains
       call read_pilot(cursor, die%pilot)
       if (allocated(die%pieces)) deallocate (die%pieces)
       allocate (die%pieces(2, 3, 0))
-      chain = chain_t()
+      rows = die_rows_t()
       call cursor%next_row('SEGM, PARAB or ARC and its points')
       do while (.not. cursor%failed())
-        call read_row(cursor, forms, die, chain)
+        call read_row(cursor, forms, die, rows)
         if (.not. cursor%more_rows()) exit
         call cursor%next_row('a piece')
       end do
-      if (chain%fillet) call cursor%fail('a fillet stands between two pieces: none comes after it')
-      die%pieces = die%pieces(:, :, :chain%npiece)
+      if (rows%fillet) call cursor%fail('a fillet stands between two pieces: none comes after it')
+      die%pieces = die%pieces(:, :, :rows%npiece)
       if (ends_meet(die%pieces)) die%pieces(:, 3, size(die%pieces, 3)) = die%pieces(:, 1, 1)
       call close_card(draft, cursor, deck%cards(i))
       call finish_die(die)
@@ -90,36 +90,36 @@ contains
     call read_xy(cursor, 'the pilot', pilot(1:2))
   end subroutine read_pilot
 
-  !> One row: a piece, or a fillet for the corner to come.
-  subroutine read_row(cursor, forms, die, chain)
+  !> One row: a piece, or a fillet of the corner between the pieces before and after it.
+  subroutine read_row(cursor, forms, die, rows)
     type(cursor_t), intent(inout) :: cursor
     type(string_t), intent(in) :: forms(:)
     type(die_t), intent(inout) :: die
-    type(chain_t), intent(inout) :: chain
+    type(die_rows_t), intent(inout) :: rows
     character(len=:), allocatable :: message
     real(wp), allocatable :: rounded(:, :, :), whole(:, :, :)
     integer :: form, n, first, rest
 
     call cursor%name('a form of piece', forms, form)
     if (form == fillet) then
-      if (chain%first == 0) call cursor%fail('a fillet stands between two pieces: none comes before it')
-      if (chain%fillet) call cursor%fail('a fillet stands between two pieces, this one follows a fillet')
-      call cursor%real('the radius of the fillet', chain%radius, lower=0.0_wp, strict_lower=.true., unit='length')
-      call cursor%real('the tolerance of the fillet', chain%tolerance, lower=0.0_wp, strict_lower=.true., unit='length')
-      chain%fillet = .true.
+      if (rows%first == 0) call cursor%fail('a fillet stands between two pieces: none comes before it')
+      if (rows%fillet) call cursor%fail('a fillet stands between two pieces, this one follows a fillet')
+      call cursor%real('the radius of the fillet', rows%radius, lower=0.0_wp, strict_lower=.true., unit='length')
+      call cursor%real('the tolerance of the fillet', rows%tolerance, lower=0.0_wp, strict_lower=.true., unit='length')
+      rows%fillet = .true.
       return
     end if
-    n = chain%npiece
-    call read_piece(cursor, form, chain%npiece, die%pieces)
+    n = rows%npiece
+    call read_piece(cursor, form, rows%npiece, die%pieces)
     if (cursor%failed()) then
-      chain%fillet = .false.
+      rows%fillet = .false.
       return
     end if
-    first = chain%first
-    chain%first = n + 1
-    if (.not. chain%fillet) return
-    chain%fillet = .false.
-    call round_corner(die%pieces(:, :, first:n), die%pieces(:, :, n + 1:chain%npiece), chain%radius, chain%tolerance, &
+    first = rows%first
+    rows%first = n + 1
+    if (.not. rows%fillet) return
+    rows%fillet = .false.
+    call round_corner(die%pieces(:, :, first:n), die%pieces(:, :, n + 1:rows%npiece), rows%radius, rows%tolerance, &
                       rounded, rest, message)
     if (message /= '') then
       call cursor%fail(message)
@@ -128,8 +128,8 @@ contains
     allocate (whole(2, 3, first - 1 + size(rounded, 3)))
     whole(:, :, :first - 1) = die%pieces(:, :, :first - 1)
     whole(:, :, first:) = rounded
-    chain%npiece = size(whole, 3)
-    chain%first = chain%npiece - rest + 1
+    rows%npiece = size(whole, 3)
+    rows%first = rows%npiece - rest + 1
     call move_alloc(whole, die%pieces)
   end subroutine read_row
 

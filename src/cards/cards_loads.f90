@@ -1,4 +1,4 @@
-!> LIC, FIXED, MOVE and FORCE (on nodes): multipliers in time, and what they drive.
+!> LIC, FIXED, MOVE and FORCE (on nodes): multipliers in time, and the motions and forces that they drive.
 module cards_loads
   use card_places, only: node_text, place_t, read_place
   use cards_pilots, only: acts_on_die
@@ -163,7 +163,7 @@ contains
     end if
   end subroutine read_move
 
-  !> A node's component has one motion: the same again is welcome, another is refused.
+  !> A node's component has one motion: the same again is accepted, another is refused.
   subroutine add_fixation(cursor, draft, fixation, prescribed, given, diagnostics)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
@@ -232,7 +232,7 @@ contains
     if (size(place%nodes) > 0 .and. .not. cursor%failed()) then
       force%node = place%nodes(1)
       k = prescribed(force%component, force%node)
-      if (k > 0) call cursor%fail('the force would do nothing: the motion of '//node_text(draft, force%node) &
+      if (k > 0) call cursor%fail('the force is without effect: the motion of '//node_text(draft, force%node) &
                                   //' in this direction is given at '//diagnostics%place(given(k)))
     end if
     call cursor%real('the amplitude', force%amplitude, unit='force, per radian when axisymmetric')

@@ -170,7 +170,7 @@ contains
       call cursor%fail('nothing locks in plane stress: the mean dilatation is for the other states')
   end subroutine read_option
 
-  !> Rows of an element card: label and nodes, turned from labels into places.
+  !> Rows of an element card: label and nodes, their labels replaced by numbers.
   subroutine read_rows(cursor, nrow, draft, nodes_known, body)
     type(cursor_t), intent(inout) :: cursor
     integer, intent(in) :: nrow

@@ -1,4 +1,4 @@
-!> What drives the pilots of dies beside MOVE: FORCE and FREE let a component go, SPRNG ties it to where it stands.
+!> What drives the pilots of dies beside MOVE: FORCE and FREE release a component, SPRNG ties it to its position at the start.
 module cards_pilots
   use card_places, only: place_t, read_place
   use deck_cursor, only: cursor_t
@@ -130,7 +130,7 @@ contains
     call cursor%name('a direction', directions, component)
   end subroutine read_component
 
-  !> What people give is for the full circumference, forces inside are per radian.
+  !> Values of the card are for the full circumference, forces in the solver are per radian.
   pure function per_circumference(draft) result(factor)
     type(draft_t), intent(in) :: draft
     real(wp) :: factor

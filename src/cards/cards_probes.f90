@@ -22,7 +22,7 @@ module cards_probes
   private
   public :: read_probes
 
-  !> A point further out of the box around the mesh than this share of its size is a slip.
+  !> A point further out of the box around the mesh than this share of its size is a typing error.
   real(wp), parameter :: outside_tolerance = 1.0e-3_wp
 
 contains

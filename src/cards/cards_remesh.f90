@@ -15,9 +15,9 @@ module cards_remesh
   private
   public :: read_remesh
 
-  !> Rows of REMSH that ask for a new mesh, one word each, and all rows.
-  character(len=*), parameter :: askers = 'ERROR ANGLE MIDDLE JACOB SCALED ASPECT CONTACT DISTRESS TIMES STROKE'
-  character(len=*), parameter :: rows = askers//' BAD LEAST '//remesher_words
+  !> Rows of REMSH with limits for a new mesh, one word each, and all rows.
+  character(len=*), parameter :: limit_rows = 'ERROR ANGLE MIDDLE JACOB SCALED ASPECT CONTACT DISTRESS TIMES STROKE'
+  character(len=*), parameter :: rows = limit_rows//' BAD LEAST '//remesher_words
   !> The middle third of a side.
   real(wp), parameter :: middle_third = 1.0_wp/3.0_wp
 
@@ -49,7 +49,7 @@ contains
     call complete_options(draft%scene%remesher)
   end subroutine read_remesh
 
-  !> Each row once, but STROKE, and at least one that asks for something.
+  !> Each row once, but STROKE, and at least one with a limit.
   subroutine read_rows(cursor, draft)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
@@ -68,14 +68,14 @@ contains
       if (k == 0) return
       if (given(k) .and. words(k)%s /= 'STROKE') call cursor%fail(words(k)%s//' is given twice')
       given(k) = .true.
-      asked = asked .or. index(' '//askers//' ', ' '//words(k)%s//' ') > 0
+      asked = asked .or. index(' '//limit_rows//' ', ' '//words(k)%s//' ') > 0
       call read_row(cursor, draft, words(k)%s)
       if (.not. cursor%more_rows()) exit
     end do
     call cursor%end_row()
     associate (rules => draft%scene%remesh)
       if (.not. asked .and. .not. has_contours(draft%scene%remesher)) &
-        call cursor%fail('nothing here asks for a new mesh: expected one of '//askers)
+        call cursor%fail('no row here has a limit for a new mesh: expected one of '//limit_rows)
       if (rules%bad_share > 0 .and. .not. any(abs(rules%shape) < never)) &
         call cursor%fail('BAD counts elements by their shape: expected one of ANGLE MIDDLE JACOB SCALED ASPECT too')
     end associate
@@ -139,7 +139,7 @@ contains
       if (cursor%failed()) return
       associate (end_time => draft%scene%strategy%end_time)
         if (end_time > 0 .and. .not. time < end_time) &
-          call cursor%fail('this time is not before the end at '//to_text(end_time)//': a new mesh would have nothing to do')
+          call cursor%fail('this time is not before the end at '//to_text(end_time)//': no mesh is made there')
       end associate
       draft%scene%remesh%times = [draft%scene%remesh%times, time]
       last = time

@@ -10,7 +10,7 @@ module cards_side_dies
   use text, only: string_t
   implicit none
   private
-  public :: read_side_dies, chain_of_sides
+  public :: read_side_dies, curve_of_sides
 
 contains
 
@@ -43,9 +43,9 @@ contains
         if (cursor%failed() .or. .not. cursor%more()) exit
       end do
       associate (die => draft%scene%dies(n))
-        call chain_of_sides(sides, die%nodes)
+        call curve_of_sides(sides, die%nodes)
         if (size(die%nodes, 2) < size(sides, 2)) then
-          call cursor%fail('the sides of a die follow one another in one chain; some of these touch no other, or three meet')
+          call cursor%fail('the sides of a die follow one another in one curve; some of these touch no other, or three meet')
         end if
         if (allocated(die%pieces)) deallocate (die%pieces)
         allocate (die%pieces(2, 3, size(die%nodes, 2)))
@@ -57,9 +57,9 @@ contains
 
   !> Sides end to end, each and all in the sense of a die: along it, its body is on the right. A closed curve begins
   !> with the first side given. Sides that do not follow are left out.
-  pure subroutine chain_of_sides(sides, chain)
+  pure subroutine curve_of_sides(sides, curve)
     integer, intent(in) :: sides(:, :)                  !! (3, n), traversed with their body on the left
-    integer, allocatable, intent(out) :: chain(:, :)    !! (3, m)
+    integer, allocatable, intent(out) :: curve(:, :)    !! (3, m)
     logical :: taken(size(sides, 2))
     integer :: order(size(sides, 2)), k, n
 
@@ -76,7 +76,7 @@ contains
       taken(k) = .true.
       k = findloc(sides(3, :) == sides(1, k) .and. .not. taken, .true., dim=1)
     end do
-    chain = sides([3, 2, 1], order(:n))
-  end subroutine chain_of_sides
+    curve = sides([3, 2, 1], order(:n))
+  end subroutine curve_of_sides
 
 end module cards_side_dies

@@ -146,7 +146,7 @@ contains
       end do
       if (strategy%end_time > 0 .or. .not. known) return
       call diagnostics%register(deck%path, where%file)
-      call diagnostics%add(where, 'STOP', 'no LIC goes beyond time 0: a STOP card must tell the end')
+      call diagnostics%add(where, 'STOP', 'no LIC goes beyond time 0: a STOP card must give the end')
     end associate
   end subroutine read_end
 

@@ -1,4 +1,4 @@
-!> TEMPE: the temperature of a body, and that laws which ask for one have it.
+!> TEMPE: the temperature of a body, and the check that laws which need one have it.
 module cards_temperature
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
@@ -55,7 +55,7 @@ contains
     g = 0
   end function body_group
 
-  !> One temperature for a body, and only where its law knows what to do with it.
+  !> One temperature for a body, and only where its law uses it.
   subroutine check_body(cursor, draft, g)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft
@@ -122,7 +122,7 @@ contains
     end if
   end function reason
 
-  !> What a material answers depends on the temperature.
+  !> The response of a material depends on the temperature.
   pure function knows_temperature(law, material) result(yes)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material

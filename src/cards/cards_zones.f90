@@ -101,7 +101,7 @@ contains
     mark%pick = 2*k - 3
   end subroutine read_line
 
-  !> Words that may follow, each once; what matter was is not what rides on a die.
+  !> Words that may follow, each once; MATTER and DIE exclude each other.
   subroutine read_options(cursor, draft, known, mark)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft

@@ -13,7 +13,7 @@ module field_places
 contains
 
   !> The card fails where one of these nodes is not of a body with the field, or, with `own`, where none has a value of its own.
-  !> Nothing is looked at while bodies have mistakes.
+  !> Nothing is checked while bodies have mistakes.
   subroutine refuse_without_field(cursor, draft, field, nodes, label, own)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft

@@ -1,4 +1,4 @@
-!> What laws ask of their numbers beyond the range of each.
+!> Conditions of laws on their numbers beyond the range of each.
 module law_checks
   use deck_cursor, only: cursor_t
   use law_api, only: find_parameter, law_t, line_choice
@@ -10,7 +10,7 @@ module law_checks
 
 contains
 
-  !> What a law asks for beyond the range of each number.
+  !> Conditions of a law beyond the range of each number.
   subroutine check_numbers(cursor, law, material)
     type(cursor_t), intent(inout) :: cursor
     type(law_t), intent(in) :: law

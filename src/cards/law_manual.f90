@@ -1,4 +1,4 @@
-!> Laws in words, for `lagamine --law`: the list of all; of one its card, its numbers, its state, where it comes from.
+!> Description of laws, for `lagamine --law`: the list of all; of one its card, its numbers, its state, its source.
 module law_manual
   use kinds, only: wp
   use law_api, only: contact_law, find_parameter, heat_law, kind_names, law_line_t, law_t, line_choice, line_pairs, parameter_t

@@ -6,7 +6,7 @@ module mesh_parts
   private
   public :: mesh_parts_t, body_t, start_parts, sort_labels, find_label, root_of, merge_nodes
 
-  !> Elements of one card: a group in the making.
+  !> Elements of one card, from which a group is made.
   type :: body_t
     character(len=:), allocatable :: name
     character(len=:), allocatable :: elem

@@ -35,7 +35,7 @@ contains
     if (n > 0 .and. .not. cursor%failed()) then
       gap = length_of(first - pieces(:, 3, n))
       extent = maxval(abs(first))
-      ! seldom: all of the chain need not be looked at for each piece
+      ! seldom, so that the cost does not grow with the square of the number of pieces
       if (gap > gap_tolerance*extent) extent = max(extent, maxval(abs(pieces(:, :, :n))))
       if (gap > gap_tolerance*extent) &
         call cursor%fail('the piece must begin where the last one ended, at '//to_text(pieces(1, 3, n), 10)//' ' &

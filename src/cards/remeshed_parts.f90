@@ -27,7 +27,7 @@ contains
     integer :: i, k, nnode
 
     if (.not. fits(remesh, draft, parts)) then
-      ! blocks have no elements now: nothing is looked up in them
+      ! blocks have no elements now: nothing is searched in them
       parts%sound = .false.
       return
     end if

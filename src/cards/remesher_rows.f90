@@ -1,7 +1,7 @@
-!> Rows of REMSH that say how the new mesh is made, and what they stand at where the deck says nothing.
+!> Rows of REMSH on how the new mesh is made, and their default values.
 !>
-!> Sizes and numbers that are not given follow the mesh of the deck itself, however often it has been remeshed since: whoever chose
-!> that mesh has said how fine it should be.
+!> Sizes and numbers that are not given follow the mesh of the deck itself, however often it has been remeshed since: the choice
+!> of that mesh states how fine the mesh should be.
 module remesher_rows
   use acceptance, only: acceptance_t
   use block_mesh, only: polygon_area

@@ -1,4 +1,4 @@
-!> A scene in the making: what the families of cards hand to one another while a deck is read.
+!> A scene while a deck is read: the data that the families of cards share.
 module scene_draft
   use card_names, only: names_t
   use deck_cursor, only: cursor_t

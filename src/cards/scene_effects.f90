@@ -70,7 +70,7 @@ contains
                            to_text(state_of_law(laws(material%law_id), material))//' state per point')
           if (asks_for(laws(material%law_id), 'friction')) then
             if (.not. scene%effects(5)%on) scene%effects(5)%why = 'PHI and PBOUE of every contact law are 0'
-            call switch_on(5, rubs(laws(material%law_id), g), 'LAW', material%name, 'unsymmetric matrix, friction work')
+            call switch_on(5, has_friction(laws(material%law_id), g), 'LAW', material%name, 'unsymmetric matrix, friction work')
           end if
         end associate
       end associate
@@ -93,7 +93,7 @@ contains
       if (present(within)) scene%effects(k)%within = within
     end subroutine set
 
-    !> The first card that asks for an effect is the one named.
+    !> The first card that needs an effect is the one named.
     subroutine switch_on(k, condition, keyword, first_field, adds)
       integer, intent(in) :: k
       logical, intent(in) :: condition
@@ -105,7 +105,7 @@ contains
       scene%effects(k)%adds = adds
     end subroutine switch_on
 
-    !> A card as people name it: keyword, first field, file and line. A body may come from a BLOCK or a BODY.
+    !> A card in messages: keyword, first field, file and line. A body may come from a BLOCK or a BODY.
     function card_text(keyword, first_field) result(s)
       character(len=*), intent(in) :: keyword, first_field
       character(len=:), allocatable :: s, body
@@ -147,7 +147,7 @@ contains
     end function state_of_law
 
     !> Coulomb's law without coefficient and cohesion has no friction; another law always has it.
-    pure function rubs(law, g) result(yes)
+    pure function has_friction(law, g) result(yes)
       type(law_t), intent(in) :: law
       integer, intent(in) :: g
       logical :: yes
@@ -160,7 +160,7 @@ contains
       associate (values => scene%materials(scene%groups(g)%material)%values)
         yes = values(phi) > 0 .or. values(cohesion) > 0
       end associate
-    end function rubs
+    end function has_friction
 
     !> Field a group's card begins with: the name of the block or set without its sides.
     pure function before_slash(name) result(s)

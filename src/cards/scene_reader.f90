@@ -80,7 +80,7 @@ contains
     else
       draft%scene%remesher%own_mesh = measure_own_mesh(parts)
     end if
-    ! without a mesh cards are read as where it has mistakes: nothing is looked up in it
+    ! without a mesh cards are read as where it has mistakes: nothing is searched in it
     if (has_contours(draft%scene%remesher) .and. has_own_mesh) parts%sound = .false.
     call finish_mesh(draft, parts, diagnostics)
     if (size(parts%bodies) == 0) call refuse_empty(deck, diagnostics)
@@ -162,7 +162,7 @@ contains
     end do
   end subroutine refuse_missing_drivers
 
-  !> What is defined must be used. Words on cards that nobody knows count as uses.
+  !> What is defined must be used. Words on cards of unknown keywords count as uses.
   subroutine refuse_unused_names(deck, draft, keywords, diagnostics)
     type(deck_t), intent(in) :: deck
     type(draft_t), intent(inout) :: draft

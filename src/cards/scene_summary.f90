@@ -1,4 +1,4 @@
-!> What a scene holds, in lines for people: printed by `--check` and at the start of a run.
+!> Summary of a scene: printed by `--check` and at the start of a run.
 module scene_summary
   use dies, only: is_deformable
   use elem_api, only: elem_t

@@ -1,4 +1,4 @@
-!> Typed reading of the fields of one card, with the messages a user wants.
+!> Typed reading of the fields of one card, with messages that state what is expected.
 !>
 !>     call cursor%open(deck%cards(i), diagnostics)
 !>     call cursor%name('the name of a die', dies, die)
@@ -17,7 +17,7 @@ module deck_cursor
   private
   public :: cursor_t
 
-  !> An expression such as 0.1*30 misses its integer by a few roundings; no slip is that small.
+  !> An expression such as 0.1*30 misses its integer by a few roundings; no typing error is that small.
   real(wp), parameter :: integer_tolerance = 8*eps
   !> As many known words are listed when none is near.
   integer, parameter :: most_listed = 8
@@ -396,7 +396,7 @@ contains
     end if
   end subroutine add_bounds
 
-  !> A number within the bounds, so that what follows a mistake does not stumble over it.
+  !> A number within the bounds, so that a mistake causes no further ones.
   pure function harmless(lower, upper, strict_lower, strict_upper) result(value)
     real(wp), intent(in), optional :: lower, upper
     logical, intent(in) :: strict_lower, strict_upper

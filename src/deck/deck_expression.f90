@@ -16,7 +16,7 @@ module deck_expression
   private
   public :: evaluate, looks_numeric
 
-  !> Brackets, signs and powers within one another; deeper is no slip but a broken file.
+  !> Brackets, signs and powers within one another; deeper is no typing error but a damaged file.
   integer, parameter :: deepest = 60
   character(len=*), parameter :: name_letters = letters//digits//'_'
   character(len=*), parameter :: operators = '+-*/^'
@@ -231,7 +231,7 @@ contains
       call stop_at(p, first, 'malformed number '''//p%s(first:p%at - 1)//'''')
       return
     end if
-    ! The power of ten is looked at before the conversion, which would trap on an overflow.
+    ! The power of ten is checked before the conversion, which would trap on an overflow.
     lead = verify(whole//part, '0')
     if (lead == 0) return
     power = 9999

@@ -22,7 +22,7 @@ module deck_field
     character(len=:), allocatable :: text
     logical :: numeric = .false.
     logical :: quoted = .false.
-    !> Its mistake is already recorded: whoever reads it keeps silent.
+    !> Its mistake is already recorded: reading it reports no other one.
     logical :: faulty = .false.
     real(wp) :: value = 0
     integer :: column = 0

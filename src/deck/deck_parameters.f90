@@ -15,7 +15,7 @@ module deck_parameters
     logical :: numeric = .false.
     real(wp) :: value = 0
     logical :: used = .false.
-    !> Its value has a mistake which is recorded: fields that use it are faulty without another word.
+    !> Its value has a mistake which is recorded: fields that use it are faulty without another message.
     logical :: faulty = .false.
     type(location_t) :: where
   end type parameter_t
@@ -28,7 +28,7 @@ module deck_parameters
     type(string_t), allocatable :: declared(:)
     !> Which of the declared names are used before their PARAM line.
     logical, allocatable :: wanted(:)
-    !> False when an included file is missing: then an unknown name is no news.
+    !> False when an included file is missing: then an unknown name is not reported.
     logical :: complete = .true.
   contains
     procedure :: find
@@ -104,7 +104,7 @@ contains
     end do
   end subroutine mark_used
 
-  !> What to say of a name that is not defined.
+  !> Message for a name that is not defined.
   pure subroutine unknown(self, name, message)
     class(parameters_t), intent(in) :: self
     character(len=*), intent(in) :: name

@@ -11,7 +11,7 @@ module deck_source
   private
   public :: line_t, source_t, load_file, load_text, write_text
 
-  !> Files within files: more is a cycle which the names did not show.
+  !> Depth of included files: more is a cycle which the names did not show.
   integer, parameter :: deepest_include = 16
   character(len=*), parameter :: file_mark = '!@file "', param_mark = '!@param '
   character(len=1), parameter :: tab = achar(9), line_feed = achar(10), carriage_return = achar(13)
@@ -44,7 +44,7 @@ contains
     character(len=*), intent(in) :: path
     type(source_t), intent(out) :: source
     type(diagnostics_t), intent(inout) :: diagnostics
-    type(string_t) :: chain(deepest_include)
+    type(string_t) :: open_files(deepest_include)
     type(location_t) :: where
     character(len=:), allocatable :: content, failure
 
@@ -57,8 +57,8 @@ contains
       call diagnostics%add(where, '', failure)
       return
     end if
-    chain(1)%s = path
-    call take_lines(content, where%file, chain, 1, source, diagnostics)
+    open_files(1)%s = path
+    call take_lines(content, where%file, open_files, 1, source, diagnostics)
   end subroutine load_file
 
   !> Lines of a text that `write_text` made, or of a deck without INCLU held in memory.
@@ -154,7 +154,7 @@ contains
     end do
   end subroutine take_overrides
 
-  !> Place from `!@file "name" line`: that of the line which follows. A mark that is not ours is a comment.
+  !> Place from `!@file "name" line`: that of the line which follows. Any other mark is a comment.
   subroutine read_place(mark, file, line, diagnostics)
     character(len=*), intent(in) :: mark
     integer, intent(inout) :: file, line
@@ -172,10 +172,10 @@ contains
   end subroutine read_place
 
   !> Lines of one file; INCLU is followed at once.
-  recursive subroutine take_lines(content, file, chain, depth, source, diagnostics)
+  recursive subroutine take_lines(content, file, open_files, depth, source, diagnostics)
     character(len=*), intent(in) :: content
     integer, intent(in) :: file, depth
-    type(string_t), intent(inout) :: chain(:)
+    type(string_t), intent(inout) :: open_files(:)
     type(source_t), intent(inout) :: source
     type(diagnostics_t), intent(inout) :: diagnostics
     character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
@@ -203,16 +203,16 @@ contains
         source%complete = source%complete .and. index(source%lines(n + 1)%text, 'INCLU') == 1
         if (index(source%lines(n + 1)%text, 'INCLU') /= 1) cycle
         source%nline = n
-        call include_file(source%lines(n + 1)%text, location_t(file, line, 1), chain, depth, source, diagnostics)
+        call include_file(source%lines(n + 1)%text, location_t(file, line, 1), open_files, depth, source, diagnostics)
       end select
     end do
   end subroutine take_lines
 
   !> `INCLU file`, the path relative to the file it stands in.
-  recursive subroutine include_file(card, where, chain, depth, source, diagnostics)
+  recursive subroutine include_file(card, where, open_files, depth, source, diagnostics)
     character(len=*), intent(in) :: card
     type(location_t), intent(in) :: where
-    type(string_t), intent(inout) :: chain(:)
+    type(string_t), intent(inout) :: open_files(:)
     integer, intent(in) :: depth
     type(source_t), intent(inout) :: source
     type(diagnostics_t), intent(inout) :: diagnostics
@@ -235,11 +235,11 @@ contains
       column = fields(1)%column
       path = fields(1)%text
       if (index(path, '$') > 0) failure = 'the name of an included file takes no parameter'
-      if (path(1:1) /= '/') path = chain(depth)%s(:index(chain(depth)%s, '/', back=.true.))//path
+      if (path(1:1) /= '/') path = open_files(depth)%s(:index(open_files(depth)%s, '/', back=.true.))//path
       do i = 1, depth
-        if (plain_path(chain(i)%s) == plain_path(path)) failure = ''''//path//''' includes itself'
+        if (plain_path(open_files(i)%s) == plain_path(path)) failure = ''''//path//''' includes itself'
       end do
-      if (depth == size(chain)) failure = 'more than '//to_text(size(chain))//' files are included in one another'
+      if (depth == size(open_files)) failure = 'more than '//to_text(size(open_files))//' files are included in one another'
       if (.not. allocated(failure)) call read_whole(path, content, failure)
     end if
     if (allocated(failure)) then
@@ -247,9 +247,9 @@ contains
       call diagnostics%add(location_t(where%file, where%line, column), 'INCLU', failure)
       return
     end if
-    chain(depth + 1)%s = path
+    open_files(depth + 1)%s = path
     call diagnostics%register(path, file)
-    call take_lines(content, file, chain, depth + 1, source, diagnostics)
+    call take_lines(content, file, open_files, depth + 1, source, diagnostics)
   end subroutine include_file
 
   !> A line in its plain form, unless there is nothing on it.

@@ -6,7 +6,7 @@ module diagnostics
   private
   public :: location_t, diagnostics_t
 
-  !> More lines than this are of no help to anyone; the rest is only counted.
+  !> Largest number of lines; the rest is only counted.
   integer, parameter :: most_printed = 50
 
   !> A place in a deck. `file` is the number given by `register`; line 0 stands for the file as a whole.

@@ -17,7 +17,7 @@ module contact_contour
   private
   public :: find_contact_ends, sample_depth
 
-  !> What is needed of a side: which it is, its nodes in the pilot's axes, how far it looks.
+  !> What is needed of a side: which it is, its nodes in the pilot's axes, the distance within which it searches.
   type :: side_t
     integer :: number = 0
     real(wp) :: nodes(2, 3) = 0.0_wp, reach = 0.0_wp

@@ -1,12 +1,12 @@
-!> What contact groups say of themselves at an accepted instant, and their augmentation.
+!> Measures of contact groups at an accepted instant, and their augmentation.
 !>
 !> The state of a point is that of contact_point; behind it there may be the same of a corner of the
-!> die, and its place on the side (corner_contact).
+!> die, and its position on the side (corner_contact).
 module contact_measure
   use contact_penalties, only: allowed_penetration, penalties_of_card, penalties_t
   use contact_point, only: area_at, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_work, contact_block, &
                            dissipated, penalties, side_length
-  use corner_contact, only: stretch_before
+  use corner_contact, only: interval_before
   use elem_api, only: totals_t
   use kinds, only: wp
   use law_api, only: contact_open, contact_slip, contact_stick, law_t
@@ -17,8 +17,8 @@ module contact_measure
   private
   public :: augment, measure
 
-  !> Augmentation takes away the depth of points, not the bend of the side between them: points that are deep by less than
-  !> this share of the allowed penetration have no more to give.
+  !> Augmentation removes the depth of points, not the curvature of the side between them: points that are deep by less than
+  !> this share of the allowed penetration are not augmented further.
   real(wp), parameter :: worth_augmenting = 0.5_wp
 
 contains
@@ -116,7 +116,7 @@ contains
         end select
         call add_point(state(:n, p, e), before(:n, p, e), xi(p), weight(p))
         if (.not. corners) cycle
-        call stretch_before(xi, p, from, to)
+        call interval_before(xi, p, from, to)
         call add_point(state(n + 1:2*n, p, e), before(n + 1:2*n, p, e), state(2*n + 1, p, e), to - from)
       end do
     end do

@@ -22,7 +22,7 @@ module contact_point
             npoint_state
   public :: most_unknowns, no_surface, touching
 
-  !> Places in the state of a point; the history of its law follows.
+  !> Rows in the state of a point; the history of its law follows.
   integer, parameter :: at_pressure = 1, at_tau = 2, at_penetration = 3, at_status = 4, at_slip = 5, &
                         at_augmentation = 6, at_work = 7, at_piece = 8, at_xi = 9, npoint_state = 9
   !> Six of a side, six of what it meets, three of the section.
@@ -38,7 +38,7 @@ module contact_point
   real(wp), parameter :: tangential_share = 0.1_wp
   !> A point that comes into contact may overlap the die by this share of the side in the predictor of a step.
   real(wp), parameter :: overlap_limit = 0.01_wp
-  !> A step that is shortened for it aims at less, so that the next look does not hang on the last bit.
+  !> A step that is shortened for it aims at less, so that the next check does not depend on the last bit.
   real(wp), parameter :: overlap_aim = 0.008_wp
 
   !> A point of the side in the present geometry, with derivatives along the local unknowns.
@@ -75,14 +75,14 @@ contains
                             state_variable('die_xi', '-', transfer_recompute), law%history])
   end function point_variables
 
-  !> Points without contact: what they have slipped and worn stays.
+  !> Points without contact: slip and work of friction so far stay.
   pure subroutine rest(state)
     real(wp), intent(inout) :: state(:, :)   !! (nstate, npoint) [unit of each component]
 
     state([at_pressure, at_tau, at_status, at_penetration, at_piece, at_xi, at_augmentation], :) = 0
   end subroutine rest
 
-  !> Rows of the state that are of the point itself: with corners the same of a corner and its place on the side follow.
+  !> Rows of the state that are of the point itself: with corners the same of a corner and its position on the side follow.
   pure function contact_block(corners, nstate) result(n)
     logical, intent(in) :: corners   !! corners of the die are points of contact of their own
     integer, intent(in) :: nstate    !! rows of the state
@@ -177,7 +177,7 @@ contains
     end do
   end subroutine act
 
-  !> Work that friction took in a step, per present area: the way slipped is that not stored in the tangential penalty.
+  !> Work that friction took in a step, per present area: the part of the slip that the tangential penalty does not store.
   pure function dissipated(before, after, penalty) result(work)
     real(wp), intent(in) :: before(:), after(:)   !! (nstate) [unit of each component]
     real(wp), intent(in) :: penalty               !! tangential [stress/length]

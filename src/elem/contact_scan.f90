@@ -1,6 +1,6 @@
-!> A side of the part seen as a whole against its die: its depth at many places, and where contact begins and ends on it.
+!> A whole side of the part against its die: its depth at many points, and where contact begins and ends on it.
 !>
-!> Integration points are where contact is asked for; the side between them is what a user looks at.
+!> Contact forces act at integration points only; this finds the depth between them too.
 module contact_scan
   use closest_point, only: closest_point_t
   use curve_search, only: box_distance, closest_facing_point
@@ -12,7 +12,7 @@ module contact_scan
   private
   public :: is_near, deepest_sample, lies_inside, locate_end
 
-  !> Places a side is sampled at.
+  !> Points at which a side is sampled.
   integer, parameter :: nsample = 20
 
 contains
@@ -27,7 +27,7 @@ contains
     near = box_distance(die, [minval(side, 2), maxval(side, 2)]) <= reach
   end function is_near
 
-  !> Largest depth of a side at many places along it; below zero when it is not in the die.
+  !> Largest depth of a side at many points along it; below zero when it is not in the die.
   pure function deepest_sample(die, side, reach) result(depth)
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: side(2, 3)   !! nodes in the pilot's axes [length]
@@ -43,24 +43,24 @@ contains
     end do
   end function deepest_sample
 
-  !> Where contact ends between a place of a side in contact and an open one: a linear guess from the penetrations there, then
-  !> the zero of the depth by bisection and secants on the side itself. Where the die ends first that is the place; where the
+  !> Where contact ends between a position on a side in contact and an open one: a linear guess from the penetrations there, then
+  !> the zero of the depth by bisection and secants on the side itself. Where the die ends first that is the position; where the
   !> depth has no zero between, a side lifted by its law, the guess is kept.
-  pure subroutine locate_end(die, side, closed, open, depths, reach, place, closest)
+  pure subroutine locate_end(die, side, closed, open, depths, reach, position, closest)
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: side(2, 3)              !! nodes in the pilot's axes [length]
-    real(wp), intent(in) :: closed, open            !! places on the side
+    real(wp), intent(in) :: closed, open            !! positions on the side
     real(wp), intent(in) :: depths(2)               !! penetrations there, below zero for a gap [length]
     real(wp), intent(in) :: reach                   !! [length]
-    real(wp), intent(out) :: place                  !! on the side
+    real(wp), intent(out) :: position                  !! on the side
     type(closest_point_t), intent(out) :: closest   !! on the die, its piece 0 where there is none
     real(wp) :: inside, outside, middle
     type(closest_point_t) :: trial
     integer :: iteration
-    integer, parameter :: halvings = 50    ! to round-off of a place
+    integer, parameter :: halvings = 50    ! to round-off of a position
 
-    place = closed
-    if (depths(1) > depths(2)) place = closed + (open - closed)*max(0.0_wp, min(1.0_wp, depths(1)/(depths(1) - depths(2))))
+    position = closed
+    if (depths(1) > depths(2)) position = closed + (open - closed)*max(0.0_wp, min(1.0_wp, depths(1)/(depths(1) - depths(2))))
     call closest_to_side_point(die, side, closed, reach, closest)
     call closest_to_side_point(die, side, open, reach, trial)
     if (is_inside(closest) .neqv. is_inside(trial)) then
@@ -75,22 +75,22 @@ contains
           outside = middle
         end if
       end do
-      place = inside
+      position = inside
     end if
-    call closest_to_side_point(die, side, place, reach, trial)
+    call closest_to_side_point(die, side, position, reach, trial)
     if (trial%piece > 0) closest = trial
   end subroutine locate_end
 
-  !> A place of a side is in the die.
-  pure function lies_inside(die, side, place, reach) result(inside)
+  !> A position on a side is in the die.
+  pure function lies_inside(die, side, position, reach) result(inside)
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: side(2, 3)   !! nodes in the pilot's axes [length]
-    real(wp), intent(in) :: place
+    real(wp), intent(in) :: position
     real(wp), intent(in) :: reach   !! [length]
     logical :: inside
     type(closest_point_t) :: closest
 
-    call closest_to_side_point(die, side, place, reach, closest)
+    call closest_to_side_point(die, side, position, reach, closest)
     inside = is_inside(closest)
   end function lies_inside
 
@@ -102,13 +102,13 @@ contains
   end function is_inside
 
   !> Closest point to a position on a side.
-  pure subroutine closest_to_side_point(die, side, place, reach, closest)
+  pure subroutine closest_to_side_point(die, side, position, reach, closest)
     type(die_t), intent(in) :: die
-    real(wp), intent(in) :: side(2, 3), place, reach
+    real(wp), intent(in) :: side(2, 3), position, reach
     type(closest_point_t), intent(out) :: closest
     real(wp) :: phi(3), dphi(3), tangent(2)
 
-    call line3(place, phi, dphi)
+    call line3(position, phi, dphi)
     tangent = matmul(side, dphi)
     call closest_facing_point(die, matmul(side, phi), left_of(tangent), reach, closest)
   end subroutine closest_to_side_point

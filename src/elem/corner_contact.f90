@@ -1,11 +1,11 @@
 !> Corners of a die between the integration points of a side as points of contact of their own.
 !>
-!> The deepest corner in the stretch between two points (side_corners) acts there with the length of
-!> the stretch as its weight, on what is deeper than half the allowed penetration, where one is given:
+!> The deepest corner in the interval between two points (side_corners) acts there with the length of
+!> the interval as its weight, on what is deeper than half the allowed penetration, where one is given:
 !> a side that lies on the die by a corner has its points for that. Toward an end of the side the weight
-!> goes to zero: a node that slides past the corner of a die hands its load over little by little, and
-!> takes it back; a sudden change would leave positions without equilibrium. No corner pulls, whatever
-!> the law.
+!> goes to zero: the load of a corner that a node slides past goes over to the node gradually, and back
+!> again; a sudden change would leave positions without equilibrium. The normal force of a corner is
+!> pressure only, whatever the law.
 module corner_contact
   use contact_point, only: at_augmentation, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, most_unknowns, &
                            contact_block, no_surface, share_to_contact, thinning
@@ -15,12 +15,13 @@ module corner_contact
   use kinds, only: wp
   use law_api, only: contact_open, law_t
   use materials, only: material_t
-  use rigid_contact, only: drift_t, ndof, outer, place_point, press, side_t, turned
+  use plane_vectors, only: turned
+  use rigid_contact, only: drift_t, ndof, outer, place_point, press, side_t
   use shape_functions, only: line3
-  use side_corners, only: corner_t, deepest_corner, foot_at_corner => closest_at_corner
+  use side_corners, only: closest_at_corner, corner_t, deepest_corner
   implicit none
   private
-  public :: press_corners, stretch_before
+  public :: press_corners, interval_before
 
   !> A corner acts on what is deeper than this share of the allowed penetration.
   real(wp), parameter :: corner_share = 0.5_wp
@@ -54,7 +55,7 @@ contains
       nodes(:, k) = turned([side%x(1, k) + side%du(k), side%x(2, k) + side%du(k + 3)] - side%pilot(1:2, 2), -side%pilot(3, 2))
     end do
     do p = 1, size(xi)
-      call stretch_before(xi, p, from, to)
+      call interval_before(xi, p, from, to)
       if (.not. to > from) cycle
       call deepest_corner(die, nodes, from, to, side%length, corner)
       if (.not. corner%found) cycle
@@ -95,15 +96,15 @@ contains
     end if
     call follow_corner(side, corner, point, drift)
     before = force
-    call press(law, material, drivers, side, corner%place, point, foot_at_corner(corner), allowed, weight*share_of(corner%place), &
-               committed, trial, force, stiffness, drift)
+    call press(law, material, drivers, side, corner%place, point, closest_at_corner(corner), allowed, &
+               weight*share_of(corner%place), committed, trial, force, stiffness, drift)
     if (.not. (side%tangent .and. share_of(corner%place) < 1)) return
-    ! the share changes with the place: d(ln share) = -sign(place)/(1 - |place|) d(place)
+    ! the share changes with the position: d(ln share) = -sign(place)/(1 - |place|) d(place)
     toward_end = sign(1.0_wp, corner%place)/(1 - abs(corner%place))
     stiffness = stiffness - toward_end*spread(force - before, 2, ndof)*spread(drift%dxi, 1, ndof)
   end subroutine corner_at
 
-  !> Share of its weight that a corner at a place of the side has.
+  !> Share of its weight that a corner at a position on the side has.
   pure function share_of(place) result(share)
     real(wp), intent(in) :: place
     real(wp) :: share
@@ -111,7 +112,7 @@ contains
     share = min(1.0_wp, (1 - abs(place))/handing_over)
   end function share_of
 
-  !> The place of a corner on the side moves with nodes and pilot, and the point with it: from (V - y).y' = 0,
+  !> The position of a corner on the side moves with nodes and pilot, and the point with it: from (V - y).y' = 0,
   !> ((V - y).y'' - y'.y') dxi = -(dV - dy).y' - (V - y).dy'.
   pure subroutine follow_corner(side, corner, point, drift)
     type(side_t), intent(in) :: side
@@ -148,7 +149,7 @@ contains
   end subroutine follow_corner
 
   !> The part of the side between a point and the one before; the last one goes on to the end of the side.
-  pure subroutine stretch_before(xi, p, from, to)
+  pure subroutine interval_before(xi, p, from, to)
     real(wp), intent(in) :: xi(:)   !! (npoint) [-]
     integer, intent(in) :: p
     real(wp), intent(out) :: from, to   !! [-]
@@ -157,6 +158,6 @@ contains
     if (p > 1) from = xi(p - 1)
     to = xi(p)
     if (p == size(xi)) to = 1
-  end subroutine stretch_before
+  end subroutine interval_before
 
 end module corner_contact

@@ -1,6 +1,6 @@
 !> The ELEM family: what an element declares of itself and the interface by which the element loop calls it.
 !>
-!> Objects stop at the loop's door: an element gets plain arrays for a block of elements and answers
+!> The interface has plain arrays: an element gets those of a block of elements and returns
 !> forces, matrices and the trial state. It declares its unknowns (unknown_t): which field, on which of
 !> its nodes, pilot or section. Its local unknowns stand in the order of its declaration, each component
 !> of a field contiguous: x of all nodes, y of all nodes, pilot (x, y, angle), section, ...; `layout_t`
@@ -32,7 +32,7 @@ module elem_api
   integer, parameter :: block_inverted = 1     !! an element has turned inside out
   integer, parameter :: block_law_failed = 2   !! a law gave up
 
-  !> What elements are asked for: to advance by a step; or to restore equilibrium on a new mesh at fixed time, without flow of
+  !> Mode of the elements: to advance by a step; or to restore equilibrium on a new mesh at fixed time, without flow of
   !> material or heat.
   integer, parameter :: mode_advance = 1, mode_restore = 2
 
@@ -95,7 +95,7 @@ module elem_api
     logical, allocatable :: solved(:)
   end type instant_t
 
-  !> What a block has to say: its answer, the element at fault, the largest strain increment.
+  !> Report of a block: its status, the element that failed, the largest strain increment.
   type :: report_t
     integer :: status = block_done
     integer :: element = 0
@@ -108,7 +108,7 @@ module elem_api
     logical :: unpaired = .false.
     !> Largest change of penetration at a point already in contact, over the side.
     real(wp) :: jump = 0.0_wp
-    !> Square of the norm of what sources within the elements act with, and answers of the elements balance [power^2].
+    !> Square of the norm of the sources within the elements, which the other terms of the elements balance [power^2].
     real(wp) :: source = 0.0_wp
     !> Heat that the elements took up in the step, and that sources released in them [energy].
     real(wp) :: heat_stored = 0.0_wp, heat_released = 0.0_wp
@@ -143,7 +143,7 @@ module elem_api
     logical :: follows = .false.
     !> Its matrix is symmetric when the law's is.
     logical :: symmetric = .true.
-    !> Effect its time is booked under (page 6).
+    !> Effect to which its time is added (page 6).
     character(len=:), allocatable :: effect
     procedure(elem_variables_i), nopass, pointer :: variables => null()
     procedure(elem_compute_i), nopass, pointer :: compute => null()
@@ -187,7 +187,7 @@ module elem_api
     end subroutine elem_compute_i
 
     !> After equilibrium: carry the reached pressures into the committed multipliers where penetrations
-    !> are above the allowed, at most so many `times` in a step. `changed` asks for equilibrium again.
+    !> are above the allowed, at most so many `times` in a step. `changed`: equilibrium must be found again.
     subroutine elem_augment_i(scene, group, times, committed, trial, changed)
       import :: group_t, scene_t, wp
       type(scene_t), intent(in) :: scene
@@ -402,7 +402,7 @@ contains
     end do
   end subroutine declare_fields
 
-  !> Add what one group says to the totals of the scene.
+  !> Add the measures of one group to the totals of the scene.
   pure subroutine add_totals(sum, part)
     type(totals_t), intent(inout) :: sum
     type(totals_t), intent(in) :: part

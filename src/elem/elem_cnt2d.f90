@@ -1,37 +1,38 @@
 !> CNT2D: contact of a 3-node side of the part with a die (annex 3).
 !>
 !> Walking 1 -> 2 -> 3 the part is on the left. At an integration point d is the penetration below
-!> the closest point of the die (die_search), n the die's inner normal and t its tangent there, in
+!> the closest point of the die (curve_search), n the die's inner normal and t its tangent there, in
 !> the sense of the walk. The traction on the part is -p n - tau t, per length of the side. The
 !> annex measures d and p along the part's own normal e_R; on a side that lies on the die they are
 !> the same, on one that is about to fold the die's normal is the one that is continuous.
 !>
-!> The slip of a step is the way of the part's point relative to the die (rigid_contact). When contact
-!> begins inside the step only the share d/(d - d_start) of the way counts.
+!> The slip of a step is the displacement of the part's point relative to the die (rigid_contact). When contact
+!> begins inside the step only the share d/(d - d_start) of it counts.
 !>
 !> A corner of the die between two integration points is one more point of contact of the side
 !> (corner_contact).
 !>
-!> The work of friction is kept per present area: it thins out where the side stretches.
+!> The work of friction is kept per present area: it decreases where the side stretches.
 !>
 !> Forces are integrated consistently over the side. The reaction acts on the pilot: force, and
 !> moment about it. Everything is linearised exactly, the curvature of the die included.
 module elem_cnt2d
-  use closest_point, only: foot_t => closest_point_t
+  use closest_point, only: closest_point_t
   use contact_measure, only: augment, measure
   use contact_point, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, contact_point_t, no_surface, &
                            penalties, point_variables, rest, share_to_contact, show_on_axis, side_length, &
                            thinning, touching
   use corner_contact, only: press_corners
-  use curve_search, only: box_distance, find_foot => closest_facing_point, follow_foot => follow_closest_point
+  use curve_search, only: box_distance, closest_facing_point, follow_closest_point
   use dies, only: die_t
   use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_pilot, of_section, report_t, section_motion
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_law, contact_open, law_t
   use materials, only: material_t
+  use plane_vectors, only: turned
   use quadrature, only: line_rule
-  use rigid_contact, only: ndof, place_point, press, side_t, turned
+  use rigid_contact, only: ndof, place_point, press, side_t
   use scene, only: axisymmetric, group_t, role_contact, scene_t
   use state_variables, only: state_variable, state_variable_t, transfer_recompute
   implicit none
@@ -59,7 +60,7 @@ contains
     row%augment => augment
   end function elem_cnt2d_row
 
-  !> That of a point with its law's, the same of the corner before it, and the corner's place on the side.
+  !> That of a point with its law's, the same of the corner before it, and the corner's position on the side.
   pure subroutine variables(law, plane_state, list)
     type(law_t), intent(in) :: law
     integer, intent(in) :: plane_state
@@ -170,18 +171,18 @@ contains
     end associate
   end subroutine begin_states
 
-  !> Side and die are further apart than the search would reach: the side sleeps.
-  pure function far(die, side) result(asleep)
+  !> Side and die are further apart than the search would reach: the side is skipped.
+  pure function far(die, side) result(skipped)
     type(die_t), intent(in) :: die
     type(side_t), intent(in) :: side
-    logical :: asleep
+    logical :: skipped
     real(wp) :: y(2, 3)
     integer :: k
 
     do k = 1, 3
       y(:, k) = turned([side%x(1, k) + side%du(k), side%x(2, k) + side%du(k + 3)] - side%pilot(1:2, 2), -side%pilot(3, 2))
     end do
-    asleep = box_distance(die, [minval(y(1, :)), minval(y(2, :)), maxval(y(1, :)), maxval(y(2, :))]) > side%length
+    skipped = box_distance(die, [minval(y(1, :)), minval(y(2, :)), maxval(y(1, :)), maxval(y(2, :))]) > side%length
   end function far
 
   !> Contact at one integration point: state, forces, matrix.
@@ -196,31 +197,31 @@ contains
     real(wp), intent(in) :: committed(:)
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: point
-    type(foot_t) :: foot
+    type(closest_point_t) :: closest
 
     call place_point(side, xi, point)
-    call foot_of(die, turned(point%x - side%pilot(1:2, 2), -side%pilot(3, 2)), turned(point%e_r, -side%pilot(3, 2)), &
-                 side%length, committed, foot)
-    if (foot%piece == 0) return
-    ! a point on the axis has no surface: nothing acts there, and nothing is asked of it
+    call closest_or_followed(die, turned(point%x - side%pilot(1:2, 2), -side%pilot(3, 2)), &
+                             turned(point%e_r, -side%pilot(3, 2)), side%length, committed, closest)
+    if (closest%piece == 0) return
+    ! a point on the axis has no surface: nothing acts there, and no contact is evaluated
     if (axisym .and. point%x(1) <= no_surface*side%length) return
-    if (abs(foot%d) <= touching*side%length) foot%d = 0
-    call press(law, material, drivers, side, xi, point, foot, 0.0_wp, weight, committed, trial, force, stiffness)
+    if (abs(closest%d) <= touching*side%length) closest%d = 0
+    call press(law, material, drivers, side, xi, point, closest, 0.0_wp, weight, committed, trial, force, stiffness)
   end subroutine contact_at
 
-  !> Foot of a point: the closest, unless the one that continues the last accepted foot says that the point is inside.
-  pure subroutine foot_of(die, point, e_r, reach, committed, foot)
+  !> Closest point on the die; where the point that continues the last accepted one shows that the side is inside, that one.
+  pure subroutine closest_or_followed(die, point, e_r, reach, committed, closest)
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: point(2), e_r(2), reach, committed(:)
-    type(foot_t), intent(out) :: foot
-    type(foot_t) :: same
+    type(closest_point_t), intent(out) :: closest
+    type(closest_point_t) :: same
     integer :: piece
 
-    call find_foot(die, point, e_r, reach, foot)
+    call closest_facing_point(die, point, e_r, reach, closest)
     piece = nint(committed(at_piece))
     if (piece == 0) return
-    call follow_foot(die, point, e_r, reach, piece, committed(at_xi), same)
-    if (same%piece > 0 .and. same%d > 0) foot = same
-  end subroutine foot_of
+    call follow_closest_point(die, point, e_r, reach, piece, committed(at_xi), same)
+    if (same%piece > 0 .and. same%d > 0) closest = same
+  end subroutine closest_or_followed
 
 end module elem_cnt2d

@@ -1,28 +1,28 @@
 !> CNTDF: contact of a 3-node side of a body with a die made of sides of other bodies.
 !>
-!> Depth, normal, law and state are those of CNT2D: the die is the chain of the other sides where they
-!> now are, Y(xi) = sum_k psi_k(xi) Y_k. The foot xi of a point X makes (X - Y).Y' = 0; with its unit
+!> Depth, normal, law and state are those of CNT2D: the die is the curve of the other sides where they
+!> now are, Y(xi) = sum_k psi_k(xi) Y_k. The closest point, at xi, to a point X makes (X - Y).Y' = 0; with its unit
 !> tangent t, the inner normal n, the curvature kappa and w = -n.dY'/|Y'|, the turn of the tangent at
 !> fixed xi, the depth d = (X - Y).n and the normal change by
 !>
 !>     dd = n.(dX - dY),   dn = t (kappa t.(dX - dY) + w)/(1 + kappa d),   dY at fixed xi.
 !>
-!> The foot itself moves by dxi = (t.(dX - dY) - d w)/(|Y'| (1 + kappa d)).
+!> The closest point itself moves by dxi = (t.(dX - dY) - d w)/(|Y'| (1 + kappa d)).
 !>
-!> The slip of a step is the way of the point relative to the material point at its foot, in axes that
+!> The slip of a step is the displacement of the point relative to the material point closest to it, in axes that
 !> turn with the tangent there: with X0, Y0(xi), t0(xi) at the start of the step it is t0.(Y0 - X0),
 !> since t.(X - Y) = 0 at its end. A rigid motion of both bodies makes none. At a vertex between two
 !> sides the axes turn with the end of the first.
 !>
-!> The point gets the traction, the nodes of the foot's side psi_k of its opposite: what one body gains
-!> the other loses, point by point. Each point is coupled with a few pieces only (pairs): a foot on
-!> another one is told, and the pairs are renewed before anything is made of it.
+!> The point gets the traction, the nodes of the side with the closest point psi_k of its opposite: what one body gains
+!> the other loses, point by point. Each point is coupled with a few pieces only (pairs): a closest point on
+!> another piece is reported, and the pairs are renewed before the result is used.
 module elem_cntdf
   use contact_point, only: act, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, meeting_t, &
                            most_unknowns, no_surface, penalties, point_variables, rest, share_to_contact, &
                            show_on_axis, side_length, side_point, thinning
-  use closest_point, only: foot_t => closest_point_t
-  use curve_search, only: box_distance, find_foot => closest_facing_point, find_foot_on => closest_on_piece
+  use closest_point, only: closest_point_t
+  use curve_search, only: box_distance, closest_facing_point, closest_on_piece
   use dies, only: die_t
   use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
   use elem_cnt2d, only: elem_cnt2d_row
@@ -30,6 +30,7 @@ module elem_cntdf
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_open, law_t
   use pairs, only: nodes_per_point, pieces_in_reach, place_in_reach
+  use plane_vectors, only: cross
   use quadrature, only: line_rule
   use scene, only: axisymmetric, generalised_plane_strain, group_t, scene_t
   use shape_functions, only: line3
@@ -39,11 +40,11 @@ module elem_cntdf
   private
   public :: elem_cntdf_row
 
-  !> At a vertex the normal turns about the foot: turn d = 1 to some round-off.
+  !> At a vertex the normal turns about the closest point: turn d = 1 to some round-off.
   real(wp), parameter :: at_vertex = 64*eps
-  !> A side reaches this far beyond its ends (parent coordinate) for a point that was on it; beyond the open end of the chain less.
+  !> A side reaches this far beyond its ends (parent coordinate) for a point that was on it; beyond the open end of the curve less.
   real(wp), parameter :: beyond = 0.2_wp, beyond_all = 0.05_wp
-  !> Cosine of the largest turn at a vertex that is taken for one of a smooth chain, about 6 degrees.
+  !> Cosine of the largest turn at a vertex that is taken for one of a smooth curve, about 6 degrees.
   real(wp), parameter :: nearly_smooth = 0.995_wp
 
 contains
@@ -61,7 +62,7 @@ contains
     row%compute => compute
   end function elem_cntdf_row
 
-  !> That of a point, and the law's: corners of other bodies are asked for at integration points only.
+  !> That of a point, and the law's: contact with corners of other bodies is evaluated at integration points only.
   pure subroutine variables(law, plane_state, list)
     type(law_t), intent(in) :: law
     integer, intent(in) :: plane_state
@@ -91,7 +92,7 @@ contains
     type(report_t), intent(out) :: report
     type(contact_point_t) :: point
     type(meeting_t) :: meeting
-    type(foot_t) :: foot, nearest
+    type(closest_point_t) :: closest, nearest
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: side, section(3), phi(3), dphi(3), psi(3), dpsi(3), q(2), dq(2, most_unknowns), dxi(most_unknowns)
     integer :: e, p, n, j, k, at, nnode, place(most_unknowns)
@@ -118,21 +119,21 @@ contains
         do p = 1, size(xi)
           call line3(xi(p), phi, dphi)
           call side_point(phi, dphi, section, x(:, 1:3, e), du(place(1:6), e), most_unknowns, point)
-          call find_lasting_foot(die, point, side, committed(at_piece, p, e), middle(p, e), foot, nearest)
-          if (foot%piece == 0) cycle
-          ! a point on the axis has no surface: nothing acts there, and nothing is asked of it
+          call find_kept_closest_point(die, point, side, committed(at_piece, p, e), middle(p, e), closest, nearest)
+          if (closest%piece == 0) cycle
+          ! a point on the axis has no surface: nothing acts there, and no contact is evaluated
           if (axisym .and. point%x(1) <= no_surface*side) cycle
-          trial(at_penetration, p, e) = foot%d
+          trial(at_penetration, p, e) = closest%d
           trial([at_piece, at_xi], p, e) = [real(nearest%piece, wp), nearest%xi]
-          k = place_in_reach(die, middle(p, e), foot%piece)
+          k = place_in_reach(die, middle(p, e), closest%piece)
           if (k == 0) then
             report%unpaired = .true.
             cycle
           end if
           at = 3 + nodes_per_point*(p - 1) + 3*(k - 1)
           place(7:12) = [at + 1, at + 2, at + 3, nnode + at + 1, nnode + at + 2, nnode + at + 3]
-          call line3(foot%xi, psi, dpsi)
-          call meet(foot, matmul(x(:, 1:3, e), phi), x(:, at + 1:at + 3, e), du(place(7:12), e), point, meeting, dxi)
+          call line3(closest%xi, psi, dpsi)
+          call meet(closest, matmul(x(:, 1:3, e), phi), x(:, at + 1:at + 3, e), du(place(7:12), e), point, meeting, dxi)
           call act(law, scene%materials(group%material), instant%dt, drivers(:, :, p, e), &
                    penalties(scene%materials(group%material), group%modulus, side), point, meeting, weight(p), instant%tangent, &
                    committed(:, p, e), trial(:, p, e), q, dq)
@@ -144,7 +145,7 @@ contains
           call spread_force([-phi, psi], q, place, force(:, e))
           if (.not. instant%tangent) cycle
           call spread_matrix([-phi, psi], dq(:, :n), place(:n), stiffness(:, :, e))
-          ! the foot moves along its side
+          ! the closest point moves along its side
           do j = 1, n
             call spread_force([0.0_wp, 0.0_wp, 0.0_wp, dpsi*dxi(j)], q, place, stiffness(:, place(j), e))
           end do
@@ -162,45 +163,46 @@ contains
     box = [minval(x(1, :) + du(1:3)), minval(x(2, :) + du(4:6)), maxval(x(1, :) + du(1:3)), maxval(x(2, :) + du(4:6))]
   end function box_of
 
-  !> Closest foot of a point; but for the length of a step a point inside stays on the side it began with, beyond its ends too.
+  !> Closest point to a point of contact; but for the length of a step a point inside keeps the side it began with, beyond its
+  !> ends too.
   !>
   !> Sides of a bent mesh make slight corners, and the normal jumps there within a motion smaller than any iteration's: points
-  !> at a corner would change sides for ever. Likewise points at the open end of the chain, where two bodies are flush. True
+  !> at a corner would change sides without end. Likewise points at the open end of the curve, where two bodies are flush. True
   !> corners are left to the search.
-  pure subroutine find_lasting_foot(die, point, reach, last, middle, foot, nearest)
+  pure subroutine find_kept_closest_point(die, point, reach, last, middle, closest, nearest)
     type(die_t), intent(in) :: die
     type(contact_point_t), intent(in) :: point
     real(wp), intent(in) :: reach
     real(wp), intent(in) :: last     !! piece at the start of the step, 0 where there was none
     integer, intent(in) :: middle    !! middle piece of the point's pairs, 0 for none
-    type(foot_t), intent(out) :: foot, nearest   !! the foot, and where the next step begins
-    type(foot_t) :: same
+    type(closest_point_t), intent(out) :: closest, nearest   !! of this step, and where the next one begins
+    type(closest_point_t) :: same
     real(wp) :: from
     integer :: piece
 
-    call find_foot(die, point%x, point%e_r, reach, foot)
-    nearest = foot
+    call closest_facing_point(die, point%x, point%e_r, reach, closest)
+    nearest = closest
     piece = nint(last)
     if (piece == 0) piece = middle
-    if (piece == 0 .or. foot%d < 0) return
-    from = foot%xi
-    if (foot%piece /= piece) from = merge(1.0_wp, -1.0_wp, place_in_reach(die, piece, foot%piece) == pieces_in_reach)
-    if (foot%piece == 0) from = merge(1.0_wp, -1.0_wp, piece == size(die%nodes, 2))
-    call find_foot_on(die, piece, point%x, from, merge(beyond_all, beyond, foot%piece == 0), same)
+    if (piece == 0 .or. closest%d < 0) return
+    from = closest%xi
+    if (closest%piece /= piece) from = merge(1.0_wp, -1.0_wp, place_in_reach(die, piece, closest%piece) == pieces_in_reach)
+    if (closest%piece == 0) from = merge(1.0_wp, -1.0_wp, piece == size(die%nodes, 2))
+    call closest_on_piece(die, piece, point%x, from, merge(beyond_all, beyond, closest%piece == 0), same)
     if (same%piece == 0 .or. .not. (same%d > 0 .and. same%d < reach)) return
-    if (foot%piece == 0) then
+    if (closest%piece == 0) then
       if (.not. dot_product(same%normal, point%e_r) < 0) return
       nearest = same
     else
-      if (place_in_reach(die, foot%piece, piece) == 0 .or. dot_product(same%normal, foot%normal) < nearly_smooth) return
+      if (place_in_reach(die, closest%piece, piece) == 0 .or. dot_product(same%normal, closest%normal) < nearly_smooth) return
     end if
-    foot = same
-  end subroutine find_lasting_foot
+    closest = same
+  end subroutine find_kept_closest_point
 
-  !> Depth, slip and turn of the normal where a point meets a side, with their derivatives, and the motion of the foot along
-  !> the side. Unknowns 7 to 12 are those of the side met.
-  pure subroutine meet(foot, start, x, du, point, meeting, dxi)
-    type(foot_t), intent(in) :: foot
+  !> Depth, slip and turn of the normal where a point meets a side, with their derivatives, and the motion of the closest
+  !> point along the side. Unknowns 7 to 12 are those of the side met.
+  pure subroutine meet(closest, start, x, du, point, meeting, dxi)
+    type(closest_point_t), intent(in) :: closest
     real(wp), intent(in) :: start(2)   !! the point at the start of the step [length]
     real(wp), intent(in) :: x(2, 3)    !! the side met, at the start of the step [length]
     real(wp), intent(in) :: du(6)      !! motion of its nodes, x then y
@@ -210,16 +212,16 @@ contains
     real(wp) :: psi(3), dpsi(3), y(2, 3), t(2), n(2), first0(2), first(2), axis0(2), axis(2), t0(2), n0(2), gap0(2)
     real(wp) :: relative(2, most_unknowns), tangential(most_unknowns), turn_of_axes(most_unknowns), still, bend0
 
-    call line3(foot%xi, psi, dpsi)
+    call line3(closest%xi, psi, dpsi)
     y(1, :) = x(1, :) + du(1:3)
     y(2, :) = x(2, :) + du(4:6)
     first0 = matmul(x, dpsi)
     first = matmul(y, dpsi)
     axis0 = first0/length_of(first0)
     axis = first/length_of(first)
-    n = foot%normal
+    n = closest%normal
     t = [-n(2), n(1)]
-    meeting%d = foot%d
+    meeting%d = closest%d
     meeting%normal = n
 
     relative = point%dx
@@ -231,11 +233,11 @@ contains
     turn_of_axes(7:9) = -axis(2)*dpsi/length_of(first)
     turn_of_axes(10:12) = axis(1)*dpsi/length_of(first)
     ! 1/(1 + kappa d), 0 at a vertex
-    still = 1 - foot%turn*foot%d
+    still = 1 - closest%turn*closest%d
     if (abs(still) <= at_vertex) still = 0
-    meeting%turn = foot%turn*tangential + still*turn_of_axes
+    meeting%turn = closest%turn*tangential + still*turn_of_axes
 
-    dxi = still*(tangential - foot%d*turn_of_axes)/length_of(first)
+    dxi = still*(tangential - closest%d*turn_of_axes)/length_of(first)
 
     ! the tangent of the fan at a vertex, in axes that turn with the side
     t0 = dot_product(axis, t)*axis0 + cross(axis, t)*[-axis0(2), axis0(1)]
@@ -288,12 +290,5 @@ contains
 
     row = merge(i, i + 3, i <= 3) + 3*(c - 1)
   end function row
-
-  pure function cross(a, b) result(c)
-    real(wp), intent(in) :: a(2), b(2)
-    real(wp) :: c
-
-    c = a(1)*b(2) - a(2)*b(1)
-  end function cross
 
 end module elem_cntdf

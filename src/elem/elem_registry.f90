@@ -1,4 +1,4 @@
-!> The list of elements. Only its submodule knows the members.
+!> The list of elements. Only its submodule uses the members.
 module elem_registry
   use elem_api, only: elem_t
   implicit none

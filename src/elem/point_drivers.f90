@@ -1,4 +1,4 @@
-!> What drives the laws of points from outside, by the names that each law declares (law_api).
+!> External drivers of the laws at points, by the names that each law declares (law_api).
 !>
 !> A point of a body is driven by its temperature, by nodal fields of one component, and by state variables of other formulations
 !> on the same body. A point of contact is driven by the temperature of its side, by such fields there, and by the state of the
@@ -84,7 +84,7 @@ contains
     end do
   end subroutine find_drivers
 
-  !> The first driver that the law of a group asks for and nothing in the scene gives, '' where there is none.
+  !> The first driver that the law of a group needs and nothing in the scene gives, '' where there is none.
   pure function missing_driver(scene, laws, g) result(name)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)   !! (nlaw)
@@ -106,7 +106,7 @@ contains
     end associate
   end function missing_driver
 
-  !> The material of a group has the number for which its law asks for a driver.
+  !> The material of a group has the number for which its law needs a driver.
   pure function is_asked_for(scene, g, driver) result(yes)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g   !! place of the group

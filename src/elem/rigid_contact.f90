@@ -1,20 +1,21 @@
 !> A point of a side against a rigid die: how the two meet, and where the force between them goes.
 !>
-!> The slip of a step is the way of the part's point relative to the die, taken in the axes of the
+!> The slip of a step is the displacement of the part's point relative to the die, taken in the axes of the
 !> pilot, along the die's tangent: a rigid motion of part and die together makes none. The force acts
 !> on the nodes of the side by their shape functions, and on the pilot with its moment.
 !>
-!> A point may be one that moves along its side as that moves, as the place of a corner does: drift_t.
+!> A point may be one that moves along its side as that moves, as that of a corner of the die does: drift_t.
 module rigid_contact
   use contact_point, only: act, at_penetration, at_piece, at_status, at_xi, contact_point_t, meeting_t, most_unknowns, side_point
-  use closest_point, only: foot_t => closest_point_t
+  use closest_point, only: closest_point_t
   use kinds, only: wp
   use law_api, only: contact_open, law_t
   use materials, only: material_t
+  use plane_vectors, only: turned
   use shape_functions, only: line3
   implicit none
   private
-  public :: side_t, drift_t, place_point, press, turned, outer
+  public :: side_t, drift_t, place_point, press, outer
   public :: ndof
 
   !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle, section; the last three are
@@ -29,7 +30,7 @@ module rigid_contact
     real(wp) :: pilot(3, 2) = 0.0_wp
     !> Section at the end of the step (sections), and its change in the step.
     real(wp) :: section(3) = 0.0_wp, thickening(3) = 0.0_wp
-    !> Chord in the mesh as it began: how far the side looks [length].
+    !> Chord in the mesh as it began: the distance within which the side searches [length].
     real(wp) :: length = 0.0_wp
     !> Normal and tangential penalty [stress/length].
     real(wp) :: penalty(2) = 0.0_wp
@@ -39,14 +40,14 @@ module rigid_contact
     logical :: tangent = .true.
   end type side_t
 
-  !> Derivatives of a point's place on the side, and of the angle by which the normal of depth turns.
+  !> Derivatives of a point's position on the side, and of the angle by which the normal of depth turns.
   type :: drift_t
     real(wp), dimension(ndof) :: dxi = 0.0_wp, spin = 0.0_wp
   end type drift_t
 
 contains
 
-  !> The point of a side at a place, in the present geometry.
+  !> The point of a side at a parent coordinate, in the present geometry.
   pure subroutine place_point(side, xi, point)
     type(side_t), intent(in) :: side
     real(wp), intent(in) :: xi
@@ -57,15 +58,16 @@ contains
     call side_point(phi, dphi, side%section, side%x, side%du(1:6), ndof, point)
   end subroutine place_point
 
-  !> Contact of a point with its foot on the die: state, forces, matrix.
-  pure subroutine press(law, material, drivers, side, xi, point, foot, allowed, weight, committed, trial, force, stiffness, drift)
+  !> Contact of a point with its closest point on the die: state, forces, matrix.
+  pure subroutine press(law, material, drivers, side, xi, point, closest, allowed, weight, committed, trial, force, stiffness, &
+                        drift)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) of the law [unit of each driver]
     type(side_t), intent(in) :: side
-    real(wp), intent(in) :: xi   !! place on the side
+    real(wp), intent(in) :: xi   !! parent coordinate on the side [-]
     type(contact_point_t), intent(in) :: point
-    type(foot_t), intent(in) :: foot   !! in the pilot's axes
+    type(closest_point_t), intent(in) :: closest   !! in the pilot's axes
     real(wp), intent(in) :: allowed    !! depth that needs no pressure [length]
     real(wp), intent(in) :: weight
     real(wp), intent(in) :: committed(:)               !! (nstate) [unit of each component]
@@ -77,15 +79,15 @@ contains
     real(wp) :: phi(3), dphi(3), lever(2), q(2), moment, dlever(2, ndof), dmoment(ndof), dq(2, most_unknowns)
     integer :: j, k
 
-    trial(at_penetration) = foot%d
-    trial(at_piece) = foot%piece
-    trial(at_xi) = foot%xi
+    trial(at_penetration) = closest%d
+    trial(at_piece) = closest%piece
+    trial(at_xi) = closest%xi
     call line3(xi, phi, dphi)
     lever = point%x - side%pilot(1:2, 2)
     dlever = point%dx(:, :ndof)
     dlever(1, 7) = dlever(1, 7) - 1
     dlever(2, 8) = dlever(2, 8) - 1
-    call meet(side, phi, dphi, foot, lever, dlever, meeting, drift)
+    call meet(side, phi, dphi, closest, lever, dlever, meeting, drift)
     meeting%allowed = allowed
     call act(law, material, side%dt, drivers, side%penalty, point, meeting, weight, side%tangent, committed, trial, q, dq)
     if (nint(trial(at_status)) == contact_open) return
@@ -111,19 +113,19 @@ contains
   end subroutine press
 
   !> Depth, slip and turn of the normal, with their derivatives.
-  pure subroutine meet(side, phi, dphi, foot, lever, dlever, meeting, drift)
+  pure subroutine meet(side, phi, dphi, closest, lever, dlever, meeting, drift)
     type(side_t), intent(in) :: side
     real(wp), intent(in) :: phi(3), dphi(3)
-    type(foot_t), intent(in) :: foot
+    type(closest_point_t), intent(in) :: closest
     real(wp), intent(in) :: lever(2), dlever(2, ndof)   !! from the pilot to the point
     type(meeting_t), intent(out) :: meeting
     type(drift_t), intent(in), optional :: drift
     real(wp) :: n(2), t(2), turn(2), way(2), relative(2, ndof), dway(2, ndof), dt(2, ndof), rotation
     integer :: j
 
-    n = turned(foot%normal, side%pilot(3, 2))
+    n = turned(closest%normal, side%pilot(3, 2))
     t = [-n(2), n(1)]
-    meeting%d = foot%d
+    meeting%d = closest%d
     meeting%normal = n
 
     ! motion of the point relative to the die, and what it does to depth and normal
@@ -132,14 +134,14 @@ contains
     meeting%dd = 0
     meeting%dd(:ndof) = matmul(n, relative)
     meeting%turn = 0
-    meeting%turn(:ndof) = foot%turn*matmul(t, relative)
+    meeting%turn(:ndof) = closest%turn*matmul(t, relative)
     meeting%turn(9) = meeting%turn(9) + 1
     if (present(drift)) meeting%turn(:ndof) = drift%spin
     do j = 1, ndof
       dt(:, j) = -meeting%turn(j)*n
     end do
 
-    ! way relative to the die, in its axes, turned back into the present ones
+    ! displacement relative to the die, in its axes, turned into the present ones
     rotation = side%pilot(3, 2) - side%pilot(3, 1)
     turn = turned(matmul(side%x, phi) - side%pilot(1:2, 1), rotation)
     way = lever - turn
@@ -151,14 +153,7 @@ contains
     meeting%dslip(:ndof) = matmul(t, dway) + matmul(way, dt)
   end subroutine meet
 
-  pure function turned(v, angle) result(w)
-    real(wp), intent(in) :: v(2)    !! [of any unit]
-    real(wp), intent(in) :: angle   !! [radian]
-    real(wp) :: w(2)
-
-    w = [cos(angle)*v(1) - sin(angle)*v(2), sin(angle)*v(1) + cos(angle)*v(2)]
-  end function turned
-
+  !> Outer product of two vectors.
   pure function outer(a, b) result(c)
     real(wp), intent(in) :: a(2), b(ndof)   !! [of any unit]
     real(wp) :: c(2, ndof)

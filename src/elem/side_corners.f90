@@ -1,8 +1,8 @@
 !> Corners of a die that stick into a side of the part between its integration points.
 !>
-!> Contact is a condition on the whole side and integration points are where it is asked for. How far
-!> a smooth die can go in between them is a matter of their number; a corner goes in however many they
-!> are. So it is asked for itself: with y(xi) the side's point closest to the corner V,
+!> Contact is a condition on the whole side, evaluated at integration points. How far
+!> a smooth die can go in between them depends on their number; a corner goes in however many they
+!> are. So corners are evaluated too: with y(xi) the side's point closest to the corner V,
 !> (V - y).y' = 0, its depth is d = (V - y).e_R, along the side's own inner normal e_R. Where e_R
 !> leaves the corner's fan the side lies along a face, and the face's normal is taken.
 module side_corners
@@ -15,12 +15,12 @@ module side_corners
   private
   public :: corner_t, deepest_corner, closest_at_corner
 
-  !> The corner deepest in a stretch of a side.
+  !> The corner deepest in an interval of a side.
   type :: corner_t
     logical :: found = .false.
-    !> Place on the side.
+    !> Position on the side.
     real(wp) :: place = 0.0_wp
-    !> Piece and place on the die; in the pilot's axes the corner, and the normal of depth, inner for the die.
+    !> Piece and position on the die; in the pilot's axes the corner, and the normal of depth, inner for the die.
     integer :: piece = 0
     real(wp) :: xi = 0.0_wp, vertex(2) = 0.0_wp, normal(2) = 0.0_wp
     !> That normal is the side's own and turns with it, else it is a face's.
@@ -34,11 +34,11 @@ module side_corners
 
 contains
 
-  !> The corner that is deepest between two places of a side, if there is one nearer than `reach`.
+  !> The corner that is deepest between two positions on a side, if there is one nearer than `reach`.
   pure subroutine deepest_corner(die, side, from, to, reach, corner)
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: side(2, 3)   !! nodes of the side in the pilot's axes [length]
-    real(wp), intent(in) :: from, to     !! places on the side; `to` belongs to the next stretch
+    real(wp), intent(in) :: from, to     !! positions on the side; `to` belongs to the next interval
     real(wp), intent(in) :: reach        !! [length]
     type(corner_t), intent(out) :: corner
     type(corner_t) :: one

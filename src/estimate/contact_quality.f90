@@ -1,4 +1,4 @@
-!> How well the sides of a mesh can follow the dies they touch.
+!> Fit of the sides of a mesh to the dies they touch.
 !>
 !> Two things that no pressure corrects: a side whose parabola is deeper in the die between its points than at them, and a corner of
 !> the die that sticks into a side. Both are measured over the penetration that the side's law allows.

@@ -45,8 +45,8 @@ module estimator
     logical :: elastic = .true.
   end type estimator_t
 
-  !> Stress over the shear modulus (over the largest stress where there are no moduli), or strain, below which nothing has happened
-  !> yet: round-off of a stress that is zero.
+  !> Stress over the shear modulus (over the largest stress where there are no moduli), or strain, below which it counts as zero:
+  !> round-off of a stress that is zero.
   real(wp), parameter :: at_rest = 1.0e-9_wp
 
 contains

@@ -21,7 +21,7 @@ module mesh_quality
 
   integer, parameter :: ncorner = 4, npoint = 9, nplace = ncorner + npoint
 
-  !> Derivatives of the shape functions at the corners and points where elements are looked at.
+  !> Derivatives of the shape functions at the corners and points where elements are measured.
   type :: shape_places_t
     real(wp) :: dphi(2, 8, nplace) = 0.0_wp
   end type shape_places_t

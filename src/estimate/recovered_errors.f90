@@ -1,8 +1,8 @@
-!> Error of a computed field as what is missing to the recovered one, element by element.
+!> Error of a computed field: the recovered one less the computed one, element by element.
 !>
 !> The computed field of an element is the tensor-product polynomial through its own 2 x 2 or 3 x 3 points: bilinear or biquadratic.
 !> For 2 x 2 points this is the stress of the mixed element that the one with reduced integration is equal to; its stress at the
-!> points alone is better than that, and an error taken there would see nothing. Norms are integrals over 3 x 3 points. What the
+!> points alone is better than that, and an error taken there would be zero. Norms are integrals over 3 x 3 points. What the
 !> polynomials miss of the values they are fitted to counts as error: near singularities and in plastic flow it is most of it.
 !> Sources: D.S. Malkus, T.J.R. Hughes, Comput. Meth. Appl. Mech. Engng 15 (1978) 63-81 (equivalence); O.C. Zienkiewicz, J.Z. Zhu,
 !> Int. J. Num. Meth. Engng 24 (1987) 337-357 (error by recovery, energy norm).

@@ -15,7 +15,7 @@ module triggers
   private
   public :: find_triggers, distress_trigger, was_good, has_passed
 
-  !> What a new mesh began with grows to this multiple before another one is asked for.
+  !> The error and bad elements of a new mesh grow to this multiple before another one is due.
   real(wp), parameter :: worse = 1.5_wp
 
 contains
@@ -49,7 +49,7 @@ contains
     end do
   end subroutine find_triggers
 
-  !> The mesh has carried the steps it must before another one is asked for.
+  !> The mesh has made its least number of steps before another one may be due.
   pure function was_good(scene, solution) result(good)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -132,7 +132,7 @@ contains
     if (limit > 0) call add(found, 'bad_share', share, limit)
   end subroutine find_bad_shapes
 
-  !> Sides that cannot follow their die.
+  !> Sides that do not fit their die.
   pure subroutine find_misfits(scene, solution, found)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution

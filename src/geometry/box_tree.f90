@@ -1,7 +1,7 @@
 !> A tree of boxes to find the nearest of many to a point. Points are boxes of zero size.
 !>
 !> A k-d tree split at the median (J.L. Bentley, Commun. ACM 18 (1975) 509-517), each node with the box of all items below it: built
-!> in n log n, searched in log n, on graded meshes too. Ties are broken by the number of the item, so that answers depend on the
+!> in n log n, searched in log n, on graded meshes too. Ties are broken by the number of the item, so that results depend on the
 !> items only.
 module box_tree
   use kinds, only: wp

@@ -3,12 +3,12 @@
 !> A die's curve is oriented, so the side a point is on is known: with n the die's inner normal at
 !> the closest point Y, d = (X - Y).n is the penetration, negative for a gap. Depth so measured is
 !> continuous wherever the part's side turns, and linear in front of a flat die; the original
-!> (annex 3, figs. 3-5) looks along the part's own normal instead, where an intersection can appear at any
+!> (annex 3, figs. 3-5) searches along the part's own normal instead, where an intersection can appear at any
 !> depth and several may compete. Only closest points that face the part count (true contact, eq. 11): with
 !> e_R the part's inner normal, e_R.n must be below `facing`.
 !>
 !> A closest point that faces the part may lie behind another wall: a point beside a thin rib, on a side that
-!> looks away from the rib, faces the rib's far wall. The closest point of all shows whether the point
+!> faces away from the rib, faces the rib's far wall. The closest point of all shows whether the point
 !> is inside the body; one that contradicts it is not taken. Only what came through a wall since
 !> the last accepted instant still belongs to that wall: `follow_closest_point` continues from the closest point of that
 !> instant, in the direction of decreasing distance, so that a step cannot carry a point through a rib.

@@ -1,4 +1,4 @@
-!> The list of kinematics. Only its submodule knows the members.
+!> The list of kinematics. Only its submodule uses the members.
 module kinematics_registry
   use kinematics_api, only: kinematics_t
   implicit none

@@ -1,6 +1,6 @@
 !> The frame that turns with the step, for laws whose history holds tensors.
 !>
-!> With R the rotation of the step, f = R U, a law is called with R^T e R and the history as it was, and its answer
+!> With R the rotation of the step, f = R U, a law is called with R^T e R and the history as it was, and its response
 !> is turned forward: for an isotropic law the same as turning the history first, and the tangent needs nothing but the
 !> law's own: d tau = R L (R^T (de - W e + e W) R) R^T + W tau - tau W, W = dR R^T.
 !> In the plane R turns by the angle atan2(f_yx - f_xy, f_xx + f_yy). In small steps a tensor turns with Jaumann's spin.
@@ -91,7 +91,7 @@ contains
     end do
   end subroutine turn_history
 
-  !> Turn a law's answer forward; `tangent` becomes d tau / d h (4 components of h) instead of the law's own.
+  !> Turn a law's response forward; `tangent` becomes d tau / d h (4 components of h) instead of the law's own.
   pure subroutine turn_answer(frame, e, de, law_tangent, tau, elastic, tangent)
     type(frame_t), intent(in) :: frame
     real(wp), intent(in) :: e(4)                !! trial strain in the fixed frame, engineering shear [-]

@@ -7,7 +7,7 @@ module contact_penalties
   private
   public :: penalties_t, penalty_parameters, penalties_of_card, penalty_problems, allowed_penetration
 
-  !> Places among the values of a material.
+  !> Numbers among the values of a material.
   integer, parameter :: place_allowed = 1, place_normal = 2, place_tangential = 3, place_augmentations = 4
 
   type :: penalties_t
@@ -55,7 +55,7 @@ contains
     share = material%values(place_allowed)
   end function allowed_penetration
 
-  !> What is wrong with them taken together, '' when nothing is.
+  !> Message on a wrong combination of them, '' when there is none.
   pure function penalty_problems(material) result(problem)
     type(material_t), intent(in) :: material
     character(len=:), allocatable :: problem

@@ -7,7 +7,7 @@ module elastic_numbers
   private
   public :: elastic_parameters, elastic_of_card, place_young, place_poisson
 
-  !> Places among the values of a material.
+  !> Numbers among the values of a material.
   integer, parameter :: place_young = 1, place_poisson = 2
 
 contains

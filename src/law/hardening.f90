@@ -78,7 +78,7 @@ contains
     end if
   end subroutine yield_table
 
-  !> Norton-Hoff: a(1) p**a(2) exp(-a(3) p). The slope is asked for above p = 0 only.
+  !> Norton-Hoff: a(1) p**a(2) exp(-a(3) p). The slope is needed above p = 0 only.
   pure subroutine yield_norton(a, curve, p, sy, slope)
     real(wp), intent(in) :: a(:)          !! (most_numbers) [unit of each number]
     real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
@@ -90,7 +90,7 @@ contains
     if (p > 0) slope = sy*(a(2)/p - a(3))
   end subroutine yield_norton
 
-  !> G'Sell-Jonas: a(1) (1 - exp(-a(2) p)) exp(a(3) p**2). The slope is asked for above p = 0 only.
+  !> G'Sell-Jonas: a(1) (1 - exp(-a(2) p)) exp(a(3) p**2). The slope is needed above p = 0 only.
   pure subroutine yield_gsell(a, curve, p, sy, slope)
     real(wp), intent(in) :: a(:)          !! (most_numbers) [unit of each number]
     real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]

@@ -5,7 +5,7 @@
 !> in this interface the shear strain is the engineering one (2 eps_xy), so tangents are symmetric
 !> for associated laws. A block of points is treated in one call.
 !>
-!> What acts on a point from outside, its drivers, comes at the start and at the end of the step: the temperature first, then what
+!> External drivers of a point are given at the start and at the end of the step: the temperature first, then what
 !> the law declares by name (`drivers`): a field of the scene, a state variable of another formulation on the same body, or for
 !> contact the `flow_stress` of the body behind the side.
 module law_api
@@ -25,7 +25,7 @@ module law_api
   public :: solid_law, contact_law, heat_law, kind_names
   public :: line_values, line_choice, line_pairs
 
-  !> Answers of a law for a point.
+  !> Status of a law at a point.
   integer, parameter :: law_done = 0
   integer, parameter :: law_not_converged = 1
 
@@ -62,10 +62,10 @@ module law_api
     character(len=:), allocatable :: replaces
   end type parameter_t
 
-  !> What drives a law, by name.
+  !> A driver of a law, by name.
   type :: driver_t
     character(len=:), allocatable :: name
-    !> Place of the number of a material without which it is not asked for, and 0; 0: always.
+    !> Index of the number of a material without which it is not needed, and 0; 0: always.
     integer :: needs = 0
   end type driver_t
 
@@ -100,7 +100,7 @@ module law_api
     logical :: symmetric = .true.
     !> It is so also where its numbers depend on the temperature and that is an unknown.
     logical :: symmetric_by_temperature = .true.
-    !> Effects it asks for, names separated by blanks (page 6).
+    !> Effects it needs, names separated by blanks (page 6).
     character(len=:), allocatable :: effects
     procedure(law_update_i), nopass, pointer :: update => null()
     procedure(law_slide_i), nopass, pointer :: slide => null()
@@ -143,7 +143,7 @@ module law_api
     !> Contact law at one point: pressure and friction from penetration and slip.
     !>
     !> Vectors have two tangential components, in the plane and across it (annex 3, eq. 1); `tangent` is
-    !> d(pressure, tau)/d(penetration, slip). In no time at all (dt = 0, equilibrium restored on a new mesh) the history rests.
+    !> d(pressure, tau)/d(penetration, slip). In zero time (dt = 0, equilibrium restored on a new mesh) the history does not change.
     pure subroutine law_slide_i(material, dt, drivers, penalty, augmentation, penetration, slip, tau_committed, committed, &
                                 pressure, tau, history, tangent, status)
       import :: material_t, wp
@@ -162,7 +162,7 @@ module law_api
       integer, intent(out) :: status              !! contact_open, contact_stick or contact_slip
     end subroutine law_slide_i
 
-    !> Von Mises stress at which a point flows as it is now: what bounds the friction on it.
+    !> Von Mises stress at which a point flows in its present state: it bounds the friction on it.
     pure function law_flow_i(material, drivers, history) result(flow)
       import :: material_t, wp
       type(material_t), intent(in) :: material
@@ -216,7 +216,7 @@ module law_api
       real(wp) :: heat   !! [energy/length^3]
     end function law_swell_i
 
-    !> What is wrong with the numbers of a card taken together, beyond the range of each.
+    !> Message on a wrong combination of the numbers of a card, beyond the range of each.
     pure subroutine law_check_i(material, problems)
       import :: material_t, string_t
       type(material_t), intent(in) :: material                  !! at one temperature
@@ -273,7 +273,7 @@ contains
     if (present(curve)) line%curve = curve
   end function law_line
 
-  !> Place of a parameter of a line among all values of a material, 0 when unknown.
+  !> Index of a parameter of a line among all values of a material, 0 when unknown.
   !>
   !> Values are laid out line after line; a group of choice lines takes one value for the choice
   !> (1, 2, ...) followed by the parameters of every line of the group.
@@ -327,7 +327,7 @@ contains
     if (allocated(law%drivers)) n = 1 + size(law%drivers)
   end function driver_count
 
-  !> A law asks for an effect.
+  !> A law needs an effect.
   pure function asks_for(law, effect) result(yes)
     type(law_t), intent(in) :: law
     character(len=*), intent(in) :: effect

@@ -13,7 +13,7 @@ module law_coul2d
   private
   public :: law_coul2d_row
 
-  !> Places among the values of a material, after the penalties; and of the flow stress among the drivers.
+  !> Numbers among the values of a material, after the penalties; and that of the flow stress among the drivers.
   integer, parameter :: place_phi = 5, place_cohesion = 6, place_largest = 7, place_factor = 8, driver_flow = 2
 
 contains
@@ -42,7 +42,7 @@ contains
     row%check => check
   end function law_coul2d_row
 
-  !> What friction there is must be said.
+  !> Friction must be given, if only as zero.
   pure subroutine check(material, problems)
     type(material_t), intent(in) :: material
     type(string_t), allocatable, intent(out) :: problems(:)

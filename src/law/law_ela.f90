@@ -14,7 +14,7 @@ module law_ela
   private
   public :: law_ela_row, law_elath_row
 
-  !> Place of ALPHA in a material's values.
+  !> Number of ALPHA among a material's values.
   integer, parameter :: place_alpha = 3
 
 contains

@@ -21,7 +21,7 @@ module law_epla
   !> Forms of hardening in the order of their lines, and how many numbers each has.
   integer, parameter :: linear = 1, voce = 2, swift = 3, table = 4
   integer, parameter :: form_numbers(4) = [2, 4, 3, 1]
-  !> Places among the values of a material: after E and NU the form, the numbers of all forms, then the pairs.
+  !> Numbers among the values of a material: after E and NU the form, the numbers of all forms, then the pairs.
   integer, parameter :: place_form = 3
   integer, parameter :: place_numbers(4) = place_form + 1 + [0, 2, 6, 9]
   integer, parameter :: place_kinematic = place_form + sum(form_numbers) + 1, place_rate = place_kinematic + 1, &

@@ -1,4 +1,4 @@
-!> GLUE2D: a side that sticks to its die whatever happens: no opening, no slip.
+!> GLUE2D: a side that always sticks to its die: no opening, no slip.
 !>
 !> p = AKP d of either sign, dtau = AKTAU ds: sticking dies of the classic upsetting tests, and
 !> anything welded or shrunk on.

@@ -1,4 +1,4 @@
-!> The list of laws. Only its submodule knows the members.
+!> The list of laws. Only its submodule uses the members.
 module law_registry
   use law_api, only: law_t
   use text, only: string_t

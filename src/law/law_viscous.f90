@@ -20,7 +20,7 @@ module law_viscous
 
   !> Row of the plastic rate in the history.
   integer, parameter :: row_of_rate = 3
-  !> Places among the values of a material: after E and NU those of EVP-NH and those of GSELL.
+  !> Numbers among the values of a material: after E and NU those of EVP-NH and those of GSELL.
   integer, parameter :: p1 = 3, p2 = 4, p3 = 5, p4 = 6
   integer, parameter :: place_k = 3, place_w = 4, place_h = 5, place_m = 6, place_a = 7, place_absolute = 8
 
@@ -112,7 +112,7 @@ contains
     end do
   end subroutine update_gsell
 
-  !> Stress that the strain and the rate reached ask for.
+  !> Flow stress at the strain and the rate reached.
   pure function flow_of_evpnh(material, drivers, history) result(stress)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: drivers(:), history(:)
@@ -123,7 +123,7 @@ contains
     stress = flow_stress_at(norton_hoff(values), material%curve, material%curve, history(1), history(row_of_rate))
   end function flow_of_evpnh
 
-  !> Stress that the strain and the rate reached ask for.
+  !> Flow stress at the strain and the rate reached.
   pure function flow_of_gsell(material, drivers, history) result(stress)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: drivers(:), history(:)

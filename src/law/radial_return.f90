@@ -75,7 +75,7 @@ contains
     call yield_between(flow%yield, flow%below, flow%above, flow%share, below, above, committed(1), sy, slope)
     limit = sy
     if (flow%rate_form == rate_power) limit = 0
-    ! in no time at all (equilibrium restored on a new mesh) nothing flows
+    ! in zero time (equilibrium restored on a new mesh) nothing flows
     if (q <= limit + yield_tolerance*(limit + start) .or. .not. dt > 0) then
       tangent = hooke_tangent(flow%bulk, flow%shear)
       return
@@ -155,7 +155,7 @@ contains
     status = law_not_converged
   end subroutine return_at_rest
 
-  !> The same with flow by rate, `sy` and `slope` = d sy/d dp with the factor of the rate; dp = 0 where it is too small to be felt.
+  !> The same with flow by rate, `sy` and `slope` = d sy/d dp with the factor of the rate; dp = 0 where it is below round-off.
   !>
   !> Unknown z = ln(dp g3/q) < 0. Newton's method takes the residual of the logarithms of both sides while flow is a small part
   !> of the trial strain (a power is straight there), and the residual itself where it is most of it.

@@ -13,7 +13,7 @@ module dense_lu
 
 contains
 
-  !> One thread. `regular` becomes false when a pivot is zero or not a number.
+  !> One thread. `regular` becomes false when a pivot is zero or NaN.
   subroutine eliminate(p, n, pivot, row, border, keep, regular)
     integer, intent(in) :: p, n                       !! pivots, order
     real(wp), intent(inout) :: pivot(n, p)            !! pivot columns [residual/unknown]

@@ -1,7 +1,7 @@
-!> Where everything of a multifrontal factorisation stands in memory: fronts, their factors, what children send to parents.
+!> Memory layout of a multifrontal factorisation: fronts, their factors, the matrices that children send to parents.
 !>
 !> A front of order n with p pivots is kept as its pivot columns (n, p) and the rest of its pivot rows (p, n-p), one after the
-!> other: its factors. The rest (n-p, n-p), the border, is sent to the parent and forgotten. Fronts are shared out to
+!> other: its factors. The rest (n-p, n-p), the border, is sent to the parent and discarded. Fronts are shared out to
 !> threads by subtrees; how the tree is split depends on the tree alone, so that results do not depend on the threads.
 module front_layout
   use elimination_tree, only: find_fronts, list_neighbours
@@ -36,7 +36,7 @@ module front_layout
 
   !> Subtrees with less than this share of all operations are done by one thread.
   real(wp), parameter :: subtree_share = 1.0_wp/32
-  !> Fewer operations than these are not worth waking a thread for.
+  !> Fewer operations than these are faster on one thread.
   real(wp), parameter :: worth_sharing = 4.0e6_wp
 
 contains
@@ -202,7 +202,7 @@ contains
         layout%entry(f + 1) = layout%entry(f + 1) + 1
         return
       end if
-      ! a nonzero below the diagonal, or the mirror of one above: which, its sign remembers
+      ! a nonzero below the diagonal, or the mirror of one above: its sign states which
       layout%source(next(f)) = k
       layout%target(next(f)) = merge(1, -1, i == layout%place(pattern%row(k)))
       next(f) = next(f) + 1

@@ -43,7 +43,7 @@ module linear_api
     end subroutine plan_i
 
     !> Factorise the matrix with these nonzeros. Where there are no usable factors, `sound` is false if the member has a fallback;
-    !> one without answers an error, exit_no_convergence for a singular matrix.
+    !> one without gives an error, exit_no_convergence for a singular matrix.
     subroutine factorise_i(self, values, sound, error)
       import :: error_t, factors_t, wp
       class(factors_t), intent(inout) :: self

@@ -1,4 +1,4 @@
-!> The list of linear solvers. Only its submodule knows the members.
+!> The list of linear solvers. Only its submodule uses the members.
 module linear_registry
   use linear_api, only: solver_row_t
   implicit none

@@ -19,7 +19,7 @@ module linear_solver
   integer, parameter :: max_refinements = 3
   !> Forces |A| |x| this many times the right-hand side are round-off of a singular matrix.
   real(wp), parameter :: singular_growth = 1.0e13_wp
-  !> Fewer nonzeros are not worth waking threads for.
+  !> Fewer nonzeros are faster on one thread.
   integer, parameter :: worth_threads = 50000
 
   type :: linear_solver_t
@@ -85,14 +85,14 @@ contains
     end do
   end subroutine start_rows
 
-  !> At the start of a step: what earlier steps needed does not count, or a run taken up again would go another way.
+  !> At the start of a step: the fallback of earlier steps does not count, or a resumed run would give other results.
   pure subroutine return_to_chosen(solver)
     type(linear_solver_t), intent(inout) :: solver
 
     solver%fallen_back = .false.
   end subroutine return_to_chosen
 
-  !> Factorise the matrix with these nonzeros. A singular matrix answers exit_no_convergence: the step is cut.
+  !> Factorise the matrix with these nonzeros. A singular matrix gives exit_no_convergence: the step is cut.
   subroutine factorise(solver, values, error)
     type(linear_solver_t), intent(inout) :: solver
     real(wp), intent(in) :: values(:)    !! (nnz) [residual/unknown]
@@ -106,7 +106,7 @@ contains
     end if
   end subroutine factorise
 
-  !> Solve for one right-hand side with the present factors, refining while the residual asks for it.
+  !> Solve for one right-hand side with the present factors, refining while the residual is too large.
   !> Factors that prove too poor are made again by the fallback, for the rest of the step.
   subroutine solve_linear(solver, pattern, rhs, x, error)
     type(linear_solver_t), intent(inout) :: solver

@@ -48,7 +48,7 @@ contains
     end if
   end subroutine plan
 
-  !> Factorise; `regular` is false when a pivot is zero or not a number.
+  !> Factorise; `regular` is false when a pivot is zero or NaN.
   subroutine decompose(solver, values, regular)
     type(multifrontal_t), intent(inout) :: solver
     real(wp), intent(in) :: values(:)   !! (nnz) [residual/unknown]

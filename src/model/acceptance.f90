@@ -1,5 +1,5 @@
 !> When a new mesh is refused: limits of the restart on it, and the steps it is on probation for. (Chapter 12 of the thesis: slow
-!> convergence and very short steps show that a remesh went wrong.)
+!> convergence and very short steps show that a remesh failed.)
 module acceptance
   use kinds, only: wp
   implicit none
@@ -7,7 +7,7 @@ module acceptance
   public :: acceptance_t, probation_t
   public :: begin_probation, end_probation, is_on_probation, note_cut, note_step, probation_steps, step_ratio
 
-  !> Steps after a remesh that are held against as many before it.
+  !> Steps after a remesh that are compared with as many before it.
   integer, parameter :: probation_steps = 5
 
   !> Limits of the restart, all without units.
@@ -22,7 +22,7 @@ module acceptance
     !> Change of the depth in a die, in the mean of its pressures, over the penetration the deck allows and a thousandth of the side
     !> (found: up to 0.3): above 1 the contour is another one than that which carried the pressures.
     real(wp) :: depth_change = 1.0_wp
-    !> Least step on probation over the least before: seven cuts in a row are forgiven (1/128), an eighth is not. (The first step
+    !> Least step on probation over the least before: seven cuts in a row are allowed (1/128), an eighth is not. (The first step
     !> returns to the yield surface what was carried past it, and finds the new points of contact; six cuts have been found on
     !> meshes that went well.)
     real(wp) :: step_ratio = 0.005_wp
@@ -41,7 +41,7 @@ module acceptance
 
 contains
 
-  !> A new mesh has been accepted by the restart. Where no step was made before there is nothing to hold its steps against.
+  !> A new mesh has been accepted by the restart. Where no step was made before there is nothing to compare its steps with.
   pure subroutine begin_probation(probation)
     type(probation_t), intent(inout) :: probation
 

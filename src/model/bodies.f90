@@ -1,4 +1,4 @@
-!> What hangs together: nodes that elements join belong to one body.
+!> Connected parts: nodes that elements join belong to one body.
 module bodies
   use scene, only: scene_t
   implicit none
@@ -37,7 +37,7 @@ contains
     end do
   end function in_one_body
 
-  !> The higher root hangs on the lower one.
+  !> The lower root becomes the parent of the higher one.
   pure subroutine join(a, b, parent)
     integer, intent(in) :: a, b
     integer, intent(inout) :: parent(:)

@@ -1,7 +1,7 @@
 !> Fields: the unknowns of a scene as declared data.
 !>
 !> A field is declared by the elements that have it among their unknowns: its name, unit, number of components, where its values
-!> stand, what acts on it. The solution owns its values; equations are numbered for those that elements ask for. Predictor, norms,
+!> stand, what acts on it. The solution owns its values; equations are numbered for those that elements declare. Predictor, norms,
 !> acceptance, history, files and remeshing are loops over fields.
 module fields
   use kinds, only: wp
@@ -14,7 +14,7 @@ module fields
 
   !> Where the values of a field stand: on nodes of the mesh, on the pilots of the dies, on the section of the scene.
   integer, parameter :: on_nodes = 1, on_pilots = 2, on_section = 3
-  !> Places of the fields of mechanics in the list of a scene; others come after them.
+  !> Positions of the fields of mechanics in the list of a scene; others come after them.
   integer, parameter :: displacement_field = 1, pilot_field = 2, section_field = 3
   !> Carried over a remesh by the shape functions of the old mesh.
   character(len=*), parameter :: transfer_nodal = 'nodal'

@@ -1,5 +1,5 @@
-!> The visitor that remembers members and gives them to another object of the same type: what does not depend on the mesh is carried
-!> over a remesh so.
+!> The visitor that stores members and gives them to another object of the same type: members that do not depend on the mesh are
+!> carried over a remesh in this way.
 !>
 !>     call visit_solution_members(memory, before)
 !>     memory%gives = .true.
@@ -20,11 +20,11 @@ module kept_members
   end type kept_member_t
 
   type, extends(visitor_t) :: member_memory_t
-    !> Members are given back, no longer remembered.
+    !> Members are given back, no longer stored.
     logical :: gives = .false.
     !> All members, not only those that a remesh keeps.
     logical :: all = .false.
-    !> What is remembered, in the order of the visit.
+    !> Stored members, in the order of the visit.
     type(kept_member_t), allocatable :: members(:)
     integer :: n = 0
   contains
@@ -169,7 +169,7 @@ contains
     end if
   end subroutine visit_text
 
-  !> Place of a path among the members, 0 where it is not remembered.
+  !> Index of a path among the members, 0 where it is not stored.
   pure function find(self, path) result(k)
     class(member_memory_t), intent(in) :: self
     character(len=*), intent(in) :: path

@@ -1,7 +1,7 @@
 !> Values at integration points carried to nodes, for pictures: a bilinear fit in each element, the mean over the elements
 !> that meet at a node, and that kept within the range of the values at the points of these elements.
 !>
-!> A linear field is exact at nodes that its points surround. Elsewhere the fit looks beyond the points: where a field is
+!> A linear field is exact at nodes that its points surround. Elsewhere the fit extrapolates beyond the points: where a field is
 !> steep it would show strains that no point has, or ones below zero.
 module nodal_average
   use kinds, only: wp

@@ -1,4 +1,4 @@
-!> Who may meet whom: the pieces of deformable dies that points of sides are coupled with.
+!> Contact pairs: the pieces of deformable dies that points of sides are coupled with.
 !>
 !> A point in reach of a deformable die has the nodes of three pieces in a row among its element's
 !> unknowns, the middle one being that of its closest point when the pairs were last renewed. A point far from

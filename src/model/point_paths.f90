@@ -26,7 +26,7 @@ module point_paths
     character(len=:), allocatable :: title
     integer :: kinematics_id = 0
     type(material_t) :: material
-    !> The deck speaks of temperatures; the one at the start.
+    !> The deck gives temperatures; the one at the start.
     logical :: has_temperature = .false.
     real(wp) :: temperature = 0.0_wp
     type(ramp_t), allocatable :: ramps(:)

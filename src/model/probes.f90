@@ -1,4 +1,4 @@
-!> What PROBE cards ask for: one column of the history each.
+!> PROBE cards: one column of the history each.
 module probes
   use kinds, only: wp
   implicit none

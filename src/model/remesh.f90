@@ -1,4 +1,4 @@
-!> A mesh in place of the deck's own: what a remesh hands to the cards.
+!> A mesh in place of the deck's own: the data of a remesh for the cards.
 module remesh
   use kinds, only: wp
   use mesh, only: side_set_t
@@ -21,7 +21,7 @@ module remesh
     integer :: generation = 1
     !> Steps before this mesh; 0: the bodies are at rest on it, as the cards have them.
     integer :: step = 0
-    !> Where the nodes are at the start of this mesh, and where their matter was at the start of the first (2, nnode) [length].
+    !> Where the nodes are at the start of this mesh, and where their material was at the start of the first (2, nnode) [length].
     real(wp), allocatable :: coordinates(:, :), origin(:, :)
     !> All groups and all sets of sides of the scene, in its order.
     type(elements_t), allocatable :: groups(:)

@@ -1,4 +1,4 @@
-!> How a scene is remeshed: what REMSH cards ask of the remesher, and of the restart on a new mesh.
+!> How a scene is remeshed: options of REMSH cards for the remesher, and for the restart on a new mesh.
 module remesher_options
   use acceptance, only: acceptance_t
   use kinds, only: pi, wp
@@ -8,7 +8,7 @@ module remesher_options
   public :: own_mesh_t, remesher_options_t, has_zones, has_contours
   public :: as_it_comes, by_zones, by_gmsh
 
-  !> Who makes a mesh: zones, and Gmsh where they fail; zones alone; Gmsh alone.
+  !> Mesher: zones, and Gmsh where they fail; zones alone; Gmsh alone.
   integer, parameter :: as_it_comes = 0, by_zones = 1, by_gmsh = 2
 
   !> The mesh that the cards make, before any remesh took its place.
@@ -33,12 +33,12 @@ module remesher_options
     !> Elements across a contact interval (0: as they come), angle a side of an element may turn by [radian].
     integer :: across_contact = 4
     real(wp) :: turn = pi/12
-    !> Who makes the mesh.
+    !> Mesher.
     integer :: mesher = as_it_comes
     !> When a mesh is refused, and other ways tried then.
     type(acceptance_t) :: accept
     integer :: tries = 4
-    !> What sizes and numbers follow that the deck does not give.
+    !> Sizes of the deck's own mesh, for values that the deck does not give.
     type(own_mesh_t) :: own_mesh
     !> Zones that cards give, and the points they name; without them blocks are zones.
     type(zone_mark_t), allocatable :: marks(:)

@@ -1,4 +1,4 @@
-!> When a new mesh is wanted (card REMSH), and what an estimate says of the present one (cards ESTIM, REMSH).
+!> Limits for a new mesh (card REMSH), and the estimated errors of the present one (cards ESTIM, REMSH).
 module remeshing
   use kinds, only: wp
   implicit none
@@ -24,9 +24,9 @@ module remeshing
     real(wp) :: value = 0.0_wp
   end type stroke_t
 
-  !> Limits beyond which a new mesh is due. Without the card nothing is looked at.
+  !> Limits beyond which a new mesh is due. Without the card nothing is checked.
   type :: remesh_rules_t
-    !> A new mesh may be asked for; errors are estimated.
+    !> A new mesh may become due; errors are estimated.
     logical :: on = .false., estimate = .false.
     !> Shape of elements, and the share of the elements that may be bad.
     real(wp) :: shape(ncriteria) = merge(never, -never, is_upper)
@@ -55,7 +55,7 @@ module remeshing
     real(wp), allocatable :: stress_of(:), strain_of(:)   !! (nelem)
     !> Sums over the steps since the mesh began, of the error of the strain increment and of the increment (2, nelem).
     real(wp), allocatable :: strain_sums(:, :)
-    !> Step at which the mesh began, or at which a new one was asked for last.
+    !> Step at which the mesh began, or at which a new one was due last.
     integer :: last_stop = 0
     !> Error of the stress with which a new mesh began; 0 for the deck's own mesh.
     real(wp) :: first_stress = 0.0_wp

@@ -1,4 +1,4 @@
-!> The state of a run at an accepted instant, and the trial state of the step under way.
+!> The state of a run at an accepted instant, and the trial state of the present step.
 module solution
   use acceptance, only: probation_t
   use fields, only: displacement_field, field_t, on_nodes, on_pilots, pilot_field, section_field, start_field
@@ -37,7 +37,7 @@ module solution
     integer :: iterations = 0, cutbacks = 0
     !> Work done on the scene from outside, per radian when axisymmetric.
     real(wp) :: external_work = 0.0_wp
-    !> Work of friction since the start, and the part of it that no point of the present mesh remembers; per radian when
+    !> Work of friction since the start, and the part of it that is not in the state of a point of the present mesh; per radian when
     !> axisymmetric.
     real(wp) :: friction_work = 0.0_wp, friction_apart = 0.0_wp
     !> Heat since the start: taken up, come in through sides and imposed temperatures, released by sources; and what passed, the
@@ -48,12 +48,12 @@ module solution
     !> Worst values of all accepted steps so far.
     real(wp) :: worst_linear_residual = 0.0_wp, worst_penetration = 0.0_wp, worst_penetration_ratio = 0.0_wp
     real(wp) :: least_dissipation = 0.0_wp
-    !> Largest share of a motion that the points of an element did not see (spurious_mode), and the element.
+    !> Largest share of the spurious mode in the motion of an element (spurious_mode), and the element.
     real(wp) :: worst_spurious = 0.0_wp
     integer :: spurious_group = 0, spurious_element = 0
     !> Largest depth of a side in a die anywhere along it, and over what the side allows.
     real(wp) :: worst_sample = 0.0_wp, worst_sample_ratio = 0.0_wp
-    !> Errors of the mesh; of no elements where nothing asks for them.
+    !> Errors of the mesh; of no elements where they are not needed.
     type(estimate_t) :: estimate
   end type solution_t
 

@@ -1,4 +1,4 @@
-!> What the state of a point is made of: names, units, and how a remesh may carry each part over.
+!> Variables of the state of a point: names, units, and how a remesh may carry each part over.
 !> Elements and laws declare their variables here; files and REMDATA read nothing else.
 module state_variables
   use kinds, only: wp
@@ -25,7 +25,7 @@ module state_variables
     integer :: first = 0
     !> Value at the start of a scene.
     real(wp) :: initial = 0.0_wp
-    !> Place of the number of a material without which this part of a law's history is not there; 0: always there.
+    !> Index of the number of a material without which this part of a law's history is not there; 0: always there.
     integer :: needs = 0
   end type state_variable_t
 

@@ -30,8 +30,8 @@ contains
     call visitor%member('declared', self%declared, kept)
   end subroutine visit_field_declaration
 
-  !> Of a field of a solution that was started. Values on nodes are carried by shape functions, what acted on nodes is of their
-  !> mesh; pilots and the section know no mesh.
+  !> Of a field of a solution that was started. Values on nodes are carried by shape functions, forces on nodes belong to their
+  !> mesh; pilots and the section do not depend on the mesh.
   subroutine visit_field_values(visitor, self)
     class(visitor_t), intent(inout) :: visitor
     type(field_t), intent(inout) :: self

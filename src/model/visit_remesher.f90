@@ -1,4 +1,4 @@
-!> The members of what the deck asks of the remesher, and of ends of contact, which only the remesher reads (visitors).
+!> The members of the deck's options for the remesher, and of ends of contact, which only the remesher reads (visitors).
 module visit_remesher
   use contact_ends, only: contact_end_t
   use kinds, only: pi, wp
@@ -15,7 +15,7 @@ module visit_remesher
   real(wp), parameter :: largest_exponent = 20.0_wp
   !> Entries of a list at most.
   integer, parameter :: most_parts = 100000
-  !> Places on sides and pieces are from -1 to 1, and some round-off.
+  !> Parent coordinates on sides and pieces are from -1 to 1, within round-off.
   real(wp), parameter :: on_side = 1.0_wp + 1.0e-6_wp
 
 contains

@@ -1,5 +1,5 @@
-!> The members of a scene that a checkpoint holds (visitors): what the remesher needs, who knows no element and no law, and what a
-!> deck must find on another mesh. All else is read again from the cards.
+!> The members of a scene that a checkpoint holds (visitors): what the remesher needs, which has neither elements nor laws, and what
+!> a deck needs on another mesh. All else is read again from the cards.
 module visit_scene
   use scene, only: plane_state_names, scene_t
   use visit_estimate, only: visit_remesh_rules

@@ -1,4 +1,4 @@
-!> The members of a solution, for who writes, reads, describes or carries them (visitors).
+!> The members of a solution, for writing, reading, describing or carrying them (visitors).
 module visit_solution
   use acceptance, only: probation_steps, probation_t
   use kinds, only: wp

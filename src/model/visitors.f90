@@ -1,4 +1,4 @@
-!> Visitors: what is done with the members of a type, one after the other.
+!> Visitors: operations on the members of a type, one after the other.
 !>
 !> Every type that a checkpoint holds has one routine `visit_...` that names its members: with unit, shape, range, and how a remesh
 !> carries them over. Writing, reading, the description of the file and the carry over a remesh are visitors, so that no member is
@@ -61,7 +61,7 @@ module visitors
       real(wp), intent(in), optional :: low, high     !! it is from `low` to `high`
     end subroutine visit_real_i
 
-    !> An array is given with its extents, `2, nnode`: what is a number must be just that, what is a word may be any. One that is
+    !> An array is given with its extents, `2, nnode`: a number is the exact extent, a word stands for any. One that is
     !> allocated keeps its extents.
     subroutine visit_reals_i(self, name, values, carried, extents, unit, low, high)
       import :: visitor_t, wp

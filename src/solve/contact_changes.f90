@@ -1,6 +1,6 @@
 !> Which points are in contact, and how: what may change from one iteration to the next.
 !>
-!> While it does, Newton's method seeks the set of points in contact rather than a zero nearby: it changes matrix at every
+!> While it does, Newton's method searches for the set of points in contact rather than a zero nearby: its matrix changes at every
 !> iteration, and its residual need not fall until the set is found (M. Hintermüller, K. Ito, K. Kunisch, SIAM J. Optim. 13
 !> (2003) 865-888: primal-dual active sets are Newton's method).
 module contact_changes

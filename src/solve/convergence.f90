@@ -1,4 +1,4 @@
-!> Norms of residuals and corrections, and what is small against them. No number here has a unit.
+!> Norms of residuals and corrections, and the round-off of both. All tolerances are without unit.
 !>
 !> Each quantity of a solve (motion, temperature) has norms of its own: a force is not compared with a heat flow. What is returned
 !> is the largest of them.
@@ -19,7 +19,7 @@ module convergence
 
 contains
 
-  !> The few unknowns that carry the force of a whole die are held to a norm of their own.
+  !> The few unknowns that carry the force of a whole die have a norm of their own.
   pure function pilots_in_equilibrium(equations, fields, external, residual) result(in_equilibrium)
     type(equations_t), intent(in) :: equations
     type(field_t), intent(in) :: fields(:)             !! (nfield)
@@ -92,7 +92,7 @@ contains
     end do
   end function relative_motion
 
-  !> The larger of two norms; what is not a number counts as largest.
+  !> The larger of two norms; NaN counts as the largest.
   pure function larger(a, b) result(c)
     real(wp), intent(in) :: a, b
     real(wp) :: c
@@ -137,7 +137,7 @@ contains
     end do
   end function free_force
 
-  !> Work of residuals along a correction: of the motion, where the solve has one (the energy that a line search looks at).
+  !> Work of residuals along a correction: of the motion, where the solve has one (the energy that a line search uses).
   pure function slope_along(equations, correction, residual) result(slope)
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: correction(:)   !! (ndof) [unknown]

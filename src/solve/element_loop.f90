@@ -20,7 +20,7 @@ module element_loop
 
   !> Elements per block: their arrays stay in the first-level caches.
   integer, parameter :: block_size = 16
-  !> Fewer blocks, or nonzeros, are not worth waking threads for.
+  !> Fewer blocks, or nonzeros, are faster on one thread.
   integer, parameter :: worth_threads = 8, worth_gathering = 50000
 
   type :: element_buffers_t

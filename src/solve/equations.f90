@@ -35,10 +35,10 @@ module equations
     type(law_t), allocatable :: laws(:)
     type(kinematics_t) :: kinematics
     type(dofs_t) :: dofs
-    !> What is solved for together, in the order of a step, and the one under way.
+    !> The solves in the order of a step, and the present one.
     type(solve_t), allocatable :: solves(:)
     integer :: now = 1
-    !> What elements are asked for (elem_api).
+    !> Mode of the elements (elem_api).
     integer :: mode = mode_advance
     type(element_buffers_t) :: buffers
     type(ledger_t) :: timers
@@ -60,7 +60,7 @@ module equations
     integer :: nnode = 0
     !> Groups that are loads: their forces come from outside.
     logical, allocatable :: is_load(:)
-    !> What drives the laws at the points of the groups.
+    !> Drivers of the laws at the points of the groups.
     type(drivers_t), allocatable :: drivers(:)
     !> Diagonal of the box around the mesh [length].
     real(wp) :: size = 0.0_wp
@@ -122,7 +122,7 @@ contains
     equations%now = 1
   end subroutine set_up
 
-  !> The solve that a field belongs to is under way.
+  !> The solve that a field belongs to is the present one.
   pure subroutine take_turn(equations, field)
     type(equations_t), intent(inout) :: equations
     integer, intent(in) :: field   !! position in the scene's list
@@ -133,7 +133,7 @@ contains
     end do
   end subroutine take_turn
 
-  !> Order the equations of the solve under way and let its solver analyse the pattern.
+  !> Order the equations of the present solve and let its solver analyse the pattern.
   subroutine analyse_pattern(equations, error)
     type(equations_t), intent(inout) :: equations
     type(error_t), allocatable, intent(out) :: error
@@ -180,7 +180,7 @@ contains
     equations%links = links(:, :n)
   end subroutine list_links
 
-  !> Unknowns and pattern for other pairs; the solver gets to know them before the next factorisation.
+  !> Unknowns and pattern for other pairs; the solver analyses them before the next factorisation.
   subroutine pair_up(scene, pairs, equations)
     type(scene_t), intent(in) :: scene
     type(pairs_t), intent(in) :: pairs(:)
@@ -221,7 +221,7 @@ contains
     logical :: symmetric
     integer :: g
 
-    ! one quantity drives another by other numbers than it is driven back
+    ! the coupling of two quantities is not symmetric
     symmetric = quantities_of(equations%dofs, equations%solves(s)) < 2
     do g = 1, size(scene%groups)
       associate (row => equations%elems(scene%groups(g)%elem_id), m => scene%groups(g)%material)

@@ -7,17 +7,17 @@
 !> smaller, in proportion, and leaves the contact open. So a share is taken only for a real fall.
 !>
 !> Where points are about to turn from loading to unloading, or the other way, every short search
-!> stays on this side of the turn, with the same matrix: it would go on so for ever. Hence the
+!> stays on this side of the turn, with the same matrix: the iteration would not end. Hence the
 !> caller may ask for the whole correction, whatever the residual (the watchdog of R.M. Chamberlain
 !> et al., Math. Programming Study 16 (1982) 1-17): beyond the turn the matrix is the right one.
 !>
-!> Where points of contact change to and fro, states on either side of the change answer one another with corrections that both go
-!> too far; the caller may ask for a closer search, which stops between them.
+!> Where points of contact change to and fro, the corrections from the states on both sides of the change go too far
+!> in turns; the caller may ask for a closer search, which stops between them.
 !>
-!> A correction against which the residual works (their product is negative) leads uphill: the state is past a limit point,
-!> as where a side lifts off a die it was bent around. If the whole of it is no better, the way back is taken, where the forces
-!> drive the body, whatever the residual: equilibrium is further on, and no shorter step would find it nearer (J.J. More,
-!> D.C. Sorensen, Math. Programming 16 (1979) 1-20: directions of negative curvature).
+!> A correction on which the residual does negative work is an ascent direction: the state is past a limit point,
+!> as where a side lifts off a die it was bent around. If the whole of it is no better, the correction is reversed (s = -1): the
+!> forces drive the body in that direction, whatever the residual. Equilibrium is further on, and no shorter step would find it
+!> nearer (J.J. More, D.C. Sorensen, Math. Programming 16 (1979) 1-20: directions of negative curvature).
 module line_search
   use convergence, only: free_force, slope_along
   use elem_api, only: block_done, report_t
@@ -29,7 +29,7 @@ module line_search
   private
   public :: search_along, manner_t, short_share
 
-  !> How to search: take the whole whatever the residual, or find the zero along the way more closely.
+  !> How to search: take the whole whatever the residual, or find the zero along the correction more closely.
   type :: manner_t
     logical :: whole = .false., closely = .false.
   end type manner_t
@@ -43,8 +43,8 @@ module line_search
 
 contains
 
-  !> Move `du` along the correction by the share `s` and evaluate there; s = -1 is the way back. s = 0: every share tried
-  !> fails, and `report` says why. A prescribed motion still missing is taken without search.
+  !> Move `du` along the correction by the share `s` and evaluate there; s = -1 reverses the correction. s = 0: every share tried
+  !> fails, and `report` states why. A prescribed motion still missing is taken without search.
   subroutine search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, du, s, report)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -58,13 +58,13 @@ contains
     real(wp), intent(out) :: s
     type(report_t), intent(out) :: report
     real(wp) :: start(size(du)), trial, slope0, slope, enough, best, norm, norm0, near(2), far(2)
-    logical :: uphill, accepted
+    logical :: ascent, accepted
     integer :: k
 
     start = du
     trial = 1
     slope0 = slope_along(equations, correction, residual)
-    uphill = slope0 < 0
+    ascent = slope0 < 0
     enough = merge(search_closely_above, search_above, manner%closely)
     norm0 = free_force(equations, residual)
     near = [0.0_wp, slope0]
@@ -86,12 +86,12 @@ contains
         s = trial
       end if
       accepted = manner%whole .or. any(abs(missing) > 0) .or. norm < real_fall*norm0
-      if (.not. uphill) accepted = accepted .or. abs(slope) <= enough*slope0 .or. (k == 1 .and. norm < norm0)
+      if (.not. ascent) accepted = accepted .or. abs(slope) <= enough*slope0 .or. (k == 1 .and. norm < norm0)
       if (accepted) then
         s = trial
         return
       end if
-      if (uphill .and. k == 1) then
+      if (ascent .and. k == 1) then
         du = start - correction
         call evaluate(scene, equations, solution, dt, du, .true., report)
         if (report%status == block_done) then

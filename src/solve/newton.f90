@@ -30,7 +30,7 @@ module newton
 
   type :: outcome_t
     logical :: converged = .false.
-    !> Why the step must be cut, when it has not converged; and the element at fault, when there is one.
+    !> Why the step must be cut, when it has not converged; and the element that failed, when there is one.
     character(len=:), allocatable :: reason
     integer :: group = 0, element = 0
     !> Iterations in all, and those before the first augmentation: the difficulty of the step.
@@ -46,11 +46,11 @@ module newton
     real(wp) :: strain = 0.0_wp, linear_residual = 0.0_wp
     !> Multipliers of contact were carried forward so many times.
     integer :: augmentations = 0
-    !> The machine failed: not a matter of the step.
+    !> The machine failed, not the step.
     type(error_t), allocatable :: error
   end type outcome_t
 
-  !> A residual this many times larger than the first one, after `patience` iterations, is hopeless.
+  !> A residual this many times larger than the first one, after `patience` iterations, counts as divergence.
   real(wp), parameter :: hopeless = 1.0e3_wp
   integer, parameter :: patience = 6
   !> The residual stagnates when the best of the last `patience` - 1 iterations is above this share of the best before, and
@@ -61,8 +61,8 @@ module newton
 
 contains
 
-  !> Seek equilibrium of the solve under way at the end of a step of length dt. A step that fails leaves no trace in the committed
-  !> state.
+  !> Find the equilibrium of the present solve at the end of a step of length dt. A step that fails leaves the committed state as it
+  !> was.
   subroutine solve_step(scene, equations, solution, dt, outcome, left, given, go_on)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -87,7 +87,7 @@ contains
     if (present(left)) external = external - left
     call predict(scene, equations, solution, dt, given, go_on, outcome%du, missing, report)
     if (report%status /= block_done) then
-      call blame(report, outcome)
+      call set_cause(report, outcome)
       return
     end if
     if (dt > scene%strategy%least_step) outcome%event = report%event
@@ -122,7 +122,7 @@ contains
       call add_missing(equations, missing, residual)
       call solve_correction(equations, residual, correction, outcome%error)
       if (allocated(outcome%error)) then
-        call blame_solver(outcome)
+        call set_solver_cause(outcome)
         exit
       end if
       outcome%linear_residual = max(outcome%linear_residual, equations%solves(equations%now)%solver%residual)
@@ -130,7 +130,7 @@ contains
       call search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, outcome%du, &
                         line%line_search, report)
       if (.not. abs(line%line_search) > 0) then
-        call blame(report, outcome)
+        call set_cause(report, outcome)
         exit
       end if
       call note_contact(scene, solution, contact, line%contact_changed)
@@ -195,7 +195,7 @@ contains
     is_under_way = line%contact_changed .or. line%line_search < 0
   end function is_under_way
 
-  !> Is there a reason to give up?
+  !> Reason to stop the iterations, if there is one.
   pure subroutine judge(scene, history, reason)
     type(scene_t), intent(in) :: scene
     type(iteration_t), intent(in) :: history(:)
@@ -219,7 +219,7 @@ contains
     end associate
   end subroutine judge
 
-  !> The forces that missing prescribed motions make through the matrix.
+  !> The forces of missing prescribed motions, by the matrix.
   subroutine add_missing(equations, missing, residual)
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: missing(:)
@@ -234,7 +234,7 @@ contains
     residual = residual - force
   end subroutine add_missing
 
-  !> Uzawa's update of all contacts that ask for it; the multipliers before the first one are kept.
+  !> Uzawa's update of all contacts that need it; the multipliers before the first one are kept.
   subroutine augment(scene, equations, solution, times, before, changed)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
@@ -267,8 +267,8 @@ contains
     end do
   end subroutine restore
 
-  !> Say which element stopped the step, and why.
-  subroutine blame(report, outcome)
+  !> Cause of a failed step: the element, and what failed in it.
+  subroutine set_cause(report, outcome)
     type(report_t), intent(in) :: report
     type(outcome_t), intent(inout) :: outcome
 
@@ -279,15 +279,15 @@ contains
     end if
     outcome%group = report%group
     outcome%element = report%element
-  end subroutine blame
+  end subroutine set_cause
 
-  !> A matrix that cannot be solved with cuts the step; a machine that fails does not.
-  subroutine blame_solver(outcome)
+  !> A matrix that the solver cannot factorise cuts the step; a failure of the machine does not.
+  subroutine set_solver_cause(outcome)
     type(outcome_t), intent(inout) :: outcome
 
     if (outcome%error%code /= exit_no_convergence) return
     outcome%reason = outcome%error%message
     deallocate (outcome%error)
-  end subroutine blame_solver
+  end subroutine set_solver_cause
 
 end module newton

@@ -2,7 +2,7 @@
 !>
 !> One solve with all fields is the monolithic way; one for each quantity (motion, temperature), in turns, the staggered way. A
 !> solve has equations for the free unknowns of its own fields, the pattern of its matrix, and a linear solver. Unknowns of other
-!> fields are given: their motion in the step is what their own solve has found, or foretold.
+!> fields are given: their motion in the step is what their own solve has found, or predicted.
 !> Source of the split: C.A. Felippa, K.C. Park, Comput. Meth. Appl. Mech. Eng. 24 (1980) 61-111.
 module solves
   use dofs, only: dofs_t
@@ -134,7 +134,7 @@ contains
     n = count([(any(solve%equation > 0 .and. dofs%quantity == q), q=1, size(dofs%quantities))])
   end function quantities_of
 
-  !> Pattern of the matrix of a solve, and room for its nonzeros; the solver gets to know it before the next factorisation.
+  !> Pattern of the matrix of a solve, and room for its nonzeros; the solver analyses it before the next factorisation.
   subroutine set_up_pattern(dofs, symmetric, solve)
     type(dofs_t), intent(in) :: dofs
     logical, intent(in) :: symmetric

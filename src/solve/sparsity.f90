@@ -1,6 +1,6 @@
 !> Pattern of the assembled matrix, and the map from element matrices to it.
 !>
-!> Rows are sorted by column. Every nonzero knows which entries of the element matrices it sums, in
+!> Rows are sorted by column. For every nonzero the entries of the element matrices that it sums are listed, in
 !> a fixed order: gathering (not scattering) makes the sum the same for any number of threads.
 module sparsity
   use dofs, only: dofs_t

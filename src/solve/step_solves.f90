@@ -1,8 +1,8 @@
 !> One step of all fields: each solve in its turn.
 !>
 !> Where fields of several quantities are solved for one after the other, a solve takes the motion of the others' unknowns as their
-!> own solve has found it in this step, or as the last step foretells. Once in turns is first order in the step; in turns until
-!> nothing changes any more is the answer of the monolithic solve.
+!> own solve has found it in this step, or as predicted from the last step. Once in turns is first order in the step; in turns until
+!> nothing changes any more is the result of the monolithic solve.
 module step_solves
   use equations, only: equations_t
   use kinds, only: wp
@@ -16,12 +16,12 @@ module step_solves
   private
   public :: solve_fields
 
-  !> More turns than this do not come together: the step is too long.
+  !> More turns than this do not converge: the step is too long.
   integer, parameter :: most_turns = 50
 
 contains
 
-  !> Seek the fields at the end of a step of length dt. `outcome` is that of all solves together; of a failed step, of the one that
+  !> Find the fields at the end of a step of length dt. `outcome` is that of all solves together; of a failed step, of the one that
   !> failed.
   subroutine solve_fields(scene, equations, solution, dt, outcome)
     type(scene_t), intent(in) :: scene
@@ -37,7 +37,7 @@ contains
       call solve_step(scene, equations, solution, dt, outcome)
       return
     end if
-    ! what a failed attempt has left is not the state to begin with
+    ! the trial state of a failed attempt is discarded
     do s = 1, size(solution%groups)
       solution%groups(s)%trial = solution%groups(s)%committed
     end do
@@ -74,7 +74,7 @@ contains
     if (whole > 0) change = sqrt(change/whole)
   end function relative_change
 
-  !> Add what a solve came to: iterations one after the other, extremes, why it failed.
+  !> Add the result of a solve: iterations one after the other, extremes, why it failed.
   subroutine add_outcome(name, own, all)
     character(len=*), intent(in) :: name   !! of the solve
     type(outcome_t), intent(inout) :: own

@@ -123,7 +123,7 @@ contains
     end if
     write (unit, iostat=status, iomsg=why) text
     close (unit)
-    ! gfortran's close says nothing of a full disk: the length tells.
+    ! gfortran's close does not report a full disk: the length of the file shows it
     if (status == 0) then
       inquire (file=temporary_name(path), size=length)
       status = merge(0, 1, length == len(text, i8))

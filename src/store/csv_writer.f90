@@ -1,6 +1,6 @@
 !> Tables that grow by a row at a time, such as `history.csv`: a header of `name [unit]`, then rows
 !> of numbers. Reals are the shortest text that reads back as the same number. The file is open only
-!> while a row is added, so that others can watch and a killed run loses nothing.
+!> while a row is added, so that other programs can read it and a killed run loses nothing.
 !>
 !> A table taken up again with `resume` is cut after the step of the checkpoint, so that an
 !> interrupted run leaves the very file of an uninterrupted one.
@@ -15,10 +15,10 @@ module csv_writer
   private
   public :: csv_t
 
-  !> The column of the step, which `resume` looks at; the first one is the time.
+  !> The column of the step, which `resume` reads; the first one is the time.
   integer, parameter :: step_column = 2
 
-  !> A table open for writing. It remembers its first error; later calls then do nothing.
+  !> A table open for writing. It keeps its first error; later calls then do nothing.
   type :: csv_t
     private
     character(len=:), allocatable :: path
@@ -189,8 +189,8 @@ contains
     self%ncell = 0
   end subroutine end_row
 
-  !> Add a line to the file. gfortran's flush and close say nothing of a full disk, its `inquire` of
-  !> the length of a closed file does.
+  !> Add a line to the file. gfortran's flush and close do not report a full disk, its `inquire` of
+  !> the length of a closed file shows it.
   subroutine append(self, line)
     class(csv_t), intent(inout) :: self
     character(len=*), intent(in) :: line
@@ -238,7 +238,7 @@ contains
     call self%status(error)
   end subroutine close_table
 
-  !> Forget what the object held before.
+  !> Clear the object.
   subroutine begin(self, path, columns)
     class(csv_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -252,7 +252,7 @@ contains
     self%ncell = 0
   end subroutine begin
 
-  !> Rows may come, unless something went wrong up to here.
+  !> The table is open for rows, unless there was an error.
   subroutine get_ready(self, error)
     class(csv_t), intent(inout) :: self
     type(error_t), allocatable, intent(in) :: error
@@ -265,7 +265,7 @@ contains
     end if
   end subroutine get_ready
 
-  !> Remember the first error.
+  !> Keep the first error.
   pure subroutine record(self, code, message)
     class(csv_t), intent(inout) :: self
     integer, intent(in) :: code

@@ -8,7 +8,7 @@ module exact_numbers
 
 contains
 
-  !> Neither infinite nor NaN. Looks at the exponent's bits (IEEE 754), since comparing a NaN is what
+  !> Neither infinite nor NaN. Reads the exponent's bits (IEEE 754), since comparing a NaN is what
   !> the debug build traps.
   elemental function is_finite(value)
     real(wp), intent(in) :: value

@@ -1,4 +1,4 @@
-!> The description of the checkpoint: what a person needs who reads one with a tool of their own.
+!> The description of the checkpoint, for users who read one with other tools.
 module exchange_describe
   use contact_ends, only: contact_end_t
   use exchange_schema, only: deck_source_t, schema_name, schema_version, visit_deck_source

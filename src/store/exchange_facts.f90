@@ -1,4 +1,4 @@
-!> What a checkpoint tells scripts of itself, once it was found whole and of this schema.
+!> Facts about a checkpoint for scripts, once it was found whole and of this schema.
 module exchange_facts
   use errors, only: error_t
   use exchange_read, only: read_bare_scene, read_state

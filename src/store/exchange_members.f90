@@ -1,4 +1,4 @@
-!> What must hold between members of a checkpoint that were read one by one: places in lists, extents of arrays that go together.
+!> Conditions between members of a checkpoint that were read one by one: positions in lists, extents of arrays that go together.
 module exchange_members
   use contact_ends, only: contact_end_t
   use dies, only: die_t, finish_die, is_deformable
@@ -18,7 +18,7 @@ module exchange_members
 
 contains
 
-  !> A scene as it was read: what follows from its members is filled in. Nothing is used before it has been found in its range.
+  !> A scene as it was read: derived data are filled in. Nothing is used before it has been found in its range.
   subroutine check_scene(file, scene)
     type(hdf5_file_t), intent(inout) :: file
     type(scene_t), intent(inout) :: scene

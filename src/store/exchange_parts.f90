@@ -1,7 +1,7 @@
-!> What must hold between the parts of a scene that a checkpoint tells: elements on nodes, sides on elements, contact on dies.
+!> Conditions between the parts of a scene that a checkpoint holds: elements on nodes, sides on elements, contact on dies.
 !>
-!> All of it holds for what cards and the remesher make. A file in which it does not was not written by these programs, and whoever
-!> uses it would read past the ends of arrays or never find what is looked for.
+!> All of them hold for what cards and the remesher make. A file in which they do not was not written by these programs, and using
+!> it would read past the ends of arrays or never end a search.
 module exchange_parts
   use block_mesh, only: least_jacobian
   use dies, only: is_deformable

@@ -34,8 +34,8 @@ contains
     call reader%file%status(error)
   end subroutine read_deck_of_checkpoint
 
-  !> What a checkpoint tells of its scene without the deck: mesh, groups with the variables of their state, dies, remeshing. For
-  !> who knows no law; enough to read the state with `read_state` and to write it with `write_checkpoint`.
+  !> The scene as far as a checkpoint holds it, without the deck: mesh, groups with the variables of their state, dies, remeshing.
+  !> For programs that know no laws; enough to read the state with `read_state` and to write it with `write_checkpoint`.
   subroutine read_bare_scene(reader, scene, error)
     type(member_reader_t), intent(inout) :: reader
     type(scene_t), intent(out) :: scene
@@ -49,8 +49,8 @@ contains
     call reader%file%status(error)
   end subroutine read_bare_scene
 
-  !> Take up the state of a checkpoint. `estimate%triggers` tell why the run stopped there, if for a new mesh: who goes on drops
-  !> them.
+  !> Take up the state of a checkpoint. `estimate%triggers` state why the run stopped there, if for a new mesh; a run that
+  !> goes on drops them.
   subroutine read_state(reader, scene, solution, error)
     type(member_reader_t), intent(inout) :: reader
     type(scene_t), intent(in) :: scene            !! of the same deck

@@ -1,6 +1,6 @@
-!> What must hold of numbers in a checkpoint before they are used: each rule names the member, what it holds, and what is wanted.
+!> Conditions on numbers in a checkpoint before they are used: each rule names the member, its value, and what is wanted.
 !>
-!> A file records its first error and does nothing after it; a rule may so be asked of what was not read any more.
+!> A file records its first error and does nothing after it, so that a rule may be applied to members that were not read any more.
 module exchange_rules
   use errors, only: exit_input
   use hdf5_file, only: hdf5_file_t

@@ -1,4 +1,4 @@
-!> The schema of the checkpoint: its version, the visit of what stands beside scene and solution, and how a file is opened.
+!> The schema of the checkpoint: its version, the visit of the members beside scene and solution, and how a file is opened.
 module exchange_schema
   use errors, only: error_t, exit_input, fail
   use hash, only: sha256

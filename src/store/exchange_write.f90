@@ -1,8 +1,8 @@
 !> Writing the checkpoint.
 !>
 !> Every state array carries the names, units and transfer kinds of its variables, taken from the laws and elements that declare
-!> them: who reads it needs to know no law. What a scene does not have is written all the same, as 0 or empty: a member that is
-!> missing is so always a mistake.
+!> them: reading needs no law. What a scene does not have is written all the same, as 0 or empty, so that a missing member is
+!> always a mistake.
 module exchange_write
   use contact_ends, only: contact_end_t
   use errors, only: error_t

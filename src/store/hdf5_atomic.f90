@@ -6,8 +6,8 @@
 !>
 !> Every file carries a hash of all its bytes (hdf5_file). `commit_atomic` reads the closed file back before it takes the place of
 !> the older one; `open_verified` opens a file whose hash is right and in which there is nothing that this program does not write.
-!> Hash and structure are two gates: the first finds every accident, whatever HDF5 would make of it; the second stands also where
-!> somebody has written the file anew, hash and all.
+!> Hash and structure are two checks: the first finds every accidental change, however HDF5 would read it; the second holds also
+!> for a file that was written by another program, with a valid hash.
 module hdf5_atomic
   use atomic, only: refuse_place, replace_file, temporary_name
   use errors, only: error_t, exit_bug, exit_machine
@@ -43,14 +43,14 @@ contains
     call file%close(error)
     if (.not. allocated(error)) then
       call verify(temporary, error)
-      ! Whatever is wrong now, the disk did it.
+      ! An error here is one of the disk.
       if (allocated(error)) error%code = exit_machine
     end if
     if (.not. allocated(error)) call replace_file(final_name(temporary), error, keep_previous)
     if (allocated(error)) call discard(temporary)
   end subroutine commit_atomic
 
-  !> Give up a file begun by `create_atomic`.
+  !> Discard a file begun by `create_atomic`.
   subroutine discard_atomic(file)
     type(hdf5_file_t), intent(inout) :: file
     type(error_t), allocatable :: ignored

@@ -1,7 +1,7 @@
 !> HDF5 files as the system uses them: named arrays in groups, attributes beside them.
 !>
-!> A file object remembers its first error, and every later call is then a cheap no-op (what is read
-!> is empty or zero), so that a chain of writes or reads needs one check at its end:
+!> A file object keeps its first error, and every later call is then a cheap no-op (what is read
+!> is empty or zero), so that a sequence of writes or reads needs one check at its end:
 !>
 !>     call file%create('out/a.h5', error)
 !>     call file%write('mesh/nodes', x)
@@ -93,7 +93,7 @@ module hdf5_file
     procedure :: has_attribute
   end type hdf5_file_t
 
-  ! Opening, closing, looking around: hdf5_file_access.
+  ! Opening, closing, listing: hdf5_file_access.
   interface
     !> Make a new file, in the place of any older one of this name.
     module subroutine create(self, path, error)
@@ -102,7 +102,7 @@ module hdf5_file
       type(error_t), allocatable, intent(out) :: error
     end subroutine create
 
-    !> Open a file for reading. What is missing, no file of ours, cut short or altered since it was closed is refused.
+    !> Open a file for reading. What is missing, not written by this system, cut short or altered since it was closed is refused.
     module subroutine open_to_read(self, path, error)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
@@ -116,7 +116,7 @@ module hdf5_file
       type(error_t), allocatable, intent(out) :: error
     end subroutine open_append
 
-    !> Write out what is still in memory, close the file, and deliver the first error of its life.
+    !> Write out what is still in memory, close the file, and deliver the first error since it was opened.
     module subroutine close_file(self, error)
       class(hdf5_file_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -194,7 +194,7 @@ module hdf5_file
     end subroutine check_hash
   end interface
 
-  ! What a file may be made of: hdf5_file_structure.
+  ! Allowed contents of a file: hdf5_file_structure.
   interface
     !> Refuse an open file that has anything in it which this module does not write: links that are soft, external or lead twice to
     !> the same thing; types of other sizes, signs or byte orders; data that are not wholly there.

@@ -58,7 +58,7 @@ contains
     end if
   end subroutine open_existing
 
-  !> Forget what the object held before, and make the library ready.
+  !> Clear the object, and start the library.
   subroutine begin(self, path, writable)
     class(hdf5_file_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -74,7 +74,7 @@ contains
 
   !> Start HDF5 once (each further h5open_f would leak its type handles), silence its own error
   !> printing, and do without file locks: they fail on some network disks, and a run must not stop
-  !> because somebody looks at its results. The user's own setting of the variable prevails.
+  !> because another program reads its results. The user's own setting of the variable prevails.
   !> HDF5's own closing of what is left at the end of the program is turned off too: after a failed
   !> write it crashes (1.10.8), and the exit code is lost.
   subroutine start_library()
@@ -161,7 +161,7 @@ contains
 
     has = self%id /= closed .and. .not. self%failed()
     last = 0
-    ! HDF5 answers for the last link of a path only when those before it exist.
+    ! HDF5 reports on the last link of a path only when those before it exist.
     do while (has .and. last < len(path))
       last = last + max(index(path(last + 1:)//'/', '/'), 1)
       if (path(:last - 1) == '') cycle

@@ -1,4 +1,4 @@
-!> The hash of a whole file, checked before HDF5 looks at it.
+!> The hash of a whole file, checked before HDF5 reads it.
 !>
 !> HDF5 leaves the first 512 bytes of a file to its user ("user block"): HDF5 itself, h5py and ParaView skip them. Here they hold
 !> three lines, the rest null bytes: what the file is, its length, and SHA-256 of all bytes that follow the block. Every bit of the
@@ -60,7 +60,7 @@ contains
     if (status /= 0 .or. index(block, first_line) /= 1) then
       call self%record_error(exit_input, 'not a file of this program: it does not begin with a length and a hash')
     else if (index(block, length_line(length)) == 0) then
-      call self%record_error(exit_input, 'cut short or damaged: '//to_text(length)//' bytes are not what its beginning tells')
+      call self%record_error(exit_input, 'cut short or damaged: '//to_text(length)//' bytes are not what its beginning states')
     else
       call take_hash(unit, digest, length, status, why)
       if (status /= 0) then

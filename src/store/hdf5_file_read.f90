@@ -107,7 +107,7 @@ contains
     call read_letters(self, path, dataset, values)
   end procedure read_words
 
-  !> A number that is none would spread through all that is computed with it.
+  !> NaN and infinity are refused: they would spread through all that is computed with them.
   subroutine refuse_not_finite(self, path)
     class(hdf5_file_t), intent(inout) :: self
     character(len=*), intent(in) :: path

@@ -1,4 +1,4 @@
-!> What a file may be made of: a tree of groups and datasets as this module writes them, and nothing else.
+!> Allowed contents of a file: a tree of groups and datasets as this module writes them, and nothing else.
 submodule(hdf5_file) hdf5_file_structure
   use hdf5, only: h5_index_name_f, h5_iter_inc_f, h5aclose_f, h5aget_name_f, h5aget_num_attrs_f, h5aget_space_f, &
     h5aget_storage_size_f, h5aget_type_f, h5aopen_by_idx_f, h5d_compact_f, h5d_contiguous_f, h5dclose_f, h5dget_create_plist_f, &

@@ -69,7 +69,7 @@ contains
   end procedure write_words
 
   !> Make the dataset `path` and fill it from memory. HDF5 refuses the handle of whatever could not
-  !> be made, so all flags are looked at once.
+  !> be made, so all flags are checked at once.
   subroutine write_block(self, path, file_type, memory_type, extent, address)
     class(hdf5_file_t), intent(inout) :: self
     character(len=*), intent(in) :: path

@@ -11,13 +11,13 @@ module hdf5_text
 
 contains
 
-  !> The type of texts of `width` bytes in a file and in memory; whoever asks for it closes it.
+  !> The type of texts of `width` bytes in a file and in memory; the caller closes it.
   subroutine make_text_type(width, type)
     integer, intent(in) :: width
     integer(hid_t), intent(out) :: type
     integer :: flag
 
-    ! A call that fails leaves a handle that HDF5 refuses later: that is where it is noticed.
+    ! A call that fails leaves a handle that HDF5 refuses later: it is detected there.
     call h5tcopy_f(h5t_c_s1, type, flag)
     call h5tset_size_f(type, int(width, size_t), flag)
     call h5tset_strpad_f(type, h5t_str_nullpad_f, flag)

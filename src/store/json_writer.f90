@@ -19,8 +19,8 @@ module json_writer
   private
   public :: json_t
 
-  !> A JSON text in the making. A call that does not fit where it stands (a name in an array, an end
-  !> without its beginning) is remembered, and delivered by `write_file` or `status`.
+  !> A JSON text while it is built. A misplaced call (a name in an array, an end
+  !> without its beginning) is recorded, and delivered by `write_file` or `status`.
   type :: json_t
     private
     character(len=:), allocatable :: buffer
@@ -292,7 +292,7 @@ contains
     self%length = self%length + len(piece)
   end subroutine append
 
-  !> Remember the first misuse.
+  !> Keep the first misuse.
   subroutine misuse(self, what)
     class(json_t), intent(inout) :: self
     character(len=*), intent(in) :: what

@@ -83,7 +83,7 @@ contains
     character(len=*), intent(in) :: carried
     integer, intent(in), optional :: low, high
 
-    ! a flag is set, so that what it tells of is described
+    ! a flag is set, so that the members it announces are described
     if (present(high)) value = high
     call self%add(name, 'integer', '', carried, range_of_integers(low, high))
   end subroutine visit_integer

@@ -1,7 +1,7 @@
 !> Fields of the solid bodies at the nodes, for pictures: every component of their states, and von Mises' equivalent stress.
 !>
-!> Where materials meet, a node has the mean of what each has there by itself, weighed by the number of its elements: one's stress
-!> is no bound for the other's.
+!> Where materials meet, a node has the mean of the values of each material there, weighed by the number of its elements: the
+!> stress of one is no bound for that of the other.
 module nodal_fields
   use kinds, only: wp
   use nodal_average, only: add_elements, begin_average, limited_average, nodal_average_t
@@ -93,7 +93,7 @@ contains
                      + (stress(4, :, :) - stress(1, :, :))**2) + 3*stress(3, :, :)**2)
   end function mises
 
-  !> Place of a word among others, 0 where it is not.
+  !> Index of a word among others, 0 where it is not.
   pure function place_of(word, words) result(place)
     character(len=*), intent(in) :: word
     type(string_t), intent(in) :: words(:)

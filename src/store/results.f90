@@ -1,8 +1,8 @@
-!> Fields for people: one HDF5 file per mesh generation, one per saved instant, one XDMF over all of them.
+!> Fields for pictures: one HDF5 file per mesh generation, one per saved instant, one XDMF over all of them.
 !>
 !> `NAME.gNN.h5`: mesh/ (coordinates, topology from 0, groups), dies/, and steps/NNNNNN, links to the instants: files
 !> `NAME.gNN/NNNNNN.h5` with the coordinates reached, nodal fields (node/NAME), numbers of elements (element/NAME) and the raw state
-!> of the points (points/GROUP). Who reads follows the links without knowing.
+!> of the points (points/GROUP). Readers of HDF5 follow the links by themselves.
 module results
   use dies, only: is_deformable
   use errors, only: error_t
@@ -27,7 +27,7 @@ module results
     character(len=:), allocatable :: stem, path, folder
     !> Step saved last, -1 before the first.
     integer :: saved_step = -1
-    !> What the user should know of the files; may be unallocated.
+    !> Note on the files for the user; may be unallocated.
     character(len=:), allocatable :: note
     type(xdmf_t) :: xdmf
   end type results_t
@@ -52,7 +52,7 @@ contains
     results%folder = instants_folder(stem, scene%generation)
     first_new = scene%generation + merge(0, 1, new_mesh)
     if (after < 0) first_new = 1
-    ! the XDMF first: at no moment does it name a file that is gone
+    ! the XDMF first: at no time does it name a file that was removed
     if (after >= 0) call results%xdmf%resume(stem//'.xdmf', solution%time, base_name(mesh_path(stem, first_new)), error)
     if (allocated(error)) return
     if (results%xdmf%size() > 0) then
@@ -82,7 +82,7 @@ contains
     if (.not. file_exists(results%path)) call write_mesh(results%path, scene, error)
   end subroutine open_results
 
-  !> A file that somebody else has damaged does not keep a run from going on: it is put aside under another name.
+  !> A damaged file does not keep a run from going on: it is renamed.
   subroutine put_aside(path, results, error)
     character(len=*), intent(in) :: path
     type(results_t), intent(inout) :: results

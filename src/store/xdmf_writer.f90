@@ -26,7 +26,7 @@ module xdmf_writer
     logical :: is_integer = .false.           !! 32-bit integers rather than doubles
   end type xdmf_field_t
 
-  !> What was saved at one step.
+  !> The grid saved at one step.
   type :: xdmf_grid_t
     real(wp) :: time = 0
     character(len=:), allocatable :: file      !! HDF5 file, relative to the directory of the XDMF file
@@ -56,8 +56,8 @@ module xdmf_writer
   character(len=*), parameter :: head = '<?xml version="1.0" encoding="UTF-8"?>'//nl// &
     '<Xdmf Version="3.0">'//nl//' <Domain>'//nl// &
     '  <Grid Name="history" GridType="Collection" CollectionType="Temporal">'//nl
-  character(len=*), parameter :: foot = '  </Grid>'//nl//' </Domain>'//nl//'</Xdmf>'//nl
-  !> How each grid begins and ends in a file of ours; `resume` looks for them.
+  character(len=*), parameter :: tail = '  </Grid>'//nl//' </Domain>'//nl//'</Xdmf>'//nl
+  !> Beginning and end of each grid in the files written here; `resume` searches for them.
   character(len=*), parameter :: grid_head = '   <Grid Name="mesh" GridType="Uniform">'//nl//'    <Time Value="'
   character(len=*), parameter :: grid_foot = '   </Grid>'//nl
 
@@ -91,8 +91,8 @@ contains
     self%grids = [self%grids, string_t(s//grid_foot)]
   end subroutine add
 
-  !> Take over the grids of an older file of ours up to `time`, and before the first that has its mesh in `until`; no file is no
-  !> grids.
+  !> Take over the grids of an older file of this system up to `time`, and before the first that has its mesh in `until`; without
+  !> a file there are no grids.
   subroutine resume(self, path, time, until, error)
     class(xdmf_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -133,7 +133,7 @@ contains
     character(len=:), allocatable :: s
     integer :: i, n
 
-    n = len(head) + len(foot)
+    n = len(head) + len(tail)
     do i = 1, self%size()
       n = n + len(self%grids(i)%s)
     end do
@@ -144,7 +144,7 @@ contains
       s(n + 1:n + len(self%grids(i)%s)) = self%grids(i)%s
       n = n + len(self%grids(i)%s)
     end do
-    s(n + 1:) = foot
+    s(n + 1:) = tail
     call write_text(path, s, error)
   end subroutine write_file
 

@@ -5,7 +5,7 @@ RADIUS, HEIGHT, TRAVEL = 10.0, 15.0, 9.0
 YOUNG, POISSON, YIELD, HARDENING, LARGEST_STRAIN = 200000.0, 0.3, 700.0, 300.0, 3.0
 # First step, length, least and largest step: those of the deck.
 STEPS = "0.01, 1., 1.E-5, 0.05"
-# CalculiX makes a wedge of 2 degrees of an axisymmetric body and tells the forces on that.
+# CalculiX makes a wedge of 2 degrees of an axisymmetric body and reports the forces on that.
 WEDGES = 180
 
 

@@ -65,8 +65,8 @@ def main():
                 deck.write("\n".join(lines) + "\n")
             run = subprocess.run([os.path.join(BIN, "lagamine"), "deck.lag", "--check"], cwd=folder, text=True, timeout=60,
                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace")
-            told = [line for line in run.stdout.splitlines() if line.startswith("deck.lag")]
-            good = run.returncode == 0 or (run.returncode == 2 and told)
+            reported = [line for line in run.stdout.splitlines() if line.startswith("deck.lag")]
+            good = run.returncode == 0 or (run.returncode == 2 and reported)
             passed += bool(good)
             failed += not good
             refused += run.returncode == 2

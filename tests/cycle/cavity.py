@@ -89,8 +89,8 @@ def volume_in_cavity(sides, die, mouth):
         if abs(a) > 0:
             turn = -0.25 * (side[2, 0] - side[0, 0]) / a
             cuts += [turn] if -1 < turn < 1 else []
-        knots = numpy.unique(cuts)
-        for first, last in zip(knots, knots[1:]):
+        limits = numpy.unique(cuts)
+        for first, last in zip(limits, limits[1:]):
             if point(side, 0.5 * (first + last))[0] > mouth:
                 continue
             total += under_both(side, die, first, last)
@@ -105,17 +105,17 @@ def under_both(side, die, first, last):
 
     looks = numpy.linspace(first, last, LOOKS + 1)
     gaps = [above(xi) for xi in looks]
-    knots = [first]
+    limits = [first]
     for k in range(LOOKS):
         if gaps[k] * gaps[k + 1] < 0:
             low, high = looks[k], looks[k + 1]
             for _ in range(HALVINGS):
                 middle = 0.5 * (low + high)
                 low, high = (middle, high) if above(middle) * gaps[k] > 0 else (low, middle)
-            knots.append(0.5 * (low + high))
-    knots.append(last)
+            limits.append(0.5 * (low + high))
+    limits.append(last)
     total = 0.0
-    for one, next_one in zip(knots, knots[1:]):
+    for one, next_one in zip(limits, limits[1:]):
         if above(0.5 * (one + next_one)) > 0:
             total += die.below(point(side, one)[0], point(side, next_one)[0])
         else:

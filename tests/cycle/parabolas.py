@@ -3,7 +3,7 @@ import collections
 
 import numpy
 
-LOOKS = 17        # places of a parabola from which its foot is looked for
+LOOKS = 17        # points of a parabola from which the closest one is searched
 ITERATIONS = 6    # of Newton's method, from the nearest of them
 
 

@@ -13,7 +13,7 @@ from support import BIN, LONGEST_RUN  # noqa: E402
 
 CYCLE = os.path.join(os.path.abspath(BIN), "lagacycle")
 ON_CONTOUR = 1e-8     # distances from the contour, of its size
-# What the restart tells with a limit, NAME_limit.
+# What the restart reports with a limit, NAME_limit.
 LIMITED = ("first_residual", "iterations", "force_change", "energy_change", "depth_change")
 
 
@@ -34,7 +34,7 @@ def tries(out):
 
 
 def within_limits(checks, out):
-    """What the restart on every accepted mesh found lies within the limits it tells, and so do the first steps on it; the contour
+    """What the restart on every accepted mesh found lies within the limits it states, and so do the first steps on it; the contour
     it was made of goes through all ends of contact, which are nodes of the mesh."""
     for one in tries(out):
         generation = int(one["generation [-]"])
@@ -50,11 +50,11 @@ def within_limits(checks, out):
         checks.that(restart["least_scaled_jacobian"] >= restart["least_scaled_jacobian_limit"], f"mesh {generation}: shape")
         checks.that(steps["least_step_ratio"] >= steps["least_step_ratio_limit"] > 0 and not steps["remesh_refused"],
                     f"mesh {generation}: its first steps", steps)
-        told = {"first_residual [-]": restart["first_residual"], "iterations [-]": restart["iterations"],
+        reported = {"first_residual [-]": restart["first_residual"], "iterations [-]": restart["iterations"],
                 "force_change [%]": 100 * restart["force_change"], "energy_change [%]": 100 * restart["energy_change"],
                 "depth_change [-]": restart["depth_change"], "least_step_ratio [-]": steps["least_step_ratio"]}
-        wrong = [key for key, value in told.items() if abs(float(one[key]) - value) > 1e-3 * abs(value)]
-        checks.that(not wrong, f"mesh {generation}: cycle.csv tells the same", wrong)
+        wrong = [key for key, value in reported.items() if abs(float(one[key]) - value) > 1e-3 * abs(value)]
+        checks.that(not wrong, f"mesh {generation}: cycle.csv states the same", wrong)
 
 
 def value_at(rows, name, along, wanted):

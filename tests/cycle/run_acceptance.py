@@ -106,7 +106,7 @@ def no_strength(file):
     state[...] = values
 
 
-# The fault, the stage to blame, and what the row must tell.
+# The fault, the responsible stage, and what the row must state.
 FAULTS = {
     "stress": (half_the_stress, "transfer", "the force of a die changes"),
     "pressure": (no_pressure, "contact", "the pressures carried over miss"),
@@ -156,10 +156,10 @@ def sound(checks, deck):
     checks.that(result.returncode == DONE and [row["accepted"] for row in tries(out)] == ["y", "y"], "without a fault: taken",
                 said(result))
     within_limits(checks, out)
-    told = facts(out, 2, "restart")
-    die = told["forces"][0]
+    reported = facts(out, 2, "restart")
+    die = reported["forces"][0]
     change = math.dist(die["after"], die["before"]) / math.hypot(*die["before"])
-    checks.that(die["die"] == "upper" and abs(change - told["force_change"]) < 1e-9, "the change is that of the die's force", die)
+    checks.that(die["die"] == "upper" and abs(change - reported["force_change"]) < 1e-9, "the change is that of the die's force", die)
 
 
 def number_of_tries(checks, text):

@@ -81,7 +81,7 @@ def main():
     result = call("remdata", "--about", good)
     facts = dict(line.split(" ", 1) for line in result.stdout.splitlines())
     checks.that(result.returncode == DONE and facts["generation"] == "1" and facts["elements"] == "12"
-                and facts["due"].startswith("time 0.1"), "--about tells what is in it", facts)
+                and facts["due"].startswith("time 0.1"), "--about states what is in it", facts)
     damages = {"a text": (text, "not a file of this program"), "cut to nothing": (cut(0), "not a file of this program"), "cut to 10 %": (cut(0.1), "cut short"),
                "cut to 97 %": (cut(0.97), "cut short"), "another schema": (lambda path: alter(path, other_schema), "schema"),
                "no schema": (lambda path: alter(path, lambda file: file.attrs.__delitem__("schema")), "not a checkpoint"),

@@ -79,15 +79,15 @@ def ends_the_same(checks, deck, out, whole, what, **environment):
 
 
 def undisturbed(checks, deck, out):
-    """The cycle ends, tells a line per mesh and a row per try, and has nothing to do when called again."""
+    """The cycle ends, prints a line per mesh, writes a row per try, and has nothing to do when called again."""
     result = cycle(deck, out)
     checks.that(result.returncode == DONE, "undisturbed: done", said(result))
     checks.that(result.stderr == "", "undisturbed: no word of errors", result.stderr)
     lines = result.stdout.splitlines()
     wanted = ["lagamine begins", "remdata makes mesh 2", "lagamine takes up mesh 2", "mesh 2", "remdata makes mesh 3",
               "lagamine takes up mesh 3", "mesh 3", "done"]
-    told = [line for line in lines if not line.startswith("step ")]
-    checks.that(len(told) == len(wanted) and all(line.startswith(words) for line, words in zip(told, wanted)),
+    reported = [line for line in lines if not line.startswith("step ")]
+    checks.that(len(reported) == len(wanted) and all(line.startswith(words) for line, words in zip(reported, wanted)),
                 "undisturbed: a line for each program, each mesh and the end", result.stdout)
     checks.that([line.split()[1] for line in lines if line.startswith("step ")] == ["1", "7", "11", "25"],
                 "undisturbed: progress of each run of the solver", result.stdout)
@@ -97,12 +97,12 @@ def undisturbed(checks, deck, out):
     for row in rows:
         empty = [key for key in row if not row[key] and key not in ("stage", "reason")]
         checks.that(not empty, f"mesh {row['generation [-]']}: every column is filled", empty)
-        told = read_json(os.path.join(out, f"case.g0{row['generation [-]']}.restart.json"))
-        checks.that(told["first_residual"] > 0 and not told["remesh_refused"], f"mesh {row['generation [-]']}: the restart", told)
+        reported = read_json(os.path.join(out, f"case.g0{row['generation [-]']}.restart.json"))
+        checks.that(reported["first_residual"] > 0 and not reported["remesh_refused"], f"mesh {row['generation [-]']}: the restart", reported)
     within_limits(checks, out)
-    told = summary(out)
-    checks.that(told["remeshings"] == 2 and told["exit_code"] == 0 and told["restart"]["generation"] == 3,
-                "undisturbed: the summary tells of the last mesh", told.get("restart"))
+    reported = summary(out)
+    checks.that(reported["remeshings"] == 2 and reported["exit_code"] == 0 and reported["restart"]["generation"] == 3,
+                "undisturbed: the summary reports the last mesh", reported.get("restart"))
     steps = history(out)["step"]
     checks.that(steps == list(range(1, len(steps) + 1)), "undisturbed: one row of the history a step", steps)
     checks.that(not check_folder(out)[0], "undisturbed: the XDMF file is right", check_folder(out)[0][:3])
@@ -126,7 +126,7 @@ def undisturbed(checks, deck, out):
 
 
 def says_at_once(checks, deck):
-    """What is under way is told before it has ended, a line at a time; --quiet tells nothing."""
+    """What is under way is printed before it has ended, a line at a time; --quiet prints nothing."""
     slow = write(checks.path("slow.lag"), deck_text(deck).replace("nx 3", "nx 24").replace("ny 4", "ny 36"))
     out = checks.path("slow")
     process = subprocess.Popen([CYCLE, slow, "--out", out, "--threads", "1"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -222,12 +222,12 @@ def stops(checks, draw, deck, whole, seconds):
 
 def two_at_once(checks, deck, whole):
     """A second cycle, and a run by hand, in the same folder are refused while the first goes on; a lock of one that is gone is no
-    hindrance, whatever its file tells."""
+    hindrance, whatever its file states."""
     out = checks.path("twice")
     process = begin(deck, out)
     wait_for_holder(out, process)
     with open(os.path.join(out, "lagamine.lock"), encoding="utf-8") as file:
-        checks.that(file.read().split()[:3] == ["lagacycle", str(process.pid), os.uname().nodename], "two at once: the lock's file tells")
+        checks.that(file.read().split()[:3] == ["lagacycle", str(process.pid), os.uname().nodename], "two at once: the lock's file states")
     for what, result in {"lagacycle": cycle(deck, out), "lagamine": run([deck, "--out", out, "--threads", "1"])}.items():
         lines = result.stderr.splitlines()
         checks.that(result.returncode == MACHINE and len(lines) == 2 and f"'{out}' is in use by lagacycle (process {process.pid} on "
@@ -248,7 +248,7 @@ def two_at_once(checks, deck, whole):
 
 
 def wait_for_holder(out, process):
-    """Until the lock's file tells who has it."""
+    """Until the lock's file states who has it."""
     while process.poll() is None:
         try:
             with open(os.path.join(out, "lagamine.lock"), encoding="utf-8") as file:
@@ -335,7 +335,7 @@ def remesher_fails_once(checks, deck):
         rows = tries(out)
         checks.that(len(rows) == 3 and rows[0]["accepted"] == "n" and rows[1]["accepted"] == rows[2]["accepted"] == "y"
                     and word in rows[0]["result"] and rows[0]["stage"] and rows[0]["reason"],
-                    f"{what}: the row tells", rows)
+                    f"{what}: the row states", rows)
         checks.that(len(rows) > 1 and rows[1]["action"] == "finer" and rows[2]["action"] == ACTIONS[0],
                     f"{what}: finer elements come next, the next mesh is the deck's", [row["action"] for row in rows])
         left = [name for name in os.listdir(out) if ".try" in name or ".tmp" in name]
@@ -379,7 +379,7 @@ def all_ways_fail(checks, deck):
     with open(environment["CALLS"], encoding="utf-8") as file:
         calls = [line.split() for line in file]
     checks.that(["--finer" in call for call in calls[:3]] == [False, True, False] and calls[2][0].endswith("end.1.h5"),
-                "what remdata was told", calls)
+                "the arguments of remdata", calls)
     again = cycle(deck, out, **environment)
     checks.that(again.returncode == NO_CONVERGENCE and tries(out) == rows, "the same command: the same stop", said(again))
     used = run([deck, "--out", out, "--resume", os.path.join(out, "case.ckp.h5"), "--threads", "1"])
@@ -411,7 +411,7 @@ def solver_refuses(checks):
                 [row["action"] for row in rows])
     checks.that(all(row["stage"] in ("contact", "transfer") and "at restart" in row["result"] and float(row["first_residual [-]"]) > 0
                     and "refused at step" in row["reason"] for row in rows if row["action"] != "old mesh"),
-                "every row tells the stage to blame and the numbers of the restart", rows)
+                "every row states the responsible stage and the numbers of the restart", rows)
     result = run([deck, "--out", out, "--threads", "1", "--resume", os.path.join(out, "case.ckp.h5")])
     checks.that(result.returncode == DONE, "the checkpoint that is left can be used", said(result))
     ours = ("cycle.csv", "case.g01.end.h5", "case.g01.end.1.h5")

@@ -23,12 +23,12 @@ GMSH = os.path.join(os.path.abspath(BIN), "remdata_gmsh")
 
 
 def refused(checks, name):
-    """No Gmsh, no mesh: told with its stage, and with what to do."""
+    """No Gmsh, no mesh: reported with its stage, and with advice."""
     out = checks.path(name)
     result = cycle(DECK, out)
-    told = said(result) + result.stdout
-    checks.that(result.returncode == NO_CONVERGENCE, f"{name}: the cycle ends", told)
-    checks.that("cannot be started" in told, f"{name}: told", told)
+    reported = said(result) + result.stdout
+    checks.that(result.returncode == NO_CONVERGENCE, f"{name}: the cycle ends", reported)
+    checks.that("cannot be started" in reported, f"{name}: reported", reported)
     rows = tries(out)
     checks.that(rows and all(row["stage"] == "mesh" and row["accepted"] == "n" for row in rows), f"{name}: stage mesh", rows)
 

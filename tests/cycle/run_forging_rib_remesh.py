@@ -32,7 +32,7 @@ TANGENT = math.tan(math.pi / 4 - DRAFT / 2)       # length of a fillet of radius
 MOUTH = 28.5 + 1.5 * TANGENT                      # where the fillet towards the flash ends
 FULL = 0.98
 LARGEST_JUMP, LARGEST_DEVIATION, LARGEST_DRIFT = 0.02, 0.03, 0.001
-CRUMB, GAP = 0.05, 0.01                           # shares of a side: ends so near to a node go there; width of gaps
+SHORTEST, GAP = 0.05, 0.01                        # shares of a side: ends so near to a node go there; width of gaps
 ON_AXIS = 1e-9
 SAMPLES = numpy.linspace(-1, 1, 21)
 AT_POINTS = slice(None, None, 10)                 # of these, where CNT2D has its three points
@@ -168,13 +168,13 @@ def ends_of_contact(checks, out, generation):
         sides, places = [end["side"] - 1 for end in ends], [end["position"] for end in ends]
         begins = [end["begins"] != 0 for end in ends]
     size = numpy.max(numpy.ptp(nodes, axis=0))
-    told = facts(out, generation, "start")
-    limits = told["contour"]["limits"]
+    reported = facts(out, generation, "start")
+    limits = reported["contour"]["limits"]
     kept = [(limit["begins"], numpy.array([limit["x"], limit["y"]])) for limit in limits]
     found = numpy.array([point(contact[side], place) for side, place in zip(sides, places)])
     off = abs(signed_distance(contour, found))
-    checks.that(told["contour"]["off_ends"] < ON_CONTOUR, f"mesh {generation}: the corrected contour goes through the ends of contact",
-                told["contour"]["off_ends"])
+    checks.that(reported["contour"]["off_ends"] < ON_CONTOUR, f"mesh {generation}: the corrected contour goes through the ends of contact",
+                reported["contour"]["off_ends"])
     for _, x in kept:
         checks.that(numpy.min(numpy.hypot(*(contour[:, 0] - x).T)) < ON_CONTOUR * size, f"mesh {generation}: a node where the contour "
                     "begins or ceases to follow the die", x)
@@ -190,7 +190,7 @@ def ends_of_contact(checks, out, generation):
             outer += len(axial)
             checks.that(len(axial) == 1 and abs(axial[0]) < PENETR * length(contact[side]),
                         f"mesh {generation}: contact that ends on the axis is no deeper there than allowed", (found[k], axial))
-        elif near < CRUMB * length(contact[side]):
+        elif near < SHORTEST * length(contact[side]):
             outer += 1
             checks.that(off[k] < PENETR * length(contact[side]), f"mesh {generation}: an end beside a node lies on the contour but for "
                         "what penetration is allowed", (found[k], off[k]))
@@ -199,7 +199,7 @@ def ends_of_contact(checks, out, generation):
             checks.that(off[k] < GAP * length(new), f"mesh {generation}: the end of a gap in contact is within 1 % of the side of "
                         "the contour", (found[k], off[k], length(new)))
     checks.that(outer == len(kept), f"mesh {generation}: every end that is kept is one of the old mesh", (outer, kept, found))
-    return f"{outer} | {told['contour']['off_ends']:.0e} | {exact:.0e} | {len(sides) - outer}"
+    return f"{outer} | {reported['contour']['off_ends']:.0e} | {exact:.0e} | {len(sides) - outer}"
 
 
 def new_meshes(checks, out, rows):

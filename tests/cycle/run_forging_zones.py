@@ -23,7 +23,7 @@ def no_first_mesh(checks):
     """Without a first mesh there is none to go on with: the cycle ends and says what is wrong."""
     result = cycle(DECK, checks.path("none"), "-p", "line=40")
     checks.that(result.returncode == NO_CONVERGENCE, "zones that miss the part: the cycle ends", said(result))
-    checks.that("the contour does not cross x = 40" in result.stdout, "zones that miss the part: told", said(result))
+    checks.that("the contour does not cross x = 40" in result.stdout, "zones that miss the part: reported", said(result))
     checks.that("no first mesh" in result.stderr and "ZPNT" in result.stderr and "old mesh" not in result.stderr,
                 "zones that miss the part: what to change", said(result))
 

@@ -97,7 +97,7 @@ def action_and_reaction(checks, name, rows, force, probe):
     """A die gets what the support of its body bears, on all meshes."""
     largest = max(map(abs, rows[force]))
     error = max(abs(a + b) for a, b in zip(rows[force], rows[probe]))/largest
-    checks.that(error < REACTION, f"{name}: {force} is borne by {probe}", error)
+    checks.that(error < REACTION, f"{name}: {force} is carried by {probe}", error)
 
 
 def press_fit(checks):

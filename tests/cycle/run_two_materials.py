@@ -200,9 +200,9 @@ def follow(checks, name, text, materials, axisymmetric, remeshings, sets=()):
         said_of = facts(out, g, "start")
         change = new.volumes() / old.volumes() - 1
         checks.that(np.all(np.abs(change) < LARGEST_CHANGE), f"{name}, mesh {g}: each material keeps its volume", change)
-        told = [m["volume_after"] / m["volume_before"] - 1 for m in said_of["materials"]]
-        checks.that(len(told) == len(change) and np.allclose(told, change, rtol=0, atol=1e-12),
-                    f"{name}, mesh {g}: remdata tells the same", (told, change))
+        reported = [m["volume_after"] / m["volume_before"] - 1 for m in said_of["materials"]]
+        checks.that(len(reported) == len(change) and np.allclose(reported, change, rtol=0, atol=1e-12),
+                    f"{name}, mesh {g}: remdata states the same", (reported, change))
         beside, elsewhere = new.way_from(old)
         checks.that(elsewhere < ON_INTERFACE * SIZE, f"{name}, mesh {g}: nodes lie on the old interface", elsewhere)
         checks.that(beside < said_of["contour"]["largest_move"] + ON_INTERFACE * SIZE,
@@ -240,8 +240,8 @@ def refusals(checks):
     for name, (text, *words) in cases.items():
         out = checks.path("refused_" + name)
         result = cycle(write(checks.path(name + ".lag"), text), out, "--tries", "0")
-        told = result.stdout + result.stderr
-        checks.that(result.returncode == NO_CONVERGENCE and all(word in told for word in words), f"{name}: refused in words", told)
+        reported = result.stdout + result.stderr
+        checks.that(result.returncode == NO_CONVERGENCE and all(word in reported for word in words), f"{name}: refused in words", reported)
 
 
 def main():

@@ -10,7 +10,7 @@ module deck_helpers
 
 contains
 
-  !> All that is told of a deck called `d`, `|` between the lines; '' when nothing is wrong.
+  !> All that is reported of a deck called `d`, `|` between the lines; '' when nothing is wrong.
   function told(deck_lines, overrides) result(message)
     character(len=*), intent(in) :: deck_lines
     type(string_t), intent(in), optional :: overrides(:)
@@ -33,7 +33,7 @@ contains
     call all_told(diagnostics, message)
   end function told_of_file
 
-  !> First field after the keyword of the first card, as text: `12.5`, `word word` or what is told.
+  !> First field after the keyword of the first card, as text: `12.5`, `word word` or what is reported.
   function value_of(field) result(shown)
     character(len=*), intent(in) :: field
     character(len=:), allocatable :: shown

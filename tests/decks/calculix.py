@@ -14,7 +14,7 @@ import subprocess
 
 import numpy as np
 
-WEDGES = 180                # CalculiX makes a wedge of 2 degrees of an axisymmetric body and tells the forces on that
+WEDGES = 180                # CalculiX makes a wedge of 2 degrees of an axisymmetric body and reports the forces on that
 STEPS = "0.002, 1., 1.E-6, 0.01"
 LARGEST_STRAIN = 5.0
 STRIP = 1.0                 # thickness of the die's elements [length]
@@ -27,7 +27,7 @@ def shape(xi):
 
 
 def die_points(pieces):
-    """Points along the chain, none beyond the axis, and their images in the die's body."""
+    """Points along the curve, none beyond the axis, and their images in the die's body."""
     along = np.linspace(-1, 1, PARTS, endpoint=False)
     points = np.array([shape(xi) @ piece for piece in pieces for xi in along] + [pieces[-1][2]])
     beyond = np.nonzero(points[:, 0] < 0)[0]
@@ -119,7 +119,7 @@ def first_mesh(name):
     return nodes, travel
 
 
-def tell(name, travels, places):
+def report(name, travels, places):
     nodes, travel = first_mesh(name)
     times, forces, motions = read_answer(name)
     chosen = {place: min(nodes, key=lambda k, p=place: np.hypot(*(nodes[k] - p))) for place in places}
@@ -150,7 +150,7 @@ def main():
     options = parser.parse_args()
     name = options.files[-1]
     if options.read:
-        tell(name, options.read, options.nodes)
+        report(name, options.read, options.nodes)
         return
     if len(options.files) != 2 or None in (options.travel, options.friction, options.law, options.penalty):
         parser.error("RESULTS NAME and --travel, --friction, --law, --penalty are wanted")

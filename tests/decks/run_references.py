@@ -258,7 +258,7 @@ def run_deck(program, deck, options, seconds):
         return Run(done.returncode, history, summary, message, took)
 
 
-def check_decks(decks, program, names, with_long, tell):
+def check_decks(decks, program, names, with_long, report):
     """Run and judge: verdicts of all rows, and what is wrong with the files themselves."""
     verdicts, faults = [], []
     folders = [os.path.join(decks, name) for name in names] or sorted(
@@ -282,7 +282,7 @@ def check_decks(decks, program, names, with_long, tell):
                 runs[key] = Run(None, [], {}, f"no deck decks/{name}/{row['deck']}.lag", 0.0)
             elif key not in runs:
                 runs[key] = run_deck(program, deck, row["options"], LONG_TIMEOUT if row["long"] else RUN_TIMEOUT)
-                tell(f"{runs[key].seconds:8.2f} s  {' '.join(key)}")
+                report(f"{runs[key].seconds:8.2f} s  {' '.join(key)}")
             verdicts.append(judge(name, row, runs[key]))
     if not verdicts and not faults:
         faults.append("nothing to compare: no reference.csv, or no row in it that is not long")

@@ -1,4 +1,4 @@
-!> A side of one body against a chain of sides of another, for the tests of CNTDF. Nodes 1 to 3 are the
+!> A side of one body against a curve of sides of another, for the tests of CNTDF. Nodes 1 to 3 are the
 !> side's; motions are those of all nodes, forces and matrices too, x then y of each, and in generalised
 !> plane strain of the section at last.
 module pair_cases

@@ -111,7 +111,7 @@ def cook_deck(n):
             f"LAW m ELA\n   {num(YOUNG, NU)}\nLIC t\n   0. 0.   1. 1.\nFIXED p 4 XY\nTRACT p 2 Y 0.0625 t\nESTIM\n" + TAIL)
 
 
-def tell(checks, name, rows, least_order, upper_from, lower=BAND[0]):
+def report(checks, name, rows, least_order, upper_from, lower=BAND[0]):
     """The table of true and estimated errors; effectivity within the band, order of both."""
     print(f"{name:>14}   n       true  order  estimated  order  effectivity")
     for k, (n, true, guess) in enumerate(rows):
@@ -136,8 +136,8 @@ def against_exact(checks, name, make, exact, npoint, axisym=False, upper_from=0)
             checks.that(abs(parts/whole - 1) < 1e-3, f"{run.name}: elements make the whole", (whole, parts))
         rows.append((n, true_error(run, exact, npoint, axisym), whole))
         strains.append((n, true_strain_error(run, exact, npoint, axisym), run.history["error_strain"][-1]))
-    tell(checks, f"{name} {npoint}", rows, LEAST_ORDER, upper_from)
-    tell(checks, f"{name} {npoint} strain", strains, LEAST_ORDER, upper_from)
+    report(checks, f"{name} {npoint}", rows, LEAST_ORDER, upper_from)
+    report(checks, f"{name} {npoint} strain", strains, LEAST_ORDER, upper_from)
 
 
 def against_fine(checks, name, make, least_order, lower=BAND[0]):
@@ -149,7 +149,7 @@ def against_fine(checks, name, make, least_order, lower=BAND[0]):
         energies.append(run.history["elastic_energy"][-1])
         guesses.append(run.history["error_stress"][-1])
     rows = [(n, np.sqrt(1 - u/energies[-1]), guess) for n, u, guess in zip(MESHES, energies, guesses)]
-    tell(checks, name, rows, least_order, 0, lower)
+    report(checks, name, rows, least_order, 0, lower)
 
 
 def billet_deck(n):
@@ -187,7 +187,7 @@ def billet(checks):
             computed[e] = np.kron(y, x) @ coarse[j//ratio, i//ratio]
         true = np.sqrt((volumes*density(computed - stress, *moduli)).sum()/(volumes*density(stress, *moduli)).sum())
         rows.append((n, true, run.history["error_stress"][-1]))
-    tell(checks, "billet", rows, 0, 0, LEAST_AT_SINGULARITY)
+    report(checks, "billet", rows, 0, 0, LEAST_AT_SINGULARITY)
 
 
 def main():

@@ -4,7 +4,7 @@
 usage: run_triggers.py [-v] [-k]
 
 The step at which a run must stop is found from the fields of a run without the card, by formulas written here: shapes of elements from
-their nodes, depths of sides from the chain of the die (tests/runs/die_depth.py).
+their nodes, depths of sides from the curve of the die (tests/runs/die_depth.py).
 """
 import os
 import shutil
@@ -50,11 +50,11 @@ def words(dataset):
 
 
 def triggers(checks, folder):
-    """Triggers of a stopped run, name -> (value, limit), told alike in listing, summary and checkpoint."""
+    """Triggers of a stopped run, name -> (value, limit), reported alike in listing, summary and checkpoint."""
     name = os.path.basename(folder)
-    told = summary(folder)
-    found = {row["name"]: (row["value"], row["limit"]) for row in told["remesh"]}
-    checks.that(told["exit_code"] == REMESH and told["stop_reason"].startswith("a new mesh is due"), f"{name}: summary", told["stop_reason"])
+    reported = summary(folder)
+    found = {row["name"]: (row["value"], row["limit"]) for row in reported["remesh"]}
+    checks.that(reported["exit_code"] == REMESH and reported["stop_reason"].startswith("a new mesh is due"), f"{name}: summary", reported["stop_reason"])
     with open(os.path.join(folder, "case.log"), encoding="utf-8") as listing:
         lines = [line.split()[1] for line in listing if line.startswith("remesh: ")]
     checks.that(lines[-len(found):] == list(found), f"{name}: a line each in the listing", lines)
@@ -63,11 +63,11 @@ def triggers(checks, folder):
         rows = [trigger.attrs for trigger in estimate.get("triggers", {}).values()]
         stored = {row["name"].decode(): (row["value"], row["limit"]) for row in rows}
         checks.that(len(rows) == estimate["triggers"].attrs["count"], f"{name}: the number of triggers", len(rows))
-        checks.that(estimate.attrs["last_stop"] == told["steps"] == file["progress"].attrs["step"], f"{name}: the step of the checkpoint")
+        checks.that(estimate.attrs["last_stop"] == reported["steps"] == file["progress"].attrs["step"], f"{name}: the step of the checkpoint")
         solids = sum(len(group["connectivity"]) for group in file["groups"].values() if group.attrs["role"] == 1)
         checks.that(len(estimate["stress_of"]) == len(estimate["strain_of"]) == len(estimate["strain_sums"]) == solids,
                     f"{name}: errors of elements in the checkpoint")
-    checks.that(stored == found, f"{name}: the checkpoint tells the same", (stored, found))
+    checks.that(stored == found, f"{name}: the checkpoint states the same", (stored, found))
     return found
 
 
@@ -88,13 +88,13 @@ def costs_nothing(checks):
                     "ESTIM fills its own datasets and no others", (more, other))
     same = h5_differences(os.path.join(plain, "case.g01.h5"), os.path.join(with_card, "case.g01.h5"))
     checks.that(all("element" in name for name in same), "ESTIM changes no field", same[:4])
-    told = summary(plain)
+    reported = summary(plain)
     for effect in ("error estimates", "remeshing"):
-        checks.that(told["effects"][effect]["calls"] == 0 and not told["effects"][effect]["on"], f"{effect}: never called", told["effects"][effect])
-    checks.that("error" not in told and "remesh" not in told, "no estimate in the summary without the card")
-    told = summary(with_card)
-    checks.that(told["effects"]["error estimates"]["calls"] == told["steps"] and not told["effects"]["remeshing"]["on"], "ESTIM: once a step")
-    checks.that(told["error"] == {"stress_pct": 100*two["error_stress"][-1], "strain_pct": 100*two["error_strain"][-1]}, "errors in the summary", told["error"])
+        checks.that(reported["effects"][effect]["calls"] == 0 and not reported["effects"][effect]["on"], f"{effect}: never called", reported["effects"][effect])
+    checks.that("error" not in reported and "remesh" not in reported, "no estimate in the summary without the card")
+    reported = summary(with_card)
+    checks.that(reported["effects"]["error estimates"]["calls"] == reported["steps"] and not reported["effects"]["remeshing"]["on"], "ESTIM: once a step")
+    checks.that(reported["error"] == {"stress_pct": 100*two["error_stress"][-1], "strain_pct": 100*two["error_strain"][-1]}, "errors in the summary", reported["error"])
     return two
 
 
@@ -106,12 +106,12 @@ def stress_error(checks, whole):
     step = int(np.argmax(errors > limit)) + 1
     folder = go(checks, "error", add_cards(text, f"REMSH\n   ERROR {limit!r}\n   LEAST 7"), SMALL, REMESH)
     found = triggers(checks, folder)
-    told = summary(folder)
+    reported = summary(folder)
     # the first seven steps are those of a new mesh
     wanted = next(k for k in range(7, len(errors) + 1) if errors[k - 1] > limit)
-    checks.that(told["steps"] == wanted >= step, "ERROR: stops at the step that passes the limit", (told["steps"], wanted))
+    checks.that(reported["steps"] == wanted >= step, "ERROR: stops at the step that passes the limit", (reported["steps"], wanted))
     checks.that(found == {"stress_error": (errors[wanted - 1], limit)}, "ERROR: value and limit", found)
-    stops, code = [told["steps"]], REMESH
+    stops, code = [reported["steps"]], REMESH
     while code == REMESH and len(stops) < 100:
         code = resume(checks, folder, SMALL, (DONE, REMESH))
         stops.append(summary(folder)["steps"])
@@ -222,11 +222,11 @@ def distress(checks):
     text = deck_text(UPSETTING).replace("   0. 0.     1. -$travel", "   0. 0.   0.5 -0.01   0.501 -$travel")
     text = add_cards(text, "NORMS STRAIN 0.05").replace("1.E-5  0.05", "1.E-7  0.05")
     folder = go(checks, "distress", add_cards(text, "REMSH\n   DISTRESS 3"), SMALL, REMESH)
-    found, told = triggers(checks, folder), summary(folder)
-    checks.that(found == {"distress": (3.0, 3.0)} and told["cutbacks"] == 3, "DISTRESS: three cuts in a row", (found, told["cutbacks"]))
-    checks.that(abs(told["time"] - 0.5) < 1e-12, "DISTRESS: the state before", told["time"])
+    found, reported = triggers(checks, folder), summary(folder)
+    checks.that(found == {"distress": (3.0, 3.0)} and reported["cutbacks"] == 3, "DISTRESS: three cuts in a row", (found, reported["cutbacks"]))
+    checks.that(abs(reported["time"] - 0.5) < 1e-12, "DISTRESS: the state before", reported["time"])
     code, stops = resume(checks, folder, SMALL, (DONE, REMESH)), 1
-    checks.that(code == DONE or summary(folder)["steps"] > told["steps"], "DISTRESS: does not fire again before a step is made", code)
+    checks.that(code == DONE or summary(folder)["steps"] > reported["steps"], "DISTRESS: does not fire again before a step is made", code)
     while code == REMESH and stops < 20:
         code, stops = resume(checks, folder, SMALL, (DONE, REMESH)), stops + 1
     checks.that(code == DONE, "DISTRESS: goes on to the end", code)

@@ -62,7 +62,7 @@ def install(folder):
 
 
 def check_programs(prefix):
-    """Every program runs where it is now and tells the version of CMakeLists.txt."""
+    """Every program runs where it is now and shows the version of CMakeLists.txt."""
     with open(os.path.join(SOURCE, "CMakeLists.txt"), encoding="utf-8") as file:
         version = re.search(r"project\(lagamine VERSION (\S+)", file.read()).group(1)
     programs = ["lagamine", "remdata", "lagacycle"]

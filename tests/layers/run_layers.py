@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Check the floors of the house: who may `use` whom, one module a file, no cycles, no type name
+"""Check the layers of the sources: who may `use` whom, one module a file, no cycles, no type name
 twice, files of a readable length, nothing strange at the top.
 
 usage: run_layers.py [ROOT] | --selftest
@@ -226,7 +226,7 @@ def why_not(folder, target):
     if folder == target.folder:
         return ""
     if folder == CYCLE:
-        return "" if target.folder in CYCLE_ON else "a cycle is decided by what files tell"
+        return "" if target.folder in CYCLE_ON else "a cycle is decided by what files state"
     if target.folder == CYCLE:
         return "" if folder == "remdata" else "only the driver of remdata asks what a cycle does next"
     if folder in ROOMS and target.folder in ROOMS:
@@ -308,8 +308,8 @@ CASES = [
     ("room on the driver", {"remdata/mesh/bad.f90": module("bad", "remesh_scene")}, "remdata is above remdata/mesh"),
     ("beside the driver", {"remdata/bad.f90": module("bad")}, "only the driver stands in remdata/ itself"),
     ("unknown room", {"remdata/attic/bad.f90": module("bad")}, "folder remdata/attic is not in the table"),
-    ("cycle on a room", {"remdata/cycle/bad.f90": module("bad", "zones")}, "a cycle is decided by what files tell"),
-    ("cycle on a deck", {"remdata/cycle/bad.f90": module("bad", "cards_read")}, "a cycle is decided by what files tell"),
+    ("cycle on a room", {"remdata/cycle/bad.f90": module("bad", "zones")}, "a cycle is decided by what files state"),
+    ("cycle on a deck", {"remdata/cycle/bad.f90": module("bad", "cards_read")}, "a cycle is decided by what files state"),
     ("room on the cycle", {"remdata/cycle/steps.f90": module("steps", "files"), "remdata/mesh/bad.f90": module("bad", "steps")},
      "remdata/mesh/bad.f90:2: remdata/mesh may not use steps of remdata/cycle: only the driver of remdata asks"),
     ("src on the cycle", {"remdata/cycle/steps.f90": module("steps"), "src/analysis/bad.f90": module("bad", "steps")},

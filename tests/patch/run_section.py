@@ -135,7 +135,7 @@ def bars(checks):
         if run.ok:
             close(checks, run.history["section_strain"][-1], stretch - 1, f"{run.name}: strain of the section")
             close(checks, run.history["right"][-1], WIDTH*(stretch**-NU - 1), f"{run.name}: contraction")
-            close(checks, run.history["section_force"][-1], force, f"{run.name}: force told")
+            close(checks, run.history["section_force"][-1], force, f"{run.name}: force reported")
             close(checks, run.history["external_work"][-1], run.history["elastic_energy"][-1], f"{run.name}: work by trapezoids", 0.02)
     plastic = 0.5
     tau = YIELD + HARDENING*plastic

@@ -93,13 +93,13 @@ def judge(case, base, folder, verbose):
         return None if run.returncode == 0 else f"exit code {run.returncode}, wanted 0:\n{run.stdout}"
     if run.returncode != REFUSED:
         return f"exit code {run.returncode}, wanted {REFUSED}:\n{run.stdout}"
-    told = [line for line in run.stdout.splitlines() if line.startswith("deck.lag:")]
+    reported = [line for line in run.stdout.splitlines() if line.startswith("deck.lag:")]
     for text, phrase, field in case["says"]:
         where = place(lines, text, field)
-        if not any(line.startswith(where) and phrase in line for line in told):
+        if not any(line.startswith(where) and phrase in line for line in reported):
             return f"wanted '{where}' with '{phrase}', got:\n{run.stdout}"
-    if len(told) != len(case["says"]) and not case["more"]:
-        return f"wanted {len(case['says'])} errors, got {len(told)}:\n{run.stdout}"
+    if len(reported) != len(case["says"]) and not case["more"]:
+        return f"wanted {len(case['says'])} errors, got {len(reported)}:\n{run.stdout}"
     return None
 
 

@@ -32,7 +32,7 @@ class Checker:
         self.faults.append(f"{self.path}: {text}")
 
     def file(self, name):
-        """The HDF5 file of this name beside the XDMF file; None, told once, when it cannot be opened."""
+        """The HDF5 file of this name beside the XDMF file; None, reported once, when it cannot be opened."""
         if name not in self.files:
             try:
                 self.files[name] = h5py.File(os.path.join(os.path.dirname(self.path), name), "r")

@@ -253,9 +253,9 @@ class ReportTest(unittest.TestCase):
                                    ("spurious_mode", 0.95, "unseen by the points")):
             folder = self.made()
             self.change_summary(folder, "checks", name, value)
-            told = warnings(folder)
-            self.assertEqual(1, len(told), name)
-            self.assertIn(words, told[0])
+            reported = warnings(folder)
+            self.assertEqual(1, len(reported), name)
+            self.assertIn(words, reported[0])
 
     def test_under_way_and_interrupted(self):
         """A run that is under way has a page; so has one that was killed in the middle of a row, and one that has just begun."""
@@ -325,7 +325,7 @@ class ReportTest(unittest.TestCase):
                 self.assertGreater(drawn_share(file.read()), BLANK, path)
 
     def check_narrow_screen(self, text):
-        """A page as wide as the screen: the viewport is told, nothing is wider than a phone but what scrolls in its own box."""
+        """A page as wide as the screen: the viewport is given, nothing is wider than a phone but what scrolls in its own box."""
         self.assertIn('<meta name="viewport" content="width=device-width, initial-scale=1">', text)
         style = text[text.index("<style>"):text.index("</style>")]
         self.assertRegex(style, r"nav \{[^}]*flex-wrap: wrap")
@@ -466,7 +466,7 @@ class ReportTest(unittest.TestCase):
         self.refused(folder, "--png", os.path.join(block, "png"), code=5, names="png")
 
     def test_order_of_dies(self):
-        """Pilots are in the deck's order, HDF5 lists dies by name: the history's columns tell which is which."""
+        """Pilots are in the deck's order, HDF5 lists dies by name: the history's columns state which is which."""
         run = Run(self.made())
         pilots = run.pilots(run.steps[-1])
         self.assertEqual(["zupper", "a_wheel"], run.die_names)

@@ -1,7 +1,7 @@
-"""How deep the sides of a part are in a die: every side sampled densely, against the exact chain of parabolas.
+"""How deep the sides of a part are in a die: every side sampled densely, against the exact curve of parabolas.
 
 Independent of the solver's search: every place of every piece where the distance is stationary (roots of a cubic), and every
-vertex, is tried. The nearest tells whether the point is inside the die's body, which is at the right of the chain.
+vertex, is tried. The nearest shows whether the point is inside the die's body, which is at the right of the curve.
 """
 import h5py
 import numpy
@@ -17,7 +17,7 @@ def cross(a, b):
 
 
 def depth(pieces, point):
-    """Depth of a point below the nearest place of a chain, negative outside; nan when that is beyond an open end."""
+    """Depth of a point below the nearest point of a curve, negative outside; nan when that is beyond an open end."""
     a = 0.5 * (pieces[:, 0] + pieces[:, 2]) - pieces[:, 1]
     b = 0.5 * (pieces[:, 2] - pieces[:, 0])
     c = pieces[:, 1]

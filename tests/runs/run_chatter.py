@@ -40,11 +40,11 @@ def case(checks, name, text, options, most):
     deck, out = write(checks.path(name + ".lag"), text), checks.path(name)
     result = run([deck, "--out", out, "--threads", "1"] + options)
     if checks.that(result.returncode == DONE, f"{name}: done", said(result)):
-        told = summary(out)
-        print(f"{name}: {told['steps']} steps, {told['iterations']} iterations, {told['cutbacks']} cutbacks")
-        checks.that(told["cutbacks"] <= most, f"{name}: at most {most} cutbacks", told["cutbacks"])
-        checks.that(told["checks"]["least_dissipation"] >= -1e-12, f"{name}: friction gives no work back",
-                    told["checks"]["least_dissipation"])
+        reported = summary(out)
+        print(f"{name}: {reported['steps']} steps, {reported['iterations']} iterations, {reported['cutbacks']} cutbacks")
+        checks.that(reported["cutbacks"] <= most, f"{name}: at most {most} cutbacks", reported["cutbacks"])
+        checks.that(reported["checks"]["least_dissipation"] >= -1e-12, f"{name}: friction gives no work back",
+                    reported["checks"]["least_dissipation"])
     return deck, out
 
 

@@ -33,13 +33,13 @@ END
 """
 
 
-def effects_told(text):
+def effects_reported(text):
     """Effects of --check: name -> on or off."""
     return {name: state for name, state in re.findall(r"(?m)^effect +(\S.*?) +(on|off) ", text)}
 
 
 def check_decks(checks):
-    """Every deck of the project is accepted, tells its effects and unknowns, and leaves nothing."""
+    """Every deck of the project is accepted, shows its effects and unknowns, and leaves nothing."""
     decks = sorted(glob.glob(os.path.join(SOURCE, "decks", "*", "*.lag")))
     checks.that(len(decks) > 0, "there are decks")
     empty = checks.path("empty")
@@ -48,10 +48,10 @@ def check_decks(checks):
         name = os.path.relpath(deck, SOURCE)
         result = run([deck, "--check"], cwd=empty)
         checks.that(result.returncode == DONE and result.stderr == "", f"{name}: accepted", said(result))
-        told = effects_told(result.stdout)
-        checks.that(tuple(told) == EFFECTS, f"{name}: every effect is told, on or off", list(told))
+        reported = effects_reported(result.stdout)
+        checks.that(tuple(reported) == EFFECTS, f"{name}: every effect is reported, on or off", list(reported))
         whys = re.findall(r"(?m)^effect +\S.*? +on +(.*)$", result.stdout)
-        checks.that(whys and all(re.search(r" at \S+:\d+", why) for why in whys), f"{name}: the card that wants an effect is told", whys[:2])
+        checks.that(whys and all(re.search(r" at \S+:\d+", why) for why in whys), f"{name}: the card that wants an effect is reported", whys[:2])
         checks.that(os.listdir(empty) == [], f"{name}: runs nothing", os.listdir(empty))
         with open(deck, encoding="utf-8") as file:
             meshed = not re.search(r"(?m)^BODY ", file.read())
@@ -112,15 +112,15 @@ def off_is_off(checks):
     cases = {"lean": (write(checks.path("lean.lag"), LEAN), [], {"displacement"}),
              "upsetting": (UPSETTING, mesh(3, 4) + ["-p", "travel=1"], {"displacement", "large strain", "plasticity", "contact", "friction"})}
     for name, (deck, options, on) in cases.items():
-        told = effects_told(run([deck, "--check"] + options).stdout)
+        reported = effects_reported(run([deck, "--check"] + options).stdout)
         result = run([deck, "--out", checks.path(name), "--quiet", "--threads", "1"] + options)
         if not checks.that(result.returncode == DONE, f"{name}: done", said(result)):
             continue
         effects = summary(checks.path(name))["effects"]
         checks.that({effect for effect, row in effects.items() if row["on"]} == on, f"{name}: on are {', '.join(sorted(on))}",
                     [effect for effect, row in effects.items() if row["on"]])
-        checks.that({effect: row["on"] for effect, row in effects.items()} == {effect: state == "on" for effect, state in told.items()},
-                    f"{name}: --check said the same", told)
+        checks.that({effect: row["on"] for effect, row in effects.items()} == {effect: state == "on" for effect, state in reported.items()},
+                    f"{name}: --check said the same", reported)
         for effect, row in effects.items():
             if not row["on"]:
                 checks.that(row["calls"] == 0 and row["wall_s"] == 0 and row["adds"] == "nothing" and row["why"],

@@ -4,7 +4,7 @@ comes back. Every run reaches its end, no pressure pulls, and the part is nowher
 
 usage: run_contact_cases.py [-v] [-k]
 
-Depth is looked for at 20 places of every side of every saved step, quadratic interpolation between its nodes, against the chain of
+Depth is looked for at 20 places of every side of every saved step, quadratic interpolation between its nodes, against the curve of
 parabolas as the fields file has it (die_depth.py), independently of the solver's search. It is compared with the allowed
 penetration, 1e-3 of the side, and with what the solver says of it in summary.json.
 """
@@ -97,19 +97,19 @@ def judge(checks, name, cards, points, phi):
     if not checks.that(result.returncode == DONE, f"{name}: done", said(result)):
         return
     rows = die_depth.sampled(checks.path(name, "out", "case.g01.h5"))
-    told = summary(checks.path(name, "out"))
-    checks.that(len(rows) == told["steps"] + 1, f"{name}: all steps saved", f"{len(rows)} of {told['steps'] + 1}")
+    reported = summary(checks.path(name, "out"))
+    checks.that(len(rows) == reported["steps"] + 1, f"{name}: all steps saved", f"{len(rows)} of {reported['steps'] + 1}")
     worst = max(rows, key=lambda row: row["share"])
-    print(f"{name}: {told['steps']} steps, {told['iterations']} iterations, {told['cutbacks']} cutbacks; deepest {worst['share']:.3g} of a "
+    print(f"{name}: {reported['steps']} steps, {reported['iterations']} iterations, {reported['cutbacks']} cutbacks; deepest {worst['share']:.3g} of a "
           f"side, largest pressure {max(row['most_pressure'] for row in rows):.4g}")
     checks.that(min(row["least_pressure"] for row in rows) >= 0, f"{name}: no pressure below zero")
     checks.that(max(row["most_pressure"] for row in rows) > 100, f"{name}: there is contact")
     checks.that(worst["share"] <= ALLOWED, f"{name}: nowhere deeper than allowed", worst)
-    says = told["checks"]["max_penetration_sampled_over_allowed"] * ALLOWED
+    says = reported["checks"]["max_penetration_sampled_over_allowed"] * ALLOWED
     checks.that(abs(says - worst["share"]) <= 1e-6 * ALLOWED, f"{name}: summary.json says so", f"{says} against {worst['share']}")
-    checks.that(abs(told["checks"]["max_penetration_sampled"] - max(row["depth"] for row in rows)) <= 1e-6 * ALLOWED,
-                f"{name}: and how deep", told["checks"])
-    checks.that(told["checks"]["least_dissipation"] >= 0, f"{name}: friction takes work", told["checks"]["least_dissipation"])
+    checks.that(abs(reported["checks"]["max_penetration_sampled"] - max(row["depth"] for row in rows)) <= 1e-6 * ALLOWED,
+                f"{name}: and how deep", reported["checks"])
+    checks.that(reported["checks"]["least_dissipation"] >= 0, f"{name}: friction takes work", reported["checks"]["least_dissipation"])
     if name.startswith("leaving"):
         touching = [row["most_pressure"] > 0 for row in rows]
         changes = sum(a != b for a, b in zip(touching, touching[1:]))

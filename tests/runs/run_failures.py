@@ -35,7 +35,7 @@ def fails(checks, result, code, what, phrases, advice=1):
 
 
 def silent(checks, result, what):
-    """What went wrong was not told on standard output."""
+    """What went wrong was not reported on standard output."""
     checks.that(result.stdout == "", f"{what}: nothing on standard output", result.stdout[:200])
 
 
@@ -163,14 +163,14 @@ def limit_load(checks):
     result = run([LIMIT_LOAD, "--out", out, "-p", "p_end=0.3", "--quiet", "--threads", "1"])
     fails(checks, result, NO_CONVERGENCE, "limit load", ["no convergence", "step", "time"])
     silent(checks, result, "limit load, quiet")
-    told = summary(out)
-    checks.that(told["exit_code"] == NO_CONVERGENCE and told["status"] == "stopped", "limit load: summary has the code", told["exit_code"])
-    checks.that("no convergence" in told["stop_reason"] and told["stop_reason"] in result.stderr, "limit load: summary has the reason",
-                told["stop_reason"])
-    reached = 0.3 * told["time"]
+    reported = summary(out)
+    checks.that(reported["exit_code"] == NO_CONVERGENCE and reported["status"] == "stopped", "limit load: summary has the code", reported["exit_code"])
+    checks.that("no convergence" in reported["stop_reason"] and reported["stop_reason"] in result.stderr, "limit load: summary has the reason",
+                reported["stop_reason"])
+    reached = 0.3 * reported["time"]
     checks.that(abs(reached / 0.192091 - 1) < 0.005, "limit load: Hill's pressure reached and not passed", f"{reached:.6f}")
     rows = history(out)
-    checks.that(rows["step"][-1] == told["steps"] and rows["time"][-1] == told["time"], "limit load: history ends at the last good step")
+    checks.that(rows["step"][-1] == reported["steps"] and rows["time"][-1] == reported["time"], "limit load: history ends at the last good step")
     checkpoint = os.path.join(out, "thick_cylinder_plastic.ckp.h5")
     checks.that(os.path.exists(checkpoint), "limit load: the checkpoint is there")
     again = run([LIMIT_LOAD, "--out", out, "-p", "p_end=0.3", "--quiet", "--threads", "1", "--resume", checkpoint])

@@ -55,9 +55,9 @@ def main():
         if done > 3:
             break
     checks.that(refused > 10 and done > 3, "limits on both sides of what is enough", f"{refused} refused, {done} done")
-    told = limited(2**40, [UPSETTING, "--check"]).stdout
-    checks.that(re.search(r"(?m)^Factors: .*memory about [0-9.]+ MB$", told) and re.search(r"(?m)^Memory left: [0-9.e+]+ MB", told),
-                "--check tells what is needed, and what is left", told[-400:])
+    reported = limited(2**40, [UPSETTING, "--check"]).stdout
+    checks.that(re.search(r"(?m)^Factors: .*memory about [0-9.]+ MB$", reported) and re.search(r"(?m)^Memory left: [0-9.e+]+ MB", reported),
+                "--check states what is needed, and what is left", reported[-400:])
     checks.end()
 
 

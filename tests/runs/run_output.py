@@ -78,7 +78,7 @@ def quiet_without_streams(checks):
 
 
 def obstacles(path):
-    """What may stand under a name of an output: how to make it, and how it is told."""
+    """What may stand under a name of an output: how to make it, and how it is reported."""
     return {"a pipe": (lambda: os.mkfifo(path), "a pipe"), "a link to a device": (lambda: os.symlink("/dev/null", path), "a symbolic link"),
             "a link to a folder": (lambda: os.symlink("/", path), "a symbolic link"),
             "a link that leads nowhere": (lambda: os.symlink("nowhere", path), "a symbolic link"),
@@ -122,7 +122,7 @@ def only_regular_files(checks, out, report_there):
     for name, (path, command) in cases.items():
         for what, (make, words) in obstacles(path).items():
             if name == "upsetting.g01.h5" and what == "a folder":
-                continue    # told by HDF5's reader, in other words (run_failures)
+                continue    # reported by HDF5's reader, in other words (run_failures)
             if name.startswith("lagareport") and what not in ("a pipe", "a link to a device"):
                 continue    # takes its time
             if os.path.lexists(path):

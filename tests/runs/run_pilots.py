@@ -89,7 +89,7 @@ def balance(checks):
     close(checks, "moment that is given", rows["moment_press"][-1], 5.0, 1e-8)
     rows = run_deck(checks, "shared", pilot="5. 5.", cards="FORCE  press Y -20. load\nFORCE  press A -5. load\nSPRNG  press A 1.E4")
     checks.that(rows["rotation_press"][-1] < -1e-4, "the die turns against its spring", rows["rotation_press"][-1])
-    # the history tells what acts on the pilot from outside: force given, spring and all
+    # the history has what acts on the pilot from outside: force given, spring and all
     close(checks, "moment the spring leaves", rows["moment_press"][-1], 5.0 + 1e4 * rows["rotation_press"][-1], 1e-8)
 
 
@@ -109,7 +109,7 @@ def lost(checks):
                              fixed="FIXED  block 1 Y\nFIXED  block 4 X", cards="FORCE  press Y -1. load").replace(
                                  "SEGM  40. 5.   -20. 5.", "SEGM  40. 6.   -20. 6."))
     result = run([deck, "--out", checks.path("lost")])
-    checks.that(result.returncode == 3 and "SPRNG" in result.stderr, "a die that touches nothing is told of", said(result))
+    checks.that(result.returncode == 3 and "SPRNG" in result.stderr, "a die that touches nothing is reported", said(result))
 
 
 def main():

@@ -181,9 +181,9 @@ def refusals(checks):
         assert BASE.count(old) == 1, old
         deck = write(checks.path(name + ".point"), BASE.replace(old, new))
         result = run(["--point", deck, "--out", checks.path(name)])
-        told = [text for text in result.stderr.splitlines() if text.startswith(deck)]
+        reported = [text for text in result.stderr.splitlines() if text.startswith(deck)]
         checks.that(result.returncode == INPUT, f"'{new}': refused", said(result))
-        checks.that(any(text.startswith(f"{deck}:{line}:") and phrase in text for text in told), f"'{new}': line {line}, '{phrase}'", said(result))
+        checks.that(any(text.startswith(f"{deck}:{line}:") and phrase in text for text in reported), f"'{new}': line {line}, '{phrase}'", said(result))
         checks.that(not os.path.exists(checks.path(name)), f"'{new}': leaves nothing")
     for name, text, phrase in (("no_path", BASE.split("PATH")[0] + "END\n", "the deck has no such card"),
                                ("a_scene", deck_text(UPSETTING), "BLOCK: there is no such card")):
@@ -207,12 +207,12 @@ def words(checks):
     """--check runs nothing; the screen names the point, ends of rows and the table; titles have units."""
     deck = write(checks.path("base.point"), BASE)
     result = run(["--point", deck, "--check", "--out", checks.path("checked")])
-    checks.that(result.returncode == DONE and "20 steps until time 2" in result.stdout, "--check: tells the path", said(result))
+    checks.that(result.returncode == DONE and "20 steps until time 2" in result.stdout, "--check: states the path", said(result))
     checks.that(not os.path.exists(checks.path("checked")), "--check: runs nothing")
-    result = run(["--point", deck, "--out", checks.path("told")])
+    result = run(["--point", deck, "--out", checks.path("reported")])
     lines = result.stdout.splitlines()
     checks.that(result.returncode == DONE and lines[0] == "Base" and lines[-1].startswith("done: 20 steps") and len(lines) == 7, "the screen", lines)
-    titles = table(checks.path("told"), "base")[1]
+    titles = table(checks.path("reported"), "base")[1]
     checks.that(all(title.endswith("]") for title in titles) and "stress_xx [stress]" in titles and "plastic_work [stress]" in titles,
                 "titles have units", titles)
 

@@ -41,9 +41,9 @@ def stops(checks, draw, deck, name, options, whole, moments):
             checks.that(stderr == "" or stderr.count("\n") <= 2, f"{what}: few words", stderr)
             if code != SIGNAL + number:
                 break
-            told = summary(out)
-            checks.that(told["exit_code"] == code and "signal" in told["stop_reason"] and told["steps"] == rows_so_far(out),
-                        f"{what}: summary tells the signal and the step", told["stop_reason"])
+            reported = summary(out)
+            checks.that(reported["exit_code"] == code and "signal" in reported["stop_reason"] and reported["steps"] == rows_so_far(out),
+                        f"{what}: summary states the signal and the step", reported["stop_reason"])
         else:
             result = resume(deck, out, options)
             checks.that(result.returncode == DONE, f"{what}: resumed", said(result))

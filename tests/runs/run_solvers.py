@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every linear solver carries a run: shipped decks with SOLVR against the default, what is told of the choice, threads, resume.
+"""Every linear solver carries a run: shipped decks with SOLVR against the default, what is reported of the choice, threads, resume.
 
 usage: run_solvers.py [-v] [-k]       -v prints every check and the differences, -k keeps the results
 
@@ -42,8 +42,8 @@ def compare(checks, name, deck, options, solver):
         result = run([path, "--threads", "1", "--quiet", "--out", folders[label]] + options)
         if not checks.that(result.returncode == DONE, f"{name}, {label}: runs", said(result)):
             return
-    told = [summary(folders[label])["linear_solver"] for label in folders]
-    checks.that(told == ["FRONT", solver], f"{name}, {solver}: summary.json tells the solver", told)
+    reported = [summary(folders[label])["linear_solver"] for label in folders]
+    checks.that(reported == ["FRONT", solver], f"{name}, {solver}: summary.json states the solver", reported)
     one, two = (history(folders[label]) for label in folders)
     # lengths of steps follow strains, and have their round-off
     if checks.that(len(one["time"]) == len(two["time"]), f"{name}, {solver}: the same steps", (len(one["time"]), len(two["time"]))):
@@ -54,14 +54,14 @@ def compare(checks, name, deck, options, solver):
 
 
 def check_choice(checks):
-    """--check and the listing tell the solver and what its factors cost."""
+    """--check and the listing state the solver and what its factors cost."""
     for solver in ("FRONT",) + OTHERS:
-        deck = write(checks.path("told", f"{solver}.lag"), add_cards(deck_text(), f"SOLVR  {solver}"))
+        deck = write(checks.path("reported", f"{solver}.lag"), add_cards(deck_text(), f"SOLVR  {solver}"))
         result = run([deck, "--check"])
-        checks.that(result.returncode == DONE and re.search(rf"(?m)^solver +{solver} +\S", result.stdout), f"{solver}: --check tells it",
+        checks.that(result.returncode == DONE and re.search(rf"(?m)^solver +{solver} +\S", result.stdout), f"{solver}: --check states it",
                     said(result))
         cost = re.search(r"(?m)^Factors: (\S+) entries, (\S+) operations", result.stdout)
-        checks.that(cost and float(cost[1]) > 1000 and float(cost[2]) > 1000, f"{solver}: --check tells the cost", result.stdout[-300:])
+        checks.that(cost and float(cost[1]) > 1000 and float(cost[2]) > 1000, f"{solver}: --check states the cost", result.stdout[-300:])
 
 
 def check_threads_and_resume(checks, solver):
@@ -74,8 +74,8 @@ def check_threads_and_resume(checks, solver):
     checks.that(read_bytes(os.path.join(whole, "history.csv")) == read_bytes(os.path.join(two, "history.csv")),
                 f"{solver}: the same history with two threads")
     common = [deck, "--threads", "1", "--quiet", "--out", parts]
-    code, _, told = stop_after(start(common), parts, 10, signal.SIGTERM)
-    if checks.that(code == SIGNAL + signal.SIGTERM, f"{solver}: stops", (code, told)):
+    code, _, reported = stop_after(start(common), parts, 10, signal.SIGTERM)
+    if checks.that(code == SIGNAL + signal.SIGTERM, f"{solver}: stops", (code, reported)):
         result = run(common + ["--resume", os.path.join(parts, "deck.ckp.h5")])
         checks.that(result.returncode == DONE, f"{solver}: resumes", said(result))
         wrong = result_differences(whole, parts)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The motion that 2 x 2 points do not see: told where an element is lightly held, and nowhere else.
+"""The motion that 2 x 2 points do not see: reported where an element is lightly held, and nowhere else.
 
 usage: run_spurious.py [-v] [-k]       -v prints every check, -k keeps the results
 """
@@ -71,14 +71,14 @@ def alone(checks):
                              ("alone-mean", with_mean(text), DONE), ("many", many, NO_CONVERGENCE)):
         result = run([write(checks.path(name + ".lag"), deck), "--out", checks.path(name), "--quiet", "--threads", "1"])
         checks.that(result.returncode == code, f"{name}: exit code {code}", said(result))
-        told = "has a motion that nothing resists" in result.stderr
-        checks.that(told == (name == "alone"), f"{name}: the advice", said(result))
+        reported = "has a motion that nothing resists" in result.stderr
+        checks.that(reported == (name == "alone"), f"{name}: the advice", said(result))
         if code == DONE:
             checks.that(summary(checks.path(name))["checks"]["spurious_mode"] == 0, f"{name}: nothing unseen")
 
 
 def lightly_held(checks):
-    """A soft body holds the mode of a hard element: it is large, it is told once, with the element; MEAN has no such motion."""
+    """A soft body holds the mode of a hard element: it is large, it is reported once, with the element; MEAN has no such motion."""
     for name, deck, seen in (("lightly", LIGHTLY, True), ("lightly-mean", with_mean(LIGHTLY), False),
                              ("firmly", LIGHTLY.replace("soft 0.1", "soft 1000."), False)):
         result = run([write(checks.path(name + ".lag"), deck), "--out", checks.path(name), "--quiet", "--threads", "1"])
@@ -88,10 +88,10 @@ def lightly_held(checks):
         checks.that((share > 0.99) if seen else (share < 0.5), f"{name}: share of the motion", share)
         with open(os.path.join(checks.path(name), name + ".log"), encoding="utf-8") as listing:
             notes = [line for line in listing if line.startswith("note: ")]
-        checks.that(len(notes) == seen, f"{name}: told once or not at all", notes)
+        checks.that(len(notes) == seen, f"{name}: reported once or not at all", notes)
         if seen:
             checks.that("element 1 of upper" in notes[0] and "MEAN" in notes[0], f"{name}: the element and the remedy", notes)
-            checks.that(notes[0] in result.stderr, f"{name}: told on the terminal", said(result))
+            checks.that(notes[0] in result.stderr, f"{name}: reported on the terminal", said(result))
     bent = {name: history(checks.path(name)) for name in ("lightly", "lightly-mean")}
     between = {name: abs(table["corner"][-1] - table["middle"][-1]) for name, table in bent.items()}
     checks.that(between["lightly"] > 100*between["lightly-mean"], "lightly: the hard element bends as if it were soft", between)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How the programs start: what --version tells, that settings of the user win, that the environment which the libraries want
+"""How the programs start: what --version shows, that settings of the user win, that the environment which the libraries want
 is there whatever starts the program, that the process stays the same one, and threads by the load of the machine.
 
 usage: run_start.py [-v] [-k]         -v prints every check, -k keeps the results
@@ -34,7 +34,7 @@ def call(program, *words, **settings):
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=120, check=False)
 
 
-def told(result):
+def reported(result):
     """Rows of --version by name."""
     return dict(line.split(": ", 1) for line in result.stdout.splitlines()[1:] if ": " in line)
 
@@ -50,7 +50,7 @@ def version(checks):
         checks.that(result.returncode == DONE and result.stderr == "", f"{program} --version: done", said(result))
         checks.that(re.fullmatch(rf"{program} \d+\.\d+\.\d+", result.stdout.split("\n")[0]), f"{program} --version: name and version first",
                     result.stdout)
-        rows = told(result)
+        rows = reported(result)
         for name, form in ROWS.items():
             checks.that(re.fullmatch(form, rows.get(name, "")), f"{program} --version: {name}", rows.get(name, "missing"))
         rows = {name: rows.get(name) for name in ROWS}
@@ -62,17 +62,17 @@ def cores(checks):
     """The core of the BLAS: the user's wins; one that is too old and not the user's is replaced where the processor has more."""
     with open("/proc/cpuinfo", encoding="utf-8") as file:
         flags = next((line.split(":")[1].split() for line in file if line.startswith("flags")), [])
-    own = told(call("lagamine", "--version"))["BLAS"]
-    checks.that(told(call("lagamine", "--version"))["BLAS"] == own, "two starts, one core")
+    own = reported(call("lagamine", "--version"))["BLAS"]
+    checks.that(reported(call("lagamine", "--version"))["BLAS"] == own, "two starts, one core")
     if "avx2" not in flags or "fma" not in flags:
         return
     checks.that(not own.endswith("core Prescott"), "not the oldest kernels on a processor with AVX2", own)
     for program in ("lagamine", "remdata"):
         for core in ("Prescott", "Haswell"):
-            blas = told(call(program, "--version", OPENBLAS_CORETYPE=core))["BLAS"]
+            blas = reported(call(program, "--version", OPENBLAS_CORETYPE=core))["BLAS"]
             checks.that(blas.endswith(f"core {core}"), f"{program}: OPENBLAS_CORETYPE={core} wins", blas)
         # As on a processor that OpenBLAS does not know: the oldest kernels, and nobody's wish.
-        blas = told(call(program, "--version", OPENBLAS_CORETYPE="Prescott", LAGAMINE_BLAS_CORE="Prescott"))["BLAS"]
+        blas = reported(call(program, "--version", OPENBLAS_CORETYPE="Prescott", LAGAMINE_BLAS_CORE="Prescott"))["BLAS"]
         checks.that(re.search(r"core (SkylakeX|Haswell)$", blas), f"{program}: the oldest kernels are replaced", blas)
 
 

@@ -38,7 +38,7 @@ int main(int count, char **words) {
   gmshOptionSetNumber("General.NumThreads", 1, &failed);
   check(failed, "be kept to one thread");
   gmshOptionSetNumber("General.AbortOnError", 3, &failed);
-  check(failed, "be told to stop at errors");
+  check(failed, "be set to stop at errors");
   gmshOpen(words[1], &failed);
   check(failed, "read the script");
   gmshModelMeshGenerate(2, &failed);

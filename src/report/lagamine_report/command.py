@@ -16,11 +16,11 @@ EXIT_CODES = "Exit codes: 0 done, 2 no results or a damaged file, 5 the page can
 
 
 class _Parser(argparse.ArgumentParser):
-    """Mistakes in one line, as the other programs have it."""
+    """Wrong arguments in one line, in the format of the other programs."""
 
     def error(self, message: str) -> NoReturn:
-        tell(f"{self.prog}: {message}")
-        tell(f"{self.prog} --help shows how to call")
+        print_error(f"{self.prog}: {message}")
+        print_error(f"{self.prog} --help shows how to call")
         sys.exit(EXIT_INPUT)
 
 
@@ -36,11 +36,11 @@ class _Version(argparse.Action):
         # in share/lagamine/lagamine_report, beside bin
         home = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__)))))
         try:
-            told = subprocess.run([os.path.join(home, "bin", "lagamine"), "--version"], stdin=subprocess.DEVNULL,
+            output = subprocess.run([os.path.join(home, "bin", "lagamine"), "--version"], stdin=subprocess.DEVNULL,
                                   stdout=subprocess.PIPE, text=True, check=False).stdout
         except OSError:
-            told = ""
-        print("".join(told.splitlines(keepends=True)[1:]), end="")
+            output = ""
+        print("".join(output.splitlines(keepends=True)[1:]), end="")
         for module in ("numpy", "h5py", "matplotlib"):
             print(f"{module}: {importlib.import_module(module).__version__}")
         sys.exit(EXIT_DONE)
@@ -60,7 +60,7 @@ def main(arguments: Sequence[str], version: str) -> int:
         discard(1)                         # the reader has gone away
     except OSError as error:
         discard(1)
-        tell(f"cannot write to the standard output: {error.strerror}")
+        print_error(f"cannot write to the standard output: {error.strerror}")
         code = code or EXIT_MACHINE
     return code
 
@@ -86,8 +86,8 @@ def discard(stream: int) -> None:
     os.close(nowhere)
 
 
-def tell(message: str) -> None:
-    """What went wrong, on the stream of errors. Where that cannot be written, the exit code has to do."""
+def print_error(message: str) -> None:
+    """A failure, on the stream of errors. Where that cannot be written, only the exit code shows it."""
     try:
         print(message, file=sys.stderr, flush=True)
     except OSError:
@@ -95,7 +95,7 @@ def tell(message: str) -> None:
 
 
 def run_program(arguments: Sequence[str], version: str) -> int:
-    """Read the arguments, make the page, tell the short result."""
+    """Read the arguments, make the page, print the short result."""
     parser = _Parser("lagareport", description="The results of a run as one self-contained HTML page with pictures.",
                      epilog=EXIT_CODES)
     parser.add_argument("folder", metavar="DIR", help="folder of the results: what `lagamine DECK --out DIR` wrote")
@@ -123,9 +123,9 @@ def run_program(arguments: Sequence[str], version: str) -> int:
         for picture in pictures:
             picture.close()
     except ReportError as error:
-        tell(str(error))
+        print_error(str(error))
         if error.advice:
-            tell(error.advice)
+            print_error(error.advice)
         return error.code
     if not options.quiet:
         print_short(run)

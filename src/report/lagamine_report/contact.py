@@ -3,7 +3,7 @@ from typing import List, Optional, Tuple
 
 import numpy as np
 
-from .geometry import chains, side_curves, side_points
+from .geometry import curves_of_sides, side_curves, side_points
 from .picture import Picture, when
 from .reader import Group, Run, Step
 from .style import LINES, SOFT, figure
@@ -24,14 +24,14 @@ def contact_groups(run: Run, step: Step) -> List[Group]:
 
 
 def along_group(run: Run, step: Step, group: Group) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Length along the chain of sides [point], places of their points in (side, point) order, ends of chains."""
+    """Arc length along the sides [point], numbers of their points in (side, point) order, ends of the curves."""
     x = run.coordinates(step)
     names, state = run.points(step, group)
     xi = side_points(group.npoint, state.shape[1])
     length, order, ends = [], [], []
     start = 0.0
-    for chain in chains(group.connectivity):
-        for k in chain:
+    for connected in curves_of_sides(group.connectivity):
+        for k in connected:
             curve = side_curves(x, group.connectivity[k:k + 1], 24)[0]
             so_far = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(curve, axis=0).T))])
             length.extend(start + np.interp(xi, np.linspace(-1, 1, 25), so_far))
@@ -42,7 +42,7 @@ def along_group(run: Run, step: Step, group: Group) -> Tuple[np.ndarray, np.ndar
 
 
 def contact_picture(run: Run) -> Optional[Picture]:
-    """Pressure and friction of each group at the last saved step, stick and slip told apart."""
+    """Pressure and friction of each group at the last saved step, stick and slip distinguished."""
     step = run.steps[-1]
     groups = contact_groups(run, step)
     if not groups:

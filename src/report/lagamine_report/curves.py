@@ -113,7 +113,7 @@ def steps_picture(run: Run) -> Optional[Picture]:
 
 
 def energy_picture(run: Run) -> Optional[Picture]:
-    """Work from outside against what became of it."""
+    """External work against elastic energy, plastic work and work of friction."""
     history = run.history
     names = ["elastic_energy", "plastic_work", "friction_work"]
     if not set(names + ["external_work"]) <= set(history) or not len(history["time"].values):

@@ -1,4 +1,4 @@
-"""The tries of a cycle: cycle.csv, and what the remesher and the restart tell of every new mesh."""
+"""The tries of a cycle: cycle.csv, and what the remesher and the restart report on every new mesh."""
 import csv
 import math
 import os
@@ -20,7 +20,7 @@ BALANCES = {"volume": "volume", "elastic_energy": "elastic energy", "plastic_wor
 
 @dataclass
 class Change:
-    """A quantity on the old mesh and on the new one: its whole, and its largest value where that is told."""
+    """A quantity on the old mesh and on the new one: its whole, and its largest value where that is given."""
 
     name: str
     before: float
@@ -46,7 +46,7 @@ class Try:
     changes: List[Change] = field(default_factory=list)
     # What was found against what is allowed, as shares: of files that are there.
     limits: Dict[str, float] = field(default_factory=dict)
-    # Volume as the mesh began; NaN where it is not told.
+    # Volume as the mesh began; NaN where it is not given.
     volume: float = math.nan
 
     @property

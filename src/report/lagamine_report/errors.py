@@ -1,4 +1,4 @@
-"""What goes wrong, with the exit code of all LAGAMINE programs."""
+"""Failures, with the exit codes of all LAGAMINE programs."""
 EXIT_DONE = 0
 EXIT_INPUT = 2
 EXIT_MACHINE = 5
@@ -6,7 +6,7 @@ EXIT_BUG = 6
 
 
 class ReportError(Exception):
-    """A failure told in one line, its exit code, and perhaps advice for a second line."""
+    """A failure: a message of one line, its exit code, and perhaps advice for a second line."""
 
     def __init__(self, message: str, code: int = EXIT_INPUT, advice: str = "") -> None:
         super().__init__(message)

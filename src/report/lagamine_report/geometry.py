@@ -28,7 +28,7 @@ def line3(xi) -> np.ndarray:
 
 
 def side_points(npoint: int, found: int) -> np.ndarray:
-    """Parent coordinates of the integration points of a side; `npoint` as in the deck, 0 when the file does not tell."""
+    """Parent coordinates of the integration points of a side; `npoint` as in the deck, 0 when the file does not give it."""
     return np.array(LOBATTO_3 if npoint == -3 else GAUSS.get(found, np.linspace(-1, 1, found)))
 
 
@@ -51,7 +51,7 @@ class Triangles:
 
     @staticmethod
     def _keys(topology: np.ndarray, nodes: int, n: int, i: np.ndarray, j: np.ndarray) -> np.ndarray:
-        """Numbers equal for the same point of neighbours: by node, by middle node and place on the side, or its own."""
+        """Numbers equal for the same point of neighbours: by node, by middle node and position on the side, or its own."""
         count = len(i)
         keys = nodes * (n + 2) + np.arange(len(topology) * count).reshape(len(topology), count)
         on_side = [(j == 0, i), (i == n, j), (j == n, n - i), (i == 0, n - j)]
@@ -90,7 +90,7 @@ def element_curves(x: np.ndarray, topology: np.ndarray) -> np.ndarray:
 
 
 def element_sizes(curves: np.ndarray) -> np.ndarray:
-    """Square roots of the areas inside closed chains of points (element, point, 2)."""
+    """Square roots of the areas inside closed polygons of points (element, point, 2)."""
     following = np.roll(curves, -1, axis=1)
     twice = (curves[..., 0] * following[..., 1] - curves[..., 1] * following[..., 0]).sum(axis=1)
     return np.sqrt(0.5 * np.abs(twice))
@@ -103,26 +103,26 @@ def all_sides(topology: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
     return sides[first], sides[first[count == 1]]
 
 
-def chains(sides: np.ndarray) -> List[List[int]]:
-    """Sides put end to end: lists of their places, one list per run of neighbours."""
+def curves_of_sides(sides: np.ndarray) -> List[List[int]]:
+    """Sides joined end to end: lists of their numbers, one list per connected curve."""
     start: Dict[int, int] = {int(side[0]): k for k, side in enumerate(sides)}
     ends = {int(side[2]) for side in sides}
     left = dict.fromkeys(range(len(sides)))
     result = []
     heads = [k for k in left if int(sides[k][0]) not in ends] + list(left)
     for head in heads:
-        chain, k = [], head
+        connected, k = [], head
         while k is not None and k in left:
             del left[k]
-            chain.append(k)
+            connected.append(k)
             k = start.get(int(sides[k][2]))
-        if chain:
-            result.append(chain)
+        if connected:
+            result.append(connected)
     return result
 
 
 def die_curve(pieces: np.ndarray, pilot: np.ndarray, n: int = 16) -> np.ndarray:
-    """The chain of parabolas of a die where its pilot stands (point, 2)."""
+    """The curve of parabolas of a die at the position of its pilot (point, 2)."""
     local = np.einsum("pk,skd->spd", line3(np.linspace(-1, 1, n + 1)), pieces).reshape(-1, 2)
     c, s = np.cos(pilot[2]), np.sin(pilot[2])
     curve = local @ np.array([[c, s], [-s, c]]) + pilot[:2]
@@ -132,7 +132,7 @@ def die_curve(pieces: np.ndarray, pilot: np.ndarray, n: int = 16) -> np.ndarray:
 
 
 def die_body(curve: np.ndarray, thickness: float) -> np.ndarray:
-    """Outline of a band of the die's body, which is on the right of the chain."""
+    """Outline of a band of the die's body, which is on the right of the curve."""
     tangent = np.diff(curve, axis=0)
     tangent /= np.hypot(*tangent.T)[:, None]
     normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)

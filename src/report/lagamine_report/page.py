@@ -1,4 +1,4 @@
-"""The page: one HTML file with everything in it, which asks nothing of the network."""
+"""The page: one HTML file with everything in it, which needs no network."""
 import math
 import os
 from typing import Dict, Iterable, List, Sequence, Tuple
@@ -77,7 +77,7 @@ def _status(run: Run) -> str:
 
 
 def _look(run: Run) -> str:
-    """Class of what tells how the run ended: nothing when all is well."""
+    """Class of the line that shows how the run ended: empty when it ended normally."""
     if not run.ended:
         return " open" if run.summary["status"] == UNDER_WAY else " stopped"
     return "" if run.summary.get("exit_code", 0) == 0 else " stopped"
@@ -107,7 +107,7 @@ def _tiles(run: Run) -> str:
 
 
 def _cost(run: Run) -> List[Tuple[str, str]]:
-    """Seconds and memory. A run of several calls has those of the calls that ended: what was killed has told nothing."""
+    """Seconds and memory. A run of several calls has those of the calls that ended: a killed call reports none."""
     s, calls = run.summary, run.calls
     if not run.ended and calls.number == 0:
         return []
@@ -198,7 +198,7 @@ def _origin(run: Run) -> Sections:
     rows = []
     if run.ended:
         rows = [("", ("deck", f"<code>{escape(s['deck'])}</code>")),
-                ("", ("SHA-256 of the deck", f"<code>{escape(s.get('deck_sha256', 'not told'))}</code>")),
+                ("", ("SHA-256 of the deck", f"<code>{escape(s.get('deck_sha256', 'not given'))}</code>")),
                 ("", ("program", escape(f"{s.get('program', 'lagamine')} {s.get('version', '')}")))]
     files = [f"<code>{escape(os.path.basename(generation.path))}</code> {len(generation.steps)} saved steps, "
              f"{len(generation.topology)} elements" for generation in run.generations]

@@ -81,7 +81,7 @@ def known_field(run: Run, name: str) -> str:
 
 
 def fields_picture(view: SceneView, names: Sequence[str], name: str = "fields", small: bool = False) -> Optional[Picture]:
-    """Contours at the last saved step, a panel a field. What is the same everywhere is told in words."""
+    """Contours at the last saved step, a panel a field. A uniform field is stated in words."""
     run, step = view.run, view.run.steps[-1]
     shown: List[Tuple[str, np.ndarray]] = []
     uniform: List[str] = []

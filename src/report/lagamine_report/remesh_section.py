@@ -67,7 +67,7 @@ def cells(run: Run, row: Try) -> List[str]:
 
 
 def limits(made: Sequence[Try]) -> List[Tuple[str, List[str]]]:
-    """A row of what is allowed, which is the deck's and the same for all meshes; none where the files do not tell."""
+    """A row of what is allowed, which is the deck's and the same for all meshes; none where the files do not give it."""
     allowed: Dict[str, float] = {}
     for row in made:
         allowed.update(row.limits)
@@ -79,7 +79,7 @@ def limits(made: Sequence[Try]) -> List[Tuple[str, List[str]]]:
 
 
 def height(run: Run, row: Try) -> float:
-    """Extent of all bodies along y when the old mesh gave way; NaN where it was not saved."""
+    """Extent of all bodies along y when the old mesh was replaced; NaN where it was not saved."""
     for step in run.steps:
         if step.number == row.step and step.generation.number == row.generation - 1:
             return float(np.ptp(run.coordinates(step)[:, 1]))

@@ -1,4 +1,4 @@
-"""Pictures of remeshing: the old mesh as it gave way and the new one in its place."""
+"""Pictures of remeshing: the old mesh when it was replaced, and the new one."""
 from typing import List, Optional, Tuple
 
 import numpy as np

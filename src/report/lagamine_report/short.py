@@ -1,4 +1,4 @@
-"""What a run came to, judged and told in a few lines."""
+"""The result of a run, with its checks, in a few lines."""
 import math
 import os
 import shlex
@@ -14,7 +14,7 @@ from .words import brief
 # Above these the page warns: shares of the work, of the volume and of what all remeshings change of it, what a sound linear
 # solution leaves, and the share of an element's strain that its points do not see.
 ENERGY_IMBALANCE, VOLUME_DRIFT, VOLUME_BY_MESHES, LINEAR_RESIDUAL, SPURIOUS_MODE = 0.02, 0.01, 0.001, 1e-10, 0.9
-# Depths in summary.json, the share of the allowed beside them, and how far above 1 that is told as too large, as in the listing.
+# Depths in summary.json, the share of the allowed beside them, and how far above 1 that is reported as too large, as in the listing.
 PENETRATIONS = {"max_penetration": "at points of contact", "max_penetration_sampled": "between points of contact too"}
 OVER_ALLOWED, RATIO_SLACK = "_over_allowed", 1e-6
 # Signs of the page that not every terminal has.
@@ -23,7 +23,7 @@ PLAIN = {0x2212: "-", 0x202F: None, 0x221E: "infinite", 0x2013: "-"}
 
 @dataclass
 class Check:
-    """A check: what was found, what is allowed, whether it holds (None: nothing to hold it against), what to do about it."""
+    """A check: what was found, what is allowed, whether it holds (None: there is no limit), what to do about it."""
 
     name: str
     found: str
@@ -33,7 +33,7 @@ class Check:
 
     @property
     def warning(self) -> str:
-        """What to tell when it does not hold."""
+        """The message when it does not hold."""
         return f"{self.name} {self.found}, allowed {self.allowed}" + (f": {self.advice}" if self.advice else "")
 
 
@@ -42,7 +42,7 @@ def percent(value: float) -> str:
 
 
 def checks(run: Run) -> List[Check]:
-    """The checks in summary.json, held against what is allowed."""
+    """The checks in summary.json, compared with what is allowed."""
     given = run.summary["checks"]
     values = {name: number(value) for name, value in given.items()}
     result = []
@@ -102,17 +102,17 @@ def penetration_checks(run: Run, values: Dict[str, float]) -> List[Check]:
 
 
 def volume_by_meshes(run: Run) -> float:
-    """Sum over the remeshings of what each changed the volume by, as a share of the first volume; NaN where it is not told."""
+    """Sum over the remeshings of what each changed the volume by, as a share of the first volume; NaN where it is not given."""
     first = number(run.summary.get("initial_volume"))
     steps, drift = run.history.get("step"), run.history.get("volume_drift")
-    total, told = 0.0, False
+    total, given = 0.0, False
     for row in new_meshes(run.tries):
         if steps is None or drift is None or math.isnan(row.volume) or math.isnan(first):
             continue
         at = drift.values[steps.values == row.step]
         if len(at) == 1:
-            total, told = total + row.volume / first - (1 + float(at[0])), True
-    return total if told else math.nan
+            total, given = total + row.volume / first - (1 + float(at[0])), True
+    return total if given else math.nan
 
 
 def command(run: Run) -> str:

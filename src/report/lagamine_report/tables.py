@@ -136,7 +136,7 @@ class Calls:
 
 
 def read_calls(path: str) -> Calls:
-    """From the listing, to which every call adds; one that was killed says nothing."""
+    """From the listing, to which every call adds; one that was killed adds nothing."""
     calls = Calls()
     for line in read_text(path).splitlines():
         match = CALL.fullmatch(line)
@@ -146,7 +146,7 @@ def read_calls(path: str) -> Calls:
 
 
 def number(value: Any) -> float:
-    """A JSON number; NaN for what is none (the solver writes NaN and infinity as null)."""
+    """A JSON number; NaN for any other value (the solver writes NaN and infinity as null)."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return math.nan
     return float(value)

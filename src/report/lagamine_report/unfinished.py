@@ -1,4 +1,4 @@
-"""A run that has not ended, or ended without a word: no summary, what is there is told all the same."""
+"""A run that has not ended, or ended without a message: there is no summary, what is there is shown all the same."""
 import glob
 import os
 import time
@@ -21,7 +21,7 @@ def unfinished_name(folder: str) -> Optional[str]:
 
 
 def unfinished_summary(folder: str, name: str, history: Dict[str, Column], elements: int, remeshings: int) -> Dict[str, Any]:
-    """What a summary would say, as far as history and meshes tell it."""
+    """What a summary would state, as far as history and meshes give it."""
     status = UNDER_WAY if is_open(os.path.join(folder, name + LISTING)) else INTERRUPTED
     summary: Dict[str, Any] = {"status": status, "stop_reason": f"last written to {last_written(folder)}", "time": 0.0, "steps": 0,
                                "iterations": 0, "cutbacks": 0, "remeshings": remeshings}

@@ -1,4 +1,4 @@
-"""Fields and numbers as people say them."""
+"""Names of fields and numbers for readers."""
 import math
 
 DIRECTIONS = {"xx": ("xx", "radial"), "yy": ("yy", "axial"), "xy": ("xy", "shear"), "zz": ("zz", "hoop")}
