@@ -43,6 +43,7 @@ contains
     row%effect = 'displacement'
     allocate (row%options(1))
     row%options(with_mean_dilatation)%s = 'MEAN'
+    row%unsymmetric_option = with_mean_dilatation
     row%variables => variables
     row%compute => compute
     row%measure => measure
