@@ -23,7 +23,10 @@ module mean_dilatation
   use kinds, only: wp
   implicit none
   private
-  public :: dilatation_t, find_fields, share_dilatation, share_pressure, add_mean_matrix
+  public :: dilatation_t, mean_option, find_fields, hidden_change, share_dilatation, share_pressure, add_mean_matrix
+
+  !> Place of the option MEAN among those of PL8LS.
+  integer, parameter :: mean_option = 1
 
   !> Fields of the dilatation in an element.
   integer, parameter :: nfield = 3, max_points = 9
@@ -73,6 +76,17 @@ contains
       end associate
     end do
   end function projected
+
+  !> tr h - theta: what of a change of volume, given at the points, the projection hides.
+  pure function hidden_change(own, dv, change) result(hidden)
+    type(dilatation_t), intent(in) :: own
+    real(wp), intent(in) :: dv(:), change(:)     !! present volumes, tr h (npoint)
+    real(wp) :: hidden(size(dv))
+
+    associate (first_dv => own%dv(:own%npoint))
+      hidden = change - projected(own, change*dv/first_dv)/projected(own, dv/first_dv)
+    end associate
+  end function hidden_change
 
   !> Give the points of an element the projected change of volume of the step. It is not `valid` when a volume vanishes.
   pure subroutine share_dilatation(finite, own, dv, f, valid)

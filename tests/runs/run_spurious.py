@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The motion that 2 x 2 points do not see: told where an element is lightly held, and nowhere else.
+"""Motions that the points of an element do not see, or with MEAN their pressure: told where one is large, and nowhere else.
 
 usage: run_spurious.py [-v] [-k]       -v prints every check, -k keeps the results
 """
@@ -74,7 +74,8 @@ def alone(checks):
         told = "has a motion that nothing resists" in result.stderr
         checks.that(told == (name == "alone"), f"{name}: the advice", said(result))
         if code == DONE:
-            checks.that(summary(checks.path(name))["checks"]["spurious_mode"] == 0, f"{name}: nothing unseen")
+            share = summary(checks.path(name))["checks"]["spurious_mode"]
+            checks.that(share == 0 if name == "alone-9" else share < LIMIT, f"{name}: nothing unseen", share)
 
 
 def lightly_held(checks):
@@ -85,7 +86,7 @@ def lightly_held(checks):
         if not checks.that(result.returncode == DONE, f"{name}: done", said(result)):
             continue
         share = summary(checks.path(name))["checks"]["spurious_mode"]
-        checks.that((share > 0.99) if seen else (share < 0.5), f"{name}: share of the motion", share)
+        checks.that((share > 0.99) if seen else (share < LIMIT), f"{name}: share of the motion", share)
         with open(os.path.join(checks.path(name), name + ".log"), encoding="utf-8") as listing:
             notes = [line for line in listing if line.startswith("note: ")]
         checks.that(len(notes) == seen, f"{name}: told once or not at all", notes)
