@@ -5,9 +5,9 @@
 !> rigid motions and 12 strains.) Neighbours that share a side cannot both make it; an element lightly held can.
 !> Measure: of the square of the strain of a motion, the share which 3 x 3 points see, and 2 x 2 points do not: 1 for the mode, 0
 !> for strains that are linear over the element.
-!> With the option MEAN the pressure does not see tr h - theta (mean_dilatation), change of volume that is not linear over the element:
-!> v = xi (1 - eta^2), for one, which neighbours can make too. Measure: the square of that over a third of the square of the strain, 1
-!> at most; a pure change of volume all hidden has 9, a stretch along one direction all hidden 3.
+!> With the option MEAN the pressure does not see tr h - theta (mean_dilatation), change of volume that is not linear over the
+!> element: v = xi (1 - eta^2), for one, which neighbours can make too. In large strain it may be free, where shear is small and
+!> flow goes the same way. Measure: the square of that over half the square of the strain, 1 at most.
 !> Where an element deforms less than the mean of the group that mean is its measure.
 module spurious_mode
   use kinds, only: wp
@@ -20,7 +20,7 @@ module spurious_mode
   public :: has_mean_dilatation, has_spurious_mode, may_stand_alone, find_spurious_mode, spurious_limit
 
   !> A share above this is told. The mode has 1; smooth motions have less than 0.05, corners that a body folds over up to 0.71. With
-  !> MEAN necks have up to 0.4, by 3 x 6 elements as by 12 x 36; where flat elements saw, 1 beside the flow that carries them.
+  !> MEAN necks have up to 0.25, folded corners 0.73; elements that sawed in tension, by an earlier form of MEAN, 0.7 to 1.
   real(wp), parameter :: spurious_limit = 0.9_wp
   !> Points of the elements that have the mode.
   integer, parameter :: reduced_rule = 4
@@ -29,12 +29,13 @@ module spurious_mode
 
 contains
 
-  !> Whether a group's elements have motions that their points do not see, or with MEAN their pressures.
-  elemental function has_spurious_mode(group) result(yes)
+  !> Whether a group's elements have motions that their points do not see, or with MEAN, in large strain, their pressures.
+  elemental function has_spurious_mode(group, finite) result(yes)
     type(group_t), intent(in) :: group
+    logical, intent(in) :: finite
     logical :: yes
 
-    yes = (is_solid(group) .and. group%rule%n == reduced_rule) .or. has_mean_dilatation(group)
+    yes = (is_solid(group) .and. group%rule%n == reduced_rule) .or. (has_mean_dilatation(group) .and. finite)
   end function has_spurious_mode
 
   !> PL8LS with the option MEAN.
@@ -74,7 +75,7 @@ contains
       call square_of_strain(all, scene%plane_state == axisymmetric, x(:, :, e), u, whole(e), volume(e))
       if (has_mean_dilatation(group)) then
         call first_element(scene, all, group%connectivity(:, e), own)
-        hidden(e) = 3*square_of_hidden(all, scene%plane_state == axisymmetric, own, x(:, :, e), u)
+        hidden(e) = 2*square_of_hidden(all, scene%plane_state == axisymmetric, own, x(:, :, e), u)
       else
         call square_of_strain(seen, scene%plane_state == axisymmetric, x(:, :, e), u, hidden(e), unused)
         hidden(e) = whole(e) - hidden(e)
