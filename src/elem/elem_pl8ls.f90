@@ -353,10 +353,11 @@ contains
       if (group%option == mean_option) then
         call first_element(scene, rule, group%connectivity(:, e), own)
         call share_pressure(own, volume, state(1:4, :, e), m, shared)
-        volume = m
+      else
+        m = volume
       end if
       do p = 1, group%rule%n
-        dv = volume(p)
+        dv = m(p)
         stress = state(1:4, p, e)
         strain = state(first_strain:first_history - 1, p, e)
         totals%elastic_energy = totals%elastic_energy &
@@ -364,6 +365,8 @@ contains
         if (scene%finite) dv = dv*exp(-strain(1) - strain(2) - strain(4))
         totals%unloaded_volume = totals%unloaded_volume + dv
         if (k == 0) cycle
+        ! deviators work on the present volume
+        dv = dv*(volume(p)/m(p))
         totals%plastic_work = totals%plastic_work + state(k, p, e)*dv
         if (kept > 0) totals%elastic_energy = totals%elastic_energy + state(kept, p, e)*dv
         totals%least_dissipation = min(totals%least_dissipation, state(k, p, e) - before(k, p, e))
