@@ -9,11 +9,12 @@
 !> K = sum G_star^T A G_bar dv + sum G^T (s tr h - s h^T) G dv exactly, where G_star has the trace (m/dv) theta.
 !>
 !> tr h - theta is what the projection hides. Were the work of the deviators that on the volumes m (a potential, and K
-!> symmetric), s would have (m/dv) dev sigma: it would fall where hidden volume grows, and K have -(dev sigma : h)(tr h - theta)
-!> more. In a motion h = a n^T the geometric part vanishes as it stands, while that term is -(n dev sigma a)(n a): -2/3 sigma
-!> where an element stretches along a pull sigma. Nothing else resists there but hardening, in a body of revolution .44 of it,
-!> and flat elements saw: with linear fields by xi eta, of vertical sides' middle nodes, with an inner node or a constant too.
-!> As it stands K loses nothing by what is hidden, whatever the stress, in tension as in compression.
+!> symmetric), s would have (m/dv) dev sigma, which falls where hidden volume grows, and K -(dev sigma : h)(tr h - theta) more. In
+!> a motion h = a n^T the geometric part above is 0, and that term -(n dev sigma a)(n a): -2/3 sigma where an element
+!> stretches along a pull sigma. Against it stand hardening, in a body of revolution 4/9 of it, and the shear between neighbours,
+!> which is small in flat elements: they saw, middle nodes of vertical sides up and down. With an inner node 8/3 becomes 9/3,
+!> which is stable by the inf-sup condition (8/3 is not), but hides more and saws as well, and so does a constant. As F
+!> stands K loses nothing by what is hidden, whatever the stress, in tension as in compression.
 !> Source: J.C. Simo, R.L. Taylor, K.S. Pister, CMAME 51 (1985) 177-208, where Pi is general; linear fields in physical
 !> coordinates keep the order of quadratic displacements: D.N. Arnold, D. Boffi, R.S. Falk, Math. Comp. 71 (2002) 909-922;
 !> forces of the Cauchy stress of f_bar on the present elements, and the unsymmetric K: E.A. de Souza Neto, D. Peric, M. Dutko,
