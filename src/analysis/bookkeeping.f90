@@ -188,7 +188,7 @@ contains
     if (.not. solution%fields(displacement_field)%declared) return
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
-        if (.not. has_spurious_mode(group)) cycle
+        if (.not. has_spurious_mode(group, scene%finite)) cycle
         associate (u => solution%fields(displacement_field))
           call group_geometry(scene, group, equations%elems(group%elem_id), u%value, x)
           call find_spurious_mode(scene, group, x, u%last_increment, share, element)

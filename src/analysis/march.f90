@@ -22,7 +22,7 @@ module march
   use run_stop, only: stop_here, finish
   use scene, only: scene_t
   use solution, only: solution_t
-  use spurious_mode, only: spurious_limit
+  use spurious_mode, only: has_mean_dilatation, spurious_limit
   use step_solves, only: solve_fields
   use step_strategy, only: after_failure, after_success, choose_step
   use system, only: caught_signal, join_path
@@ -213,19 +213,27 @@ contains
     call refuse_after_all(scene, run%equations, solution, outcome, run%stem, error)
   end subroutine refuse_mesh
 
-  !> A note, once, when an element has moved in the spurious mode, without strain at its points.
+  !> A note, once, when an element has moved in a way that its points, or its pressure, do not see.
   subroutine report_spurious_mode(scene, solution, run)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(run_t), intent(inout) :: run
+    character(len=:), allocatable :: motion
 
     if (run%spurious_reported .or. .not. solution%worst_spurious > spurious_limit) return
     ! an element of an earlier mesh was reported there
     if (solution%spurious_element == 0) return
     run%spurious_reported = .true.
-    call list_note(run%listing, 'note: step '//to_text(solution%step)//': element '//to_text(solution%spurious_element)//' of ' &
-                   //scene%groups(solution%spurious_group)%name//' moves in the way that 4 integration points do not see ('// &
-                   to_text(100*solution%worst_spurious, 3)//' % of its strain); PL8LS with 9 points and MEAN has no such motion')
+    associate (group => scene%groups(solution%spurious_group), percent => to_text(100*solution%worst_spurious, 3)//' %')
+      motion = 'moves in the way that 4 integration points do not see ('//percent//' of its strain); ' &
+               //'PL8LS with 9 points and MEAN has no such motion'
+      if (has_mean_dilatation(group)) then
+        motion = 'changes its volume in a way that the pressure of MEAN does not see (spurious_mode '//percent//'); ' &
+                 //'compare with 4 points, or a finer mesh'
+      end if
+      call list_note(run%listing, 'note: step '//to_text(solution%step)//': element '//to_text(solution%spurious_element)//' of ' &
+                     //group%name//' '//motion)
+    end associate
   end subroutine report_spurious_mode
 
 end module march

@@ -141,8 +141,9 @@ module elem_api
     type(unknown_t), allocatable :: unknowns(:)
     !> Works on the present geometry even where kinematics are SMALL.
     logical :: follows = .false.
-    !> Its matrix is symmetric when the law's is.
+    !> Its matrix is symmetric when the law's is; not with this option in large strain (-1: with any).
     logical :: symmetric = .true.
+    integer :: unsymmetric_option = -1
     !> Effect to which its time is added (page 6).
     character(len=:), allocatable :: effect
     procedure(elem_variables_i), nopass, pointer :: variables => null()

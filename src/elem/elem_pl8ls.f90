@@ -14,7 +14,7 @@ module elem_pl8ls
   use kinds, only: wp
   use kinematics_api, only: first_history, first_strain, kinematics_t, solid_variables
   use law_api, only: driver_count, driver_temperature, law_done, law_t, solid_law
-  use mean_dilatation, only: dilatation_t, share_dilatation, share_pressure
+  use mean_dilatation, only: dilatation_t, mean_option, share_dilatation, share_pressure
   use plane_stress_points, only: update_plane_stress
   use point_temperatures, only: find_temperatures, nodal_temperatures, projected_functions, temperature_field, temperature_place
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
@@ -25,9 +25,6 @@ module elem_pl8ls
   implicit none
   private
   public :: elem_pl8ls_row
-
-  !> Place of the option MEAN in the row's list.
-  integer, parameter :: with_mean_dilatation = 1
 
 contains
 
@@ -42,7 +39,8 @@ contains
     row%law_kind = solid_law
     row%effect = 'displacement'
     allocate (row%options(1))
-    row%options(with_mean_dilatation)%s = 'MEAN'
+    row%options(mean_option)%s = 'MEAN'
+    row%unsymmetric_option = mean_option
     row%variables => variables
     row%compute => compute
     row%measure => measure
@@ -111,7 +109,7 @@ contains
           return
         end if
       end do
-      if (.not. group%option == with_mean_dilatation) cycle
+      if (.not. group%option == mean_option) cycle
       call first_element(scene, rule, group%connectivity(:, first + e - 1), own)
       call share_dilatation(kinematics%finite, own, dv(:, e), f(:, :, e), valid)
       if (.not. valid) then
@@ -164,7 +162,7 @@ contains
       real(wp), intent(out) :: f_element(:)
       real(wp), intent(inout) :: k_element(:, :)
 
-      if (group%option == with_mean_dilatation) then
+      if (group%option == mean_option) then
         call sections_of_step(scene, kinematics%finite, instant, layout, du(:, element), section)
         call first_element(scene, rule, group%connectivity(:, first + element - 1), own)
         call mean_element(kinematics%finite, wanted, rule, section, own, x(:, :, element), du(:, element), nx(:, :, element), &
@@ -352,13 +350,14 @@ contains
         if (scene%plane_state == plane_stress .and. scene%finite) volume(p) = volume(p)*state(size(state, 1), p, e)
       end do
       totals%volume = totals%volume + sum(volume)
-      if (group%option == with_mean_dilatation) then
+      if (group%option == mean_option) then
         call first_element(scene, rule, group%connectivity(:, e), own)
         call share_pressure(own, volume, state(1:4, :, e), m, shared)
-        volume = m
+      else
+        m = volume
       end if
       do p = 1, group%rule%n
-        dv = volume(p)
+        dv = m(p)
         stress = state(1:4, p, e)
         strain = state(first_strain:first_history - 1, p, e)
         totals%elastic_energy = totals%elastic_energy &
@@ -366,6 +365,8 @@ contains
         if (scene%finite) dv = dv*exp(-strain(1) - strain(2) - strain(4))
         totals%unloaded_volume = totals%unloaded_volume + dv
         if (k == 0) cycle
+        ! deviators work on the present volume
+        dv = dv*(volume(p)/m(p))
         totals%plastic_work = totals%plastic_work + state(k, p, e)*dv
         if (kept > 0) totals%elastic_energy = totals%elastic_energy + state(kept, p, e)*dv
         totals%least_dissipation = min(totals%least_dissipation, state(k, p, e) - before(k, p, e))

@@ -3,18 +3,31 @@
 !>
 !> The volume ratio J = dv/dv0 of the points, dv0 on the first geometry of the mesh, is projected on fields linear in the
 !> first place of the points, in the mean over the element: Jm = Pi J. In a step points see f_bar = f (jm/j)^(1/3), jm and j
-!> being the changes of Jm and J; in small strain the strain with the projected trace. The work of the element is the sum of
-!> dv0 times that of Jm sigma on h_bar. So a stress counts for the volume m = Jm dv0, and F = sum G^T s dv with
-!> s = (m/dv) dev sigma + P 1, P = Pi p: the deviators, and a linear pressure.
-!> K is the exact derivative; with d Jm/Jm = theta = Pi (J tr h)/Jm, which is tr h_bar,
-!> K = sum G_bar^T (A + sigma tr) G_bar m + sum G^T (-s h^T + P 1 tr) G dv - sum theta p theta^T m, symmetric where the law is.
+!> being the changes of Jm and J; in small strain the strain with the projected trace.
+!> Pressures work on the change of Jm, m = Jm dv0 being the volume, and deviators on that of the shape of the present
+!> elements: F = sum G^T s dv, s = dev sigma + P 1, P = Pi p. With theta = d Jm/Jm = Pi (J tr h)/Jm, which is tr h_bar,
+!> K = sum G_star^T A G_bar dv + sum G^T (s tr h - s h^T) G dv exactly, where G_star has the trace (m/dv) theta.
+!>
+!> tr h - theta is what the projection hides. Were the work of the deviators that on the volumes m (a potential, and K
+!> symmetric), s would have (m/dv) dev sigma, which falls where hidden volume grows, and K -(dev sigma : h)(tr h - theta) more. In
+!> a motion h = a n^T the geometric part above is 0, and that term -(n dev sigma a)(n a): -2/3 sigma where an element
+!> stretches along a pull sigma. Against it stand hardening, in a body of revolution 4/9 of it, and the shear between neighbours,
+!> which is small in flat elements: they saw, middle nodes of vertical sides up and down. With an inner node 8/3 becomes 9/3,
+!> which is stable by the inf-sup condition (8/3 is not), but hides more and saws as well, and so does a constant. As F
+!> stands K loses nothing by what is hidden, whatever the stress, in tension as in compression.
 !> Source: J.C. Simo, R.L. Taylor, K.S. Pister, CMAME 51 (1985) 177-208, where Pi is general; linear fields in physical
-!> coordinates keep the order of quadratic displacements: D.N. Arnold, D. Boffi, R.S. Falk, Math. Comp. 71 (2002) 909-922.
+!> coordinates keep the order of quadratic displacements: D.N. Arnold, D. Boffi, R.S. Falk, Math. Comp. 71 (2002) 909-922;
+!> forces of the Cauchy stress of f_bar on the present elements, and the unsymmetric K: E.A. de Souza Neto, D. Peric, M. Dutko,
+!> D.R.J. Owen, Int. J. Solids Struct. 33 (1996) 3277-3296; that mixed elements stable by the inf-sup condition may be unstable
+!> in tension: F. Auricchio, L. Beirao da Veiga, C. Lovadina, A. Reali, CMAME 199 (2010) 314-323.
 module mean_dilatation
   use kinds, only: wp
   implicit none
   private
-  public :: dilatation_t, find_fields, share_dilatation, share_pressure, add_mean_matrix
+  public :: dilatation_t, mean_option, find_fields, hidden_change, share_dilatation, share_pressure, add_mean_matrix
+
+  !> Place of the option MEAN among those of PL8LS.
+  integer, parameter :: mean_option = 1
 
   !> Fields of the dilatation in an element.
   integer, parameter :: nfield = 3, max_points = 9
@@ -65,6 +78,17 @@ contains
     end do
   end function projected
 
+  !> tr h - theta: what of a change of volume, given at the points, the projection hides.
+  pure function hidden_change(own, dv, change) result(hidden)
+    type(dilatation_t), intent(in) :: own
+    real(wp), intent(in) :: dv(:), change(:)     !! present volumes, tr h (npoint)
+    real(wp) :: hidden(size(dv))
+
+    associate (first_dv => own%dv(:own%npoint))
+      hidden = change - projected(own, change*dv/first_dv)/projected(own, dv/first_dv)
+    end associate
+  end function hidden_change
+
   !> Give the points of an element the projected change of volume of the step. It is not `valid` when a volume vanishes.
   pure subroutine share_dilatation(finite, own, dv, f, valid)
     logical, intent(in) :: finite
@@ -91,7 +115,7 @@ contains
     end if
   end subroutine share_dilatation
 
-  !> Volumes for which the stresses of the points count, and the stress s that makes the forces with the volumes dv.
+  !> Volumes m for which the pressures of the points count, and the stress s that makes the forces with the volumes dv.
   pure subroutine share_pressure(own, dv, stress, m, shared)
     type(dilatation_t), intent(in) :: own
     real(wp), intent(in) :: dv(:)           !! (npoint) [volume]
@@ -99,32 +123,27 @@ contains
     real(wp), intent(out) :: m(:)           !! (npoint) [volume]
     real(wp), intent(out) :: shared(:, :)   !! (4, npoint) [stress]
     real(wp) :: pressure(size(dv)), field(size(dv))
-    integer :: p
 
     associate (first_dv => own%dv(:own%npoint))
       m = projected(own, dv/first_dv)*first_dv
     end associate
     pressure = matmul(trace_s, stress)/3
     field = projected(own, pressure)
-    do p = 1, size(dv)
-      shared(:, p) = (m(p)/dv(p))*(stress(:, p) - pressure(p)*trace_s) + field(p)*trace_s
-    end do
+    shared = stress + spread(trace_s, 2, size(dv))*spread(field - pressure, 1, 4)
   end subroutine share_pressure
 
   !> K of the element. `g` takes the local unknowns to h at each point.
-  pure subroutine add_mean_matrix(finite, own, g, dv, m, stress, shared, tangent, geometric, stiffness)
+  pure subroutine add_mean_matrix(finite, own, g, dv, m, tangent, geometric, stiffness)
     logical, intent(in) :: finite
     type(dilatation_t), intent(in) :: own
     real(wp), intent(in) :: g(:, :, :)           !! (5, ndof, npoint) [1/length]
     real(wp), intent(in) :: dv(:), m(:)          !! (npoint) [volume]
-    real(wp), intent(in) :: stress(:, :)         !! (4, npoint) of the law [stress]
-    real(wp), intent(in) :: shared(:, :)         !! (4, npoint) that of the forces [stress]
     real(wp), intent(in) :: tangent(:, :, :)     !! (4, 5, npoint) d stress/d h_bar [stress]
     real(wp), intent(in) :: geometric(:, :, :)   !! (5, 5, npoint) s tr h - s h^T as a matrix on h [stress]
     real(wp), intent(inout) :: stiffness(:, :)   !! (ndof, ndof) [force/length]
     real(wp), dimension(size(g, 2), size(dv)) :: t, theta
-    real(wp), dimension(size(g, 2)) :: more, row, column
-    real(wp) :: gt(size(g, 2), 5), a(5, 5), q(5), pressure, both
+    real(wp), dimension(size(g, 2)) :: bar, star, row, column
+    real(wp) :: gt(size(g, 2), 5), a(5, 5), q(5), both
     integer :: p, j, k, n
 
     n = size(dv)
@@ -137,37 +156,20 @@ contains
     end do
     do p = 1, n
       gt = transpose(g(:, :, p))
-      a = tangent([1, 3, 3, 2, 4], :, p)
-      if (finite) call add_trace(stress(:, p), a)
-      a = m(p)*a
-      ! G_bar = G + 1 more^T: what the second part adds to G^T a G
-      more = (theta(:, p) - t(:, p))/3
+      a = tangent([1, 3, 3, 2, 4], :, p)*dv(p)
+      ! G_bar = G + 1 bar^T, G_star = G + 1 star^T: what the second parts add to G^T a G
+      bar = (theta(:, p) - t(:, p))/3
+      star = (theta(:, p)*(m(p)/dv(p)) - t(:, p))/3
       row = matmul(gt, matmul(trace_h, a))
       column = matmul(gt, matmul(a, trace_h))
       both = dot_product(trace_h, matmul(a, trace_h))
-      pressure = 0
-      if (finite) then
-        pressure = m(p)*dot_product(trace_s, stress(:, p))/3
-        a = a + dv(p)*geometric(:, :, p)
-        call add_trace(dv(p)*(dot_product(trace_s, shared(:, p))/3*trace_s - shared(:, p)), a)
-      end if
+      if (finite) a = a + dv(p)*geometric(:, :, p)
       do j = 1, size(gt, 1)
         q = matmul(a, g(:, j, p))
         stiffness(:, j) = stiffness(:, j) + q(1)*gt(:, 1) + q(2)*gt(:, 2) + q(3)*gt(:, 3) + q(4)*gt(:, 4) + q(5)*gt(:, 5) &
-                          + (row(j) + both*more(j))*more + more(j)*column - pressure*theta(j, p)*theta(:, p)
+                          + (row(j) + both*bar(j))*star + bar(j)*column
       end do
     end do
   end subroutine add_mean_matrix
-
-  !> Add stress (xx, yy, xy, zz) times tr h to a matrix on h.
-  pure subroutine add_trace(stress, a)
-    real(wp), intent(in) :: stress(4)
-    real(wp), intent(inout) :: a(5, 5)
-    integer :: k
-
-    do k = 1, 5
-      a(:, k) = a(:, k) + stress([1, 3, 3, 2, 4])*trace_h(k)
-    end do
-  end subroutine add_trace
 
 end module mean_dilatation

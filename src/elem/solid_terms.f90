@@ -73,7 +73,7 @@ contains
     end do
     if (.not. wanted) return
     stiffness = 0
-    call add_mean_matrix(finite, own, g(:, :n, :), dv, m, stress, shared, tangent, geometry, stiffness)
+    call add_mean_matrix(finite, own, g(:, :n, :), dv, m, tangent, geometry, stiffness)
     if (n < 19 .or. .not. finite) return
     do p = 1, size(dv)
       call add_tilt(shared(4, p)*dv(p)*g(5, 17, p)*rule%phi(:, p), stiffness)

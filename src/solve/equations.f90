@@ -227,6 +227,7 @@ contains
       associate (row => equations%elems(scene%groups(g)%elem_id), m => scene%groups(g)%material)
         if (.not. equations%solves(s)%active(g)) cycle
         symmetric = symmetric .and. (row%symmetric .or. .not. (row%follows .or. scene%finite))
+        symmetric = symmetric .and. .not. (scene%finite .and. scene%groups(g)%option == row%unsymmetric_option)
         if (m == 0) cycle
         associate (law => equations%laws(scene%materials(m)%law_id))
           symmetric = symmetric .and. law%symmetric &

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The motion that 2 x 2 points do not see: reported where an element is lightly held, and nowhere else.
+"""Motions that the points of an element do not see, or with MEAN their pressure: reported where one is large, and nowhere else.
 
 usage: run_spurious.py [-v] [-k]       -v prints every check, -k keeps the results
 """
