@@ -81,7 +81,8 @@ contains
   !> tr h - theta: what of a change of volume, given at the points, the projection hides.
   pure function hidden_change(own, dv, change) result(hidden)
     type(dilatation_t), intent(in) :: own
-    real(wp), intent(in) :: dv(:), change(:)     !! present volumes, tr h (npoint)
+    real(wp), intent(in) :: dv(:)                !! (npoint) present volumes [volume]
+    real(wp), intent(in) :: change(:)            !! (npoint) tr h [-]
     real(wp) :: hidden(size(dv))
 
     associate (first_dv => own%dv(:own%npoint))

@@ -19,7 +19,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "patch"))
 from patch_support import SOURCE, Checks, Run, np  # noqa: E402
 
-# The last is half of what the listing tells of.
+# The last is half of what the listing reports.
 BOUND = {"saw": 0.1, "force": 0.01, "unseen": 0.45}
 # Meshes of the bar, and what the code before answered.
 NECKS = {(6, 18): (0.703, 0.061, 0.732), (8, 24): (0.638, 0.057, 0.861), (12, 36): (0.795, 0.089, 1.0), (4, 36): (14.090, 0.080, 1.0)}
