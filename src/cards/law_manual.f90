@@ -49,7 +49,11 @@ contains
     call add_text(lines, law%name//' ('//to_text(law%number)//'): '//law%purpose)
     call add_text(lines, 'source: '//law%source)
     call add_text(lines, 'for: '//users(law))
-    call add_text(lines, 'tangent: '//trim(merge('symmetric  ', 'unsymmetric', law%symmetric)))
+    if (law%symmetric .and. .not. law%symmetric_by_temperature) then
+      call add_text(lines, 'tangent: symmetric, but not at several temperatures')
+    else
+      call add_text(lines, 'tangent: '//trim(merge('symmetric  ', 'unsymmetric', law%symmetric)))
+    end if
     call add_text(lines, '')
     call add_text(lines, 'LAW name '//law%name)
     do i = 1, size(law%lines)
@@ -58,8 +62,11 @@ contains
         call add_text(lines, parameter_line(law%lines(i)%parameters(k)))
       end do
     end do
-    if (law%kind /= contact_law) &
+    if (any_rises(law)) then
+      call add_text(lines, '  all rows again for each temperature, after a row TEMP value: two at least')
+    else if (law%kind /= contact_law) then
       call add_text(lines, '  all rows again for each temperature, after a row TEMP value; or once, without')
+    end if
     if (allocated(law%drivers)) then
       do i = 1, size(law%drivers)
         call add_text(lines, 'driven by '//law%drivers(i)%name//only_with(law, law%drivers(i)%needs))
@@ -74,6 +81,18 @@ contains
                //only_with(law, law%history(i)%needs))
     end do
   end subroutine law_card
+
+  !> Some number of the card grows from temperature to temperature.
+  pure function any_rises(law) result(yes)
+    type(law_t), intent(in) :: law
+    logical :: yes
+    integer :: i
+
+    yes = .false.
+    do i = 1, size(law%lines)
+      yes = yes .or. any(law%lines(i)%parameters%rises)
+    end do
+  end function any_rises
 
   !> The number of the card without which a part of the history is not there.
   pure function only_with(law, place) result(s)

@@ -169,10 +169,33 @@ contains
       if (scene%groups(g)%multiplier > 0) s = ', '//to_text(scene%groups(g)%amplitude)//' x ' &
                                               //scene%multipliers(scene%groups(g)%multiplier)%name
       if (scene%groups(g)%elem == 'CENTR') s = s//'^2'
+      if (any(scene%groups(g)%elem == [character(len=5) :: 'FLUX', 'CONVE', 'RADIA', 'HEATS'])) s = exchange_of(scene%groups(g))
       if (scene%groups(g)%temperature_multiplier > 0) &
         s = s//', temperature '//to_text(scene%groups(g)%temperature_amplitude)//' x ' &
             //scene%multipliers(scene%groups(g)%temperature_multiplier)%name
     end function driven_by
+
+    !> Heat that passes sides or comes from a volume, in numbers.
+    pure function exchange_of(group) result(s)
+      type(group_t), intent(in) :: group
+      character(len=:), allocatable :: s
+
+      associate (exchange => group%exchange)
+        s = ', '//to_text(exchange%amplitude)//times(exchange%multiplier)
+        if (allocated(exchange%table)) s = s//' by temperature'
+        if (group%elem == 'FLUX' .or. group%elem == 'HEATS') return
+        s = s//', surroundings '//to_text(exchange%surroundings)//times(exchange%surroundings_multiplier)
+        if (group%elem == 'RADIA') s = s//', absolute zero '//to_text(-exchange%zero)
+      end associate
+    end function exchange_of
+
+    pure function times(multiplier) result(s)
+      integer, intent(in) :: multiplier
+      character(len=:), allocatable :: s
+
+      s = ''
+      if (multiplier > 0) s = ' x '//scene%multipliers(multiplier)%name
+    end function times
 
     !> Kind of an integration rule along a side, where it is not Gauss's.
     pure function rule_of(rule) result(s)

@@ -63,7 +63,7 @@ contains
     allocate (row%unknowns, source=[that_reads('temperature'), that_reads('displacement')])
     row%unknowns(1)%acts = .true.
     row%follows = .true.
-    row%effect = 'heat exchange'
+    row%effect = 'heat'
     allocate (row%options(0))
     row%variables => variables
   end function common_row

@@ -32,7 +32,7 @@ contains
     row%role = role_volume_load
     allocate (row%unknowns, source=[that_reads('temperature'), that_reads('displacement')])
     row%unknowns(temperature)%acts = .true.
-    row%effect = 'heat exchange'
+    row%effect = 'heat'
     allocate (row%options(0))
     row%variables => variables
     row%compute => compute

@@ -247,8 +247,8 @@ contains
       now(driver_temperature, :npoint) = matmul(start + change, own%phi(:n, :npoint))
     end if
     call law%store(material, before(:, :m), now(:, :m), taken(:m), capacity(:m))
-    taken = taken/instant%dt
-    capacity = capacity/instant%dt
+    taken(:m) = taken(:m)/instant%dt
+    capacity(:m) = capacity(:m)/instant%dt
     if (lumped) then
       do j = 1, n
         volume = dot_product(own%phi(j, :npoint), place%dv0(:npoint))
