@@ -14,8 +14,8 @@ module hardening
   abstract interface
     !> Yield stress and its slope at an equivalent plastic strain.
     pure subroutine yield_i(a, curve, p, sy, slope)
-      import :: wp
-      real(wp), intent(in) :: a(:)          !! (most_numbers) of the form [unit of each number]
+      import :: most_numbers, wp
+      real(wp), intent(in) :: a(most_numbers)   !! (most_numbers) of the form [unit of each number]
       real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
       real(wp), intent(in) :: p             !! equivalent plastic strain [-]
       real(wp), intent(out) :: sy, slope    !! [stress], d(sy)/dp [stress]
@@ -26,7 +26,7 @@ contains
 
   !> Yield a(1), modulus a(2).
   pure subroutine yield_linear(a, curve, p, sy, slope)
-    real(wp), intent(in) :: a(:)          !! (most_numbers) [unit of each number]
+    real(wp), intent(in) :: a(most_numbers)   !! (most_numbers) [unit of each number]
     real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
     real(wp), intent(in) :: p             !! [-]
     real(wp), intent(out) :: sy, slope    !! [stress]
@@ -37,7 +37,7 @@ contains
 
   !> E. Voce (1948): yield a(1), rise a(2) at the rate a(3), modulus a(4) that remains.
   pure subroutine yield_voce(a, curve, p, sy, slope)
-    real(wp), intent(in) :: a(:)          !! (most_numbers) [unit of each number]
+    real(wp), intent(in) :: a(most_numbers)   !! (most_numbers) [unit of each number]
     real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
     real(wp), intent(in) :: p             !! [-]
     real(wp), intent(out) :: sy, slope    !! [stress]
@@ -48,7 +48,7 @@ contains
 
   !> H.W. Swift (1952): a(1) (a(2) + p)**a(3).
   pure subroutine yield_swift(a, curve, p, sy, slope)
-    real(wp), intent(in) :: a(:)          !! (most_numbers) [unit of each number]
+    real(wp), intent(in) :: a(most_numbers)   !! (most_numbers) [unit of each number]
     real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
     real(wp), intent(in) :: p             !! [-]
     real(wp), intent(out) :: sy, slope    !! [stress]
@@ -59,7 +59,7 @@ contains
 
   !> Linear between the points of the curve, and constant after the last one.
   pure subroutine yield_table(a, curve, p, sy, slope)
-    real(wp), intent(in) :: a(:)          !! (most_numbers) [unit of each number]
+    real(wp), intent(in) :: a(most_numbers)   !! (most_numbers) [unit of each number]
     real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
     real(wp), intent(in) :: p             !! [-]
     real(wp), intent(out) :: sy, slope    !! [stress]
@@ -80,7 +80,7 @@ contains
 
   !> Norton-Hoff: a(1) p**a(2) exp(-a(3) p). The slope is needed above p = 0 only.
   pure subroutine yield_norton(a, curve, p, sy, slope)
-    real(wp), intent(in) :: a(:)          !! (most_numbers) [unit of each number]
+    real(wp), intent(in) :: a(most_numbers)   !! (most_numbers) [unit of each number]
     real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
     real(wp), intent(in) :: p             !! [-]
     real(wp), intent(out) :: sy, slope    !! [stress]
@@ -92,7 +92,7 @@ contains
 
   !> G'Sell-Jonas: a(1) (1 - exp(-a(2) p)) exp(a(3) p**2). The slope is needed above p = 0 only.
   pure subroutine yield_gsell(a, curve, p, sy, slope)
-    real(wp), intent(in) :: a(:)          !! (most_numbers) [unit of each number]
+    real(wp), intent(in) :: a(most_numbers)   !! (most_numbers) [unit of each number]
     real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
     real(wp), intent(in) :: p             !! [-]
     real(wp), intent(out) :: sy, slope    !! [stress]
@@ -108,7 +108,7 @@ contains
   !> A form between two sets of numbers: (1 - share) of the first, share of the second.
   pure subroutine yield_between(yield, a, b, share, curve_a, curve_b, p, sy, slope)
     procedure(yield_i) :: yield
-    real(wp), intent(in) :: a(:), b(:)                     !! (most_numbers) [unit of each number]
+    real(wp), intent(in) :: a(most_numbers), b(most_numbers)
     real(wp), intent(in) :: share                          !! [-]
     real(wp), intent(in) :: curve_a(:, :), curve_b(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
     real(wp), intent(in) :: p                              !! [-]

@@ -5,6 +5,7 @@
 module law_steel5
   use elastic_numbers, only: elastic_of_card, elastic_parameters, place_poisson, place_young
   use elasticity, only: moduli
+  use hardening, only: most_numbers
   use kinds, only: wp
   use law_api, only: law_line, law_t, parameter
   use materials, only: material_t
@@ -90,7 +91,7 @@ contains
   end function flow_of
 
   pure subroutine two_saturations(a, curve, p, sy, slope)
-    real(wp), intent(in) :: a(:), curve(:, :), p
+    real(wp), intent(in) :: a(most_numbers), curve(:, :), p
     real(wp), intent(out) :: sy, slope
 
     sy = a(1) + a(2)*(1 - exp(-a(3)*p)) + a(4)*(1 - exp(-a(5)*p))
