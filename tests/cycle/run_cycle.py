@@ -267,6 +267,15 @@ exec "$REALSOLVER" "$@"
 """
 
 
+def has_ended(number):
+    """A process is gone, or is one that has ended and of which only the exit code is left."""
+    try:
+        with open(f"/proc/{number}/stat", encoding="utf-8") as file:
+            return file.read().rpartition(")")[2].split()[0] in "ZX"
+    except OSError:
+        return True
+
+
 def foreign_processes(checks, deck, whole):
     """What a killed lagacycle has left at work is waited for, for it has inherited the lock; a run by hand is refused meanwhile. A
     process that has a number from the lock's file is not touched."""
@@ -286,7 +295,7 @@ def foreign_processes(checks, deck, whole):
     result = cycle(deck, out)
     checks.that(result.returncode == DONE and "waiting for the end of what an earlier lagacycle has started" in result.stdout,
                 "a program left at work: waited for", said(result))
-    checks.that(left and not os.path.exists(f"/proc/{left[0]}"), "a program left at work: has ended by itself", left)
+    checks.that(left and has_ended(left[0]), "a program left at work: has ended by itself", left)
     checks.that(not differences(whole, out), "a program left at work: as in one go", differences(whole, out)[:5])
     with subprocess.Popen([sys.executable, "-c", "import time; time.sleep(100)", "lagacycle", "case"]) as other:
         with open(f"/proc/{other.pid}/stat", encoding="utf-8") as file:
