@@ -5,7 +5,7 @@ module summary
   use equations, only: equations_t
   use errors, only: error_t
   use hash, only: sha256
-  use heat_books, only: has_heat, heat_imbalance
+  use heat_books, only: has_heat, heat_does_work, heat_imbalance
   use history, only: circumference
   use json_writer, only: json_t
   use kinds, only: i8, wp
@@ -88,7 +88,7 @@ contains
     call json%add('max_penetration_sampled_over_allowed', solution%worst_sample_ratio)
     call json%add('worst_linear_residual', solution%worst_linear_residual)
     call json%add('least_dissipation', solution%least_dissipation)
-    call json%add('energy_imbalance', energy_imbalance(solution, totals))
+    if (.not. heat_does_work(scene, equations%laws)) call json%add('energy_imbalance', energy_imbalance(solution, totals))
     if (has_heat(scene)) call json%add('heat_imbalance', heat_imbalance(solution))
     call json%add('spurious_mode', solution%worst_spurious)
     call json%end_object()
@@ -257,8 +257,7 @@ contains
              //' steps, '//to_text(solution%iterations)//' iterations, '//to_text(solution%cutbacks)//' cutbacks')
     call put('  volume drift '//to_text(100*(totals%volume/solution%initial_volume - 1), 3)//' % (without elastic strain ' &
              //to_text(100*(totals%unloaded_volume/solution%initial_volume - 1), 3)//' %), energy imbalance ' &
-             //to_text(100*energy_imbalance(solution, totals), 3)//' %, worst linear residual ' &
-             //to_text(solution%worst_linear_residual, 2))
+             //energy_in_words()//', worst linear residual '//to_text(solution%worst_linear_residual, 2))
     if (has_heat(scene)) &
       call put('  heat taken up '//to_text(circumference(scene)*solution%heat_stored, 4)//', come in ' &
                //to_text(circumference(scene)*solution%heat_in, 4)//', released ' &
@@ -287,6 +286,14 @@ contains
     call put('')
 
   contains
+
+    !> The imbalance in percent, or that there is none to judge.
+    function energy_in_words() result(words)
+      character(len=:), allocatable :: words
+
+      words = to_text(100*energy_imbalance(solution, totals), 3)//' %'
+      if (heat_does_work(scene, equations%laws)) words = 'not judged, since heat does work'
+    end function energy_in_words
 
     subroutine put(line)
       character(len=*), intent(in) :: line

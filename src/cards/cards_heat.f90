@@ -8,7 +8,7 @@ module cards_heat
   use field_places, only: refuse_without_field
   use fields, only: find_field
   use kinds, only: wp
-  use loads, only: exchange_t
+  use loads, only: by_convection, by_flux, by_radiation, exchange_t
   use quadrature, only: rule_gauss, rule_t
   use scene, only: group_t, is_solid
   use scene_draft, only: close_card, draft_t, only_card, words_of
@@ -107,10 +107,13 @@ contains
 
     select case (keyword)
     case ('FLUX', 'HEATS')
+      exchange%kind = by_flux
       call words_of('Q', words)
     case ('CONVE')
+      exchange%kind = by_convection
       call words_of('H TS', words)
     case default
+      exchange%kind = by_radiation
       call words_of('EPS SIGMA ZERO TS', words)
     end select
     allocate (given(size(words)), source=.false.)

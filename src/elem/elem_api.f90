@@ -23,7 +23,7 @@ module elem_api
   public :: elem_compute_i, elem_variables_i, elem_measure_i, elem_augment_i
   public :: block_done, block_inverted, block_law_failed
   public :: acts_on, add_totals, applies, declare_fields, first_unknown, group_temperature, has_unknown, layout_of, section_motion
-  public :: of_displacement, of_pilot, of_section, that_reads, field_nodes
+  public :: of_displacement, of_pilot, of_section, that_reads, field_nodes, no_variables
   public :: mode_advance, mode_restore
   public :: most_components
 
@@ -214,6 +214,15 @@ module elem_api
   end interface
 
 contains
+
+  !> State of the points of elements that keep none.
+  pure subroutine no_variables(law, plane_state, variables)
+    type(law_t), intent(in) :: law
+    integer, intent(in) :: plane_state
+    type(state_variable_t), allocatable, intent(out) :: variables(:)   !! (0)
+
+    allocate (variables(0))
+  end subroutine no_variables
 
   !> Temperature of a body at the start and at the end of the step; 0 where the scene knows none.
   pure function group_temperature(group, instant) result(temperature)

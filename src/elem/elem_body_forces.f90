@@ -5,14 +5,13 @@
 !> scene, along x and y about the origin of a plane one. Linearised exactly: d(b dv) = (db + b tr h) dv, h of the solid
 !> elements (unsymmetric matrix where b has a direction of its own). In plane stress the thickness is that of the start.
 module elem_body_forces
-  use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
+  use elem_api, only: elem_t, instant_t, layout_t, no_variables, of_displacement, of_section, report_t, section_motion
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
   use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
   use scene, only: axisymmetric, generalised_plane_strain, group_t, role_volume_load, scene_t
   use sections, only: thickness_at
-  use state_variables, only: state_variable_t
   implicit none
   private
   public :: elem_bforc_row, elem_centr_row
@@ -46,16 +45,8 @@ contains
     row%symmetric = .false.
     row%effect = 'body force'
     allocate (row%options(0))
-    row%variables => variables
+    row%variables => no_variables
   end function common_row
-
-  pure subroutine variables(law, plane_state, list)
-    type(law_t), intent(in) :: law
-    integer, intent(in) :: plane_state
-    type(state_variable_t), allocatable, intent(out) :: list(:)
-
-    allocate (list(0))
-  end subroutine variables
 
   !> Amplitude times multiplier, along the group's direction.
   subroutine compute_force(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &

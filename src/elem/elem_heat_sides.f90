@@ -7,25 +7,21 @@
 !> (elem_api), on the side as it is at the end of the step; linearised exactly, along the displacements too. Where temperatures
 !> stand on corners all is lumped at the ends of the side, as the capacity is: no temperature leaves those around it.
 module elem_heat_sides
-  use elem_api, only: elem_t, first_unknown, instant_t, layout_t, mode_restore, report_t, that_reads
-  use elem_pl8tm, only: of_temperature
+  use elem_api, only: elem_t, first_unknown, instant_t, layout_t, mode_restore, no_variables, report_t, that_reads
   use fields, only: displacement_field
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
-  use loads, only: exchange_t, value_in_table
+  use loads, only: by_convection, by_radiation, exchange_t, value_in_table
   use quadrature, only: line_rule
   use scene, only: group_t, role_side_load, scene_t
   use sections, only: thickness_at
   use shape_functions, only: line3
-  use state_variables, only: state_variable_t
   use vectors, only: length_of
   implicit none
   private
-  public :: elem_flux_row, elem_conve_row, elem_radia_row, flow_in, by_flux
+  public :: elem_flux_row, elem_conve_row, elem_radia_row, flow_in
 
-  !> Kinds of exchange.
-  integer, parameter :: by_flux = 1, by_convection = 2, by_radiation = 3
   !> The temperature is the first of the element's unknowns.
   integer, parameter :: temperature = 1
 
@@ -35,21 +31,18 @@ contains
     type(elem_t) :: row
 
     row = common_row('FLUX', 'heat flow through a side')
-    row%compute => compute_flux
   end function elem_flux_row
 
   function elem_conve_row() result(row)
     type(elem_t) :: row
 
     row = common_row('CONVE', 'convection from a side')
-    row%compute => compute_convection
   end function elem_conve_row
 
   function elem_radia_row() result(row)
     type(elem_t) :: row
 
     row = common_row('RADIA', 'radiation from a side')
-    row%compute => compute_radiation
   end function elem_radia_row
 
   function common_row(name, purpose) result(row)
@@ -65,38 +58,13 @@ contains
     row%follows = .true.
     row%effect = 'heat'
     allocate (row%options(0))
-    row%variables => variables
+    row%variables => no_variables
+    row%compute => compute
   end function common_row
 
-  pure subroutine variables(law, plane_state, list)
-    type(law_t), intent(in) :: law
-    integer, intent(in) :: plane_state
-    type(state_variable_t), allocatable, intent(out) :: list(:)   !! (0)
-
-    allocate (list(0))
-  end subroutine variables
-
-  subroutine compute_flux(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
-                          force, stiffness, report)
-    type(scene_t), intent(in) :: scene
-    type(group_t), intent(in) :: group
-    type(kinematics_t), intent(in) :: kinematics
-    type(law_t), intent(in) :: law
-    type(instant_t), intent(in) :: instant
-    type(layout_t), intent(in) :: layout
-    integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :), drivers(:, :, :, :)
-    real(wp), intent(in), contiguous :: committed(:, :, :)
-    real(wp), intent(inout), contiguous :: trial(:, :, :)
-    real(wp), intent(out) :: force(:, :)
-    real(wp), intent(inout) :: stiffness(:, :, :)
-    type(report_t), intent(out) :: report  !! a side never fails
-
-    call exchange(by_flux, scene, group, kinematics, instant, layout, x, du, start, force, stiffness)
-  end subroutine compute_flux
-
-  subroutine compute_convection(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
-                                force, stiffness, report)
+  !> Heat flows out of the nodes of all sides of a block, and their derivatives. A side never fails.
+  subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
+                     force, stiffness, report)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(kinematics_t), intent(in) :: kinematics
@@ -110,40 +78,6 @@ contains
     real(wp), intent(out) :: force(:, :)
     real(wp), intent(inout) :: stiffness(:, :, :)
     type(report_t), intent(out) :: report
-
-    call exchange(by_convection, scene, group, kinematics, instant, layout, x, du, start, force, stiffness)
-  end subroutine compute_convection
-
-  subroutine compute_radiation(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
-                               force, stiffness, report)
-    type(scene_t), intent(in) :: scene
-    type(group_t), intent(in) :: group
-    type(kinematics_t), intent(in) :: kinematics
-    type(law_t), intent(in) :: law
-    type(instant_t), intent(in) :: instant
-    type(layout_t), intent(in) :: layout
-    integer, intent(in) :: first
-    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :), drivers(:, :, :, :)
-    real(wp), intent(in), contiguous :: committed(:, :, :)
-    real(wp), intent(inout), contiguous :: trial(:, :, :)
-    real(wp), intent(out) :: force(:, :)
-    real(wp), intent(inout) :: stiffness(:, :, :)
-    type(report_t), intent(out) :: report
-
-    call exchange(by_radiation, scene, group, kinematics, instant, layout, x, du, start, force, stiffness)
-  end subroutine compute_radiation
-
-  !> Heat flows out of the nodes of all sides of a block, and their derivatives.
-  subroutine exchange(kind, scene, group, kinematics, instant, layout, x, du, start, force, stiffness)
-    integer, intent(in) :: kind
-    type(scene_t), intent(in) :: scene
-    type(group_t), intent(in) :: group
-    type(kinematics_t), intent(in) :: kinematics
-    type(instant_t), intent(in) :: instant
-    type(layout_t), intent(in) :: layout
-    real(wp), intent(in) :: x(:, :, :), du(:, :), start(:, :)
-    real(wp), intent(out) :: force(:, :)
-    real(wp), intent(inout) :: stiffness(:, :, :)
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: y(2, 3), phi(3), dphi(3), own(3), tangent(2), length, thickness, area, darea(6), section(3), t(3), q, slope, part
     real(wp) :: share(3)
@@ -192,7 +126,7 @@ contains
     subroutine add(here, along)
       real(wp), intent(in) :: here, along(3)
 
-      call flow_in(kind, group%exchange, instant%flow%multipliers(:, k), here, q, slope)
+      call flow_in(group%exchange, instant%flow%multipliers(:, k), here, q, slope)
       part = instant%flow%weight(k)
       force(:n, e) = force(:n, e) - share(:n)*(part*q*area)
       if (.not. instant%tangent) return
@@ -213,11 +147,10 @@ contains
       vector(place) = 1
     end function unit_of
 
-  end subroutine exchange
+  end subroutine compute
 
   !> Heat that comes in per area at a temperature of the surface, and its derivative.
-  pure subroutine flow_in(kind, exchange, multipliers, t, q, slope)
-    integer, intent(in) :: kind
+  pure subroutine flow_in(exchange, multipliers, t, q, slope)
     type(exchange_t), intent(in) :: exchange
     real(wp), intent(in) :: multipliers(:)   !! (nmultiplier) at the instant [-]
     real(wp), intent(in) :: t                !! [temperature]
@@ -237,7 +170,7 @@ contains
     end if
     surroundings = exchange%surroundings
     if (exchange%surroundings_multiplier > 0) surroundings = surroundings*multipliers(exchange%surroundings_multiplier)
-    select case (kind)
+    select case (exchange%kind)
     case (by_convection)
       q = h*(surroundings - t)
       slope = dh*(surroundings - t) - h

@@ -4,8 +4,8 @@
 !> F_i = -sum_k w_k sum phi_i q(T_k) dv at the instants k of the flow rule (elem_api). Linearised exactly, along the displacements
 !> too. Where temperatures stand on corners the source is lumped there, as the capacity is.
 module elem_heat_source
-  use elem_api, only: block_inverted, elem_t, first_unknown, instant_t, layout_t, mode_restore, report_t, that_reads
-  use elem_heat_sides, only: by_flux, flow_in
+  use elem_api, only: block_inverted, elem_t, first_unknown, instant_t, layout_t, mode_restore, no_variables, report_t, that_reads
+  use elem_heat_sides, only: flow_in
   use elem_pl8tm, only: functions_of, functions_t, heat_points_t, place_element
   use fields, only: displacement_field
   use kinds, only: wp
@@ -13,7 +13,6 @@ module elem_heat_source
   use law_api, only: law_t
   use quad8_geometry, only: quad8_rule, quad8_rule_t
   use scene, only: group_t, role_volume_load, scene_t
-  use state_variables, only: state_variable_t
   implicit none
   private
   public :: elem_heats_row
@@ -34,17 +33,9 @@ contains
     row%unknowns(temperature)%acts = .true.
     row%effect = 'heat'
     allocate (row%options(0))
-    row%variables => variables
+    row%variables => no_variables
     row%compute => compute
   end function elem_heats_row
-
-  pure subroutine variables(law, plane_state, list)
-    type(law_t), intent(in) :: law
-    integer, intent(in) :: plane_state
-    type(state_variable_t), allocatable, intent(out) :: list(:)   !! (0)
-
-    allocate (list(0))
-  end subroutine variables
 
   subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                      force, stiffness, report)
@@ -109,7 +100,7 @@ contains
       real(wp) :: q, slope, weight
       integer :: i
 
-      call flow_in(by_flux, group%exchange, instant%flow%multipliers(:, k), here, q, slope)
+      call flow_in(group%exchange, instant%flow%multipliers(:, k), here, q, slope)
       weight = instant%flow%weight(k)*volume
       force(:n, e) = force(:n, e) - to(:n)*(weight*q)
       if (.not. instant%tangent) return

@@ -24,7 +24,7 @@ module elem_pl8tm
   use state_variables, only: state_variable_t
   implicit none
   private
-  public :: elem_pl8tm_row, of_temperature
+  public :: elem_pl8tm_row
   public :: functions_t, heat_points_t, functions_of, place_element
 
   !> Place of the option BILINEAR; the temperature is the first field of the element's unknowns.

@@ -4,7 +4,7 @@
 !> inner normal: F_i = integral phi_i p (-y', x') t dxi, linearised exactly (unsymmetric matrix). The
 !> thickness t of the section is the radius in an axisymmetric scene; in plane stress it is that of the start.
 module elem_pres2d
-  use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
+  use elem_api, only: elem_t, instant_t, layout_t, no_variables, of_displacement, of_section, report_t, section_motion
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
@@ -12,7 +12,6 @@ module elem_pres2d
   use scene, only: generalised_plane_strain, group_t, role_side_load, scene_t
   use sections, only: thickness_at
   use shape_functions, only: line3
-  use state_variables, only: state_variable_t
   implicit none
   private
   public :: elem_pres2d_row
@@ -30,17 +29,9 @@ contains
     row%symmetric = .false.
     row%effect = 'pressure'
     allocate (row%options(0))
-    row%variables => variables
+    row%variables => no_variables
     row%compute => compute
   end function elem_pres2d_row
-
-  pure subroutine variables(law, plane_state, list)
-    type(law_t), intent(in) :: law
-    integer, intent(in) :: plane_state
-    type(state_variable_t), allocatable, intent(out) :: list(:)
-
-    allocate (list(0))
-  end subroutine variables
 
   subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                      force, stiffness, report)

@@ -3,12 +3,11 @@
 !> Force k (c - c_start) on one component of the pilot: k is a stiffness, or one of rotation. It holds a die
 !> that is free before it touches anything, and is the compliance of a press.
 module elem_spring
-  use elem_api, only: elem_t, instant_t, layout_t, of_pilot, report_t
+  use elem_api, only: elem_t, instant_t, layout_t, no_variables, of_pilot, report_t
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
   use scene, only: group_t, role_spring, scene_t
-  use state_variables, only: state_variable_t
   implicit none
   private
   public :: elem_spring_row
@@ -25,17 +24,9 @@ contains
     allocate (row%unknowns, source=[of_pilot()])
     row%effect = 'contact'
     allocate (row%options(0))
-    row%variables => variables
+    row%variables => no_variables
     row%compute => compute
   end function elem_spring_row
-
-  pure subroutine variables(law, plane_state, list)
-    type(law_t), intent(in) :: law
-    integer, intent(in) :: plane_state
-    type(state_variable_t), allocatable, intent(out) :: list(:)
-
-    allocate (list(0))
-  end subroutine variables
 
   subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                      force, stiffness, report)

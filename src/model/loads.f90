@@ -5,6 +5,7 @@ module loads
   implicit none
   private
   public :: multiplier_t, fixation_t, die_motion_t, die_force_t, nodal_force_t, exchange_t
+  public :: by_flux, by_convection, by_radiation
   public :: multiplier_at, value_in_table
 
   !> Piecewise linear in time, constant outside its points.
@@ -53,8 +54,12 @@ module loads
     integer :: field = displacement_field
   end type nodal_force_t
 
-  !> Heat that passes a side (elem_heat_sides).
+  !> Kinds of heat exchange: a given flow, convection, radiation.
+  integer, parameter :: by_flux = 1, by_convection = 2, by_radiation = 3
+
+  !> Heat that passes a side, or comes from a volume (elem_heat_sides, elem_heat_source).
   type :: exchange_t
+    integer :: kind = by_flux
     !> Heat flow per area, coefficient of convection, or emissivity times the constant of radiation; times a multiplier, 0 for none.
     real(wp) :: amplitude = 0.0_wp
     integer :: multiplier = 0

@@ -262,6 +262,7 @@ def wait_for_holder(out, process):
 # A solver that a signal does not end: it is at work for a while after its cycle has been killed.
 STUBBORN = """#!/bin/sh
 trap '' TERM
+: >"$READY"
 sleep "$LAGS"
 exec "$REALSOLVER" "$@"
 """
@@ -282,9 +283,11 @@ def foreign_processes(checks, deck, whole):
     out = checks.path("foreign")
     script = write(checks.path("bin", "stubborn"), STUBBORN)
     os.chmod(script, 0o755)
-    process = begin(deck, out, LAGAMINE=script, REALSOLVER=LAGAMINE, LAGS="6")
+    ready = checks.path("ready")
+    process = begin(deck, out, LAGAMINE=script, REALSOLVER=LAGAMINE, LAGS="6", READY=ready)
     wait_for_holder(out, process)
-    while not (program_at_work(process) or (0, ""))[1].startswith(("stubborn", "sleep")) and process.poll() is None:
+    # before its trap is set a signal would end it
+    while not os.path.exists(ready) and process.poll() is None:
         time.sleep(0.001)
     left = program_at_work(process)
     process.kill()

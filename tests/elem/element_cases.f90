@@ -9,7 +9,7 @@ module element_cases
   use kinematics_registry, only: list_kinematics
   use law_api, only: driver_count, law_of_material, law_t
   use law_cases, only: elastic_material, law_row, material_of, plastic_material
-  use loads, only: exchange_t
+  use loads, only: by_convection, by_radiation, exchange_t
   use materials, only: material_t
   use quadrature, only: rule_of_number
   use scene, only: axisymmetric, scene_t
@@ -216,6 +216,8 @@ contains
 
     call begin_case(elem, kinematics, plane_state, npoint, x, case)
     case%scene%groups(1)%exchange = exchange
+    if (elem == 'CONVE') case%scene%groups(1)%exchange%kind = by_convection
+    if (elem == 'RADIA') case%scene%groups(1)%exchange%kind = by_radiation
     allocate (case%committed(0, npoint, 1))
     call add_temperature(case, at_corners)
   end function heat_side_case

@@ -12,8 +12,9 @@ from .tables import number
 from .words import brief
 
 # Above these the page warns: shares of the work, of the volume and of what all remeshings change of it, what a sound linear
-# solution leaves, and the share of an element's strain that its points do not see.
+# solution leaves, the share of an element's strain that its points do not see, and what the books of heat lack of the heat that passed.
 ENERGY_IMBALANCE, VOLUME_DRIFT, VOLUME_BY_MESHES, LINEAR_RESIDUAL, SPURIOUS_MODE = 0.02, 0.01, 0.001, 1e-10, 0.9
+HEAT_IMBALANCE = 1e-6
 # Depths in summary.json, the share of the allowed beside them, and how far above 1 that is reported as too large, as in the listing.
 PENETRATIONS = {"max_penetration": "at points of contact", "max_penetration_sampled": "between points of contact too"}
 OVER_ALLOWED, RATIO_SLACK = "_over_allowed", 1e-6
@@ -54,6 +55,7 @@ def checks(run: Run) -> List[Check]:
 
     result += penetration_checks(run, values)
     within("energy_imbalance", "energy imbalance", ENERGY_IMBALANCE, percent, "take smaller steps (STRAT) and compare")
+    within("heat_imbalance", "heat imbalance", HEAT_IMBALANCE, percent, "solve steps more exactly (NORMS)")
     if "volume_drift_unloaded" in given:
         within("volume_drift_unloaded", "volume drift, without elastic strain", VOLUME_DRIFT, percent,
                "look for distorted elements, and for plastic laws that keep no volume")
@@ -68,13 +70,13 @@ def checks(run: Run) -> List[Check]:
     within("worst_linear_residual", "worst linear residual", LINEAR_RESIDUAL, lambda value: brief(value, 2),
            "the equations are badly scaled or nearly singular: look at the supports")
     within("spurious_mode", "strain unseen by the points of an element", SPURIOUS_MODE, percent,
-           "take PL8LS with 9 points and MEAN, which has no such motion")
+           "compare with PL8LS of 9 points and MEAN, or of 4 points, and with a finer mesh")
     if "least_dissipation" in given:
         slack = 1e-12 * max(abs(number(run.summary["energy"].get("external_work", 0))), 1e-300)
         good = values["least_dissipation"] >= -slack
         result.append(Check("least friction work of a step", brief(values["least_dissipation"], 3), "not negative", good,
                             "" if good else "friction gave energy back: report it with the deck"))
-    known = {*PENETRATIONS, *(name + OVER_ALLOWED for name in PENETRATIONS), "energy_imbalance", "volume_drift",
+    known = {*PENETRATIONS, *(name + OVER_ALLOWED for name in PENETRATIONS), "energy_imbalance", "heat_imbalance", "volume_drift",
              "volume_drift_unloaded", "worst_linear_residual", "least_dissipation", "spurious_mode"}
     for name in given:
         if name not in known:
