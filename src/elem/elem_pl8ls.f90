@@ -9,14 +9,14 @@
 !> in plane stress h_zz is condensed out of M by the row of sigma_zz = 0. With the option MEAN the
 !> points share few values of the change of volume (mean_dilatation).
 module elem_pl8ls
-  use elem_api, only: block_inverted, block_law_failed, elem_t, instant_t, layout_t, of_displacement, of_section, report_t, &
-                      section_motion, that_reads, totals_t
+  use elem_api, only: block_inverted, block_law_failed, elem_t, group_temperature, instant_t, layout_t, of_displacement, &
+                      of_section, report_t, section_motion, that_reads, totals_t
   use kinds, only: wp
   use kinematics_api, only: first_history, first_strain, kinematics_t, solid_variables
   use law_api, only: driver_count, driver_temperature, law_done, law_t, solid_law
   use mean_dilatation, only: dilatation_t, mean_option, share_dilatation, share_pressure
   use plane_stress_points, only: update_plane_stress
-  use point_temperatures, only: find_temperatures, nodal_temperatures, projected_functions, temperature_field, temperature_place
+  use point_temperatures, only: nodal_temperatures, point_temperatures_of, projected_functions, temperature_field, temperature_place
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
   use scene, only: generalised_plane_strain, group_t, plane_stress, role_body, scene_t
   use sections, only: thickness_at
@@ -89,7 +89,7 @@ contains
     integer :: status(group%rule%n, size(x, 3))
     real(wp) :: strain
     logical :: valid
-    integer :: e, p, n, nb, nstate
+    integer :: e, p, n, nb, nstate, k
 
     nb = size(x, 3)
     n = size(du, 1)
@@ -120,13 +120,18 @@ contains
       end if
     end do
 
-    functions = 0
-    if (temperature_place(layout) > 0) functions = projected_functions(rule)
-    do e = 1, nb
-      p = (e - 1)*group%rule%n
-      call find_temperatures(group, instant, layout, functions, du(:, e), start(:, e), &
-                             given(driver_temperature, :, p + 1:p + group%rule%n))
-      if (size(given, 1) > 1) given(2:, :, p + 1:p + group%rule%n) = drivers(2:, :, :, e)
+    if (temperature_place(layout) > 0) then
+      functions = projected_functions(rule)
+      do e = 1, nb
+        p = (e - 1)*group%rule%n
+        call point_temperatures_of(layout, functions, du(:, e), start(:, e), &
+                                   given(driver_temperature, :, p + 1:p + group%rule%n))
+      end do
+    else
+      given(driver_temperature, :, :) = spread(group_temperature(group, instant), 2, group%rule%n*nb)
+    end if
+    do k = 2, size(given, 1)
+      given(k, :, :) = reshape(drivers(k, :, :, :), [2, group%rule%n*nb])
     end do
     if (scene%plane_state == plane_stress) then
       call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, given, &
@@ -158,7 +163,8 @@ contains
     subroutine forces_of(element, wanted, stress, volume, f_element, k_element)
       integer, intent(in) :: element
       logical, intent(in) :: wanted
-      real(wp), intent(in) :: stress(:, :), volume(:)
+      real(wp), intent(in) :: stress(:, :)
+      real(wp), intent(in), contiguous :: volume(:)
       real(wp), intent(out) :: f_element(:)
       real(wp), intent(inout) :: k_element(:, :)
 
@@ -283,7 +289,8 @@ contains
 
   !> F_i = sum B_i^T sigma dv.
   pure subroutine internal_force(nx, ny, zx, dv, stress, force)
-    real(wp), intent(in) :: nx(:, :), ny(:, :), zx(:, :), dv(:), stress(:, :)
+    real(wp), intent(in), contiguous :: dv(:)
+    real(wp), intent(in) :: nx(8, size(dv)), ny(8, size(dv)), zx(8, size(dv)), stress(:, :)
     real(wp), intent(out) :: force(16)
     real(wp) :: s(4)
     integer :: p
@@ -299,7 +306,8 @@ contains
   !> K = sum G^T M G dv without the section. Rows of M: the factors of nx (in Fx), ny (Fx), nx (Fy), ny (Fy), zx (Fx).
   pure subroutine tangent_matrix(condense, finite, nx, ny, zx, dv, stress, tangent, stiffness)
     logical, intent(in) :: condense, finite
-    real(wp), intent(in) :: nx(:, :), ny(:, :), zx(:, :), dv(:), stress(:, :), tangent(:, :, :)
+    real(wp), intent(in), contiguous :: dv(:)
+    real(wp), intent(in) :: nx(8, size(dv)), ny(8, size(dv)), zx(8, size(dv)), stress(:, :), tangent(4, 5, size(dv))
     real(wp), intent(out) :: stiffness(16, 16)
     real(wp) :: m(5, 5), qx(5), qy(5)
     integer :: p, j

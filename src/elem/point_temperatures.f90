@@ -6,14 +6,13 @@
 !> values at 2 x 2 Gauss points, where the part of second degree (Legendre's) vanishes. Source: J. Barlow, Int. J. Num. Meth.
 !> Engng 10 (1976) 243-251.
 module point_temperatures
-  use elem_api, only: group_temperature, instant_t, layout_t
+  use elem_api, only: layout_t
   use kinds, only: wp
   use quad8_geometry, only: quad8_rule, quad8_rule_t
   use quadrature, only: square_rule
-  use scene, only: group_t
   implicit none
   private
-  public :: find_temperatures, nodal_temperatures, projected_functions, temperature_field, temperature_place
+  public :: nodal_temperatures, point_temperatures_of, projected_functions, temperature_field, temperature_place
 
   !> Name of the field.
   character(len=*), parameter :: temperature_field = 'temperature'
@@ -64,10 +63,8 @@ contains
     end do
   end function projected_functions
 
-  !> Temperatures at the start and at the end of the step at the points of one element.
-  pure subroutine find_temperatures(group, instant, layout, phi, du, start, temperature)
-    type(group_t), intent(in) :: group
-    type(instant_t), intent(in) :: instant
+  !> Temperatures at the start and at the end of the step at the points of one element that has them among its unknowns.
+  pure subroutine point_temperatures_of(layout, phi, du, start, temperature)
     type(layout_t), intent(in) :: layout
     real(wp), intent(in) :: phi(:, :)            !! (8, npoint) shape functions [-]
     real(wp), intent(in) :: du(:)                !! (ndof) motion of the local unknowns [unknown]
@@ -76,14 +73,10 @@ contains
     integer :: u, first, last
 
     u = temperature_place(layout)
-    if (u == 0) then
-      temperature = spread(group_temperature(group, instant), 2, size(temperature, 2))
-    else
-      first = layout%first(1, u)
-      last = first + layout%count(u) - 1
-      temperature(1, :) = matmul(nodal_temperatures(start(first:last)), phi(:, :size(temperature, 2)))
-      temperature(2, :) = matmul(nodal_temperatures(start(first:last) + du(first:last)), phi(:, :size(temperature, 2)))
-    end if
-  end subroutine find_temperatures
+    first = layout%first(1, u)
+    last = first + layout%count(u) - 1
+    temperature(1, :) = matmul(nodal_temperatures(start(first:last)), phi(:, :size(temperature, 2)))
+    temperature(2, :) = matmul(nodal_temperatures(start(first:last) + du(first:last)), phi(:, :size(temperature, 2)))
+  end subroutine point_temperatures_of
 
 end module point_temperatures
