@@ -82,6 +82,11 @@ module elem_api
     type(pairs_t), allocatable :: pairs(:)
     !> Section at the start of the step (sections).
     real(wp) :: section(3) = 0.0_wp
+    !> Newton's iteration: the motion is a prediction; or a correction brought it about, which began at these displacements in the
+    !> step (2, nnode) and this motion of the section. Otherwise it has converged, or nothing is known of it.
+    logical :: predicted = .false.
+    real(wp), allocatable :: corrected_from(:, :)
+    real(wp) :: section_from(3) = 0.0_wp
     !> Values of all unknowns at the start of the step (ndof); not allocated where mechanics is all there is.
     real(wp), allocatable :: values(:)
     !> Multipliers at the start and at the end of the step.

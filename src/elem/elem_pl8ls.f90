@@ -13,6 +13,7 @@ module elem_pl8ls
                       of_section, report_t, section_motion, that_reads, totals_t
   use kinds, only: wp
   use kinematics_api, only: first_history, first_strain, kinematics_t, solid_variables
+  use linear_pressure, only: has_linear_pressure, replace_pressure
   use law_api, only: driver_count, driver_temperature, law_done, law_t, solid_law
   use mean_dilatation, only: dilatation_t, mean_option, share_dilatation, share_pressure
   use plane_stress_points, only: update_plane_stress
@@ -167,21 +168,36 @@ contains
       real(wp), intent(in), contiguous :: volume(:)
       real(wp), intent(out) :: f_element(:)
       real(wp), intent(inout) :: k_element(:, :)
+      real(wp) :: counted(4, group%rule%n)
+      logical :: mean
 
-      if (group%option == mean_option) then
+      mean = group%option == mean_option
+      if (mean .or. scene%plane_state == generalised_plane_strain .or. (wanted .and. has_linear_pressure(instant))) &
         call sections_of_step(scene, kinematics%finite, instant, layout, du(:, element), section)
-        call first_element(scene, rule, group%connectivity(:, first + element - 1), own)
-        call mean_element(kinematics%finite, wanted, rule, section, own, x(:, :, element), du(:, element), nx(:, :, element), &
-                          ny(:, :, element), volume, stress, tangent(:, :, :, element), f_element, k_element)
-        return
-      end if
-      call internal_force(nx(:, :, element), ny(:, :, element), zx(:, :, element), volume, stress, f_element(1:16))
-      if (wanted) call tangent_matrix(scene%plane_state == plane_stress, kinematics%finite, nx(:, :, element), ny(:, :, element), &
-                                      zx(:, :, element), volume, stress, tangent(:, :, :, element), k_element(1:16, 1:16))
-      if (scene%plane_state /= generalised_plane_strain) return
-      call sections_of_step(scene, kinematics%finite, instant, layout, du(:, element), section)
-      call add_section(kinematics%finite, wanted, rule, section, x(:, :, element), du(:, element), nx(:, :, element), &
-                       ny(:, :, element), volume, stress, tangent(:, :, :, element), f_element, k_element)
+      associate (nodes => group%connectivity(:, first + element - 1), moduli => tangent(:, :, :, element))
+        if (mean) call first_element(scene, rule, nodes, own)
+        counted = stress
+        if (wanted .and. kinematics%finite .and. scene%plane_state /= plane_stress .and. has_linear_pressure(instant)) then
+          if (mean) then
+            call replace_pressure(instant, rule, nodes, section, x(:, :, element), du(:, element), volume, &
+                                  committed(1:4, :, element), moduli, counted, own)
+          else
+            call replace_pressure(instant, rule, nodes, section, x(:, :, element), du(:, element), volume, &
+                                  committed(1:4, :, element), moduli, counted)
+          end if
+        end if
+        if (mean) then
+          call mean_element(kinematics%finite, wanted, rule, section, own, x(:, :, element), du(:, element), nx(:, :, element), &
+                            ny(:, :, element), volume, stress, counted, moduli, f_element, k_element)
+          return
+        end if
+        call internal_force(nx(:, :, element), ny(:, :, element), zx(:, :, element), volume, stress, f_element(1:16))
+        if (wanted) call tangent_matrix(scene%plane_state == plane_stress, kinematics%finite, nx(:, :, element), &
+                                        ny(:, :, element), zx(:, :, element), volume, counted, moduli, k_element(1:16, 1:16))
+        if (scene%plane_state /= generalised_plane_strain) return
+        call add_section(kinematics%finite, wanted, rule, section, x(:, :, element), du(:, element), nx(:, :, element), &
+                         ny(:, :, element), volume, stress, counted, moduli, f_element, k_element)
+      end associate
     end subroutine forces_of
 
     !> d(force)/d(temperature): the forces of d(stress dv)/d(temperature) at the points, by central differences of the whole update

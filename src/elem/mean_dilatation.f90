@@ -24,7 +24,7 @@ module mean_dilatation
   use kinds, only: wp
   implicit none
   private
-  public :: dilatation_t, mean_option, find_fields, hidden_change, share_dilatation, share_pressure, add_mean_matrix
+  public :: dilatation_t, mean_option, find_fields, hidden_change, mean_volumes, share_dilatation, share_pressure, add_mean_matrix
 
   !> Place of the option MEAN among those of PL8LS.
   integer, parameter :: mean_option = 1
@@ -116,6 +116,17 @@ contains
     end if
   end subroutine share_dilatation
 
+  !> Volumes Jm dv0 of the points.
+  pure function mean_volumes(own, dv) result(m)
+    type(dilatation_t), intent(in) :: own
+    real(wp), intent(in) :: dv(:)   !! (npoint) present volumes [volume]
+    real(wp) :: m(size(dv))
+
+    associate (first_dv => own%dv(:own%npoint))
+      m = projected(own, dv/first_dv)*first_dv
+    end associate
+  end function mean_volumes
+
   !> Volumes m for which the pressures of the points count, and the stress s that makes the forces with the volumes dv.
   pure subroutine share_pressure(own, dv, stress, m, shared)
     type(dilatation_t), intent(in) :: own
@@ -125,9 +136,7 @@ contains
     real(wp), intent(out) :: shared(:, :)   !! (4, npoint) [stress]
     real(wp) :: pressure(size(dv)), field(size(dv))
 
-    associate (first_dv => own%dv(:own%npoint))
-      m = projected(own, dv/first_dv)*first_dv
-    end associate
+    m = mean_volumes(own, dv)
     pressure = matmul(trace_s, stress)/3
     field = projected(own, pressure)
     shared = stress + spread(trace_s, 2, size(dv))*spread(field - pressure, 1, 4)

@@ -16,7 +16,7 @@ contains
   !> What the unknowns of the section add to force and matrix in generalised plane strain, and the tilt of the section
   !> (a3) to the nodal ones. With G (5, 19) complete, K = sum G^T M G dv replaces the matrix of the nodes; h_zz dt = dt
   !> being bilinear in position and tilt, sigma_zz dA d(da2) dx and d(da3) dy come on top.
-  pure subroutine add_section(finite, wanted, rule, section, x, du, nx, ny, dv, stress, tangent, force, stiffness)
+  pure subroutine add_section(finite, wanted, rule, section, x, du, nx, ny, dv, stress, counted, tangent, force, stiffness)
     logical, intent(in) :: finite, wanted
     type(quad8_rule_t), intent(in) :: rule
     real(wp), intent(in) :: section(3, 2)          !! thickness [length] and slopes [-]: of the geometry, and their motion
@@ -25,6 +25,7 @@ contains
     real(wp), intent(in) :: nx(:, :), ny(:, :)     !! (8, npoint) [1/length]
     real(wp), intent(in) :: dv(:)                  !! (npoint) [volume]
     real(wp), intent(in) :: stress(:, :)           !! (4, npoint) [stress]
+    real(wp), intent(in) :: counted(:, :)          !! (4, npoint) that of the geometric part [stress]
     real(wp), intent(in) :: tangent(:, :, :)       !! (4, 5, npoint) [stress]
     real(wp), intent(inout) :: force(19)           !! [residual]
     real(wp), intent(inout) :: stiffness(19, 19)   !! [residual/unknown]
@@ -39,15 +40,16 @@ contains
       force(17:19) = force(17:19) + stress(4, p)*dv(p)*g(5, 17:19)
       if (.not. wanted) cycle
       m = tangent([1, 3, 3, 2, 4], :, p)
-      if (finite) m = m + geometric(stress(:, p))
+      if (finite) m = m + geometric(counted(:, p))
       stiffness = stiffness + matmul(transpose(g), matmul(m*dv(p), g))
       if (.not. finite) cycle
-      call add_tilt(stress(4, p)*dv(p)*g(5, 17)*rule%phi(:, p), stiffness)
+      call add_tilt(counted(4, p)*dv(p)*g(5, 17)*rule%phi(:, p), stiffness)
     end do
   end subroutine add_section
 
   !> Forces and matrix of an element with mean dilatation.
-  pure subroutine mean_element(finite, wanted, rule, section, own, x, du, nx, ny, dv, stress, tangent, force, stiffness)
+  pure subroutine mean_element(finite, wanted, rule, section, own, x, du, nx, ny, dv, stress, counted, tangent, force, &
+                               stiffness)
     logical, intent(in) :: finite, wanted
     type(quad8_rule_t), intent(in) :: rule
     type(dilatation_t), intent(in) :: own
@@ -57,6 +59,7 @@ contains
     real(wp), intent(in) :: nx(:, :), ny(:, :)   !! (8, npoint) [1/length]
     real(wp), intent(in) :: dv(:)                !! (npoint) [volume]
     real(wp), intent(in) :: stress(:, :)         !! (4, npoint) [stress]
+    real(wp), intent(in) :: counted(:, :)        !! (4, npoint) that of the geometric part [stress]
     real(wp), intent(in) :: tangent(:, :, :)     !! (4, 5, npoint) [stress]
     real(wp), intent(out) :: force(:)            !! (ndof) [residual]
     real(wp), intent(inout) :: stiffness(:, :)   !! (ndof, ndof) [residual/unknown]
@@ -68,11 +71,14 @@ contains
     force = 0
     do p = 1, size(dv)
       g(:, :, p) = local_gradient(rule, p, section(:, 1), finite, x, du, nx(:, p), ny(:, p))
-      geometry(:, :, p) = geometric(shared(:, p))
       force = force + matmul(shared([1, 3, 3, 2, 4], p)*dv(p), g(:, :n, p))
     end do
     if (.not. wanted) return
     stiffness = 0
+    call share_pressure(own, dv, counted, m, shared)
+    do p = 1, size(dv)
+      geometry(:, :, p) = geometric(shared(:, p))
+    end do
     call add_mean_matrix(finite, own, g(:, :n, :), dv, m, tangent, geometry, stiffness)
     if (n < 19 .or. .not. finite) return
     do p = 1, size(dv)

@@ -284,6 +284,31 @@ contains
     end do
   end subroutine make_instant
 
+  !> The displacements and the motion of the section from which a correction began, where geometry follows the displacements.
+  pure subroutine note_correction(scene, dofs, motion, instant)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(in) :: dofs
+    real(wp), intent(in) :: motion(:)
+    type(instant_t), intent(inout) :: instant
+    integer :: k, c
+
+    if (.not. scene%finite) return
+    associate (number => dofs%fields(displacement_field)%number)
+      allocate (instant%corrected_from(2, size(number, 2)), source=0.0_wp)
+      do k = 1, size(number, 2)
+        do c = 1, 2
+          if (number(c, k) > 0) instant%corrected_from(c, k) = motion(number(c, k))
+        end do
+      end do
+    end associate
+    associate (number => dofs%fields(section_field)%number)
+      do c = 1, size(number, 1)
+        if (size(number, 2) == 0) exit
+        if (number(c, 1) > 0) instant%section_from(c) = motion(number(c, 1))
+      end do
+    end associate
+  end subroutine note_correction
+
   !> Instants at which heat flows in a step: the end, a share theta of it, or start and end with a weight each.
   pure function flow_rule(strategy) result(rule)
     type(strategy_t), intent(in) :: strategy
@@ -317,7 +342,7 @@ contains
 
   !> Internal force, and matrices when wanted, at the motion `du` of the step. Points that meet pieces of deformable dies
   !> beyond their pairs get new ones, and all is computed again: no contact is lost, no step cut.
-  subroutine evaluate(scene, equations, solution, dt, du, tangent, report)
+  subroutine evaluate(scene, equations, solution, dt, du, tangent, report, predicted, corrected_from)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -325,12 +350,16 @@ contains
     real(wp), intent(in) :: du(:)   !! (ndof) [unknown]
     logical, intent(in) :: tangent
     type(report_t), intent(out) :: report
+    logical, intent(in), optional :: predicted              !! the motion is a prediction
+    real(wp), intent(in), optional :: corrected_from(:)     !! (ndof) motion before the correction that led to it [unknown]
     type(instant_t) :: instant
     real(wp), allocatable :: now(:, :)
     integer :: timer
 
     call fit_to_load(equations%team)
     call make_instant(scene, equations, solution, dt, du, tangent, instant)
+    if (present(predicted)) instant%predicted = predicted
+    if (present(corrected_from)) call note_correction(scene, equations%dofs, corrected_from, instant)
     call driving_values(scene, equations, solution, du, now)
     do
       call pair_up(scene, solution%pairs, equations)

@@ -73,7 +73,7 @@ contains
     s = 0
     do k = 1, max_searches
       du = start + trial*correction + missing
-      call evaluate(scene, equations, solution, dt, du, .true., report)
+      call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
       if (report%status /= block_done) then
         trial = 0.5_wp*(near(1) + trial)
         far = 0
@@ -93,7 +93,7 @@ contains
       end if
       if (ascent .and. k == 1) then
         du = start - correction
-        call evaluate(scene, equations, solution, dt, du, .true., report)
+        call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
         if (report%status == block_done) then
           s = -1
           return
@@ -103,7 +103,7 @@ contains
     end do
     if (.not. s > 0) return
     du = start + s*correction + missing
-    call evaluate(scene, equations, solution, dt, du, .true., report)
+    call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
   end subroutine search_along
 
   !> The next share to try, after `trial` gave `slope`: `near` and `far` (share, slope) are the ends of the bracket of the zero;

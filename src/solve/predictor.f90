@@ -71,7 +71,7 @@ contains
 
       call proportion(equations%dofs, solution%fields, share, du)
       if (present(given)) du = merge(given, du, fixed)
-      call evaluate(scene, equations, solution, dt, du, .true., report)
+      call evaluate(scene, equations, solution, dt, du, .true., report, predicted=.true.)
     end subroutine start_from
 
   end subroutine predict
