@@ -1,7 +1,8 @@
 !> Acceptance of a step: the trial state becomes the state, and every check is made.
 module accept_step
-  use bookkeeping, only: book_work, book_reactions, book_deformable_dies, measure_scene, book_spurious_mode, sample_contacts
+  use bookkeeping, only: book_reactions, book_deformable_dies, measure_scene, book_spurious_mode, sample_contacts
   use elem_api, only: totals_t
+  use energy_books, only: book_stored, book_work
   use equations, only: equations_t
   use errors, only: error_t, exit_bug, fail
   use fields, only: field_t, fill_middle_nodes, has_corners_only
@@ -12,6 +13,7 @@ module accept_step
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use text, only: to_text
+  use work_books, only: work_t
   implicit none
   private
   public :: accept, accept_balance
@@ -30,6 +32,7 @@ contains
     type(solution_t), intent(inout) :: solution
     type(totals_t), intent(out) :: totals
     type(error_t), allocatable, intent(out) :: error
+    real(wp) :: friction_before
 
     call book_work(equations, outcome%du, solution)
     call book_reactions(scene, equations, solution%time + dt, solution%fields)
@@ -48,7 +51,9 @@ contains
     solution%worst_penetration = max(solution%worst_penetration, totals%max_penetration)
     solution%worst_penetration_ratio = max(solution%worst_penetration_ratio, totals%penetration_ratio)
     solution%least_dissipation = min(solution%least_dissipation, totals%least_dissipation)
+    friction_before = solution%friction_work
     solution%friction_work = totals%friction_work
+    call book_stored(scene, equations, outcome%du, totals, friction_before, solution)
     call book_spurious_mode(scene, equations, solution)
     call sample_contacts(scene, solution)
     call check(solution, totals, error)
@@ -65,12 +70,15 @@ contains
     type(totals_t), intent(out) :: totals
     type(error_t), allocatable, intent(out) :: error
     type(field_t) :: before(size(solution%fields))
-    real(wp) :: work
+    type(work_t) :: work
+    real(wp) :: external_work
     integer :: f
 
-    work = solution%external_work
+    external_work = solution%external_work
+    work = solution%work
     call book_work(equations, outcome%du, solution)
-    solution%external_work = work
+    solution%external_work = external_work
+    solution%work = work
     call book_reactions(scene, equations, solution%time, solution%fields)
     before = solution%fields
     call take_motion(equations, outcome%du, solution%fields)

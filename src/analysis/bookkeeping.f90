@@ -1,4 +1,4 @@
-!> Totals of an accepted step: work, reactions, sums over the scene, the worst values so far.
+!> Totals of an accepted step: reactions, sums over the scene, the worst values so far.
 module bookkeeping
   use contact_contour, only: sample_depth
   use contact_penalties, only: allowed_penetration
@@ -17,56 +17,12 @@ module bookkeeping
   use vectors, only: length_of
   implicit none
   private
-  public :: book_deformable_dies, book_reactions, book_spurious_mode, book_work, measure_scene, pressed_on, sample_contacts
+  public :: book_deformable_dies, book_reactions, book_spurious_mode, measure_scene, pressed_on, sample_contacts
 
   !> Action and reaction of two bodies may differ by this share of the forces at their nodes: round-off of a sum.
   real(wp), parameter :: reaction_slack = 1.0e-10_wp
 
 contains
-
-  !> External work by the trapezoidal rule: forces from outside on nodes and pilots times their motion.
-  !> The external force on an unknown is the internal force there, without the elements that are loads.
-  subroutine book_work(equations, du, solution)
-    type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: du(:)   !! (ndof) motion of the step [unknown]
-    type(solution_t), intent(inout) :: solution
-    real(wp) :: applied(equations%dofs%ndof)
-    integer :: f, g, k, c, d, m
-
-    applied = equations%force
-    do g = 1, size(equations%dofs%groups)
-      if (.not. equations%is_load(g)) cycle
-      m = equations%solves(1)%pattern%force_start(g)
-      do k = 1, size(equations%dofs%groups(g)%dof, 2)
-        do c = 1, size(equations%dofs%groups(g)%dof, 1)
-          m = m + 1
-          d = equations%dofs%groups(g)%dof(c, k)
-          applied(d) = applied(d) - equations%buffers%force(m)
-        end do
-      end do
-    end do
-    do f = 1, size(solution%fields)
-      do k = 1, size(solution%fields(f)%applied, 2)
-        do c = 1, solution%fields(f)%ncomp
-          call book(equations%dofs%fields(f)%number(c, k), solution%fields(f)%quantity == 'motion', &
-                    solution%fields(f)%applied(c, k))
-        end do
-      end do
-    end do
-
-  contains
-
-    subroutine book(dof, works, force)
-      integer, intent(in) :: dof
-      logical, intent(in) :: works   !! the product of force and motion is work
-      real(wp), intent(inout) :: force
-
-      if (dof == 0) return
-      if (works) solution%external_work = solution%external_work + 0.5_wp*(force + applied(dof))*du(dof)
-      force = applied(dof)
-    end subroutine book
-
-  end subroutine book_work
 
   !> What supports and imposed motions carry: internal force less nodal forces; pressures are in it already.
   subroutine book_reactions(scene, equations, time, fields)

@@ -3,12 +3,11 @@ module heat_books
   use equations, only: equations_t
   use fields, only: find_field
   use kinds, only: wp
-  use law_api, only: asks_for, law_t, solid_law
   use scene, only: role_side_load, role_volume_load, scene_t
   use solution, only: solution_t
   implicit none
   private
-  public :: book_heat, has_heat, heat_does_work, heat_imbalance, heat_through
+  public :: book_heat, has_heat, heat_imbalance, heat_through
 
 contains
 
@@ -22,30 +21,6 @@ contains
     yes = f > 0
     if (yes) yes = scene%fields(f)%declared
   end function has_heat
-
-  !> Temperatures change the elastic energy of bodies: expansion, or moduli by temperature. The work of the forces is then not all
-  !> that this energy and dissipation come from.
-  pure function heat_does_work(scene, laws) result(yes)
-    type(scene_t), intent(in) :: scene
-    type(law_t), intent(in) :: laws(:)   !! (nlaw)
-    logical :: yes
-    integer :: g
-
-    yes = .false.
-    do g = 1, size(scene%groups)
-      associate (group => scene%groups(g))
-        if (group%material == 0) cycle
-        associate (material => scene%materials(group%material), law => laws(scene%materials(group%material)%law_id))
-          if (law%kind /= solid_law .or. .not. (asks_for(law, 'temperature') .or. allocated(material%temperatures))) cycle
-        end associate
-        yes = yes .or. has_heat(scene)
-        if (group%temperature_multiplier == 0) cycle
-        associate (value => scene%multipliers(group%temperature_multiplier)%value)
-          yes = yes .or. maxval(value) > minval(value)
-        end associate
-      end associate
-    end do
-  end function heat_does_work
 
   !> Add the heat of a step that was just found; reactions are booked already.
   subroutine book_heat(scene, equations, dt, solution)

@@ -4,6 +4,7 @@ module march
   use acceptance, only: begin_probation, is_on_probation, note_cut, note_step
   use blas, only: blas_buffer
   use bookkeeping, only: measure_scene
+  use energy_books, only: start_stored
   use equations, only: set_up
   use errors, only: error_t
   use estimator, only: set_up_estimator
@@ -143,6 +144,7 @@ contains
     if (.not. solution%initial_volume > 0) solution%initial_volume = run%totals%volume
     if (new_mesh) call balance_new_mesh(scene, solution, run, error)
     if (allocated(error)) return
+    call start_stored(run%totals, solution)
     call open_history(scene, solution, join_path(run%folder, 'history.csv'), run%resume, run%table, error)
     if (allocated(error)) return
     call open_results(scene, solution, run%stem, merge(solution%step, -1, run%resume), new_mesh, run%results, error)

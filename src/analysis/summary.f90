@@ -2,10 +2,12 @@
 module summary
   use effects, only: effect_t
   use elem_api, only: totals_t
+  use energy_books, only: energy_imbalance, imbalance_advice, missing_energy, spring_energy
   use equations, only: equations_t
   use errors, only: error_t
+  use fields, only: displacement_field
   use hash, only: sha256
-  use heat_books, only: has_heat, heat_does_work, heat_imbalance
+  use heat_books, only: has_heat, heat_imbalance
   use history, only: circumference
   use json_writer, only: json_t
   use kinds, only: i8, wp
@@ -81,23 +83,20 @@ contains
     if (allocated(balance)) call add_restart(json, scene, solution, balance)
     call json%begin_object('checks')
     call json%add('volume_drift', totals%volume/solution%initial_volume - 1)
-    call json%add('volume_drift_unloaded', totals%unloaded_volume/solution%initial_volume - 1)
+    call json%add('volume_drift_unloaded', unloaded_drift(solution, totals))
     call json%add('max_penetration', solution%worst_penetration)
     call json%add('max_penetration_over_allowed', solution%worst_penetration_ratio)
     call json%add('max_penetration_sampled', solution%worst_sample)
     call json%add('max_penetration_sampled_over_allowed', solution%worst_sample_ratio)
     call json%add('worst_linear_residual', solution%worst_linear_residual)
     call json%add('least_dissipation', solution%least_dissipation)
-    if (.not. heat_does_work(scene, equations%laws)) call json%add('energy_imbalance', energy_imbalance(solution, totals))
+    if (has_motion(scene)) call json%add('energy_imbalance', energy_imbalance(solution))
     if (has_heat(scene)) call json%add('heat_imbalance', heat_imbalance(solution))
     call json%add('spurious_mode', solution%worst_spurious)
     call json%end_object()
     call add_advice(json, scene, solution)
     call json%begin_object('energy')
-    call json%add('external_work', circumference(scene)*solution%external_work)
-    call json%add('elastic', circumference(scene)*totals%elastic_energy)
-    call json%add('plastic', circumference(scene)*totals%plastic_work)
-    call json%add('friction', circumference(scene)*totals%friction_work)
+    call add_work(json, scene, solution)
     if (has_heat(scene)) then
       call json%add('heat_stored', circumference(scene)*solution%heat_stored)
       call json%add('heat_in', circumference(scene)*solution%heat_in)
@@ -108,6 +107,31 @@ contains
     call json%write_file(path, error)
   end subroutine write_summary
 
+  !> Where the work came from and where it went. Of the full circumference when the scene is axisymmetric.
+  subroutine add_work(json, scene, solution)
+    type(json_t), intent(inout) :: json
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+
+    associate (work => solution%work, factor => circumference(scene))
+      call json%add('external_work', factor*solution%external_work)
+      call json%add('work_of_supports', factor*work%supports)
+      call json%add('work_of_dies', factor*work%dies)
+      call json%add('work_of_loads', factor*work%loads)
+      call json%add('work_of_section', factor*work%section)
+      call json%add('work_of_heat', factor*work%heat)
+      call json%add('elastic', factor*work%elastic)
+      call json%add('plastic', factor*work%flow)
+      call json%add('friction', factor*solution%friction_work)
+      call json%add('contact', factor*work%contact)
+      call json%add('springs', factor*spring_energy(scene, solution))
+      call json%add('overlap', factor*work%overlap)
+      call json%add('remeshing', factor*work%remeshing)
+      call json%add('missing', factor*missing_energy(solution))
+      call json%add('passed', factor*work%passed)
+    end associate
+  end subroutine add_work
+
   !> What to do about the checks that do not hold, by their names.
   subroutine add_advice(json, scene, solution)
     type(json_t), intent(inout) :: json
@@ -115,6 +139,7 @@ contains
     type(solution_t), intent(in) :: solution
 
     call json%begin_object('advice')
+    call add('energy_imbalance', imbalance_advice(solution))
     call add('max_penetration_over_allowed', advice_at_points(scene, solution))
     call add('max_penetration_sampled_over_allowed', advice_between_points(scene, solution))
     call json%end_object()
@@ -157,20 +182,6 @@ contains
     end do
     call json%end_array()
   end subroutine add_estimate
-
-  !> External work that is neither stored nor dissipated, over the external work. Steps of finite
-  !> length and the penalty's own energy are in it.
-  pure function energy_imbalance(solution, totals) result(share)
-    type(solution_t), intent(in) :: solution
-    type(totals_t), intent(in) :: totals
-    real(wp) :: share
-
-    share = 0
-    if (abs(solution%external_work) > 0) then
-      share = (solution%external_work - totals%elastic_energy - totals%plastic_work - totals%friction_work) &
-              /abs(solution%external_work)
-    end if
-  end function energy_imbalance
 
   !> Calls and seconds of each effect: an effect's time is that of its elements.
   subroutine add_effects(json, scene, equations)
@@ -229,6 +240,22 @@ contains
     call json%end_object()
   end subroutine add_seconds
 
+  pure function has_motion(scene) result(yes)
+    type(scene_t), intent(in) :: scene
+    logical :: yes
+
+    yes = scene%fields(displacement_field)%declared
+  end function has_motion
+
+  !> Change of volume without elastic strain and thermal expansion, over the first one.
+  pure function unloaded_drift(solution, totals) result(share)
+    type(solution_t), intent(in) :: solution
+    type(totals_t), intent(in) :: totals
+    real(wp) :: share
+
+    share = (totals%unloaded_volume - solution%work%grown)/solution%initial_volume - 1
+  end function unloaded_drift
+
   pure function solid_elements(scene) result(n)
     type(scene_t), intent(in) :: scene
     integer :: n
@@ -256,8 +283,10 @@ contains
     call put('  time '//to_text(solution%time)//' of '//to_text(scene%strategy%end_time)//', '//to_text(solution%step) &
              //' steps, '//to_text(solution%iterations)//' iterations, '//to_text(solution%cutbacks)//' cutbacks')
     call put('  volume drift '//to_text(100*(totals%volume/solution%initial_volume - 1), 3)//' % (without elastic strain ' &
-             //to_text(100*(totals%unloaded_volume/solution%initial_volume - 1), 3)//' %), energy imbalance ' &
-             //energy_in_words()//', worst linear residual '//to_text(solution%worst_linear_residual, 2))
+             //to_text(100*unloaded_drift(solution, totals), 3)//' %), energy imbalance ' &
+             //to_text(100*energy_imbalance(solution), 3)//' %, worst linear residual ' &
+             //to_text(solution%worst_linear_residual, 2))
+    call warn('energy imbalance', imbalance_advice(solution))
     if (has_heat(scene)) &
       call put('  heat taken up '//to_text(circumference(scene)*solution%heat_stored, 4)//', come in ' &
                //to_text(circumference(scene)*solution%heat_in, 4)//', released ' &
@@ -268,8 +297,8 @@ contains
     else
       call put('  largest penetration at points of contact '//depth(solution%worst_penetration, solution%worst_penetration_ratio) &
                //'; between them too '//depth(solution%worst_sample, solution%worst_sample_ratio))
-      call warn('points of contact', advice_at_points(scene, solution))
-      call warn('sides between points of contact', advice_between_points(scene, solution))
+      call warn('points of contact are deeper in a die than allowed', advice_at_points(scene, solution))
+      call warn('sides between points of contact are deeper in a die than allowed', advice_between_points(scene, solution))
     end if
     call put('  '//to_text(sum(equations%solves%neq))//' equations, '//to_text(solid_elements(scene))//' elements, ' &
              //to_text(facts%threads)//' threads, '//to_text(facts%wall, 4)//' s on the wall, ' &
@@ -287,14 +316,6 @@ contains
 
   contains
 
-    !> The imbalance in percent, or that there is none to judge.
-    function energy_in_words() result(words)
-      character(len=:), allocatable :: words
-
-      words = to_text(100*energy_imbalance(solution, totals), 3)//' %'
-      if (heat_does_work(scene, equations%laws)) words = 'not judged, since heat does work'
-    end function energy_in_words
-
     subroutine put(line)
       character(len=*), intent(in) :: line
 
@@ -304,7 +325,7 @@ contains
     subroutine warn(what, advice)
       character(len=*), intent(in) :: what, advice
 
-      if (len(advice) > 0) call put('  WARNING: '//what//' are deeper in a die than allowed: '//advice)
+      if (len(advice) > 0) call put('  WARNING: '//what//': '//advice)
     end subroutine warn
 
     !> A depth, and its share of what is allowed where a law states that.

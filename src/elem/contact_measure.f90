@@ -6,6 +6,7 @@ module contact_measure
   use contact_penalties, only: allowed_penetration, penalties_of_card, penalties_t
   use contact_point, only: area_at, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_work, contact_block, &
                            dissipated, penalties, side_length
+  use contact_work, only: kept_work
   use corner_contact, only: interval_before
   use elem_api, only: totals_t
   use kinds, only: wp
@@ -126,15 +127,18 @@ contains
     !> Penetration and friction of a point of side e.
     subroutine add_point(now, old, place, share)
       real(wp), intent(in) :: now(:), old(:), place, share
-      real(wp) :: allowed
+      real(wp) :: allowed, area, lost
 
       allowed = allowed_penetration(scene%materials(group%material))*side
       if (nint(now(at_status)) /= contact_open) then
         totals%max_penetration = max(totals%max_penetration, now(at_penetration))
         if (allowed > 0) totals%penetration_ratio = max(totals%penetration_ratio, now(at_penetration)/allowed)
       end if
-      totals%friction_work = totals%friction_work + area_at(place, section, x(:, :, e))*share*now(at_work)
-      totals%least_dissipation = min(totals%least_dissipation, dissipated(old, now, penalty(2)))
+      area = area_at(place, section, x(:, :, e))*share
+      lost = dissipated(old, now, penalty(2))
+      totals%friction_work = totals%friction_work + area*now(at_work)
+      totals%contact_work = totals%contact_work + area*kept_work(old, now, penalty)
+      totals%least_dissipation = min(totals%least_dissipation, lost)
     end subroutine add_point
 
   end subroutine measure

@@ -127,6 +127,9 @@ module elem_api
     real(wp) :: elastic_energy = 0.0_wp
     real(wp) :: plastic_work = 0.0_wp
     real(wp) :: friction_work = 0.0_wp
+    !> Since the instant before: what flow dissipated, what penalties and multipliers of contact took, and the sum over the points
+    !> of the sizes of changes of elastic energy.
+    real(wp) :: dissipated = 0.0_wp, contact_work = 0.0_wp, passed = 0.0_wp
     !> Least increment of dissipated work at any point since the instant before.
     real(wp) :: least_dissipation = 0.0_wp
     !> Largest penetration, and the largest over what its side allows.
@@ -427,6 +430,9 @@ contains
     sum%elastic_energy = sum%elastic_energy + part%elastic_energy
     sum%plastic_work = sum%plastic_work + part%plastic_work
     sum%friction_work = sum%friction_work + part%friction_work
+    sum%dissipated = sum%dissipated + part%dissipated
+    sum%contact_work = sum%contact_work + part%contact_work
+    sum%passed = sum%passed + part%passed
     sum%least_dissipation = min(sum%least_dissipation, part%least_dissipation)
     sum%max_penetration = max(sum%max_penetration, part%max_penetration)
     sum%penetration_ratio = max(sum%penetration_ratio, part%penetration_ratio)

@@ -386,16 +386,28 @@ contains
         strain = state(first_strain:first_history - 1, p, e)
         totals%elastic_energy = totals%elastic_energy &
                                 + 0.5_wp*dv*(dot_product(stress, strain) + stress(3)*strain(3))
+        totals%passed = totals%passed + abs(dv*(elastic_density(state(:, p, e)) - elastic_density(before(:, p, e))))
         if (scene%finite) dv = dv*exp(-strain(1) - strain(2) - strain(4))
         totals%unloaded_volume = totals%unloaded_volume + dv
         if (k == 0) cycle
         ! deviators work on the present volume
         dv = dv*(volume(p)/m(p))
         totals%plastic_work = totals%plastic_work + state(k, p, e)*dv
+        totals%dissipated = totals%dissipated + (state(k, p, e) - before(k, p, e))*dv
         if (kept > 0) totals%elastic_energy = totals%elastic_energy + state(kept, p, e)*dv
         totals%least_dissipation = min(totals%least_dissipation, state(k, p, e) - before(k, p, e))
       end do
     end do
   end subroutine measure
+
+  !> Elastic energy of a point per volume: half of stress times elastic strain.
+  pure function elastic_density(state) result(energy)
+    real(wp), intent(in) :: state(:)   !! (nstate) [unit of each component]
+    real(wp) :: energy
+
+    associate (stress => state(1:4), strain => state(first_strain:first_history - 1))
+      energy = 0.5_wp*(dot_product(stress, strain) + stress(3)*strain(3))
+    end associate
+  end function elastic_density
 
 end module elem_pl8ls

@@ -7,6 +7,7 @@ module solution
   use remeshing, only: estimate_t
   use scene, only: is_solid, scene_t
   use state_variables, only: total_components
+  use work_books, only: work_t
   implicit none
   private
   public :: solution_t, group_state_t, start_solution, present_coordinates
@@ -37,6 +38,8 @@ module solution
     integer :: iterations = 0, cutbacks = 0
     !> Work done on the scene from outside, per radian when axisymmetric.
     real(wp) :: external_work = 0.0_wp
+    !> Its parts, and where it went.
+    type(work_t) :: work
     !> Work of friction since the start, and the part of it that is not in the state of a point of the present mesh; per radian when
     !> axisymmetric.
     real(wp) :: friction_work = 0.0_wp, friction_apart = 0.0_wp

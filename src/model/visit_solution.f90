@@ -6,6 +6,7 @@ module visit_solution
   use solution, only: group_state_t, solution_t
   use visit_estimate, only: visit_estimate_members
   use visit_field, only: visit_field_values
+  use visit_work, only: visit_work_members
   use visitors, only: by_variable, kept, of_the_mesh, recomputed, visitor_t
   implicit none
   private
@@ -45,6 +46,9 @@ contains
     call visitor%member('worst_sample', self%worst_sample, kept, 'length')
     call visitor%member('worst_sample_ratio', self%worst_sample_ratio, kept, '-')
     call visitor%leave('progress')
+    call visitor%enter('work')
+    call visit_work_members(visitor, self%work)
+    call visitor%leave('work')
     call visitor%enter('probation')
     call visit_probation(visitor, self%probation)
     call visitor%leave('probation')
