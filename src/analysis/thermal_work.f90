@@ -1,11 +1,13 @@
 !> Work of temperatures on the elastic energy of bodies: expansion, and moduli that depend on the temperature.
 !>
-!> The elastic energy is a free energy: at a given motion a change of temperature changes it, by -sigma:d(eps_th) and by
-!> eps:dC:eps/2, and the work of the forces is not all it comes from. For a step the change is found with the motion held, at its
-!> start (from the old temperatures to the new ones) and at its end, and the mean of both counts: exact for constant moduli, where
-!> it is -(sigma(n) + sigma(n+1))/2 : eps_th, and of second order in the step otherwise. The laws answer by themselves: in no time
-!> nothing flows, and a step without motion changes only what temperatures change. Volumes that expansion makes are found the same
-!> way. Source: B.A. Boley, J.H. Weiner, Theory of Thermal Stresses (1960), ch. 1 (free energy of an elastic body).
+!> The elastic energy is a free energy: a change of temperature changes it at a given motion, by -sigma:d(eps_th) and by
+!> e:dC:e/2, and the work of the forces is not all it comes from. In a step from e0 to e1, with s0 = C0 e0 and s1 = C1 e1,
+!>   s1:e1/2 - s0:e0/2 = (s0 + s1)/2 : (e1 - e0 + eps_th) + [s1:(e0 - eps_th) - s0:(e1 + eps_th)]/2
+!> is an identity: the first term is the work of the stresses by the trapezoidal rule, the second that of the temperatures; it
+!> is e0:(C1 - C0):e1/2 - (s0 + s1)/2 : eps_th. Volumes enter as they carry the stresses. The laws tell eps_th by themselves: in
+!> no time nothing flows, and a step without motion changes only what temperatures change (for work kept by a backstress the
+!> mean of that at the start and at the end counts).
+!> Source: B.A. Boley, J.H. Weiner, Theory of Thermal Stresses (1960), ch. 1 (free energy of an elastic body).
 module thermal_work
   use elem_api, only: instant_t, totals_t
   use element_loop, only: group_geometry
@@ -18,6 +20,7 @@ module thermal_work
   use quad8_geometry, only: quad8_rule, quad8_rule_t
   use scene, only: group_t, scene_t
   use solution, only: solution_t
+  use state_variables, only: find_variable
   implicit none
   private
   public :: book_heat_work, heat_work_t
@@ -53,8 +56,7 @@ contains
         call drivers_of_group(scene%groups(g), equations, solution, law, instant, g, given)
       end associate
       if (.not. any(abs(given(driver_temperature, 2, :) - given(driver_temperature, 1, :)) > 0)) cycle
-      call change_at_rest(scene, equations, solution, g, given, 1, heat)
-      call change_at_rest(scene, equations, solution, g, given, 2, heat)
+      call add_work(scene, equations, solution, g, given, heat)
     end do
   end subroutine book_heat_work
 
@@ -112,47 +114,62 @@ contains
     end associate
   end subroutine drivers_of_group
 
-  !> Half of what the change of temperatures does with the motion held at the start (1) or at the end (2) of the step.
-  subroutine change_at_rest(scene, equations, solution, g, given, at, heat)
+  !> Work of the temperatures on one group.
+  subroutine add_work(scene, equations, solution, g, given, heat)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
-    integer, intent(in) :: g, at              !! place of the group; end of the step
+    integer, intent(in) :: g                  !! place of the group
     real(wp), intent(in) :: given(:, :, :)    !! (ndriver, 2, npoint) [unit of each driver]
     type(heat_work_t), intent(inout) :: heat
-    real(wp), allocatable :: x(:, :, :), other(:, :, :), tangent(:, :, :), still(:, :)
-    integer, allocatable :: status(:)
-    real(wp) :: section(3)
-    type(totals_t) :: with, without
-    integer :: n
+    real(wp), dimension(size(solution%groups(g)%trial, 1), size(solution%groups(g)%trial, 2), size(solution%groups(g)%trial, 3)) &
+      :: first, last, back
+    real(wp) :: expansion(4, size(first, 2), size(first, 3)), tangent(4, 5, size(given, 3)), still(5, size(given, 3))
+    real(wp) :: kept(size(first, 2), size(first, 3)), section(3)
+    real(wp), allocatable :: x_first(:, :, :), x_last(:, :, :)
+    integer :: status(size(given, 3)), at_kept
+    type(totals_t) :: at_end, at_start, with, without
 
-    n = size(given, 3)
+    still = spread([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 1.0_wp], 2, size(given, 3))
+    section = solution%fields(section_field)%value(:, 1)
     associate (group => scene%groups(g), u => solution%fields(displacement_field), state => solution%groups(g), &
                row => equations%elems(scene%groups(g)%elem_id), material => scene%materials(scene%groups(g)%material), &
-               kinematics => equations%kinematics)
+               kinematics => equations%kinematics, strain => [5, 6, 7, 8])
       associate (law => equations%laws(material%law_id))
-        allocate (other, mold=state%trial)
-        allocate (tangent(4, 5, n), status(n))
-        still = spread([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 1.0_wp], 2, n)
-        section = solution%fields(section_field)%value(:, 1)
-        if (at == 1) then
-          section = section - solution%fields(section_field)%last_increment(:, 1)
-          call kinematics%update(law, material, 0.0_wp, n, size(other, 1), given, still, state%committed, other, tangent, status)
-          call group_geometry(scene, group, row, u%value - u%last_increment, x)
-          call row%measure(scene, group, law, section, x, other, state%committed, with)
-          call row%measure(scene, group, law, section, x, state%committed, state%committed, without)
-        else
-          call kinematics%update(law, material, 0.0_wp, n, size(other, 1), given(:, [2, 1], :), still, state%trial, other, &
-                                 tangent, status)
-          call group_geometry(scene, group, row, u%value, x)
-          call row%measure(scene, group, law, section, x, state%trial, other, with)
-          call row%measure(scene, group, law, section, x, other, other, without)
+        call kinematics%update(law, material, 0.0_wp, size(given, 3), size(first, 1), given, still, state%committed, first, &
+                               tangent, status)
+        call kinematics%update(law, material, 0.0_wp, size(given, 3), size(first, 1), given(:, [2, 1], :), still, state%trial, &
+                               back, tangent, status)
+        expansion = state%committed(strain, :, :) - first(strain, :, :)
+        kept = 0
+        at_kept = find_variable(group%variables, 'stored_work')
+        if (at_kept > 0) then
+          at_kept = group%variables(at_kept)%first
+          kept = 0.5_wp*(first(at_kept, :, :) - state%committed(at_kept, :, :) + state%trial(at_kept, :, :) - back(at_kept, :, :))
         end if
+        call group_geometry(scene, group, row, u%value - u%last_increment, x_first)
+        call group_geometry(scene, group, row, u%value, x_last)
+        first = state%committed
+        first(strain, :, :) = state%trial(strain, :, :) + expansion
+        last = state%trial
+        last(strain, :, :) = state%committed(strain, :, :) - expansion
+        if (at_kept > 0) first(at_kept, :, :) = 0
+        if (at_kept > 0) last(at_kept, :, :) = 0
+        call row%measure(scene, group, law, section, x_last, last, first, at_end)
+        call row%measure(scene, group, law, section - solution%fields(section_field)%last_increment(:, 1), x_first, first, first, &
+                         at_start)
+        ! without stress: work kept by a backstress, and volumes
+        last = state%trial
+        last(:4, :, :) = 0
+        if (at_kept > 0) last(at_kept, :, :) = kept
+        call row%measure(scene, group, law, section, x_last, last, last, with)
+        last(strain, :, :) = last(strain, :, :) + expansion
+        call row%measure(scene, group, law, section, x_last, last, last, without)
       end associate
     end associate
-    heat%work = heat%work + 0.5_wp*(with%elastic_energy - without%elastic_energy)
-    heat%passed = heat%passed + 0.5_wp*with%passed
-    heat%grown = heat%grown + 0.5_wp*(with%unloaded_volume - without%unloaded_volume)
-  end subroutine change_at_rest
+    heat%work = heat%work + at_end%elastic_energy - at_start%elastic_energy + with%elastic_energy
+    heat%passed = heat%passed + at_end%passed
+    heat%grown = heat%grown + with%unloaded_volume - without%unloaded_volume
+  end subroutine add_work
 
 end module thermal_work

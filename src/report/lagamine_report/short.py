@@ -13,7 +13,7 @@ from .words import brief
 
 # Above these the page warns: shares of the work, of the volume and of what all remeshings change of it, what a sound linear
 # solution leaves, the share of an element's strain that its points do not see, and what the books of heat lack of the heat that passed.
-ENERGY_IMBALANCE, VOLUME_DRIFT, VOLUME_BY_MESHES, LINEAR_RESIDUAL, SPURIOUS_MODE = 0.02, 0.01, 0.001, 1e-10, 0.9
+ENERGY_IMBALANCE, VOLUME_DRIFT, VOLUME_BY_MESHES, LINEAR_RESIDUAL, SPURIOUS_MODE = 0.01, 0.01, 0.001, 1e-10, 0.9
 HEAT_IMBALANCE = 1e-6
 # Depths in summary.json, the share of the allowed beside them, and how far above 1 that is reported as too large, as in the listing.
 PENETRATIONS = {"max_penetration": "at points of contact", "max_penetration_sampled": "between points of contact too"}

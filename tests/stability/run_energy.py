@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+"""Books of energy: how much of the work is missing in shipped decks, and how it falls with the step.
+
+usage: run_energy.py [-v] [-k]       -v prints every check, -k keeps the results
+
+Each deck runs with steps of one length, of half of it, and of half of that. What is missing between the work that comes in and what
+is stored and dissipated is the error of the path within the steps: of first order or better. The table has it in percent of the work
+that passed (`energy_imbalance`), and by how much the second and the third run are better than the one before.
+
+Then runs that other books cannot close: bars heated with moduli and expansion by temperature, held and free (no work from outside,
+none at all; no drift of volume either), a block under stress that a die turns by two radians (a rotation makes no work), and one
+loaded and unloaded.
+"""
+import json
+import os
+import re
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "patch"))
+from patch_support import SOURCE, Checks, Run  # noqa: E402
+
+# Deck, and the length of the longest steps.
+DECKS = {"upsetting": ("upsetting/upsetting", 0.01), "ring": ("ring/ring", 0.02), "rib": ("forging_rib/forging_rib", 0.004),
+         "press fit": ("press_fit/press_fit", 0.02), "necking": ("necking/necking", 0.02)}
+# Iterations of a step that are not too many: steps keep their length.
+MANY = 40
+# The imbalance of the run with the longest steps, and how much better a run with half the step must be.
+WORST, BETTER = 0.01, 1.8
+# The same, and drift of volume, of runs whose steps are straight but for terms of second order.
+OTHERS = 5e-4
+
+
+def imbalance(checks, deck, step):
+    """`energy_imbalance` of a deck with steps of one length."""
+    with open(os.path.join(SOURCE, "decks", deck + ".lag"), encoding="utf-8") as file:
+        text = file.read()
+    text, n = re.subn(r"(?m)^STRAT +\S+ +(\S+) +\S+ +\d+", rf"STRAT  {step} \1 {step} {MANY}", text)
+    text = re.sub(r"(?m)^PARAM  dt .*\n", "", text)
+    checks.that(n == 1, f"{deck} has one STRAT")
+    run = Run(checks, f"energy-{os.path.basename(deck)}-{step}", text)
+    if not run.ok:
+        return None
+    with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as summary:
+        return abs(json.load(summary)["checks"]["energy_imbalance"])
+
+
+HEATED = """TITLE  A heated bar
+STATE  {state}
+KINEM  {kinematics}
+BLOCK  bar PL8LS 4 warm
+   0. 0.   2. 0.   2. 3.   0. 3.
+   2 1.   2 1.
+LAW    warm ELATH
+   TEMP 20.
+   200000. 0.3   1.1E-5
+   TEMP 600.
+   140000. 0.28   1.5E-5
+   TEMP 1200.
+   60000. 0.3   2.E-5
+TEMPE  bar 1. heat
+LIC    heat
+   0. 20.   1. 1200.   2. 300.
+FIXED  bar 1 Y
+FIXED  bar 4 X
+{held}
+STRAT  0.05 1.E-6 0.05   9 3
+NORMS  FORCE 1.E-9 DISPL 1.E-9
+END
+"""
+
+TURNED = """TITLE  A block under pressure, turned
+STATE  PLSTN
+KINEM  {kinematics}
+BLOCK  block PL8LS 4 metal
+   -1. 0.   1. 0.   1. 1.   -1. 1.
+   4 1.   2 1.
+LAW    metal ELA
+   1000. 0.3
+LAW    glue GLUE2D
+   PENETR 1.E-3
+DIE    table PILOT 0. 0.
+   SEGM  -2. 0.   2. 0.
+CNT2D  block 1 table 2 glue
+PRES2D block 3 2 1. load
+MOVE   table A turn 2.
+LIC    load
+   0. 0.   1. 1.   4. 1.
+LIC    turn
+   0. 0.   1. 0.   4. 1.
+STRAT  0.05 1.E-6 0.05   9 3
+END
+"""
+
+
+def books(checks, name, text):
+    """Imbalance and drift of volume of a run."""
+    run = Run(checks, name, text)
+    if not run.ok:
+        return
+    with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+        summary = json.load(file)
+    imbalance, drift = (abs(summary["checks"][key]) for key in ("energy_imbalance", "volume_drift_unloaded"))
+    print(f"{name:22s} missing {100*imbalance:9.2e} %   drift of volume {drift:9.2e}")
+    checks.small(imbalance, OTHERS, f"{name}: missing")
+    checks.small(drift, OTHERS, f"{name}: drift of volume")
+    checks.that("energy_imbalance" not in summary["advice"], f"{name}: no warning")
+
+
+def others(checks):
+    """Heat, rotation, loading and unloading."""
+    for state in ("PLSTN", "AXISYM", "PLSTS"):
+        for kinematics in ("LOG", "JAUMANN", "SMALL"):
+            for held in ("", "FIXED  bar 3 Y", "FIXED  bar 3 Y\nFIXED  bar 2 X"):
+                books(checks, f"heat-{state}-{kinematics}-{held.count('FIXED')}",
+                      HEATED.format(state=state, kinematics=kinematics, held=held))
+    for kinematics in ("LOG", "JAUMANN"):
+        books(checks, f"turned-{kinematics}", TURNED.format(kinematics=kinematics))
+
+
+def main():
+    checks = Checks()
+    others(checks)
+    print(f"{'deck':12s} {'step':>7s} {'missing %':>10s} {'half':>9s} {'better':>7s} {'quarter':>9s} {'better':>7s}")
+    for name, (deck, step) in DECKS.items():
+        found = [imbalance(checks, deck, step/division) for division in (1, 2, 4)]
+        if None in found:
+            continue
+        better = [found[0]/found[1], found[1]/found[2]]
+        print(f"{name:12s} {step:7.3g} {100*found[0]:10.5f} {100*found[1]:9.5f} {better[0]:7.2f} {100*found[2]:9.5f} {better[1]:7.2f}")
+        checks.small(found[0], WORST, f"{name}: missing")
+        for value, what in zip(better, ("half", "quarter")):
+            checks.that(value >= BETTER, f"{name}: better by {BETTER} at {what} the step", value)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
