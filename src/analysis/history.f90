@@ -12,6 +12,7 @@ module history
   use probes, only: probe_maximum, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
   use scene, only: axisymmetric, generalised_plane_strain, scene_t
   use solution, only: solution_t
+  use stress_measures, only: stress_measure
   use text, only: string_t
   implicit none
   private
@@ -172,13 +173,48 @@ contains
     case (probe_reaction)
       value = sum(solution%fields(displacement_field)%reaction(probe%quantity, probe%nodes))
     case (probe_point)
-      value = solution%groups(probe%group)%committed(probe%component, probe%point, probe%element)
-    case (probe_maximum)
-      value = maxval(solution%groups(probe%group)%committed(probe%component, :, :))
-    case (probe_minimum)
-      value = minval(solution%groups(probe%group)%committed(probe%component, :, :))
+      value = state_of(solution, probe, probe%point, probe%element)
+    case (probe_maximum, probe_minimum)
+      value = extreme_of(solution, probe)
     end select
     value = value*probe%factor
   end function probe_value
+
+  !> Component of the state at a point, or a measure of the stress there.
+  pure function state_of(solution, probe, point, element) result(value)
+    type(solution_t), intent(in) :: solution
+    type(probe_t), intent(in) :: probe
+    integer, intent(in) :: point, element
+    real(wp) :: value
+
+    associate (state => solution%groups(probe%group)%committed(:, point, element), c => probe%component)
+      if (probe%measure > 0) then
+        value = stress_measure(probe%measure, state(c:c + 3))
+      else
+        value = state(c)
+      end if
+    end associate
+  end function state_of
+
+  !> The largest or smallest of that over a group.
+  pure function extreme_of(solution, probe) result(value)
+    type(solution_t), intent(in) :: solution
+    type(probe_t), intent(in) :: probe
+    real(wp) :: value
+    integer :: p, e
+
+    associate (state => solution%groups(probe%group)%committed)
+      value = merge(-huge(value), huge(value), probe%kind == probe_maximum)
+      do e = 1, size(state, 3)
+        do p = 1, size(state, 2)
+          if (probe%kind == probe_maximum) then
+            value = max(value, state_of(solution, probe, p, e))
+          else
+            value = min(value, state_of(solution, probe, p, e))
+          end if
+        end do
+      end do
+    end associate
+  end function extreme_of
 
 end module history

@@ -22,6 +22,7 @@ module march
   use run_record, only: run_t, record, save_all, at_end
   use run_stop, only: stop_here, finish
   use scene, only: scene_t
+  use small_strain, only: refuse_large_strain
   use solution, only: solution_t
   use spurious_mode, only: has_mean_dilatation, spurious_limit
   use step_solves, only: solve_fields
@@ -87,6 +88,8 @@ contains
       if (on_probation) call judge_steps(scene, solution, outcome, run, error)
       if (allocated(error)) exit
       call record(scene, solution, outcome, run, error)
+      if (.not. allocated(error)) call refuse_large_strain(scene, run%equations%laws, solution, error)
+      if (allocated(error)) exit
       if (caught_signal() /= 0 .or. mesh_is_due(solution)) exit
     end do
     call finish(scene, solution, run, error)

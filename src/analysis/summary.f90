@@ -286,7 +286,7 @@ contains
              //to_text(100*unloaded_drift(solution, totals), 3)//' %), energy imbalance ' &
              //to_text(100*energy_imbalance(solution), 3)//' %, worst linear residual ' &
              //to_text(solution%worst_linear_residual, 2))
-    call warn('energy imbalance', imbalance_advice(solution))
+    call warn('energy imbalance '//to_text(100*energy_imbalance(solution), 3)//' %', imbalance_advice(solution))
     if (has_heat(scene)) &
       call put('  heat taken up '//to_text(circumference(scene)*solution%heat_stored, 4)//', come in ' &
                //to_text(circumference(scene)*solution%heat_in, 4)//', released ' &

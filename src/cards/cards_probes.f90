@@ -12,10 +12,11 @@ module cards_probes
   use mesh, only: nearest_node
   use probes, only: probe_maximum, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
   use quadrature, only: line_rule, square_rule
-  use scene, only: axisymmetric, group_t
+  use scene, only: axisymmetric, group_t, is_solid
   use scene_draft, only: close_card, draft_t, words_of
   use shape_functions, only: line3, quad8
-  use state_variables, only: component_names, state_variable_t
+  use state_variables, only: component_names, find_variable, state_variable_t
+  use stress_measures, only: measure_names, nmeasure
   use text, only: string_t, to_text
   use vectors, only: length_of
   implicit none
@@ -35,7 +36,7 @@ contains
     type(cursor_t) :: cursor
     type(string_t), allocatable :: kinds_of_probe(:)
     type(probe_t) :: probe, none
-    integer :: i
+    integer :: i, k
 
     ! In the order of the numbers in module `probes`.
     call words_of('NODE REACT POINT MAX MIN', kinds_of_probe)
@@ -50,7 +51,7 @@ contains
       probe%unit = '-'
       select case (probe%kind)
       case (probe_node)
-        call read_node_probe(cursor, draft, probe)
+        call read_node_probe(cursor, any([(deck%cards(k)%keyword == 'REMSH', k=1, size(deck%cards))]), draft, probe)
       case (probe_reaction)
         call read_reaction_probe(cursor, draft, probe)
       case (probe_point)
@@ -63,15 +64,18 @@ contains
     end do
   end subroutine read_probes
 
-  !> `X|Y|UX|UY x y`, or the word of another field: the node nearest to a point of the mesh as it begins.
-  subroutine read_node_probe(cursor, draft, probe)
+  !> `X|Y|UX|UY x y [body]`, or the word of another field: the node nearest to a point of the mesh as it begins, of a body where
+  !> one is named: nodes of several bodies may stand at one place. `X|Y|UX|UY NODE label`: a node of a NODES card.
+  subroutine read_node_probe(cursor, remeshed, draft, probe)
     type(cursor_t), intent(inout) :: cursor
-    type(draft_t), intent(in) :: draft
+    logical, intent(in) :: remeshed   !! the deck asks for new meshes
+    type(draft_t), intent(inout) :: draft
     type(probe_t), intent(inout) :: probe
+    type(place_t) :: named
     type(string_t), allocatable :: quantities(:), words(:)
     integer, allocatable :: place(:)
     real(wp) :: x(2), distance
-    integer :: node
+    integer :: node, of_body
 
     call words_of('X Y UX UY', quantities)
     allocate (place(0))
@@ -85,14 +89,80 @@ contains
       probe%field = place(probe%quantity - 4)
       probe%unit = draft%scene%fields(probe%field)%unit
     end if
-    call read_point(cursor, draft, x)
-    if (cursor%failed() .or. .not. draft%mesh_sound) return
-    call nearest_node(draft%scene%mesh%origin, x, node, distance)
+    if (cursor%peek_word() == 'NODE') then
+      call read_place(cursor, draft, .false., named)
+      if (cursor%failed() .or. .not. draft%mesh_sound) return
+      if (remeshed) then
+        call cursor%fail('a node by its label is one of the first mesh: with REMSH name a point x y, of a body if need be')
+        return
+      end if
+      node = named%nodes(1)
+      x = draft%scene%mesh%origin(:, node)
+    else
+      call read_point(cursor, draft, x)
+      call read_body(cursor, draft, of_body)
+      if (cursor%failed() .or. .not. draft%mesh_sound) return
+      call nearest_node(draft%scene%mesh%origin, x, node, distance)
+      if (of_body > 0) node = nearest_of_body(draft%scene%mesh%origin, draft%scene%groups(of_body), x)
+    end if
     probe%nodes = [node]
     if (probe%field > 0 .and. draft%scene%generation == 1) &
       call refuse_without_field(cursor, draft, probe%field, probe%nodes, node_text(draft, node), own=.false.)
     if (draft%scene%generation > 1) probe%offset = x - draft%scene%mesh%origin(:, node)
   end subroutine read_node_probe
+
+  !> The name of a body at the end of a row, 0 where there is none.
+  subroutine read_body(cursor, draft, body)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    integer, intent(out) :: body   !! place of its group
+    type(string_t), allocatable :: names(:)
+    character(len=:), allocatable :: unread
+    integer, allocatable :: groups(:)
+    integer :: k
+
+    body = 0
+    if (cursor%failed() .or. .not. cursor%more()) return
+    if (.not. draft%groups_sound) then
+      call cursor%word('the name of a body', unread)
+      return
+    end if
+    groups = pack([(k, k=1, size(draft%scene%groups))], is_body(draft%scene%groups))
+    allocate (names(size(groups)))
+    do k = 1, size(groups)
+      names(k)%s = draft%scene%groups(groups(k))%name
+    end do
+    call cursor%name('the name of a body', names, k)
+    if (k > 0) body = groups(k)
+  end subroutine read_body
+
+  elemental function is_body(group) result(yes)
+    type(group_t), intent(in) :: group
+    logical :: yes
+
+    yes = is_solid(group)
+  end function is_body
+
+  !> The node of a body that is nearest to a point.
+  pure function nearest_of_body(coordinates, body, x) result(node)
+    real(wp), intent(in) :: coordinates(:, :)
+    type(group_t), intent(in) :: body
+    real(wp), intent(in) :: x(2)
+    integer :: node
+    integer :: n, e
+    real(wp) :: distance, least
+
+    node = 0
+    least = huge(least)
+    do e = 1, size(body%connectivity, 2)
+      do n = 1, size(body%connectivity, 1)
+        distance = length_of(coordinates(:, body%connectivity(n, e)) - x)
+        if (.not. distance < least) cycle
+        least = distance
+        node = body%connectivity(n, e)
+      end do
+    end do
+  end function nearest_of_body
 
   !> `X|Y place`: the sum of the reactions there, over the full circumference.
   subroutine read_reaction_probe(cursor, draft, probe)
@@ -144,8 +214,7 @@ contains
         probe%group = g
         probe%element = e
         probe%point = p
-        probe%component = k
-        probe%unit = unit_of(group%variables, k)
+        call set_component(group, component, probe)
       end associate
     end do
   end subroutine read_point_probe
@@ -171,11 +240,10 @@ contains
     call cursor%name('the name of a group', names, g)
     if (g == 0) return
     probe%group = g
-    probe%component = find_component(draft%scene%groups(g), component)
-    if (probe%component == 0) then
+    if (find_component(draft%scene%groups(g), component) == 0) then
       call cursor%fail('group '''//names(g)%s//''' has no component '''//component//'''')
     else
-      probe%unit = unit_of(draft%scene%groups(g)%variables, probe%component)
+      call set_component(draft%scene%groups(g), component, probe)
     end if
   end subroutine read_extreme_probe
 
@@ -195,6 +263,10 @@ contains
     do g = 1, size(draft%scene%groups)
       call component_names(draft%scene%groups(g)%variables, names)
       known = [known, names]
+      if (find_variable(draft%scene%groups(g)%variables, 'stress') == 0) cycle
+      do k = 1, nmeasure
+        known = [known, string_t(trim(measure_names(k)))]
+      end do
     end do
     call cursor%name('a component of the state', known, k)
     component = ''
@@ -212,7 +284,31 @@ contains
       if (names(k)%s == component) return
     end do
     k = 0
+    if (find_measure(component) == 0) return
+    k = find_variable(group%variables, 'stress')
+    if (k > 0) k = group%variables(k)%first
   end function find_component
+
+  !> Place of a word among the measures of stress, 0 where it is none.
+  pure function find_measure(word) result(k)
+    character(len=*), intent(in) :: word
+    integer :: k
+
+    do k = nmeasure, 1, -1
+      if (measure_names(k) == word) return
+    end do
+  end function find_measure
+
+  !> What the probe reads of a group that has it.
+  pure subroutine set_component(group, component, probe)
+    type(group_t), intent(in) :: group
+    character(len=*), intent(in) :: component
+    type(probe_t), intent(inout) :: probe
+
+    probe%component = find_component(group, component)
+    probe%measure = find_measure(component)
+    probe%unit = unit_of(group%variables, probe%component)
+  end subroutine set_component
 
   pure function unit_of(variables, component) result(unit)
     type(state_variable_t), intent(in) :: variables(:)

@@ -26,6 +26,8 @@ module probes
     real(wp) :: offset(2) = 0.0_wp
     !> Group, element and point, and component of the state, for the kinds that read the state.
     integer :: group = 0, element = 0, point = 0, component = 0
+    !> Measure of the stress whose first component that is (stress_measures), 0 for the component itself.
+    integer :: measure = 0
     !> Factor, for instance 2 pi for forces of axisymmetric scenes.
     real(wp) :: factor = 1.0_wp
   end type probe_t

@@ -8,6 +8,7 @@ module nodal_fields
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use state_variables, only: component_names, find_variable
+  use stress_measures, only: von_mises
   use text, only: string_t
   implicit none
   private
@@ -88,9 +89,13 @@ contains
   pure function mises(stress) result(q)
     real(wp), intent(in) :: stress(:, :, :)   !! (4, npoint, nelem) [stress]
     real(wp) :: q(size(stress, 2), size(stress, 3))
+    integer :: p, e
 
-    q = sqrt(0.5_wp*((stress(1, :, :) - stress(2, :, :))**2 + (stress(2, :, :) - stress(4, :, :))**2 &
-                     + (stress(4, :, :) - stress(1, :, :))**2) + 3*stress(3, :, :)**2)
+    do e = 1, size(q, 2)
+      do p = 1, size(q, 1)
+        q(p, e) = von_mises(stress(:, p, e))
+      end do
+    end do
   end function mises
 
   !> Index of a word among others, 0 where it is not.
