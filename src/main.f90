@@ -10,6 +10,7 @@ program lagamine
   use run_version, only: blas_words, print_version
   use standard_streams, only: claim_standard_streams, print_error, print_line
   use start_again, only: start_as_fits
+  use steel_print, only: print_steels
   use system, only: program_stop
   use threads, only: number_of_threads, set_threads
   implicit none
@@ -32,6 +33,8 @@ program lagamine
     call print_version('lagamine', blas_words(blas_build(), blas_core_name()), number_of_threads(), error)
   else if (allocated(options%law)) then
     call print_law(options%law, error)
+  else if (allocated(options%met)) then
+    call print_steels(options, error)
   else if (options%point) then
     call run_point(options, error)
   else

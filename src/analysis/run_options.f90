@@ -14,6 +14,8 @@ module run_options
     character(len=:), allocatable :: resume
     !> Law whose card is asked for; empty for the list of all.
     character(len=:), allocatable :: law
+    !> File of steels (.MET) to print.
+    character(len=:), allocatable :: met
     type(string_t), allocatable :: overrides(:)
     logical :: check = .false., point = .false., quiet = .false., help = .false., version = .false.
     !> Progress only, also where the output is no terminal.
@@ -58,6 +60,8 @@ contains
         else
           call value_of(word, k, options%law, error)
         end if
+      case ('--met')
+        call value_of(word, k, options%met, error)
       case ('-p')
         call value_of('-p', k, word, error)
         options%overrides = [options%overrides, string_t(word)]
@@ -72,7 +76,8 @@ contains
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
           call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--check'), string_t('--quiet'), &
                                     string_t('--progress'), string_t('--out'), string_t('--resume'), string_t('--law'), &
-                                    string_t('--point'), string_t('-p'), string_t('--threads')], 'lagamine', error)
+                                    string_t('--met'), string_t('--point'), string_t('-p'), string_t('--threads')], &
+                             'lagamine', error)
         else if (allocated(options%deck)) then
           call fail(error, exit_input, 'one deck at a time: found '''//options%deck//''' and '''//word//'''')
         else
@@ -81,7 +86,10 @@ contains
       end select
     end do
     if (allocated(error) .or. options%help .or. options%version .or. allocated(options%law)) return
-    if (options%point .and. allocated(options%resume)) then
+    if (allocated(options%met)) then
+      if (allocated(options%deck)) call fail(error, exit_input, '--met takes no deck: found '''//options%deck//'''')
+      if (.not. allocated(options%out)) options%out = stem_of(options%met)
+    else if (options%point .and. allocated(options%resume)) then
       call fail(error, exit_input, '--resume: a path of a point (--point) has no checkpoint to go on from')
     else if (.not. allocated(options%deck)) then
       call fail(error, exit_input, 'no deck given', 'lagamine --help shows how to call')
@@ -112,6 +120,7 @@ contains
            'lagamine DECK [--out DIR] [--check] [--resume CHECKPOINT] [-p NAME=VALUE]... [--threads N]'//nl// &
            '         [--progress|--quiet]'//nl// &
            'lagamine --point DECK [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
+           'lagamine --met FILE [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --law [NAME] | --help | --version'//nl//nl// &
            '  --out DIR       folder of the results (default: the deck''s name)'//nl// &
            '  --check         read the deck, print the scene, run nothing'//nl// &
@@ -119,6 +128,7 @@ contains
            '  -p NAME=VALUE   set a parameter of the deck'//nl// &
            '  --threads N     threads (default: as many as processors are free); the same bits for any number'//nl// &
            '  --point         one material point along the deck''s PATH; its answer comes into DIR/NAME.point.csv'//nl// &
+           '  --met FILE      print the steels of a .MET file: temperatures, isothermal diagram, coolings; tables into DIR'//nl// &
            '  --progress      print the progress only, no summary; once a minute where that goes into a file'//nl// &
            '  --quiet         print errors only'//nl// &
            '  --law [NAME]    print the card of a law: parameters, units, state, source; without a name, list all laws'//nl//nl// &

@@ -14,7 +14,7 @@ import tempfile
 
 # Floors from top to bottom. Names are folders of src/; `main` is src/main.f90. A folder may use itself and what is below.
 FLOORS = ["main", "analysis", "report", "solve", "estimate", "cards", "elem", "kinematics", "law", "store", "model", "deck",
-          "linear", "geometry", "base"]
+          "linear", "geometry", "phases", "base"]
 
 # Arrows that point downward and are forbidden all the same, with the reason that is printed.
 FORBIDDEN = {

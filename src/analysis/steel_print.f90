@@ -1,0 +1,188 @@
+!> `lagamine --met FILE`: the steels of a file as tables on the screen and in CSV files.
+!>
+!> Of each steel NAME: its temperatures, the isothermal diagram (`NAME.ttt.PHASE.csv`), and mixtures and hardness after cooling at
+!> constant rates (`NAME.cct.csv`).
+module steel_print
+  use csv_writer, only: csv_t
+  use diagnostics, only: diagnostics_t
+  use errors, only: error_t
+  use hardness, only: has_hardness
+  use kinds, only: wp
+  use phase_state, only: at_hardness, state_size
+  use run_options, only: run_options_t, stem_of
+  use standard_streams, only: print_line, print_lines
+  use steel_reader, only: read_steels
+  use steel_tables, only: cool_at_rate, forms_at, isothermal_time
+  use steels, only: element_names, first_diffusive, last_diffusive, phase_count, phase_names, steel_t, unknown_temperature
+  use system, only: join_path, make_directory
+  use text, only: add_text, string_t, to_text
+  implicit none
+  private
+  public :: print_steels
+
+  !> Shares of the isothermal diagram; width of its rows [degC]; cooling rates [K/s]; ends of the coolings [degC].
+  real(wp), parameter :: shares(3) = [0.01_wp, 0.5_wp, 0.99_wp], row_width = 20.0_wp, file_width = 5.0_wp
+  real(wp), parameter :: rates(14) = [0.01_wp, 0.02_wp, 0.05_wp, 0.1_wp, 0.2_wp, 0.5_wp, 1.0_wp, 2.0_wp, 5.0_wp, 10.0_wp, &
+                                      20.0_wp, 50.0_wp, 100.0_wp, 200.0_wp]
+  real(wp), parameter :: least_start = 900.0_wp, finish = 20.0_wp
+
+contains
+
+  !> Read the file, print its steels, write their tables into the folder of the results.
+  subroutine print_steels(options, error)
+    type(run_options_t), intent(in) :: options
+    type(error_t), allocatable, intent(out) :: error
+    type(diagnostics_t), target :: diagnostics
+    type(steel_t), allocatable :: steels(:)
+    type(string_t), allocatable :: lines(:)
+    character(len=:), allocatable :: stem
+    integer :: k
+
+    call read_steels(options%met, options%overrides, steels, diagnostics)
+    call diagnostics%error(error)
+    if (allocated(error)) return
+    if (.not. options%check) call make_directory(options%out, error)
+    do k = 1, size(steels)
+      if (allocated(error)) return
+      stem = join_path(options%out, stem_of(steels(k)%name//'.met'))
+      call head_lines(steels(k), lines)
+      if (.not. options%quiet) call print_lines(lines, error)
+      if (.not. allocated(error)) call print_isothermal(steels(k), options, stem, error)
+      if (.not. allocated(error)) call print_coolings(steels(k), options, stem, error)
+      if (.not. (allocated(error) .or. options%quiet)) call print_line('', error)
+    end do
+  end subroutine print_steels
+
+  !> Name, source, composition, temperatures, numbers of martensite.
+  subroutine head_lines(steel, lines)
+    type(steel_t), intent(in) :: steel
+    type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
+    character(len=:), allocatable :: s
+    integer :: i
+
+    allocate (lines(0))
+    call add_text(lines, 'steel '//steel%name)
+    call add_text(lines, 'source: '//steel%source)
+    if (steel%composition%given) then
+      s = 'mass per cent:'
+      do i = 1, size(element_names)
+        if (steel%composition%w(i) > 0) s = s//' '//trim(element_names(i))//' '//to_text(steel%composition%w(i))
+      end do
+      call add_text(lines, s)
+    end if
+    s = 'degC:'
+    call add_temperature('Ae1', steel%ae1)
+    call add_temperature('Ae3', steel%ae3)
+    call add_temperature('Ac1', steel%ac1)
+    call add_temperature('Ac3', steel%ac3)
+    call add_temperature('Bs', steel%bs)
+    call add_temperature('Ms', steel%ms)
+    call add_text(lines, s)
+    if (steel%beta > 0) call add_text(lines, 'martensite: 1 - exp(-'//to_text(steel%beta)//' (Ms - T))')
+
+  contains
+
+    subroutine add_temperature(name, value)
+      character(len=*), intent(in) :: name
+      real(wp), intent(in) :: value
+
+      if (value > unknown_temperature) s = s//'  '//name//' '//to_text(value, 5)
+    end subroutine add_temperature
+
+  end subroutine head_lines
+
+  !> The isothermal diagram of each phase that has one.
+  subroutine print_isothermal(steel, options, stem, error)
+    type(steel_t), intent(in) :: steel
+    type(run_options_t), intent(in) :: options
+    character(len=*), intent(in) :: stem
+    type(error_t), allocatable, intent(out) :: error
+    type(csv_t) :: table
+    type(string_t) :: columns(1 + size(shares))
+    character(len=90) :: line
+    real(wp) :: t, times(size(shares))
+    integer :: phase, k, i, n
+
+    columns(1)%s = 'temperature [degC]'
+    do i = 1, size(shares)
+      columns(1 + i)%s = 'time_of_'//to_text(100*shares(i))//'_pct [s]'
+    end do
+    do phase = first_diffusive, last_diffusive
+      associate (kinetics => steel%kinetics(phase))
+        n = floor((kinetics%high - kinetics%low)/file_width)
+        if (.not. any([(forms_at(steel, phase, kinetics%high - k*file_width), k=0, n)])) cycle
+        if (.not. options%quiet) call print_line(lower(phase)//': seconds to 1, 50, 99 % of what can form', error)
+        if (.not. options%check) call table%create(stem//'.ttt.'//lower(phase)//'.csv', columns, error)
+        do k = 0, n
+          t = kinetics%high - k*file_width
+          if (allocated(error)) return
+          if (.not. forms_at(steel, phase, t)) cycle
+          do i = 1, size(shares)
+            times(i) = isothermal_time(steel, phase, t, shares(i))
+          end do
+          write (line, '(f8.1, 3es14.5)') t, times
+          if (mod(k, nint(row_width/file_width)) == 0 .and. .not. options%quiet) call print_line(trim(line), error)
+          if (options%check) cycle
+          call table%put(t)
+          call table%put(times)
+          call table%end_row()
+        end do
+        if (.not. (options%check .or. allocated(error))) call table%close(error)
+      end associate
+    end do
+  end subroutine print_isothermal
+
+  !> Mixtures and hardness after cooling at constant rates.
+  subroutine print_coolings(steel, options, stem, error)
+    type(steel_t), intent(in) :: steel
+    type(run_options_t), intent(in) :: options
+    character(len=*), intent(in) :: stem
+    type(error_t), allocatable, intent(out) :: error
+    type(csv_t) :: table
+    type(string_t) :: columns(3 + phase_count)
+    character(len=120) :: line
+    real(wp) :: state(state_size), begin, start
+    integer :: k, i
+
+    columns(1)%s = 'rate [K/s]'
+    columns(2)%s = 'begin [degC]'
+    do i = 1, phase_count
+      columns(2 + i)%s = lower(i)//' [-]'
+    end do
+    columns(3 + phase_count)%s = 'hardness [HV]'
+    start = max(least_start, steel%nodes(size(steel%nodes)))
+    if (.not. options%quiet) then
+      call print_line('cooled from '//to_text(start, 5)//' to '//to_text(finish)//' degC', error)
+      write (line, '(a, 6(1x, a10), a)') '     K/s  1 % at', (lower(i)//repeat(' ', 10 - len(lower(i))), i=1, phase_count), '   HV'
+      call print_line(trim(line), error)
+    end if
+    if (.not. (options%check .or. allocated(error))) call table%create(stem//'.cct.csv', columns, error)
+    do k = 1, size(rates)
+      if (allocated(error)) return
+      call cool_at_rate(steel, rates(k), start, finish, state, begin)
+      write (line, '(f8.2, f8.1, 6f11.4, f6.0)') rates(k), begin, state(:phase_count), state(at_hardness)
+      if (.not. has_hardness(steel)) line(83:) = ''
+      if (.not. options%quiet) call print_line(trim(line), error)
+      if (options%check) cycle
+      call table%put(rates(k))
+      call table%put(begin)
+      call table%put(state(:phase_count))
+      call table%put(state(at_hardness))
+      call table%end_row()
+    end do
+    if (.not. (options%check .or. allocated(error))) call table%close(error)
+  end subroutine print_coolings
+
+  !> Name of a phase in small letters.
+  pure function lower(phase) result(s)
+    integer, intent(in) :: phase
+    character(len=:), allocatable :: s
+    integer :: i
+
+    s = trim(phase_names(phase))
+    do i = 1, len(s)
+      s(i:i) = achar(iachar(s(i:i)) + 32)
+    end do
+  end function lower
+
+end module steel_print

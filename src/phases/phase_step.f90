@@ -1,0 +1,329 @@
+!> One step of the phases of a point between two temperatures, the temperature linear in time.
+!>
+!> The way is divided at the nodes of the steel (`steels`: temperatures at fixed distances, and where curves begin, end or bend), so
+!> that the end temperature may move while a step is iterated without any jump of the result, and its derivative is exact (dual
+!> numbers). In a sub-step the temperature of kinetics is that in its middle: order 2 in the width of the sub-steps. Each phase
+!> answers the logarithm w_i by which it alone would divide the austenite; together they divide it by exp(sum w_i) and share what
+!> forms in proportion: exact for one phase, order 2 for several. Fractions stay in [0, 1]; austenite is what is left.
+module phase_step
+  use austenite_kinetics, only: form_austenite, grow_grains
+  use avrami, only: grow_avrami
+  use cct_histories, only: cct_increments
+  use dual_numbers, only: dual_t, exp, log, operator(*), operator(+), operator(-), operator(/)
+  use kinds, only: wp
+  use li_kinetics, only: grow_li
+  use martensite_kinetics, only: grow_martensite
+  use phase_state, only: at_coldest, at_grain, at_hollomon_jaffe, at_rate, at_tempering, first_growth, first_incubation, &
+                         never_cold, set_hardness, state_size
+  use steels, only: austenite, bainite, ferrite, first_diffusive, kinetics_avrami, kinetics_li, kinetics_none, last_diffusive, &
+                    martensite, pearlite, phase_count, prop_latent, steel_t, tempered, unknown_temperature
+  use temperature_curves, only: dual_curve_at, is_given
+  use tempering, only: add_hollomon_jaffe, temper
+  implicit none
+  private
+  public :: advance_phases
+
+  !> Where several phases form at once, a sub-step is divided so that none grows by more than this extended fraction, as it would
+  !> at the start; into so many parts at most.
+  real(wp), parameter :: most_growth = 0.1_wp
+  integer, parameter :: most_parts = 64
+  !> Where the cooling rate of hardness is taken [degC].
+  real(wp), parameter :: rate_temperature = 700.0_wp
+
+contains
+
+  !> From the committed state to the state at the end of a step, its derivative by the temperature there, and the heat released.
+  pure subroutine advance_phases(steel, dt, before, now, committed, state, slope, heat, heat_slope)
+    type(steel_t), intent(in) :: steel
+    real(wp), intent(in) :: dt              !! length of the step [s]
+    real(wp), intent(in) :: before, now     !! temperatures at both ends of it [degC]
+    real(wp), intent(in) :: committed(:)    !! (state_size) [state_units]
+    real(wp), intent(out) :: state(:)       !! (state_size) [state_units]
+    real(wp), intent(out) :: slope(:)       !! (state_size) d state/d now [state_units/K]
+    real(wp), intent(out) :: heat           !! [MJ/m3]
+    real(wp), intent(out) :: heat_slope     !! d heat/d now [MJ/m3/K]
+    type(dual_t) :: s(state_size), released, a, b, time, finish, part
+    integer :: k, last, direction, parts, p
+
+    s%value = committed
+    released = dual_t()
+    finish = dual_t(now, 1.0_wp)
+    parts = parts_of(steel, dt, before, committed)
+    direction = merge(1, -1, now >= before)
+    call find_nodes(steel%nodes, before, now, k, last)
+    a = dual_t(before)
+    do
+      b = finish
+      time = dual_t(dt)
+      if (direction*(last - k) >= 0) b = dual_t(steel%nodes(k))
+      ! the temperature is linear in time; in one piece the whole step
+      if (direction*(last - k) >= 0 .or. abs(a%value - before) > 0) time = dt*(b - a)/(finish - before)
+      part = (b - a)/real(parts, wp)
+      do p = 1, parts
+        call sub_step(steel, time/real(parts, wp), a + real(p - 1, wp)*part, a + real(p, wp)*part, s, released)
+      end do
+      if (direction*(last - k) < 0) exit
+      a = b
+      k = k + direction
+    end do
+    call pass_rate(dt, before, now, s(at_rate))
+    state = s%value
+    slope = s%slope
+    heat = released%value
+    heat_slope = released%slope
+    call set_hardness(steel, state)
+  end subroutine advance_phases
+
+  !> First and last node strictly between two temperatures, in the direction of the step; none: `last` is before `first`.
+  pure subroutine find_nodes(nodes, before, now, first, last)
+    real(wp), intent(in) :: nodes(:), before, now
+    integer, intent(out) :: first, last
+    integer :: low, high
+
+    low = 1 + count(nodes <= min(before, now))
+    high = count(nodes < max(before, now))
+    first = low
+    last = high
+    if (now >= before) return
+    first = high
+    last = low
+  end subroutine find_nodes
+
+  !> Parts into which sub-steps are divided: a function of the state at the start and of the length of the step alone, so that it
+  !> stands still while the end temperature is iterated.
+  pure function parts_of(steel, dt, before, committed) result(parts)
+    type(steel_t), intent(in) :: steel
+    real(wp), intent(in) :: dt, before, committed(:)
+    integer :: parts
+    type(dual_t) :: incubation, growth, w
+    real(wp) :: most
+    integer :: i, active
+
+    active = 0
+    most = 0
+    do i = first_diffusive, last_diffusive
+      if (.not. forms(steel, i, before)) cycle
+      incubation = dual_t(committed(first_incubation + i - first_diffusive))
+      growth = dual_t(committed(first_growth + i - first_diffusive))
+      call grow(steel, i, dual_t(dt), dual_t(before), incubation, growth, w)
+      active = active + 1
+      most = most + w%value
+    end do
+    parts = 1
+    if (active > 1) parts = max(1, min(most_parts, ceiling(min(most/most_growth, real(most_parts, wp)))))
+  end function parts_of
+
+  !> A phase may form by diffusion at a temperature.
+  pure function forms(steel, phase, temperature) result(yes)
+    type(steel_t), intent(in) :: steel
+    integer, intent(in) :: phase
+    real(wp), intent(in) :: temperature
+    logical :: yes
+
+    associate (kinetics => steel%kinetics(phase))
+      yes = kinetics%kind /= kinetics_none .and. temperature > kinetics%low .and. temperature < kinetics%high
+    end associate
+  end function forms
+
+  !> The logarithm by which one phase alone divides what can form in a time at one temperature.
+  pure subroutine grow(steel, phase, time, temperature, incubation, growth, w)
+    type(steel_t), intent(in) :: steel
+    integer, intent(in) :: phase
+    type(dual_t), intent(in) :: time, temperature
+    type(dual_t), intent(inout) :: incubation, growth
+    type(dual_t), intent(out) :: w
+    type(dual_t) :: old
+
+    old = growth
+    select case (steel%kinetics(phase)%kind)
+    case (kinetics_avrami)
+      call grow_avrami(steel%kinetics(phase), time, temperature, incubation, growth)
+      w = growth - old
+    case (kinetics_li)
+      call grow_li(steel%kinetics(phase), steel%li_sum, steel%li_slope, time, temperature, growth, w)
+    end select
+    if (w%value < 0) w = dual_t()   ! round-off
+  end subroutine grow
+
+  !> All that happens between two temperatures of one sub-step.
+  pure subroutine sub_step(steel, time, from, to, s, heat)
+    type(steel_t), intent(in) :: steel
+    type(dual_t), intent(in) :: time, from, to
+    type(dual_t), intent(inout) :: s(:), heat
+    type(dual_t) :: middle
+
+    middle = 0.5_wp*(from + to)
+    if (steel%ac1 > unknown_temperature) then
+      if (middle%value > steel%ac1) call heat_up(steel, time, middle, s, heat)
+    end if
+    if (steel%cct%n > 0) call cool_by_histories(steel, time, from, to, s, heat)
+    call transform(steel, time, middle, to, s, heat)
+    if (any(steel%temper_rate > 0)) call temper_phases(steel, time, middle, s)
+    call settle(s)
+  end subroutine sub_step
+
+  !> Austenite from all other phases, in proportion, and its grains.
+  pure subroutine heat_up(steel, time, temperature, s, heat)
+    type(steel_t), intent(in) :: steel
+    type(dual_t), intent(in) :: time, temperature
+    type(dual_t), intent(inout) :: s(:), heat
+    type(dual_t) :: formed, left, lost
+    integer :: i
+
+    call form_austenite(steel, time, temperature, s(austenite), formed)
+    call grow_grains(steel, time, temperature, s(austenite), formed, s(at_grain))
+    if (formed%value > 0) then
+      left = dual_t()
+      do i = 2, phase_count
+        left = left + s(i)
+      end do
+      do i = 2, phase_count
+        if (.not. s(i)%value > 0) cycle
+        lost = formed*s(i)/left
+        s(i) = s(i) - lost
+        call release(steel, i, temperature, -lost, heat)
+      end do
+      s(austenite) = s(austenite) + formed
+    end if
+    s(at_coldest) = dual_t(never_cold)
+    s(at_tempering) = dual_t()
+    s(at_tempering + 1) = dual_t()
+    s(at_hollomon_jaffe) = dual_t()
+  end subroutine heat_up
+
+  !> What the histories of a CCT diagram give, as far as there is austenite.
+  pure subroutine cool_by_histories(steel, time, from, to, s, heat)
+    type(steel_t), intent(in) :: steel
+    type(dual_t), intent(in) :: time, from, to
+    type(dual_t), intent(inout) :: s(:), heat
+    type(dual_t) :: dz(3), total
+    integer :: i
+
+    call cct_increments(steel%cct, time, from, to, s(at_grain), s(ferrite:bainite), dz)
+    total = dual_t()
+    do i = 1, 3
+      if (dz(i)%value < 0) dz(i) = dual_t()
+      total = total + dz(i)
+    end do
+    if (.not. (total%value > 0 .and. s(austenite)%value > 0)) return
+    do i = 1, 3
+      if (total%value > s(austenite)%value) dz(i) = dz(i)*s(austenite)/total
+      call release(steel, ferrite + i - 1, 0.5_wp*(from + to), dz(i), heat)
+      s(ferrite + i - 1) = s(ferrite + i - 1) + dz(i)
+    end do
+    if (total%value > s(austenite)%value) total = s(austenite)
+    s(austenite) = s(austenite) - total
+  end subroutine cool_by_histories
+
+  !> Ferrite, pearlite, bainite and martensite from austenite.
+  pure subroutine transform(steel, time, middle, to, s, heat)
+    type(steel_t), intent(in) :: steel
+    type(dual_t), intent(in) :: time, middle, to
+    type(dual_t), intent(inout) :: s(:), heat
+    type(dual_t) :: w(ferrite:martensite), total, formed, dz
+    integer :: i
+
+    total = dual_t()
+    do i = ferrite, bainite
+      w(i) = dual_t()
+      if (forms(steel, i, middle%value)) then
+        call grow(steel, i, time, middle, s(first_incubation + i - ferrite), s(first_growth + i - ferrite), w(i))
+        call limit_growth(steel, i, middle, s, w(i))
+      else if (middle%value >= steel%kinetics(i)%high) then
+        s(first_incubation + i - ferrite) = dual_t()
+        s(first_growth + i - ferrite) = dual_t()
+      end if
+      total = total + w(i)
+    end do
+    call grow_martensite(steel, s(ferrite) + s(pearlite) + s(bainite), to, s(at_coldest), w(martensite))
+    total = total + w(martensite)
+    if (.not. (total%value > 0 .and. s(austenite)%value > 0)) return
+    formed = s(austenite)*(1.0_wp - exp(-total))
+    do i = ferrite, martensite
+      if (.not. w(i)%value > 0) cycle
+      dz = formed*w(i)/total
+      call release(steel, i, middle, dz, heat)
+      s(i) = s(i) + dz
+    end do
+    s(austenite) = s(austenite) - formed
+  end subroutine transform
+
+  !> Of a phase that has a largest fraction, only the rest up to there can form.
+  pure subroutine limit_growth(steel, phase, temperature, s, w)
+    type(steel_t), intent(in) :: steel
+    integer, intent(in) :: phase
+    type(dual_t), intent(in) :: temperature, s(:)
+    type(dual_t), intent(inout) :: w
+    type(dual_t) :: room
+
+    if (.not. (is_given(steel%kinetics(phase)%limit) .and. s(austenite)%value > 0)) return
+    room = dual_curve_at(steel%kinetics(phase)%limit, temperature) - s(phase)
+    if (room%value >= s(austenite)%value) return
+    if (room%value <= 0) then
+      w = dual_t()
+    else
+      w = -log(1.0_wp - room/s(austenite)*(1.0_wp - exp(-w)))
+    end if
+  end subroutine limit_growth
+
+  !> Martensite and bainite become tempered; the time counts above all where there is something to temper.
+  pure subroutine temper_phases(steel, time, temperature, s)
+    type(steel_t), intent(in) :: steel
+    type(dual_t), intent(in) :: time, temperature
+    type(dual_t), intent(inout) :: s(:)
+    integer, parameter :: phases(2) = [martensite, bainite]
+    type(dual_t) :: w, gone
+    integer :: k
+
+    if (.not. s(martensite)%value + s(bainite)%value + s(tempered)%value > 0) return
+    call add_hollomon_jaffe(steel, time, temperature, s(at_hollomon_jaffe))
+    do k = 1, 2
+      if (.not. s(phases(k))%value > 0) cycle
+      call temper(steel, k, time, temperature, s(at_tempering + k - 1), w)
+      gone = s(phases(k))*(1.0_wp - exp(-w))
+      s(phases(k)) = s(phases(k)) - gone
+      s(tempered) = s(tempered) + gone
+    end do
+  end subroutine temper_phases
+
+  !> Latent heat of a phase that forms from austenite.
+  pure subroutine release(steel, phase, temperature, formed, heat)
+    type(steel_t), intent(in) :: steel
+    integer, intent(in) :: phase
+    type(dual_t), intent(in) :: temperature, formed
+    type(dual_t), intent(inout) :: heat
+
+    if (is_given(steel%properties(prop_latent, phase))) &
+      heat = heat + dual_curve_at(steel%properties(prop_latent, phase), temperature)*formed
+  end subroutine release
+
+  !> Round-off: no fraction below 0, and austenite is what the others leave.
+  pure subroutine settle(s)
+    type(dual_t), intent(inout) :: s(:)
+    type(dual_t) :: others
+    integer :: i
+
+    others = dual_t()
+    do i = 2, phase_count
+      if (s(i)%value < 0) s(i) = dual_t()
+      others = others + s(i)
+    end do
+    if (others%value > 1) then
+      do i = 2, phase_count
+        s(i) = s(i)/others
+      end do
+      others = dual_t(1.0_wp)
+    end if
+    s(austenite) = 1.0_wp - others
+  end subroutine settle
+
+  !> Cooling rate on the way through 700 degC.
+  pure subroutine pass_rate(dt, before, now, rate)
+    real(wp), intent(in) :: dt, before, now
+    type(dual_t), intent(inout) :: rate
+
+    if (.not. (before >= rate_temperature .and. now < rate_temperature .and. dt > 0)) return
+    rate = dual_t((before - now)/dt, -1/dt)
+  end subroutine pass_rate
+
+end module phase_step

@@ -1,0 +1,76 @@
+!> What a heat treater reads of a steel: times at one temperature, and mixtures after cooling at a constant rate.
+module steel_tables
+  use avrami, only: avrami_time
+  use dual_numbers, only: dual_t
+  use kinds, only: wp
+  use li_kinetics, only: li_rate, li_sum
+  use phase_state, only: start_phases
+  use phase_step, only: advance_phases
+  use steels, only: austenite, kinetics_avrami, kinetics_li, steel_t
+  implicit none
+  private
+  public :: isothermal_time, cool_at_rate, forms_at
+
+  !> Length of a step of temperature while cooling [K]; sub-steps are within.
+  real(wp), parameter :: step_length = 10.0_wp
+  !> Fraction by which transformation has begun.
+  real(wp), parameter :: begun = 0.01_wp
+
+contains
+
+  !> The phase has kinetics of times at this temperature.
+  pure function forms_at(steel, phase, temperature) result(yes)
+    type(steel_t), intent(in) :: steel
+    integer, intent(in) :: phase
+    real(wp), intent(in) :: temperature   !! [degC]
+    logical :: yes
+
+    associate (kinetics => steel%kinetics(phase))
+      yes = any(kinetics%kind == [kinetics_avrami, kinetics_li])
+      yes = yes .and. temperature >= kinetics%low .and. temperature <= kinetics%high
+      if (kinetics%kind == kinetics_li) yes = yes .and. temperature < kinetics%high
+    end associate
+  end function forms_at
+
+  !> Time in which a share of what can form of a phase forms at one temperature; only where it forms (`forms_at`).
+  pure function isothermal_time(steel, phase, temperature, share) result(time)
+    type(steel_t), intent(in) :: steel
+    integer, intent(in) :: phase
+    real(wp), intent(in) :: temperature   !! [degC]
+    real(wp), intent(in) :: share         !! above 0, below 1
+    real(wp) :: time   !! [s]
+    type(dual_t) :: rate
+
+    if (steel%kinetics(phase)%kind == kinetics_li) then
+      rate = li_rate(steel%kinetics(phase), dual_t(temperature))
+      time = li_sum(steel%li_sum, steel%li_slope, share)/rate%value
+    else
+      time = avrami_time(steel%kinetics(phase), temperature, share)
+    end if
+  end function isothermal_time
+
+  !> State after cooling from austenite at a constant rate, and the temperature at which one per cent had transformed (`to` where
+  !> it had not).
+  pure subroutine cool_at_rate(steel, rate, from, to, state, begin)
+    type(steel_t), intent(in) :: steel
+    real(wp), intent(in) :: rate        !! [K/s]
+    real(wp), intent(in) :: from, to    !! temperatures [degC]
+    real(wp), intent(out) :: state(:)   !! (state_size) [state_units]
+    real(wp), intent(out) :: begin      !! [degC]
+    real(wp) :: committed(size(state)), slope(size(state)), a, b, heat, heat_slope
+    integer :: k, n
+
+    call start_phases(steel, state)
+    begin = to
+    n = max(1, ceiling((from - to)/step_length))
+    do k = 1, n
+      a = from + (to - from)*(k - 1)/n
+      b = from + (to - from)*k/n
+      committed = state
+      call advance_phases(steel, (a - b)/rate, a, b, committed, state, slope, heat, heat_slope)
+      if (1 - committed(austenite) < begun .and. 1 - state(austenite) >= begun) &
+        begin = a + (b - a)*(begun - (1 - committed(austenite)))/(committed(austenite) - state(austenite))
+    end do
+  end subroutine cool_at_rate
+
+end module steel_tables

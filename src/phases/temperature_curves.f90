@@ -1,0 +1,94 @@
+!> Functions of the temperature as steels are given by: a constant, a table, a polynomial.
+!>
+!> A table is linear between its temperatures, or linear in the logarithm of its values (times of transformation, which range over
+!> decades), and constant outside. A polynomial holds at any temperature; where it may be used is stated with what uses it.
+module temperature_curves
+  use dual_numbers, only: dual_t, exp, operator(*), operator(+)
+  use kinds, only: wp
+  implicit none
+  private
+  public :: temperature_curve_t, curve_at, dual_curve_at, is_given
+  public :: curve_none, curve_constant, curve_table, curve_polynomial
+
+  integer, parameter :: curve_none = 0, curve_constant = 1, curve_table = 2, curve_polynomial = 3
+
+  type :: temperature_curve_t
+    integer :: form = curve_none
+    !> Temperatures of a table, ascending, and its values; of a constant, one value; of a polynomial its coefficients, from the
+    !> constant one on.
+    real(wp), allocatable :: t(:), v(:)
+    !> The values are logarithms: the function is their exponential.
+    logical :: logarithmic = .false.
+  end type temperature_curve_t
+
+contains
+
+  !> A curve has been given.
+  pure elemental function is_given(curve) result(yes)
+    type(temperature_curve_t), intent(in) :: curve
+    logical :: yes
+
+    yes = curve%form /= curve_none
+  end function is_given
+
+  !> Value at a temperature, 0 where there is no curve.
+  pure function curve_at(curve, temperature) result(value)
+    type(temperature_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: temperature   !! [degC]
+    real(wp) :: value
+    type(dual_t) :: both
+
+    both = dual_curve_at(curve, dual_t(temperature, 0.0_wp))
+    value = both%value
+  end function curve_at
+
+  !> Value and derivative at a temperature that depends on something.
+  pure function dual_curve_at(curve, temperature) result(value)
+    type(temperature_curve_t), intent(in) :: curve
+    type(dual_t), intent(in) :: temperature   !! [degC]
+    type(dual_t) :: value
+    integer :: k
+    real(wp) :: slope
+
+    select case (curve%form)
+    case (curve_constant)
+      value%value = curve%v(1)
+    case (curve_polynomial)
+      do k = size(curve%v), 1, -1
+        value = value*temperature + curve%v(k)
+      end do
+    case (curve_table)
+      associate (t => curve%t, v => curve%v, n => size(curve%t))
+        if (temperature%value <= t(1)) then
+          value%value = v(1)
+        else if (temperature%value >= t(n)) then
+          value%value = v(n)
+        else
+          k = interval_of(t, temperature%value)
+          slope = (v(k + 1) - v(k))/(t(k + 1) - t(k))
+          value = dual_t(v(k) + slope*(temperature%value - t(k)), slope*temperature%slope)
+        end if
+      end associate
+    end select
+    if (curve%logarithmic) value = exp(value)
+  end function dual_curve_at
+
+  !> The interval k of an ascending table with t(k) <= x < t(k+1), for x between its ends.
+  pure function interval_of(t, x) result(k)
+    real(wp), intent(in) :: t(:), x
+    integer :: k
+    integer :: above, middle
+
+    k = 1
+    above = size(t)
+    do while (above - k > 1)
+      middle = (k + above)/2
+      if (t(middle) <= x) then
+        k = middle
+      else
+        above = middle
+      end if
+    end do
+  end function interval_of
+
+end module temperature_curves
