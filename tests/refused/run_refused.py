@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Decks that must be refused: each case of cases.txt damages base.lag and says where the error must be and what it must say.
+"""Decks that must be refused: each case of cases.txt damages base.lag, each of steel_cases.txt steel.met, and says where the error
+must be and what it must say.
 
 usage: run_refused.py [-v]        -v prints what the program said for each case
 LAGAMINE_BIN is the folder of `lagamine` (default: build/bin of this project). Works in a folder of its own.
@@ -80,12 +81,12 @@ def place(lines, text, field):
     return where
 
 
-def judge(case, base, folder, verbose):
+def judge(case, base, options, folder, verbose):
     """What is wrong with the answer, or None."""
     lines = damage(base, case["edits"])
     with open(os.path.join(folder, "deck.lag"), "w") as deck:
         deck.write("\n".join(lines) + "\n")
-    run = subprocess.run([os.path.join(BIN, "lagamine"), "deck.lag", "--check"], cwd=folder, text=True, timeout=60,
+    run = subprocess.run([os.path.join(BIN, "lagamine"), *options, "deck.lag", "--check"], cwd=folder, text=True, timeout=60,
                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if verbose:
         print(f"--- {case['name']}\n{run.stdout}", end="")
@@ -103,14 +104,21 @@ def judge(case, base, folder, verbose):
     return None
 
 
+def all_cases():
+    """Each case with the lines it damages and the options by which lagamine reads them."""
+    for base, cases, options in (("base.lag", "cases.txt", []), ("steel.met", "steel_cases.txt", ["--met"])):
+        lines = open(os.path.join(HERE, base)).read().splitlines()
+        for case in read_cases(os.path.join(HERE, cases)):
+            yield case, lines, options
+
+
 def main():
     verbose = "-v" in sys.argv[1:]
-    base = open(os.path.join(HERE, "base.lag")).read().splitlines()
     passed = failed = 0
     with tempfile.TemporaryDirectory() as folder:
-        for case in read_cases(os.path.join(HERE, "cases.txt")):
+        for case, base, options in all_cases():
             try:
-                wrong = judge(case, base, folder, verbose)
+                wrong = judge(case, base, options, folder, verbose)
             except ValueError as error:
                 wrong = str(error)
             passed += wrong is None
