@@ -3,7 +3,7 @@ module run_deck
   use atomic, only: refuse_place
   use blas, only: blas_buffer, blas_build, blas_core_name, keep_blas_to_one_thread
   use contact_ends, only: contact_end_t
-  use deck_reader, only: deck_t, fingerprint_text, read_deck
+  use deck_reader, only: deck_t, read_deck
   use diagnostics, only: diagnostics_t
   use equations, only: equations_t
   use errors, only: error_t, exit_done, exit_input, exit_machine, exit_remesh, fail
@@ -27,6 +27,7 @@ module run_deck
   use scene_summary, only: scene_lines
   use solution, only: solution_t, start_solution
   use standard_streams, only: print_lines
+  use steel_files, only: fingerprint_with_steels
   use summary, only: run_facts_t, summary_lines, write_summary
   use system, only: catch_signals, directory_exists, join_path, make_directory, remove_file, wall_seconds
   use text, only: join, nearest_word, string_t
@@ -133,7 +134,7 @@ contains
     call read_deck(options%deck, options%overrides, deck, diagnostics)
     sound = diagnostics%count() == 0
     if (sound .and. allocated(options%resume)) then
-      call fingerprint_text(deck, text)
+      call fingerprint_with_steels(deck, text)
       call open_checkpoint(options%resume, checkpoint, unfit)
       if (.not. allocated(unfit)) call read_mesh_of(checkpoint, text, remesh, unfit)
     end if
@@ -148,7 +149,7 @@ contains
       end if
     end if
     if (.not. allocated(error) .and. allocated(unfit)) call move_alloc(unfit, error)
-    if (.not. allocated(error)) call fingerprint_text(deck, text)
+    if (.not. allocated(error)) call fingerprint_with_steels(deck, text)
     at_rest = allocated(remesh)
     if (at_rest) at_rest = remesh%step == 0
     if (.not. allocated(remesh)) at_rest = lacks_mesh(scene)

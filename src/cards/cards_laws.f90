@@ -9,6 +9,7 @@ module cards_laws
   use law_registry, only: law_names
   use materials, only: material_t
   use scene_draft, only: close_card, draft_t
+  use steel_files, only: read_steel_of_law
   use text, only: join, string_t, to_text
   implicit none
   private
@@ -43,6 +44,10 @@ contains
         material%law = ''
         if (material%law_id > 0) then
           material%law = draft%laws(material%law_id)%name
+          if (draft%laws(material%law_id)%of_steel) then
+            call read_steel_of_law(cursor, deck%path, material%steel, diagnostics)
+            if (cursor%peek_row() == 'TEMP') call cursor%fail('the steel has the temperatures: expected no rows TEMP')
+          end if
           if (cursor%peek_row() == 'TEMP') then
             call read_temperatures(cursor, draft%laws(material%law_id), material)
           else

@@ -56,6 +56,7 @@ contains
     end if
     call add_text(lines, '')
     call add_text(lines, 'LAW name '//law%name)
+    if (law%of_steel) call add_text(lines, '  STEEL file name, a steel of a .MET file')
     do i = 1, size(law%lines)
       call add_text(lines, card_line(law%lines(i)))
       do k = 1, size(law%lines(i)%parameters)
@@ -64,7 +65,7 @@ contains
     end do
     if (any_rises(law)) then
       call add_text(lines, '  all rows again for each temperature, after a row TEMP value: two at least')
-    else if (law%kind /= contact_law) then
+    else if (law%kind /= contact_law .and. .not. law%of_steel) then
       call add_text(lines, '  all rows again for each temperature, after a row TEMP value; or once, without')
     end if
     if (allocated(law%drivers)) then

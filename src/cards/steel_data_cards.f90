@@ -3,9 +3,9 @@ module steel_data_cards
   use deck_cursor, only: cursor_t
   use kinds, only: wp
   use steel_curves, only: read_curve
-  use steels, only: element_names, martensite, bainite, phase_count, phase_names, property_count, property_names, property_units, &
-                    steel_t, unknown_temperature
-  use temperature_curves, only: is_given
+  use steels, only: element_names, martensite, bainite, phase_count, phase_names, prop_content, prop_rhoc, &
+                    property_count, property_names, property_units, steel_t, unknown_temperature
+  use temperature_curves, only: curve_table, is_given, temperature_curve_t
   use text, only: string_t
   implicit none
   private
@@ -167,27 +167,39 @@ contains
     end do
   end subroutine read_tempering
 
-  !> `PHASE name`, rows of a property and its function.
+  !> `PHASE name|ALL`, rows of a property and its function.
   subroutine read_phase_data(cursor, steel)
     type(cursor_t), intent(inout) :: cursor
     type(steel_t), intent(inout) :: steel
-    type(string_t) :: phases(phase_count), names(property_count)
-    integer :: i, phase, k
+    type(temperature_curve_t) :: curve
+    type(string_t) :: phases(phase_count + 1), names(property_count)
+    integer :: i, k, first, last
 
     do i = 1, phase_count
       phases(i)%s = trim(phase_names(i))
     end do
+    phases(phase_count + 1)%s = 'ALL'
     do i = 1, property_count
       names(i)%s = trim(property_names(i))
     end do
-    call cursor%name('a phase', phases, phase)
-    if (phase == 0) return
+    call cursor%name('a phase, or ALL', phases, i)
+    if (i == 0) return
+    first = merge(1, i, i > phase_count)
+    last = min(i, phase_count)
     do while (cursor%more_rows())
       call cursor%next_row('a property and its function')
       call cursor%name('a property', names, k)
       if (k == 0) return
-      if (is_given(steel%properties(k, phase))) call cursor%fail(names(k)%s//' of '//phases(phase)%s//' is given twice')
-      call read_curve(cursor, names(k)%s//' ('//trim(property_units(k))//')', steel%properties(k, phase))
+      if (any(is_given(steel%properties(k, first:last)))) call cursor%fail(names(k)%s//' of '//phases(i)%s//' is given twice')
+      call read_curve(cursor, names(k)%s//' ('//trim(property_units(k))//')', curve)
+      if (cursor%failed()) return
+      steel%properties(k, first:last) = curve
+      steel%one_heat = steel%one_heat .or. (i > phase_count .and. any(k == [prop_rhoc, prop_content]))
+      if (k /= prop_content) cycle
+      if (curve%form == curve_table) then
+        if (all(curve%v(2:) > curve%v(:size(curve%v) - 1))) cycle
+      end if
+      call cursor%fail('H must be a TABLE that grows with the temperature')
     end do
   end subroutine read_phase_data
 

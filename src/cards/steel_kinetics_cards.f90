@@ -203,6 +203,8 @@ contains
     cct%first = [first(:n), k + 1]
     allocate (cct%t, source=t(:k))
     allocate (cct%z, source=z(:, :k))
+    cct%hottest = maxval(cct%t)
+    cct%coldest = minval(cct%t)
     steel%cct = cct
   end subroutine read_cct
 

@@ -23,8 +23,8 @@ module point_drivers
   private
   public :: drivers_t, find_drivers, missing_driver, start_drivers, advance_drivers, nodal_values, is_scalar
 
-  !> Where a driver comes from.
-  integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3
+  !> Where a driver comes from. A state variable of the formulation itself is that at the start of the step.
+  integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3, from_itself = 4
   !> Name of the flow stress of the body behind a side.
   character(len=*), parameter :: flow_name = 'flow_stress'
 
@@ -159,6 +159,12 @@ contains
       end if
     end if
     allocate (source%group(size(scene%groups)), source%row(size(scene%groups)), source=0)
+    v = find_variable(scene%groups(g)%variables, name)
+    if (v > 0 .and. scene%groups(g)%role /= role_contact) then
+      source%kind = from_itself
+      source%row(g) = scene%groups(g)%variables(v)%first
+      return
+    end if
     do k = 1, size(scene%groups)
       if (k == g .or. scene%groups(k)%role == role_contact) cycle
       v = find_variable(scene%groups(k)%variables, name)
@@ -246,6 +252,8 @@ contains
           do e = 1, size(own%value, 4)
             own%value(k, at, :, e) = state_at_points(scene, solution, g, own, k, at, e)
           end do
+        case (from_itself)
+          if (at == 1) own%value(k, at, :, :) = solution%groups(g)%committed(own%source(k)%row(g), :, :)
         case (from_flow)
           if (at == 2) cycle
           do e = 1, size(own%value, 4)

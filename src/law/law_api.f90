@@ -91,6 +91,8 @@ module law_api
     integer :: kind = solid_law
     character(len=:), allocatable :: purpose, source
     type(law_line_t), allocatable :: lines(:)
+    !> Its card names a steel, on a row STEEL before all others.
+    logical :: of_steel = .false.
     !> History of a point beside stress and elastic strain, or beside what contact keeps. What a material does not need comes
     !> last and is left out.
     type(state_variable_t), allocatable :: history(:)
@@ -198,9 +200,10 @@ module law_api
     end subroutine law_store_i
 
     !> Heat that a point releases in a step beside what flows, and its derivative by the temperature at the end.
-    pure subroutine law_release_i(material, drivers, committed, released, slope, history)
+    pure subroutine law_release_i(material, dt, drivers, committed, released, slope, history)
       import :: material_t, wp
       type(material_t), intent(in) :: material
+      real(wp), intent(in) :: dt              !! length of the step [time]
       real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) at both ends of the step, temperature first [unit of each driver]
       real(wp), intent(in) :: committed(:)    !! (nhistory) at the start of the step [unit of each component]
       real(wp), intent(out) :: released       !! [energy/length^3] per volume of the start

@@ -151,9 +151,9 @@ contains
 
   !> The share QUINNEY of the plastic work (G.I. Taylor, H. Quinney 1934) that has not become heat yet: `work_heated` is the work
   !> that has, so that none is lost where the motion is solved for after the temperature, and its heat comes a step later.
-  pure subroutine release(material, drivers, committed, released, slope, history)
+  pure subroutine release(material, dt, drivers, committed, released, slope, history)
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: drivers(:, :), committed(:)
+    real(wp), intent(in) :: dt, drivers(:, :), committed(:)
     real(wp), intent(out) :: released, slope, history(:)
 
     real(wp) :: values(size(material%values))

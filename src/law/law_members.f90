@@ -5,12 +5,13 @@ submodule(law_registry) law_members
   use law_epla, only: law_epla_row
   use law_glue2d, only: law_glue2d_row
   use law_heat, only: law_heat_row, law_heath_row
+  use law_meta, only: law_meta_row
   use law_viscous, only: law_evpnh_row, law_gsell_row
   implicit none
 contains
 
   module procedure list_laws
-    allocate (laws(9))
+    allocate (laws(10))
     laws(1) = law_ela_row()
     laws(2) = law_epla_row()
     laws(3) = law_coul2d_row()
@@ -20,6 +21,7 @@ contains
     laws(7) = law_gsell_row()
     laws(8) = law_heat_row()
     laws(9) = law_heath_row()
+    laws(10) = law_meta_row()
   end procedure list_laws
 
 end submodule law_members

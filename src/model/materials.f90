@@ -1,6 +1,7 @@
 !> A material: a law with its numbers. What the numbers mean is declared by the law (src/law).
 module materials
   use kinds, only: wp
+  use steels, only: steel_t
   implicit none
   private
   public :: material_t, values_at, bracket_temperature, integral_over_temperature, has_number
@@ -18,6 +19,8 @@ module materials
     real(wp), allocatable :: temperatures(:)
     !> All values (nvalue, ntemperature) and curves (2, npoint, ntemperature); allocated with `temperatures`.
     real(wp), allocatable :: values_by_temperature(:, :), curves(:, :, :)
+    !> Data of its phases, of laws that have some.
+    type(steel_t), allocatable :: steel
     !> Where the deck defines it, for messages.
     character(len=:), allocatable :: where_defined
   end type material_t

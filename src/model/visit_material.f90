@@ -22,6 +22,7 @@ contains
     call visitor%derived('temperatures', of_the_deck)
     call visitor%derived('values_by_temperature', of_the_deck)
     call visitor%derived('curves', of_the_deck)
+    call visitor%derived('steel', of_the_deck)
     call visitor%derived('where_defined', of_the_deck)
   end subroutine visit_material_members
 

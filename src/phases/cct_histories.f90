@@ -29,6 +29,7 @@ contains
 
     increments = dual_t()
     if (.not. (to%value < from%value .and. time%value > 0)) return
+    if (to%value >= cct%hottest .or. from%value <= cct%coldest) return
     rate = log((from - to)/time)
     if (abs(cct%grain_factor) > 0) rate = rate + cct%grain_factor*(grain - cct%grain_reference)
     if (rate%value < log(cct%rate(1))) rate = dual_t(log(cct%rate(1)))
@@ -46,42 +47,63 @@ contains
     type(dual_t), intent(in) :: rate, temperature, z(3)
     integer, intent(out) :: k
     type(dual_t), intent(out) :: share
-    type(dual_t) :: a(3), b(3), along, d, length, distance, s
-    real(wp) :: low, best
+    type(dual_t) :: a, b, along, length
+    real(wp) :: here(4), from(4), to(4), line(4), s, distance, best
     integer :: h, i
 
     best = huge(best)
     k = 1
-    share = dual_t()
-    do i = 1, 3
-      b(i) = history_at(cct, 1, i, temperature)
-    end do
+    here = [rate%value, z%value]
+    to = place_of(cct, 1, temperature%value)
     do h = 1, cct%n - 1
-      a = b
-      do i = 1, 3
-        b(i) = history_at(cct, h + 1, i, temperature)
-      end do
-      low = log(cct%rate(h))
-      d = dual_t(log(cct%rate(h + 1)) - low)
-      along = (rate - low)*d
-      length = d*d
-      do i = 1, 3
-        along = along + (z(i) - a(i))*(b(i) - a(i))
-        length = length + (b(i) - a(i))*(b(i) - a(i))
-      end do
-      s = along/length
-      if (s%value <= 0) s = dual_t(0.0_wp)
-      if (s%value >= 1) s = dual_t(1.0_wp)
-      distance = (rate - low - s*d)*(rate - low - s*d)
-      do i = 1, 3
-        distance = distance + (z(i) - a(i) - s*(b(i) - a(i)))*(z(i) - a(i) - s*(b(i) - a(i)))
-      end do
-      if (distance%value >= best) cycle
-      best = distance%value
+      from = to
+      to = place_of(cct, h + 1, temperature%value)
+      line = to - from
+      s = max(0.0_wp, min(1.0_wp, dot_product(here - from, line)/dot_product(line, line)))
+      distance = sum((here - from - s*line)**2)
+      if (distance >= best) cycle
+      best = distance
       k = h
-      share = s
     end do
+    ! the same again for the nearest line, with its derivative
+    b = dual_t(log(cct%rate(k + 1)/cct%rate(k)))
+    along = (rate - log(cct%rate(k)))*b
+    length = b*b
+    do i = 1, 3
+      a = history_at(cct, k, i, temperature)
+      b = history_at(cct, k + 1, i, temperature) - a
+      along = along + (z(i) - a)*b
+      length = length + b*b
+    end do
+    share = along/length
+    if (share%value <= 0) share = dual_t(0.0_wp)
+    if (share%value >= 1) share = dual_t(1.0_wp)
   end subroutine nearest_place
+
+  !> ln(rate) and fractions of history k at a temperature.
+  pure function place_of(cct, k, temperature) result(place)
+    type(histories_t), intent(in) :: cct
+    integer, intent(in) :: k
+    real(wp), intent(in) :: temperature
+    real(wp) :: place(4)
+    real(wp) :: share
+    integer :: p
+
+    place(1) = log(cct%rate(k))
+    associate (first => cct%first(k), last => cct%first(k + 1) - 1)
+      if (temperature >= cct%t(first)) then
+        place(2:) = cct%z(:, first)
+      else if (temperature <= cct%t(last)) then
+        place(2:) = cct%z(:, last)
+      else
+        do p = first, last - 2
+          if (temperature > cct%t(p + 1)) exit
+        end do
+        share = (temperature - cct%t(p))/(cct%t(p + 1) - cct%t(p))
+        place(2:) = (1 - share)*cct%z(:, p) + share*cct%z(:, p + 1)
+      end if
+    end associate
+  end function place_of
 
   !> Fraction i of history k at a temperature: linear between its points, constant outside.
   pure function history_at(cct, k, i, temperature) result(z)

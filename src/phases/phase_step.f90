@@ -156,7 +156,7 @@ contains
     if (steel%ac1 > unknown_temperature) then
       if (middle%value > steel%ac1) call heat_up(steel, time, middle, s, heat)
     end if
-    if (steel%cct%n > 0) call cool_by_histories(steel, time, from, to, s, heat)
+    if (steel%cct%n > 0 .and. s(austenite)%value > 0) call cool_by_histories(steel, time, from, to, s, heat)
     call transform(steel, time, middle, to, s, heat)
     if (any(steel%temper_rate > 0)) call temper_phases(steel, time, middle, s)
     call settle(s)
@@ -205,7 +205,7 @@ contains
       if (dz(i)%value < 0) dz(i) = dual_t()
       total = total + dz(i)
     end do
-    if (.not. (total%value > 0 .and. s(austenite)%value > 0)) return
+    if (.not. total%value > 0) return
     do i = 1, 3
       if (total%value > s(austenite)%value) dz(i) = dz(i)*s(austenite)/total
       call release(steel, ferrite + i - 1, 0.5_wp*(from + to), dz(i), heat)

@@ -90,7 +90,7 @@ contains
         call add_table(steel%properties(j, i))
       end do
     end do
-    if (steel%cct%n > 0) breaks = [breaks, maxval(steel%cct%t), minval(steel%cct%t)]
+    if (steel%cct%n > 0) breaks = [breaks, steel%cct%hottest, steel%cct%coldest]
     breaks = pack(breaks, breaks > unknown_temperature)
     call sort(breaks)
     breaks = pack(breaks, [.true., breaks(2:) > breaks(:size(breaks) - 1)])

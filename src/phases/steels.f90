@@ -11,7 +11,7 @@ module steels
   public :: austenite, ferrite, pearlite, bainite, martensite, tempered, phase_count, phase_names, first_diffusive, last_diffusive
   public :: kinetics_none, kinetics_avrami, kinetics_li
   public :: property_count, property_names, property_units
-  public :: prop_lambda, prop_rhoc, prop_latent, prop_hardness
+  public :: prop_lambda, prop_rhoc, prop_latent, prop_hardness, prop_content
   public :: element_names, celsius_zero, gas_constant, unknown_temperature, default_substep
   public :: el_c, el_mn, el_si, el_ni, el_cr, el_mo, el_v, el_w, el_cu, el_p, el_al, el_as, el_ti
 
@@ -26,11 +26,12 @@ module steels
   integer, parameter :: kinetics_none = 0, kinetics_avrami = 1, kinetics_li = 2
 
   !> Properties of a phase by temperature, their names on cards and their units.
-  integer, parameter :: prop_lambda = 1, prop_rhoc = 2, prop_latent = 3, prop_hardness = 4, property_count = 11
+  integer, parameter :: prop_lambda = 1, prop_rhoc = 2, prop_latent = 3, prop_hardness = 4, prop_content = 5, &
+                        property_count = 12
   character(len=6), parameter :: property_names(property_count) = [character(len=6) :: 'LAMBDA', 'RHOC', 'LATENT', 'HV', &
-                                                                   'E', 'NU', 'ALPHA', 'DEPS', 'SY', 'ET', 'KTP']
+                                                                   'H', 'E', 'NU', 'ALPHA', 'DEPS', 'SY', 'ET', 'KTP']
   character(len=9), parameter :: property_units(property_count) = [character(len=9) :: 'W/m/K', 'MJ/m3/K', 'MJ/m3', 'HV', &
-                                                                   'MPa', '-', '1/K', '-', 'MPa', 'MPa', '1/MPa']
+                                                                   'MJ/m3', 'MPa', '-', '1/K', '-', 'MPa', 'MPa', '1/MPa']
 
   !> Elements of a composition.
   integer, parameter :: el_c = 1, el_mn = 2, el_si = 3, el_ni = 4, el_cr = 5, el_mo = 6, el_v = 7, el_w = 8, el_cu = 9, el_p = 10, &
@@ -78,6 +79,7 @@ module steels
     real(wp), allocatable :: rate(:)            !! (n) cooling rates, ascending [K/s]
     integer, allocatable :: first(:)            !! (n+1)
     real(wp), allocatable :: t(:), z(:, :)      !! (npoint) [degC], (3, npoint) ferrite, pearlite, bainite
+    real(wp) :: hottest = 0.0_wp, coldest = 0.0_wp   !! first and last temperature of all [degC]
     !> Cooling rate counts exp(grain_factor (D - grain_reference)) times, D the grain size.
     real(wp) :: grain_factor = 0.0_wp, grain_reference = 0.0_wp
   end type histories_t
@@ -108,6 +110,8 @@ module steels
     !> Hardness by Maynier's formulas where a phase has none of its own.
     logical :: maynier = .false.
     type(temperature_curve_t) :: properties(property_count, phase_count)
+    !> All phases take up heat alike.
+    logical :: one_heat = .false.
     real(wp) :: substep = default_substep   !! [K]
     !> Temperatures at which sub-steps end, ascending [degC]: they stand still while a step is iterated.
     real(wp), allocatable :: nodes(:)

@@ -7,7 +7,7 @@ module temperature_curves
   use kinds, only: wp
   implicit none
   private
-  public :: temperature_curve_t, curve_at, dual_curve_at, is_given
+  public :: temperature_curve_t, curve_at, curve_integral, dual_curve_at, is_given
   public :: curve_none, curve_constant, curve_table, curve_polynomial
 
   integer, parameter :: curve_none = 0, curve_constant = 1, curve_table = 2, curve_polynomial = 3
@@ -72,6 +72,38 @@ contains
     end select
     if (curve%logarithmic) value = exp(value)
   end function dual_curve_at
+
+  !> Exact integral from a temperature to another; of a curve that is not logarithmic.
+  pure function curve_integral(curve, from, to) result(integral)
+    type(temperature_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: from, to   !! [degC]
+    real(wp) :: integral
+    real(wp) :: a, b, low, high
+    integer :: k, n
+
+    integral = 0
+    select case (curve%form)
+    case (curve_constant)
+      integral = curve%v(1)*(to - from)
+    case (curve_polynomial)
+      do k = size(curve%v), 1, -1
+        integral = integral + curve%v(k)/k*(to**k - from**k)
+      end do
+    case (curve_table)
+      low = min(from, to)
+      high = max(from, to)
+      associate (t => curve%t, v => curve%v)
+        n = size(t)
+        integral = v(1)*max(0.0_wp, min(high, t(1)) - low) + v(n)*max(0.0_wp, high - max(low, t(n)))
+        do k = 1, n - 1
+          a = max(low, t(k))
+          b = min(high, t(k + 1))
+          if (b > a) integral = integral + (b - a)*(v(k) + (v(k + 1) - v(k))*(0.5_wp*(a + b) - t(k))/(t(k + 1) - t(k)))
+        end do
+      end associate
+      if (to < from) integral = -integral
+    end select
+  end function curve_integral
 
   !> The interval k of an ascending table with t(k) <= x < t(k+1), for x between its ends.
   pure function interval_of(t, x) result(k)

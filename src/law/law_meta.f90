@@ -1,0 +1,148 @@
+!> META: conduction of heat in a steel whose phases change.
+!>
+!> The points of the body hold the fractions of the phases and what their kinetics remember (src/phases). Heat flow
+!> -LAMBDA(T, z) grad T, LAMBDA that of the mixture at the start of the step. The heat taken up is that of austenite, exact between
+!> any temperatures; what the other phases take up more or less, with the mean of their fractions at both ends of the step, and the
+!> latent heat are released at the points, with the exact derivative by the temperature at the end. A steel whose heat content H
+!> holds the latent heat already has none beside.
+!> The data are in the units of the steel's file: ENERGY is 1 MJ/m3 in the deck's [energy/length^3], CONDUCT 1 W/m/K in its unit of
+!> conductivity, TIME the seconds of its unit of time, ZERO what makes its temperatures degC.
+!> Source: S. Denis, D. Farias, A. Simon, ISIJ Int. 32 (1992) 316; kinetics: where they stand.
+module law_meta
+  use heat_of_phases, only: heat_taken, lacking_heat_data, mixture_conductivity
+  use kinds, only: wp
+  use law_api, only: driver_temperature, heat_law, law_line, law_t, parameter, parameter_t
+  use materials, only: material_t
+  use phase_state, only: at_coldest, at_grain, first_fraction, never_cold, state_names, state_size, state_units
+  use phase_step, only: advance_phases
+  use state_variables, only: state_variable, transfer_fraction, transfer_scalar
+  use steels, only: austenite, phase_count
+  use text, only: string_t
+  implicit none
+  private
+  public :: law_meta_row
+
+  !> Places among the values of a material; place of the first fraction among the drivers.
+  integer, parameter :: place_energy = 1, place_conduct = 2, place_time = 3, place_zero = 4, place_source = 5, driver_fraction = 2
+
+contains
+
+  function law_meta_row() result(row)
+    type(law_t) :: row
+    integer :: k
+
+    row%name = 'META'
+    row%number = 312
+    row%kind = heat_law
+    row%purpose = 'conduction of heat in a steel with phases'
+    row%source = 'Fourier; kinetics of the steel''s file'
+    row%effects = ''
+    row%of_steel = .true.
+    row%symmetric_by_temperature = .false.
+    allocate (row%lines, source=[law_line(units(), pairs=.true.)])
+    allocate (row%history(state_size), row%drivers(phase_count))
+    do k = 1, state_size
+      row%history(k) = state_variable(trim(state_names(k)), trim(state_units(k)), &
+                                      merge(transfer_fraction, transfer_scalar//'  ', k < first_fraction + phase_count))
+      row%history(k)%transfer = trim(row%history(k)%transfer)
+    end do
+    row%history(austenite)%initial = 1
+    row%history(at_coldest)%initial = never_cold
+    do k = 1, phase_count
+      row%drivers(k)%name = trim(state_names(k))
+    end do
+    row%conduct => conduct
+    row%store => store
+    row%swell => swell
+    row%release => release
+    row%check => check
+  end function law_meta_row
+
+  !> Units of the steel's file in those of the deck, and SOURCE.
+  function units() result(list)
+    type(parameter_t), allocatable :: list(:)
+
+    allocate (list(5))
+    list(place_energy) = parameter('ENERGY', 'energy/length^3', 'that of 1 MJ/m3 in units of the deck', above=0.0_wp)
+    list(place_conduct) = parameter('CONDUCT', '-', 'conductivity of 1 W/m/K in units of the deck', above=0.0_wp, default=1.0_wp)
+    list(place_time) = parameter('TIME', '-', 'seconds of a unit of time', above=0.0_wp, default=1.0_wp)
+    list(place_zero) = parameter('ZERO', 'temperature', 'what is added to make temperatures degC', default=0.0_wp)
+    list(place_source) = parameter('SOURCE', 'energy/length^3', 'heat taken up by a change of volume, per volume strain', &
+                                   default=0.0_wp)
+  end function units
+
+  !> Conductivity of the mixture at the start of the step.
+  pure subroutine conduct(material, drivers, conductivity, slope)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: drivers(:, :)
+    real(wp), intent(out) :: conductivity(:), slope(:)
+    integer :: n
+
+    do n = 1, size(conductivity)
+      call mixture_conductivity(material%steel, drivers(driver_fraction:, n), &
+                                drivers(driver_temperature, n) + material%values(place_zero), conductivity(n), slope(n))
+    end do
+    conductivity = conductivity*material%values(place_conduct)
+    slope = slope*material%values(place_conduct)
+  end subroutine conduct
+
+  !> Heat taken up as by austenite.
+  pure subroutine store(material, before, now, taken, capacity)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: before(:, :), now(:, :)
+    real(wp), intent(out) :: taken(:), capacity(:)
+    integer :: n
+
+    do n = 1, size(taken)
+      call heat_taken(material%steel, austenite, before(driver_temperature, n) + material%values(place_zero), &
+                      now(driver_temperature, n) + material%values(place_zero), taken(n), capacity(n))
+    end do
+    taken = taken*material%values(place_energy)
+    capacity = capacity*material%values(place_energy)
+  end subroutine store
+
+  !> Phases at the end of the step, their latent heat, and by how much they take up less heat than austenite.
+  pure subroutine release(material, dt, drivers, committed, released, slope, history)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: dt, drivers(:, :), committed(:)
+    real(wp), intent(out) :: released, slope, history(:)
+    real(wp) :: start(state_size), changes(state_size), t(2), taken, capacity, own(2), mean
+    integer :: i
+
+    start = committed
+    if (.not. start(at_grain) > 0) start(at_grain) = material%steel%grain
+    t = drivers(driver_temperature, :) + material%values(place_zero)
+    call advance_phases(material%steel, dt*material%values(place_time), t(1), t(2), start, history, changes, released, slope)
+    if (.not. material%steel%one_heat) then
+      call heat_taken(material%steel, austenite, t(1), t(2), taken, capacity)
+      do i = 1, phase_count
+        mean = 0.5_wp*(start(i) + history(i))
+        if (i == austenite .or. .not. mean > 0) cycle
+        call heat_taken(material%steel, i, t(1), t(2), own(1), own(2))
+        released = released + mean*(taken - own(1))
+        slope = slope + mean*(capacity - own(2)) + 0.5_wp*changes(i)*(taken - own(1))
+      end do
+    end if
+    released = released*material%values(place_energy)
+    slope = slope*material%values(place_energy)
+  end subroutine release
+
+  !> SOURCE.
+  pure function swell(material, temperature) result(heat)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: temperature
+    real(wp) :: heat
+
+    heat = material%values(place_source)
+    if (temperature < -huge(temperature)) heat = 0   ! a number that holds at any temperature
+  end function swell
+
+  !> The steel has conductivity and heat of all phases that may be there.
+  pure subroutine check(material, problems)
+    type(material_t), intent(in) :: material
+    type(string_t), allocatable, intent(out) :: problems(:)
+
+    call lacking_heat_data(material%steel, problems)
+  end subroutine check
+
+end module law_meta
