@@ -9,14 +9,14 @@
 !> mean of that at the start and at the end counts).
 !> Source: B.A. Boley, J.H. Weiner, Theory of Thermal Stresses (1960), ch. 1 (free energy of an elastic body).
 module thermal_work
-  use elem_api, only: instant_t, totals_t
+  use elem_api, only: group_temperature, instant_t, totals_t
   use element_loop, only: group_geometry
   use equations, only: equations_t
   use fields, only: displacement_field, section_field
   use kinds, only: wp
   use law_api, only: asks_for, driver_count, driver_temperature, law_t, solid_law
   use loads, only: multiplier_at
-  use point_temperatures, only: find_temperatures, projected_functions, temperature_place
+  use point_temperatures, only: point_temperatures_of, projected_functions, temperature_place
   use quad8_geometry, only: quad8_rule, quad8_rule_t
   use scene, only: group_t, scene_t
   use solution, only: solution_t
@@ -107,8 +107,10 @@ contains
             du(layout%first(1, u) + k - 1) = solution%fields(f)%last_increment(1, nodes(k, e))
             start(layout%first(1, u) + k - 1) = solution%fields(f)%value(1, nodes(k, e)) - du(layout%first(1, u) + k - 1)
           end do
+          call point_temperatures_of(layout, functions, du, start, given(driver_temperature, :, p + 1:p + n))
+        else
+          given(driver_temperature, :, p + 1:p + n) = spread(group_temperature(group, instant), 2, n)
         end if
-        call find_temperatures(group, instant, layout, functions, du, start, given(driver_temperature, :, p + 1:p + n))
         if (size(given, 1) > 1) given(2:, :, p + 1:p + n) = equations%drivers(g)%value(2:, :, :, e)
       end do
     end associate
