@@ -4,7 +4,8 @@
 #                         (empty where there is none)
 # and the variables `build` (the build folder: $root/build), `preset` (release) and `jobs` (how many things to do at once).
 
-packages="gfortran make cmake libmumps-seq-dev libmetis-dev libhdf5-dev libopenblas-dev python3 python3-h5py python3-matplotlib"
+packages="gfortran make cmake libmumps-seq-dev libmetis-dev libhdf5-dev libopenblas-dev python3 python3-h5py python3-matplotlib \
+python3-meshio python3-ezdxf"
 build="$root/build"
 preset=release
 

@@ -67,7 +67,7 @@ def check_programs(prefix):
         version = re.search(r"project\(lagamine VERSION (\S+)", file.read()).group(1)
     programs = ["lagamine", "remdata", "lagacycle"]
     if os.path.exists(os.path.join(BUILD, "bin", "lagareport")):
-        programs.append("lagareport")
+        programs += ["lagareport", "lagaimport"]
     for program in programs:
         said = call(os.path.join(prefix, cache("CMAKE_INSTALL_BINDIR"), program), "--version")
         check(said.returncode == 0 and said.stdout.split("\n")[0].startswith(f"{program} {version}"), f"{program} --version",
@@ -136,7 +136,7 @@ def check_folders(folder):
         return
     for made_file in files_of(BUILD):
         top = made_file.split(os.sep)[0]
-        if top in ("bin", "modules") and os.path.basename(made_file) not in ("lagareport", "lagacycle") \
+        if top in ("bin", "modules") and os.path.basename(made_file) not in ("lagareport", "lagaimport", "lagacycle") \
                 or made_file.endswith("_core.a"):
             os.makedirs(os.path.dirname(os.path.join(build, made_file)), exist_ok=True)
             shutil.copy2(os.path.join(BUILD, made_file), os.path.join(build, made_file))
@@ -146,8 +146,9 @@ def check_folders(folder):
     found = {file.split(os.sep)[0] for file in files_of(prefix)}
     check(found == set(FOLDERS.values()), "folders of the installation", sorted(found))
     if os.path.exists(os.path.join(BUILD, "bin", "lagareport")):
-        said = call(os.path.join(prefix, FOLDERS["bin"], "lagareport"), "--version")
-        check(said.returncode == 0, "lagareport from other folders", said.stdout)
+        for program in ("lagareport", "lagaimport"):
+            said = call(os.path.join(prefix, FOLDERS["bin"], program), "--version")
+            check(said.returncode == 0, f"{program} from other folders", said.stdout)
 
 
 def main():

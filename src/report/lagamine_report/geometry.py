@@ -142,3 +142,16 @@ def die_body(curve: np.ndarray, thickness: float) -> np.ndarray:
     mean = before + after
     share = np.maximum((mean**2).sum(axis=1) / 2, 0.35)     # 1 + cos of the turn: a mitre, not too long a one
     return np.vstack([curve, (curve + thickness * mean / share[:, None])[::-1]])
+
+
+def hatching(curve: np.ndarray, spacing: float, length: float) -> np.ndarray:
+    """Strokes at 45 degrees on the right of a curve, where a die's body is (stroke, 2, 2)."""
+    chord = np.diff(curve, axis=0)
+    along = np.concatenate([[0], np.cumsum(np.hypot(*chord.T))])
+    count = max(int(along[-1] / spacing), 2)
+    places = (np.arange(count) + 0.5) * along[-1] / count
+    k = np.clip(np.searchsorted(along, places, side="right") - 1, 0, len(chord) - 1)
+    tangent = chord[k] / np.hypot(*chord[k].T)[:, None]
+    foot = curve[k] + (places - along[k])[:, None] * tangent
+    stroke = np.stack([tangent[:, 1] - tangent[:, 0], -tangent[:, 0] - tangent[:, 1]], axis=1) / 2**0.5
+    return np.stack([foot, foot + length * stroke], axis=1)

@@ -1,0 +1,1 @@
+"""Meshes and contours of other programs as rows of a LAGAMINE deck; nothing here knows the solver, only its cards."""
