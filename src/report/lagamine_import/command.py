@@ -156,7 +156,7 @@ def _contour(options, ending: str, mistakes: Mistakes):
     if ending == ".dxf":
         from .dxf_read import read_dxf
         drawing = read_dxf(options.file, tolerance, set(options.die) | set(options.body), mistakes)
-        layers, notes = drawing.layers, drawing.notes
+        layers, present, notes = drawing.layers, drawing.present, drawing.notes
     else:
         from .csv_read import read_csv
         named = [*options.body, *options.die]
@@ -164,11 +164,12 @@ def _contour(options, ending: str, mistakes: Mistakes):
             mistakes.add("points", "say what the contour is: expected one of --die NAME and --body NAME")
             mistakes.refuse()
         layers = {named[0]: read_csv(options.file, named[0], options.smooth, options.corner, tolerance, mistakes)}
+        present = named
     if options.tolerance is None and any(piece.form != "SEGM" for pieces in layers.values() for piece in pieces):
         mistakes.add("--tolerance", "there are arcs or smooth curves: say how far parabolas may be from them by --tolerance L")
     wishes = ContourWishes(options.die, options.body, tuple(options.part) if options.part else None, options.gap, options.scale,
                            tuple(options.shift), notes)
-    contours = build_contours(layers, wishes, Names(read_renames(options.rename), mistakes), mistakes)
+    contours = build_contours(layers, present, wishes, Names(read_renames(options.rename), mistakes), mistakes)
     from .sketch import contour_sketch
     cards, words = [], [", ".join(f"{contour.card} {contour.name}" for contour in contours)]
     for contour in contours:

@@ -25,19 +25,19 @@ class ContourWishes:
     notes: List[str] = field(default_factory=list)
 
 
-def build_contours(layers: Dict[str, List[Piece]], wishes: ContourWishes, names: Names, mistakes: Mistakes) -> List[Contour]:
-    """The contours asked for, bodies first; refused with all their mistakes at once."""
+def build_contours(layers: Dict[str, List[Piece]], present: Sequence[str], wishes: ContourWishes, names: Names, mistakes: Mistakes) -> List[Contour]:
+    """The contours asked for, bodies first; refused with all their mistakes at once. `present` are the layers that hold anything."""
     wanted = [*wishes.bodies, *wishes.dies]
-    there = ", ".join(f"'{layer}'" for layer in layers)
+    there = ", ".join(f"'{layer}'" for layer in present)
+    broken = bool(mistakes.lines)
     if not wanted:
         mistakes.add("layers", f"say which is what by --die LAYER and --body LAYER; there are: {there or 'none'}")
     for layer in wanted:
-        if not layers.get(layer):
-            mistakes.add(f"layer '{layer}'", f"has no lines; there are: {there or 'none'}" if layer not in layers
-                         else "has no lines that can be read")
+        if not layers.get(layer) and not broken:
+            mistakes.add(f"layer '{layer}'", f"has no lines; there are: {there or 'none'}")
         if wanted.count(layer) > 1:
             mistakes.add(f"layer '{layer}'", "is named more than once by --die and --body")
-    left = [f"'{layer}'" for layer in layers if layer not in wanted]
+    left = [f"'{layer}'" for layer in present if layer not in wanted]
     if left:
         wishes.notes.append(f"layers left out: {', '.join(left)}")
     moved = {layer: [_moved(piece, wishes) for piece in layers.get(layer, [])] for layer in dict.fromkeys(wanted)}
@@ -71,8 +71,11 @@ def _contour(card: str, layer: str, pieces: List[Piece], gap: float, names: Name
     if found is None:
         return None
     walk, closed = found
-    for one, other, place in crossings(walk, closed):
+    crossed = crossings(walk, closed)
+    for one, other, place in crossed:
         mistakes.add(one.where, f"crosses {other.where if other.where != one.where else 'itself'} at {at(place)}")
+    if crossed:
+        return None
     if closed:
         walk = walked_around(walk)
     return Contour(card, name, walk, closed, "inside the contour" if card == "BODY" else "")

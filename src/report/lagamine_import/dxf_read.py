@@ -22,28 +22,31 @@ FLAT = 1e-9              # of the size of the drawing
 
 @dataclass
 class Drawing:
-    """Pieces of every layer that has any, the number of entities left out, the unit (empty: not stated)."""
+    """Pieces of the layers asked for, the names of all layers that hold entities, notes for the user."""
 
     layers: Dict[str, List[Piece]] = field(default_factory=dict)
+    present: List[str] = field(default_factory=list)
     notes: List[str] = field(default_factory=list)
 
 
 def read_dxf(path: str, tolerance: float, wanted, mistakes: Mistakes) -> Drawing:
-    """Entities of the model space on the layers `wanted` (none: all) as pieces; splines and ellipses within `tolerance` [length]."""
+    """Entities of the model space on the layers `wanted` as pieces; splines and ellipses within `tolerance` [length]."""
     import ezdxf
     try:
         with contextlib.redirect_stdout(io.StringIO()):
             document = ezdxf.readfile(path)
     except OSError as error:
         raise Refused(f"{path}: not a DXF file: {' '.join(str(error).split())}") from error
-    except ezdxf.DXFError as error:
+    except Exception as error:       # ezdxf fails in many ways on files that are cut short
         raise Refused(f"{path}: not a DXF file that can be read: {' '.join(str(error).split()) or type(error).__name__}") from error
     drawing, skipped = Drawing(), {}
     for entity in document.modelspace():
         layer, kind = entity.dxf.layer, entity.dxftype()
-        drawing.layers.setdefault(layer, [])
-        if wanted and layer not in wanted:
+        if layer not in drawing.present:
+            drawing.present.append(layer)
+        if layer not in wanted:
             continue
+        drawing.layers.setdefault(layer, [])
         where = f"{kind} {entity.dxf.handle} on layer '{layer}'"
         if kind in NO_CURVES:
             skipped[kind] = skipped.get(kind, 0) + 1
@@ -52,7 +55,6 @@ def read_dxf(path: str, tolerance: float, wanted, mistakes: Mistakes) -> Drawing
             drawing.layers[layer] += _pieces(entity, kind, where, layer, tolerance, mistakes)
         except (ValueError, ZeroDivisionError, ezdxf.DXFError) as error:
             mistakes.add(where, f"cannot be evaluated: {' '.join(str(error).split())}")
-    drawing.layers = {layer: pieces for layer, pieces in drawing.layers.items() if pieces or layer in wanted}
     if skipped:
         drawing.notes.append("left out: " + ", ".join(count(number, kind) for kind, number in skipped.items()))
     unit = UNITS.get(document.header.get("$INSUNITS", 0))

@@ -42,9 +42,9 @@ class InpReader:
     def read(self) -> RawMesh:
         """The mesh; mistakes are collected."""
         self._file(self.path, 0)
-        if not self.nodes:
+        if not self.nodes and not self.mistakes.lines:
             self.mistakes.add("*NODE", "there are no nodes")
-        if not self.elements:
+        if not self.elements and not self.mistakes.lines:
             self.mistakes.add("*ELEMENT", "there are no elements")
         self.mistakes.refuse()
         return self._raw()
@@ -163,7 +163,7 @@ class InpReader:
             self.mistakes.add(place, f"element {numbers[0]} is given a second time")
             return
         group = self._key(self.options["ELSET"]) if self.options.get("ELSET") else ""
-        self.elements[numbers[0]] = (kind, tuple(numbers[1:]), group, f"{place} {name}")
+        self.elements[numbers[0]] = (kind, tuple(numbers[1:]), group, place)
         if group:
             self.elsets.setdefault(group, []).append(numbers[0])
 

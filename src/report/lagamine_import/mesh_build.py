@@ -199,6 +199,7 @@ class _Builder:
     def _refuse_duplicates(self, nodes: np.ndarray, groups: List[str]) -> None:
         """No two nodes at the same place: of one body never, of two bodies only where they are said to stay apart."""
         used = np.unique(nodes)
+        used = used[used < len(self.raw.points)]      # middle nodes made here are those of their corners
         owner = {}
         for row, group in zip(nodes, groups):
             for node in row:

@@ -19,7 +19,7 @@ class Mistakes:
 
     def add(self, where: str, what: str) -> None:
         """One mistake: the entity it is in (or a line number), and what was expected."""
-        line = f"{self.path}:{where}: {what}" if where[:1].isdigit() else f"{self.path}: {where}: {what}"
+        line = f"{self.path}:{where}: {what}" if where.isdigit() else f"{self.path}: {where}: {what}"
         if line not in self.lines:
             self.lines.append(line)
 
