@@ -23,6 +23,7 @@ module run_deck
   use remesh, only: remesh_t
   use remeshing, only: drop_triggers
   use scene, only: lacks_mesh, scene_t
+  use scene_file, only: write_scene
   use scene_reader, only: read_scene
   use scene_summary, only: scene_lines
   use solution, only: solution_t, start_solution
@@ -81,6 +82,9 @@ contains
     if (allocated(error)) return
     if (options%check) then
       call print_check(scene, error)
+      if (allocated(error) .or. options%default_out) return
+      call make_directory(options%out, error)
+      if (.not. allocated(error)) call write_scene(join_path(options%out, stem_of(options%deck)//'.scene.json'), scene, error)
       return
     end if
     call make_directory(options%out, error)

@@ -11,6 +11,8 @@ module run_options
     character(len=:), allocatable :: deck
     !> Folder of the results; by default the deck's name, in the present folder.
     character(len=:), allocatable :: out
+    !> No folder is given: it is called as the deck.
+    logical :: default_out = .false.
     character(len=:), allocatable :: resume
     !> Law whose card is asked for; empty for the list of all.
     character(len=:), allocatable :: law
@@ -94,6 +96,7 @@ contains
     else if (.not. allocated(options%deck)) then
       call fail(error, exit_input, 'no deck given', 'lagamine --help shows how to call')
     else if (.not. allocated(options%out)) then
+      options%default_out = .true.
       options%out = stem_of(options%deck)
     else if (len_trim(options%out) == 0) then
       call fail(error, exit_input, '--out: expected the name of a folder, found nothing')
@@ -122,7 +125,7 @@ contains
            'lagamine --point DECK [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --met FILE [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --law [NAME] | --help | --version'//nl//nl// &
-           '  --out DIR       folder of the results (default: the deck''s name)'//nl// &
+           '  --out DIR       folder of the results (default: the deck''s name); with --check: for DIR/NAME.scene.json'//nl// &
            '  --check         read the deck, print the scene, run nothing'//nl// &
            '  --resume FILE   go on from a checkpoint of the same deck'//nl// &
            '  -p NAME=VALUE   set a parameter of the deck'//nl// &

@@ -47,12 +47,13 @@ module json_writer
     procedure, private :: add_reals
     procedure, private :: add_words
     !> `item(value)` in an array.
-    generic :: item => item_text, item_integer, item_real, item_logical, item_reals
+    generic :: item => item_text, item_integer, item_real, item_logical, item_reals, item_integers
     procedure, private :: item_text
     procedure, private :: item_integer
     procedure, private :: item_real
     procedure, private :: item_logical
     procedure, private :: item_reals
+    procedure, private :: item_integers
     procedure, private :: put
     procedure, private :: begin_level
     procedure, private :: end_level
@@ -222,6 +223,13 @@ contains
 
     call self%put(json_literal(values))
   end subroutine item_reals
+
+  subroutine item_integers(self, values)
+    class(json_t), intent(inout) :: self
+    integer, intent(in) :: values(:)   !! (n)
+
+    call self%put(json_literal(values))
+  end subroutine item_integers
 
   !> Put one value with the comma, the line, the margin and the name before it.
   subroutine put(self, literal, name)

@@ -1,4 +1,4 @@
-"""`lagareport DIR`: arguments -> page -> exit code."""
+"""`lagareport DIR`, `lagareport DECK`: arguments -> page -> exit code."""
 import os
 import sys
 from typing import Sequence
@@ -21,8 +21,10 @@ def run_program(arguments: Sequence[str], version: str) -> int:
     """Read the arguments, make the page, print the short result."""
     parser = Parser("lagareport", description="The results of a run as one self-contained HTML page with pictures.",
                     epilog=EXIT_CODES)
-    parser.add_argument("folder", metavar="DIR", help="folder of the results: what `lagamine DECK --out DIR` wrote")
-    parser.add_argument("--out", metavar="FILE", help="the page (default: DIR/report.html)")
+    parser.add_argument("folder", metavar="DIR", help="folder of the results: what `lagamine DECK --out DIR` wrote; or a deck, "
+                        "which is drawn before any run")
+    parser.add_argument("--out", metavar="FILE", help="the page (default: DIR/report.html; of a deck, NAME.html and NAME.svg in the present folder)")
+    parser.add_argument("-p", metavar="NAME=VALUE", dest="parameters", action="append", default=[], help="of a deck: set a parameter of it")
     parser.add_argument("--field", metavar="NAME", action="append", default=[],
                         help="show this field large and over time, instead of the usual ones; may be repeated")
     parser.add_argument("--png", metavar="DIR", help="write the pictures as PNG files into this folder too")
@@ -33,6 +35,10 @@ def run_program(arguments: Sequence[str], version: str) -> int:
     for stream in (sys.stdout, sys.stderr):
         stream.reconfigure(errors="replace")     # a title may hold letters that the terminal has not
     try:
+        if os.path.isfile(options.folder):
+            return draw_deck(options, version)
+        if options.parameters:
+            raise ReportError("-p: for a deck; the results of a run have their parameters")
         target = options.out or os.path.join(options.folder, "report.html")
         refuse_to_replace(target)
         run = Run(options.folder)
@@ -53,6 +59,29 @@ def run_program(arguments: Sequence[str], version: str) -> int:
     if not options.quiet:
         print_short(run)
         print(f"  page: {target}")
+    return EXIT_DONE
+
+
+def draw_deck(options, version: str) -> int:
+    """The page and the picture of a deck before any run."""
+    from .deck_scene import deck_name, read_scene
+    if options.field or options.mirror:
+        raise ReportError(f"{'--field' if options.field else '--mirror'}: for the results of a run; a deck has none yet")
+    target = options.out or deck_name(options.folder) + ".html"
+    drawing = os.path.splitext(target)[0] + ".svg"
+    for path in (target, drawing):
+        refuse_to_replace(path)
+    scene = read_scene(options.folder, options.parameters)
+    from .deck_page import deck_page
+    from .deck_picture import deck_picture
+    picture = deck_picture(scene)
+    write(target, deck_page(scene, picture, options.folder, version).encode("utf-8"))
+    write(drawing, picture.svg())
+    if options.png:
+        write_pngs(options.png, [picture])
+    picture.close()
+    if not options.quiet:
+        print(f"{scene.title}\n  page: {target}\n  picture: {drawing}")
     return EXIT_DONE
 
 

@@ -1,5 +1,6 @@
 """Pieces of the page: escaped text, tables, figures."""
 import html
+import os
 from typing import Iterable, List, Sequence, Tuple
 
 from .picture import Picture
@@ -28,3 +29,35 @@ def table(head: Sequence[str], rows: Iterable[Tuple[str, Sequence[str]]]) -> str
         start = f'<tr class="{look}">' if look else "<tr>"
         lines.append(start + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
     return "\n".join(lines + ["</tbody></table></div>"])
+
+
+def joined(body: Sections) -> str:
+    """All sections, one after the other."""
+    return "\n".join(f'<section id="{anchor}">\n<h2>{escape(heading)}</h2>\n{content}\n</section>' for anchor, heading, content in body)
+
+
+def document(title: str, header: str, main: str, footer: str) -> str:
+    """A whole page that needs nothing else; header, main part and footer are HTML already."""
+    with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "page.css"), encoding="utf-8") as file:
+        style = file.read()
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{escape(title)}</title>
+<style>
+{style}</style>
+</head>
+<body>
+<header>
+{header}
+</header>
+<main>
+{main}
+</main>
+<footer>{footer}</footer>
+</body>
+</html>
+"""

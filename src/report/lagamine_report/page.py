@@ -3,7 +3,7 @@ import math
 import os
 from typing import Dict, Iterable, List, Sequence, Tuple
 
-from .markup import Sections, escape, figure, table
+from .markup import Sections, document, escape, figure, joined, table
 from .picture import Picture
 from .reader import Run
 from .remesh_section import remesh_section
@@ -34,37 +34,16 @@ def page(run: Run, pictures: Sequence[Picture], version: str) -> str:
     body[1:1] = remesh_section(run, pictures)       # next to the shape, which is always there
     body += _checks(judged) + _effects(run) + _notes(run) + _origin(run)
     links = "".join(f'<a href="#{anchor}">{escape(heading)}</a>' for anchor, heading, _ in body)
-    sections = "\n".join(f'<section id="{anchor}">\n<h2>{escape(heading)}</h2>\n{content}\n</section>'
-                         for anchor, heading, content in body)
-    with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "page.css"), encoding="utf-8") as file:
-        style = file.read()
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{escape(run.title)}</title>
-<style>
-{style}</style>
-</head>
-<body>
-<header>
-<h1>{escape(run.title)}</h1>
+    sections = joined(body)
+    header = f"""<h1>{escape(run.title)}</h1>
 {_status(run)}
 {_tiles(run)}
 {_alerts(run, judged)}
-<nav>{links}</nav>
-</header>
-<main>
-{sections}
-</main>
-<footer>lagareport {escape(version)}, from {escape(os.path.basename(os.path.abspath(run.folder)))}/ of
+<nav>{links}</nav>"""
+    footer = f"""lagareport {escape(version)}, from {escape(os.path.basename(os.path.abspath(run.folder)))}/ of
 {escape(run.summary.get('program', 'lagamine'))} {escape(run.summary.get('version', ''))}.
-Lengths, forces and stresses are in the units of the deck.</footer>
-</body>
-</html>
-"""
+Lengths, forces and stresses are in the units of the deck."""
+    return document(run.title, header, sections, footer)
 
 
 def _status(run: Run) -> str:

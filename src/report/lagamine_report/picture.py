@@ -40,9 +40,13 @@ class Picture:
         """The picture as it stands in the page."""
         if not self.vector:
             return "data:image/png;base64," + base64.b64encode(self.png()).decode()
+        return "data:image/svg+xml;base64," + base64.b64encode(self.svg()).decode()
+
+    def svg(self) -> bytes:
+        """The picture as a file of its own."""
         buffer = io.BytesIO()
         self.figure.savefig(buffer, format="svg", bbox_inches="tight", pad_inches=0.08, metadata={"Date": None})
-        return "data:image/svg+xml;base64," + base64.b64encode(numbered_clips(buffer.getvalue())).decode()
+        return numbered_clips(buffer.getvalue())
 
     def close(self) -> None:
         pyplot.close(self.figure)
