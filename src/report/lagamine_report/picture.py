@@ -6,9 +6,13 @@ from dataclasses import dataclass
 
 from matplotlib import pyplot
 from matplotlib.figure import Figure
+from PIL import Image
 
 from .reader import Run, Step
 from .words import brief
+
+
+PAGE_DPI = 130      # of pictures of pixels in the page
 
 
 def numbered_clips(svg: bytes) -> bytes:
@@ -19,6 +23,19 @@ def numbered_clips(svg: bytes) -> bytes:
     for name, number in names.items():
         svg = svg.replace(b'"' + name + b'"', b'"' + number + b'"').replace(b"#" + name + b")", b"#" + number + b")")
     return svg
+
+
+def rounded(svg: bytes) -> bytes:
+    """The same drawing with the coordinates of its lines to a hundredth of a point; factors of scale stay as they are."""
+    return re.sub(rb' d="[^"]*"', lambda path: re.sub(rb"(\d+\.\d\d)\d+", rb"\1", path.group()), svg)
+
+
+def in_few_colours(png: bytes) -> bytes:
+    """The same picture with a table of 256 colours."""
+    buffer = io.BytesIO()
+    with Image.open(io.BytesIO(png)) as image:
+        image.convert("RGB").quantize(256, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(buffer, format="png", optimize=True)
+    return buffer.getvalue()
 
 
 @dataclass
@@ -37,16 +54,16 @@ class Picture:
         return buffer.getvalue()
 
     def data_uri(self) -> str:
-        """The picture as it stands in the page."""
+        """The picture as it stands in the page; of pixels in 256 colours, a third of the size."""
         if not self.vector:
-            return "data:image/png;base64," + base64.b64encode(self.png()).decode()
+            return "data:image/png;base64," + base64.b64encode(in_few_colours(self.png(PAGE_DPI))).decode()
         return "data:image/svg+xml;base64," + base64.b64encode(self.svg()).decode()
 
     def svg(self) -> bytes:
         """The picture as a file of its own."""
         buffer = io.BytesIO()
         self.figure.savefig(buffer, format="svg", bbox_inches="tight", pad_inches=0.08, metadata={"Date": None})
-        return numbered_clips(buffer.getvalue())
+        return rounded(numbered_clips(buffer.getvalue()))
 
     def close(self) -> None:
         pyplot.close(self.figure)

@@ -35,7 +35,7 @@ def mesh_picture(view: SceneView) -> Picture:
         panel.set_title(f"{word}: {when(run, step)}")
     caption = (f"{len(first.generation.topology)} elements at the start, {len(last.generation.topology)} at the end; "
                "sides are drawn as the parabolas they are; dashed: the outline at the start")
-    return Picture("mesh", caption, fig, vector=len(last.generation.topology) + len(first.generation.topology) < 1200)
+    return Picture("mesh", caption, fig, vector=len(last.generation.topology) + len(first.generation.topology) < 500)
 
 
 def generations_picture(view: SceneView) -> Optional[Picture]:
@@ -52,7 +52,7 @@ def generations_picture(view: SceneView) -> Optional[Picture]:
         x = view.run.coordinates(step)
         view.mesh(panel, generation, x)
         view.outline(panel, generation, x)
-        panel.set_title(f"mesh {generation.number}, time {brief(step.time)}: {len(generation.topology)} elements", fontsize=9)
+        panel.set_title(f"mesh {generation.number}, time {brief(step.time, 3)}\n{len(generation.topology)} elements", fontsize=8.5)
     return Picture("meshes", "every mesh at its first saved instant", fig)
 
 

@@ -13,7 +13,7 @@ from .scene_view import SceneView
 from .style import POSITIVE, figure, panel_size
 from .words import brief
 
-LAST_SHOWN = 6
+LAST_SHOWN = 3
 ERROR = "error_stress"
 DECADES = 3     # below the largest error; what is smaller has the last colour
 
