@@ -7,6 +7,7 @@ module accept_step
   use errors, only: error_t, exit_bug, fail
   use fields, only: field_t, fill_middle_nodes, has_corners_only
   use heat_books, only: book_heat
+  use heat_record, only: note_heat_step
   use kinds, only: wp
   use newton, only: outcome_t
   use point_drivers, only: start_drivers
@@ -37,6 +38,7 @@ contains
     call book_work(equations, outcome%du, solution)
     call book_reactions(scene, equations, solution%time + dt, solution%fields)
     call book_heat(scene, equations, dt, solution)
+    call note_heat_step(outcome%heat, solution%heat)
     call take_motion(equations, outcome%du, solution%fields)
     call fill_middles(scene, solution%fields)
     solution%time = solution%time + dt

@@ -158,13 +158,14 @@ contains
     flush (listing%unit)
   end subroutine list_cut
 
-  !> A step shortened to the moment when contact begins.
-  subroutine list_event(listing, solution, dt)
+  !> A step shortened to the moment when contact begins, or by its error in time.
+  subroutine list_event(listing, solution, dt, reason)
     type(listing_t), intent(in) :: listing
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: dt
+    character(len=*), intent(in) :: reason
 
-    write (listing%unit, '(a)') 'event: contact begins, step '//to_text(solution%step + 1)//' shortened to '//to_text(dt)
+    write (listing%unit, '(a)') 'event: '//reason//', step '//to_text(solution%step + 1)//' shortened to '//to_text(dt)
   end subroutine list_event
 
   !> A note for the user: in the listing, and on the terminal.

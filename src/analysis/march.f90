@@ -60,7 +60,8 @@ contains
       call solve_fields(scene, run%equations, solution, dt, outcome)
       do while (outcome%event < 1)
         dt = max(min(outcome%event, largest_event)*dt, scene%strategy%least_step)
-        call list_event(run%listing, solution, dt)
+        call list_event(run%listing, solution, dt, outcome%event_reason)
+        if (outcome%heat%too_long) solution%heat%shortened = solution%heat%shortened + 1
         call solve_fields(scene, run%equations, solution, dt, outcome)
       end do
       if (allocated(outcome%error)) then
@@ -74,7 +75,8 @@ contains
         cycle
       end if
 
-      solution%next_step = after_success(scene, dt, solution%next_step, outcome%first_iterations, outcome%strain)
+      solution%next_step = after_success(scene, dt, solution%next_step, outcome%first_iterations, outcome%strain, &
+                                        outcome%heat%growth)
       call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
       if (allocated(error)) exit
       cuts = 0

@@ -8,6 +8,7 @@ module summary
   use fields, only: displacement_field
   use hash, only: sha256
   use heat_books, only: has_heat, heat_imbalance
+  use heat_record, only: heat_record_t
   use history, only: circumference
   use json_writer, only: json_t
   use kinds, only: i8, wp
@@ -77,6 +78,8 @@ contains
     call json%add('elements', solid_elements(scene))
     call json%add('linear_solver', equations%solves(1)%solver%row%name)
     call json%add('symmetric', all(equations%solves%pattern%symmetric))
+    call json%add('factorisations', sum(equations%solves%solver%factorised))
+    call json%add('factorisations_spared', sum(equations%solves%solver%reused))
     call add_effects(json, scene, equations)
     call add_seconds(json, equations)
     if (scene%remesh%estimate) call add_estimate(json, scene, solution)
@@ -92,6 +95,7 @@ contains
     call json%add('least_dissipation', solution%least_dissipation)
     if (has_motion(scene)) call json%add('energy_imbalance', energy_imbalance(solution))
     if (has_heat(scene)) call json%add('heat_imbalance', heat_imbalance(solution))
+    if (has_heat(scene)) call add_heat(json, solution%heat)
     call json%add('spurious_mode', solution%worst_spurious)
     call json%end_object()
     call add_advice(json, scene, solution)
@@ -131,6 +135,22 @@ contains
       call json%add('passed', factor*work%passed)
     end associate
   end subroutine add_work
+
+  !> Balance of heat in time, and temperatures that cannot be there.
+  subroutine add_heat(json, heat)
+    type(json_t), intent(inout) :: json
+    type(heat_record_t), intent(in) :: heat
+
+    if (heat%estimated > 0) then
+      call json%add('error_in_time_worst', heat%error_worst)
+      call json%add('error_in_time_sum', heat%error_sum)
+      call json%add('steps_shortened_by_error', heat%shortened)
+      call json%add('least_steps_above_error', heat%above)
+    end if
+    call json%add('steps_outside_bounds', heat%outside)
+    call json%add('excess_of_bounds', heat%excess)
+    call json%add('steps_made_again_for_bounds', heat%fallbacks)
+  end subroutine add_heat
 
   !> What to do about the checks that do not hold, by their names.
   subroutine add_advice(json, scene, solution)
@@ -292,6 +312,7 @@ contains
                //to_text(circumference(scene)*solution%heat_in, 4)//', released ' &
                //to_text(circumference(scene)*solution%heat_released, 4)//'; imbalance ' &
                //to_text(100*heat_imbalance(solution), 2)//' % of what passed')
+    if (has_heat(scene)) call put_heat(solution%heat)
     if (size(scene%dies) == 0) then
       call put('  no contact')
     else
@@ -315,6 +336,19 @@ contains
     call put('')
 
   contains
+
+    !> What accuracy in time was had, and temperatures that cannot be there.
+    subroutine put_heat(heat)
+      type(heat_record_t), intent(in) :: heat
+
+      if (heat%estimated > 0) &
+        call put('  estimated error in time: largest of a step '//to_text(heat%error_worst, 3)//', sum of all ' &
+                 //to_text(heat%error_sum, 3)//'; '//to_text(heat%shortened)//' attempts shortened for it, ' &
+                 //to_text(heat%above)//' steps of the least length above what is allowed')
+      if (heat%outside + heat%fallbacks > 0) &
+        call put('  temperatures beyond those around them in '//to_text(heat%outside)//' steps, by up to ' &
+                 //to_text(heat%excess, 3)//'; '//to_text(heat%fallbacks)//' steps made again by implicit Euler')
+    end subroutine put_heat
 
     subroutine put(line)
       character(len=*), intent(in) :: line

@@ -12,6 +12,7 @@ module cards_heat
   use quadrature, only: rule_gauss, rule_t
   use scene, only: group_t, is_solid
   use scene_draft, only: close_card, draft_t, only_card, words_of
+  use strategy, only: coupling_monolithic, scheme_theta, scheme_tr_bdf2
   use text, only: join, string_t
   implicit none
   private
@@ -203,7 +204,8 @@ contains
     if (n > 0) exchange%table = reshape(points(:n), [2, n/2])
   end subroutine read_table
 
-  !> `THETA theta [MEAN]`: balance of heat at the share theta of each step, or in the mean of its ends.
+  !> `THETA theta [MEAN]` or `THETA TRBDF2`: balance of heat at the share theta of each step, in the mean of its ends, or by
+  !> TR-BDF2; `TOL tolerance`: steps by their error, with theta = 1 or TR-BDF2.
   subroutine read_time_scheme(deck, draft, diagnostics)
     type(deck_t), intent(inout), target :: deck
     type(draft_t), intent(inout) :: draft
@@ -215,18 +217,48 @@ contains
     call only_card(deck, 'THETA', .false., diagnostics, k)
     if (k == 0) return
     call cursor%open(deck%cards(k), diagnostics)
-    call cursor%real('theta, 1/2 (second order, with oscillations after a shock) to 1 (implicit Euler)', &
-                     draft%scene%strategy%theta, lower=0.5_wp, upper=1.0_wp)
-    if (cursor%more()) then
-      call words_of('MEAN', words)
-      call cursor%name('MEAN, or nothing', words, k)
-      draft%scene%strategy%theta_mean = k > 0
-    end if
+    associate (strategy => draft%scene%strategy)
+      if (cursor%next_is_number()) then
+        call cursor%real('theta, 1/2 (second order, with oscillations after a shock) to 1 (implicit Euler)', strategy%theta, &
+                         lower=0.5_wp, upper=1.0_wp)
+        call words_of('MEAN TOL', words)
+      else
+        call words_of('TRBDF2', words)
+        call cursor%name('theta, or TRBDF2', words, k)
+        if (k > 0) strategy%scheme = scheme_tr_bdf2
+        call words_of('TOL', words)
+      end if
+      if (cursor%more()) then
+        call cursor%name(join(words, ', ')//', or nothing', words, k)
+        if (k > 0) then
+          strategy%theta_mean = words(k)%s == 'MEAN'
+          if (words(k)%s == 'TOL') call read_tolerance(cursor, draft)
+        end if
+      end if
+    end associate
     if (draft%groups_sound) then
       if (find_field(draft%scene%fields, 'temperature') == 0) &
         call cursor%fail('no body of this scene has a temperature among its unknowns (PL8TM)')
+      associate (strategy => draft%scene%strategy)
+        if ((strategy%scheme == scheme_tr_bdf2 .or. strategy%time_tolerance > 0) .and. strategy%coupling == coupling_monolithic &
+            .and. count(draft%scene%fields%declared) > 1) &
+          call cursor%fail('TRBDF2 and TOL are for temperatures that are solved for alone: not with SOLVE MONOLITHIC')
+      end associate
     end if
     call close_card(draft, cursor, deck%cards(k))
   end subroutine read_time_scheme
+
+  !> `TOL tolerance`: the largest error in time of a step.
+  subroutine read_tolerance(cursor, draft)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+
+    associate (strategy => draft%scene%strategy)
+      call cursor%real('the largest error in time of a step', strategy%time_tolerance, lower=0.0_wp, strict_lower=.true., &
+                       unit='temperature')
+      if (strategy%scheme == scheme_theta .and. strategy%theta < 1) &
+        call cursor%fail('TOL is of THETA 1. or THETA TRBDF2: other theta have no estimate of their error')
+    end associate
+  end subroutine read_tolerance
 
 end module cards_heat

@@ -24,7 +24,7 @@ module elem_api
   public :: block_done, block_inverted, block_law_failed
   public :: acts_on, add_totals, applies, declare_fields, first_unknown, group_temperature, has_unknown, layout_of, section_motion
   public :: of_displacement, of_pilot, of_section, that_reads, field_nodes, no_variables
-  public :: mode_advance, mode_restore
+  public :: mode_advance, mode_error, mode_restore
   public :: most_components
 
   !> Answers of a block.
@@ -32,9 +32,9 @@ module elem_api
   integer, parameter :: block_inverted = 1     !! an element has turned inside out
   integer, parameter :: block_law_failed = 2   !! a law gave up
 
-  !> Mode of the elements: to advance by a step; or to restore equilibrium on a new mesh at fixed time, without flow of
-  !> material or heat.
-  integer, parameter :: mode_advance = 1, mode_restore = 2
+  !> Mode of the elements: to advance by a step; to restore equilibrium on a new mesh at fixed time, without flow of
+  !> material or heat; or to measure an error of the heat content, given as that of the temperatures it belongs to.
+  integer, parameter :: mode_advance = 1, mode_restore = 2, mode_error = 3
 
   !> Most components of a field, and most fields among the unknowns of an element.
   integer, parameter :: most_components = 3, most_fields = 4
@@ -93,6 +93,10 @@ module elem_api
     real(wp), allocatable :: multipliers_before(:), multipliers(:)
     !> Instants at which heat flows.
     type(flow_rule_t) :: flow
+    !> Heat taken up and released counts; otherwise flows alone.
+    logical :: content = .true.
+    !> Share of the step after which the instant is, where the drivers that other formulations give have only come so far.
+    real(wp) :: reach = 1.0_wp
     !> Matrices are wanted.
     logical :: tangent = .true.
     integer :: mode = mode_advance
@@ -117,6 +121,8 @@ module elem_api
     real(wp) :: source = 0.0_wp
     !> Heat that the elements took up in the step, and that sources released in them [energy].
     real(wp) :: heat_stored = 0.0_wp, heat_released = 0.0_wp
+    !> In mode_error: integral of the square of the error, and the volume [temperature^2 volume], [volume].
+    real(wp) :: error_square = 0.0_wp, error_volume = 0.0_wp
   end type report_t
 
   !> Sums over a group at an accepted instant (per radian when axisymmetric), and extremes.

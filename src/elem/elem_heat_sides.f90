@@ -7,7 +7,7 @@
 !> (elem_api), on the side as it is at the end of the step; linearised exactly, along the displacements too. Where temperatures
 !> stand on corners all is lumped at the ends of the side, as the capacity is: no temperature leaves those around it.
 module elem_heat_sides
-  use elem_api, only: elem_t, first_unknown, instant_t, layout_t, mode_restore, no_variables, report_t, that_reads
+  use elem_api, only: elem_t, first_unknown, instant_t, layout_t, mode_advance, no_variables, report_t, that_reads
   use fields, only: displacement_field
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
@@ -85,7 +85,7 @@ contains
 
     force = 0
     if (instant%tangent) stiffness = 0
-    if (instant%mode == mode_restore) return
+    if (instant%mode /= mode_advance) return
     n = layout%count(temperature)
     u = first_unknown(layout, displacement_field)
     section = scene%section

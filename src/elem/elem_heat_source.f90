@@ -4,7 +4,7 @@
 !> F_i = -sum_k w_k sum phi_i q(T_k) dv at the instants k of the flow rule (elem_api). Linearised exactly, along the displacements
 !> too. Where temperatures stand on corners the source is lumped there, as the capacity is.
 module elem_heat_source
-  use elem_api, only: block_inverted, elem_t, first_unknown, instant_t, layout_t, mode_restore, no_variables, report_t, that_reads
+  use elem_api, only: block_inverted, elem_t, first_unknown, instant_t, layout_t, mode_advance, no_variables, report_t, that_reads
   use elem_heat_sides, only: flow_in
   use elem_pl8tm, only: functions_of, functions_t, heat_points_t, place_element
   use fields, only: displacement_field
@@ -60,7 +60,7 @@ contains
 
     force = 0
     if (instant%tangent) stiffness = 0
-    if (instant%mode == mode_restore) return
+    if (instant%mode /= mode_advance) return
     n = layout%count(temperature)
     call quad8_rule(group%rule%n, rule)
     call functions_of(n == 4, rule, own)

@@ -9,8 +9,8 @@
 !> gives the body. Linearised exactly, along the displacements too, but for the plastic work behind r.
 !> Source: K.J. Bathe, Finite Element Procedures, sec. 7.2; R.W. Lewis et al., The Finite Element Method in Heat Transfer Analysis.
 module elem_pl8tm
-  use elem_api, only: block_inverted, elem_t, first_unknown, instant_t, layout_t, mode_restore, report_t, that_reads, &
-                      totals_t, unknown_t
+  use elem_api, only: block_inverted, elem_t, first_unknown, instant_t, layout_t, mode_error, mode_restore, report_t, &
+                      that_reads, totals_t, unknown_t
   use fields, only: displacement_field, field_t, transfer_nodal
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
@@ -112,7 +112,7 @@ contains
     integer :: e, k, u
 
     force = 0
-    trial = committed
+    if (instant%content .and. instant%mode /= mode_error) trial = committed
     if (instant%tangent) stiffness = 0
     if (instant%mode == mode_restore) then
       ! on a new mesh temperatures stay as they were carried
@@ -135,10 +135,17 @@ contains
         return
       end if
       associate (material => scene%materials(group%material))
-        call add_content(instant, law, material, rule%npoint, own, group%option == bilinear, place, drivers(:, :, :, e), &
-                         du(:own%n, e), start(:own%n, e), force(:, e), stiffness(:, :, e), report%heat_stored)
-        call add_released(instant, law, material, rule%npoint, own, place, drivers(:, :, :, e), du(:own%n, e), &
-                          start(:own%n, e), u, committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e), report)
+        if (instant%mode == mode_error) then
+          call add_error(law, material, rule%npoint, own, group%option == bilinear, place, drivers(:, :, :, e), du(:own%n, e), &
+                         start(:own%n, e), report)
+          cycle
+        end if
+        if (instant%content) then
+          call add_content(instant, law, material, rule%npoint, own, group%option == bilinear, place, drivers(:, :, :, e), &
+                           du(:own%n, e), start(:own%n, e), force(:, e), stiffness(:, :, e), report%heat_stored)
+          call add_released(instant, law, material, rule%npoint, own, place, drivers(:, :, :, e), du(:own%n, e), &
+                            start(:own%n, e), u, committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e), report)
+        end if
         do k = 1, instant%flow%n
           call add_flow(instant, k, law, material, kinematics%finite, rule%npoint, own, place, drivers(:, :, :, e), du(:own%n, e), &
                         start(:own%n, e), u, force(:, e), stiffness(:, :, e))
@@ -267,6 +274,59 @@ contains
       end do
     end if
   end subroutine add_content
+
+  !> Square of an error of the heat content over the least heat capacity of the material, so that latent heat counts as heat.
+  pure subroutine add_error(law, material, npoint, own, lumped, place, drivers, change, now, report)
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    integer, intent(in) :: npoint
+    type(functions_t), intent(in) :: own
+    logical, intent(in) :: lumped
+    type(heat_points_t), intent(in) :: place
+    real(wp), intent(in) :: drivers(:, :, :)        !! (ndriver, 2, npoint)
+    real(wp), intent(in) :: change(:), now(:)       !! temperatures that the error belongs to, and present ones (n)
+    type(report_t), intent(inout) :: report
+    real(wp) :: given(max(1, size(drivers, 1)), 9), taken(9), capacity(9), error(9), volume(9)
+    integer :: n, m
+
+    n = own%n
+    m = merge(n, npoint, lumped)
+    given = 0
+    if (lumped) then
+      given(driver_temperature, :n) = now
+      error(:n) = change
+      volume(:n) = matmul(own%phi(:n, :npoint), place%dv0(:npoint))
+    else
+      if (size(drivers, 1) > 1) given(2:, :npoint) = drivers(2:, 2, :)
+      given(driver_temperature, :npoint) = matmul(now, own%phi(:n, :npoint))
+      error(:npoint) = matmul(change, own%phi(:n, :npoint))
+      volume(:npoint) = place%dv0(:npoint)
+    end if
+    call law%store(material, given(:, :m), given(:, :m), taken(:m), capacity(:m))
+    error(:m) = error(:m)*capacity(:m)/least_capacity(law, material, given(:, 1))
+    report%error_square = report%error_square + sum(volume(:m)*error(:m)**2)
+    report%error_volume = report%error_volume + sum(volume(:m))
+  end subroutine add_error
+
+  !> The least heat capacity at the temperatures of a material's card, or from one of them to the next.
+  pure function least_capacity(law, material, drivers) result(least)
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: drivers(:)   !! (ndriver) that go with the temperature
+    real(wp) :: least                    !! [energy/length^3/temperature]
+    real(wp) :: given(size(drivers), 1), taken(1), capacity(1)
+    integer :: k, n
+
+    given(:, 1) = drivers
+    n = 1
+    if (allocated(material%temperatures)) n = size(material%temperatures)
+    least = huge(least)
+    do k = 1, n
+      if (allocated(material%temperatures)) given(driver_temperature, 1) = material%temperatures(k)
+      call law%store(material, given, given, taken, capacity)
+      if (capacity(1) > 0) least = min(least, capacity(1))
+    end do
+  end function least_capacity
 
   !> Heat that a change of volume takes up, less that released at the points, per time.
   pure subroutine add_released(instant, law, material, npoint, own, place, drivers, change, start, u, committed, trial, force, &

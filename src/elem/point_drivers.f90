@@ -196,17 +196,28 @@ contains
     end do
   end subroutine start_drivers
 
-  !> Fields and states that drive a group at the end of the step, as they are tried now.
-  subroutine advance_drivers(scene, laws, solution, now, time, g, drivers)
+  !> Fields and states that drive a group at the end of the step, as they are tried now; at an instant within the step, states are
+  !> linear between its ends.
+  subroutine advance_drivers(scene, laws, solution, now, time, reach, g, drivers)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)   !! (nlaw)
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: now(:, :)   !! (nnode, nfield) trial values of the nodal fields of one component [unit of each field]
-    real(wp), intent(in) :: time   !! end of the step [time]
+    real(wp), intent(in) :: time   !! end of the step, or the instant within [time]
+    real(wp), intent(in) :: reach  !! share of the step after which that is
     integer, intent(in) :: g   !! number of the group
     type(drivers_t), intent(inout) :: drivers(:)   !! (ngroup)
+    integer :: k
 
-    if (drivers(g)%vary) call fill(scene, laws, solution, now, time, g, 2, drivers)
+    if (.not. drivers(g)%vary) return
+    call fill(scene, laws, solution, now, time, g, 2, drivers)
+    if (reach >= 1) return
+    do k = 1, size(drivers(g)%source)
+      if (drivers(g)%source(k)%kind /= from_state) cycle
+      associate (value => drivers(g)%value(k, :, :, :))
+        value(2, :, :) = (1 - reach)*value(1, :, :) + reach*value(2, :, :)
+      end associate
+    end do
   end subroutine advance_drivers
 
   !> A field that can drive points: one component, on nodes.

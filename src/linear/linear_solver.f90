@@ -1,9 +1,9 @@
-!> Direct solution of the linear system by the solver chosen: analysis once per mesh, factorisation per matrix, residual of every
-!> solve checked and refined. A matrix for which the factors prove too poor, and those after it in the step, get the fallback of the
-!> solver, where it has one.
+!> Direct solution of the linear system by the solver chosen: analysis once per mesh, factorisation per matrix (factors of a matrix
+!> that comes again, to the last bit, are kept), residual of every solve checked and refined. A matrix for which the factors prove
+!> too poor, and those after it in the step, get the fallback of the solver, where it has one.
 module linear_solver
   use errors, only: error_t, exit_no_convergence, fail
-  use kinds, only: wp
+  use kinds, only: i8, wp
   use linear_api, only: factors_t, solver_row_t
   use linear_registry, only: list_solvers
   use matrix_pattern, only: matrix_pattern_t
@@ -31,8 +31,10 @@ module linear_solver
     !> Order of elimination asked for; where every row of the matrix begins; its nonzeros.
     integer, allocatable :: position(:), row_start(:)
     real(wp), allocatable :: values(:)
-    !> The factors at hand are sound; they are made by the fallback.
-    logical :: sound = .false., fallen_back = .false.
+    !> The factors at hand are sound; they are to be made by the fallback; the fallback has made them.
+    logical :: sound = .false., fallen_back = .false., by_fallback = .false.
+    !> Matrices factorised so far, and those that were the one before, whose factors were taken again.
+    integer, public :: factorised = 0, reused = 0
     !> Entries of the factors and operations of a factorisation.
     real(wp), public :: estimated_entries = 0.0_wp, estimated_flops = 0.0_wp
     !> Backward error of the last solve.
@@ -92,19 +94,42 @@ contains
     solver%fallen_back = .false.
   end subroutine return_to_chosen
 
-  !> Factorise the matrix with these nonzeros. A singular matrix gives exit_no_convergence: the step is cut.
+  !> Factorise the matrix with these nonzeros, unless it is the one that sound factors are at hand of. A singular matrix gives
+  !> exit_no_convergence: the step is cut.
   subroutine factorise(solver, values, error)
     type(linear_solver_t), intent(inout) :: solver
     real(wp), intent(in) :: values(:)    !! (nnz) [residual/unknown]
     type(error_t), allocatable, intent(out) :: error
 
+    if (solver%sound .and. (solver%by_fallback .eqv. solver%fallen_back)) then
+      if (same_bits(values, solver%values)) then
+        solver%reused = solver%reused + 1
+        return
+      end if
+    end if
     solver%values = values
+    solver%factorised = solver%factorised + 1
+    solver%by_fallback = solver%fallen_back
     if (solver%fallen_back) then
       call solver%fallback%factorise(solver%values, solver%sound, error)
     else
       call solver%own%factorise(solver%values, solver%sound, error)
     end if
+    if (allocated(error)) solver%sound = .false.
   end subroutine factorise
+
+  !> Equal to the last bit; two zeros of different sign are not.
+  pure function same_bits(a, b) result(same)
+    real(wp), intent(in) :: a(:), b(:)
+    logical :: same
+    integer :: k
+
+    same = .false.
+    do k = 1, size(a)
+      if (transfer(a(k), 0_i8) /= transfer(b(k), 0_i8)) return
+    end do
+    same = .true.
+  end function same_bits
 
   !> Solve for one right-hand side with the present factors, refining while the residual is too large.
   !> Factors that prove too poor are made again by the fallback, for the rest of the step.
@@ -153,6 +178,8 @@ contains
       call solver%fallback%plan(pattern, solver%position, error)
       if (allocated(error)) return
     end if
+    solver%factorised = solver%factorised + 1
+    solver%by_fallback = .true.
     call solver%fallback%factorise(solver%values, solver%sound, error)
   end subroutine fall_back
 
@@ -230,6 +257,7 @@ contains
     if (allocated(solver%position)) deallocate (solver%position, solver%row_start, solver%values)
     solver%sound = .false.
     solver%fallen_back = .false.
+    solver%by_fallback = .false.
   end subroutine release
 
   subroutine drop(factors)

@@ -2,6 +2,7 @@
 module solution
   use acceptance, only: probation_t
   use fields, only: displacement_field, field_t, on_nodes, on_pilots, pilot_field, section_field, start_field
+  use heat_record, only: heat_record_t
   use kinds, only: wp
   use pairs, only: pairs_t, start_pairs
   use remeshing, only: estimate_t
@@ -46,6 +47,7 @@ module solution
     !> Heat since the start: taken up, come in through sides and imposed temperatures, released by sources; and what passed, the
     !> sum of the sizes of the last two by step. Per radian when axisymmetric.
     real(wp) :: heat_stored = 0.0_wp, heat_in = 0.0_wp, heat_released = 0.0_wp, heat_passed = 0.0_wp
+    type(heat_record_t) :: heat
     !> Volume at the start, for the drift; 0 before it is measured.
     real(wp) :: initial_volume = 0.0_wp
     !> Worst values of all accepted steps so far.

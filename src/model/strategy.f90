@@ -5,11 +5,15 @@ module strategy
   private
   public :: strategy_t
   public :: coupling_once, coupling_converged, coupling_monolithic, coupling_names
+  public :: scheme_theta, scheme_tr_bdf2
 
   !> How fields of several quantities (motion, temperature) are coupled in a step: solved in turns, once or until nothing
   !> changes any more, or all in one Newton iteration.
   integer, parameter :: coupling_once = 1, coupling_converged = 2, coupling_monolithic = 3
   character(len=10), parameter :: coupling_names(3) = ['ONCE      ', 'CONVERGE  ', 'MONOLITHIC']
+
+  !> How the balance of heat is met in time: at one instant of the step or in the mean of its ends, or by TR-BDF2.
+  integer, parameter :: scheme_theta = 1, scheme_tr_bdf2 = 2
 
   type :: strategy_t
     !> First, least and largest step [time].
@@ -33,6 +37,10 @@ module strategy
     !> Balance of heat: at the share theta of the step, or in the mean of its ends with theta for the later one.
     real(wp) :: theta = 1.0_wp
     logical :: theta_mean = .false.
+    integer :: scheme = scheme_theta
+    !> Largest error in time of a step, of the heat content over the heat capacity in the mean square of the volume; 0: steps are
+    !> not chosen by it [temperature].
+    real(wp) :: time_tolerance = 0.0_wp
     !> Fields are saved every so many steps, and at these times.
     integer :: save_every = 0
     real(wp), allocatable :: save_times(:)

@@ -1,6 +1,7 @@
 !> The members of a solution, for writing, reading, describing or carrying them (visitors).
 module visit_solution
   use acceptance, only: probation_steps, probation_t
+  use heat_record, only: heat_record_t
   use kinds, only: wp
   use pairs, only: pairs_t
   use solution, only: group_state_t, solution_t
@@ -49,6 +50,9 @@ contains
     call visitor%enter('work')
     call visit_work_members(visitor, self%work)
     call visitor%leave('work')
+    call visitor%enter('heat')
+    call visit_heat_record(visitor, self%heat)
+    call visitor%leave('heat')
     call visitor%enter('probation')
     call visit_probation(visitor, self%probation)
     call visitor%leave('probation')
@@ -73,6 +77,20 @@ contains
       call visitor%leave('pairs')
     end do
   end subroutine visit_solution_members
+
+  subroutine visit_heat_record(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(heat_record_t), intent(inout) :: self
+
+    call visitor%member('error_sum', self%error_sum, kept, 'temperature', low=0.0_wp)
+    call visitor%member('error_worst', self%error_worst, kept, 'temperature', low=0.0_wp)
+    call visitor%member('estimated', self%estimated, kept, low=0)
+    call visitor%member('shortened', self%shortened, kept, low=0)
+    call visitor%member('above', self%above, kept, low=0)
+    call visitor%member('outside', self%outside, kept, low=0)
+    call visitor%member('excess', self%excess, kept, 'temperature', low=0.0_wp)
+    call visitor%member('fallbacks', self%fallbacks, kept, low=0)
+  end subroutine visit_heat_record
 
   subroutine visit_probation(visitor, self)
     class(visitor_t), intent(inout) :: visitor

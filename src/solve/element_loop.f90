@@ -57,7 +57,7 @@ contains
       associate (group => scene%groups(g), row => elems(scene%groups(g)%elem_id), state => solution%groups(g))
         call timers%add(row%effect, timer)
         call timers%start(timer)
-        call advance_drivers(scene, laws, solution, now, instant%time, g, drivers)
+        call advance_drivers(scene, laws, solution, now, instant%time, instant%reach, g, drivers)
         nelem = size(group%connectivity, 2)
         ndof = size(dofs%groups(g)%dof, 1)
         allocate (reports((nelem + block_size - 1)/block_size))
@@ -81,6 +81,8 @@ contains
           report%source = report%source + reports(b)%source
           report%heat_stored = report%heat_stored + reports(b)%heat_stored
           report%heat_released = report%heat_released + reports(b)%heat_released
+          report%error_square = report%error_square + reports(b)%error_square
+          report%error_volume = report%error_volume + reports(b)%error_volume
           report%unpaired = report%unpaired .or. reports(b)%unpaired
           if (report%status /= block_done .or. reports(b)%status == block_done) cycle
           report%status = reports(b)%status

@@ -3,7 +3,7 @@ module equations
   use contact_point, only: at_piece
   use dies, only: is_deformable, place_on_nodes
   use dofs, only: dofs_t, number_dofs, number_pairs
-  use elem_api, only: block_done, elem_t, flow_rule_t, instant_t, mode_advance, report_t
+  use elem_api, only: block_done, elem_t, flow_rule_t, instant_t, mode_advance, mode_error, report_t
   use elem_registry, only: list_elems
   use element_loop, only: element_buffers_t, gather_forces, gather_matrix, run_elements
   use errors, only: error_t
@@ -28,7 +28,16 @@ module equations
   use vectors, only: length_of
   implicit none
   private
-  public :: equations_t, set_up, evaluate, solve_correction, external_forces, take_turn
+  public :: equations_t, stage_t, set_up, evaluate, measure_error, solve_correction, external_forces, take_turn
+
+  !> A stage of a step that is made in several.
+  type :: stage_t
+    !> Length by which changes of the heat content are divided, over that of the stage; and share of the step after which the
+    !> stage ends.
+    real(wp) :: share = 1.0_wp, reach = 1.0_wp
+    !> Heat taken up and released counts; otherwise flows alone.
+    logical :: content = .true.
+  end type stage_t
 
   type :: equations_t
     type(elem_t), allocatable :: elems(:)
@@ -40,6 +49,7 @@ module equations
     integer :: now = 1
     !> Mode of the elements (elem_api).
     integer :: mode = mode_advance
+    type(stage_t) :: stage
     type(element_buffers_t) :: buffers
     type(ledger_t) :: timers
     type(team_t) :: team
@@ -250,7 +260,9 @@ contains
     integer :: k, c
 
     instant%time = solution%time + dt
-    instant%dt = dt
+    instant%dt = equations%stage%share*dt
+    instant%content = equations%stage%content
+    instant%reach = equations%stage%reach
     instant%tangent = tangent
     instant%mode = equations%mode
     instant%solved = equations%solves(equations%now)%own
@@ -261,7 +273,7 @@ contains
       instant%multipliers_before(k) = multiplier_at(scene%multipliers(k), solution%time)
       instant%multipliers(k) = multiplier_at(scene%multipliers(k), instant%time)
     end do
-    instant%flow = flow_rule(scene%strategy)
+    call set_flow_rule(scene%strategy, instant%flow)
     allocate (instant%flow%multipliers(size(scene%multipliers), instant%flow%n))
     do c = 1, instant%flow%n
       do k = 1, size(scene%multipliers)
@@ -310,9 +322,9 @@ contains
   end subroutine note_correction
 
   !> Instants at which heat flows in a step: the end, a share theta of it, or start and end with a weight each.
-  pure function flow_rule(strategy) result(rule)
+  pure subroutine set_flow_rule(strategy, rule)
     type(strategy_t), intent(in) :: strategy
-    type(flow_rule_t) :: rule
+    type(flow_rule_t), intent(out) :: rule
 
     if (strategy%theta_mean .and. strategy%theta < 1) then
       rule%n = 2
@@ -321,7 +333,7 @@ contains
     else
       rule%share(1) = strategy%theta
     end if
-  end function flow_rule
+  end subroutine set_flow_rule
 
   !> Values of all unknowns (ndof).
   pure subroutine list_values(dofs, fields, values)
@@ -388,6 +400,30 @@ contains
     call equations%timers%stop(timer)
   end subroutine evaluate
 
+  !> An error of the heat content at the end of a step, in the mean square of the volume of the bodies, over the least heat capacity
+  !> of each. It is given by the temperatures that it belongs to.
+  subroutine measure_error(scene, equations, solution, du, temperatures, error)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: du(:)             !! (ndof) motion of the step [unknown]
+    real(wp), intent(in) :: temperatures(:)   !! (ndof) the error [unknown]
+    real(wp), intent(out) :: error            !! [temperature]
+    type(instant_t) :: instant
+    type(report_t) :: report
+    real(wp), allocatable :: now(:, :)
+
+    call make_instant(scene, equations, solution, 0.0_wp, du, .false., instant)
+    instant%mode = mode_error
+    instant%values = instant%values + du
+    call driving_values(scene, equations, solution, du, now)
+    call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, &
+                      equations%solves(equations%now)%active, equations%solves(equations%now)%pattern, instant, temperatures, now, &
+                      solution, equations%drivers, equations%buffers, equations%timers, report)
+    error = 0
+    if (report%error_volume > 0) error = sqrt(report%error_square/report%error_volume)
+  end subroutine measure_error
+
   !> The temperature is among the fields of the solve under way.
   pure function solves_heat(scene, equations) result(yes)
     type(scene_t), intent(in) :: scene
@@ -426,7 +462,8 @@ contains
   end subroutine driving_values
 
   !> Size of round-off in what acts on the own fields: what a change of round-off makes through the diagonals of the matrices of
-  !> the bodies. For motions once for a mesh; others have values, and matrices with the length of the step, that change.
+  !> the bodies, of temperatures those of what passes their sides too. For motions once for a mesh; others have values, and
+  !> matrices with the length of the step, that change.
   pure subroutine set_floors(scene, equations, fields)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
@@ -445,7 +482,7 @@ contains
     end do
   end subroutine set_floors
 
-  !> Squares of the diagonals of the matrices of all bodies, of the unknowns of one field.
+  !> Squares of the diagonals of the matrices of all bodies, and of loads where they are no forces, of the unknowns of one field.
   pure function sum_of_diagonals(scene, equations, field) result(sum)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
@@ -455,7 +492,8 @@ contains
 
     sum = 0
     do g = 1, size(scene%groups)
-      if (.not. (any(scene%groups(g)%role == [role_body, role_second]) .and. equations%solves(equations%now)%active(g))) cycle
+      if (.not. equations%solves(equations%now)%active(g)) cycle
+      if (.not. (any(scene%groups(g)%role == [role_body, role_second]) .or. field /= displacement_field)) cycle
       associate (layout => equations%dofs%groups(g)%layout)
         ndof = layout%ndof
         do e = 1, size(equations%dofs%groups(g)%dof, 2)

@@ -10,6 +10,7 @@ module newton
   use element_loop, only: add_prescribed
   use equations, only: equations_t, evaluate, external_forces, solve_correction
   use errors, only: error_t, exit_no_convergence
+  use heat_record, only: heat_step_t
   use kinds, only: wp
   use linear_solver, only: return_to_chosen
   use line_search, only: manner_t, search_along, short_share
@@ -36,8 +37,11 @@ module newton
     !> Iterations in all, and those before the first augmentation: the difficulty of the step.
     integer :: iterations = 0, first_iterations = 0
     type(iteration_t), allocatable :: history(:)
-    !> Contact begins after this share of the step: it should be no longer.
+    !> The step should be no longer than this share of it; why.
     real(wp) :: event = 1.0_wp
+    character(len=:), allocatable :: event_reason
+    !> Balance of heat in time.
+    type(heat_step_t) :: heat
     !> Motion of every unknown (ndof).
     real(wp), allocatable :: du(:)
     !> Residual force of every unknown where a failed step stopped (ndof).
@@ -91,7 +95,10 @@ contains
       return
     end if
     if (dt > scene%strategy%least_step) outcome%event = report%event
-    if (outcome%event < 1) return
+    if (outcome%event < 1) then
+      outcome%event_reason = 'contact begins'
+      return
+    end if
 
     first = 1
     correction = 0

@@ -5,6 +5,7 @@
 !> nothing changes any more is the result of the monolithic solve.
 module step_solves
   use equations, only: equations_t
+  use heat_stages, only: is_heat_alone, solve_heat
   use kinds, only: wp
   use newton, only: outcome_t, solve_step
   use predictor, only: proportion
@@ -34,7 +35,11 @@ contains
     integer :: s, turn
 
     if (size(equations%solves) == 1) then
-      call solve_step(scene, equations, solution, dt, outcome)
+      if (is_heat_alone(scene, equations)) then
+        call solve_heat(scene, equations, solution, dt, outcome)
+      else
+        call solve_step(scene, equations, solution, dt, outcome)
+      end if
       return
     end if
     ! the trial state of a failed attempt is discarded
@@ -47,8 +52,12 @@ contains
       change = 0
       do s = 1, size(equations%solves)
         equations%now = s
-        call solve_step(scene, equations, solution, dt, own, given=motion, go_on=turn > 1)
-        call add_outcome(equations%solves(s)%name, own, outcome)
+        if (is_heat_alone(scene, equations)) then
+          call solve_heat(scene, equations, solution, dt, own, given=motion, go_on=turn > 1)
+        else
+          call solve_step(scene, equations, solution, dt, own, given=motion, go_on=turn > 1)
+        end if
+        call add_outcome(equations%solves(s)%name, is_heat_alone(scene, equations), own, outcome)
         if (.not. own%converged) return
         change = max(change, relative_change(equations, motion, own%du))
         motion = merge(own%du, motion, equations%solves(s)%is_own)
@@ -75,8 +84,9 @@ contains
   end function relative_change
 
   !> Add the result of a solve: iterations one after the other, extremes, why it failed.
-  subroutine add_outcome(name, own, all)
+  subroutine add_outcome(name, is_heat, own, all)
     character(len=*), intent(in) :: name   !! of the solve
+    logical, intent(in) :: is_heat
     type(outcome_t), intent(inout) :: own
     type(outcome_t), intent(inout) :: all
 
@@ -89,6 +99,8 @@ contains
     all%iterations = all%iterations + own%iterations
     all%first_iterations = max(all%first_iterations, own%first_iterations)
     all%event = min(all%event, own%event)
+    if (allocated(own%event_reason)) all%event_reason = own%event_reason
+    if (is_heat) all%heat = own%heat
     all%strain = max(all%strain, own%strain)
     all%linear_residual = max(all%linear_residual, own%linear_residual)
     all%augmentations = max(all%augmentations, own%augmentations)

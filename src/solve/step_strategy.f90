@@ -53,13 +53,14 @@ contains
     if (allocated(scene%remesh%times)) next = min(next, minval(scene%remesh%times, mask=scene%remesh%times > after))
   end function next_time
 
-  !> Proposal after an accepted step: by its iterations, and no longer than its strain increment allows to
-  !> foresee. A step shortened to hit a time does not shorten the proposal.
-  pure function after_success(scene, dt, proposed, iterations, strain) result(next)
+  !> Proposal after an accepted step: by its iterations, and no longer than its strain increment and its error in time allow
+  !> to foresee. A step shortened to hit a time does not shorten the proposal.
+  pure function after_success(scene, dt, proposed, iterations, strain, growth) result(next)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: dt, proposed
     integer, intent(in) :: iterations
     real(wp), intent(in) :: strain   !! largest strain increment of the step
+    real(wp), intent(in), optional :: growth   !! largest factor by the error in time
     real(wp) :: next
     real(wp) :: factor
 
@@ -69,6 +70,7 @@ contains
       next = dt*factor
       if (dt < proposed .and. factor >= 1) next = max(next, min(proposed, s%largest_step))
       if (strain*next > foresight*s%strain_bound*dt) next = foresight*s%strain_bound/strain*dt
+      if (present(growth)) next = min(next, min(growth, s%largest_step/dt)*dt)
       next = min(max(next, s%least_step), s%largest_step)
     end associate
   end function after_success

@@ -1,0 +1,53 @@
+!> What is known of the balance of heat in time: of a step, and of all steps since the start.
+module heat_record
+  use kinds, only: wp
+  implicit none
+  private
+  public :: heat_record_t, heat_step_t, note_heat_step
+
+  type :: heat_step_t
+    !> Its error was estimated; the estimate, of the heat content over the least heat capacity in the mean square of the volume; it
+    !> is above what the deck allows.
+    logical :: estimated = .false.
+    real(wp) :: error = 0.0_wp
+    logical :: above = .false.
+    !> It must be shortened by its error; largest factor for the step that follows.
+    logical :: too_long = .false.
+    real(wp) :: growth = huge(1.0_wp)
+    !> How far temperatures are beyond those that can be there (heat_bounds); the step was made again by implicit Euler for that.
+    real(wp) :: excess = 0.0_wp
+    logical :: fell_back = .false.
+  end type heat_step_t
+
+  type :: heat_record_t
+    !> Sum and largest of the estimated errors of the steps [temperature], and how many were estimated.
+    real(wp) :: error_sum = 0.0_wp, error_worst = 0.0_wp
+    integer :: estimated = 0
+    !> Attempts shortened by their error; steps of the least length that are above it.
+    integer :: shortened = 0, above = 0
+    !> Steps with temperatures beyond those that can be there, and the farthest [temperature]; steps made again for that.
+    integer :: outside = 0
+    real(wp) :: excess = 0.0_wp
+    integer :: fallbacks = 0
+  end type heat_record_t
+
+contains
+
+  !> Add an accepted step.
+  pure subroutine note_heat_step(step, record)
+    type(heat_step_t), intent(in) :: step
+    type(heat_record_t), intent(inout) :: record
+
+    if (step%estimated) then
+      record%estimated = record%estimated + 1
+      record%error_sum = record%error_sum + step%error
+      record%error_worst = max(record%error_worst, step%error)
+      if (step%above) record%above = record%above + 1
+    end if
+    if (step%fell_back) record%fallbacks = record%fallbacks + 1
+    if (.not. step%excess > 0) return
+    record%outside = record%outside + 1
+    record%excess = max(record%excess, step%excess)
+  end subroutine note_heat_step
+
+end module heat_record

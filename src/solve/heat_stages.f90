@@ -1,0 +1,294 @@
+!> A step of the balance of heat in time, with its error: implicit Euler, or TR-BDF2.
+!>
+!> With H the heat content, less what was released, and G the flows out of the nodes less the loads (H' + G = 0), TR-BDF2 as a
+!> Runge-Kutta method (R.E. Bank et al., IEEE Trans. Electron Devices 32 (1985) 1992-2007; M.E. Hosea, L.F. Shampine, Appl. Numer.
+!> Math. 20 (1996) 21-37) has stages at the start, after 2 D dt, and at the end, D = 1 - 1/sqrt(2), W = sqrt(2)/4:
+!>   (H1 - Hn)/(D dt) + G0 + G1 = 0,   (H2 - Hn)/(D dt) + (W/D)(G0 + G1) + G2 = 0.
+!> It is of second order and L-stable, and both stages have the same matrix. The difference to its embedded formula of third order
+!> is its error, sum of E_k G_k dt; of implicit Euler it is the difference to the trapezoidal rule, (G1 - G0) dt/2. Both are
+!> divided by the matrix of the step as Hosea and Shampine do, so that stiff parts, which the step damps, do not count; and measured
+!> as heat content.
+!> A first step is of implicit Euler: what was started with need not agree with what is imposed, which would cost TR-BDF2 an order.
+module heat_stages
+  use elem_api, only: report_t
+  use equations, only: equations_t, evaluate, external_forces, measure_error, solve_correction, stage_t
+  use errors, only: error_t
+  use fields, only: find_field
+  use heat_bounds, only: excess_of_temperature, has_bounds, on_corners_alone
+  use kinds, only: wp
+  use newton, only: outcome_t, solve_step
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use strategy, only: scheme_tr_bdf2
+  use text, only: to_text
+  implicit none
+  private
+  public :: is_heat_alone, solve_heat
+
+  !> D and W above, the weights of the stages, and those of the error.
+  real(wp), parameter :: diagonal = 1 - 1/sqrt(2.0_wp), weight = sqrt(2.0_wp)/4
+  real(wp), parameter :: weights(0:2) = [weight, weight, diagonal]
+  real(wp), parameter :: error_weights(0:2) = weights - [(1 - weight)/3, (3*weight + 1)/3, diagonal/3]
+  !> A step is made so much shorter than its error asks for, and at least and at most this factor after one that is too long.
+  real(wp), parameter :: safety = 0.9_wp, least_factor = 0.1_wp
+
+  !> What an evaluation leaves behind that the books are made of.
+  type :: evaluation_t
+    real(wp), allocatable :: force(:), magnitude(:), element_force(:)
+    real(wp) :: heat_stored = 0.0_wp, heat_released = 0.0_wp, source = 0.0_wp
+  end type evaluation_t
+
+contains
+
+  !> The present solve has temperatures and no other quantity.
+  pure function is_heat_alone(scene, equations) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    logical :: yes
+    integer :: f
+
+    f = find_field(scene%fields, 'temperature')
+    yes = .false.
+    if (f == 0) return
+    associate (own => equations%solves(equations%now)%own)
+      yes = scene%fields(f)%declared .and. own(f) .and. count(own .and. scene%fields%declared) == 1
+    end associate
+  end function is_heat_alone
+
+  !> Find the temperatures at the end of a step of length dt. Its error, where it is estimated, decides whether the step must be
+  !> shortened, and how long the next may be.
+  subroutine solve_heat(scene, equations, solution, dt, outcome, given, go_on)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt
+    type(outcome_t), intent(out) :: outcome
+    real(wp), intent(in), optional :: given(:)   !! (ndof) motion of other solves' unknowns; of all with go_on [unknown]
+    logical, intent(in), optional :: go_on       !! from `given` for the own unknowns too
+    type(outcome_t) :: again
+    logical :: bounded
+
+    bounded = has_bounds(scene, equations)
+    if (scene%strategy%scheme == scheme_tr_bdf2 .and. solution%step > 0) then
+      call solve_two_stages(scene, equations, solution, dt, outcome, given)
+      if (outcome%converged .and. bounded) outcome%heat%excess = excess_of_temperature(scene, equations, solution, dt, outcome%du)
+      if (outcome%heat%excess > 0 .and. on_corners_alone(scene)) then
+        call solve_one_stage(scene, equations, solution, dt, again, given, go_on)
+        again%heat%fell_back = .true.
+        call add_iterations(outcome, again)
+        outcome = again
+      end if
+    else
+      call solve_one_stage(scene, equations, solution, dt, outcome, given, go_on)
+    end if
+    if (.not. outcome%converged) return
+    if (bounded) outcome%heat%excess = excess_of_temperature(scene, equations, solution, dt, outcome%du)
+    call judge(scene, solution, dt, outcome)
+  end subroutine solve_heat
+
+  !> A step of the theta scheme; with its error where the deck states how large that may be, or the scheme is implicit Euler in the
+  !> place of TR-BDF2.
+  subroutine solve_one_stage(scene, equations, solution, dt, outcome, given, go_on)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt
+    type(outcome_t), intent(out) :: outcome
+    real(wp), intent(in), optional :: given(:)
+    logical, intent(in), optional :: go_on
+    real(wp), dimension(equations%dofs%ndof) :: rest, before, after
+    type(evaluation_t) :: kept
+
+    if (.not. (scene%strategy%scheme == scheme_tr_bdf2 .or. scene%strategy%time_tolerance > 0)) then
+      call solve_step(scene, equations, solution, dt, outcome, given=given, go_on=go_on)
+      return
+    end if
+    rest = 0
+    call flows(scene, equations, solution, 0.0_wp, rest, before)
+    call solve_step(scene, equations, solution, dt, outcome, given=given, go_on=go_on)
+    if (.not. outcome%converged) return
+    call keep_evaluation(equations, kept)
+    call flows(scene, equations, solution, dt, outcome%du, after)
+    call estimate(scene, equations, solution, 0.5_wp*(after - before), outcome)
+    call return_to(kept, equations)
+  end subroutine solve_one_stage
+
+  !> A step of TR-BDF2. Forces and element forces are left as the means over the step, for the books.
+  subroutine solve_two_stages(scene, equations, solution, dt, outcome, given)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt
+    type(outcome_t), intent(out) :: outcome
+    real(wp), intent(in), optional :: given(:)
+    real(wp), dimension(equations%dofs%ndof, 0:2) :: g
+    real(wp), dimension(equations%dofs%ndof) :: start, external, left
+    real(wp) :: passed(size(equations%buffers%force))
+    type(evaluation_t) :: kept
+    type(outcome_t) :: first
+
+    start = 0
+    call flows(scene, equations, solution, 0.0_wp, start, g(:, 0))
+    if (present(given)) start = 2*diagonal*given
+    passed = 0
+    call add_passed(equations, weights(0), passed)
+
+    equations%stage = stage_t(share=0.5_wp, reach=2*diagonal)
+    call solve_step(scene, equations, solution, 2*diagonal*dt, first, left=g(:, 0), given=start)
+    equations%stage = stage_t()
+    if (.not. first%converged) then
+      outcome = first
+      return
+    end if
+    call flows(scene, equations, solution, 2*diagonal*dt, first%du, g(:, 1), reach=2*diagonal)
+    call add_passed(equations, weights(1), passed)
+
+    ! the temperatures go on as they went in the first stage
+    start = first%du/(2*diagonal)
+    if (present(given)) start = merge(start, given, equations%solves(equations%now)%is_own)
+    left = (weight/diagonal)*(g(:, 0) + g(:, 1))
+    equations%stage = stage_t(share=diagonal)
+    call solve_step(scene, equations, solution, dt, outcome, left=left, given=start, go_on=.true.)
+    equations%stage = stage_t()
+    call add_iterations(first, outcome)
+    if (.not. outcome%converged) return
+
+    call keep_evaluation(equations, kept)
+    call flows(scene, equations, solution, dt, outcome%du, g(:, 2))
+    call add_passed(equations, weights(2), passed)
+    call take_passed(equations, passed, kept%element_force)
+    call external_forces(scene, equations%dofs, solution%time + dt, external)
+    kept%force = merge(external + diagonal*(kept%force + left - external), kept%force, equations%solves(equations%now)%is_own)
+    call estimate(scene, equations, solution, matmul(g, error_weights)/diagonal, outcome)
+    call return_to(kept, equations)
+  end subroutine solve_two_stages
+
+  !> Flows out of the nodes less the loads at an instant of the step, without what is taken up and released.
+  subroutine flows(scene, equations, solution, dt, du, g, reach)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt      !! to the instant [time]
+    real(wp), intent(in) :: du(:)   !! (ndof) motion to there [unknown]
+    real(wp), intent(out) :: g(:)   !! (ndof), 0 for the unknowns of other solves [power]
+    real(wp), intent(in), optional :: reach   !! share of the step; the end, or the start for dt = 0, where absent
+    real(wp) :: external(size(du))
+    type(report_t) :: report
+
+    equations%stage = stage_t(content=.false., reach=merge(1.0_wp, 0.0_wp, dt > 0))
+    if (present(reach)) equations%stage%reach = reach
+    call evaluate(scene, equations, solution, dt, du, .false., report)
+    equations%stage = stage_t()
+    call external_forces(scene, equations%dofs, solution%time + dt, external)
+    g = merge(equations%force - external, 0.0_wp, equations%solves(equations%now)%is_own)
+  end subroutine flows
+
+  !> Add the element forces of the loads of the present solve.
+  pure subroutine add_passed(equations, share, passed)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: share
+    real(wp), intent(inout) :: passed(:)   !! [power]
+    integer :: k, m, n
+
+    do k = 1, size(equations%dofs%groups)
+      if (.not. (equations%solves(equations%now)%active(k) .and. equations%is_load(k))) cycle
+      m = equations%solves(1)%pattern%force_start(k)
+      n = size(equations%dofs%groups(k)%dof)
+      passed(m + 1:m + n) = passed(m + 1:m + n) + share*equations%buffers%force(m + 1:m + n)
+    end do
+  end subroutine add_passed
+
+  !> Put them where the element forces are.
+  pure subroutine take_passed(equations, passed, force)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: passed(:)
+    real(wp), intent(inout) :: force(:)
+    integer :: k, m, n
+
+    do k = 1, size(equations%dofs%groups)
+      if (.not. (equations%solves(equations%now)%active(k) .and. equations%is_load(k))) cycle
+      m = equations%solves(1)%pattern%force_start(k)
+      n = size(equations%dofs%groups(k)%dof)
+      force(m + 1:m + n) = passed(m + 1:m + n)
+    end do
+  end subroutine take_passed
+
+  !> Solve for the error and measure it.
+  subroutine estimate(scene, equations, solution, rates, outcome)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: rates(:)   !! (ndof) error of the heat contents over the length that the matrix divides them by [power]
+    type(outcome_t), intent(inout) :: outcome
+    real(wp) :: temperatures(size(rates))
+
+    call solve_correction(equations, rates, temperatures, outcome%error)
+    if (allocated(outcome%error)) then
+      outcome%converged = .false.
+      return
+    end if
+    call measure_error(scene, equations, solution, outcome%du, temperatures, outcome%heat%error)
+    outcome%heat%estimated = .true.
+  end subroutine estimate
+
+  !> By the error the step is accepted or must be shortened, and the next may be so much longer.
+  subroutine judge(scene, solution, dt, outcome)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt
+    type(outcome_t), intent(inout) :: outcome
+    real(wp) :: factor, order
+    logical :: two_stages
+
+    if (.not. (outcome%heat%estimated .and. scene%strategy%time_tolerance > 0)) return
+    two_stages = scene%strategy%scheme == scheme_tr_bdf2 .and. solution%step > 0 .and. .not. outcome%heat%fell_back
+    order = merge(2.0_wp, 1.0_wp, two_stages)
+    factor = huge(factor)
+    if (outcome%heat%error > 0) factor = safety*(scene%strategy%time_tolerance/outcome%heat%error)**(1/(order + 1))
+    if (outcome%heat%error <= scene%strategy%time_tolerance) then
+      ! the error of a first step by implicit Euler says nothing about TR-BDF2
+      if (two_stages .or. scene%strategy%scheme /= scheme_tr_bdf2) outcome%heat%growth = factor
+    else if (dt > scene%strategy%least_step) then
+      outcome%converged = .false.
+      outcome%event = max(factor, least_factor)
+      outcome%event_reason = 'error in time '//to_text(outcome%heat%error, 3)//' above ' &
+                             //to_text(scene%strategy%time_tolerance, 3)
+      outcome%heat%too_long = .true.
+    else
+      outcome%heat%above = .true.
+      outcome%heat%growth = 1
+    end if
+  end subroutine judge
+
+  !> Iterations of an earlier stage, or of an attempt that was dropped, count too.
+  subroutine add_iterations(earlier, outcome)
+    type(outcome_t), intent(in) :: earlier
+    type(outcome_t), intent(inout) :: outcome
+
+    outcome%history = [earlier%history, outcome%history]
+    outcome%iterations = outcome%iterations + earlier%iterations
+    outcome%first_iterations = max(outcome%first_iterations, earlier%first_iterations)
+    outcome%linear_residual = max(outcome%linear_residual, earlier%linear_residual)
+  end subroutine add_iterations
+
+  subroutine keep_evaluation(equations, kept)
+    type(equations_t), intent(in) :: equations
+    type(evaluation_t), intent(out) :: kept
+
+    kept = evaluation_t(equations%force, equations%magnitude, equations%buffers%force, equations%heat_stored, &
+                        equations%heat_released, equations%source)
+  end subroutine keep_evaluation
+
+  subroutine return_to(kept, equations)
+    type(evaluation_t), intent(in) :: kept
+    type(equations_t), intent(inout) :: equations
+
+    equations%force = kept%force
+    equations%magnitude = kept%magnitude
+    equations%buffers%force = kept%element_force
+    equations%heat_stored = kept%heat_stored
+    equations%heat_released = kept%heat_released
+    equations%source = kept%source
+  end subroutine return_to
+
+end module heat_stages

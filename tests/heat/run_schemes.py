@@ -1,0 +1,205 @@
+#!/usr/bin/env python3
+"""Balance of heat in time: TR-BDF2 and implicit Euler with their errors, bounds of temperatures, factors that are kept.
+
+usage: run_schemes.py [-v] [-k]
+
+- `order`: the order in the step, from the differences of runs whose steps are each half of the one before (L.F. Richardson): a side
+  that follows a wave; convection, radiation and numbers by temperature; a wide interval of melting; heat with the motion of a body,
+  solved for until nothing changes. Books of heat close in all of them.
+- `t3` (NAFEMS T3): 36.603 after 32 s.
+- `error`: the estimate of a smooth problem falls with the third power of the step (second: implicit Euler), and the sum of all is no
+  less than the error of the run; TOL is met, and the error falls with it.
+- `bounds`: a body of Biot number 1000 on a coarse mesh: with BILINEAR no temperature is outside at any step, TR-BDF2 falls back to
+  implicit Euler and says how often; with eight temperatures an element the steps outside are counted.
+- `factors`: a linear problem factorises once for each length of a step; one by temperature at every iteration.
+- `resume`: from the older checkpoint on, the same bits.
+"""
+import json
+import math
+import os
+import subprocess
+import sys
+
+sys.dont_write_bytecode = True
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [HERE, os.path.join(os.path.dirname(HERE), "patch")]
+from patch_support import LAGAMINE, LONGEST_RUN, Checks, Run, np  # noqa: E402
+from run_exchange import HEAD, TIGHT, wall  # noqa: E402
+from run_heat import temperatures  # noqa: E402
+
+
+def checks_of(run):
+    """The checks of summary.json."""
+    return summary(run)["checks"]
+
+
+def summary(run):
+    """The whole of summary.json."""
+    with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+        return json.load(file)
+
+
+def steps(count, time, first=None):
+    """Equal steps; the first, by implicit Euler, is a 16th, and what is left of it in one more."""
+    step = time/count
+    return f"STRAT {first or step/16!r} {step*1e-6!r} {step!r} 99 1 0.5 1.E6\nSTOP {time}\n"
+
+
+WAVE = HEAD.format(title="wave", state="PLSTN") + wall("9", 20) + (
+    "LAW steel HEAT\n   35. 7200*440.5\nSTART T 0.\nIMPOS wall 4 T zero\nIMPOS wall 2 T wave 100.\nLIC zero\n   0. 0.\n"
+    "PROBE a NODE T 0.08 0.\n" + TIGHT + "LIC wave\n")
+RAMP = WAVE + "   0. 0. 32. 1.\n"
+EXCHANGE = HEAD.format(title="exchange", state="AXISYM") + wall("4", 6) + (
+    "LAW steel HEAT\n   TEMP 0.\n   20. 3.E6\n   TEMP 1000.\n   40. 5.E6\nSTART T 900.\n"
+    "CONVE wall 2 H 400. TS 20.\n   0. 1. 1000. 3.\nRADIA wall 4 EPS 0.8 SIGMA 5.67E-8 ZERO 273.15 TS 20.\n" + TIGHT)
+# the same from equilibrium: surroundings cool as the square of the time, in many corners
+SMOOTH = EXCHANGE.replace("TS 20.", "TS 1. cool") + "LIC cool\n" + "".join(
+    f"   {40*k/32!r} {900 - 880*(k/32)**2!r}\n" for k in range(33))
+MELTING = HEAD.format(title="melting", state="PLSTN") + wall("4 BILINEAR", 10) + (
+    "LAW steel HEATH\n   TEMP 0.\n   100. 0.\n   TEMP 100.\n   100. 3.E8\n   TEMP 700.\n   60. 6.E9\n   TEMP 800.\n   60. 6.3E9\n"
+    "START T 650.\nCONVE wall 2 H 5000. TS 120.\n" + TIGHT)
+MOTION = HEAD.format(title="motion", state="AXISYM").replace("SMALL", "LOG") + (
+    "BLOCK wall PL8LS 9 solid\n   0. 0. 2. 0. 2. 2. 0. 2.\n   3 1. 2 1.\nLAW solid ELATH\n   200000. 0.3 1.2E-5\n"
+    "ADDEL wall PL8TM heat\nLAW heat HEAT\n   50. 3.6\n   SOURCE 2500.\nFIXED wall 4 X\nFIXED wall 1 Y\nMOVE wall 3 Y in\n"
+    "LIC in\n   0. 0. 4. -0.4\nSTART T 300.\nCONVE wall 2 H 40. TS 20.\nSOLVE CONVERGE\n" + TIGHT)
+CASES = {"ramp": (RAMP, 32.0, (16, 32, 64, 128)), "exchange": (EXCHANGE, 40.0, (16, 32, 64, 128)),
+         "melting": (MELTING, 40.0, (16, 32, 64, 128)), "motion": (MOTION, 0.4, (8, 16, 32))}
+
+
+def order(checks):
+    """Second order of TR-BDF2, first of implicit Euler by its error."""
+    for name, (text, time, counts) in CASES.items():
+        found = []
+        for count in counts:
+            run = Run(checks, f"{name}-{count}", text + steps(count, time) + "THETA TRBDF2\nEND\n")
+            if run.ok:
+                found.append(temperatures(run)[1])
+                checks.small(abs(checks_of(run)["heat_imbalance"]), 1e-8, f"{run.name}: books of heat")
+        if len(found) == len(counts):
+            change = [np.sqrt(np.mean((b - a)**2)) for a, b in zip(found, found[1:])]
+            orders = np.log2(np.array(change[:-1])/np.array(change[1:]))
+            checks.that(1.8 <= orders[-1] <= 2.6, f"{name}: second order", f"{orders.round(2)}, differences {change}")
+
+
+def t3(checks):
+    """NAFEMS T3."""
+    wave = "".join(f"   {t/8!r} {math.sin(math.pi*t/8/40)!r}\n" for t in range(257))
+    run = Run(checks, "t3", WAVE + wave + steps(128, 32.0) + "THETA TRBDF2\nEND\n")
+    if run.ok:
+        checks.small(abs(run.history["a"][-1]/36.60312 - 1), 1e-4, "t3: 36.603")
+
+
+def error(checks):
+    """Estimates against what runs of short steps show."""
+    end = temperatures(Run(checks, "error-exact", SMOOTH + steps(1024, 40.0) + "THETA TRBDF2\nEND\n"))[1]
+    for scheme, power in (("TRBDF2", 3), ("1. TOL 1.E6", 2)):
+        late = []
+        for count in (64, 128):
+            run = Run(checks, f"error-{count}-{scheme[:2].strip('.')}", SMOOTH + steps(count, 40.0) + f"THETA {scheme}\nEND\n")
+            if not run.ok:
+                continue
+            true = np.sqrt(np.mean((temperatures(run)[1] - end)**2))
+            values = checks_of(run)
+            checks.that(true <= values["error_in_time_sum"] <= 100*true, f"{run.name}: the sum of the estimates bounds the error",
+                        f"{values['error_in_time_sum']:.3g}, error {true:.3g}")
+            late.append(values["error_in_time_sum"])
+        if len(late) == 2:
+            rate = np.log2(late[0]/late[1])
+            checks.that(power - 1.4 <= rate <= power - 0.3, f"{scheme}: power {power} of the step, less one in the sum", f"{rate:.2f}")
+    end = temperatures(Run(checks, "shock-exact", EXCHANGE + steps(1024, 40.0) + "THETA TRBDF2\nEND\n"))[1]
+    for scheme in ("TRBDF2", "1."):
+        errors, counts = [], []
+        for tolerance in (1.0, 0.1, 0.01):
+            run = Run(checks, f"tol-{scheme[:2].strip('.')}-{tolerance}", EXCHANGE + "STRAT 0.1 1.E-6 40. 99 1 0.5 5.\nSTOP 40.\n"
+                      f"THETA {scheme} TOL {tolerance}\nEND\n")
+            if not run.ok:
+                continue
+            values = checks_of(run)
+            checks.small(values["error_in_time_worst"], tolerance, f"{run.name}: every step")
+            checks.that(values["least_steps_above_error"] == 0, f"{run.name}: no step above", values)
+            checks.small(abs(values["heat_imbalance"]), 1e-8, f"{run.name}: books of heat")
+            errors.append(np.sqrt(np.mean((temperatures(run)[1] - end)**2)))
+            counts.append(run.history["step"][-1])
+        checks.that(len(errors) == 3 and errors[0] > 2*errors[1] > 4*errors[2], f"{scheme}: errors fall with the tolerance", errors)
+        checks.that(len(counts) == 3 and counts[0] < counts[1] < counts[2], f"{scheme}: at a price", counts)
+    run = Run(checks, "tol-least", EXCHANGE + "STRAT 4. 4. 4. 99 1 0.5 5.\nSTOP 40.\nTHETA 1. TOL 1.E-3\nEND\n")
+    if run.ok:
+        checks.that(checks_of(run)["least_steps_above_error"] == 10, "steps of the least length are made, and counted", checks_of(run))
+
+
+def bounds(checks):
+    """Conduction of 1, sides of 1, exchange of 1000."""
+    for step in (1e-5, 1e-3, 0.1, 10.0):
+        for scheme in ("1.", "TRBDF2"):
+            for option in (" BILINEAR", ""):
+                run = Run(checks, f"bounds-{step}-{scheme[:2].strip('.')}{option[1:3]}", HEAD.format(title="Biot 1000", state="AXISYM")
+                          + f"BLOCK wall PL8TM 9 m{option}\n   0. 0. 1. 0. 1. 1. 0. 1.\n   3 1. 3 1.\nLAW m HEAT\n   1. 1.\nSTART T 800.\n"
+                          f"CONVE wall 2 3 H 1000. TS 20.\nSTRAT {step} {step} {step} 99 1\nSTOP {20*step!r}\nTHETA {scheme}\nSAVE 1\n{TIGHT}END\n")
+                if not run.ok:
+                    continue
+                with run.open() as file:
+                    low, high = (function(function(file[f"steps/{s}/node/temperature"][()]) for s in file["steps"])
+                                 for function in (min, max))
+                values = checks_of(run)
+                told = f"{low:.6g} to {high:.6g}, {values['steps_outside_bounds']} outside, {values['steps_made_again_for_bounds']} again"
+                if option:
+                    checks.that(20 - 1e-2 <= low and high <= 800 + 1e-2, f"{run.name}: between 20 and 800", told)
+                    checks.that(values["steps_outside_bounds"] == 0, f"{run.name}: none outside", told)
+                else:
+                    outside = values["steps_outside_bounds"]
+                    checks.that((low < 20 or high > 800) if outside else (low > 20 - 1e-2 and high < 800 + 1e-2),
+                                f"{run.name}: what is outside is counted", told)
+                if option and scheme == "TRBDF2" and step == 1e-3:
+                    checks.that(values["steps_made_again_for_bounds"] > 0, f"{run.name}: falls back", told)
+                if not option and step == 1e-5:
+                    checks.that(values["excess_of_bounds"] > 1, f"{run.name}: a shock is not resolved", told)
+
+
+def factors(checks):
+    """How often a matrix is factorised."""
+    for scheme in ("1.", "0.5 MEAN", "TRBDF2"):
+        run = Run(checks, f"factors-{scheme[:3].strip('.')}", RAMP + "STRAT 0.25 0.01 0.25 99 1\nSTOP 32.\n" + f"THETA {scheme}\nEND\n")
+        if run.ok:
+            whole = summary(run)
+            # the first step of TR-BDF2 is another one
+            least = 2 if scheme == "TRBDF2" else 1
+            checks.that(whole["factorisations"] == least and whole["factorisations_spared"] >= whole["steps"] - 1,
+                        f"{run.name}: once", f"{whole['factorisations']} and {whole['factorisations_spared']} spared")
+    run = Run(checks, "factors-by-temperature", EXCHANGE + "STRAT 1. 0.1 1. 99 1\nSTOP 20.\nEND\n")
+    if run.ok:
+        whole = summary(run)
+        checks.that(whole["factorisations"] == whole["iterations"] and whole["factorisations_spared"] == 0,
+                    "by temperature: every iteration", whole["factorisations"])
+
+
+def resume(checks):
+    """A run that goes on from its older checkpoint."""
+    run = Run(checks, "resume", EXCHANGE + "STRAT 0.1 1.E-6 40. 99 1 0.5 5.\nSTOP 40.\nTHETA TRBDF2 TOL 0.05\nCKPT 5\nEND\n")
+    if not run.ok:
+        return
+    with open(os.path.join(run.out, "history.csv"), encoding="utf-8") as file:
+        whole = file.read()
+    before = checks_of(run)
+    checks.that(before["steps_shortened_by_error"] > 0, "resume: steps were shortened", before)
+    result = subprocess.run([LAGAMINE, run.out + ".lag", "--out", run.out, "--quiet", "--resume", os.path.join(run.out, "resume.ckp.1.h5")],
+                            text=True, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=LONGEST_RUN)
+    checks.that(result.returncode == 0, "resume: done", result.stdout)
+    with open(os.path.join(run.out, "history.csv"), encoding="utf-8") as file:
+        checks.that(file.read() == whole, "resume: the same history")
+    checks.that(checks_of(run) == before, "resume: the same checks", checks_of(run))
+
+
+def main():
+    """All cases."""
+    checks = Checks()
+    order(checks)
+    t3(checks)
+    error(checks)
+    bounds(checks)
+    factors(checks)
+    resume(checks)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
