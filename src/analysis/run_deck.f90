@@ -20,6 +20,7 @@ module run_deck
   use run_record, only: run_t
   use run_options, only: run_options_t, stem_of
   use run_version, only: blas_words, version_text
+  use physics_check, only: check_physics
   use remesh, only: remesh_t
   use remeshing, only: drop_triggers
   use scene, only: lacks_mesh, scene_t
@@ -189,6 +190,7 @@ contains
     type(run_facts_t) :: facts
     type(error_t), allocatable :: late
     type(string_t), allocatable :: lines(:)
+    type(law_t), allocatable :: laws(:)
     real(wp) :: started
 
     started = wall_seconds()
@@ -206,6 +208,10 @@ contains
     if (run%resume) call list_resumed(run%listing, options%resume, solution)
     call scene_lines(scene, lines)
     call list_lines(run%listing, lines)
+    call list_laws(laws)
+    call check_physics(scene, laws, lines, facts%warnings)
+    call list_lines(run%listing, lines)
+    call list_lines(run%listing, as_warnings(facts%warnings))
     call march_to_end(scene, solution, run, error)
     call end_progress(run%listing)
 
@@ -237,15 +243,31 @@ contains
   subroutine print_check(scene, error)
     type(scene_t), intent(in) :: scene
     type(error_t), allocatable, intent(out) :: error
-    type(string_t), allocatable :: lines(:), more(:)
+    type(string_t), allocatable :: lines(:), more(:), table(:), warnings(:)
+    type(law_t), allocatable :: laws(:)
 
     call scene_lines(scene, lines)
     allocate (more(0))
+    call list_laws(laws)
+    call check_physics(scene, laws, table, warnings)
     if (.not. lacks_mesh(scene)) call unknowns_lines(scene, more, error)
     if (allocated(error)) return
     call print_lines(lines, error)
+    call print_lines(table, error)
     call print_lines(more, error)
+    call print_lines(as_warnings(warnings), error)
   end subroutine print_check
+
+  !> Lines that begin with what they are.
+  pure function as_warnings(lines) result(marked)
+    type(string_t), intent(in) :: lines(:)
+    type(string_t) :: marked(size(lines))
+    integer :: k
+
+    do k = 1, size(lines)
+      marked(k)%s = 'WARNING: '//lines(k)%s
+    end do
+  end function as_warnings
 
   !> --law: the card of a law, or all laws in a list where no name is given.
   subroutine print_law(name, error)

@@ -28,6 +28,8 @@ module summary
     character(len=:), allocatable :: version, deck, deck_text, status, stop_reason, blas
     !> Parameters set on the command line, NAME=VALUE.
     type(string_t), allocatable :: overrides(:)
+    !> What is seldom meant of the deck (physics_check).
+    type(string_t), allocatable :: warnings(:)
     integer :: exit_code = 0, threads = 1
     real(wp) :: wall = 0.0_wp
   end type run_facts_t
@@ -80,6 +82,13 @@ contains
     call json%add('symmetric', all(equations%solves%pattern%symmetric))
     call json%add('factorisations', sum(equations%solves%solver%factorised))
     call json%add('factorisations_spared', sum(equations%solves%solver%reused))
+    call json%begin_array('warnings')
+    do k = 1, size(facts%warnings)
+      call json%begin_object()
+      call json%add('text', facts%warnings(k)%s)
+      call json%end_object()
+    end do
+    call json%end_array()
     call add_effects(json, scene, equations)
     call add_seconds(json, equations)
     if (scene%remesh%estimate) call add_estimate(json, scene, solution)
@@ -313,6 +322,9 @@ contains
                //to_text(circumference(scene)*solution%heat_released, 4)//'; imbalance ' &
                //to_text(100*heat_imbalance(solution), 2)//' % of what passed')
     if (has_heat(scene)) call put_heat(solution%heat)
+    do t = 1, size(facts%warnings)
+      call put('  WARNING: '//facts%warnings(t)%s)
+    end do
     if (size(scene%dies) == 0) then
       call put('  no contact')
     else

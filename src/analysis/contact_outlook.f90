@@ -1,0 +1,156 @@
+!> What can be seen of contact before a run: gaps and depths at the start, and when a die will meet the part by its own motion.
+!>
+!> Only dies move here, the part stands as it begins: what a die meets first does not depend on how the part deforms.
+module contact_outlook
+  use curve_search, only: closest_facing_point, closest_on_pieces
+  use closest_point, only: closest_point_t
+  use dies, only: die_t, in_pilot_axes, is_deformable
+  use kinds, only: wp
+  use loads, only: multiplier_at
+  use plane_vectors, only: turned
+  use scene, only: group_t, is_solid, scene_t
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: look_at_contact, moves, outlook_t
+
+  !> Instants at which a moving die is looked at.
+  integer, parameter :: ninstant = 50
+
+  type :: outlook_t
+    !> A side has a closest point on the die at the start, at the end of the die's motion.
+    logical :: faces = .false., faces_at_end = .false.
+    !> Depth of the deepest node at the start, below 0 for a gap; and over the length of its side.
+    real(wp) :: depth = 0.0_wp, over_side = 0.0_wp
+    !> First instant at which a node is in the die; below 0 where none is.
+    real(wp) :: first = -1.0_wp
+    !> Sides whose element lies in the die's body, of those that have a closest point.
+    integer :: inside = 0, seen = 0
+  end type outlook_t
+
+contains
+
+  !> Outlook of a group that faces a rigid die.
+  pure subroutine look_at_contact(scene, group, outlook)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(outlook_t), intent(out) :: outlook
+    real(wp) :: depth, over_side, time
+    logical :: faces
+    integer :: k
+
+    associate (die => scene%dies(group%die))
+      if (is_deformable(die)) return
+      call deepest(scene, group, die, pilot_at(scene, group%die, 0.0_wp), outlook%faces, outlook%depth, outlook%over_side)
+      call count_inside(scene, group, die, outlook)
+      outlook%faces_at_end = outlook%faces
+      if (outlook%faces .and. outlook%depth >= 0) outlook%first = 0
+      if (.not. moves(scene, group%die)) return
+      do k = 1, ninstant
+        time = scene%strategy%end_time*k/ninstant
+        call deepest(scene, group, die, pilot_at(scene, group%die, time), faces, depth, over_side)
+        if (faces .and. depth >= 0 .and. outlook%first < 0) outlook%first = time
+      end do
+      outlook%faces_at_end = faces
+    end associate
+  end subroutine look_at_contact
+
+  !> The die's pilot is given a motion that is not rest.
+  pure function moves(scene, die) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: die
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    do k = 1, size(scene%die_motions)
+      associate (motion => scene%die_motions(k))
+        if (motion%die /= die .or. motion%multiplier == 0) cycle
+        associate (value => scene%multipliers(motion%multiplier)%value)
+          yes = yes .or. maxval(abs(motion%amplitude*value)) > 0
+        end associate
+      end associate
+    end do
+  end function moves
+
+  !> Pilot of a die by its motions.
+  pure function pilot_at(scene, die, time) result(pilot)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: die
+    real(wp), intent(in) :: time
+    real(wp) :: pilot(3)
+    integer :: k
+
+    pilot = scene%dies(die)%pilot
+    do k = 1, size(scene%die_motions)
+      associate (motion => scene%die_motions(k))
+        if (motion%die /= die .or. motion%multiplier == 0) cycle
+        pilot(motion%component) = scene%dies(die)%pilot(motion%component) &
+                                  + motion%amplitude*multiplier_at(scene%multipliers(motion%multiplier), time)
+      end associate
+    end do
+  end function pilot_at
+
+  !> Depth of the deepest node of the sides, the largest gap closed first.
+  pure subroutine deepest(scene, group, die, pilot, faces, depth, over_side)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: pilot(3)
+    logical, intent(out) :: faces
+    real(wp), intent(out) :: depth, over_side
+    type(closest_point_t) :: closest
+    real(wp) :: nodes(2, 3), chord(2), side, reach
+    integer :: e, k
+
+    faces = .false.
+    depth = -huge(depth)
+    over_side = 0
+    reach = 4*length_of(maxval(scene%mesh%coordinates, 2) - minval(scene%mesh%coordinates, 2))
+    do e = 1, size(group%connectivity, 2)
+      nodes = in_pilot_axes(scene%mesh%coordinates(:, group%connectivity(:, e)), pilot)
+      chord = nodes(:, 3) - nodes(:, 1)
+      side = length_of(chord)
+      do k = 1, 3
+        call closest_facing_point(die, nodes(:, k), [-chord(2), chord(1)]/side, reach, closest)
+        if (closest%piece == 0) cycle
+        faces = .true.
+        if (.not. closest%d > depth) cycle
+        depth = closest%d
+        over_side = depth/side
+      end do
+    end do
+    if (.not. faces) depth = 0
+  end subroutine deepest
+
+  !> Elements behind the sides that lie in the die's body: their centres are on the right of the curve.
+  pure subroutine count_inside(scene, group, die, outlook)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(die_t), intent(in) :: die
+    type(outlook_t), intent(inout) :: outlook
+    type(closest_point_t) :: closest
+    real(wp) :: centre(2, size(scene%mesh%coordinates, 2)), place(2)
+    integer :: g, e, k
+
+    centre = 0
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      do e = 1, size(scene%groups(g)%connectivity, 2)
+        associate (nodes => scene%groups(g)%connectivity(:, e))
+          do k = 5, 8
+            centre(:, nodes(k)) = sum(scene%mesh%coordinates(:, nodes(1:4)), 2)/4
+          end do
+        end associate
+      end do
+    end do
+    do e = 1, size(group%connectivity, 2)
+      place = turned(centre(:, group%connectivity(2, e)) - die%pilot(1:2), -die%pilot(3))
+      call closest_on_pieces(die, place, 1, size(die%pieces, 3), closest)
+      if (closest%piece == 0) cycle
+      outlook%seen = outlook%seen + 1
+      if (closest%d > 0) outlook%inside = outlook%inside + 1
+    end do
+  end subroutine count_inside
+
+end module contact_outlook

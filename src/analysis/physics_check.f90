@@ -1,0 +1,164 @@
+!> What can be told of a deck before it runs: how parts and dies stand to each other, and what is seldom meant.
+module physics_check
+  use contact_outlook, only: look_at_contact, moves, outlook_t
+  use dies, only: is_deformable
+  use fields, only: displacement_field
+  use kinds, only: wp
+  use law_api, only: driver_count, law_t
+  use scene, only: group_t, lacks_mesh, scene_t
+  use supports, only: free_motions
+  use text, only: string_t, to_text
+  implicit none
+  private
+  public :: check_physics
+
+  !> A part that begins deeper in a rigid die than this share of its side was not meant to.
+  real(wp), parameter :: largest_overlap = 0.01_wp
+  !> Metals yield at less than this share of Young's modulus: the strongest steels and glassy metals at 0.01 to 0.02.
+  real(wp), parameter :: largest_yield = 0.03_wp
+
+contains
+
+  !> Lines of the table of places and dies; and warnings, one line each.
+  subroutine check_physics(scene, laws, table, warnings)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)                        !! (nlaw)
+    type(string_t), allocatable, intent(out) :: table(:)      !! (nline)
+    type(string_t), allocatable, intent(out) :: warnings(:)   !! (nwarning)
+    type(outlook_t) :: outlook(size(scene%groups))
+    integer :: g
+
+    allocate (table(0), warnings(0))
+    if (lacks_mesh(scene) .or. scene%generation > 1 .or. .not. scene%fields(displacement_field)%declared) return
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%die == 0 .or. group%material == 0) cycle
+        call look_at_contact(scene, group, outlook(g))
+        call add(table, 'contact    '//group%name//': '//words_of(scene, group, outlook(g)))
+        call judge_contact(scene, group, outlook(g), warnings)
+      end associate
+    end do
+    call free_motions(scene, outlook, warnings)
+    do g = 1, size(scene%materials)
+      call judge_yield(scene, laws, g, warnings)
+    end do
+    if (.not. anything_acts(scene)) &
+      call add(warnings, 'nothing moves and no load acts: all multipliers (LIC) are zero at all times')
+  end subroutine check_physics
+
+  !> How a group stands to its die.
+  function words_of(scene, group, outlook) result(words)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(outlook_t), intent(in) :: outlook
+    character(len=:), allocatable :: words
+
+    if (is_deformable(scene%dies(group%die))) then
+      words = 'between two bodies'
+      return
+    else if (.not. outlook%faces) then
+      words = 'no side faces the die at the start'
+    else if (abs(outlook%over_side) < 1.0e-6_wp) then
+      words = 'touches at the start'
+    else if (outlook%depth > 0) then
+      words = to_text(outlook%depth, 4)//' deep at the start'
+    else
+      words = 'gap '//to_text(-outlook%depth, 4)//' at the start'
+    end if
+    if (.not. moves(scene, group%die) .or. abs(outlook%first) <= 0) return
+    if (outlook%first > 0) then
+      words = words//', met at about time '//to_text(outlook%first, 3)//' by the die''s motion'
+    else
+      words = words//', not met by the die''s motion'
+    end if
+  end function words_of
+
+  !> Parts in dies, dies walked the wrong way, dies that miss.
+  subroutine judge_contact(scene, group, outlook, warnings)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(outlook_t), intent(in) :: outlook
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+
+    associate (die => scene%dies(group%die))
+      if (is_deformable(die)) return
+      if (2*outlook%inside > outlook%seen) then
+        call add(warnings, group%name//': the part begins within the body of die '//die%name &
+                 //': a die is walked with the part on the left (DIE)')
+      else if (outlook%faces .and. outlook%over_side > largest_overlap) then
+        call add(warnings, group%name//': the part begins '//to_text(outlook%depth, 3)//' deep in die '//die%name &
+                 //', '//to_text(100*outlook%over_side, 3)//' % of a side')
+      else if (moves(scene, group%die) .and. outlook%first < 0) then
+        if (alone(scene, group%die)) call add(warnings, group%name//': die '//die%name//' does not meet the part on all its way: ' &
+                                              //'moved the other way, or the stroke is too short')
+      else if (moves(scene, group%die) .and. outlook%faces .and. .not. outlook%faces_at_end) then
+        call add(warnings, group%name//': at the end of its motion die '//die%name//' no longer faces the part: the stroke ' &
+                 //'leaves it')
+      end if
+    end associate
+  end subroutine judge_contact
+
+  !> Nothing but this die moves by what the deck gives.
+  pure function alone(scene, die) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: die
+    logical :: yes
+    integer :: k
+
+    yes = size(scene%die_forces) == 0
+    do k = 1, size(scene%dies)
+      if (k /= die) yes = yes .and. .not. moves(scene, k)
+    end do
+    do k = 1, size(scene%fixations)
+      yes = yes .and. (scene%fixations(k)%multiplier == 0 .or. scene%fixations(k)%field /= displacement_field)
+    end do
+  end function alone
+
+  !> A yield stress that no metal has beside its modulus: units mixed.
+  subroutine judge_yield(scene, laws, m, warnings)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: m
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    real(wp) :: young, poisson, yield
+
+    associate (material => scene%materials(m), law => laws(scene%materials(m)%law_id))
+      if (law%name /= 'EPLA') return
+      block
+        real(wp) :: drivers(driver_count(law)), history(size(law%history)*4)
+
+        drivers = 0
+        if (allocated(material%temperatures)) drivers(1) = material%temperatures(1)
+        history = 0
+        call law%elastic(material, drivers(1), young, poisson)
+        yield = law%flow_stress(material, drivers, history)
+      end block
+      if (yield > largest_yield*young) call add(warnings, 'law '//material%name//': it yields at '//to_text(yield/young, 3) &
+        //' of E, metals below '//to_text(largest_yield)//': are E and stresses in one unit?')
+    end associate
+  end subroutine judge_yield
+
+  !> A multiplier is not zero at some time, or the scene needs none: heat acts by itself, and one without multipliers has none to be
+  !> zero.
+  pure function anything_acts(scene) result(yes)
+    type(scene_t), intent(in) :: scene
+    logical :: yes
+    integer :: k
+
+    yes = size(scene%multipliers) == 0
+    do k = 1, size(scene%fields)
+      yes = yes .or. scene%fields(k)%declared .and. scene%fields(k)%quantity /= 'motion'
+    end do
+    do k = 1, size(scene%multipliers)
+      yes = yes .or. maxval(abs(scene%multipliers(k)%value)) > 0
+    end do
+  end function anything_acts
+
+  subroutine add(list, line)
+    type(string_t), allocatable, intent(inout) :: list(:)
+    character(len=*), intent(in) :: line
+
+    list = [list, string_t(line)]
+  end subroutine add
+
+end module physics_check

@@ -1,0 +1,167 @@
+!> Rigid motions of bodies that nothing holds, as far as supports and dies at the start tell.
+module supports
+  use contact_outlook, only: outlook_t
+  use fields, only: displacement_field
+  use kinds, only: wp
+  use scene, only: axisymmetric, group_t, is_solid, scene_t
+  use text, only: string_t, to_text
+  implicit none
+  private
+  public :: free_motions
+
+  character(len=*), parameter :: directions = 'XY'
+
+contains
+
+  !> A warning for each body, with all it is joined to, and each direction in which nothing holds it: no support, and no contact or
+  !> none that touches at the start. In the plane also for a turn about the only point that is held.
+  subroutine free_motions(scene, outlook, warnings)
+    type(scene_t), intent(in) :: scene
+    type(outlook_t), intent(in) :: outlook(:)   !! (ngroup) of groups that face rigid dies
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    integer :: part(size(scene%mesh%coordinates, 2)), g, c
+    logical :: touched, near
+
+    call find_parts(scene, part)
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      if (.not. is_first(scene, part, g)) cycle
+      associate (group => scene%groups(g), own => part(scene%groups(g)%connectivity(1, 1)))
+        if (group%material == 0) cycle
+        call contacts_of(scene, outlook, part, own, touched, near)
+        do c = merge(2, 1, scene%plane_state == axisymmetric), 2
+          if (held(scene, part, own, c) .or. touched) cycle
+          if (near) then
+            call add(group%name//': nothing holds it in '//directions(c:c)//' before it meets a die: contact alone does, and ' &
+                     //'there is a gap')
+          else
+            call add(group%name//': nothing holds it in '//directions(c:c)//', no support and no contact')
+          end if
+        end do
+        if (scene%plane_state == axisymmetric .or. touched .or. near) cycle
+        if (held(scene, part, own, 1) .and. held(scene, part, own, 2) .and. .not. held_turning(scene, part, own)) &
+          call add(group%name//': nothing keeps it from turning about what holds it')
+      end associate
+    end do
+
+  contains
+
+    subroutine add(line)
+      character(len=*), intent(in) :: line
+
+      warnings = [warnings, string_t(line)]
+    end subroutine add
+
+  end subroutine free_motions
+
+  !> Nodes of one body, or of bodies joined, have one number.
+  pure subroutine find_parts(scene, part)
+    type(scene_t), intent(in) :: scene
+    integer, intent(out) :: part(:)   !! (nnode)
+    integer :: g, e, k, least
+    logical :: changed
+
+    part = [(k, k=1, size(part))]
+    do
+      changed = .false.
+      do g = 1, size(scene%groups)
+        if (.not. is_solid(scene%groups(g))) cycle
+        least = huge(least)
+        do e = 1, size(scene%groups(g)%connectivity, 2)
+          least = min(least, minval(part(scene%groups(g)%connectivity(:, e))))
+        end do
+        do e = 1, size(scene%groups(g)%connectivity, 2)
+          associate (nodes => scene%groups(g)%connectivity(:, e))
+            changed = changed .or. any(part(nodes) /= least)
+            part(nodes) = least
+          end associate
+        end do
+      end do
+      if (.not. changed) exit
+    end do
+  end subroutine find_parts
+
+  !> The group is the first of its part.
+  pure function is_first(scene, part, g) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: part(:), g
+    logical :: yes
+    integer :: k
+
+    yes = .true.
+    do k = 1, g - 1
+      if (is_solid(scene%groups(k))) &
+        yes = yes .and. part(scene%groups(k)%connectivity(1, 1)) /= part(scene%groups(g)%connectivity(1, 1))
+    end do
+  end function is_first
+
+  !> Contacts of a part: one touches at the start; there is one.
+  pure subroutine contacts_of(scene, outlook, part, own, touched, near)
+    type(scene_t), intent(in) :: scene
+    type(outlook_t), intent(in) :: outlook(:)
+    integer, intent(in) :: part(:), own
+    logical, intent(out) :: touched, near
+    logical :: mine
+    integer :: g
+
+    touched = .false.
+    near = .false.
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%die == 0 .or. group%material == 0) cycle
+        mine = part(group%connectivity(1, 1)) == own
+        if (allocated(scene%dies(group%die)%nodes)) then
+          mine = mine .or. part(scene%dies(group%die)%nodes(1, 1)) == own
+          ! two bodies: whether they touch is not looked at
+          touched = touched .or. mine
+        else
+          touched = touched .or. mine .and. outlook(g)%faces .and. outlook(g)%over_side > -1.0e-3_wp
+        end if
+        near = near .or. mine
+      end associate
+    end do
+  end subroutine contacts_of
+
+  !> A support holds a node of the part in a direction.
+  pure function held(scene, part, own, component) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: part(:), own, component
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    do k = 1, size(scene%fixations)
+      associate (fixation => scene%fixations(k))
+        if (fixation%field == displacement_field .and. fixation%component == component) &
+          yes = yes .or. any(part(fixation%nodes) == own)
+      end associate
+    end do
+  end function held
+
+  !> Two supports in one direction whose lines of action differ.
+  pure function held_turning(scene, part, own) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: part(:), own
+    logical :: yes
+    real(wp) :: low, high
+    integer :: c, k, n
+
+    yes = .false.
+    do c = 1, 2
+      low = huge(low)
+      high = -huge(high)
+      do k = 1, size(scene%fixations)
+        associate (fixation => scene%fixations(k))
+          if (fixation%field /= displacement_field .or. fixation%component /= c) cycle
+          do n = 1, size(fixation%nodes)
+            if (part(fixation%nodes(n)) /= own) cycle
+            low = min(low, scene%mesh%coordinates(3 - c, fixation%nodes(n)))
+            high = max(high, scene%mesh%coordinates(3 - c, fixation%nodes(n)))
+          end do
+        end associate
+      end do
+      yes = yes .or. high > low
+    end do
+  end function held_turning
+
+end module supports
