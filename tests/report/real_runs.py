@@ -44,7 +44,7 @@ STRAT  $first  $least  $largest   4 3
 SAVE   4
 """
 NUMBERS = {"state": "AXISYM", "young": "200000.", "penetr": "1.E-3", "augment": "20", "points": "-3", "travel": "3.",
-           "first": "0.05", "least": "1.E-5", "largest": "0.05"}
+           "first": "0.01", "least": "1.E-5", "largest": "0.05"}
 # Deep in its dies: soft, without augmentation, few points on a side.
 SOFT = {"young": "20000.", "augment": "0", "points": "2", "travel": "2."}
 REMSH = "REMSH\n   TIMES 0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8\n"

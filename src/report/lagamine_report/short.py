@@ -160,6 +160,7 @@ def short_lines(run: Run) -> List[str]:
     for check in checks(run):
         if check.good is False:
             lines.append(f"  WARNING: {check.warning}")
+    lines += [f"  WARNING: {told['text']}" for told in s.get("warnings", [])]
     return [line.translate(PLAIN) for line in lines]
 
 

@@ -1,0 +1,188 @@
+#!/usr/bin/env python3
+"""Wrong physics that can be seen: each is told in words, by `--check`, at the start of a run, or when it shows.
+
+usage: run_told.py [-v] [-k]       -v prints every check, -k keeps the results
+
+- Decks that are read without a mistake and mean something else than their author: `--check` warns in one line of each, with the words
+  that the table prints; the deck that they are made from, and all decks of the project, are told nothing.
+- `KINEM SMALL` at large strain, with a body that flows and one that locks beyond its limit load, ends with code 3.
+- Probes of measures of stress against the components of the same point; of nodes that stand at one place.
+"""
+import glob
+import json
+import os
+import subprocess
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "patch"))
+from patch_support import LAGAMINE, NO_CONVERGENCE, SOURCE, Checks, Run, np  # noqa: E402
+
+BASE = """TITLE  A billet in the plane
+STATE  PLSTN
+KINEM  LOG
+BLOCK  billet PL8LS 4 steel
+   0. 0.   10. 0.   10. 15.   0. 15.
+   2 1.   3 1.
+LAW    steel EPLA
+   200000. 0.3
+   LINEAR 700. 300.
+LAW    rough COUL2D
+   PENETR 1.E-3   PHI 0.3
+DIE    upper
+   SEGM  30. 15.   -5. 15.
+CNT2D  billet 3 upper -3 rough
+FIXED  billet 1 Y
+FIXED  billet 4 X
+LIC    press
+   0. 0.   1. -2.
+MOVE   upper Y press
+STRAT  0.1 1.E-4 0.1   5 3
+END
+"""
+TABLE = "DIE    lower\n   SEGM  -5. -1.   30. -1.\nCNT2D  billet 1 lower -3 rough\n"
+# What is changed in the base, and what `--check` must say.
+WRONG = {
+    "walked the other way": ({"30. 15.   -5. 15.": "-5. 15.   30. 15."}, "within the body of die upper"),
+    "die in the part": ({"30. 15.   -5. 15.": "30. 14.   -5. 14."}, "begins 1 deep in die upper"),
+    "corner in a fillet": ({"SEGM  30. 15.   -5. 15.": "SEGM  10.2 -5.   10.2 15.\n   FILLT 3. 1.E-2\n   SEGM  10.2 15.   -5. 15.",
+                            "CNT2D  billet 3": "CNT2D  billet 2 3"}, "deep in die upper"),
+    "moved away": ({"30. 15.   -5. 15.": "30. 16.   -5. 16.", "1. -2.": "1. 2."}, "does not meet the part"),
+    "stroke too short": ({"30. 15.   -5. 15.": "30. 18.   -5. 18."}, "does not meet the part"),
+    "stroke that leaves the part": ({"MOVE   upper Y press": "MOVE   upper X press 20."}, "no longer faces the part"),
+    "floating": ({"FIXED  billet 1 Y\n": TABLE, "30. 15.   -5. 15.": "30. 16.   -5. 16."}, "nothing holds it in Y before it meets"),
+    "free to slide": ({"FIXED  billet 4 X\n": "", "CNT2D  billet 3 upper -3 rough\n": "", "DIE    upper\n": "", "MOVE   upper Y press\n":
+                       "MOVE   billet 3 Y press\n", "   SEGM  30. 15.   -5. 15.\n": "", "LAW    rough COUL2D\n": "",
+                       "   PENETR 1.E-3   PHI 0.3\n": ""}, "nothing holds it in X, no support"),
+    "free to turn": ({"FIXED  billet 4 X\n": "FIXED  POINT 0. 0. XY\n", "FIXED  billet 1 Y\n": "", "CNT2D  billet 3 upper -3 rough\n": "",
+                      "DIE    upper\n": "", "MOVE   upper Y press\n": "FORCE  POINT 10. 15. Y 1. press\n",
+                      "   SEGM  30. 15.   -5. 15.\n": "", "LAW    rough COUL2D\n": "", "   PENETR 1.E-3   PHI 0.3\n": ""},
+                     "from turning about"),
+    "E in GPa": ({"200000. 0.3": "200. 0.3"}, "in one unit?"),
+    "nothing acts": ({"1. -2.": "1. 0."}, "nothing moves and no load acts"),
+}
+# A thick tube of one element that locks, widened beyond its limit load.
+SPHERE = """TITLE  A thick tube beyond its limit load
+STATE  AXISYM
+KINEM  SMALL
+BLOCK  tube PL8LS 9 metal
+   100. 0.   200. 0.   200. 100.   100. 100.
+   1 1.   1 1.
+LAW    metal EPLA
+   210000. 0.3
+   LINEAR 240. 0.
+FIXED  tube 1 3 Y
+MOVE   tube 4 X push 60.
+LIC    push
+   0. 0.   1. 1.
+STRAT  0.1 1.E-3 0.1   5 3
+END
+"""
+PROBES = """PROBE  q POINT mises 5. 5.
+PROBE  m POINT mean_stress 5. 5.
+PROBE  p1 POINT principal_1 5. 5.
+PROBE  p2 POINT principal_2 5. 5.
+PROBE  p3 POINT principal_3 5. 5.
+PROBE  xx POINT stress_xx 5. 5.
+PROBE  yy POINT stress_yy 5. 5.
+PROBE  xy POINT stress_xy 5. 5.
+PROBE  zz POINT stress_zz 5. 5.
+PROBE  most MAX mises billet
+PROBE  least MIN principal_3 billet
+PROBE  one NODE UY 10. 15. billet
+PROBE  two NODE UY 10. 15. cap
+BLOCK  cap PL8LS 4 steel
+   0. 15.   10. 15.   10. 16.   0. 16.
+   2 1.   1 1.
+FIXED  cap 1 XY
+FIXED  cap 3 XY
+"""
+
+
+def changed(checks, changes):
+    """The base with its lines changed."""
+    text = BASE
+    for old, new in changes.items():
+        checks.that(text.count(old) == 1, f"the base has {old!r} once")
+        text = text.replace(old, new)
+    return text
+
+
+def warnings_of(path):
+    """Exit code, and the warnings of `--check`."""
+    run = subprocess.run([LAGAMINE, path, "--check"], capture_output=True, text=True, check=False)
+    return run.returncode, [line for line in run.stdout.splitlines() if line.startswith("WARNING")]
+
+
+def decks(checks):
+    """Wrong decks are told, right ones are not."""
+    for name, (changes, words) in WRONG.items():
+        path = os.path.join(checks.folder, name.replace(" ", "-") + ".lag")
+        with open(path, "w", encoding="utf-8") as deck:
+            deck.write(changed(checks, changes))
+        code, told = warnings_of(path)
+        print(f"{name:28s} {told[0] if told else ''}")
+        checks.that(code == 0 and len(told) == 1 and words in told[0], f"{name}: one line with {words!r}", (code, told))
+    path = os.path.join(checks.folder, "base.lag")
+    with open(path, "w", encoding="utf-8") as deck:
+        deck.write(BASE)
+    shipped = sorted(glob.glob(os.path.join(SOURCE, "decks", "*", "*.lag")))
+    checks.that(len(shipped) > 20, "decks of the project", len(shipped))
+    for deck in [path, *shipped]:
+        code, told = warnings_of(deck)
+        checks.that(code == 0 and not told, f"{os.path.basename(deck)}: nothing is told", (code, told))
+
+
+def warned_run(checks):
+    """A run has the warnings of its start in its listing and in summary.json."""
+    run = Run(checks, "warned", changed(checks, WRONG["stroke too short"][0]))
+    if run.ok:
+        with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as summary:
+            told = json.load(summary)["warnings"]
+        checks.that(len(told) == 1 and "does not meet the part" in told[0]["text"], "summary.json has the warning", told)
+        with open(os.path.join(run.out, "warned.log"), encoding="utf-8") as listing:
+            checks.that("does not meet the part" in listing.read(), "so has the listing")
+
+
+def small(checks):
+    """SMALL ends where strains are large."""
+    half = changed(checks, {"KINEM  LOG": "KINEM  SMALL", "1. -2.": "1. -9."})
+    for name, text, words in (("upset by 60 %", half, "KINEM LOG"), ("locking", SPHERE, "MEAN")):
+        path = os.path.join(checks.folder, name.replace(" ", "-").replace("%", "percent") + ".lag")
+        with open(path, "w", encoding="utf-8") as deck:
+            deck.write(text)
+        run = subprocess.run([LAGAMINE, path, "--out", path[:-4], "--quiet"], capture_output=True, text=True, check=False)
+        print(f"{name:28s} {run.stderr.splitlines()[0] if run.stderr else ''}")
+        checks.that(run.returncode == NO_CONVERGENCE, f"{name}: ends with 3", run.returncode)
+        checks.that("large strain in KINEM SMALL" in run.stderr and words in run.stderr, f"{name}: the words for it", run.stderr)
+
+
+def probes(checks):
+    """Measures of stress are those of the components; nodes of two bodies at one place are told apart."""
+    run = Run(checks, "probes", changed(checks, {"END\n": PROBES + "END\n"}))
+    if not run.ok:
+        return
+    table = run.history
+    for k in (0, -1):
+        s = np.array([[table["xx"][k], table["xy"][k], 0], [table["xy"][k], table["yy"][k], 0], [0, 0, table["zz"][k]]])
+        size = np.abs(s).max()
+        deviator = s - np.trace(s)/3*np.eye(3)
+        checks.small(abs(table["q"][k] - np.sqrt(1.5*np.sum(deviator**2)))/size, 1e-12, "mises")
+        checks.small(abs(table["m"][k] - np.trace(s)/3)/size, 1e-12, "mean_stress")
+        found = [table[name][k] for name in ("p1", "p2", "p3")]
+        checks.small(np.max(np.abs(np.linalg.eigvalsh(s)[::-1] - found))/size, 1e-12, "principal stresses")
+        checks.that(table["most"][k] >= table["q"][k] and table["least"][k] <= table["p3"][k], "extremes")
+        checks.that(abs(table["one"][k]) > 0 and not abs(table["two"][k]) > 0, "nodes of two bodies", (table["one"][k], table["two"][k]))
+
+
+def main():
+    checks = Checks()
+    decks(checks)
+    warned_run(checks)
+    small(checks)
+    probes(checks)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
