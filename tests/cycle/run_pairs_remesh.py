@@ -102,7 +102,7 @@ def action_and_reaction(checks, name, rows, force, probe):
 
 def press_fit(checks):
     """Lame's pressure and Coulomb's push on a bore that is remeshed before the rings are pushed, and while they are."""
-    text = deck_text(os.path.join(FOLDER, "press_fit.lag")).replace("STRAT  1. 1.E-3 1.", "STRAT  0.25 1.E-3 0.25")
+    text = deck_text(os.path.join(FOLDER, "press_fit.lag")).replace("STRAT  0.02 1.E-3 0.02", "STRAT  0.25 1.E-3 0.25")
     rows = remeshed(checks, "press_fit", add_cards(text, remesh("0.5 1.5", "1. 2.5")), 2)
     if rows is None:
         return
