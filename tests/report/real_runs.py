@@ -27,7 +27,7 @@ LAW    rough  COUL2D
 DIE    zupper  PILOT 0. 15.
    SEGM  30. 15.   -1. 15.
 DIE    a_wheel PILOT 16. 6.
-   ARC   16. 9.   13. 6.   16. 3.   1.E-2
+   ARC   16. 3.   13. 6.   16. 9.   1.E-2
 CNT2D  billet 2 3  zupper $points rough
 CNT2D  billet 2    a_wheel $points rough
 FIXED  billet 1  Y
