@@ -5,7 +5,8 @@
 !> rates and interpolated between. At each temperature the histories are points of the space of ln(rate) and z, and lines between
 !> neighbouring rates; the place on them that is nearest to the present rate and fractions says how the fractions go on: by the
 !> difference of the histories at both ends of the sub-step. So each history is met exactly, by any step. Rates beyond those of the
-!> diagram count as its first or last; the distance weighs a factor e in rate as a difference of 1 in a fraction.
+!> diagram count as its first or last; the distance weighs a factor e in rate as a difference of 1 in a fraction. Histories hold
+!> down to Ms.
 module cct_histories
   use dual_numbers, only: dual_t, exp, log, operator(*), operator(+), operator(-), operator(/)
   use kinds, only: wp

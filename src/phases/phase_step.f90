@@ -12,7 +12,7 @@ module phase_step
   use dual_numbers, only: dual_t, exp, log, operator(*), operator(+), operator(-), operator(/)
   use kinds, only: wp
   use li_kinetics, only: grow_li
-  use martensite_kinetics, only: grow_martensite
+  use martensite_kinetics, only: grow_martensite, martensite_start
   use phase_state, only: at_coldest, at_grain, at_hollomon_jaffe, at_rate, at_tempering, first_growth, first_incubation, &
                          never_cold, set_hardness, state_size
   use steels, only: austenite, bainite, ferrite, first_diffusive, kinetics_avrami, kinetics_li, kinetics_none, last_diffusive, &
@@ -191,15 +191,23 @@ contains
     s(at_hollomon_jaffe) = dual_t()
   end subroutine heat_up
 
-  !> What the histories of a CCT diagram give, as far as there is austenite.
+  !> What the histories of a CCT diagram give down to Ms, as far as there is austenite.
   pure subroutine cool_by_histories(steel, time, from, to, s, heat)
     type(steel_t), intent(in) :: steel
     type(dual_t), intent(in) :: time, from, to
     type(dual_t), intent(inout) :: s(:), heat
-    type(dual_t) :: dz(3), total
+    type(dual_t) :: dz(3), total, ms, finish, share
     integer :: i
 
-    call cct_increments(steel%cct, time, from, to, s(at_grain), s(ferrite:bainite), dz)
+    ms = martensite_start(steel, s(ferrite) + s(pearlite) + s(bainite))
+    if (from%value <= ms%value) return
+    finish = to
+    share = dual_t(1.0_wp)
+    if (to%value < ms%value) then
+      finish = ms
+      share = (from - ms)/(from - to)
+    end if
+    call cct_increments(steel%cct, share*time, from, finish, s(at_grain), s(ferrite:bainite), dz)
     total = dual_t()
     do i = 1, 3
       if (dz(i)%value < 0) dz(i) = dual_t()

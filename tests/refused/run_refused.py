@@ -17,6 +17,7 @@ without `say` must be accepted.
 """
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -116,6 +117,7 @@ def main():
     verbose = "-v" in sys.argv[1:]
     passed = failed = 0
     with tempfile.TemporaryDirectory() as folder:
+        shutil.copy(os.path.join(HERE, "steel.met"), folder)
         for case, base, options in all_cases():
             try:
                 wrong = judge(case, base, options, folder, verbose)
