@@ -1,4 +1,4 @@
-"""`lagareport DIR`, `lagareport DECK`: arguments -> page -> exit code."""
+"""`lagareport DIR`, `lagareport DIR DIR ...`, `lagareport DECK`: arguments -> page -> exit code."""
 import os
 import sys
 from typing import Sequence
@@ -21,13 +21,16 @@ def run_program(arguments: Sequence[str], version: str) -> int:
     """Read the arguments, make the page, print the short result."""
     parser = Parser("lagareport", description="The results of a run as one self-contained HTML page with pictures.",
                     epilog=EXIT_CODES)
-    parser.add_argument("folder", metavar="DIR", help="folder of the results: what `lagamine DECK --out DIR` wrote; or a deck, "
-                        "which is drawn before any run")
-    parser.add_argument("--out", metavar="FILE", help="the page (default: DIR/report.html; of a deck, NAME.html and NAME.svg in the present folder)")
+    parser.add_argument("folders", metavar="DIR", nargs="+", help="folder of the results: what `lagamine DECK --out DIR` wrote; two or more "
+                        "are compared; or a deck, which is drawn before any run")
+    parser.add_argument("--out", metavar="FILE", help="the page (default: DIR/report.html; of several runs compare.html, of a deck NAME.html and "
+                        "NAME.svg in the present folder)")
     parser.add_argument("-p", metavar="NAME=VALUE", dest="parameters", action="append", default=[], help="of a deck: set a parameter of it")
     parser.add_argument("--field", metavar="NAME", action="append", default=[],
                         help="show this field large and over time, instead of the usual ones; may be repeated")
     parser.add_argument("--png", metavar="DIR", help="write the pictures as PNG files into this folder too")
+    parser.add_argument("--animation", metavar="FILE", help="the forming as a moving picture too, .gif or .png: the first field of --field, "
+                        "otherwise the equivalent plastic strain, or what there is")
     parser.add_argument("--mirror", action="store_true", help="axisymmetric scenes: show both halves of the section")
     parser.add_argument("--quiet", action="store_true", help="print nothing when all goes well")
     parser.add_argument("--version", action=Version, version=version, modules=MODULES)
@@ -35,6 +38,9 @@ def run_program(arguments: Sequence[str], version: str) -> int:
     for stream in (sys.stdout, sys.stderr):
         stream.reconfigure(errors="replace")     # a title may hold letters that the terminal has not
     try:
+        options.folder = options.folders[0]
+        if len(options.folders) > 1:
+            return compare_runs(options, version)
         if os.path.isfile(options.folder):
             return draw_deck(options, version)
         if options.parameters:
@@ -51,6 +57,8 @@ def run_program(arguments: Sequence[str], version: str) -> int:
             write_pngs(options.png, pictures)
         for picture in pictures:
             picture.close()
+        if options.animation:
+            animate(run, options)
     except ReportError as error:
         print_error(str(error))
         if error.advice:
@@ -62,11 +70,46 @@ def run_program(arguments: Sequence[str], version: str) -> int:
     return EXIT_DONE
 
 
+def animate(run: Run, options) -> None:
+    """The moving picture of --animation."""
+    from .animation import animation
+    from .pictures import MAIN_FIELDS, fields_of, known_field
+    refuse_to_replace(options.animation)
+    if not run.steps:
+        raise ReportError("--animation: no fields are saved yet")
+    names = fields_of(run)
+    usual = [name for name in ("plastic_strain", "temperature", *MAIN_FIELDS, *names) if name in names]
+    field = known_field(run, options.field[0]) if options.field else usual[0]
+    write(options.animation, animation(run, field, options.animation, options.mirror))
+
+
+def compare_runs(options, version: str) -> int:
+    """The page of several runs."""
+    for name, value in (("--field", options.field), ("--mirror", options.mirror), ("--animation", options.animation), ("-p", options.parameters)):
+        if value:
+            raise ReportError(f"{name}: for a single run or deck; several runs are compared")
+    target = options.out or "compare.html"
+    refuse_to_replace(target)
+    runs = [Run(folder) for folder in options.folders]
+    from .compare import compare_page, compare_pictures, labels_of
+    labels = labels_of(options.folders)
+    pictures = compare_pictures(runs, labels)
+    write(target, compare_page(runs, labels, pictures, version).encode("utf-8"))
+    if options.png:
+        write_pngs(options.png, pictures)
+    for picture in pictures:
+        picture.close()
+    if not options.quiet:
+        print(f"{len(runs)} runs: {', '.join(labels)}\n  page: {target}")
+    return EXIT_DONE
+
+
 def draw_deck(options, version: str) -> int:
     """The page and the picture of a deck before any run."""
     from .deck_scene import deck_name, read_scene
-    if options.field or options.mirror:
-        raise ReportError(f"{'--field' if options.field else '--mirror'}: for the results of a run; a deck has none yet")
+    for name, value in (("--field", options.field), ("--mirror", options.mirror), ("--animation", options.animation)):
+        if value:
+            raise ReportError(f"{name}: for the results of a run; a deck has none yet")
     target = options.out or deck_name(options.folder) + ".html"
     drawing = os.path.splitext(target)[0] + ".svg"
     for path in (target, drawing):

@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""lagareport on several runs, and the moving picture of one: what the runs hold is what is shown."""
+import csv
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+from PIL import Image
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SOURCE = os.path.abspath(os.environ.get("LAGAMINE_SOURCE") or os.path.dirname(os.path.dirname(HERE)))
+BIN = os.path.abspath(os.environ.get("LAGAMINE_BIN") or os.path.join(SOURCE, "build", "bin"))
+sys.path.insert(0, os.path.join(SOURCE, "src", "report"))
+sys.dont_write_bytecode = True
+from lagamine_report import Run  # noqa: E402
+from lagamine_report.compare import compare_pictures, forces_picture, labels_of  # noqa: E402
+from lagamine_report.picture import rounded  # noqa: E402
+from lagamine_report.words import brief  # noqa: E402
+
+
+class Compare(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="lagareport-test-")
+        cls.addClassCleanup(shutil.rmtree, cls.folder, True)
+        deck = os.path.join(SOURCE, "decks", "upsetting", "upsetting.lag")
+        for name, parameters in (("coarse", ("nx=3", "ny=4")), ("fine", ("nx=4", "ny=6"))):
+            subprocess.run([os.path.join(BIN, "lagamine"), deck, "--out", os.path.join(cls.folder, name), "--quiet",
+                            *(word for p in parameters for word in ("-p", p))], check=True, env=dict(os.environ, OMP_NUM_THREADS="1"))
+
+    def report(self, *arguments):
+        return subprocess.run([os.path.join(BIN, "lagareport"), *arguments], capture_output=True, text=True, cwd=self.folder, check=False,
+                              env=dict(os.environ, PYTHONDONTWRITEBYTECODE="1"))
+
+    def force(self, name):
+        """The largest force of the die, read from the table."""
+        with open(os.path.join(self.folder, name, "history.csv"), encoding="utf-8") as file:
+            return max((float(row["force_y_upper [force]"]) for row in csv.DictReader(file)), key=abs)
+
+    def test_page(self):
+        done = self.report("coarse", "fine", "--out", "two.html")
+        self.assertEqual((0, ""), (done.returncode, done.stderr))
+        with open(os.path.join(self.folder, "two.html"), encoding="utf-8") as file:
+            page = re.sub(r'src="data:[^"]*"', "", file.read())
+        one, two = self.force("coarse"), self.force("fine")
+        for words in ("<code>-p nx</code></td><td>3</td><td>4</td>", "<code>-p ny</code></td><td>4</td><td>6</td>", "<td>done</td><td>done</td>",
+                      f"<td>{brief(one, 6)}</td><td>{brief(two, 6)} ({100 * (two / one - 1):+.2f} %)</td>", 'id="profiles"', 'id="probes"'):
+            self.assertTrue(words in page, words)
+        self.assertNotRegex(page, r"https?://|@import|url\(|<script")
+
+    def test_same_runs_differ_in_nothing(self):
+        self.assertEqual(0, self.report("fine", "fine", "--out", "same.html").returncode)
+        with open(os.path.join(self.folder, "same.html"), encoding="utf-8") as file:
+            page = re.sub(r'src="data:[^"]*"', "", file.read())
+        self.assertNotIn("that differ", page)
+        self.assertNotIn(" %)", page)
+
+    def test_curves_are_those_of_the_runs(self):
+        runs = [Run(os.path.join(self.folder, name)) for name in ("coarse", "fine")]
+        picture = forces_picture(runs, ["a", "b"])
+        lines = [line for line in picture.figure.axes[0].lines if line.get_label() in ("a", "b")]
+        self.assertEqual(["a", "b"], [line.get_label() for line in lines])
+        for run, line in zip(runs, lines):
+            np.testing.assert_array_equal(run.history["force_y_upper"].values, line.get_ydata())
+            np.testing.assert_array_equal(run.history["displacement_y_upper"].values, line.get_xdata())
+        self.assertEqual(["forces", "profiles", "probes"], [picture.name for picture in compare_pictures(runs, ["a", "b"])])
+
+    def test_labels(self):
+        self.assertEqual(["a", "b"], labels_of(["out/a", "out/b/"]))
+        self.assertEqual(["x/a", "y/a"], labels_of(["x/a", "y/a"]))
+        self.assertEqual(2, len(set(labels_of(["x/a", "x/a"]))))
+
+    def test_animation(self):
+        """Frames of one size, as many as instants were saved, that differ; both formats."""
+        instants = len({step.time for step in Run(os.path.join(self.folder, "fine")).steps})
+        self.assertGreater(instants, 1)
+        for name in ("forming.gif", "forming.png"):
+            done = self.report("fine", "--quiet", "--animation", name)
+            self.assertEqual((0, ""), (done.returncode, done.stderr))
+            with Image.open(os.path.join(self.folder, name)) as image:
+                self.assertEqual(instants, image.n_frames)
+                frames = []
+                for k in range(image.n_frames):
+                    image.seek(k)
+                    frames.append(np.asarray(image.convert("RGB"), dtype=int))
+            self.assertTrue(all(np.abs(a - b).max() > 50 for a, b in zip(frames[:-1], frames[1:])))
+            self.assertLess(os.path.getsize(os.path.join(self.folder, name)), 1e6)
+        for options, words in ((("--animation", "x.mp4"), "expected a name that ends with .gif or .png"),):
+            done = self.report("fine", "--quiet", *options)
+            self.assertEqual((2, 1), (done.returncode, len(done.stderr.splitlines())), done.stderr)
+            self.assertIn(words, done.stderr)
+
+    def test_refusals(self):
+        for arguments, words in ((("fine", "nowhere"), "nowhere: no such folder"), (("fine", "coarse", "--field", "mises"), "--field: for a single run"),
+                                 (("fine", "coarse", "-p", "a=1"), "-p: for a single run"), (("fine", "-p", "a=1"), "-p: for a deck")):
+            done = self.report(*arguments)
+            self.assertEqual((2, 1), (done.returncode, len(done.stderr.splitlines())), done.stderr)
+            self.assertIn(words, done.stderr)
+
+    def test_rounded_drawings(self):
+        """Coordinates of lines lose digits, factors of scale and places do not."""
+        self.assertEqual(b'<path d="M 1.23 20.00 L 3 4.5"/><g transform="scale(0.015625)" x="1.23456">',
+                         rounded(b'<path d="M 1.234567 20.001 L 3 4.5"/><g transform="scale(0.015625)" x="1.23456">'))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
