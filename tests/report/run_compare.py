@@ -19,7 +19,10 @@ sys.path.insert(0, os.path.join(SOURCE, "src", "report"))
 sys.dont_write_bytecode = True
 from lagamine_report import Run  # noqa: E402
 from lagamine_report.compare import compare_pictures, forces_picture, labels_of  # noqa: E402
+from lagamine_report.contact import contact_groups  # noqa: E402
+from lagamine_report.contact_map import pressure_bars, pressure_picture  # noqa: E402
 from lagamine_report.picture import rounded  # noqa: E402
+from lagamine_report.scene_view import SceneView  # noqa: E402
 from lagamine_report.words import brief  # noqa: E402
 
 
@@ -101,6 +104,28 @@ class Compare(unittest.TestCase):
             done = self.report(*arguments)
             self.assertEqual((2, 1), (done.returncode, len(done.stderr.splitlines())), done.stderr)
             self.assertIn(words, done.stderr)
+
+    def test_pressure_bars(self):
+        """Bars stand on the points of contact, into the part, and have the pressures of the file; their sum over the sides is the die's force."""
+        run = Run(os.path.join(self.folder, "fine"))
+        view = SceneView(run)
+        force = 0.0
+        for group in contact_groups(run, run.steps[-1]):
+            feet, inward, values = pressure_bars(view, group)
+            np.testing.assert_allclose(np.hypot(*inward.T), 1, rtol=1e-12)
+            names, state = run.points(run.steps[-1], group)
+            np.testing.assert_array_equal(state[:, :, names.index("pressure")].ravel(), values)
+            # three Lobatto points a side: Simpson's rule, per radian times 2 pi; friction adds nothing along y on a flat die
+            ends = run.coordinates(run.steps[-1])[group.connectivity]
+            slopes = np.stack([(4 * ends[:, 1] - 3 * ends[:, 0] - ends[:, 2]) / 2, (ends[:, 2] - ends[:, 0]) / 2,
+                               (3 * ends[:, 2] + ends[:, 0] - 4 * ends[:, 1]) / 2], axis=1)
+            length = np.hypot(slopes[..., 0], slopes[..., 1]) * np.array([1, 4, 1]) / 3
+            force += 2 * np.pi * float((length * feet.reshape(-1, 3, 2)[..., 0] * values.reshape(-1, 3) * -inward.reshape(-1, 3, 2)[..., 1]).sum())
+        self.assertAlmostEqual(1.0, force / run.history["force_y_upper"].values[-1], delta=0.1)
+        pressed = max(values.max() for values in [pressure_bars(view, group)[2] for group in contact_groups(run, run.steps[-1])])
+        picture = pressure_picture(view)
+        self.assertTrue(f"largest {brief(float(pressed))}" in picture.caption)
+        picture.close()
 
     def test_rounded_drawings(self):
         """Coordinates of lines lose digits, factors of scale and places do not."""

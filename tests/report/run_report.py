@@ -294,7 +294,7 @@ class ReportTest(unittest.TestCase):
         self.refused(folder, "--field", "mises", names="mises")
 
     def test_cycle(self):
-        """Every try a row; pictures of the first and the last six new meshes; what each has kept of the old one."""
+        """Every try a row; pictures of the first and the last three new meshes; what each has kept of the old one."""
         folder = self.made("cycle")
         png = os.path.join(self.folder, "new", "png")
         result = report(folder, "--png", png)

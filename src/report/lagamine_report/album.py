@@ -2,6 +2,7 @@
 from typing import List, Optional, Sequence
 
 from .contact import contact_picture
+from .contact_map import pressure_picture
 from .curves import energy_picture, force_picture, probes_picture, seconds_picture, steps_picture
 from .errors import ReportError
 from .picture import Picture
@@ -30,4 +31,4 @@ def shapes(run: Run, fields: Sequence[str], mirror: bool) -> List[Optional[Pictu
     over_time = chosen if fields else [name for name in ("plastic_strain", "temperature") if name in names] or chosen[:1]
     pictures = [mesh_picture(view), generations_picture(view), *remesh_pictures(view), fields_picture(view, chosen),
                 fields_picture(view, [name for name in names if name not in chosen], "more", small=True)]
-    return pictures + [series_picture(view, name) for name in over_time] + [contact_picture(run)]
+    return pictures + [series_picture(view, name) for name in over_time] + [pressure_picture(view), contact_picture(run)]

@@ -18,7 +18,7 @@ SECTIONS: List[Tuple[str, str, Sequence[str]]] = [
     ("fields", "Fields", ("fields", "more")),
     ("series", "Fields over time", ("series",)),
     ("forces", "Forces on the dies", ("force",)),
-    ("contact", "Contact", ("contact",)),
+    ("contact", "Contact", ("pressure", "contact")),
     ("probes", "Probes", ("probes",)),
     ("march", "Steps and iterations", ("steps",)),
     ("energy", "Energies", ("energy",)),
