@@ -10,6 +10,7 @@ module newton
   use element_loop, only: add_prescribed
   use equations, only: equations_t, evaluate, external_forces, solve_correction
   use errors, only: error_t, exit_no_convergence
+  use heat_correction, only: follow_content
   use heat_record, only: heat_step_t
   use kinds, only: wp
   use linear_solver, only: return_to_chosen
@@ -60,6 +61,8 @@ module newton
   !> The residual stagnates when the best of the last `patience` - 1 iterations is above this share of the best before, and
   !> none of them was under way.
   real(wp), parameter :: stagnant = 0.3_wp
+  !> Corrections that follow the heat content go round in circles when the residual is above this share of the best so far.
+  real(wp), parameter :: circling = 0.9_wp
   !> After so many short searches one after the other the whole correction is taken.
   integer, parameter :: short_searches = 2
 
@@ -82,7 +85,7 @@ contains
     type(manner_t) :: manner
     type(report_t) :: report
     integer, allocatable :: contact(:)
-    logical :: changed
+    logical :: changed, followed
     integer :: first
 
     allocate (outcome%history(0), outcome%du(equations%dofs%ndof))
@@ -133,7 +136,12 @@ contains
         exit
       end if
       outcome%linear_residual = max(outcome%linear_residual, equations%solves(equations%now)%solver%residual)
+      call follow_content(scene, equations, solution, outcome%du, correction, followed)
       manner = manner_t(whole=caught(outcome%history(first:)), closely=in_turmoil(outcome%history(first:)))
+      if (followed) then
+        manner%whole = .true.
+        if (in_circles(outcome%history(first:))) correction = 0.5_wp*correction
+      end if
       call search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, outcome%du, &
                         line%line_search, report)
       if (.not. abs(line%line_search) > 0) then
@@ -141,6 +149,7 @@ contains
         exit
       end if
       call note_contact(scene, solution, contact, line%contact_changed)
+      line%contact_changed = line%contact_changed .or. followed
       correction = line%line_search*correction
       missing = 0
     end do
@@ -193,6 +202,17 @@ contains
     in_turmoil = all(history(n - 1:)%contact_changed) &
                  .and. minval(history(n - 1:)%force_norm) > stagnant*minval(history(2:n - 2)%force_norm)
   end function in_turmoil
+
+  !> Corrections that follow the heat content go round in circles: the residual is hardly below the best so far.
+  pure function in_circles(history)
+    type(iteration_t), intent(in) :: history(:)
+    logical :: in_circles
+    integer :: n
+
+    n = size(history)
+    in_circles = n > 3
+    if (in_circles) in_circles = history(n)%force_norm > circling*minval(history(2:n - 1)%force_norm)
+  end function in_circles
 
   !> Contact changed, or the search went back: the residual need not fall.
   elemental function is_under_way(line)
