@@ -54,7 +54,11 @@ def check_decks(checks):
         checks.that(whys and all(re.search(r" at \S+:\d+", why) for why in whys), f"{name}: the card that wants an effect is reported", whys[:2])
         checks.that(os.listdir(empty) == [], f"{name}: runs nothing", os.listdir(empty))
         with open(deck, encoding="utf-8") as file:
-            meshed = not re.search(r"(?m)^BODY ", file.read())
+            text = file.read()
+        for included in re.findall(r"(?m)^INCLU +(\S+)", text):
+            with open(os.path.join(os.path.dirname(deck), included), encoding="utf-8") as file:
+                text += file.read()
+        meshed = not re.search(r"(?m)^BODY ", text)
         if not meshed:  # the remesher makes the first mesh: nothing to count yet
             checks.that(not re.search(r"Unknowns:|(?m:^Expected:)", result.stdout), f"{name}: no count without a mesh", result.stdout[-300:])
             continue
