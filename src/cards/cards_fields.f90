@@ -13,7 +13,7 @@ module cards_fields
   use fields, only: field_t
   use kinds, only: wp
   use law_api, only: law_of_material
-  use loads, only: fixation_t
+  use loads, only: fixation_t, start_t
   use scene, only: group_t, is_solid, role_second
   use scene_draft, only: close_card, draft_t, find_elem, only_card
   use strategy, only: coupling_names
@@ -62,14 +62,7 @@ contains
     integer :: k, g
 
     group%role = role_second
-    call draft%places%find(cursor, 'the name of a body', k)
-    if (k > 0) then
-      do g = 1, size(draft%scene%groups)
-        if (is_solid(draft%scene%groups(g)) .and. draft%scene%groups(g)%name == draft%places%words(k)%s) group%host = g
-      end do
-      if (group%host == 0 .and. draft%mesh_sound) call cursor%fail(''''//draft%places%words(k)%s//''' is a ' &
-                                                                   //draft%places%keywords(k)%s//', expected a body')
-    end if
+    call read_body(cursor, draft, group%host)
     call body_elems(draft, known)
     call cursor%name('an element', known, k)
     if (k == 0) return
@@ -88,6 +81,23 @@ contains
     end associate
     call read_option(cursor, draft%elems(group%elem_id), draft%scene%plane_state, group%rule%n, group%option)
   end subroutine read_formulation
+
+  !> The name of a body; 0 after a mistake.
+  subroutine read_body(cursor, draft, body)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+    integer, intent(out) :: body   !! place of its group
+    integer :: k, g
+
+    body = 0
+    call draft%places%find(cursor, 'the name of a body', k)
+    if (k == 0) return
+    do g = 1, size(draft%scene%groups)
+      if (is_solid(draft%scene%groups(g)) .and. draft%scene%groups(g)%name == draft%places%words(k)%s) body = g
+    end do
+    if (body == 0 .and. draft%mesh_sound) call cursor%fail(''''//draft%places%words(k)%s//''' is a ' &
+                                                           //draft%places%keywords(k)%s//', expected a body')
+  end subroutine read_body
 
   !> Names of the elements that bodies are made of.
   subroutine body_elems(draft, known)
@@ -121,29 +131,93 @@ contains
     end do
   end subroutine field_words
 
-  !> All START cards, `field value`: the value of a field everywhere at the start.
+  !> All START cards, `field value [body]`: the value of a field at the start, everywhere or on a body.
   subroutine read_start_values(deck, draft, diagnostics)
     type(deck_t), intent(inout), target :: deck
     type(draft_t), intent(inout) :: draft
     type(diagnostics_t), intent(inout), target :: diagnostics
     type(cursor_t) :: cursor
+    type(start_t) :: start
     logical, allocatable :: given(:)
+    logical :: everywhere
+    integer, allocatable :: cards(:)
     integer :: i, f
 
-    allocate (given(0))
+    allocate (given(0), cards(0), draft%scene%starts(0))
     if (draft%groups_sound) given = spread(.false., 1, size(draft%scene%fields))
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword /= 'START') cycle
       call cursor%open(deck%cards(i), diagnostics)
       call read_field(cursor, draft, f)
       if (f > 0) then
-        if (given(f)) call cursor%fail('the start of '//draft%scene%fields(f)%word//' is given twice')
-        given(f) = .true.
-        call cursor%real('the value at the start', draft%scene%fields(f)%initial, unit=draft%scene%fields(f)%unit)
+        everywhere = size(deck%cards(i)%head%fields) < 3
+        if (everywhere .and. given(f)) call cursor%fail('the start of '//draft%scene%fields(f)%word//' is given twice')
+        call cursor%real('the value at the start', start%value, unit=draft%scene%fields(f)%unit)
+        if (everywhere) then
+          given(f) = .true.
+          draft%scene%fields(f)%initial = start%value
+        else
+          call read_start_of_body(cursor, draft, f, start)
+          cards = [cards, i]
+        end if
       end if
       call close_card(draft, cursor, deck%cards(i))
     end do
+    if (.not. (draft%mesh_sound .and. draft%groups_sound) .or. size(cards) /= size(draft%scene%starts)) return
+    do i = 1, size(cards)
+      call cursor%open(deck%cards(cards(i)), diagnostics)
+      call refuse_two_starts(cursor, draft, draft%scene%starts(i))
+    end do
   end subroutine read_start_values
+
+  !> The body that a start is of.
+  subroutine read_start_of_body(cursor, draft, field, start)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+    integer, intent(in) :: field
+    type(start_t), intent(inout) :: start
+    integer :: body, k
+
+    call read_body(cursor, draft, body)
+    if (body == 0) return
+    start%field = field
+    start%body = draft%scene%groups(body)%name
+    call refuse_without_field(cursor, draft, field, [draft%scene%groups(body)%connectivity], start%body, own=.true.)
+    do k = 1, size(draft%scene%starts)
+      if (draft%scene%starts(k)%field == field .and. draft%scene%starts(k)%body == start%body) &
+        call cursor%fail('the start of '//draft%scene%fields(field)%word//' of '''//start%body//''' is given twice')
+    end do
+    if (.not. cursor%failed()) draft%scene%starts = [draft%scene%starts, start]
+  end subroutine read_start_of_body
+
+  !> A node that two bodies share starts with one value.
+  subroutine refuse_two_starts(cursor, draft, start)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(start_t), intent(in) :: start
+    logical :: of_body(size(draft%scene%mesh%coordinates, 2))
+    real(wp) :: value
+    integer :: g, k
+
+    of_body = .false.
+    do g = 1, size(draft%scene%groups)
+      if (is_solid(draft%scene%groups(g)) .and. draft%scene%groups(g)%name == start%body) &
+        of_body([draft%scene%groups(g)%connectivity]) = .true.
+    end do
+    do g = 1, size(draft%scene%groups)
+      associate (group => draft%scene%groups(g))
+        if (.not. is_solid(group) .or. group%name == start%body) cycle
+        if (.not. any(of_body([group%connectivity]))) cycle
+        value = draft%scene%fields(start%field)%initial
+        do k = 1, size(draft%scene%starts)
+          if (draft%scene%starts(k)%field == start%field .and. draft%scene%starts(k)%body == group%name) &
+            value = draft%scene%starts(k)%value
+        end do
+        if (abs(value - start%value) > 0) call cursor%fail('the bodies '''//start%body//''' and '''//group%name &
+          //''' share nodes: they must start with the same '//draft%scene%fields(start%field)%word)
+      end associate
+    end do
+  end subroutine refuse_two_starts
 
   !> All IMPOS cards, `place field lic [amplitude]`: the value of a field, amplitude times multiplier.
   subroutine read_imposed_values(deck, draft, diagnostics)

@@ -4,7 +4,7 @@ module loads
   use kinds, only: wp
   implicit none
   private
-  public :: multiplier_t, fixation_t, die_motion_t, die_force_t, nodal_force_t, exchange_t
+  public :: start_t, multiplier_t, fixation_t, die_motion_t, die_force_t, nodal_force_t, exchange_t
   public :: by_flux, by_convection, by_radiation
   public :: multiplier_at, value_in_table
 
@@ -13,6 +13,14 @@ module loads
     character(len=:), allocatable :: name
     real(wp), allocatable :: time(:), value(:)
   end type multiplier_t
+
+  !> Value of a field on the nodes of a body at the start.
+  type :: start_t
+    !> Name of the body, and place in the scene's list of fields.
+    character(len=:), allocatable :: body
+    integer :: field = 0
+    real(wp) :: value = 0.0_wp
+  end type start_t
 
   !> Imposed motion (or value) of one component of a field at some nodes: amplitude times multiplier (0 = held).
   type :: fixation_t

@@ -4,7 +4,7 @@ module scene
   use effects, only: effect_t
   use fields, only: field_t
   use kinds, only: wp
-  use loads, only: die_force_t, die_motion_t, exchange_t, fixation_t, multiplier_t, nodal_force_t
+  use loads, only: die_force_t, die_motion_t, exchange_t, fixation_t, multiplier_t, nodal_force_t, start_t
   use materials, only: material_t
   use mesh, only: mesh_t
   use probes, only: probe_t
@@ -88,6 +88,8 @@ module scene
     type(group_t), allocatable :: groups(:)
     !> Unknowns that the elements of the groups declare, without values: those of mechanics first (fields).
     type(field_t), allocatable :: fields(:)
+    !> Values of fields at the start on bodies where they are others than the field's own.
+    type(start_t), allocatable :: starts(:)
     type(die_t), allocatable :: dies(:)
     type(multiplier_t), allocatable :: multipliers(:)
     type(fixation_t), allocatable :: fixations(:)

@@ -4,6 +4,7 @@ module solution
   use fields, only: displacement_field, field_t, on_nodes, on_pilots, pilot_field, section_field, start_field
   use heat_record, only: heat_record_t
   use kinds, only: wp
+  use loads, only: start_t
   use pairs, only: pairs_t, start_pairs
   use remeshing, only: estimate_t
   use scene, only: is_solid, scene_t
@@ -113,11 +114,31 @@ contains
         call start_field(1, fields(k))
       end select
     end do
+    if (allocated(scene%starts)) then
+      do k = 1, size(scene%starts)
+        call start_on_body(scene, scene%starts(k), fields)
+      end do
+    end if
     do k = 1, size(scene%dies)
       fields(pilot_field)%value(:, k) = scene%dies(k)%pilot
     end do
     fields(section_field)%value(:, 1) = scene%section
   end subroutine start_fields
+
+  !> The value of a field on the nodes of a body.
+  pure subroutine start_on_body(scene, start, fields)
+    type(scene_t), intent(in) :: scene
+    type(start_t), intent(in) :: start
+    type(field_t), intent(inout) :: fields(:)
+    integer :: g, e
+
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g)) .or. scene%groups(g)%name /= start%body) cycle
+      do e = 1, size(scene%groups(g)%connectivity, 2)
+        fields(start%field)%value(:, scene%groups(g)%connectivity(:, e)) = start%value
+      end do
+    end do
+  end subroutine start_on_body
 
   !> Nodes where they are now (2, nnode) [length].
   pure function present_coordinates(scene, solution) result(x)

@@ -10,6 +10,7 @@ usage: run_heat.py [-v] [-k]
   against the series itself.
 - `cooled`: a bar held at its ends: stress -E ALPHA dT where it is free across, -E ALPHA dT/(1 - NU) where one direction more is held;
   with KINEM LOG the stress is this over the elastic change of volume.
+- `starts`: bodies apart that start with temperatures of their own keep them; the rest has that of all.
 - `squeezed`: change of volume without conduction across: dT = -SOURCE e/RHOC.
 """
 import os
@@ -152,6 +153,19 @@ def cooled(checks):
                 checks.small(np.max(np.abs(stress/(exact*factor) - 1)), 1e-7, f"{run.name}: stress {exact*factor:.4g}")
 
 
+def starts(checks):
+    """Three bodies apart, without any exchange."""
+    for option in ("", "BILINEAR"):
+        blocks = "".join(f"BLOCK {name} PL8TM 9 m {option}\n   {num(x, 0, x + 1, 0, x + 1, 1, x, 1)}\n   2 1. 2 1.\n"
+                         for name, x in (("hot", 0), ("warm", 2), ("cold", 4)))
+        run = Run(checks, f"starts{option}", f"TITLE starts\nSTATE PLSTN\nKINEM SMALL\n{blocks}LAW m HEAT\n   2. 4.\nSTART T 900. hot\n"
+                  f"START T 300.\nSTART T 20. cold\nSTRAT 0.25 0.1 0.25 4 3\nSTOP 1.\n{NORMS}END\n")
+        if run.ok:
+            x, found = temperatures(run)
+            exact = np.where(x[:, 0] < 1.5, 900.0, np.where(x[:, 0] < 3.5, 300.0, 20.0))
+            checks.small(np.max(np.abs(found - exact)), 1e-9, f"{run.name}: 900, 300 and 20")
+
+
 def squeezed(checks):
     """A block held all round but for one side that moves in: it warms by what the change of volume gives off."""
     source, rhoc = 2.5e3, 3.6
@@ -176,6 +190,7 @@ def main():
     cylinder(checks)
     transient(checks)
     cooled(checks)
+    starts(checks)
     squeezed(checks)
     checks.end()
 
