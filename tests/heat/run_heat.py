@@ -172,7 +172,7 @@ def squeezed(checks):
     for state in ("PLSTN", "AXISYM"):
         way, sides = ("X", "FIXED p 4 X\nFIXED p 1 3 Y\n") if state == "PLSTN" else ("Y", "FIXED p 2 4 X\nFIXED p 1 Y\n")
         for kinem in ("SMALL", "LOG"):
-            strain = np.log(0.9) if kinem == "LOG" else -0.1
+            strain = np.log(0.91) if kinem == "LOG" else -0.09
             for solve in ("MONOLITHIC", "CONVERGE"):
                 run = Run(checks, f"squeezed-{state}-{kinem}-{solve}",
                           f"TITLE squeezed\nSTATE {state}\nKINEM {kinem}\nBLOCK p PL8LS 9 steel\n   0. 0. 2. 0. 2. 2. 0. 2.\n   2 1. 2 1.\n"
