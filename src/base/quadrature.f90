@@ -33,13 +33,15 @@ contains
     rule = rule_t(merge(rule_equidistant, rule_gauss, number < 0), abs(number))
   end function rule_of_number
 
-  !> Gauss points (1 to 4), or points at equal distances: 3 (Lobatto), or 5, 9, 17 (Simpson's rule on 2, 4, 8 equal parts);
-  !> weights sum to 2.
+  !> Gauss points (1 to 4), or points at equal distances: 3 (Lobatto), or 5, 9, 17 (Simpson's rule on 2, 4, 8 equal parts), or 33,
+  !> 65, 129 (Gregory's rule, for functions with kinks anywhere); weights sum to 2.
   pure subroutine line_rule(rule, xi, weight)
     type(rule_t), intent(in) :: rule
     real(wp), allocatable, intent(out) :: xi(:)       !! (rule%n) parent coordinates [-]
     real(wp), allocatable, intent(out) :: weight(:)   !! (rule%n) [-]
     integer :: i
+    ! trapezoidal rule with its ends corrected (Gregory), exact for cubics
+    real(wp), parameter :: corrected(3) = [9.0_wp, 28.0_wp, 23.0_wp]/24
 
     if (rule%family == rule_gauss) then
       call gauss_line(rule%n, xi, weight)
@@ -57,6 +59,14 @@ contains
           weight(i) = merge(8, 4, mod(i, 2) == 0)/(3*real(n - 1, wp))
         end do
         weight([1, n]) = 0.5_wp*weight([1, n])
+      case (33, 65, 129)
+        allocate (xi(n), weight(n))
+        do i = 1, n
+          xi(i) = -1 + 2*real(i - 1, wp)/(n - 1)
+        end do
+        weight = 2.0_wp/(n - 1)
+        weight(1:3) = weight(1:3)*corrected
+        weight(n:n - 2:-1) = weight(1:3)
       case default
         allocate (xi(0), weight(0))
       end select

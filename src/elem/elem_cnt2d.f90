@@ -19,11 +19,12 @@
 module elem_cnt2d
   use closest_point, only: closest_point_t
   use contact_measure, only: augment, measure
-  use contact_point, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, contact_point_t, no_surface, &
+  use contact_point, only: at_penetration, at_status, at_work, contact_block, contact_point_t, no_surface, &
                            penalties, point_variables, rest, share_to_contact, show_on_axis, side_length, &
                            thinning, touching
   use corner_contact, only: press_corners
-  use curve_search, only: box_distance, closest_facing_point, follow_closest_point
+  use corner_release, only: motion_past_corner, release_t, slide_past_corner
+  use curve_search, only: box_distance
   use dies, only: die_t
   use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_pilot, of_section, report_t, section_motion
   use kinds, only: wp
@@ -32,7 +33,7 @@ module elem_cnt2d
   use materials, only: material_t
   use plane_vectors, only: turned
   use quadrature, only: line_rule
-  use rigid_contact, only: ndof, place_point, press, side_t
+  use rigid_contact, only: closest_or_followed, ndof, place_point, press, side_t
   use scene, only: axisymmetric, group_t, role_contact, scene_t
   use state_variables, only: state_variable, state_variable_t, transfer_recompute
   implicit none
@@ -198,30 +199,24 @@ contains
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: point
     type(closest_point_t) :: closest
+    type(release_t) :: release
+    real(wp) :: before(ndof)
 
     call place_point(side, xi, point)
     call closest_or_followed(die, turned(point%x - side%pilot(1:2, 2), -side%pilot(3, 2)), &
                              turned(point%e_r, -side%pilot(3, 2)), side%length, committed, closest)
+    if (.not. (closest%piece > 0 .and. closest%d > 0)) &
+      call slide_past_corner(die, turned(point%x - side%pilot(1:2, 2), -side%pilot(3, 2)), &
+                             turned(point%e_r, -side%pilot(3, 2)), side%length, committed, closest, release)
     if (closest%piece == 0) return
     ! a point on the axis has no surface: nothing acts there, and no contact is evaluated
     if (axisym .and. point%x(1) <= no_surface*side%length) return
     if (abs(closest%d) <= touching*side%length) closest%d = 0
-    call press(law, material, drivers, side, xi, point, closest, 0.0_wp, weight, committed, trial, force, stiffness)
+    before = force
+    call press(law, material, drivers, side, xi, point, closest, 0.0_wp, weight*release%share, committed, trial, force, stiffness)
+    if (.not. (side%tangent .and. release%share < 1)) return
+    stiffness = stiffness + release%slope/release%share*spread(force - before, 2, ndof) &
+                *spread(motion_past_corner(side, point, release), 1, ndof)
   end subroutine contact_at
-
-  !> Closest point on the die; where the point that continues the last accepted one shows that the side is inside, that one.
-  pure subroutine closest_or_followed(die, point, e_r, reach, committed, closest)
-    type(die_t), intent(in) :: die
-    real(wp), intent(in) :: point(2), e_r(2), reach, committed(:)
-    type(closest_point_t), intent(out) :: closest
-    type(closest_point_t) :: same
-    integer :: piece
-
-    call closest_facing_point(die, point, e_r, reach, closest)
-    piece = nint(committed(at_piece))
-    if (piece == 0) return
-    call follow_closest_point(die, point, e_r, reach, piece, committed(at_xi), same)
-    if (same%piece > 0 .and. same%d > 0) closest = same
-  end subroutine closest_or_followed
 
 end module elem_cnt2d

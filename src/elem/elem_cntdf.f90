@@ -15,7 +15,7 @@
 !> sides the axes turn with the end of the first.
 !>
 !> The point gets the traction, the nodes of the side with the closest point psi_k of its opposite: what one body gains
-!> the other loses, point by point. Each point is coupled with a few pieces only (pairs): a closest point on
+!> the other loses, point by point. Each side is coupled with a few pieces only (pairs): a closest point on
 !> another piece is reported, and the pairs are renewed before the result is used.
 module elem_cntdf
   use contact_point, only: act, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, meeting_t, &
@@ -29,7 +29,7 @@ module elem_cntdf
   use kinds, only: eps, wp
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_open, law_t
-  use pairs, only: nodes_per_point, pieces_in_reach, place_in_reach
+  use pairs, only: list_pieces, nodes_per_piece, pieces_in_reach, place_in_reach
   use plane_vectors, only: cross
   use quadrature, only: line_rule
   use scene, only: axisymmetric, generalised_plane_strain, group_t, scene_t
@@ -95,7 +95,7 @@ contains
     type(closest_point_t) :: closest, nearest
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: side, section(3), phi(3), dphi(3), psi(3), dpsi(3), q(2), dq(2, most_unknowns), dxi(most_unknowns)
-    integer :: e, p, n, j, k, at, nnode, place(most_unknowns)
+    integer :: e, p, n, j, k, at, nnode, npiece, place(most_unknowns), pieces(pieces_in_reach*group%rule%n)
     logical :: axisym
 
     axisym = scene%plane_state == axisymmetric
@@ -116,6 +116,7 @@ contains
         trial(at_work, :, e) = committed(at_work, :, e)*thinning(xi, xi, section, section_motion(layout, du(:, e)), &
                                                                 x(:, 1:3, e), du(place(1:6), e))
         if (box_distance(die, box_of(x(:, 1:3, e), du(place(1:6), e))) > side) cycle
+        call list_pieces(die, middle(:, e), npiece, pieces)
         do p = 1, size(xi)
           call line3(xi(p), phi, dphi)
           call side_point(phi, dphi, section, x(:, 1:3, e), du(place(1:6), e), most_unknowns, point)
@@ -125,12 +126,12 @@ contains
           if (axisym .and. point%x(1) <= no_surface*side) cycle
           trial(at_penetration, p, e) = closest%d
           trial([at_piece, at_xi], p, e) = [real(nearest%piece, wp), nearest%xi]
-          k = place_in_reach(die, middle(p, e), closest%piece)
+          k = findloc(pieces(:npiece), closest%piece, 1)
           if (k == 0) then
             report%unpaired = .true.
             cycle
           end if
-          at = 3 + nodes_per_point*(p - 1) + 3*(k - 1)
+          at = 3 + nodes_per_piece*(k - 1)
           place(7:12) = [at + 1, at + 2, at + 3, nnode + at + 1, nnode + at + 2, nnode + at + 3]
           call line3(closest%xi, psi, dpsi)
           call meet(closest, matmul(x(:, 1:3, e), phi), x(:, at + 1:at + 3, e), du(place(7:12), e), point, meeting, dxi)

@@ -8,6 +8,8 @@
 module rigid_contact
   use contact_point, only: act, at_penetration, at_piece, at_status, at_xi, contact_point_t, meeting_t, most_unknowns, side_point
   use closest_point, only: closest_point_t
+  use curve_search, only: closest_facing_point, follow_closest_point
+  use dies, only: die_t
   use kinds, only: wp
   use law_api, only: contact_open, law_t
   use materials, only: material_t
@@ -15,7 +17,7 @@ module rigid_contact
   use shape_functions, only: line3
   implicit none
   private
-  public :: side_t, drift_t, place_point, press, outer
+  public :: side_t, drift_t, place_point, press, outer, closest_or_followed
   public :: ndof
 
   !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle, section; the last three are
@@ -152,6 +154,24 @@ contains
     meeting%dslip = 0
     meeting%dslip(:ndof) = matmul(t, dway) + matmul(way, dt)
   end subroutine meet
+
+  !> Closest point on the die; where the point that continues the last accepted one shows that the side is inside, that one.
+  pure subroutine closest_or_followed(die, point, e_r, reach, committed, closest)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: point(2)       !! in the pilot's axes [length]
+    real(wp), intent(in) :: e_r(2)         !! inner normal of the part there, in the pilot's axes [-]
+    real(wp), intent(in) :: reach          !! [length]
+    real(wp), intent(in) :: committed(:)   !! (nstate) of the point [unit of each component]
+    type(closest_point_t), intent(out) :: closest
+    type(closest_point_t) :: same
+    integer :: piece
+
+    call closest_facing_point(die, point, e_r, reach, closest)
+    piece = nint(committed(at_piece))
+    if (piece == 0) return
+    call follow_closest_point(die, point, e_r, reach, piece, committed(at_xi), same)
+    if (same%piece > 0 .and. same%d > 0) closest = same
+  end subroutine closest_or_followed
 
   !> Outer product of two vectors.
   pure function outer(a, b) result(c)

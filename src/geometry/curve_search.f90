@@ -26,6 +26,10 @@ module curve_search
 
   !> A side that faces away by less than this cosine may still lie on the die: a side that folds.
   real(wp), parameter :: facing = 0.9_wp
+  !> A side whose normal meets a face at less than this cosine hardly lies on it.
+  real(wp), parameter :: beside = 0.7_wp
+  !> That face may be deeper by so much of the reach: a part that has risen along the other face belongs to that one.
+  real(wp), parameter :: at_corner = 0.01_wp
   !> Nodes waiting in a search are one for each row of the tree at most: pieces are counted by 32 bits.
   integer, parameter :: most_waiting = 40
 
@@ -66,7 +70,34 @@ contains
       end if
     end if
     closest = search%closest
+    if (closest%piece > 0 .and. closest%d > -end_slack*reach) call leave_beside(curve, point, e_r, reach, closest)
   end subroutine closest_facing_point
+
+  !> A point inside, beside a corner that points to the part, leaves through the face that its own normal meets: the nearest
+  !> face may be the other one, on which its side does not lie. Depths along the part's normal, d/(-e_R.n), are compared.
+  pure subroutine leave_beside(curve, point, e_r, reach, closest)
+    class(piecewise_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: point(2), e_r(2), reach
+    type(closest_point_t), intent(inout) :: closest
+    type(closest_point_t) :: other
+    real(wp) :: along, along_other
+    integer :: next, piece, way
+
+    piece = closest%piece
+    along = -dot_product(e_r, closest%normal)
+    if (along > beside) return
+    do way = -1, 1, 2
+      next = adjacent_piece(curve, piece, way)
+      if (next == 0) cycle
+      call closest_on_piece(curve, next, point, -real(way, wp), 0.0_wp, other)
+      if (other%piece == 0) cycle
+      if (.not. (other%d > 0 .and. other%d < at_corner*reach)) cycle
+      along_other = -dot_product(e_r, other%normal)
+      if (along_other*max(closest%d, 0.0_wp) < along*other%d .or. .not. along_other > along) cycle
+      closest = other
+      along = along_other
+    end do
+  end subroutine leave_beside
 
   !> Closest point of all on adjacent pieces and the vertices between them, whichever way it faces.
   pure subroutine closest_on_pieces(curve, point, first, count, closest)
@@ -230,6 +261,7 @@ contains
     if (.not. faces(found, e_r)) return
     closest = found
     closest%piece = k
+    if (closest%d > -end_slack*reach) call leave_beside(curve, point, e_r, reach, closest)
   end subroutine follow_closest_point
 
   !> Closest point on one piece, or up to `beyond` outside its ends; of several the one nearest to `from`.

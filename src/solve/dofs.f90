@@ -7,7 +7,7 @@ module dofs
   use fields, only: field_t, on_nodes, on_pilots, on_section, pilot_field, section_field
   use kinds, only: wp
   use loads, only: multiplier_at
-  use pairs, only: nodes_per_point, paired_nodes, pairs_t, start_pairs
+  use pairs, only: most_pieces, nodes_per_piece, paired_nodes, pairs_t, start_pairs
   use scene, only: scene_t
   use sections, only: section_forced, section_moved
   use text, only: string_t
@@ -285,17 +285,20 @@ contains
     type(elem_t), intent(in) :: elems(:)    !! (nelem_row)
     type(pairs_t), intent(in) :: pairs(:)   !! (npair)
     type(dofs_t), intent(inout) :: dofs
-    integer :: g, e
+    integer :: g, e, n, npiece
 
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
         if (group%pairs == 0) cycle
         associate (middle => pairs(group%pairs)%piece)
-          if (.not. allocated(dofs%groups(g)%nodes)) then
-            allocate (dofs%groups(g)%nodes(size(group%connectivity, 1) + nodes_per_point*size(middle, 1), size(middle, 2)))
+          npiece = most_pieces(scene%dies(group%die), middle)
+          n = size(group%connectivity, 1) + nodes_per_piece*npiece
+          if (allocated(dofs%groups(g)%nodes)) then
+            if (size(dofs%groups(g)%nodes, 1) /= n) deallocate (dofs%groups(g)%nodes, dofs%groups(g)%dof)
           end if
+          if (.not. allocated(dofs%groups(g)%nodes)) allocate (dofs%groups(g)%nodes(n, size(middle, 2)))
           do e = 1, size(middle, 2)
-            dofs%groups(g)%nodes(:, e) = paired_nodes(scene%dies(group%die), group%connectivity(:, e), middle(:, e))
+            dofs%groups(g)%nodes(:, e) = paired_nodes(scene%dies(group%die), group%connectivity(:, e), middle(:, e), npiece)
           end do
         end associate
         call number_elements(scene, elems(group%elem_id), g, dofs)

@@ -197,7 +197,7 @@ contains
     type(equations_t), intent(inout) :: equations
     integer :: s, timer
 
-    if (.not. pairs_differ(pairs, equations%pairs)) return
+    if (.not. pairs_differ(scene, pairs, equations%pairs)) return
     call equations%timers%add('analysis', timer)
     call equations%timers%start(timer)
     equations%pairs = pairs
@@ -205,6 +205,12 @@ contains
     do s = 1, size(equations%solves)
       call set_up_pattern(equations%dofs, is_symmetric(scene, equations, s), equations%solves(s))
     end do
+    associate (pattern => equations%solves(1)%pattern)
+      if (size(equations%buffers%force) /= pattern%force_length) deallocate (equations%buffers%force)
+      if (size(equations%buffers%matrix) /= pattern%matrix_length) deallocate (equations%buffers%matrix)
+      if (.not. allocated(equations%buffers%force)) allocate (equations%buffers%force(pattern%force_length), source=0.0_wp)
+      if (.not. allocated(equations%buffers%matrix)) allocate (equations%buffers%matrix(pattern%matrix_length), source=0.0_wp)
+    end associate
     call list_links(scene, equations)
     call equations%timers%stop(timer)
   end subroutine pair_up

@@ -12,7 +12,7 @@ module pair_cases
   use law_api, only: law_t
   use law_cases, only: law_row
   use materials, only: material_t
-  use pairs, only: paired_nodes, start_pairs
+  use pairs, only: most_pieces, paired_nodes, start_pairs
   use quadrature, only: rule_of_number
   use scene, only: axisymmetric, generalised_plane_strain, role_contact, scene_t
   use state_variables, only: total_components
@@ -94,7 +94,8 @@ contains
     allocate (trial(size(case%committed, 1), size(case%committed, 2), 1))
     allocate (nodes(0), dof(0))
     do
-      nodes = paired_nodes(case%scene%dies(1), [1, 2, 3], case%instant%pairs(1)%piece(:, 1))
+      nodes = paired_nodes(case%scene%dies(1), [1, 2, 3], case%instant%pairs(1)%piece(:, 1), &
+                           most_pieces(case%scene%dies(1), case%instant%pairs(1)%piece))
       dof = [2*nodes - 1, 2*nodes, (size(du) + i, i=1, case%nsection)]
       x = reshape(case%x(:, nodes), [2, size(nodes), 1])
       motion = reshape([du(1, nodes), du(2, nodes), case%thickening(:case%nsection)], [size(dof), 1])

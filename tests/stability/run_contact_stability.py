@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+"""Contact that needs no care: unlike sides of two bodies, nodes at the corner of a die.
+
+usage: run_contact_stability.py [-v] [-k]       -v prints every check, -k keeps the results
+
+A case answers numbers which must stay below bounds. The table has them beside those of the code before contact was changed (`before`,
+measured by this script; the upper block faces the lower one with -3 points there; inf: it stopped), and what is left up to the bound (`margin`).
+
+- `unlike`: two blocks under a uniform pressure, with sides of other lengths, by the points that a card without their number gets;
+  the largest error of a stress in either, over the pressure.
+- `corner`: a flat punch without friction whose corner stands on a node, pressed into a block. `lateral`: its lateral force over the
+  vertical one where it is pressed in by less than the allowed depth. `moved`: its force beside that with the corner 1e-4 further out or
+  further in.
+"""
+import os
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "patch"))
+from patch_support import STRESS, Checks, Run, np, num  # noqa: E402
+from run_contact_pair import PRESSURE, stacked  # noqa: E402
+
+BOUND = {"unlike": 0.01, "lateral": 1.0e-12, "moved": 0.002}
+# Sides of the lower and of the upper block; before: plane strain, axisymmetric.
+UNLIKE = {(4, 5): (0.095, 0.118), (5, 4): (0.166, 0.331), (7, 4): (0.225, 0.506), (4, 7): (0.056, 0.063), (10, 3): (0.776, 1.107),
+          (3, 10): (0.001, 0.004), (20, 2): (np.inf, np.inf), (2, 20): (0.001, 0.001)}
+# Material and its depth of indentation, points and card of the contact law, sides under the punch; before: lateral, moved.
+PUNCHES = {"elastic": ("ELA", 0.02, -3, "", 5, (0.021, 0.040)), "elastic AUGMENT": ("ELA", 0.02, -3, " AUGMENT 10", 5, (0.021, 0.010)),
+           "elastic fine": ("ELA", 0.02, -3, "", 10, (0.018, 0.017)), "elastic -9": ("ELA", 0.02, -9, "", 5, (0.0079, 0.0002)),
+           "hardening": ("HARD", 0.1, -3, "", 5, (0.021, 0.0001)), "plastic": ("PLASTIC", 0.02, -3, "", 5, (0.021, 0.0001)),
+           "plastic -5": ("PLASTIC", 0.02, -5, "", 5, (0.012, 0.0001))}
+MATERIALS = {"ELA": "LAW m ELA\n   200000. 0.3\n", "HARD": "LAW m EPLA\n   200000. 0.3\n   LINEAR 300. 500.\n",
+             "PLASTIC": "LAW m EPLA\n   200000. 0.3\n   LINEAR 300. 0.\n"}
+
+
+def unlike_sides(checks):
+    """Rows of the table: either body faces the other."""
+    rows = []
+    for (low, top), both in UNLIKE.items():
+        for state, before in zip(("PLSTN", "AXISYM"), both):
+            run = Run(checks, f"{low}-{top}-{state}", stacked(state, "LOG", low, top, ""))
+            if run.ok:
+                error = max(np.abs(run.state(body, *STRESS) + (0, PRESSURE, 0, 0)).max() for body in ("low", "top"))/PRESSURE
+                rows.append((f"{top} on {low} {state.lower()}", "unlike", before, error))
+    return rows
+
+
+def punch(checks, name, material, depth, points, card, sides, shift):
+    """A punch of half width 1 on half a block; its forces in the end."""
+    edge = num(1 + shift)
+    text = ("TITLE flat punch\nSTATE PLSTN\nKINEM LOG\nBLOCK b PL8LS 4 m\n   0. 0. 3. 0. 3. 1.5 0. 1.5\n"
+            f"   {3*sides} 1. {3*sides//2} 1.\n{MATERIALS[material]}LAW c COUL2D\n   PHI 0. PENETR 1.E-3{card}\n"
+            f"DIE punch PILOT 0. 1.5\n   SEGM {edge} 3. {edge} 1.5\n   SEGM {edge} 1.5 -1. 1.5\nCNT2D b 3 punch {points} c\n"
+            f"FIXED b 1 Y\nFIXED b 4 X\nLIC t\n   0. 0. 1. 1.\nMOVE punch Y t -{num(depth)}\nSTRAT 0.1 1.E-6 0.1 8 3\nSTOP 1.\nEND\n")
+    run = Run(checks, name.replace(" ", "-"), text)
+    return (run.history["force_x_punch"][-1], run.history["force_y_punch"][-1]) if run.ok else None
+
+
+def corners(checks):
+    """Rows of the table: nodes at the corner of a die."""
+    rows = []
+    for name, (material, depth, points, card, sides, before) in PUNCHES.items():
+        setting = material, depth, points, card, sides
+        slight = punch(checks, name + " slight", material, 1.0e-4/sides, points, card, sides, 0.0)
+        on, out, within = (punch(checks, name + kind, *setting, shift) for kind, shift in (("", 0.0), (" out", 1e-4), (" in", -1e-4)))
+        if slight:
+            rows.append((f"corner {name}", "lateral", before[0], abs(slight[0]/slight[1])))
+        if on and out and within:
+            rows.append((f"corner {name}", "moved", before[1], max(abs(on[1]/other[1] - 1) for other in (out, within))))
+    return rows
+
+
+def main():
+    checks = Checks()
+    print(f"{'case':24s} {'number':8s} {'before':>9s} {'now':>9s} {'bound':>9s} {'margin':>7s}")
+    for part in (unlike_sides, corners):
+        for case, what, before, now in part(checks):
+            bound = BOUND[what]
+            print(f"{case:24s} {what:8s} {before:9.2g} {now:9.2g} {bound:9.2g} {1 - now/bound:7.2f}", flush=True)
+            checks.small(now, bound, f"{case}: {what}")
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
