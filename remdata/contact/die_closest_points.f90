@@ -280,6 +280,8 @@ contains
       closest%xi = xi
       exit
     end do
+    ! distances that overflow are all the same
+    if (closest%piece == 0) closest%piece = pieces(1)
     if (projected) then
       closest%xi = min(max(closest%xi, -1.0_wp), 1.0_wp)
     else

@@ -177,7 +177,7 @@ def squeezed(checks):
                 run = Run(checks, f"squeezed-{state}-{kinem}-{solve}",
                           f"TITLE squeezed\nSTATE {state}\nKINEM {kinem}\nBLOCK p PL8LS 9 steel\n   0. 0. 2. 0. 2. 2. 0. 2.\n   2 1. 2 1.\n"
                           f"LAW steel ELA\n   200000. 0.3\nADDEL p PL8TM heat\nLAW heat HEAT\n   50. {rhoc}\n   SOURCE {source}\n{sides}"
-                          f"MOVE p {2 if way == 'X' else 3} {way} in\nSTART T 300.\nLIC in\n   0. 0. 1. -0.2\nSTRAT 0.2 0.1 0.2 4 3\nSTOP 1.\n"
+                          f"MOVE p {2 if way == 'X' else 3} {way} in\nSTART T 300.\nLIC in\n   0. 0. 1. -0.18\nSTRAT 0.2 0.1 0.2 4 3\nSTOP 1.\n"
                           f"SOLVE {solve}\n{NORMS}END\n")
                 if run.ok:
                     found = temperatures(run)[1] - 300

@@ -33,7 +33,7 @@ FIXED  block 3  X
 MOVE   block 3  Y press
 LIC    press
    0. 0.   1. -{travel}
-STRAT  0.02 1.E-6 0.05   5 3
+STRAT  0.02 1.E-6 0.04   5 3
 SAVE   1
 END
 """

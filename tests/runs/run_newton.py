@@ -130,14 +130,14 @@ def fall_length(residuals):
 def main():
     checks = Checks()
     scenes = [judge(checks, "upsetting", UPSETTING),
-              judge(checks, "gluing", UPSETTING, ["-p", "travel=4"]),
+              judge(checks, "gluing", UPSETTING, ["-p", "travel=6"]),
               judge(checks, "sliding", write(checks.path("sliding.lag"), SLIDING))]
     good, judged = (sum(scene[k] for scene in scenes) for k in range(2))
     checks.that(judged >= 50 and good >= SHARE * judged, f"share of quadratic ends at least {SHARE:.0%} of 50 or more",
                 f"{good} of {judged}")
     checks.that(scenes[2][2] > 10, "sliding: it slides", f"{scenes[2][2]} steps with slip")
     tight(checks, "tight-upsetting", deck_text(UPSETTING), 0.95)
-    tight(checks, "tight-gluing", deck_text(UPSETTING), 0.95, ["-p", "travel=4"])
+    tight(checks, "tight-gluing", deck_text(UPSETTING), 0.95, ["-p", "travel=6"])
     tight(checks, "tight-sliding", SLIDING, 0.95)
     tight(checks, "tight-jaumann", SLIDING.replace("KINEM  LOG", "KINEM  JAUMANN"), 0.95)
     checks.end()

@@ -22,8 +22,13 @@ DECKS = {"upsetting": ("upsetting/upsetting.lag", mesh(4, 6)), "press fit": ("pr
 
 
 def difference(one, two):
-    """The largest difference of two histories, relative to the largest number of its column, and the column."""
+    """The largest difference of two histories, relative to the largest number of its column, and the column.
+
+    A point at the limit of friction sticks or slips by round-off, at the same stress: both together are compared.
+    """
     worst = (0.0, "")
+    one, two = (dict(each, points_sticking=[sum(both) for both in zip(each["points_sticking"], each["points_slipping"])],
+                     points_slipping=[]) for each in (one, two))
     for name, column in one.items():
         size = max((abs(value) for value in column), default=0.0)
         for a, b in zip(column, two[name]):
