@@ -5,6 +5,7 @@
 !> the old checkpoint is never modified.
 module remesh_scene
   use arcs_on_die, only: placed_piece
+  use axis_nodes, only: put_on_axis
   use block_mesh, only: polygon_area
   use boundary_curves, only: boundary_curve_t
   use contact_carry, only: carry_contacts
@@ -30,7 +31,7 @@ module remesh_scene
   use remesh_facts, only: begin_task, end_task, remesh_facts_t
   use remesh_options, only: remesh_options_t
   use remesher_options, only: as_it_comes, by_gmsh, has_zones, remesher_options_t
-  use scene, only: is_solid, lacks_mesh, scene_t
+  use scene, only: axisymmetric, is_solid, lacks_mesh, scene_t
   use size_field, only: need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t
   use solution, only: present_coordinates, solution_t, start_solution
   use state_pieces, only: mesh_of, solid_pieces, state_pieces_t, store_states
@@ -104,6 +105,7 @@ contains
       call make_free_mesh(old, before, contours, sizes, options, plan, mesh, facts, error)
     end if
     if (allocated(error)) return
+    if (old%plane_state == axisymmetric) call put_on_axis(mesh%coordinates)
     call set_up_new_scene(old, contours, plan, mesh, new, error)
     if (allocated(error)) return
     call fit_pairs(contours, mesh, new, facts%fit)

@@ -4,7 +4,7 @@
 !> This changes the part's volume slightly; a small uniform displacement of the free sides restores it. Sides with supports, on the
 !> axis, in contact, and those that are dies of another body are not moved.
 module part_contour
-  use axis_nodes, only: limit_depths
+  use axis_nodes, only: limit_depths, put_on_axis
   use body_contact_ends, only: add_body_contact_ends
   use boundary_curves, only: boundary_curve_t, closest_position, joint_point, kind_entry, kind_exit, largest_gap, point_on, &
                              position_t, size_of_boundary
@@ -102,6 +102,7 @@ contains
     uncorrected = present_coordinates(scene, solution)
     x = uncorrected
     call limit_depths(scene, solution, x)
+    if (scene%plane_state == axisymmetric) call put_on_axis(x)
     call gather_solids(scene, connectivity)
     call find_loops(connectivity, size(x, 2), loops, status, node)
     allocate (contours(size(loops)), report%limits(0), report%laps(0))
@@ -112,6 +113,7 @@ contains
       return
     end if
     held = held_nodes(scene) .or. repeated_nodes(loops, size(x, 2))
+    if (scene%plane_state == axisymmetric) held = held .or. nodes_on_axis(loops, x)
     do k = 1, size(loops)
       contours(k)%loop = loops(k)
       call find_tags(scene, loops(k), x, contours(k)%tags)
@@ -153,6 +155,21 @@ contains
       end do
     end do
   end function repeated_nodes
+
+  !> Nodes of the loops at which a contour meets the axis: a shift of the sides must not move them across it.
+  pure function nodes_on_axis(loops, x) result(meets)
+    type(loop_t), intent(in) :: loops(:)
+    real(wp), intent(in) :: x(:, :)   !! (2, nnode) now [length]
+    logical :: meets(size(x, 2))
+    integer :: k, i
+
+    meets = .false.
+    do k = 1, size(loops)
+      do i = 1, 2
+        meets(loops(k)%sides(i, :)) = .not. x(1, loops(k)%sides(i, :)) > 0
+      end do
+    end do
+  end function nodes_on_axis
 
   !> Elements of all bodies in one list.
   pure subroutine gather_solids(scene, connectivity)

@@ -145,6 +145,8 @@ contains
     do iteration = 1, most_iterations
       shift = last_shift + step
       coordinates = before + shift*displacements
+      ! nothing crosses the axis
+      if (axisymmetric) coordinates(1, :) = max(coordinates(1, :), min(before(1, :), 0.0_wp))
       excess = volume_of_loop(loop, coordinates, axisymmetric) - start - gain
       restored = abs(excess) <= round_off*abs(start)
       if (restored .or. .not. abs(excess - last_excess) > 0) exit

@@ -45,6 +45,14 @@ contains
         end do
       end do
     end do
+    if (.not. any(equations%wall%held)) return
+    associate (reaction => fields(displacement_field)%reaction(1, :), number => equations%dofs%fields(displacement_field)%number)
+      do k = 1, size(reaction)
+        ! where a support holds the node the force of the wall is part of what it carries
+        if (number(1, k) == 0) cycle
+        if (equations%dofs%is_free(number(1, k))) reaction(k) = equations%wall%force(k)
+      end do
+    end associate
   end subroutine book_reactions
 
   !> What deformable dies carry: the force of all contacts on them, and its moment about the origin, with the sign of a reaction.

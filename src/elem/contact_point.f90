@@ -20,7 +20,7 @@ module contact_point
   public :: area_at, dissipated, point_variables, rest, thinning, contact_block
   public :: at_pressure, at_tau, at_penetration, at_status, at_slip, at_augmentation, at_work, at_piece, at_xi, &
             npoint_state
-  public :: most_unknowns, no_surface, touching
+  public :: most_unknowns, no_surface, share_of_way, touching
 
   !> Rows in the state of a point; the history of its law follows.
   integer, parameter :: at_pressure = 1, at_tau = 2, at_penetration = 3, at_status = 4, at_slip = 5, &
@@ -243,15 +243,26 @@ contains
     real(wp), intent(in) :: committed(:), trial(:)   !! (nstate) [unit of each component]
     real(wp), intent(in) :: side                     !! length of the side [length]
     real(wp) :: share
-    real(wp) :: gap
 
     share = 1
     if (nint(committed(at_status)) /= contact_open .or. nint(trial(at_status)) == contact_open) return
     if (nint(committed(at_piece)) == 0) return
-    if (trial(at_penetration) <= overlap_limit*side) return
-    gap = max(-committed(at_penetration), 0.0_wp)
-    share = (gap + overlap_aim*side)/(gap + trial(at_penetration))
+    share = share_of_way(-committed(at_penetration), trial(at_penetration), side)
   end function share_to_contact
+
+  !> Share of the way from a gap at the start to a depth at the end of the step after which the overlap is `overlap_aim` of the side;
+  !> the whole way where it ends below `overlap_limit`.
+  pure function share_of_way(gap, depth, side) result(share)
+    real(wp), intent(in) :: gap, depth   !! [length]
+    real(wp), intent(in) :: side         !! length of the side [length]
+    real(wp) :: share
+    real(wp) :: open
+
+    share = 1
+    if (depth <= overlap_limit*side) return
+    open = max(gap, 0.0_wp)
+    share = (open + overlap_aim*side)/(open + depth)
+  end function share_of_way
 
   !> Stresses shown at a point on the axis, where none act: on the line through its two neighbours.
   pure subroutine show_on_axis(xi, x, side, trial)

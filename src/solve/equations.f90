@@ -1,5 +1,6 @@
 !> The discrete equations of a scene: unknowns, pattern, element loop, linear solver.
 module equations
+  use axis_wall, only: axis_wall_t, find_axis_wall, press_on_axis
   use contact_point, only: at_piece
   use dies, only: is_deformable, place_on_nodes
   use dofs, only: dofs_t, number_dofs, number_pairs
@@ -51,6 +52,8 @@ module equations
     integer :: mode = mode_advance
     type(stage_t) :: stage
     type(element_buffers_t) :: buffers
+    !> Sides that must not cross the axis, and what holds them.
+    type(axis_wall_t) :: wall
     type(ledger_t) :: timers
     type(team_t) :: team
     !> Internal force (element forces summed) at the last evaluation, and the sum of their sizes (ndof).
@@ -96,6 +99,7 @@ contains
     call list_kinematics(rows)
     equations%kinematics = rows(scene%kinematics_id)
     call number_dofs(scene, equations%elems, equations%dofs)
+    call find_axis_wall(scene, equations%laws, equations%dofs, equations%wall)
     call list_solves(scene%fields, scene%strategy%coupling, equations%solves)
     do s = 1, size(equations%solves)
       call choose_solver(equations%solves(s)%solver, scene%strategy%linear_solver)
@@ -397,11 +401,13 @@ contains
     call equations%timers%add('assembly', timer)
     call equations%timers%start(timer)
     associate (solve => equations%solves(equations%now))
+      ! round-off is that of the bodies alone
+      if (tangent) call set_floors(scene, equations, solution%fields)
+      if (solve%own(displacement_field)) &
+        call press_on_axis(scene, equations%dofs, solve%pattern, solve%active, solution%fields(displacement_field)%value, du, &
+                           tangent, equations%wall, equations%buffers%force, equations%buffers%matrix, report)
       call gather_forces(solve%pattern, equations%buffers, solve%is_own, equations%force, equations%magnitude)
-      if (tangent) then
-        call gather_matrix(solve%pattern, equations%buffers, solve%values)
-        call set_floors(scene, equations, solution%fields)
-      end if
+      if (tangent) call gather_matrix(solve%pattern, equations%buffers, solve%values)
     end associate
     call equations%timers%stop(timer)
   end subroutine evaluate

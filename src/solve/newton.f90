@@ -85,6 +85,7 @@ contains
     type(manner_t) :: manner
     type(report_t) :: report
     integer, allocatable :: contact(:)
+    logical, allocatable :: held(:, :)
     logical :: changed, followed
     integer :: first
 
@@ -106,6 +107,7 @@ contains
     first = 1
     correction = 0
     allocate (contact, source=contact_set(scene, solution))
+    held = equations%wall%held
     do
       residual = external - equations%force
       if (size(outcome%history) == 0) call weigh_quantities(equations, external, residual)
@@ -149,7 +151,8 @@ contains
         exit
       end if
       call note_contact(scene, solution, contact, line%contact_changed)
-      line%contact_changed = line%contact_changed .or. followed
+      line%contact_changed = line%contact_changed .or. followed .or. any(held .neqv. equations%wall%held)
+      held = equations%wall%held
       correction = line%line_search*correction
       missing = 0
     end do
