@@ -21,8 +21,8 @@ module axis_nodes
 
   !> A radius below this share of the largest one is zero.
   real(wp), parameter :: no_radius = 1.0e-9_wp
-  !> Depth in the wall of the axis over the largest radius: of a side it is 1e-5 where stresses are a hundredth of the modulus.
-  real(wp), parameter :: wall_depth = 1.0e-5_wp
+  !> Depth in the wall of the axis over the largest radius: what sides, of which none is longer, dip between the wall's points.
+  real(wp), parameter :: wall_depth = 1.0e-3_wp
   !> Dies steeper than this on the axis are ignored: the depth along the axis has no meaning there.
   real(wp), parameter :: least_cosine = 0.5_wp
 

@@ -250,8 +250,8 @@ contains
     share = share_of_way(-committed(at_penetration), trial(at_penetration), side)
   end function share_to_contact
 
-  !> Share of the way from a gap at the start to a depth at the end of the step after which the overlap is `overlap_aim` of the side;
-  !> the whole way where it ends below `overlap_limit`.
+  !> Share of the way from a gap at the start to a depth at the end of the step after which the overlap is `overlap_aim` of the
+  !> side; the whole way where it ends below `overlap_limit`.
   pure function share_of_way(gap, depth, side) result(share)
     real(wp), intent(in) :: gap, depth   !! [length]
     real(wp), intent(in) :: side         !! length of the side [length]

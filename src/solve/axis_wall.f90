@@ -1,11 +1,12 @@
 !> The axis of an axisymmetric scene is a wall that nothing crosses: the sides of bodies stay at r >= 0.
 !>
-!> Points of a side (its nodes and the quarters between) have no area at r = 0, so that a pressure on an area holds nothing there.
+!> Points of a side (its nodes and many between) have no area at r = 0, so that a pressure on an area holds nothing there.
 !> What holds them is a nodal force without a radius in it, that of a stiff spring toward the axis where r < 0:
 !> f = k r, by the shape functions of the side on its nodes, without friction. k is `hardness` times Young's modulus times the
 !> chord of the side [force/length per radian]: stresses of a hundredth of the modulus leave a depth of 1e-5 of the side. All that
-!> meets here lies on one straight line, so that five points on a side of three nodes do not constrain it too much. Source of
-!> unilateral penalties: P. Wriggers, Computational Contact Mechanics, 2nd ed., Springer 2006, sec. 6.3.
+!> meets here lies on one straight line, so that many points on a side of three nodes do not constrain it too much; between two of
+!> them a parabola r'' dips by r'' h**2/8, h = 2/(npoint - 1): 5e-4 r''. Source of unilateral penalties: P. Wriggers, Computational
+!> Contact Mechanics, 2nd ed., Springer 2006, sec. 6.3.
 !>
 !> The force is added to that of the element the side belongs to, before it is gathered: pattern and order of sums stay what they
 !> are, and where no point is below 0 so do all bits. The wall stands still and does no work.
@@ -28,7 +29,7 @@ module axis_wall
   !> Stiffness over Young's modulus and side.
   real(wp), parameter :: hardness = 1.0e3_wp
   !> Points of a side.
-  integer, parameter :: npoint = 5
+  integer, parameter :: npoint = 33
   !> A point this share of its side off the axis is on it: what the wall lets in, and round-off.
   real(wp), parameter :: at_axis = 1.0e-4_wp
 
@@ -165,8 +166,8 @@ contains
         ndof = group%layout%ndof
         start = scene%mesh%coordinates(1, nodes) + displacement(1, nodes)
         motion = du(dof)
-        ! a quarter lies at 3/8, 6/8 and -1/8 of its nodes: not below 0 where none of them is below half of another
-        if (2*minval(start + motion) - maxval(start + motion) > 0) cycle
+        ! no shape function is below -1/8, and only one at a time below 0
+        if (9*minval(start + motion) - maxval(start + motion) > 0) cycle
         do p = 1, npoint
           call line3(xi(p), phi, dphi)
           if (.not. any(dofs%is_free(dof) .and. abs(phi) > 0)) cycle

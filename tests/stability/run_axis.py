@@ -1,0 +1,205 @@
+#!/usr/bin/env python3
+"""The axis is a wall that nothing crosses: bores that close, a die on the axis, a billet whose axis no support holds.
+
+usage: run_axis.py [-v] [-k]       -v prints every check, -k keeps the results
+
+Bores are pressed shut between sticking ends and between ends that keep their distance. What must hold: the run ends with 0, no place
+of any side lies below r = 0 by more than 1e-3 of the side, and the volume is kept: apart from elastic strain within 1e-3 %, and as
+this script finds it from the nodes. Until its bore is shut a ring follows its closed form. The table has the lowest r over the side.
+`before`: the same by the code without the wall, measured by this script.
+"""
+import os
+import subprocess
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "patch"))
+from patch_support import BIN, LAGAMINE, SOURCE, Checks, Run, np  # noqa: E402
+import json  # noqa: E402
+
+DEPTH, DRIFT = 1e-3, 1e-5
+RING = """TITLE bore pressed shut
+STATE AXISYM
+KINEM LOG
+BLOCK b PL8LS 4 m
+ 1. 0. {outer} 0. {outer} {height} {top} {height}
+ {nx} 1. {ny} 1.
+LAW m EPLA
+ {young} 0.3
+ LINEAR {flow}
+FIXED b 1 Y
+{held}
+LIC press
+ 0. 0. 1. {way}
+STRAT 0.02 1.E-5 0.05 5 3
+PROBE force REACT {force}
+PROBE bore NODE X 1. 0.
+PROBE outer NODE X {outer} 0.
+SAVE 5
+{more}END
+"""
+STICKING = {"outer": 4.0, "height": 1.5, "top": 1.0, "young": 200000.0, "flow": "300. 300.", "held": "FIXED b 3 X\nMOVE b 3 Y press",
+            "force": "Y b 3", "way": -1.0, "more": ""}
+CONE = {"outer": 5.0, "height": 2.0, "top": 2.0, "young": 200000.0, "flow": "20. 0.", "held": "FIXED b 3 Y\nMOVE b 2 X press",
+        "force": "X b 2", "way": -0.3, "more": ""}
+# Name, numbers, divisions, lowest r over the side of the code before.
+CASES = [("squeezed-6", STICKING, (6, 3), -0.30), ("squeezed-12", STICKING, (12, 6), -0.08),
+         ("cone-8", CONE, (8, 4), -0.48), ("cone-16", CONE, (16, 4), -1.3)]
+PIN = """DIE pin
+ SEGM 0. 9. 0. -9.
+CNT2D b 4 pin rough
+LAW rough COUL2D
+ PENETR 1.E-3 PHI .3
+"""
+SIDES = ((0, 4, 1), (1, 5, 2), (2, 6, 3), (3, 7, 0))
+
+
+def ring(checks, name, numbers, divisions):
+    """A run of the deck."""
+    return Run(checks, name, RING.format(nx=divisions[0], ny=divisions[1], **numbers))
+
+
+def lowest(run):
+    """Lowest radius over the sides of the boundary at all saved instants, each by the chord of its side at the start."""
+    first, nodes = run.mesh()
+    sharing = np.bincount(nodes[:, 4:].ravel(), minlength=len(first))
+    sides = np.concatenate([nodes[:, side] for side in SIDES])
+    sides = sides[sharing[sides[:, 1]] == 1]
+    chord = np.linalg.norm(first[sides[:, 2]] - first[sides[:, 0]], axis=1)
+    xi = np.linspace(-1, 1, 201)
+    phi = np.array([xi*(xi - 1)/2, 1 - xi**2, xi*(xi + 1)/2])
+    least = np.inf
+    with run.open() as file:
+        for step in sorted(file["steps"]):
+            radius = (first + file[f"steps/{step}/node/displacement"][()][:, :2])[:, 0]
+            least = min(least, ((radius[sides] @ phi).min(axis=1)/chord).min())
+    return least
+
+
+def volume(x, nodes):
+    """Volume per radian of elements of eight nodes, by 4 x 4 Gauss points."""
+    points, weights = np.polynomial.legendre.leggauss(4)
+    total = 0.0
+    for a, w in zip(points, weights):
+        for b, v in zip(points, weights):
+            corner = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+            shape, da, db = [], [], []
+            for p, q in corner:
+                shape.append((1 + p*a)*(1 + q*b)*(p*a + q*b - 1)/4)
+                da.append(p*(1 + q*b)*(2*p*a + q*b)/4)
+                db.append(q*(1 + p*a)*(p*a + 2*q*b)/4)
+            for p, q in ((0, -1), (1, 0), (0, 1), (-1, 0)):
+                if p == 0:
+                    shape.append((1 - a*a)*(1 + q*b)/2)
+                    da.append(-a*(1 + q*b))
+                    db.append((1 - a*a)*q/2)
+                else:
+                    shape.append((1 - b*b)*(1 + p*a)/2)
+                    da.append((1 - b*b)*p/2)
+                    db.append(-b*(1 + p*a))
+            place, along, across = (np.tensordot(x[nodes], np.array(f), (1, 0)) for f in (shape, da, db))
+            total += w*v*(place[:, 0]*(along[:, 0]*across[:, 1] - along[:, 1]*across[:, 0])).sum()
+    return total
+
+
+def closed_bores(checks):
+    """Every bore ends at the axis."""
+    rows = []
+    for name, numbers, divisions, before in CASES:
+        run = ring(checks, name, numbers, divisions)
+        if not run.ok:
+            continue
+        least = lowest(run)
+        with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+            drift = abs(json.load(file)["checks"]["volume_drift_unloaded"])
+        first, nodes = run.mesh()
+        end = volume(first + run.displacement(), nodes)/volume(first, nodes) - 1
+        checks.that(least >= -DEPTH, f"{name}: nothing crosses the axis", f"lowest r {least:.1e} of the side")
+        checks.that(least <= DEPTH, f"{name}: the bore reaches the axis", f"lowest r {least:.1e} of the side")
+        checks.that(drift <= DRIFT, f"{name}: volume apart from elastic strain", f"{drift:.1e}")
+        # elements of 4 points that are pressed to slivers do not integrate their own volume better
+        checks.small(abs(end - run.history["volume_drift"][-1]), 0.02, f"{name}: volume from the nodes")
+        rows.append(f"| {name} | {before:.2f} | {least:.1e} | {drift:.0e} | {end:.2%} |")
+    print("| case | before | lowest r over side | drift | volume by nodes |\n|---|---|---|---|---|")
+    print("\n".join(rows))
+
+
+def closed_form(checks):
+    """Pressure on a perfectly plastic ring in plane strain: 2/sqrt(3) sy ln(b/a) (Prager, Hodge 1951), b^2 - a^2 constant."""
+    numbers = dict(CONE, top=1.0, way=-0.11, young=2.0e6)
+    run = ring(checks, "ring", numbers, (16, 1))
+    if not run.ok:
+        return
+    bore, outer, force = (run.history[name] for name in ("bore", "outer", "force"))
+    plastic = (bore < 0.9) & (bore > 0.3)
+    pressure = -force/(2*np.pi*outer*2.0)
+    expected = 2/np.sqrt(3)*20*np.log(outer/bore)
+    checks.that(plastic.sum() > 3, "ring: steps between the bounds", plastic.sum())
+    checks.small(np.abs(pressure/expected - 1)[plastic].max(), 0.01, "ring: pressure against the closed form")
+    checks.small(np.abs(outer**2 - bore**2 - 24)[plastic].max()/24, 1e-3, "ring: volume against the closed form")
+    checks.that(lowest(run) >= -DEPTH, "ring: nothing crosses the axis")
+
+
+def die_on_the_axis(checks):
+    """A vertical die at x = 0 is where the axis is: the same answer."""
+    runs = [ring(checks, name, dict(STICKING, more=more), (6, 3)) for name, more in (("no-pin", ""), ("pin", PIN))]
+    if all(run.ok for run in runs):
+        force = [run.history["force"][-1] for run in runs]
+        checks.small(abs(force[1]/force[0] - 1), 1e-3, "die on the axis: force")
+        checks.that(lowest(runs[1]) >= -DEPTH, "die on the axis: nothing crosses it")
+
+
+def billet_without_support(checks):
+    """The billet of upsetting_remesh whose axis no card holds, on several meshes, against the one with its support."""
+    with open(os.path.join(SOURCE, "decks", "upsetting_remesh", "upsetting_remesh.lag"), encoding="utf-8") as file:
+        deck = file.read().replace("12.75 ", "7.5 ")
+    answers = []
+    for name, text in (("supported", deck), ("free", deck.replace("FIXED  billet 4  X", ""))):
+        path, out = (os.path.join(checks.folder, name + end) for end in (".lag", ""))
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        cycle = subprocess.run([os.path.join(BIN, "lagacycle"), path, "--out", out, "-p", "nx=6", "-p", "ny=9", "--threads", "1",
+                                "--quiet"], check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=300)
+        if not checks.that(cycle.returncode == 0, f"{name}: a cycle ends with {cycle.returncode}", cycle.stderr[-300:]):
+            return
+        with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
+            checks.that(json.load(file)["remeshings"] > 0, f"{name}: remeshed")
+        with open(os.path.join(out, "history.csv"), encoding="utf-8") as file:
+            rows = file.read().splitlines()
+        names = [title.split(" [")[0] for title in rows[0].split(",")]
+        answers.append(dict(zip(names, map(float, rows[-1].split(",")))))
+    for name in ("mid_radius", "external_work"):
+        checks.small(abs(answers[1][name]/answers[0][name] - 1), 2e-3, f"billet without support: {name}")
+
+
+def resumed(checks):
+    """A run that goes on from a checkpoint in which the wall holds the bore ends with the same bits."""
+    run = ring(checks, "whole", dict(STICKING, more="CKPT 2\n"), (12, 6))
+    if not run.ok:
+        return
+    checks.that(run.history["bore"][-4:].max() < 0, "resumed: the wall holds the bore at the checkpoint", run.history["bore"][-4:])
+    again = os.path.join(checks.folder, "again")
+    result = subprocess.run([LAGAMINE, run.out + ".lag", "--resume", os.path.join(run.out, "whole.ckp.1.h5"), "--out", again,
+                             "--threads", "1", "--quiet"], check=False, stdin=subprocess.DEVNULL,
+                            capture_output=True, text=True, timeout=120)
+    if not checks.that(result.returncode == 0, f"resumed: ends with {result.returncode}", result.stderr[-300:]):
+        return
+    last = []
+    for folder in (run.out, again):
+        with open(os.path.join(folder, "history.csv"), encoding="utf-8") as file:
+            last.append(file.read().splitlines()[-1])
+    checks.that(last[0] == last[1], "resumed: the last row of the history, bit for bit", last)
+
+
+def main():
+    checks = Checks()
+    closed_bores(checks)
+    closed_form(checks)
+    die_on_the_axis(checks)
+    billet_without_support(checks)
+    resumed(checks)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
