@@ -213,7 +213,7 @@ class ReportTest(unittest.TestCase):
             listing = file.read()
         result = report(folder)
         text = self.good_page(os.path.join(folder, "report.html"), 9)
-        self.assertEqual(2, result.stdout.count("WARNING"), result.stdout)
+        self.assertEqual(2, result.stdout.count("WARNING: depth over allowed"), result.stdout)
         self.assertEqual(2, text.count('<tr class="bad">'))
         self.assertEqual(2, text.count("<p><b>depth over allowed"))
         for name, words in advice.items():
@@ -303,8 +303,12 @@ class ReportTest(unittest.TestCase):
         with open(os.path.join(folder, "cycle.csv"), encoding="utf-8") as file:
             rows = [{title.split(" ")[0]: cell for title, cell in row.items()} for row in csv.DictReader(file)]
         made = [row for row in rows if row["accepted"] == "y" and row["action"] != "old mesh"]
-        for words in ("New meshes: 8; tries refused: 4.", "<b>refused</b> (as the deck says; stage mesh): an &lt;angle&gt; of 3",
-                      "try 3: earlier", "Pictures of 4 of 8 new meshes", "every mesh", "billet.g09.h5"):
+        refused = [row for row in rows if row["accepted"] == "n"]
+        self.assertGreater(len(made), 6)
+        self.assertGreater(len(refused), 1)
+        shown = [int(row["generation"]) for row in made[:1] + made[-3:]]
+        for words in (f"New meshes: {len(made)}; tries refused: {len(refused)}.", "<b>refused</b> (as the deck says; stage mesh): an &lt;angle&gt; of 3",
+                      "try 3: earlier", f"Pictures of 4 of {len(made)} new meshes", "every mesh", f"billet.g{shown[-1]:02d}.h5"):
             self.assertIn(words, text)
         for row in made:
             self.assertIn(f"<td>{row['old_elements']} → {row['new_elements']}</td>", text)
@@ -316,7 +320,7 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(4, text.count('<tr class="bad"><td>2</td>'))
         self.assertEqual(1, text.count("<b>the old mesh goes on</b>"))
         found = {name[:-4] for name in os.listdir(png)}
-        self.assertEqual({f"remesh_g{g:02d}" for g in (2, 7, 8, 9)},
+        self.assertEqual({f"remesh_g{g:02d}" for g in shown},
                          {name for name in found if name.startswith("remesh_")})
         self.assertLessEqual({"mesh", "meshes", "fields", "more", "series", "force", "contact", "probes", "steps", "energy",
                               "seconds"}, found)
@@ -373,7 +377,7 @@ class ReportTest(unittest.TestCase):
 
     def test_damaged_cycle(self):
         for name, damage in (("cycle.csv", lambda s: ""), ("cycle.csv", lambda s: s[:-9]),
-                             ("cycle.csv", lambda s: s.replace(",3.973,", ",little,", 1)),
+                             ("cycle.csv", lambda s: re.sub(r",\d+\.\d+,", ",little,", s, count=1)),
                              ("cycle.csv", lambda s: s.replace("trigger", "reason", 1)),
                              ("billet.g02.restart.json", lambda s: s[:20]), ("billet.g02.probation.json", lambda s: "[]"),
                              ("billet.g02.start.h5.json", lambda s: "[]"),
