@@ -16,7 +16,7 @@ module cards_heat
   use text, only: join, string_t
   implicit none
   private
-  public :: read_exchanges, read_time_scheme
+  public :: read_exchanges, read_heated_body, read_multiplier, read_time_scheme
 
   !> Gauss points of a side.
   integer, parameter :: npoint = 3
@@ -44,7 +44,7 @@ contains
         f = 0
         if (draft%groups_sound) f = find_field(draft%scene%fields, 'temperature')
         if (keyword == 'HEATS') then
-          call read_body(cursor, draft, f, label, group)
+          call read_heated_body(cursor, draft, f, label, group)
         else
           call read_sides(cursor, draft, numbers_after_name(deck%cards(i)), label, group%connectivity, field=f)
           call refuse_inner_sides(cursor, draft, group%connectivity)
@@ -68,7 +68,7 @@ contains
   end subroutine read_exchanges
 
   !> The body whose elements release heat.
-  subroutine read_body(cursor, draft, field, label, group)
+  subroutine read_heated_body(cursor, draft, field, label, group)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
     integer, intent(in) :: field   !! the temperature, 0 where the scene has none
@@ -93,7 +93,7 @@ contains
     else if (field > 0) then
       call refuse_without_field(cursor, draft, field, [group%connectivity], label, own=.true.)
     end if
-  end subroutine read_body
+  end subroutine read_heated_body
 
   !> Words with their numbers, each once, in any order.
   subroutine read_numbers(cursor, draft, keyword, exchange)

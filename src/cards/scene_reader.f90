@@ -19,6 +19,7 @@ module scene_reader
   use cards_strategy, only: read_strategy
   use cards_temperature, only: read_temperatures_of_bodies
   use cards_tractions, only: read_tractions
+  use cards_weld, only: read_torches
   use cards_zones, only: read_zones
   use deck_reader, only: deck_t, refuse_unknown
   use diagnostics, only: diagnostics_t, location_t
@@ -93,6 +94,7 @@ contains
     call read_contacts(deck, draft, diagnostics)
     call read_pressures(deck, draft, diagnostics)
     call read_exchanges(deck, draft, diagnostics)
+    call read_torches(deck, draft, diagnostics)
     call read_body_forces(deck, draft, diagnostics)
     call read_loads(deck, draft, diagnostics)
     call read_imposed_values(deck, draft, diagnostics)
@@ -122,8 +124,8 @@ contains
 
     call list_elems(elems)
     call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE START ' &
-                  //'FLUX CONVE RADIA HEATS THETA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG LIC STRAT NORMS SOLVR STOP SAVE CKPT ' &
-                  //'PROBE ESTIM REMSH ZPNT ZONE', keywords)
+                  //'FLUX CONVE RADIA HEATS GOLDAK THETA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG LIC STRAT NORMS SOLVR STOP SAVE ' &
+                  //'CKPT PROBE ESTIM REMSH ZPNT ZONE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle

@@ -11,6 +11,7 @@ module scene_summary
   use scene, only: axisymmetric, generalised_plane_strain, group_t, lacks_mesh, plane_state_names, scene_t
   use sections, only: section_drive_t, section_forced, section_moved, section_names
   use text, only: string_t, to_text
+  use weld_sources, only: weld_source_t
   implicit none
   private
   public :: scene_lines
@@ -170,6 +171,7 @@ contains
                                               //scene%multipliers(scene%groups(g)%multiplier)%name
       if (scene%groups(g)%elem == 'CENTR') s = s//'^2'
       if (any(scene%groups(g)%elem == [character(len=5) :: 'FLUX', 'CONVE', 'RADIA', 'HEATS'])) s = exchange_of(scene%groups(g))
+      if (scene%groups(g)%source > 0) s = torch_of(scene%sources(scene%groups(g)%source))
       if (scene%groups(g)%temperature_multiplier > 0) &
         s = s//', temperature '//to_text(scene%groups(g)%temperature_amplitude)//' x ' &
             //scene%multipliers(scene%groups(g)%temperature_multiplier)%name
@@ -188,6 +190,15 @@ contains
         if (group%elem == 'RADIA') s = s//', absolute zero '//to_text(-exchange%zero)
       end associate
     end function exchange_of
+
+    !> Heat of a torch, in numbers.
+    pure function torch_of(source) result(s)
+      type(weld_source_t), intent(in) :: source
+      character(len=:), allocatable :: s
+
+      s = ', '//to_text(source%efficiency)//' x '//to_text(source%power)//times(source%multiplier)
+      if (source%crosses) s = s//', crosses at '//to_text(source%crossing_time)//' with '//to_text(source%speed)
+    end function torch_of
 
     pure function times(multiplier) result(s)
       integer, intent(in) :: multiplier

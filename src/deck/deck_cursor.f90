@@ -35,6 +35,7 @@ module deck_cursor
     procedure :: word => read_word
     procedure :: name => read_name
     procedure :: real => read_real
+    procedure :: real_or_formula => read_real_or_formula
     procedure :: integer => read_integer
     procedure :: text => read_text
     procedure :: more
@@ -149,6 +150,28 @@ contains
     end if
     if (self%silent) value = harmless(lower, upper, above, below)
   end subroutine read_real
+
+  !> The next field, which must be a number, or an expression in x and y (deck_expression): then `formula` is not empty.
+  subroutine read_real_or_formula(self, what, value, formula, unit)
+    class(cursor_t), intent(inout) :: self
+    character(len=*), intent(in) :: what
+    real(wp), intent(out) :: value
+    character(len=:), allocatable, intent(out) :: formula
+    character(len=*), intent(in) :: unit
+    type(deck_field_t) :: field
+
+    value = 0
+    formula = ''
+    call self%take(what//' ('//unit//')', field)
+    if (self%silent) return
+    if (field%numeric) then
+      value = field%value
+    else if (allocated(field%formula)) then
+      formula = field%formula
+    else
+      call self%expected(what//' ('//unit//')', field)
+    end if
+  end subroutine read_real_or_formula
 
   !> The next field, which must be a whole number within [lower, upper].
   subroutine read_integer(self, what, value, lower, upper)
@@ -373,7 +396,11 @@ contains
 
     message = 'expected '//what//', found '''//field%text//''''
     if (field%numeric .and. verify(field%text, '0123456789+-.eEdD') > 0) message = message//' (= '//to_text(field%value)//')'
-    if (present(hint)) message = message//hint
+    if (present(hint)) then
+      message = message//hint
+    else if (allocated(field%formula) .and. len(field%text) > 1) then
+      message = message//': x and y are not known here'
+    end if
     call self%fail(message)
   end subroutine expected
 

@@ -1,6 +1,6 @@
 !> PARAM lines, overrides `-p NAME=VALUE`, and the value of a field which may use parameters.
 module deck_definitions
-  use deck_expression, only: evaluate, looks_numeric
+  use deck_expression, only: evaluate, fill_in, is_formula, looks_numeric
   use deck_field, only: deck_field_t, scan_fields
   use deck_parameters, only: parameter_t, parameters_t, valid_name
   use diagnostics, only: diagnostics_t, location_t
@@ -70,7 +70,7 @@ contains
     end do
   end subroutine merge_overrides
 
-  !> Find out whether a field is a number or a word, and its value.
+  !> Find out whether a field is a number, a formula in x and y, or a word, and its value.
   subroutine interpret(field, where, keyword, parameters, diagnostics)
     type(deck_field_t), intent(inout) :: field
     type(location_t), intent(in) :: where
@@ -94,7 +94,10 @@ contains
       end if
     end if
     field%numeric = looks_numeric(field%text)
-    if (field%numeric) then
+    if (keyword /= 'PARAM' .and. is_formula(field%text)) then
+      field%numeric = .false.
+      call fill_in(field%text, parameters, field%formula, field%faulty, message, position)
+    else if (field%numeric) then
       call evaluate(field%text, parameters, field%value, field%faulty, message, position)
     else
       message = 'a parameter must be a field of its own or stand in an expression, not inside the word '''//field%text//''''

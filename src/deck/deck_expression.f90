@@ -4,8 +4,9 @@
 !>     term    = signed { (*|/) signed }
 !>     signed  = (+|-) signed | power
 !>     power   = primary [ ^ signed ]                so -2^2 = -4, 2^3^2 = 2^9, 2^-1 = 0.5
-!>     primary = number | $name | pi | function(sum [, sum]) | (sum)
+!>     primary = number | $name | pi | x | y | function(sum [, sum]) | (sum)
 !>
+!> The place, x and y, is known where a formula is evaluated at one.
 !> Overflow and division by zero are found before they happen, since debug builds trap them.
 module deck_expression
   use kinds, only: pi, wp
@@ -14,7 +15,7 @@ module deck_expression
   use text, only: nearest_word, string_t
   implicit none
   private
-  public :: evaluate, looks_numeric
+  public :: evaluate, fill_in, is_formula, looks_numeric
 
   !> Brackets, signs and powers within one another; deeper is no typing error but a damaged file.
   integer, parameter :: deepest = 60
@@ -34,23 +35,29 @@ module deck_expression
     logical :: failed = .false.
     integer :: failed_at = 0
     character(len=:), allocatable :: message
+    !> x and y are known.
+    logical :: placed = .false.
+    real(wp) :: place(2) = 0.0_wp
   end type parser_t
 
 contains
 
   !> Value of an expression. On failure `message` states the cause at character `position`;
   !> it is empty when the cause is a parameter whose own mistake is known already.
-  subroutine evaluate(expression, parameters, value, failed, message, position)
+  subroutine evaluate(expression, parameters, value, failed, message, position, place)
     character(len=*), intent(in) :: expression
     type(parameters_t), intent(in) :: parameters
     real(wp), intent(out) :: value
     logical, intent(out) :: failed
     character(len=:), allocatable, intent(out) :: message
     integer, intent(out) :: position
+    real(wp), intent(in), optional :: place(2)   !! x and y [length]
     type(parser_t) :: p
 
     p%s = expression
     p%message = ''
+    p%placed = present(place)
+    if (present(place)) p%place = place
     call read_sum(p, parameters, value)
     if (.not. p%failed .and. p%at <= len(p%s)) call expected(p, 'an operator')
     failed = p%failed
@@ -80,6 +87,62 @@ contains
       numeric = s(n + 1:n + 1) == '(' .or. (s(:n) == 'pi' .and. scan(s(n + 1:n + 1), operators) == 1)
     end if
   end function looks_numeric
+
+  !> Whether a field that is not quoted is an expression in x and y.
+  pure function is_formula(s) result(yes)
+    character(len=*), intent(in) :: s
+    logical :: yes
+    integer :: first, n
+
+    yes = looks_numeric(s)
+    if (.not. yes .and. len(s) > 0) then
+      ! x or y alone, or before an operator
+      yes = scan(s(1:1), 'xy') == 1
+      if (yes .and. len(s) > 1) yes = scan(s(2:2), operators) == 1
+    end if
+    if (.not. yes) return
+    first = 1
+    do while (first <= len(s))
+      n = verify(s(first:)//' ', name_letters//'.$') - 1
+      if (n == 1) then
+        if (scan(s(first:first), 'xy') == 1) return
+      end if
+      first = first + max(n, 1)
+    end do
+    yes = .false.
+  end function is_formula
+
+  !> A formula with the values of its parameters in their places. On failure as `evaluate`.
+  subroutine fill_in(formula, parameters, filled, failed, message, position)
+    character(len=*), intent(in) :: formula
+    type(parameters_t), intent(in) :: parameters
+    character(len=:), allocatable, intent(out) :: filled
+    logical, intent(out) :: failed
+    character(len=:), allocatable, intent(out) :: message
+    integer, intent(out) :: position
+    type(parser_t) :: p
+    character(len=40) :: digits_of
+    real(wp) :: value
+    integer :: next
+
+    p%s = formula
+    p%message = ''
+    filled = ''
+    do while (p%at <= len(p%s) .and. .not. p%failed)
+      if (next_is(p, '$')) then
+        call read_parameter(p, parameters, value)
+        write (digits_of, '(es25.17e3)') value
+        filled = filled//'('//trim(adjustl(digits_of))//')'
+      else
+        next = index(p%s(p%at:)//'$', '$') + p%at - 1
+        filled = filled//p%s(p%at:next - 1)
+        p%at = next
+      end if
+    end do
+    failed = p%failed
+    message = p%message
+    position = p%failed_at
+  end subroutine fill_in
 
   recursive subroutine read_sum(p, parameters, value)
     type(parser_t), intent(inout) :: p
@@ -319,6 +382,10 @@ contains
     if (.not. next_is(p, '(')) then
       if (name == 'pi') then
         value = pi
+      else if (p%placed .and. name == 'x') then
+        value = p%place(1)
+      else if (p%placed .and. name == 'y') then
+        value = p%place(2)
       else
         call stop_at(p, first, 'expected a number, found '''//name//'''; a parameter is written $name')
       end if

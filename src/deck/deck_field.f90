@@ -25,6 +25,8 @@ module deck_field
     !> Its mistake is already recorded: reading it reports no other one.
     logical :: faulty = .false.
     real(wp) :: value = 0
+    !> An expression in x and y, parameters filled in; not allocated for others.
+    character(len=:), allocatable :: formula
     integer :: column = 0
   end type deck_field_t
 

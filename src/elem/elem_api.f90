@@ -21,7 +21,7 @@ module elem_api
   private
   public :: elem_t, flow_rule_t, instant_t, layout_t, report_t, totals_t, unknown_t
   public :: elem_compute_i, elem_variables_i, elem_measure_i, elem_augment_i
-  public :: block_done, block_inverted, block_law_failed
+  public :: block_done, block_inverted, block_law_failed, block_without_source
   public :: acts_on, add_totals, applies, declare_fields, first_unknown, group_temperature, has_unknown, layout_of, section_motion
   public :: of_displacement, of_pilot, of_section, that_reads, field_nodes, no_variables
   public :: mode_advance, mode_error, mode_restore
@@ -31,6 +31,7 @@ module elem_api
   integer, parameter :: block_done = 0
   integer, parameter :: block_inverted = 1     !! an element has turned inside out
   integer, parameter :: block_law_failed = 2   !! a law gave up
+  integer, parameter :: block_without_source = 3   !! the ellipsoid of a torch is outside its bodies
 
   !> Mode of the elements: to advance by a step; to restore equilibrium on a new mesh at fixed time, without flow of
   !> material or heat; or to measure an error of the heat content, given as that of the temperatures it belongs to.
@@ -69,6 +70,8 @@ module elem_api
     real(wp) :: weight(2) = [1.0_wp, 0.0_wp], share(2) = [1.0_wp, 0.0_wp]
     !> Multipliers at these instants (nmultiplier, n).
     real(wp), allocatable :: multipliers(:, :)
+    !> The instants (n), and the factors of the sources of torches there (nsource, n); not allocated where there is none.
+    real(wp), allocatable :: times(:), source_factors(:, :)
   end type flow_rule_t
 
   !> The instant at which a block is computed.

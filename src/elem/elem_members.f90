@@ -9,11 +9,12 @@ submodule(elem_registry) elem_members
   use elem_pl8tm, only: elem_pl8tm_row
   use elem_pres2d, only: elem_pres2d_row
   use elem_spring, only: elem_spring_row
+  use elem_weld_source, only: elem_goldak_row
   implicit none
 contains
 
   module procedure list_elems
-    allocate (elems(12))
+    allocate (elems(13))
     elems(1) = elem_pl8ls_row()
     elems(2) = elem_cnt2d_row()
     elems(3) = elem_cntdf_row()
@@ -26,6 +27,7 @@ contains
     elems(10) = elem_conve_row()
     elems(11) = elem_radia_row()
     elems(12) = elem_heats_row()
+    elems(13) = elem_goldak_row()
   end procedure list_elems
 
 end submodule elem_members

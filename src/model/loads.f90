@@ -14,12 +14,13 @@ module loads
     real(wp), allocatable :: time(:), value(:)
   end type multiplier_t
 
-  !> Value of a field on the nodes of a body at the start.
+  !> Value of a field on the nodes of a body at the start, or on all nodes.
   type :: start_t
-    !> Name of the body, and place in the scene's list of fields.
+    !> Name of the body, empty for all; and place in the scene's list of fields.
     character(len=:), allocatable :: body
     integer :: field = 0
-    real(wp) :: value = 0.0_wp
+    !> Values at the nodes of the mesh (nnode), used at those of the body [of the field].
+    real(wp), allocatable :: values(:)
   end type start_t
 
   !> Imposed motion (or value) of one component of a field at some nodes: amplitude times multiplier (0 = held).

@@ -14,6 +14,7 @@ module scene
   use sections, only: section_drive_t
   use state_variables, only: state_variable_t
   use strategy, only: strategy_t
+  use weld_sources, only: weld_source_t
   implicit none
   private
   public :: scene_t, group_t, plane_state_names, host_of, is_solid, lacks_mesh
@@ -63,6 +64,8 @@ module scene
     real(wp) :: amplitude = 0.0_wp
     !> Heat that passes the sides.
     type(exchange_t) :: exchange
+    !> Torch that heats the body (position in the scene's list), 0 for others.
+    integer :: source = 0
     !> Direction of a force on the volume: 1 = x, 2 = y; 0 where unused.
     integer :: direction = 0
     !> Temperature given to the body: amplitude times multiplier; multiplier 0 where none is.
@@ -97,6 +100,8 @@ module scene
     type(die_force_t), allocatable :: die_forces(:)
     type(nodal_force_t), allocatable :: forces(:)
     type(probe_t), allocatable :: probes(:)
+    !> Heat of welding torches.
+    type(weld_source_t), allocatable :: sources(:)
     type(strategy_t) :: strategy
     type(remesher_options_t) :: remesher
     type(remesh_rules_t) :: remesh

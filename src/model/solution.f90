@@ -125,17 +125,21 @@ contains
     fields(section_field)%value(:, 1) = scene%section
   end subroutine start_fields
 
-  !> The value of a field on the nodes of a body.
+  !> The values of a field on the nodes of a body, or on all.
   pure subroutine start_on_body(scene, start, fields)
     type(scene_t), intent(in) :: scene
     type(start_t), intent(in) :: start
     type(field_t), intent(inout) :: fields(:)
-    integer :: g, e
+    integer :: g, e, k
 
     do g = 1, size(scene%groups)
-      if (.not. is_solid(scene%groups(g)) .or. scene%groups(g)%name /= start%body) cycle
+      if (.not. is_solid(scene%groups(g)) .or. (scene%groups(g)%name /= start%body .and. len(start%body) > 0)) cycle
       do e = 1, size(scene%groups(g)%connectivity, 2)
-        fields(start%field)%value(:, scene%groups(g)%connectivity(:, e)) = start%value
+        do k = 1, size(scene%groups(g)%connectivity, 1)
+          associate (node => scene%groups(g)%connectivity(k, e))
+            fields(start%field)%value(:, node) = start%values(node)
+          end associate
+        end do
       end do
     end do
   end subroutine start_on_body

@@ -36,6 +36,7 @@ contains
     call visitor%derived('multiplier', of_the_deck)
     call visitor%derived('amplitude', of_the_deck)
     call visitor%derived('exchange', of_the_deck)
+    call visitor%derived('source', of_the_deck)
     call visitor%derived('direction', of_the_deck)
     call visitor%derived('temperature_multiplier', of_the_deck)
     call visitor%derived('temperature_amplitude', of_the_deck)

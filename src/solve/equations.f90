@@ -6,6 +6,7 @@ module equations
   use dofs, only: dofs_t, number_dofs, number_pairs
   use elem_api, only: block_done, elem_t, flow_rule_t, instant_t, mode_advance, mode_error, report_t
   use elem_registry, only: list_elems
+  use elem_weld_source, only: source_factors
   use element_loop, only: element_buffers_t, gather_forces, gather_matrix, run_elements
   use errors, only: error_t
   use fields, only: displacement_field, field_t, find_field, mechanical_fields, on_nodes, pilot_field, section_field
@@ -290,6 +291,7 @@ contains
         instant%flow%multipliers(k, c) = multiplier_at(scene%multipliers(k), solution%time + instant%flow%share(c)*dt)
       end do
     end do
+    if (any(scene%groups%source > 0)) call set_sources(scene, solution, dt, instant)
     if (size(solution%fields) > size(mechanical_fields())) call list_values(equations%dofs, solution%fields, instant%values)
     if (size(solution%pairs) == 0) return
     coordinates = present_coordinates(scene, solution)
@@ -305,6 +307,28 @@ contains
       if (is_deformable(instant%dies(k))) call place_on_nodes(coordinates, instant%dies(k))
     end do
   end subroutine make_instant
+
+  !> Factors of the sources of torches at the instants at which heat flows, on the places of the start of the step.
+  subroutine set_sources(scene, solution, dt, instant)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt   !! [time]
+    type(instant_t), intent(inout) :: instant
+    real(wp) :: coordinates(2, size(scene%mesh%coordinates, 2)), section(3)
+    integer :: k
+
+    coordinates = scene%mesh%coordinates
+    section = scene%section
+    if (scene%finite) then
+      coordinates = present_coordinates(scene, solution)
+      section = instant%section
+    end if
+    instant%flow%times = solution%time + instant%flow%share(:instant%flow%n)*dt
+    allocate (instant%flow%source_factors(size(scene%sources), instant%flow%n))
+    do k = 1, instant%flow%n
+      call source_factors(scene, section, coordinates, instant%flow%times(k), instant%flow%source_factors(:, k))
+    end do
+  end subroutine set_sources
 
   !> The displacements and the motion of the section from which a correction began, where geometry follows the displacements.
   pure subroutine note_correction(scene, dofs, motion, instant)

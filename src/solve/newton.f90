@@ -6,7 +6,7 @@
 module newton
   use contact_changes, only: contact_set, note_contact
   use convergence, only: pilots_in_equilibrium, relative_motion, relative_residual, weigh_quantities
-  use elem_api, only: block_done, block_inverted, report_t
+  use elem_api, only: block_done, block_inverted, block_without_source, report_t
   use element_loop, only: add_prescribed
   use equations, only: equations_t, evaluate, external_forces, solve_correction
   use errors, only: error_t, exit_no_convergence
@@ -304,6 +304,8 @@ contains
 
     if (report%status == block_inverted) then
       outcome%reason = 'an element turned inside out'
+    else if (report%status == block_without_source) then
+      outcome%reason = 'the torch of GOLDAK is off its bodies while it has power: end its power (LIC) or its path there'
     else
       outcome%reason = 'a law did not converge'
     end if

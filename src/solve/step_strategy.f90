@@ -4,6 +4,7 @@
 module step_strategy
   use kinds, only: eps, wp
   use scene, only: scene_t
+  use weld_sources, only: times_to_hit
   implicit none
   private
   public :: choose_step, after_success, after_failure
@@ -47,6 +48,13 @@ contains
     do k = 1, size(scene%multipliers)
       next = min(next, minval(scene%multipliers(k)%time, mask=scene%multipliers(k)%time > after))
     end do
+    if (allocated(scene%sources)) then
+      do k = 1, size(scene%sources)
+        associate (times => times_to_hit(scene%sources(k)))
+          next = min(next, minval(times, mask=times > after))
+        end associate
+      end do
+    end if
     if (allocated(scene%strategy%save_times)) then
       next = min(next, minval(scene%strategy%save_times, mask=scene%strategy%save_times > after))
     end if
