@@ -13,6 +13,7 @@ Gaussians (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, sec. 10.2; f
   source at the surface, P/(pi k) exp(-v xi/(2 alpha)) K0(v r/(2 alpha)), behind the torch, within 1 %. What is left at the torch
   is of the step: .05 % of the centre at steps of .1, .03 at .05, .016 at .025.
 - `ring`: all of the power of a ring, through its LIC, at the end of a bar, half of it outside; two bodies share a source as one does.
+- `laws`: enthalpy with latent heat by TRBDF2, and phases of a steel: books of heat.
 - `motion`: a billet pressed flat (LOG) while a ring heats it: the heat is still the stated one.
 - `off`: a torch that leaves its body with power on stops the run and says why.
 """
@@ -187,6 +188,22 @@ def ring(checks):
         checks.small(max(abs(a/b - 1) for a, b in zip(found["one"], found["two"])), 1e-11, "ring: one body or two")
 
 
+def laws(checks):
+    """A torch on a material that melts, and on a steel whose phases change: the source knows neither, the books close."""
+    melting = (f"LAW steel HEATH\n   TEMP 0.\n   {CONDUCTIVITY} 0.\n   TEMP 60.\n   {CONDUCTIVITY} {60*CAPACITY}\n   TEMP 80.\n"
+               f"   {CONDUCTIVITY} {80*CAPACITY + 5e8}\n   TEMP 2000.\n   {CONDUCTIVITY} {2000*CAPACITY + 5e8}\n")
+    steel = os.path.join(os.path.dirname(os.path.dirname(HERE)), "decks", "steels", "16mnd5.met")
+    phases = f"LAW steel META\n   STEEL '{steel}' '16MND5'\n   ENERGY 1.E6\nSTART T 700.\n"
+    for name, law, theta in (("melting", melting, "TRBDF2"), ("phases", phases, "1.")):
+        run = Run(checks, name, HEAD.format(title=name, state="PLSTN")
+                  + "BLOCK bar PL8TM 9 steel BILINEAR\n   0. -0.02 0.04 -0.02 0.04 0. 0. 0.\n   40 1. 20 1.\n" + law
+                  + f"GOLDAK bar P 4.E4 pulse ETA 0.9 {AXES} INTO 0. -1.\n   0. 0.01 0.\n   4. 0.03 0.\nLIC pulse\n   0. 1. 3.9 1. 4. 0.\n"
+                  f"THETA {theta}\n" + "CONVE bar 1 2 4 H 2000. TS 20.\n" + steps(0.05, 6.0) + TIGHT + "PROBE a NODE T 0.02 0.\nEND\n")
+        if run.ok:
+            checks.small(np.max(np.abs(run.history["heat_imbalance"])), 1e-8, f"{name}: books")
+            checks.that(np.max(run.history["a"]) > run.history["a"][0] + 20, f"{name}: heated", f"{np.max(run.history['a']):.1f}")
+
+
 def motion(checks):
     """A billet that is pressed while a ring heats it."""
     deck = BILLET.replace("REMSH\n   TIMES 0.3 0.6\n", "").replace("IMPOS  billet 3 T cold\n", "").replace(
@@ -220,6 +237,7 @@ def main():
     cross(checks)
     moves(checks)
     ring(checks)
+    laws(checks)
     motion(checks)
     off(checks)
     checks.end()
