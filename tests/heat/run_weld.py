@@ -14,9 +14,10 @@ Gaussians (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, sec. 10.2; f
   is of the step: .05 % of the centre at steps of .1, .03 at .05, .016 at .025.
 - `ring`: all of the power of a ring, through its LIC, at the end of a bar, half of it outside; two bodies share a source as one does.
 - `laws`: enthalpy with latent heat by TRBDF2, and phases of a steel: books of heat.
-- `motion`: a billet pressed flat (LOG) while a ring heats it: the heat is still the stated one.
+- `motion`: a billet pressed flat (LOG) while a ring heats it, on one mesh and on three: the heat is still the stated one.
 - `off`: a torch that leaves its body with power on stops the run and says why.
 """
+import csv
 import json
 import math
 import os
@@ -26,7 +27,7 @@ sys.dont_write_bytecode = True
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(os.path.dirname(HERE), "patch")]
 from patch_support import NO_CONVERGENCE, Checks, Run, np  # noqa: E402
-from run_coupling import BILLET  # noqa: E402
+from run_coupling import BILLET, cycle, write  # noqa: E402
 from run_exchange import HEAD, TIGHT  # noqa: E402
 
 CONDUCTIVITY, CAPACITY = 30.0, 4.0e6
@@ -206,15 +207,23 @@ def laws(checks):
 
 def motion(checks):
     """A billet that is pressed while a ring heats it."""
-    deck = BILLET.replace("REMSH\n   TIMES 0.3 0.6\n", "").replace("IMPOS  billet 3 T cold\n", "").replace(
+    remeshed = BILLET.replace("IMPOS  billet 3 T cold\n", "").replace(
         "LIC    cold\n   0. 1000.  1. 500.\n", "").replace("PROBE  core", "GOLDAK billet P 500. ETA 0.7 FRONT 2. REAR 3. DEPTH 2.\n"
                                                            "PROBE  core")
-    deck = deck.replace("DEPTH 2.\n", "DEPTH 2. INTO -1. 0.\n   0. 10. 4.\n   0.7 11. 6.\n")
-    run = Run(checks, "motion", deck)
+    remeshed = remeshed.replace("DEPTH 2.\n", "DEPTH 2. INTO -1. 0.\n   0. 10. 4.\n   0.7 11. 6.\n")
+    run = Run(checks, "motion", remeshed.replace("REMSH\n   TIMES 0.3 0.6\n", ""))
     if run.ok:
         got = run.history["heat_in"][-1]
         checks.small(abs(got/(0.7*500*run.history["time"][-1]) - 1), 1e-10, f"motion: heat {got:.4f}")
         checks.small(np.max(np.abs(run.history["heat_imbalance"])), 1e-8, "motion: books")
+    # with a formula of the place at the start, from mesh to mesh
+    out = os.path.join(checks.folder, "cycled")
+    result = cycle(write(os.path.join(checks.folder, "cycled.lag"), remeshed.replace("START  T 1000.", "START  T 1000+2*x-y")), out)
+    if checks.that(result.returncode == 0, "motion: lagacycle", result.stderr):
+        with open(os.path.join(out, "history.csv"), newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        got = float(rows[-1]["heat_in [energy]"])
+        checks.small(abs(got/(0.7*500*0.7) - 1), 1e-10, f"motion: heat over three meshes {got:.4f}")
 
 
 def off(checks):
