@@ -46,11 +46,11 @@ SAVE   4
 NUMBERS = {"state": "AXISYM", "young": "200000.", "penetr": "1.E-3", "augment": "20", "points": "-3", "travel": "3.",
            "first": "0.01", "least": "1.E-5", "largest": "0.05"}
 # Deep in its dies: soft, without augmentation, few points on a side.
-SOFT = {"young": "20000.", "augment": "0", "points": "2", "travel": "2."}
+SOFT = {"young": "25000.", "augment": "0", "points": "2", "travel": "2."}
 REMSH = "REMSH\n   TIMES 0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8\n"
-# A remesher that refuses its first four tries: the first stop goes on with the old mesh, the second goes back to an earlier state.
+# A remesher that refuses its first five tries: the first stop goes on with the old mesh, the second goes back to an earlier state.
 REFUSING = """#!/bin/sh
-if [ "$1" != --about ] && [ "$(wc -l <'{count}')" -lt 4 ]; then
+if [ "$1" != --about ] && [ "$(wc -l <'{count}')" -lt 5 ]; then
   echo x >>'{count}'
   echo 'an <angle> of 3' >&2
   exit 3
