@@ -145,7 +145,7 @@ contains
     integer :: g, e, c, m
 
     work = 0
-    x = present_coordinates(scene, solution) - solution%fields(displacement_field)%last_increment
+    allocate (x, source=present_coordinates(scene, solution) - solution%fields(displacement_field)%last_increment)
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g), dof => equations%dofs%groups(g)%dof, row => equations%elems(scene%groups(g)%elem_id))
         if (group%die == 0 .or. group%material == 0) cycle
