@@ -11,7 +11,7 @@ module cards_heat
   use loads, only: by_convection, by_flux, by_radiation, exchange_t
   use quadrature, only: rule_gauss, rule_t
   use scene, only: group_t, is_solid
-  use scene_draft, only: close_card, draft_t, only_card, words_of
+  use scene_draft, only: close_card, draft_t, next_of_words, only_card, words_of
   use strategy, only: coupling_monolithic, scheme_theta, scheme_tr_bdf2
   use text, only: join, string_t
   implicit none
@@ -121,10 +121,8 @@ contains
     emissivity = 0
     constant = 0
     do while (cursor%more())
-      call cursor%name('one of '//join(words, ' '), words, k)
+      call next_of_words(cursor, words, given, k)
       if (k == 0) return
-      if (given(k)) call cursor%fail(''''//words(k)%s//''' is given twice')
-      given(k) = .true.
       select case (words(k)%s)
       case ('Q')
         if (keyword == 'FLUX') then

@@ -9,8 +9,8 @@ module cards_weld
   use kinds, only: wp
   use quadrature, only: rule_gauss, rule_t
   use scene, only: axisymmetric, group_t
-  use scene_draft, only: close_card, draft_t, words_of
-  use text, only: join, string_t, to_text
+  use scene_draft, only: close_card, draft_t, next_of_words, words_of
+  use text, only: string_t, to_text
   use vectors, only: length_of
   use weld_sources, only: has_front, weld_source_t
   implicit none
@@ -97,10 +97,8 @@ contains
 
     given = .false.
     do while (cursor%more())
-      call cursor%name('one of '//join(words, ' '), words, k)
+      call next_of_words(cursor, words, given, k)
       if (k == 0) return
-      if (given(k)) call cursor%fail(''''//words(k)%s//''' is given twice')
-      given(k) = .true.
       select case (words(k)%s)
       case ('P')
         call cursor%real('the power of the torch', source%power, lower=0.0_wp, strict_lower=.true., unit='power')

@@ -12,10 +12,10 @@ module scene_draft
   use law_api, only: law_t
   use law_registry, only: list_laws
   use scene, only: scene_t
-  use text, only: string_t
+  use text, only: join, string_t
   implicit none
   private
-  public :: draft_t, start_draft, only_card, close_card, find_elem, words_of, head_location
+  public :: draft_t, start_draft, only_card, close_card, find_elem, next_of_words, words_of, head_location
 
   type :: draft_t
     type(scene_t) :: scene
@@ -115,6 +115,19 @@ contains
     end do
     k = 0
   end function find_elem
+
+  !> The next of a card's words, which may stand in any order, each once; k = 0 where there is none of them.
+  subroutine next_of_words(cursor, words, given, k)
+    type(cursor_t), intent(inout) :: cursor
+    type(string_t), intent(in) :: words(:)   !! (nword)
+    logical, intent(inout) :: given(:)       !! (nword) those that stood already
+    integer, intent(out) :: k
+
+    call cursor%name('one of '//join(words, ' '), words, k)
+    if (k == 0) return
+    if (given(k)) call cursor%fail(''''//words(k)%s//''' is given twice')
+    given(k) = .true.
+  end subroutine next_of_words
 
   !> A list of words for `cursor%name`, from words separated by blanks.
   pure subroutine words_of(line, words)

@@ -6,7 +6,7 @@ import sys
 from typing import List, Sequence
 
 from lagamine_report.errors import EXIT_DONE, EXIT_INPUT, EXIT_MACHINE, ReportError
-from lagamine_report.program import Parser, Version, print_error, refuse_to_replace, run_to_code, write
+from lagamine_report.program import Parser, Version, print_failure, refuse_to_replace, run_to_code, write
 
 from .mistakes import Mistakes, Refused, count
 
@@ -29,10 +29,7 @@ def run_program(arguments: Sequence[str], version: str) -> int:
     try:
         lines = import_file(options, version)
     except ReportError as error:
-        print_error(str(error))
-        if error.advice:
-            print_error(error.advice)
-        return error.code
+        return print_failure(error)
     if not options.quiet:
         print("\n".join(lines))
     return EXIT_DONE

@@ -4,7 +4,7 @@ import sys
 from typing import Sequence
 
 from .errors import EXIT_DONE, EXIT_MACHINE, ReportError
-from .program import Parser, Version, print_error, refuse_to_replace, run_to_code, write
+from .program import Parser, Version, print_failure, refuse_to_replace, run_to_code, write
 from .reader import Run
 from .short import print_short
 
@@ -60,10 +60,7 @@ def run_program(arguments: Sequence[str], version: str) -> int:
         if options.animation:
             animate(run, options)
     except ReportError as error:
-        print_error(str(error))
-        if error.advice:
-            print_error(error.advice)
-        return error.code
+        return print_failure(error)
     if not options.quiet:
         print_short(run)
         print(f"  page: {target}")

@@ -94,6 +94,14 @@ def print_error(message: str) -> None:
         discard(2)
 
 
+def print_failure(error: ReportError) -> int:
+    """A failure and what to do about it, on the stream of errors; the exit code."""
+    print_error(str(error))
+    if error.advice:
+        print_error(error.advice)
+    return error.code
+
+
 def refuse_to_replace(path: str) -> None:
     """Output may be put where nothing is, and in the place of a regular file; anything else is left as it is."""
     try:
