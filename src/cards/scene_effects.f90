@@ -34,7 +34,7 @@ contains
     call set(6, 'pressure', 'no PRES2D card')
     call set(7, 'body force', 'no BFORC or CENTR card')
     call set(8, 'heat', 'no card asks for it')
-    call set(9, 'phases', 'no card asks for it')
+    call set(9, 'phases', 'no LAW META')
     call set(10, 'temperature', 'no TEMPE card', 'displacement')
     call set(11, 'error estimates', 'no ESTIM or REMSH card')
     call set(12, 'remeshing', 'no REMSH card')
@@ -67,6 +67,9 @@ contains
         associate (material => scene%materials(group%material))
           if (asks_for(laws(material%law_id), 'plasticity')) &
             call switch_on(3, .true., 'LAW', material%name, &
+                           to_text(state_of_law(laws(material%law_id), material))//' state per point')
+          if (laws(material%law_id)%of_steel) &
+            call switch_on(9, .true., 'LAW', material%name, &
                            to_text(state_of_law(laws(material%law_id), material))//' state per point')
           if (asks_for(laws(material%law_id), 'friction')) then
             if (.not. scene%effects(5)%on) scene%effects(5)%why = 'PHI and PBOUE of every contact law are 0'

@@ -113,20 +113,31 @@ def steps_picture(run: Run) -> Optional[Picture]:
 
 
 def energy_picture(run: Run) -> Optional[Picture]:
-    """External work against elastic energy, plastic work and work of friction."""
+    """External work against elastic energy, plastic work and work of friction; none where nothing moves.
+
+    What is neither stored nor dissipated is shown where work from outside is all that comes in.
+    """
     history = run.history
     names = ["elastic_energy", "plastic_work", "friction_work"]
     if not set(names + ["external_work"]) <= set(history) or not len(history["time"].values):
         return None
     time, work = history["time"].values, history["external_work"].values
     parts = [history[name].values for name in names]
-    fig, axes = figure(1, 2, (9.2, 3.3), gridspec_kw={"width_ratios": [1.5, 1]})
-    energy, rest = axes[0]
+    if not any(np.any(values) for values in (work, *parts)):
+        return None
+    books = run.summary.get("energy", {})
+    by_work = not any(books.get(name) for name in ("work_of_heat", "overlap"))
+    fig, axes = figure(1, 2, (9.2, 3.3), gridspec_kw={"width_ratios": [1.5, 1]}) if by_work else figure(1, 1, (5.6, 3.3))
+    energy = axes[0][0]
     energy.stackplot(time, *parts, labels=["elastic", "plastic", "friction"], colors=["#a9c4de", "#efc9a6", "#b9d8c0"], lw=0)
     energy.plot(time, work, color="black", lw=1.3, dashes=(5, 3), label="work from outside")
     energy.set_title("energy")
     energy.set_xlabel("time")
     energy.legend(loc="upper left")
+    caption = "work from outside against elastic energy, plastic and friction work"
+    if not by_work:
+        return Picture("energy", caption, fig, vector=True)
+    rest = axes[0][1]
     share = np.divide(work - sum(parts), np.abs(work), out=np.full(len(work), np.nan), where=np.abs(work) > 0)
     rest.plot(time, 100 * share, color=LINES[0])
     rest.axhspan(-2, 2, color="#e4efe6", zorder=0)
@@ -135,8 +146,7 @@ def energy_picture(run: Run) -> Optional[Picture]:
     rest.set_ylim(-max(4, 1.3 * reach), max(4, 1.3 * reach))
     rest.set_title("neither stored nor dissipated [% of the work]")
     rest.set_xlabel("time")
-    caption = "work from outside against elastic energy, plastic and friction work; shaded: within 2 %"
-    return Picture("energy", caption, fig, vector=True)
+    return Picture("energy", caption + "; shaded: within 2 %", fig, vector=True)
 
 
 def seconds_picture(run: Run) -> Optional[Picture]:
