@@ -116,6 +116,8 @@ module elem_api
     real(wp) :: strain = 0.0_wp
     !> Share of the step after which contact begins somewhere, with little overlap; 1 when it need not be shortened.
     real(wp) :: event = 1.0_wp
+    !> Share of the step after which a side begins to go through a die unseen; 1 when none does.
+    real(wp) :: passed = 1.0_wp
     !> A point meets a piece of a deformable die that it is not paired with: its contact is missing.
     logical :: unpaired = .false.
     !> Largest change of penetration at a point already in contact, over the side.

@@ -25,6 +25,7 @@ module elem_cnt2d
   use corner_contact, only: press_corners
   use corner_release, only: motion_past_corner, release_t, slide_past_corner
   use curve_search, only: box_distance
+  use die_sweep, only: share_to_pass
   use dies, only: die_t
   use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_pilot, of_section, report_t, section_motion
   use kinds, only: wp
@@ -112,6 +113,7 @@ contains
         if (instant%tangent) stiffness(:, :, e) = 0
         call begin_side(scene, group, instant, layout, first + e - 1, x(:, :, e), du(:, e), side)
         call begin_states(side, xi, committed(:, :, e), trial(:, :, e))
+        report%passed = min(report%passed, share_to_pass(die, side))
         if (far(die, side)) cycle
         f = 0
         k = 0

@@ -78,6 +78,7 @@ contains
           report%strain = max(report%strain, reports(b)%strain)
           report%jump = max(report%jump, reports(b)%jump)
           report%event = min(report%event, reports(b)%event)
+          report%passed = min(report%passed, reports(b)%passed)
           report%source = report%source + reports(b)%source
           report%heat_stored = report%heat_stored + reports(b)%heat_stored
           report%heat_released = report%heat_released + reports(b)%heat_released

@@ -98,7 +98,7 @@ contains
       call set_cause(report, outcome)
       return
     end if
-    if (dt > scene%strategy%least_step) outcome%event = report%event
+    if (dt > scene%strategy%least_step) outcome%event = min(report%event, report%passed)
     if (outcome%event < 1) then
       outcome%event_reason = 'contact begins'
       return
@@ -159,6 +159,14 @@ contains
 
     outcome%strain = report%strain
     outcome%converged = .not. (allocated(outcome%reason) .or. allocated(outcome%error))
+    if (outcome%converged .and. report%passed < 1) then
+      outcome%converged = .false.
+      outcome%reason = 'a side goes through a die'
+      if (dt > scene%strategy%least_step) then
+        outcome%event = report%passed
+        outcome%event_reason = 'a die would go through a side'
+      end if
+    end if
     if (outcome%converged .and. outcome%strain > scene%strategy%strain_bound) then
       outcome%converged = .false.
       outcome%reason = 'strain increment '//to_text(outcome%strain, 3)//' above '//to_text(scene%strategy%strain_bound, 3)
