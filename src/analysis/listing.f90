@@ -95,6 +95,8 @@ contains
     write (listing%unit, '(a)') 'step '//to_text(solution%step)//'  time '//to_text(solution%time)//'  length ' &
       //to_text(solution%last_step)//'  iterations '//to_text(outcome%iterations)
     call list_iterations(listing, outcome)
+    if (outcome%gave_way) write (listing%unit, '(a)') '  augmentation '//to_text(outcome%augmentations + 1) &
+      //' of contact had no equilibrium: the one before it was kept'
     write (listing%unit, '(a)') '  strain increment '//to_text(outcome%strain, 3)//'  contact '//to_text(totals%stick) &
       //' stick '//to_text(totals%slip)//' slip '//to_text(totals%open)//' open  penetration ' &
       //to_text(totals%max_penetration, 3)//'  linear residual '//to_text(outcome%linear_residual, 2)

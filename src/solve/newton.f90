@@ -4,6 +4,7 @@
 !> correction still to come (the last one times the last fall of the residual) is below
 !> `displacement_norm` of the motion of the step.
 module newton
+  use augmentations, only: augment, augmentations_t, begin_augmentations, give_way, put_back
   use contact_changes, only: contact_set, note_contact
   use convergence, only: pilots_in_equilibrium, relative_motion, relative_residual, weigh_quantities
   use elem_api, only: block_done, block_inverted, block_without_source, report_t
@@ -17,7 +18,7 @@ module newton
   use line_search, only: manner_t, search_along, short_share
   use predictor, only: predict
   use scene, only: scene_t
-  use solution, only: group_state_t, solution_t
+  use solution, only: solution_t
   use text, only: to_text
   implicit none
   private
@@ -51,6 +52,8 @@ module newton
     real(wp) :: strain = 0.0_wp, linear_residual = 0.0_wp
     !> Multipliers of contact were carried forward so many times.
     integer :: augmentations = 0
+    !> A further augmentation had no equilibrium: the one before it was kept.
+    logical :: gave_way = .false.
     !> The machine failed, not the step.
     type(error_t), allocatable :: error
   end type outcome_t
@@ -80,7 +83,7 @@ contains
     real(wp), intent(in), optional :: given(:)   !! (ndof) motion of other solves' unknowns; of all with go_on [unknown]
     logical, intent(in), optional :: go_on       !! from `given` for the own unknowns too
     real(wp), dimension(equations%dofs%ndof) :: external, missing, residual, correction
-    type(group_state_t) :: before(size(scene%groups))
+    type(augmentations_t) :: made
     type(iteration_t) :: line
     type(manner_t) :: manner
     type(report_t) :: report
@@ -90,6 +93,7 @@ contains
     integer :: first
 
     allocate (outcome%history(0), outcome%du(equations%dofs%ndof))
+    call begin_augmentations(size(scene%groups), made)
     call return_to_chosen(equations%solves(equations%now)%solver)
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     if (present(left)) external = external - left
@@ -118,10 +122,9 @@ contains
       if (.not. any(abs(missing) > 0)) then
         if (has_converged(scene, outcome%history(first:)) &
             .and. pilots_in_equilibrium(equations, solution%fields, external, residual)) then
-          if (outcome%augmentations == 0) outcome%first_iterations = outcome%iterations
-          call augment(scene, equations, solution, outcome%augmentations, before, changed)
+          if (made%times == 0) outcome%first_iterations = outcome%iterations
+          call augment(scene, equations, solution, outcome%du, made, changed)
           if (.not. changed) exit
-          outcome%augmentations = outcome%augmentations + 1
           first = size(outcome%history) + 1
           correction = 0
           call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
@@ -157,6 +160,14 @@ contains
       missing = 0
     end do
 
+    if (made%times > 0 .and. allocated(outcome%reason)) then
+      deallocate (outcome%reason)
+      outcome%group = 0
+      outcome%element = 0
+      call give_way(scene, equations, solution, dt, made, outcome%du, report)
+    end if
+    outcome%augmentations = made%times
+    outcome%gave_way = made%gave_way
     outcome%strain = report%strain
     outcome%converged = .not. (allocated(outcome%reason) .or. allocated(outcome%error))
     if (outcome%converged .and. report%passed < 1) then
@@ -173,7 +184,7 @@ contains
     end if
     if (outcome%converged) return
     outcome%residual = residual
-    call restore(before, solution)
+    call put_back(made, solution)
   end subroutine solve_step
 
   !> Both norms are met. A motion that starts in equilibrium needs no correction.
@@ -271,39 +282,6 @@ contains
     end associate
     residual = residual - force
   end subroutine add_missing
-
-  !> Uzawa's update of all contacts that need it; the multipliers before the first one are kept.
-  subroutine augment(scene, equations, solution, times, before, changed)
-    type(scene_t), intent(in) :: scene
-    type(equations_t), intent(in) :: equations
-    type(solution_t), intent(inout) :: solution
-    integer, intent(in) :: times
-    type(group_state_t), intent(inout) :: before(:)
-    logical, intent(out) :: changed
-    logical :: group_changed
-    integer :: g
-
-    changed = .false.
-    do g = 1, size(scene%groups)
-      associate (row => equations%elems(scene%groups(g)%elem_id), state => solution%groups(g))
-        if (.not. associated(row%augment)) cycle
-        if (.not. allocated(before(g)%committed)) before(g)%committed = state%committed
-        call row%augment(scene, scene%groups(g), times, state%committed, state%trial, group_changed)
-        changed = changed .or. group_changed
-      end associate
-    end do
-  end subroutine augment
-
-  !> Put back what augmentations of a failed step changed.
-  subroutine restore(before, solution)
-    type(group_state_t), intent(in) :: before(:)
-    type(solution_t), intent(inout) :: solution
-    integer :: g
-
-    do g = 1, size(before)
-      if (allocated(before(g)%committed)) solution%groups(g)%committed = before(g)%committed
-    end do
-  end subroutine restore
 
   !> Cause of a failed step: the element, and what failed in it.
   subroutine set_cause(report, outcome)

@@ -104,6 +104,7 @@ contains
     all%strain = max(all%strain, own%strain)
     all%linear_residual = max(all%linear_residual, own%linear_residual)
     all%augmentations = max(all%augmentations, own%augmentations)
+    all%gave_way = all%gave_way .or. own%gave_way
     if (own%converged) return
     all%group = own%group
     all%element = own%element

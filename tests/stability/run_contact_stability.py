@@ -11,6 +11,8 @@ measured by this script; the upper block faces the lower one with -3 points ther
 - `corner`: a flat punch without friction whose corner stands on a node, pressed into a block. `lateral`: its lateral force over the
   vertical one where it is pressed in by less than the allowed depth. `moved`: its force beside that with the corner 1e-4 further out or
   further in.
+- `augmented`: a billet between dies with much friction and a small allowed depth, whose multipliers are carried forward up to 20 or 50
+  times a step. `cuts`: steps that were cut though they had been in equilibrium, for an augmentation after it had none.
 """
 import os
 import sys
@@ -20,7 +22,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.p
 from patch_support import STRESS, Checks, Run, np, num  # noqa: E402
 from run_contact_pair import PRESSURE, stacked  # noqa: E402
 
-BOUND = {"unlike": 0.01, "lateral": 1.0e-12, "moved": 0.002}
+BOUND = {"unlike": 0.01, "lateral": 1.0e-12, "moved": 0.002, "cuts": 0.5}
 # Sides of the lower and of the upper block; before: plane strain, axisymmetric.
 UNLIKE = {(4, 5): (0.095, 0.118), (5, 4): (0.166, 0.331), (7, 4): (0.225, 0.506), (4, 7): (0.056, 0.063), (10, 3): (0.776, 1.107),
           (3, 10): (0.001, 0.004), (20, 2): (np.inf, np.inf), (2, 20): (0.001, 0.001)}
@@ -29,6 +31,8 @@ PUNCHES = {"elastic": ("ELA", 0.02, -3, "", 5, (0.021, 0.040)), "elastic AUGMENT
            "elastic fine": ("ELA", 0.02, -3, "", 10, (0.018, 0.017)), "elastic -9": ("ELA", 0.02, -9, "", 5, (0.0079, 0.0002)),
            "hardening": ("HARD", 0.1, -3, "", 5, (0.021, 0.0001)), "plastic": ("PLASTIC", 0.02, -3, "", 5, (0.021, 0.0001)),
            "plastic -5": ("PLASTIC", 0.02, -5, "", 5, (0.012, 0.0001))}
+# PENETR, PHI, AUGMENT; before.
+AUGMENTED = {"1e-4 phi .2": ("1.E-4", 0.2, 20, 1), "1e-5 phi .3": ("1.E-5", 0.3, 50, 1)}
 MATERIALS = {"ELA": "LAW m ELA\n   200000. 0.3\n", "HARD": "LAW m EPLA\n   200000. 0.3\n   LINEAR 300. 500.\n",
              "PLASTIC": "LAW m EPLA\n   200000. 0.3\n   LINEAR 300. 0.\n"}
 
@@ -70,10 +74,37 @@ def corners(checks):
     return rows
 
 
+def augmented(checks):
+    """Rows of the table: steps cut after they had been in equilibrium."""
+    rows = []
+    for name, (allowed, phi, times, before) in AUGMENTED.items():
+        text = ("TITLE billet\nSTATE AXISYM\nKINEM LOG\nBLOCK b PL8LS 4 m\n   0. 0. 10. 0. 10. 15. 0. 15.\n   6 1. 9 1.\n"
+                f"LAW m EPLA\n   200000. 0.3\n   LINEAR 700. 300.\nLAW c COUL2D\n   PENETR {allowed} PHI {phi} AUGMENT {times}\n"
+                "DIE d PILOT 0. 15.\n   SEGM 30. 15. -1. 15.\nCNT2D b 3 d -3 c\nCNT2D b 2 d -3 c\nFIXED b 1 Y\nFIXED b 4 X\n"
+                "LIC t\n   0. 0. 1. -9.\nMOVE d Y t\nSTRAT 0.01 1.E-5 0.05 5 3\nEND\n")
+        run = Run(checks, name.replace(" ", "-"), text)
+        if run.ok:
+            rows.append((f"augmented {name}", "cuts", before, cuts_after_equilibrium(os.path.join(run.out, run.name + ".log"))))
+    return rows
+
+
+def cuts_after_equilibrium(listing):
+    """Cut steps with a residual below the norm among their iterations."""
+    cuts, within = 0, False
+    with open(listing, encoding="utf-8") as file:
+        for line in file:
+            words = line.split()
+            if line.startswith(("cut:", "step ", "event:")):
+                within = line.startswith("cut:")
+            elif within and len(words) == 4 and words[0].isdigit() and float(words[1]) <= 1.0e-6:
+                cuts, within = cuts + 1, False
+    return cuts
+
+
 def main():
     checks = Checks()
     print(f"{'case':24s} {'number':8s} {'before':>9s} {'now':>9s} {'bound':>9s} {'margin':>7s}")
-    for part in (unlike_sides, corners):
+    for part in (unlike_sides, corners, augmented):
         for case, what, before, now in part(checks):
             bound = BOUND[what]
             print(f"{case:24s} {what:8s} {before:9.2g} {now:9.2g} {bound:9.2g} {1 - now/bound:7.2f}", flush=True)
