@@ -132,7 +132,7 @@ class Package(unittest.TestCase):
         """The examples of the page, in its order."""
         with open(PAGE, encoding="utf-8") as file:
             examples = re.findall(r"```python\n(.*?)```", file.read(), re.S)
-        self.assertEqual(4, len(examples))
+        self.assertEqual(5, len(examples))
         said = []
         here, old = os.getcwd(), os.environ["PATH"]
         os.chdir(self.folder)
@@ -150,7 +150,8 @@ class Package(unittest.TestCase):
         work = float(said[0].split()[-3])
         self.assertAlmostEqual(1.0, work / self.run_.history["external_work"][-1], delta=0.03)      # trapezia over the steps
         self.assertIn("in element", said[1])
-        self.assertEqual(2, len(said[3].splitlines()))
+        self.assertEqual(2, len(said[3].split()))
+        self.assertEqual(2, len(said[4].splitlines()))
 
     def test_refused_deck(self):
         path = os.path.join(self.folder, "bad.lag")

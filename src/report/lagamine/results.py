@@ -4,6 +4,7 @@ from typing import Dict, List, Optional
 
 import numpy as np
 
+from lagamine_report import profiles
 from lagamine_report.errors import ReportError
 from lagamine_report.geometry import GAUSS, die_curve, quad8
 from lagamine_report.reader import Run, Step
@@ -110,6 +111,19 @@ class Results:
             x = np.einsum("pk,ekd->epd", quad8(xi, eta), self._run.coordinates(step)[nodes])
         return Points(found[0], found[1], x)
 
+    def line(self, x1: float, y1: float, x2: float, y2: float, *fields: str, k: int = -1, places: int = profiles.PLACES) -> Dict[str, np.ndarray]:
+        """Fields at the nodes along a straight line through the shape at an instant: `length`, `x`, `y` of the places within the bodies, and
+        each field."""
+        step = self._step(k)
+        for name in fields:
+            if name not in self._run.names(step, "node"):
+                raise ReportError(f"no field '{name}'; there are: {', '.join(self.field_names(k))}")
+        return _columns(profiles.along_line(self._run, step, (x1, y1, x2, y2), fields, places))
+
+    def side(self, contact: str, k: int = -1) -> Dict[str, np.ndarray]:
+        """What the points of a contact hold, along its sides at an instant: `length`, `x`, `y`, `pressure`, `friction`, ..."""
+        return _columns(profiles.along_sides(self._run, self._step(k), contact))
+
     def die(self, name: str, k: int = -1) -> np.ndarray:
         """Points along a die where it stands (point, 2); its part is on the left."""
         step = self._step(k)
@@ -132,6 +146,10 @@ class Results:
         if not -len(steps) <= k < len(steps):
             raise ReportError(f"no saved instant {k}: there are {len(steps)}")
         return steps[k]
+
+
+def _columns(profile: profiles.Profile) -> Dict[str, np.ndarray]:
+    return {"length": profile.length, "x": profile.x[:, 0], "y": profile.x[:, 1], **profile.values}
 
 
 def open_run(folder: str) -> Results:

@@ -1,12 +1,16 @@
 """`lagareport DIR`, `lagareport DIR DIR ...`, `lagareport DECK`: arguments -> page -> exit code."""
 import os
 import sys
-from typing import Sequence
+from typing import TYPE_CHECKING, Dict, Sequence
 
 from .errors import EXIT_DONE, EXIT_MACHINE, ReportError
 from .program import Parser, Version, print_failure, refuse_to_replace, run_to_code, write
 from .reader import Run
 from .short import print_short
+
+if TYPE_CHECKING:
+    from .profiles import Profile
+    from .reader import Step
 
 EXIT_CODES = "Exit codes: 0 done, 2 no results or a damaged file, 5 the page cannot be written."
 MODULES = ("numpy", "h5py", "matplotlib")
@@ -28,6 +32,11 @@ def run_program(arguments: Sequence[str], version: str) -> int:
     parser.add_argument("-p", metavar="NAME=VALUE", dest="parameters", action="append", default=[], help="of a deck: set a parameter of it")
     parser.add_argument("--field", metavar="NAME", action="append", default=[],
                         help="show this field large and over time, instead of the usual ones; may be repeated")
+    parser.add_argument("--line", metavar=("X1", "Y1", "X2", "Y2"), nargs=4, type=float, action="append", default=[],
+                        help="fields (those of --field, otherwise all but elastic strains) along this line through the bodies: a table, line_N.csv beside the page, and a picture; may be repeated")
+    parser.add_argument("--side", metavar="CONTACT", action="append", default=[],
+                        help="pressure and friction along the sides of this contact (`b.3/die`): side_CONTACT.csv, and a picture; may be repeated")
+    parser.add_argument("--time", metavar="T", type=float, help="of --line and --side: the saved instant nearest to this time (default: the last)")
     parser.add_argument("--png", metavar="DIR", help="write the pictures as PNG files into this folder too")
     parser.add_argument("--animation", metavar="FILE", help="the forming as a moving picture too, .gif or .png: the first field of --field, "
                         "otherwise the equivalent plastic strain, or what there is")
@@ -51,8 +60,10 @@ def run_program(arguments: Sequence[str], version: str) -> int:
         # Only now: matplotlib takes its time, and what is refused is refused at once.
         from .album import make_pictures
         from .page import page
-        pictures = make_pictures(run, options.field, options.mirror)
+        profiles = take_profiles(run, options)
+        pictures = make_pictures(run, options.field, options.mirror) + picture_of(run, options, profiles)
         write(target, page(run, pictures, version).encode("utf-8"))
+        tables = write_profiles(os.path.dirname(target), profiles)
         if options.png:
             write_pngs(options.png, pictures)
         for picture in pictures:
@@ -63,8 +74,48 @@ def run_program(arguments: Sequence[str], version: str) -> int:
         return print_failure(error)
     if not options.quiet:
         print_short(run)
-        print(f"  page: {target}")
+        print("\n".join([f"  page: {target}"] + [f"  table: {path}" for path in tables]))
     return EXIT_DONE
+
+
+def take_profiles(run: Run, options) -> Dict[str, "Profile"]:
+    """Profiles of --line and --side by the names of their tables."""
+    if options.time is not None and not (options.line or options.side):
+        raise ReportError("--time: for --line and --side")
+    if not (options.line or options.side):
+        return {}
+    from .pictures import fields_of, known_field
+    from .profiles import along_line, along_sides
+    if not run.steps:
+        raise ReportError(f"--{'line' if options.line else 'side'}: no fields are saved yet")
+    step = instant_of(run, options)
+    fields = [known_field(run, name) for name in dict.fromkeys(options.field)]
+    fields = fields or [name for name in fields_of(run) if not name.startswith("elastic_strain")]
+    taken = {f"line_{k}.csv": along_line(run, step, line, fields) for k, line in enumerate(options.line, 1)}
+    for name in dict.fromkeys(options.side):
+        taken[f"side_{name.replace('/', '_')}.csv"] = along_sides(run, step, name)
+    return taken
+
+
+def instant_of(run: Run, options) -> "Step":
+    """The saved instant of --time."""
+    return run.steps[-1] if options.time is None else min(run.steps, key=lambda step: abs(step.time - options.time))
+
+
+def picture_of(run: Run, options, profiles: Dict[str, "Profile"]) -> list:
+    """The picture of the profiles, where there are any."""
+    from .profile_pictures import lines_picture
+    return [lines_picture(run, instant_of(run, options), list(profiles.values()))] if profiles else []
+
+
+def write_profiles(folder: str, profiles: Dict[str, "Profile"]) -> Sequence[str]:
+    """Tables beside the page."""
+    paths = [os.path.join(folder, name) for name in profiles]
+    for path in paths:
+        refuse_to_replace(path)
+    for path, profile in zip(paths, profiles.values()):
+        write(path, profile.csv())
+    return paths
 
 
 def animate(run: Run, options) -> None:
@@ -82,7 +133,7 @@ def animate(run: Run, options) -> None:
 
 def compare_runs(options, version: str) -> int:
     """The page of several runs."""
-    for name, value in (("--field", options.field), ("--mirror", options.mirror), ("--animation", options.animation), ("-p", options.parameters)):
+    for name, value in (("--field", options.field), ("--mirror", options.mirror), ("--animation", options.animation), ("--line", options.line), ("--side", options.side), ("-p", options.parameters)):
         if value:
             raise ReportError(f"{name}: for a single run or deck; several runs are compared")
     target = options.out or "compare.html"
@@ -104,7 +155,7 @@ def compare_runs(options, version: str) -> int:
 def draw_deck(options, version: str) -> int:
     """The page and the picture of a deck before any run."""
     from .deck_scene import deck_name, read_scene
-    for name, value in (("--field", options.field), ("--mirror", options.mirror), ("--animation", options.animation)):
+    for name, value in (("--field", options.field), ("--mirror", options.mirror), ("--animation", options.animation), ("--line", options.line), ("--side", options.side)):
         if value:
             raise ReportError(f"{name}: for the results of a run; a deck has none yet")
     target = options.out or deck_name(options.folder) + ".html"

@@ -17,6 +17,7 @@ SECTIONS: List[Tuple[str, str, Sequence[str]]] = [
     ("shape", "Shape and mesh", ("mesh", "meshes")),
     ("fields", "Fields", ("fields", "more")),
     ("series", "Fields over time", ("series",)),
+    ("profiles", "Profiles", ("profiles",)),
     ("forces", "Forces on the dies", ("force",)),
     ("contact", "Contact", ("pressure", "contact")),
     ("probes", "Probes", ("probes",)),
