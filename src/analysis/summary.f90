@@ -12,6 +12,7 @@ module summary
   use history, only: circumference
   use json_writer, only: json_t
   use kinds, only: i8, wp
+  use law_api, only: find_parameter
   use penetration_advice, only: advice_at_points, advice_between_points, states_penetration
   use restart_report, only: add_restart
   use restore_balance, only: balance_t
@@ -89,6 +90,7 @@ contains
       call json%end_object()
     end do
     call json%end_array()
+    call add_steels(json, scene, equations)
     call add_effects(json, scene, equations)
     call add_seconds(json, equations)
     if (scene%remesh%estimate) call add_estimate(json, scene, solution)
@@ -144,6 +146,32 @@ contains
       call json%add('passed', factor*work%passed)
     end associate
   end subroutine add_work
+
+  !> Steels with phases, and what makes temperatures and times of the deck degC and seconds.
+  subroutine add_steels(json, scene, equations)
+    type(json_t), intent(inout) :: json
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    integer :: m, zero, time
+
+    if (.not. any([(allocated(scene%materials(m)%steel), m=1, size(scene%materials))])) return
+    call json%begin_array('steels')
+    do m = 1, size(scene%materials)
+      associate (material => scene%materials(m))
+        if (.not. allocated(material%steel)) cycle
+        zero = find_parameter(equations%laws(material%law_id), 'ZERO')
+        time = find_parameter(equations%laws(material%law_id), 'TIME')
+        if (zero == 0 .or. time == 0) cycle
+        call json%begin_object()
+        call json%add('name', material%steel%name)
+        call json%add('law', material%name)
+        call json%add('added_for_degC', material%values(zero))
+        call json%add('seconds', material%values(time))
+        call json%end_object()
+      end associate
+    end do
+    call json%end_array()
+  end subroutine add_steels
 
   !> Balance of heat in time, and temperatures that cannot be there.
   subroutine add_heat(json, heat)

@@ -3,6 +3,7 @@ import math
 import os
 from typing import Dict, Iterable, List, Sequence, Tuple
 
+from .cooling import cooling_table
 from .markup import Sections, document, escape, figure, joined, table
 from .picture import Picture
 from .reader import Run
@@ -21,6 +22,7 @@ SECTIONS: List[Tuple[str, str, Sequence[str]]] = [
     ("forces", "Forces on the dies", ("force",)),
     ("contact", "Contact", ("pressure", "contact")),
     ("probes", "Probes", ("probes",)),
+    ("cooling", "Cooling", ("cooling",)),
     ("march", "Steps and iterations", ("steps",)),
     ("energy", "Energies", ("energy",)),
     ("seconds", "Seconds", ("seconds",)),
@@ -31,7 +33,7 @@ LONGEST_LIST = 40
 def page(run: Run, pictures: Sequence[Picture], version: str) -> str:
     """The whole page as text."""
     judged = checks(run)
-    body = _sections(pictures)
+    body = [_with_table(run, section) for section in _sections(pictures)]
     body[1:1] = remesh_section(run, pictures)       # next to the shape, which is always there
     body += _checks(judged) + _effects(run) + _notes(run) + _origin(run)
     links = "".join(f'<a href="#{anchor}">{escape(heading)}</a>' for anchor, heading, _ in body)
@@ -132,6 +134,15 @@ def _sections(pictures: Sequence[Picture]) -> Sections:
         if own:
             result.append((anchor, heading, "\n".join(parts)))
     return result
+
+
+def _with_table(run: Run, section: Tuple[str, str, str]) -> Tuple[str, str, str]:
+    """What is read from cooling curves, under their picture."""
+    anchor, heading, content = section
+    if anchor != "cooling":
+        return section
+    rows = [("", [escape(cell) for cell in row]) for row in cooling_table(run)]
+    return anchor, heading, content + "\n" + table(("probe", "800 to 500 °C [s]", "rate at 700 °C [K/s]", "last [°C]"), rows)
 
 
 def _checks(judged: Sequence[Check]) -> Sections:
