@@ -23,6 +23,7 @@ from lagamine_report.contact import contact_groups  # noqa: E402
 from lagamine_report.contact_map import pressure_bars, pressure_picture  # noqa: E402
 from lagamine_report.picture import rounded  # noqa: E402
 from lagamine_report.scene_view import SceneView  # noqa: E402
+from lagamine_report.tractions import recovered_tractions  # noqa: E402
 from lagamine_report.words import brief  # noqa: E402
 
 
@@ -106,15 +107,14 @@ class Compare(unittest.TestCase):
             self.assertIn(words, done.stderr)
 
     def test_pressure_bars(self):
-        """Bars stand on the points of contact, into the part, and have the pressures of the file; their sum over the sides is the die's force."""
+        """Bars stand on the points of contact, into the part, and have the pressures recovered there; their sum over the sides is the die's force."""
         run = Run(os.path.join(self.folder, "fine"))
         view = SceneView(run)
         force = 0.0
         for group in contact_groups(run, run.steps[-1]):
             feet, inward, values = pressure_bars(view, group)
             np.testing.assert_allclose(np.hypot(*inward.T), 1, rtol=1e-12)
-            names, state = run.points(run.steps[-1], group)
-            np.testing.assert_array_equal(state[:, :, names.index("pressure")].ravel(), values)
+            np.testing.assert_array_equal(recovered_tractions(run, run.steps[-1], group)[0], values)
             # three Lobatto points a side: Simpson's rule, per radian times 2 pi; friction adds nothing along y on a flat die
             ends = run.coordinates(run.steps[-1])[group.connectivity]
             slopes = np.stack([(4 * ends[:, 1] - 3 * ends[:, 0] - ends[:, 2]) / 2, (ends[:, 2] - ends[:, 0]) / 2,

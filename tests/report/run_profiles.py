@@ -16,8 +16,9 @@ BIN = os.path.abspath(os.environ.get("LAGAMINE_BIN") or os.path.join(SOURCE, "bu
 sys.path.insert(0, os.path.join(SOURCE, "src", "report"))
 sys.dont_write_bytecode = True
 import lagamine  # noqa: E402
-from lagamine_report.geometry import quad8  # noqa: E402
+from lagamine_report.geometry import quad8, side_points  # noqa: E402
 from lagamine_report.profiles import _quad8_slopes, find_places  # noqa: E402
+from lagamine_report.tractions import side_weights  # noqa: E402
 
 # A block pressed by a flat die, friction along its side; a second body beside it, 1 apart.
 BLOCKS = """TITLE  Two blocks
@@ -114,6 +115,35 @@ class Profiles(unittest.TestCase):
         self.assertAlmostEqual(abs((weights * friction).sum()), abs(self.run_.history["force_x_flat"][-1]), delta=1e-4 * pressure.max())
         self.assertTrue((np.diff(held["length"]) >= 0).all())
         np.testing.assert_allclose(held["y"] - held["penetration"], 1.95, atol=1e-9)
+
+    def test_recovered_tractions(self):
+        """The force of the points, and no alternation: beside the corner, where the points alternate, and in Hertz' contact."""
+        held = self.run_.side("a.3/flat")
+        side = held["length"].reshape(-1, 3)
+        weights = ((side[:, 2] - side[:, 0])[:, None] * np.array([1, 4, 1]) / 6).ravel()
+        for name in ("pressure", "friction"):
+            self.assertAlmostEqual((weights * held[name]).sum(), (weights * held[name + "_recovered"]).sum(),
+                                   delta=2e-3 * (weights * held["pressure"]).sum())
+        deck = os.path.join(SOURCE, "decks", "hertz", "hertz.lag")
+        run = lagamine.run(deck, os.path.join(self.folder, "hertz"), programs=BIN)
+        name = next(group for group in run.groups() if group.endswith("/ball"))
+        held = run.side(name)
+        force = abs(run.history["force_y_ball"][-1])
+        r, shown, points = held["x"], held["pressure_recovered"], held["pressure"]
+        # sphere: p0 (1 - r2/a2)^(1/2), force = 2/3 pi a2 p0; the mesh is coarse, so the points themselves are off
+        p0 = points[r < 0.1].max()
+        a = np.sqrt(1.5 * force / (np.pi * p0))
+        inside = r < 0.85 * a
+        self.assertGreater(inside.sum(), 5)
+        exact = p0 * np.sqrt(1 - (r[inside] / a)**2)
+        self.assertLess(np.abs(shown[inside] - exact).max(), 1.1 * np.abs(points[inside] - exact).max())
+        self.assertTrue((np.diff(shown[np.argsort(r)][:inside.sum()]) < 0.02 * p0).all())
+
+    def test_weights_of_a_side(self):
+        for npoint, found in ((2, 2), (3, 3), (4, 4), (-3, 3), (-5, 5), (-9, 9), (-17, 17), (-33, 33), (-65, 65)):
+            weights, xi = side_weights(npoint, found), side_points(npoint, found)
+            self.assertAlmostEqual(2.0, weights.sum(), places=13)
+            self.assertAlmostEqual(2 / 3, (weights * xi**2).sum(), places=13)
 
     def test_tables_and_page(self):
         done = self.report("blocks", "--line", "0", "1", "8", "1", "--line", "1", "0", "1", "3", "--side", "a.3/flat", "--time", "0.5")

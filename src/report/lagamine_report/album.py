@@ -1,7 +1,7 @@
 """Which pictures a run gets, in the order of the page."""
 from typing import List, Optional, Sequence
 
-from .contact import contact_picture
+from .contact_curves import contact_picture
 from .contact_map import pressure_picture
 from .cooling import cooling_picture
 from .curves import energy_picture, force_picture, probes_picture, seconds_picture, steps_picture

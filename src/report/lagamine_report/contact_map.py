@@ -10,13 +10,14 @@ from .picture import Picture, when
 from .reader import Group
 from .scene_view import SceneView, colour_bar, scale_for
 from .style import POSITIVE, figure, panel_size
+from .tractions import recovered_tractions
 from .words import brief
 
 LONGEST = 0.12      # the longest bar, of the size of the picture
 
 
 def pressure_bars(view: SceneView, group: Group) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Feet of the bars at the points of a contact (n, 2), their directions into the part (n, 2), pressures (n)."""
+    """Feet of the bars at the points of a contact (n, 2), their directions into the part (n, 2), pressures as shown (n)."""
     run, step = view.run, view.run.steps[-1]
     names, state = run.points(step, group)
     xi = side_points(group.npoint, state.shape[1])
@@ -25,7 +26,9 @@ def pressure_bars(view: SceneView, group: Group) -> Tuple[np.ndarray, np.ndarray
     slopes = np.stack([xi - 0.5, -2 * xi, xi + 0.5], axis=1)        # of line3
     tangent = np.einsum("pk,skd->spd", slopes, ends)
     inward = np.stack([-tangent[..., 1], tangent[..., 0]], axis=2) / np.hypot(tangent[..., 0], tangent[..., 1])[..., None]
-    return feet.reshape(-1, 2), inward.reshape(-1, 2), state[:, :, names.index("pressure")].ravel()
+    shown = recovered_tractions(run, step, group)
+    pressure = state[:, :, names.index("pressure")].ravel() if shown is None else shown[0]
+    return feet.reshape(-1, 2), inward.reshape(-1, 2), pressure
 
 
 def pressure_picture(view: SceneView) -> Optional[Picture]:
@@ -54,4 +57,4 @@ def pressure_picture(view: SceneView) -> Optional[Picture]:
         drawn.levels = scale.levels
         panel.add_collection(drawn)
     colour_bar(fig, drawn, panel, "contact pressure [stress]")
-    return Picture("pressure", f"{when(run, step)}; largest {brief(float(values.max()))}; bars stand on the points of contact, towards the inside of the part", fig)
+    return Picture("pressure", f"{when(run, step)}; largest {brief(float(values.max()))}; recovered from the stresses in the body; bars stand on the points of contact, towards the inside of the part", fig)

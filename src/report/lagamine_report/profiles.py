@@ -10,9 +10,10 @@ from .contact import along_group, contact_groups
 from .errors import ReportError
 from .geometry import CORNERS, line3, quad8, side_points
 from .reader import Run, Step
+from .tractions import recovered_tractions
 
 PLACES = 201         # along a line
-OF_SIDES = ("pressure", "friction", "penetration")
+OF_SIDES = ("pressure_recovered", "pressure", "friction_recovered", "friction", "penetration")
 WITHIN = 1e-6        # parent coordinates beyond an element's end that still belong to it
 
 
@@ -72,7 +73,10 @@ def along_sides(run: Run, step: Step, name: str) -> Profile:
     x = np.einsum("pk,skd->spd", line3(side_points(groups[name].npoint, state.shape[1])), ends).reshape(-1, 2)
     flat = state.reshape(-1, state.shape[2])[order]
     shown = [component for component in names if not component.startswith(("corner_", "die_", "augmentation"))]
+    recovered = recovered_tractions(run, step, groups[name])
     values = {component: flat[:, names.index(component)] for component in shown}
+    if recovered is not None:
+        values.update(pressure_recovered=recovered[0][order], friction_recovered=recovered[1][order])
     return Profile(f"along {name}", length, x[order], values, curve_ends[:-1], [one for one in OF_SIDES if one in values])
 
 
