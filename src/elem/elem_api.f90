@@ -98,6 +98,9 @@ module elem_api
     type(flow_rule_t) :: flow
     !> Heat taken up and released counts; otherwise flows alone.
     logical :: content = .true.
+    !> The length over the time since the start of the step: less than 1 in the stages of a step, where the length divides changes
+    !> of the heat content alone.
+    real(wp) :: share = 1.0_wp
     !> Share of the step after which the instant is, where the drivers that other formulations give have only come so far.
     real(wp) :: reach = 1.0_wp
     !> Matrices are wanted.

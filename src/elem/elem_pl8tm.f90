@@ -362,7 +362,8 @@ contains
       given = 0
       if (size(drivers, 1) > 0) given = drivers(:, :, p)
       given(driver_temperature, :) = [dot_product(own%phi(:n, p), start), dot_product(own%phi(:n, p), start + change)]
-      call law%release(material, instant%dt, given, committed(:, p), released, slope, trial(:, p))
+      ! what happens at a point takes the time since the start of the step
+      call law%release(material, instant%dt/instant%share, given, committed(:, p), released, slope, trial(:, p))
       heat = heat - own%phi(:n, p)*(released*share)
       if (.not. instant%tangent .or. .not. abs(slope) > 0) cycle
       do j = 1, n

@@ -272,6 +272,7 @@ contains
 
     instant%time = solution%time + dt
     instant%dt = equations%stage%share*dt
+    instant%share = equations%stage%share
     instant%content = equations%stage%content
     instant%reach = equations%stage%reach
     instant%tangent = tangent
