@@ -9,8 +9,10 @@ module history
   use heat_books, only: has_heat, heat_imbalance
   use kinds, only: pi, wp
   use newton, only: outcome_t
-  use probes, only: probe_maximum, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
+  use probes, only: probe_maximum, probe_mean, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
+  use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
   use scene, only: axisymmetric, generalised_plane_strain, scene_t
+  use sections, only: thickness_at
   use solution, only: solution_t
   use stress_measures, only: stress_measure
   use text, only: string_t
@@ -176,6 +178,8 @@ contains
       value = state_of(solution, probe, probe%point, probe%element)
     case (probe_maximum, probe_minimum)
       value = extreme_of(solution, probe)
+    case (probe_mean)
+      value = mean_of(scene, solution, probe)
     end select
     value = value*probe%factor
   end function probe_value
@@ -216,5 +220,54 @@ contains
       end do
     end associate
   end function extreme_of
+
+  !> The mean of that over the volume of bodies, as they stand (as they stood at the start where kinematics are SMALL).
+  pure function mean_of(scene, solution, probe) result(value)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(probe_t), intent(in) :: probe
+    real(wp) :: value
+    type(probe_t) :: one
+    real(wp) :: volume
+    integer :: k
+
+    value = 0
+    volume = 0
+    one = probe
+    call add_integral(scene, solution, one, value, volume)
+    do k = 1, size(probe%more_groups)
+      one%group = probe%more_groups(k)
+      one%component = probe%more_components(k)
+      call add_integral(scene, solution, one, value, volume)
+    end do
+    value = value/volume
+  end function mean_of
+
+  !> Integral of a component over the volume of one body, and that volume.
+  pure subroutine add_integral(scene, solution, probe, integral, volume)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(probe_t), intent(in) :: probe
+    real(wp), intent(inout) :: integral, volume
+    type(quad8_rule_t) :: rule
+    real(wp) :: x(2, 8), nx(8), ny(8), section(3), detj, dv
+    integer :: p, e
+
+    section = scene%section
+    if (scene%finite) section = solution%fields(section_field)%value(:, 1)
+    associate (group => scene%groups(probe%group), u => solution%fields(displacement_field)%value)
+      call quad8_rule(group%rule%n, rule)
+      do e = 1, size(group%connectivity, 2)
+        x = scene%mesh%coordinates(:, group%connectivity(:, e))
+        if (scene%finite .and. size(u) > 0) x = x + u(:, group%connectivity(:, e))
+        do p = 1, rule%npoint
+          call derivatives(rule%dphi(:, :, p), x, nx, ny, detj)
+          dv = detj*rule%weight(p)*thickness_at(section, matmul(x, rule%phi(:, p)))
+          volume = volume + dv
+          integral = integral + dv*state_of(solution, probe, p, e)
+        end do
+      end do
+    end associate
+  end subroutine add_integral
 
 end module history

@@ -10,7 +10,7 @@ module cards_probes
   use diagnostics, only: diagnostics_t
   use kinds, only: pi, wp
   use mesh, only: nearest_node
-  use probes, only: probe_maximum, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
+  use probes, only: probe_maximum, probe_mean, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
   use quadrature, only: line_rule, square_rule
   use scene, only: axisymmetric, group_t, is_solid
   use scene_draft, only: close_card, draft_t, words_of
@@ -39,7 +39,7 @@ contains
     integer :: i, k
 
     ! In the order of the numbers in module `probes`.
-    call words_of('NODE REACT POINT MAX MIN', kinds_of_probe)
+    call words_of('NODE REACT POINT MAX MIN MEAN', kinds_of_probe)
     allocate (draft%scene%probes(0))
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword /= 'PROBE') cycle
@@ -56,7 +56,7 @@ contains
         call read_reaction_probe(cursor, draft, probe)
       case (probe_point)
         call read_point_probe(cursor, draft, probe)
-      case (probe_maximum, probe_minimum)
+      case (probe_maximum, probe_minimum, probe_mean)
         call read_extreme_probe(cursor, draft, probe)
       end select
       call close_card(draft, cursor, deck%cards(i))
@@ -219,32 +219,49 @@ contains
     end do
   end subroutine read_point_probe
 
-  !> `component group`: the largest or smallest over all points of a group.
+  !> `component group`: the largest or smallest over all points of a group, or with more groups the mean over their volumes.
   subroutine read_extreme_probe(cursor, draft, probe)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft
     type(probe_t), intent(inout) :: probe
     character(len=:), allocatable :: component
     type(string_t), allocatable :: names(:)
+    type(probe_t) :: one
     integer :: g
 
     call read_component(cursor, draft, component)
+    allocate (probe%more_groups(0), probe%more_components(0))
     if (.not. draft%groups_sound) then
       call cursor%word('the name of a group', component)
+      do while (probe%kind == probe_mean .and. cursor%more())
+        call cursor%word('the name of a group', component)
+      end do
       return
     end if
     allocate (names(size(draft%scene%groups)))
     do g = 1, size(names)
       names(g)%s = draft%scene%groups(g)%name
     end do
-    call cursor%name('the name of a group', names, g)
-    if (g == 0) return
-    probe%group = g
-    if (find_component(draft%scene%groups(g), component) == 0) then
-      call cursor%fail('group '''//names(g)%s//''' has no component '''//component//'''')
-    else
-      call set_component(draft%scene%groups(g), component, probe)
-    end if
+    do
+      call cursor%name('the name of a group', names, g)
+      if (g == 0) return
+      if (probe%kind == probe_mean .and. size(draft%scene%groups(g)%connectivity, 1) /= 8) &
+        call cursor%fail('MEAN is over the volume of a body: '''//names(g)%s//''' has none')
+      if (any(probe%group == g .or. probe%more_groups == g)) call cursor%fail('the group '''//names(g)%s//''' is given twice')
+      if (find_component(draft%scene%groups(g), component) == 0) then
+        call cursor%fail('group '''//names(g)%s//''' has no component '''//component//'''')
+        return
+      end if
+      if (probe%group == 0) then
+        probe%group = g
+        call set_component(draft%scene%groups(g), component, probe)
+      else
+        call set_component(draft%scene%groups(g), component, one)
+        probe%more_groups = [probe%more_groups, g]
+        probe%more_components = [probe%more_components, one%component]
+      end if
+      if (probe%kind /= probe_mean .or. .not. cursor%more()) exit
+    end do
   end subroutine read_extreme_probe
 
   !> A component of the state of any group.

@@ -4,14 +4,16 @@ module probes
   implicit none
   private
   public :: probe_t
-  public :: probe_node, probe_reaction, probe_point, probe_maximum, probe_minimum
+  public :: probe_node, probe_reaction, probe_point, probe_maximum, probe_minimum, probe_mean
 
-  !> Kinds: coordinate or displacement of a node; sum of reactions of a set; state at a point; extremes over a group.
+  !> Kinds: coordinate or displacement of a node; sum of reactions of a set; state at a point; extremes and mean over a
+  !> group.
   integer, parameter :: probe_node = 1
   integer, parameter :: probe_reaction = 2
   integer, parameter :: probe_point = 3
   integer, parameter :: probe_maximum = 4
   integer, parameter :: probe_minimum = 5
+  integer, parameter :: probe_mean = 6
 
   type :: probe_t
     character(len=:), allocatable :: name, unit
@@ -26,6 +28,8 @@ module probes
     real(wp) :: offset(2) = 0.0_wp
     !> Group, element and point, and component of the state, for the kinds that read the state.
     integer :: group = 0, element = 0, point = 0, component = 0
+    !> Further groups of a mean, and the component of the state there.
+    integer, allocatable :: more_groups(:), more_components(:)
     !> Measure of the stress whose first component that is (stress_measures), 0 for the component itself.
     integer :: measure = 0
     !> Factor, for instance 2 pi for forces of axisymmetric scenes.
