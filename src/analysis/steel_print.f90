@@ -13,17 +13,23 @@ module steel_print
   use standard_streams, only: print_line, print_lines
   use steel_reader, only: read_steels
   use steel_tables, only: cool_at_rate, forms_at, isothermal_time
-  use steels, only: element_names, first_diffusive, last_diffusive, phase_count, phase_names, steel_t, unknown_temperature
+  use steels, only: element_names, expansion_incremental, expansion_total, first_diffusive, last_diffusive, phase_count, &
+                    phase_names, plasticity_names, plasticity_none, prop_alpha, prop_memory, prop_modulus, prop_plasticity, &
+                    prop_poisson, prop_rise, prop_saturation, prop_strain, prop_yield, prop_young, property_names, steel_t, &
+                    unknown_temperature
+  use temperature_curves, only: curve_at, is_given
   use system, only: join_path, make_directory
   use text, only: add_text, string_t, to_text
   implicit none
   private
   public :: print_steels
 
-  !> Shares of the isothermal diagram; width of its rows [degC]; cooling rates [K/s]; ends of the coolings [degC].
+  !> Shares of the isothermal diagram; width of its rows [degC]; cooling rates [K/s]; ends of the coolings, and
+  !> where numbers of mechanics are shown [degC].
   real(wp), parameter :: shares(3) = [0.01_wp, 0.5_wp, 0.99_wp], row_width = 20.0_wp, file_width = 5.0_wp
   real(wp), parameter :: rates(14) = [0.01_wp, 0.02_wp, 0.05_wp, 0.1_wp, 0.2_wp, 0.5_wp, 1.0_wp, 2.0_wp, 5.0_wp, 10.0_wp, &
                                       20.0_wp, 50.0_wp, 100.0_wp, 200.0_wp]
+  real(wp), parameter :: mechanics_at(3) = [20.0_wp, 400.0_wp, 800.0_wp]
   real(wp), parameter :: least_start = 900.0_wp, finish = 20.0_wp
 
 contains
@@ -47,6 +53,8 @@ contains
       stem = join_path(options%out, stem_of(steels(k)%name//'.met'))
       call head_lines(steels(k), lines)
       if (.not. options%quiet) call print_lines(lines, error)
+      call mechanics_lines(steels(k), lines)
+      if (.not. (options%quiet .or. allocated(error))) call print_lines(lines, error)
       if (.not. allocated(error)) call print_isothermal(steels(k), options, stem, error)
       if (.not. allocated(error)) call print_coolings(steels(k), options, stem, error)
       if (.not. (allocated(error) .or. options%quiet)) call print_line('', error)
@@ -90,6 +98,42 @@ contains
     end subroutine add_temperature
 
   end subroutine head_lines
+
+  !> Forms of strains and transformation plasticity, and the numbers of each phase at a few temperatures; no line where there are
+  !> none.
+  subroutine mechanics_lines(steel, lines)
+    type(steel_t), intent(in) :: steel
+    type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
+    integer, parameter :: shown(10) = [prop_young, prop_poisson, prop_alpha, prop_strain, prop_yield, prop_modulus, prop_rise, &
+                                       prop_saturation, prop_plasticity, prop_memory]
+    character(len=130) :: line
+    integer :: i, j, k
+
+    allocate (lines(0))
+    select case (steel%expansion)
+    case (expansion_total)
+      call add_text(lines, 'strains by temperature and phases: total form from '//to_text(steel%reference)//' degC')
+    case (expansion_incremental)
+      call add_text(lines, 'strains by temperature and phases: incremental form')
+    end select
+    if (steel%plasticity /= plasticity_none) &
+      call add_text(lines, 'transformation plasticity: '//trim(plasticity_names(steel%plasticity)))
+    if (.not. any(is_given(steel%properties(shown, :)))) return
+    write (line, '(a10, a6, 10(1x, a10))') 'phase     ', 'degC', (adjustr(property_names(shown(j))), j=1, size(shown))
+    call add_text(lines, trim(line))
+    do i = 1, phase_count
+      if (.not. any(is_given(steel%properties(shown, i)))) cycle
+      do k = 1, size(mechanics_at)
+        write (line, '(a10, f6.0)') lower(i), mechanics_at(k)
+        do j = 1, size(shown)
+          associate (curve => steel%properties(shown(j), i))
+            if (is_given(curve)) write (line(6 + 11*j:16 + 11*j), '(1x, g10.4)') curve_at(curve, mechanics_at(k))
+          end associate
+        end do
+        call add_text(lines, trim(line))
+      end do
+    end do
+  end subroutine mechanics_lines
 
   !> The isothermal diagram of each phase that has one.
   subroutine print_isothermal(steel, options, stem, error)
@@ -150,6 +194,7 @@ contains
       columns(2 + i)%s = lower(i)//' [-]'
     end do
     columns(3 + phase_count)%s = 'hardness [HV]'
+    if (size(steel%nodes) == 0) return   ! nothing changes at any temperature
     start = max(least_start, steel%nodes(size(steel%nodes)))
     if (.not. options%quiet) then
       call print_line('cooled from '//to_text(start, 5)//' to '//to_text(finish)//' degC', error)

@@ -16,6 +16,7 @@ module thermal_work
   use kinds, only: wp
   use law_api, only: asks_for, driver_count, driver_temperature, law_t, solid_law
   use loads, only: multiplier_at
+  use point_drivers, only: own_states_at_end
   use point_temperatures, only: point_temperatures_of, projected_functions, temperature_place
   use quad8_geometry, only: quad8_rule, quad8_rule_t
   use scene, only: group_t, scene_t
@@ -55,7 +56,7 @@ contains
       associate (law => equations%laws(scene%materials(scene%groups(g)%material)%law_id))
         call drivers_of_group(scene%groups(g), equations, solution, law, instant, g, given)
       end associate
-      if (.not. any(abs(given(driver_temperature, 2, :) - given(driver_temperature, 1, :)) > 0)) cycle
+      if (.not. any(abs(given(:, 2, :) - given(:, 1, :)) > 0)) cycle
       call add_work(scene, equations, solution, g, given, heat)
     end do
   end subroutine book_heat_work
@@ -111,7 +112,9 @@ contains
         else
           given(driver_temperature, :, p + 1:p + n) = spread(group_temperature(group, instant), 2, n)
         end if
-        if (size(given, 1) > 1) given(2:, :, p + 1:p + n) = equations%drivers(g)%value(2:, :, :, e)
+        if (size(given, 1) == 1) cycle
+        given(2:, :, p + 1:p + n) = equations%drivers(g)%value(2:, :, :, e)
+        call own_states_at_end(equations%drivers(g), solution%groups(g), g, e, given(:, 2, p + 1:p + n))
       end do
     end associate
   end subroutine drivers_of_group

@@ -7,9 +7,10 @@ module point_reader
   use deck_reader, only: deck_t, refuse_unknown
   use diagnostics, only: diagnostics_t
   use kinds, only: wp
-  use law_api, only: solid_law
+  use law_api, only: driver_count, law_of_material, law_t, solid_law
   use point_paths, only: point_path_t, ramp_t
   use scene_draft, only: close_card, draft_t, only_card, start_draft, words_of
+  use state_variables, only: find_variable
   use text, only: string_t
   implicit none
   private
@@ -68,6 +69,7 @@ contains
     if (material > 0) then
       path%material = draft%scene%materials(material)
       call check_temperature(cursor, draft, path)
+      call check_drivers(cursor, draft, path)
     end if
     ramp%temperature = path%temperature
     do
@@ -94,6 +96,23 @@ contains
       call cursor%fail('LAW '//path%material%name//' depends on the temperature: expected T and the one at the start')
     end if
   end subroutine check_temperature
+
+  !> A point has no other formulation that could drive its law.
+  subroutine check_drivers(cursor, draft, path)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(point_path_t), intent(in) :: path
+    type(law_t) :: law
+    integer :: k
+
+    if (path%material%law_id == 0 .or. size(path%material%values) == 0) return
+    law = law_of_material(draft%laws(path%material%law_id), path%material)
+    do k = 1, driver_count(law) - 1
+      if (find_variable(law%history, law%drivers(k)%name) > 0) cycle
+      call cursor%fail('LAW '//path%material%name//' is driven by '''//law%drivers(k)%name//''', which a point alone does not have')
+      return
+    end do
+  end subroutine check_drivers
 
   !> `time steps  E|S xx  E|S yy  E|S xy  E|S zz  [T temperature]`; `ramp` comes with the time and temperature before it.
   subroutine read_ramp(cursor, path, ramp)

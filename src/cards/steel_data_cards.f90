@@ -3,8 +3,9 @@ module steel_data_cards
   use deck_cursor, only: cursor_t
   use kinds, only: wp
   use steel_curves, only: read_curve
-  use steels, only: element_names, martensite, bainite, phase_count, phase_names, prop_content, prop_rhoc, &
-                    property_count, property_names, property_units, steel_t, unknown_temperature
+  use steel_mechanics_cards, only: check_range
+  use steels, only: austenite, element_names, martensite, bainite, phase_count, phase_names, prop_content, prop_rhoc, &
+                    prop_strain, property_count, property_names, property_units, steel_t, unknown_temperature
   use temperature_curves, only: curve_table, is_given, temperature_curve_t
   use text, only: string_t
   implicit none
@@ -192,6 +193,9 @@ contains
       if (k == 0) return
       if (any(is_given(steel%properties(k, first:last)))) call cursor%fail(names(k)%s//' of '//phases(i)%s//' is given twice')
       call read_curve(cursor, names(k)%s//' ('//trim(property_units(k))//')', curve)
+      call check_range(cursor, k, curve)
+      if (k == prop_strain .and. first == austenite) call cursor%fail('DEPS is the strain from austenite to a phase: '// &
+                                                                      phases(i)%s//' has none')
       if (cursor%failed()) return
       steel%properties(k, first:last) = curve
       steel%one_heat = steel%one_heat .or. (i > phase_count .and. any(k == [prop_rhoc, prop_content]))

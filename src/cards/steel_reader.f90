@@ -9,17 +9,19 @@ module steel_reader
   use steel_data_cards, only: read_austenite, read_composition, read_grain, read_martensite, read_phase_data, read_source, &
                               read_temperatures, read_tempering
   use steel_kinetics_cards, only: read_avrami, read_cct, read_li, read_ttt
+  use steel_mechanics_cards, only: read_expansion, read_transformation_plasticity, read_weight
   use steels, only: steel_t
   use text, only: string_t
   implicit none
   private
   public :: read_steels
 
-  character(len=6), parameter :: keywords(15) = ['STEEL ', 'SOURCE', 'COMPO ', 'TEMPS ', 'MARTEN', 'TTT   ', 'AVRAMI', 'LI    ', &
-                                                 'CCT   ', 'AUSTEN', 'GRAIN ', 'TEMPER', 'HARDN ', 'PHASE ', 'GRID  ']
+  character(len=6), parameter :: keywords(18) = ['STEEL ', 'SOURCE', 'COMPO ', 'TEMPS ', 'MARTEN', 'TTT   ', 'AVRAMI', 'LI    ', &
+                                                 'CCT   ', 'AUSTEN', 'GRAIN ', 'TEMPER', 'HARDN ', 'PHASE ', 'GRID  ', 'EXPAND', &
+                                                 'TRIP  ', 'WEIGHT']
   !> Cards of which a section has one at most: those of one phase are checked where they are read.
-  logical, parameter :: once(15) = [.true., .true., .true., .true., .true., .false., .false., .true., .true., .true., .true., &
-                                    .true., .true., .false., .true.]
+  logical, parameter :: once(18) = [.true., .true., .true., .true., .true., .false., .false., .true., .true., .true., .true., &
+                                    .true., .true., .false., .true., .true., .true., .true.]
 
 contains
 
@@ -165,6 +167,12 @@ contains
       steel%maynier = .true.
     case ('PHASE')
       call read_phase_data(cursor, steel)
+    case ('EXPAND')
+      call read_expansion(cursor, steel)
+    case ('TRIP')
+      call read_transformation_plasticity(cursor, steel)
+    case ('WEIGHT')
+      call read_weight(cursor, steel)
     case ('GRID')
       call cursor%real('the width of sub-steps', steel%substep, lower=0.0_wp, upper=100.0_wp, strict_lower=.true., unit='K')
     end select

@@ -17,11 +17,12 @@ module point_drivers
   use quadrature, only: line_rule, square_rule
   use scene, only: group_t, host_of, is_solid, role_contact, scene_t
   use shape_functions, only: line3, quad8
-  use solution, only: solution_t
+  use solution, only: group_state_t, solution_t
   use state_variables, only: find_variable
   implicit none
   private
-  public :: drivers_t, find_drivers, missing_driver, start_drivers, advance_drivers, nodal_values, is_scalar
+  public :: drivers_t, find_drivers, missing_driver, start_drivers, advance_drivers, own_states_at_end, &
+            nodal_values, is_scalar
 
   !> Where a driver comes from. A state variable of the formulation itself is that at the start of the step.
   integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3, from_itself = 4
@@ -219,6 +220,19 @@ contains
       end associate
     end do
   end subroutine advance_drivers
+
+  !> Drivers that are states of the formulation itself, as the step has left them.
+  pure subroutine own_states_at_end(own, state, g, e, values)
+    type(drivers_t), intent(in) :: own
+    type(group_state_t), intent(in) :: state
+    integer, intent(in) :: g, e                !! numbers of the group and of the element
+    real(wp), intent(inout) :: values(:, :)    !! (ndriver, npoint) [unit of each driver]
+    integer :: k
+
+    do k = 1, size(own%source)
+      if (own%source(k)%kind == from_itself) values(k, :) = state%trial(own%source(k)%row(g), :, e)
+    end do
+  end subroutine own_states_at_end
 
   !> A field that can drive points: one component, on nodes.
   elemental function is_scalar(field) result(yes)

@@ -1,5 +1,6 @@
 !> Members of the LAW family: a new law is one file and one line here.
 submodule(law_registry) law_members
+  use law_arbthmet, only: law_arbthmet_row
   use law_coul2d, only: law_coul2d_row
   use law_ela, only: law_ela_row, law_elath_row
   use law_epla, only: law_epla_row
@@ -11,7 +12,7 @@ submodule(law_registry) law_members
 contains
 
   module procedure list_laws
-    allocate (laws(10))
+    allocate (laws(11))
     laws(1) = law_ela_row()
     laws(2) = law_epla_row()
     laws(3) = law_coul2d_row()
@@ -22,6 +23,7 @@ contains
     laws(8) = law_heat_row()
     laws(9) = law_heath_row()
     laws(10) = law_meta_row()
+    laws(11) = law_arbthmet_row()
   end procedure list_laws
 
 end submodule law_members

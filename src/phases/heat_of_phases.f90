@@ -5,8 +5,8 @@
 module heat_of_phases
   use dual_numbers, only: dual_t
   use kinds, only: wp
-  use steels, only: austenite, first_diffusive, kinetics_none, last_diffusive, martensite, phase_count, phase_names, &
-                    prop_content, prop_lambda, prop_rhoc, steel_t, tempered, unknown_temperature
+  use phases_there, only: phases_that_form
+  use steels, only: phase_count, phase_names, prop_content, prop_lambda, prop_rhoc, steel_t
   use temperature_curves, only: curve_at, curve_integral, curve_table, dual_curve_at, is_given, temperature_curve_t
   use text, only: add_text, string_t
   implicit none
@@ -85,11 +85,7 @@ contains
     integer :: i
 
     allocate (problems(0))
-    there = .false.
-    there(austenite) = .true.
-    there(first_diffusive:last_diffusive) = steel%kinetics%kind /= kinetics_none .or. steel%cct%n > 0
-    there(martensite) = steel%ms > unknown_temperature
-    there(tempered) = any(steel%temper_rate > 0)
+    there = phases_that_form(steel)
     do i = 1, phase_count
       if (.not. there(i)) cycle
       if (.not. is_given(steel%properties(prop_lambda, i))) &

@@ -3,9 +3,11 @@ module steel_build
   use critical_temperatures, only: andrews_ae1, andrews_ae3, lever_rule_ferrite, li_bs, van_bohemen_ms, van_bohemen_rate
   use kinds, only: wp
   use li_kinetics, only: li_power, li_speed, li_table
-  use steels, only: bainite, ferrite, first_diffusive, kinetics_li, kinetics_none, last_diffusive, pearlite, phase_count, &
-                    property_count, steel_t, unknown_temperature
-  use temperature_curves, only: curve_table, temperature_curve_t
+  use phases_there, only: phases_that_form
+  use steels, only: bainite, expansion_none, ferrite, first_diffusive, kinetics_li, kinetics_none, last_diffusive, pearlite, &
+                    phase_count, plasticity_none, prop_plasticity, prop_rise, prop_saturation, property_count, steel_t, &
+                    unknown_temperature
+  use temperature_curves, only: curve_table, is_given, temperature_curve_t
   use text, only: add_text, string_t
   implicit none
   private
@@ -92,6 +94,10 @@ contains
     end do
     if (steel%cct%n > 0) breaks = [breaks, steel%cct%hottest, steel%cct%coldest]
     breaks = pack(breaks, breaks > unknown_temperature)
+    if (size(breaks) == 0) then   ! nothing changes at any temperature
+      allocate (steel%nodes(0))
+      return
+    end if
     call sort(breaks)
     breaks = pack(breaks, [.true., breaks(2:) > breaks(:size(breaks) - 1)])
     n = ceiling((breaks(size(breaks)) - breaks(1))/steel%substep)
@@ -131,6 +137,7 @@ contains
   pure subroutine check_steel(steel, problems)
     type(steel_t), intent(in) :: steel
     type(string_t), allocatable, intent(out) :: problems(:)   !! (nproblem)
+    logical, parameter :: not_austenite(phase_count) = [.false., .true., .true., .true., .true., .true.]
 
     allocate (problems(0))
     if (steel%ms > unknown_temperature .and. .not. steel%beta > 0) &
@@ -145,6 +152,12 @@ contains
       call add_text(problems, 'AC3 must be above AC1')
     if (steel%maynier .and. .not. steel%composition%given) &
       call add_text(problems, 'HARDN MAYNIER needs the composition: COMPO')
+    if (any(is_given(steel%properties(prop_rise, :)) .neqv. is_given(steel%properties(prop_saturation, :)))) &
+      call add_text(problems, 'QV and BV of a phase go together')
+    if (any(is_given(steel%properties(prop_plasticity, :))) .and. steel%plasticity == plasticity_none) &
+      call add_text(problems, 'KTP needs a card TRIP, the form of transformation plasticity')
+    ! what has mechanics may stay as it is
+    if (steel%expansion /= expansion_none .and. .not. any(phases_that_form(steel) .and. not_austenite)) return
     if (all(steel%kinetics%kind == kinetics_none) .and. steel%cct%n == 0 .and. .not. steel%ms > unknown_temperature) &
       call add_text(problems, 'the steel has no kinetics: expected TTT, AVRAMI, LI, CCT or MARTEN')
     if (.not. any([steel%ae1, steel%ae3, steel%ac1, steel%ac3, steel%bs, steel%ms] > unknown_temperature) &

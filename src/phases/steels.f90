@@ -11,7 +11,10 @@ module steels
   public :: austenite, ferrite, pearlite, bainite, martensite, tempered, phase_count, phase_names, first_diffusive, last_diffusive
   public :: kinetics_none, kinetics_avrami, kinetics_li
   public :: property_count, property_names, property_units
-  public :: prop_lambda, prop_rhoc, prop_latent, prop_hardness, prop_content
+  public :: prop_lambda, prop_rhoc, prop_latent, prop_hardness, prop_content, prop_young, prop_poisson, prop_alpha, prop_strain, &
+            prop_yield, prop_modulus, prop_plasticity, prop_rise, prop_saturation, prop_memory
+  public :: expansion_none, expansion_total, expansion_incremental
+  public :: plasticity_none, plasticity_desalos, plasticity_leblond, plasticity_tanaka, plasticity_names
   public :: element_names, celsius_zero, gas_constant, unknown_temperature, default_substep
   public :: el_c, el_mn, el_si, el_ni, el_cr, el_mo, el_v, el_w, el_cu, el_p, el_al, el_as, el_ti
 
@@ -27,11 +30,20 @@ module steels
 
   !> Properties of a phase by temperature, their names on cards and their units.
   integer, parameter :: prop_lambda = 1, prop_rhoc = 2, prop_latent = 3, prop_hardness = 4, prop_content = 5, &
-                        property_count = 12
+                        prop_young = 6, prop_poisson = 7, prop_alpha = 8, prop_strain = 9, prop_yield = 10, prop_modulus = 11, &
+                        prop_plasticity = 12, prop_rise = 13, prop_saturation = 14, prop_memory = 15, property_count = 15
   character(len=6), parameter :: property_names(property_count) = [character(len=6) :: 'LAMBDA', 'RHOC', 'LATENT', 'HV', &
-                                                                   'H', 'E', 'NU', 'ALPHA', 'DEPS', 'SY', 'ET', 'KTP']
+                                                                   'H', 'E', 'NU', 'ALPHA', 'DEPS', 'SY', 'ET', 'KTP', &
+                                                                   'QV', 'BV', 'THETA']
   character(len=9), parameter :: property_units(property_count) = [character(len=9) :: 'W/m/K', 'MJ/m3/K', 'MJ/m3', 'HV', &
-                                                                   'MJ/m3', 'MPa', '-', '1/K', '-', 'MPa', 'MPa', '1/MPa']
+                                                                   'MJ/m3', 'MPa', '-', '1/K', '-', 'MPa', 'MPa', '1/MPa', &
+                                                                   'MPa', '-', '-']
+
+  !> Form of the strains by temperature and phases: a function of both, or summed up step by step.
+  integer, parameter :: expansion_none = 0, expansion_total = 1, expansion_incremental = 2
+  !> Form of transformation plasticity, and its name on cards.
+  integer, parameter :: plasticity_none = 0, plasticity_desalos = 1, plasticity_leblond = 2, plasticity_tanaka = 3
+  character(len=7), parameter :: plasticity_names(3) = ['DESALOS', 'LEBLOND', 'TANAKA ']
 
   !> Elements of a composition.
   integer, parameter :: el_c = 1, el_mn = 2, el_si = 3, el_ni = 4, el_cr = 5, el_mo = 6, el_v = 7, el_w = 8, el_cu = 9, el_p = 10, &
@@ -110,6 +122,12 @@ module steels
     !> Hardness by Maynier's formulas where a phase has none of its own.
     logical :: maynier = .false.
     type(temperature_curve_t) :: properties(property_count, phase_count)
+    !> Strains by temperature and phases, and the temperature at which DEPS holds and ALPHA counts from in the total form [degC].
+    integer :: expansion = expansion_none
+    real(wp) :: reference = unknown_temperature
+    integer :: plasticity = plasticity_none
+    !> Weight of the yield stress of what has formed from austenite, over its fraction; where it is not given, the fraction.
+    type(temperature_curve_t) :: weight
     !> All phases take up heat alike.
     logical :: one_heat = .false.
     real(wp) :: substep = default_substep   !! [K]
