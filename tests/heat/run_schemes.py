@@ -14,6 +14,7 @@ usage: run_schemes.py [-v] [-k]
 - `latent`: freezing of a half space (F. Neumann) by intervals of melting, meshes and steps that differ by 1000, 5 and 10: within 1 %
   and with one cut at most (68 of the first of them once); a corner that melts, in the plane.
 - `factors`: a linear problem factorises once for each length of a step; one by temperature at every iteration.
+- `phases`: what forms of a phase in a cooling that takes long, by TR-BDF2 as by implicit Euler: kinetics see the whole time.
 - `resume`: from the older checkpoint on, the same bits.
 """
 import json
@@ -203,6 +204,22 @@ def factors(checks):
                     "by temperature: every iteration", whole["factorisations"])
 
 
+def phases(checks):
+    """A wall of one temperature that cools through the range of a phase: Avrami, n = 1, b = .002/s."""
+    with open(os.path.join(checks.folder, "slow.met"), "w", encoding="utf-8") as file:
+        file.write("STEEL slow\nSOURCE 'made up'\nAVRAMI BAINITE 200. 600.\n   LNB -6.2146080984\n   N 1.\nPHASE ALL\n   LAMBDA 30.\n"
+                   "   RHOC 4.\nEND\n")
+    # 4E6 J/m3/K, 0.1 m thick, 4000 W/m2/K to 20 degC: T = 20 + 780 exp(-t/100 s), from 600 to 200 degC in 100 ln(580/180) s
+    exact = 1 - math.exp(-0.002*100*math.log(580/180))
+    for scheme in ("1.", "TRBDF2"):
+        run = Run(checks, f"phases-{scheme[:2].strip('.')}", HEAD.format(title="phases", state="PLSTN") + wall("4 BILINEAR", 1)
+                  + "LAW steel META\n   STEEL slow.met slow\n   ENERGY 1.E6 CONDUCT 1.E4\nSTART T 800.\nCONVE wall 2 H 4000. TS 20.\n"
+                  + f"THETA {scheme}\nPROBE z MEAN bainite wall\n" + TIGHT + steps(800, 200.0) + "END\n")
+        if run.ok:
+            checks.small(abs(run.history["z"][-1]/exact - 1), 2e-3, f"{run.name}: the whole time counts")
+            checks.small(abs(checks_of(run)["heat_imbalance"]), 1e-8, f"{run.name}: books of heat")
+
+
 def resume(checks):
     """A run that goes on from its older checkpoint."""
     run = Run(checks, "resume", EXCHANGE + "STRAT 0.1 1.E-6 40. 99 1 0.5 5.\nSTOP 40.\nTHETA TRBDF2 TOL 0.05\nCKPT 5\nEND\n")
@@ -229,6 +246,7 @@ def main():
     bounds(checks)
     latent(checks)
     factors(checks)
+    phases(checks)
     resume(checks)
     checks.end()
 
