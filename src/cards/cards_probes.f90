@@ -247,7 +247,7 @@ contains
       if (g == 0) return
       if (probe%kind == probe_mean .and. size(draft%scene%groups(g)%connectivity, 1) /= 8) &
         call cursor%fail('MEAN is over the volume of a body: '''//names(g)%s//''' has none')
-      if (any(probe%group == g .or. probe%more_groups == g)) call cursor%fail('the group '''//names(g)%s//''' is given twice')
+      if (probe%group == g .or. any(probe%more_groups == g)) call cursor%fail('the group '''//names(g)%s//''' is given twice')
       if (find_component(draft%scene%groups(g), component) == 0) then
         call cursor%fail('group '''//names(g)%s//''' has no component '''//component//'''')
         return

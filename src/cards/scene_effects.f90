@@ -8,7 +8,7 @@ module scene_effects
   use materials, only: material_t
   use scene, only: generalised_plane_strain, scene_t
   use scene_draft, only: head_location
-  use state_variables, only: total_components
+  use state_variables, only: find_variable, total_components
   use text, only: to_text
   implicit none
   private
@@ -34,7 +34,7 @@ contains
     call set(6, 'pressure', 'no PRES2D card')
     call set(7, 'body force', 'no BFORC or CENTR card')
     call set(8, 'heat', 'no card asks for it')
-    call set(9, 'phases', 'no LAW META')
+    call set(9, 'phases', 'no LAW META, no ARBTHMET with TIME')
     call set(10, 'temperature', 'no TEMPE card', 'displacement')
     call set(11, 'error estimates', 'no ESTIM or REMSH card')
     call set(12, 'remeshing', 'no REMSH card')
@@ -68,7 +68,7 @@ contains
           if (asks_for(laws(material%law_id), 'plasticity')) &
             call switch_on(3, .true., 'LAW', material%name, &
                            to_text(state_of_law(laws(material%law_id), material))//' state per point')
-          if (laws(material%law_id)%of_steel) &
+          if (follows_phases(laws(material%law_id), material)) &
             call switch_on(9, .true., 'LAW', material%name, &
                            to_text(state_of_law(laws(material%law_id), material))//' state per point')
           if (asks_for(laws(material%law_id), 'friction')) then
@@ -148,6 +148,17 @@ contains
       own = law_of_material(law, material)
       n = total_components(own%history)
     end function state_of_law
+
+    !> The points of a material hold phases, as a law of a steel has them.
+    pure function follows_phases(law, material) result(yes)
+      type(law_t), intent(in) :: law
+      type(material_t), intent(in) :: material
+      logical :: yes
+      type(law_t) :: own
+
+      own = law_of_material(law, material)
+      yes = law%of_steel .and. find_variable(own%history, 'austenite') > 0
+    end function follows_phases
 
     !> Coulomb's law without coefficient and cohesion has no friction; another law always has it.
     pure function has_friction(law, g) result(yes)

@@ -27,7 +27,7 @@ module scene_reader
   use elem_registry, only: list_elems
   use mesh_finish, only: finish_mesh
   use mesh_parts, only: mesh_parts_t, start_parts
-  use point_drivers, only: missing_driver
+  use point_drivers, only: driver_of_others, missing_driver
   use remesh, only: remesh_t
   use remeshed_parts, only: order_as_remeshed, replace_parts
   use remesher_options, only: has_contours
@@ -35,6 +35,7 @@ module scene_reader
   use scene, only: scene_t
   use scene_draft, only: draft_t, start_draft, words_of
   use scene_effects, only: list_effects
+  use strategy, only: coupling_monolithic
   use text, only: string_t
   implicit none
   private
@@ -154,14 +155,25 @@ contains
     reported = .false.
     do g = 1, size(draft%scene%groups)
       name = missing_driver(draft%scene, draft%laws, g)
-      if (name == '') cycle
+      if (name /= '') call refuse(''': expected a field, or a state of another element, of that name on its body, found none')
+      if (name /= '' .or. draft%scene%strategy%coupling /= coupling_monolithic) cycle
+      name = driver_of_others(draft%scene, draft%laws, g)
+      if (name /= '') call refuse(''' of another element, which SOLVE MONOLITHIC cannot follow: expected SOLVE ONCE or '// &
+                                  'CONVERGE, or a law that finds it by itself (TIME)')
+    end do
+
+  contains
+
+    subroutine refuse(why)
+      character(len=*), intent(in) :: why
+
       do k = 1, size(reported)
         if (draft%materials%item(k) /= draft%scene%groups(g)%material .or. reported(k)) cycle
         reported(k) = .true.
-        call diagnostics%add(draft%materials%location(k), 'LAW', ''''//draft%materials%words(k)%s//''' is driven by '''//name &
-                             //''': expected a field, or a state of another element, of that name on its body, found none')
+        call diagnostics%add(draft%materials%location(k), 'LAW', ''''//draft%materials%words(k)%s//''' is driven by '''//name//why)
       end do
-    end do
+    end subroutine refuse
+
   end subroutine refuse_missing_drivers
 
   !> What is defined must be used. Words on cards of unknown keywords count as uses.

@@ -10,7 +10,7 @@ module point_drivers
   use fields, only: field_t, find_field, has_corners_only, on_nodes
   use kinds, only: wp
   use kinematics_api, only: first_history
-  use law_api, only: driver_count, driver_t, driver_temperature, law_t
+  use law_api, only: driver_count, driver_t, driver_temperature, law_t, solid_law
   use loads, only: multiplier_at
   use materials, only: has_number
   use point_temperatures, only: nodal_temperatures, temperature_field
@@ -21,7 +21,7 @@ module point_drivers
   use state_variables, only: find_variable
   implicit none
   private
-  public :: drivers_t, find_drivers, missing_driver, start_drivers, advance_drivers, own_states_at_end, &
+  public :: drivers_t, find_drivers, missing_driver, driver_of_others, start_drivers, advance_drivers, own_states_at_end, &
             nodal_values, is_scalar
 
   !> Where a driver comes from. A state variable of the formulation itself is that at the start of the step.
@@ -106,6 +106,28 @@ contains
       end do
     end associate
   end function missing_driver
+
+  !> The first driver of a law for solids that is a state of another formulation, '' where there is none.
+  pure function driver_of_others(scene, laws, g) result(name)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
+    integer, intent(in) :: g             !! number of the group
+    character(len=:), allocatable :: name
+    type(driver_source_t) :: source
+    integer :: k
+
+    name = ''
+    if (scene%groups(g)%material == 0) return
+    associate (law => laws(scene%materials(scene%groups(g)%material)%law_id))
+      if (law%kind /= solid_law) return
+      do k = 1, driver_count(law) - 1
+        source = source_of(scene, g, law%drivers(k)%name)
+        if (source%kind /= from_state) cycle
+        name = law%drivers(k)%name
+        return
+      end do
+    end associate
+  end function driver_of_others
 
   !> The material of a group has the number for which its law needs a driver.
   pure function is_asked_for(scene, g, driver) result(yes)

@@ -117,7 +117,8 @@ def main():
     verbose = "-v" in sys.argv[1:]
     passed = failed = 0
     with tempfile.TemporaryDirectory() as folder:
-        shutil.copy(os.path.join(HERE, "steel.met"), folder)
+        for steel in ("steel.met", "whole.met"):
+            shutil.copy(os.path.join(HERE, steel), folder)
         for case, base, options in all_cases():
             try:
                 wrong = judge(case, base, options, folder, verbose)

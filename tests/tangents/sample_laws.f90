@@ -4,9 +4,12 @@ module sample_laws
   use kinds, only: wp
   use law_cases, only: at_temperatures, closed_form_yield, elastic_material, material_of, plastic_material, set_value
   use materials, only: material_t
+  use steel_materials, only: polynomial, steel_alpha, steel_beta, steel_deps, steel_k, steel_material, steel_modulus, steel_ms, &
+                             steel_of_tests, steel_poisson, steel_yield, steel_young
+  use steels, only: austenite, martensite, prop_rise, prop_saturation
   implicit none
   private
-  public :: sample_law_t, list_samples, flow_stress, young_at, poisson_of, thermal_strain
+  public :: sample_law_t, list_samples, flow_stress, young_at, poisson_of, thermal_strain, plasticity_of_step
 
   type :: sample_law_t
     character(len=16) :: name
@@ -23,6 +26,8 @@ module sample_laws
   real(wp), parameter :: gsell(8) = [500.0_wp, 0.4_wp, 0.02_wp, 30.0_wp, 0.6_wp, 0.06_wp, 2000.0_wp, 273.15_wp]
   !> The card by temperature: numbers at 20, and these shares of E and of the yield stress at 420.
   real(wp), parameter :: hot_modulus = 0.7_wp, hot_yield = 0.5_wp
+  !> QV and BV of austenite and martensite; RATE0 and COWPER of the steel with phases.
+  real(wp), parameter :: rise(2) = [60.0_wp, 150.0_wp], saturation(2) = [20.0_wp, 35.0_wp], viscous(2) = [5.0_wp, 3.0_wp]
 
 contains
 
@@ -33,7 +38,7 @@ contains
     type(material_t) :: hot
     integer :: k
 
-    allocate (samples(15))
+    allocate (samples(18))
     samples(1) = sample_law_t('ELA', elastic_material())
     samples(2) = sample_law_t('ELATH', material_of('ELATH', [200000.0_wp, 0.3_wp, expansion]), [20.0_wp, 220.0_wp, 320.0_wp])
     do k = 1, 6
@@ -57,6 +62,17 @@ contains
                                [20.0_wp, 120.0_wp, 320.0_wp])
     samples(14) = sample_law_t('EVP-NH', material_of('EVP-NH', norton))
     samples(15) = sample_law_t('GSELL', material_of('GSELL', gsell), [120.0_wp, 110.0_wp, 100.0_wp])
+    samples(16) = sample_law_t('ARBTHMET total', steel_material(steel_of_tests(.true.), .true.), [400.0_wp, 260.0_wp, 150.0_wp])
+    samples(17) = sample_law_t('ARBTHMET increm', steel_material(steel_of_tests(.false.), .true.), [400.0_wp, 260.0_wp, 150.0_wp])
+    samples(18) = samples(16)
+    samples(18)%name = 'ARBTHMET viscous'
+    samples(18)%material%values(5:6) = viscous
+    do k = 1, 2
+      associate (phase => merge(austenite, martensite, k == 1))
+        samples(18)%material%steel%properties(prop_rise, phase) = polynomial([rise(k)])
+        samples(18)%material%steel%properties(prop_saturation, phase) = polynomial([saturation(k)])
+      end associate
+    end do
   end subroutine list_samples
 
   !> Von Mises stress of monotonic flow at plastic strain p, rate and temperature; 0 for laws that do not flow.
@@ -93,8 +109,44 @@ contains
       stress = p**norton(6)*exp(-norton(3)*p)*norton(4)*sqrt(3.0_wp)*(sqrt(3.0_wp)*rate)**norton(5)
     case ('GSELL')
       stress = gsell(3)*exp(gsell(7)/(temperature + gsell(8)))*(1 - exp(-gsell(4)*p))*exp(gsell(5)*p**2)*rate**gsell(6)
+    case ('ARBTHMET total', 'ARBTHMET increm')
+      stress = mixture_yield(p, temperature)
+    case ('ARBTHMET viscous')
+      stress = mixture_yield(p, temperature) + dot_product(mixture(temperature), rise*(1 - exp(-saturation*p)))
+      stress = stress*(1 + (rate/viscous(1))**(1/viscous(2)))
     end select
   end function flow_stress
+
+  !> Austenite and martensite after cooling to a temperature (Koistinen and Marburger).
+  pure function mixture(temperature) result(z)
+    real(wp), intent(in) :: temperature
+    real(wp) :: z(2)
+
+    z(1) = exp(-steel_beta*max(0.0_wp, steel_ms - temperature))
+    z(2) = 1 - z(1)
+  end function mixture
+
+  !> Yield stress of the mixture, with linear hardening.
+  pure function mixture_yield(p, temperature) result(stress)
+    real(wp), intent(in) :: p, temperature
+    real(wp) :: stress
+
+    stress = dot_product(mixture(temperature), steel_yield(1, :) + steel_yield(2, :)*temperature + steel_modulus*p)
+  end function mixture_yield
+
+  !> Strain of transformation plasticity in the k-th step, over the von Mises stress.
+  pure function plasticity_of_step(sample, k) result(factor)
+    type(sample_law_t), intent(in) :: sample
+    integer, intent(in) :: k
+    real(wp) :: factor
+    real(wp) :: z(2, 0:1)
+
+    factor = 0
+    if (sample%name(:8) /= 'ARBTHMET') return
+    z(:, 0) = mixture(sample%temperatures(k - 1))
+    z(:, 1) = mixture(sample%temperatures(k))
+    factor = steel_k*(z(2, 1)*(2 - z(2, 1)) - z(2, 0)*(2 - z(2, 0)))
+  end function plasticity_of_step
 
   pure function young_at(sample, temperature) result(young)
     type(sample_law_t), intent(in) :: sample
@@ -102,6 +154,7 @@ contains
     real(wp) :: young
 
     young = sample%material%values(1)
+    if (sample%name(:8) == 'ARBTHMET') young = steel_young
     if (sample%name == 'EPLA temperature') young = young*(1 + (hot_modulus - 1)*(temperature - 20)/400)
   end function young_at
 
@@ -110,6 +163,7 @@ contains
     real(wp) :: poisson
 
     poisson = sample%material%values(2)
+    if (sample%name(:8) == 'ARBTHMET') poisson = steel_poisson
   end function poisson_of
 
   !> Thermal strain since the start.
@@ -117,8 +171,15 @@ contains
     type(sample_law_t), intent(in) :: sample
     real(wp), intent(in) :: temperature
     real(wp) :: strain
+    real(wp) :: z(2)
 
     strain = 0
+    if (sample%name(:8) == 'ARBTHMET') then
+      z = mixture(temperature)
+      strain = dot_product(z, steel_alpha)*(temperature - 20) + z(2)*steel_deps
+      z = mixture(sample%temperatures(0))
+      strain = strain - dot_product(z, steel_alpha)*(sample%temperatures(0) - 20) - z(2)*steel_deps
+    end if
     if (sample%name == 'ELATH') strain = expansion*(temperature - sample%temperatures(0))
   end function thermal_strain
 

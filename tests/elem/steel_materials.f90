@@ -1,0 +1,2 @@
+! The same steels as the tests of the laws.
+include '../law/steel_materials.f90'
