@@ -6,12 +6,14 @@ usage: run_point.py [-v] [-k]       -v prints every check, -k keeps the results
 import csv
 import math
 import os
+import shutil
 import sys
 
 sys.dont_write_bytecode = True
 from support import DONE, INPUT, NO_CONVERGENCE, SOURCE, UPSETTING, Checks, deck_text, run, said, write  # noqa: E402
 
 POINTS = os.path.join(SOURCE, "decks", "point")
+TENSION = os.path.join(SOURCE, "decks", "trip_tension")
 E, NU = 200000.0, 0.3
 G = E/(2*(1 + NU))
 EXACT = 1.0e-8          # share: Newton stops at 1e-11 of the stresses
@@ -174,6 +176,28 @@ def temperatures(checks):
         checks.that(result.returncode == INPUT and f"{deck}:{line}:" in result.stderr and phrase in result.stderr, f"'{new}': refused", said(result))
 
 
+def phases(checks):
+    """code_aster's HSNV102: martensite forms under tension, without and with transformation plasticity."""
+    deck = os.path.join(TENSION, "martensite.point")
+    for trip, strains in (("0", (0.034283, 0.061978, 0.069844)), ("1", (0.051507, 0.101970, 0.109844))):
+        path = follow(checks, "martensite" + trip, deck, "-p", "trip=" + trip)
+        if not path:
+            return
+        for time, fraction, p, strain in zip((26.0, 40.0, 90.0), (0.259182, 0.988891, 1.0), (0.037217, 0.062523, 0.074074), strains):
+            k = path["time"].index(time)
+            near(checks, path["martensite"][k], fraction, 1.0, f"HSNV102, {time} s, {trip}: fraction", 1e-6)
+            near(checks, path["plastic_strain"][k], p, p, f"HSNV102, {time} s, {trip}: plastic strain", 1e-4)
+            near(checks, path["strain_yy"][k], strain, strain, f"HSNV102, {time} s, {trip}: strain", 1e-3)
+            others = sum(path[name][k] for name in ("austenite", "ferrite", "pearlite", "bainite", "tempered"))
+            near(checks, path["martensite"][k] + others, 1.0, 1.0, f"HSNV102, {time} s, {trip}: sum of fractions", 1e-12)
+    text = deck_text(deck).replace("TIME 1.", "")
+    shutil.copy(os.path.join(TENSION, "tension.met"), checks.path("tension.met"))
+    alone = write(checks.path("alone.point"), text)
+    result = run(["--point", alone])
+    checks.that(result.returncode == INPUT and "is driven by 'austenite', which a point alone does not have" in result.stderr,
+                "phases that nothing finds: refused", said(result))
+
+
 def refusals(checks):
     """One line with file and line; code 2; nothing is left behind."""
     for k, (old, new, line, phrase) in enumerate(REFUSED):
@@ -224,6 +248,7 @@ def main():
     large_shear(checks)
     there_and_back(checks)
     temperatures(checks)
+    phases(checks)
     refusals(checks)
     failures(checks)
     words(checks)
