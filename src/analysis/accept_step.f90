@@ -6,6 +6,7 @@ module accept_step
   use equations, only: equations_t
   use errors, only: error_t, exit_bug, fail
   use fields, only: field_t, fill_middle_nodes, has_corners_only
+  use friction_heat, only: keep_friction_work
   use heat_books, only: book_heat
   use heat_record, only: note_heat_step
   use kinds, only: wp
@@ -58,6 +59,7 @@ contains
     call book_stored(scene, equations, outcome%du, totals, friction_before, solution)
     call book_spurious_mode(scene, equations, solution)
     call sample_contacts(scene, solution)
+    call keep_friction_work(scene, solution)
     call check(solution, totals, error)
     call commit(scene, equations, solution)
   end subroutine accept

@@ -10,7 +10,7 @@ module bookkeeping
   use fields, only: displacement_field, field_t, on_nodes, pilot_field, section_field
   use kinds, only: wp
   use plane_vectors, only: cross
-  use scene, only: scene_t
+  use scene, only: role_contact, scene_t
   use solution, only: present_coordinates, solution_t
   use spurious_mode, only: find_spurious_mode, has_spurious_mode
   use text, only: to_text
@@ -36,7 +36,7 @@ contains
     call external_forces(scene, equations%dofs, time, external)
     do f = 1, size(fields)
       fields(f)%reaction = 0
-      if (fields(f)%place /= on_nodes) cycle
+      if (fields(f)%place /= on_nodes .and. .not. fields(f)%imposed_as_value) cycle
       do k = 1, size(fields(f)%reaction, 2)
         do c = 1, fields(f)%ncomp
           d = equations%dofs%fields(f)%number(c, k)
@@ -69,7 +69,7 @@ contains
       if (is_deformable(scene%dies(g))) solution%fields(pilot_field)%applied(:, g) = 0
     end do
     do g = 1, size(scene%groups)
-      if (scene%groups(g)%pairs == 0) cycle
+      if (scene%groups(g)%pairs == 0 .or. scene%groups(g)%role /= role_contact) cycle
       sum = 0
       magnitude = 0
       associate (nodes => equations%dofs%groups(g)%nodes, &
@@ -106,7 +106,7 @@ contains
 
     total = 0
     do g = 1, size(scene%groups)
-      if (scene%groups(g)%pairs == 0 .or. scene%groups(g)%die /= die) cycle
+      if (scene%groups(g)%pairs == 0 .or. scene%groups(g)%die /= die .or. scene%groups(g)%role /= role_contact) cycle
       n = size(equations%dofs%groups(g)%nodes, 1)
       do e = 1, size(equations%dofs%groups(g)%nodes, 2)
         m = equations%solves(1)%pattern%force_start(g) + (e - 1)*size(equations%dofs%groups(g)%dof, 1)

@@ -1,13 +1,13 @@
 !> Books of heat: what is taken up is what came in through sides and imposed temperatures, and what sources released.
 module heat_books
   use equations, only: equations_t
-  use fields, only: find_field
+  use fields, only: find_field, has_corners_only
   use kinds, only: wp
-  use scene, only: role_side_load, role_volume_load, scene_t
+  use scene, only: role_heat_contact, role_side_load, role_volume_load, scene_t
   use solution, only: solution_t
   implicit none
   private
-  public :: book_heat, has_heat, heat_imbalance, heat_through
+  public :: book_heat, has_heat, heat_from_die, heat_imbalance, heat_through
 
 contains
 
@@ -32,12 +32,16 @@ contains
     integer :: g
 
     if (.not. has_heat(scene)) return
-    associate (temperature => solution%fields(find_field(scene%fields, 'temperature')))
-      imposed = sum(temperature%reaction)*dt
-      gross = sum(abs(temperature%reaction))*dt
-    end associate
+    imposed = 0
+    gross = 0
+    do g = 1, size(scene%fields)
+      if (scene%fields(g)%quantity /= 'temperature') cycle
+      imposed = imposed + sum(solution%fields(g)%reaction)*dt
+      gross = gross + sum(abs(solution%fields(g)%reaction))*dt
+    end do
     through = 0
     do g = 1, size(scene%groups)
+      if (scene%groups(g)%role == role_heat_contact) gross = gross + abs(heat_from_die(scene, equations, g))*dt
       through = through + heat_through(scene, equations, g)*dt
       gross = gross + abs(heat_through(scene, equations, g))*dt
     end do
@@ -70,6 +74,24 @@ contains
       end do
     end associate
   end function heat_through
+
+  !> Heat that comes into the sides of a contact, from the die and by friction.
+  pure function heat_from_die(scene, equations, g) result(power)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: g   !! place of the group
+    real(wp) :: power          !! in the step just found [power, per radian when axisymmetric]
+    integer :: e, m, n
+
+    power = 0
+    n = merge(2, 3, has_corners_only(scene%fields(find_field(scene%fields, 'temperature'))))
+    associate (dof => equations%dofs%groups(g)%dof)
+      do e = 1, size(dof, 2)
+        m = equations%solves(1)%pattern%force_start(g) + (e - 1)*size(dof, 1)
+        power = power - sum(equations%buffers%force(m + 1:m + n))
+      end do
+    end associate
+  end function heat_from_die
 
   !> What the books do not account for, over all that passed.
   pure function heat_imbalance(solution) result(share)

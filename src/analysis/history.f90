@@ -5,7 +5,7 @@ module history
   use dies, only: is_deformable
   use elem_api, only: totals_t
   use errors, only: error_t
-  use fields, only: displacement_field, pilot_field, section_field
+  use fields, only: displacement_field, find_field, pilot_field, section_field
   use heat_books, only: has_heat, heat_imbalance
   use kinds, only: pi, wp
   use newton, only: outcome_t
@@ -55,7 +55,8 @@ contains
 
     allocate (columns(14 + 6*size(scene%dies) - 3*count(is_deformable(scene%dies)) &
                       + merge(6, 0, scene%plane_state == generalised_plane_strain) &
-                      + merge(2, 0, scene%remesh%estimate) + merge(4, 0, has_heat(scene)) + size(scene%probes)))
+                      + merge(2, 0, scene%remesh%estimate) + merge(4, 0, has_heat(scene)) + 2*size(scene%die_heats) &
+                      + size(scene%probes)))
     n = 0
     call add('time [time]')
     call add('step [-]')
@@ -98,6 +99,10 @@ contains
       call add('heat_released [energy]')
       call add('heat_imbalance [-]')
     end if
+    do k = 1, size(scene%die_heats)
+      call add('temperature_'//scene%dies(scene%die_heats(k)%die)%name//' [temperature]')
+      call add('heat_flow_'//scene%dies(scene%die_heats(k)%die)%name//' [power]')
+    end do
     do k = 1, size(scene%probes)
       call add(scene%probes(k)%name//' ['//scene%probes(k)%unit//']')
     end do
@@ -146,12 +151,29 @@ contains
       call table%put(factor*[solution%heat_stored, solution%heat_in, solution%heat_released])
       call table%put(heat_imbalance(solution))
     end if
+    do k = 1, size(scene%die_heats)
+      call table%put(temperature_and_flow(scene, solution, k)*[1.0_wp, factor])
+    end do
     do k = 1, size(scene%probes)
       call table%put(probe_value(scene, solution, scene%probes(k)))
     end do
     call table%end_row()
     call table%status(error)
   end subroutine write_row
+
+  !> Temperature of a rigid die, and the heat flow into it in the step: what it takes up, or what leaves it again where its
+  !> temperature is given.
+  pure function temperature_and_flow(scene, solution, k) result(values)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: k   !! place among the temperatures of dies
+    real(wp) :: values(2)      !! [temperature], [power, per radian when axisymmetric]
+
+    associate (heat => scene%die_heats(k), field => solution%fields(find_field(solution%fields, 'die_temperature')))
+      values = [field%value(1, heat%die), -field%reaction(1, heat%die)]
+      if (heat%capacity > 0) values(2) = heat%capacity*field%last_increment(1, heat%die)/solution%last_step
+    end associate
+  end function temperature_and_flow
 
   !> What a probe reads at the accepted instant.
   pure function probe_value(scene, solution, probe) result(value)

@@ -6,6 +6,7 @@ module cards_side_dies
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
   use dies, only: is_deformable, place_on_nodes
+  use fields, only: displacement_field, find_field
   use scene_draft, only: close_card, draft_t, words_of
   use text, only: string_t
   implicit none
@@ -23,9 +24,14 @@ contains
     type(string_t), allocatable :: words(:)
     character(len=:), allocatable :: name, label
     integer, allocatable :: sides(:, :), more(:, :)
-    integer :: i, k, n
+    integer :: i, k, n, field
 
     n = 0
+    field = displacement_field
+    if (draft%groups_sound) then
+      ! in a scene of heat alone
+      if (.not. draft%scene%fields(field)%declared) field = find_field(draft%scene%fields, 'temperature')
+    end if
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword /= 'DIE') cycle
       n = n + 1
@@ -37,7 +43,7 @@ contains
       if (allocated(sides)) deallocate (sides)
       allocate (sides(3, 0))
       do
-        call read_sides(cursor, draft, huge(k), label, more)
+        call read_sides(cursor, draft, huge(k), label, more, field=field)
         call refuse_inner_sides(cursor, draft, more)
         sides = reshape([sides, more], [3, size(sides, 2) + size(more, 2)])
         if (cursor%failed() .or. .not. cursor%more()) exit

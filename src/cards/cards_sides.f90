@@ -16,7 +16,7 @@ module cards_sides
   use vectors, only: length_of
   implicit none
   private
-  public :: read_contacts, read_pressures, refuse_inner_sides, start_group, append_group
+  public :: chosen_rule, read_contacts, read_pressures, refuse_inner_sides, start_group, append_group
 
   !> Points of a side: Gauss, or at equal distances with the ends (negative).
   integer, parameter :: rules(10) = [2, 3, 4, -3, -5, -9, -17, -33, -65, -129]

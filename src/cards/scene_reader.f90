@@ -7,6 +7,7 @@ module scene_reader
   use cards_fields, only: read_coupling, read_formulations, read_imposed_values, read_start_values
   use cards_head, only: read_kinematics, read_title
   use cards_heat, only: read_exchanges, read_time_scheme
+  use cards_heat_contact, only: read_heat_contacts
   use cards_laws, only: read_laws
   use cards_loads, only: read_loads, read_multipliers
   use cards_pilots, only: read_pilots
@@ -32,7 +33,7 @@ module scene_reader
   use remeshed_parts, only: order_as_remeshed, replace_parts
   use remesher_options, only: has_contours
   use remesher_rows, only: measure_own_mesh
-  use scene, only: scene_t
+  use scene, only: role_die_heat, scene_t
   use scene_draft, only: draft_t, start_draft, words_of
   use scene_effects, only: list_effects
   use strategy, only: coupling_monolithic
@@ -98,6 +99,7 @@ contains
     call read_torches(deck, draft, diagnostics)
     call read_body_forces(deck, draft, diagnostics)
     call read_loads(deck, draft, diagnostics)
+    call read_heat_contacts(deck, draft, diagnostics)
     call read_imposed_values(deck, draft, diagnostics)
     call read_tractions(deck, draft, diagnostics)
     call read_pilots(deck, draft, diagnostics)
@@ -125,8 +127,8 @@ contains
 
     call list_elems(elems)
     call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE START ' &
-                  //'FLUX CONVE RADIA HEATS GOLDAK THETA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG LIC STRAT NORMS SOLVR STOP SAVE ' &
-                  //'CKPT PROBE ESTIM REMSH ZPNT ZONE', keywords)
+                  //'FLUX CONVE RADIA HEATS GOLDAK COU2DC TDIE THETA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG LIC STRAT ' &
+                  //'NORMS SOLVR STOP SAVE CKPT PROBE ESTIM REMSH ZPNT ZONE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle
@@ -205,7 +207,7 @@ contains
     do k = 1, size(draft%places%words)
       if (draft%places%keywords(k)%s /= 'DIE' .or. .not. draft%places%used(k)) cycle
       do g = 1, size(draft%scene%groups)
-        if (draft%scene%groups(g)%die == draft%places%item(k)) exit
+        if (draft%scene%groups(g)%die == draft%places%item(k) .and. draft%scene%groups(g)%role /= role_die_heat) exit
       end do
       if (g > size(draft%scene%groups)) call diagnostics%add(draft%places%location(k), 'DIE', ''''//draft%places%words(k)%s &
                                                                //''' touches nothing: a CNT2D card must name it')

@@ -6,12 +6,13 @@
 !> the tangential penalty keeps tau**2/(2 AKTAU). Source: P. Wriggers, Computational Contact Mechanics, 2nd ed., Springer
 !> 2006 (energies of penalty and augmented Lagrange methods).
 module contact_work
-  use contact_point, only: at_augmentation, at_penetration, at_pressure, at_status, at_tau
+  use contact_point, only: area_at, at_augmentation, at_penetration, at_pressure, at_status, at_tau
+  use corner_contact, only: interval_before
   use kinds, only: wp
   use law_api, only: contact_open
   implicit none
   private
-  public :: kept_work
+  public :: friction_energy, kept_work
 
 contains
 
@@ -34,5 +35,24 @@ contains
     end if
     work = work + 0.5_wp*(after(at_tau)**2 - before(at_tau)**2)/penalty(2)
   end function kept_work
+
+  !> Work that friction has done so far at a point of a side and at the corner of the die in the interval before it, at the start
+  !> and at the end of a step.
+  pure function friction_energy(xi, weight, p, work, section, x) result(energy)
+    real(wp), intent(in) :: xi(:), weight(:)   !! (npoint) [-]
+    integer, intent(in) :: p                   !! the point
+    real(wp), intent(in) :: work(3, 2)         !! per present area of the point and of the corner [stress*length], place of that [-]
+    real(wp), intent(in) :: section(3, 2)      !! thickness at the origin [length], and its slopes [-]
+    real(wp), intent(in) :: x(2, 3, 2)         !! nodes of the side then [length]
+    real(wp) :: energy(2)                      !! per radian when axisymmetric [energy]
+    real(wp) :: from, to
+    integer :: k
+
+    call interval_before(xi, p, from, to)
+    do k = 1, 2
+      energy(k) = work(1, k)*weight(p)*area_at(xi(p), section(:, k), x(:, :, k))
+      if (work(2, k) > 0) energy(k) = energy(k) + work(2, k)*(to - from)*area_at(work(3, k), section(:, k), x(:, :, k))
+    end do
+  end function friction_energy
 
 end module contact_work

@@ -379,7 +379,7 @@ contains
     end do
   end function layout_of
 
-  !> Nodes of an element where a field has values of its own: all, or the corners of a quadrilateral and the ends of a side.
+  !> Nodes of an element where a field has values of its own: all, or the corners of a quadrilateral and the ends of sides.
   pure function field_nodes(field, nnode) result(nodes)
     type(field_t), intent(in) :: field   !! on nodes
     integer, intent(in) :: nnode
@@ -388,8 +388,9 @@ contains
 
     if (has_corners_only(field) .and. nnode == 8) then
       nodes = [1, 2, 3, 4]
-    else if (has_corners_only(field) .and. nnode == 3) then
-      nodes = [1, 3]
+    else if (has_corners_only(field) .and. mod(nnode, 3) == 0) then
+      ! a side, and those that it is paired with
+      nodes = [(3*(k/2) + merge(1, 0, mod(k, 2) == 1), k=1, 2*(nnode/3))]
     else
       nodes = [(k, k=1, nnode)]
     end if

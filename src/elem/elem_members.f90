@@ -3,6 +3,8 @@ submodule(elem_registry) elem_members
   use elem_body_forces, only: elem_bforc_row, elem_centr_row
   use elem_cnt2d, only: elem_cnt2d_row
   use elem_cntdf, only: elem_cntdf_row
+  use elem_die_heat, only: elem_dietm_row
+  use elem_heat_contact, only: elem_cndtm_row, elem_cnttm_row
   use elem_heat_source, only: elem_heats_row
   use elem_heat_sides, only: elem_conve_row, elem_flux_row, elem_radia_row
   use elem_pl8ls, only: elem_pl8ls_row
@@ -14,7 +16,7 @@ submodule(elem_registry) elem_members
 contains
 
   module procedure list_elems
-    allocate (elems(13))
+    allocate (elems(16))
     elems(1) = elem_pl8ls_row()
     elems(2) = elem_cnt2d_row()
     elems(3) = elem_cntdf_row()
@@ -28,6 +30,9 @@ contains
     elems(11) = elem_radia_row()
     elems(12) = elem_heats_row()
     elems(13) = elem_goldak_row()
+    elems(14) = elem_cnttm_row()
+    elems(15) = elem_cndtm_row()
+    elems(16) = elem_dietm_row()
   end procedure list_elems
 
 end submodule elem_members

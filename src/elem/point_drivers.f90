@@ -6,28 +6,40 @@
 !> one of the accepted state, and holds for the step that follows; all others are known at both ends of the step.
 !>
 !> The temperature of a body is found by the element itself, which has derivatives along it.
+!>
+!> Heat through contact has no law: its points are driven by what their contact keeps (names below), and by the effusivities of
+!> both bodies, those of the accepted state, where heat of friction is shared by them.
 module point_drivers
   use fields, only: field_t, find_field, has_corners_only, on_nodes
   use kinds, only: wp
   use kinematics_api, only: first_history
-  use law_api, only: driver_count, driver_t, driver_temperature, law_t, solid_law
+  use law_api, only: driver_count, driver_t, driver_temperature, heat_law, law_t, solid_law
   use loads, only: multiplier_at
   use materials, only: has_number
   use point_temperatures, only: nodal_temperatures, temperature_field
   use quadrature, only: line_rule, square_rule
-  use scene, only: group_t, host_of, is_solid, role_contact, scene_t
+  use scene, only: group_t, host_of, is_solid, role_contact, role_heat_contact, scene_t
   use shape_functions, only: line3, quad8
   use solution, only: group_state_t, solution_t
   use state_variables, only: find_variable
   implicit none
   private
+  public :: at_status, at_pressure, at_gap, at_die_piece, at_die_xi, at_friction_work, at_corner_work, at_corner_place, &
+            at_body_effusivity, at_die_effusivity
   public :: drivers_t, find_drivers, missing_driver, driver_of_others, start_drivers, advance_drivers, own_states_at_end, &
             nodal_values, is_scalar
 
   !> Where a driver comes from. A state variable of the formulation itself is that at the start of the step.
-  integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3, from_itself = 4
+  integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3, from_itself = 4, from_effusivity = 5
   !> Name of the flow stress of the body behind a side.
   character(len=*), parameter :: flow_name = 'flow_stress'
+
+  !> What drives heat through contact: state variables of the contact, and effusivities.
+  integer, parameter :: at_status = 2, at_pressure = 3, at_gap = 4, at_die_piece = 5, at_die_xi = 6, at_friction_work = 7, &
+                        at_corner_work = 8, at_corner_place = 9, at_body_effusivity = 10, at_die_effusivity = 11
+  character(len=20), parameter :: of_contact(at_status:at_corner_place) = &
+                                  ['contact_status      ', 'pressure            ', 'penetration         ', 'die_piece           ', &
+                                   'die_xi              ', 'friction_work       ', 'corner_friction_work', 'corner_place        ']
 
   type :: driver_source_t
     integer :: kind = from_nothing
@@ -46,6 +58,8 @@ module point_drivers
     logical :: vary = .false.
     !> Of contact: group and element of the body behind each side, and its side 1 to 4 (nelem).
     integer, allocatable :: body(:), element(:), side(:)
+    !> Of heat through contact with a deformable die: the same behind each of its pieces (npiece).
+    integer, allocatable :: die_body(:), die_element(:), die_side(:)
   end type drivers_t
 
 contains
@@ -62,6 +76,10 @@ contains
       associate (group => scene%groups(g))
         n = 0
         law = 0
+        if (group%role == role_heat_contact) then
+          call drive_heat_contact(scene, g, drivers(g))
+          cycle
+        end if
         if (group%material > 0) then
           law = scene%materials(group%material)%law_id
           n = driver_count(laws(law))
@@ -71,7 +89,7 @@ contains
         allocate (drivers(g)%source(n))
         if (n == 0) cycle
         if (group%role == role_contact) then
-          call find_bodies_behind(scene, group, drivers(g))
+          call find_bodies_behind(scene, group%connectivity(2, :), drivers(g)%body, drivers(g)%element, drivers(g)%side)
           drivers(g)%source(driver_temperature) = source_of(scene, g, temperature_field)
         end if
         do k = 2, n
@@ -84,6 +102,35 @@ contains
       end associate
     end do
   end subroutine find_drivers
+
+  !> What drives the points of heat through a contact; nothing in scenes of heat alone.
+  pure subroutine drive_heat_contact(scene, g, drivers)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g
+    type(drivers_t), intent(inout) :: drivers
+    integer :: k, n, v
+
+    associate (group => scene%groups(g))
+      n = merge(at_die_effusivity, 0, group%host > 0)
+      allocate (drivers%value(n, 2, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
+      allocate (drivers%source(n))
+      drivers%vary = n > 0
+      if (n == 0) return
+      do k = at_status, at_corner_place
+        v = find_variable(scene%groups(group%host)%variables, trim(of_contact(k)))
+        if (v == 0) cycle
+        drivers%source(k)%kind = from_state
+        allocate (drivers%source(k)%group(size(scene%groups)), drivers%source(k)%row(size(scene%groups)), source=0)
+        drivers%source(k)%group(group%host) = group%host
+        drivers%source(k)%row(group%host) = scene%groups(group%host)%variables(v)%first
+      end do
+      if (.not. group%heat_contact%friction > 0 .or. group%heat_contact%share >= 0) return
+      call find_bodies_behind(scene, group%connectivity(2, :), drivers%body, drivers%element, drivers%side)
+      if (allocated(scene%dies(group%die)%nodes)) &
+        call find_bodies_behind(scene, scene%dies(group%die)%nodes(2, :), drivers%die_body, drivers%die_element, drivers%die_side)
+      drivers%source([at_body_effusivity, at_die_effusivity])%kind = from_effusivity
+    end associate
+  end subroutine drive_heat_contact
 
   !> The first driver that the law of a group needs and nothing in the scene gives, '' where there is none.
   pure function missing_driver(scene, laws, g) result(name)
@@ -140,11 +187,11 @@ contains
     if (.not. yes) yes = has_number(scene%materials(scene%groups(g)%material), driver%needs)
   end function is_asked_for
 
-  !> Bodies behind the sides of a contact.
-  pure subroutine find_bodies_behind(scene, group, drivers)
+  !> Bodies behind sides, by the nodes in the middle of these: group, element, and its side 1 to 4.
+  pure subroutine find_bodies_behind(scene, middles, body, element, side)
     type(scene_t), intent(in) :: scene
-    type(group_t), intent(in) :: group
-    type(drivers_t), intent(inout) :: drivers
+    integer, intent(in) :: middles(:)                                  !! (nside)
+    integer, allocatable, intent(out) :: body(:), element(:), side(:)  !! (nside)
     integer :: owner(3, size(scene%mesh%coordinates, 2)), g, e, k
 
     owner = 0
@@ -156,9 +203,9 @@ contains
         end do
       end do
     end do
-    drivers%body = owner(1, group%connectivity(2, :))
-    drivers%element = owner(2, group%connectivity(2, :))
-    drivers%side = owner(3, group%connectivity(2, :))
+    body = owner(1, middles)
+    element = owner(2, middles)
+    side = owner(3, middles)
   end subroutine find_bodies_behind
 
   !> Source of a name for a group.
@@ -234,7 +281,8 @@ contains
 
     if (.not. drivers(g)%vary) return
     call fill(scene, laws, solution, now, time, g, 2, drivers)
-    if (reach >= 1) return
+    ! between one facing point and the next there is none
+    if (reach >= 1 .or. scene%groups(g)%role == role_heat_contact) return
     do k = 1, size(drivers(g)%source)
       if (drivers(g)%source(k)%kind /= from_state) cycle
       associate (value => drivers(g)%value(k, :, :, :))
@@ -306,8 +354,17 @@ contains
           do e = 1, size(own%value, 4)
             own%value(k, at, :, e) = flow_behind(scene, laws, solution, own, drivers, e)
           end do
+        case (from_effusivity)
+          if (at == 2) cycle
+          do e = 1, size(own%value, 4)
+            if (k == at_body_effusivity) then
+              own%value(k, at, :, e) = effusivity(scene, laws, solution, drivers, own%body(e), own%element(e), own%side(e))
+            else
+              own%value(k, at, :, e) = effusivity_of_die(scene, laws, solution, own, drivers, g, e)
+            end if
+          end do
         end select
-        if (k /= driver_temperature .or. .not. allocated(own%body)) cycle
+        if (k /= driver_temperature .or. .not. allocated(own%body) .or. group%role == role_heat_contact) cycle
         do e = 1, size(own%value, 4)
           associate (body => scene%groups(own%body(e)))
             if (body%temperature_multiplier > 0) own%value(k, at, :, e) = given_temperature(scene, body, time)
@@ -358,11 +415,11 @@ contains
     integer :: body, near(2)
 
     body = host_of(scene, g)
-    if (allocated(own%body)) body = own%body(e)
+    if (allocated(own%body) .and. scene%groups(g)%role /= role_heat_contact) body = own%body(e)
     values = 0
     if (own%source(k)%group(body) == 0) return   ! the body behind has none
     associate (state => solution%groups(own%source(k)%group(body)), row => own%source(k)%row(body))
-      if (.not. allocated(own%body)) then
+      if (.not. allocated(own%body) .or. scene%groups(g)%role == role_heat_contact) then
         values = merge(state%committed(row, :, e), state%trial(row, :, e), at == 1)
       else
         near = nearest_points(scene%groups(body)%rule%n, own%side(e))
@@ -399,6 +456,58 @@ contains
       end associate
     end associate
   end function flow_behind
+
+  !> Effusivity of a die at the points of a side: the number of a rigid one, or that of the bodies behind the facing pieces.
+  pure function effusivity_of_die(scene, laws, solution, own, drivers, g, e) result(values)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    type(solution_t), intent(in) :: solution
+    type(drivers_t), intent(in) :: own, drivers(:)   !! of the group, and of all groups
+    integer, intent(in) :: g, e
+    real(wp) :: values(scene%groups(g)%rule%n)
+    integer :: p, piece
+
+    values = scene%groups(g)%heat_contact%effusivity
+    if (.not. allocated(own%die_body)) return
+    do p = 1, size(values)
+      piece = nint(own%value(at_die_piece, 1, p, e))
+      values(p) = 0
+      if (piece > 0) values(p) = effusivity(scene, laws, solution, drivers, own%die_body(piece), own%die_element(piece), &
+                                            own%die_side(piece))
+    end do
+  end function effusivity_of_die
+
+  !> sqrt(conductivity times heat capacity) of a body behind a side at the mean temperature of its element, 0 where it has none.
+  pure function effusivity(scene, laws, solution, drivers, body, element, side) result(b)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    type(solution_t), intent(in) :: solution
+    type(drivers_t), intent(in) :: drivers(:)
+    integer, intent(in) :: body, element, side
+    real(wp) :: b   !! [power time^(1/2)/area/temperature]
+    real(wp) :: conductivity(1), slope(1), taken(1), capacity(1)
+    integer :: g, near(2)
+
+    b = 0
+    near = nearest_points(scene%groups(body)%rule%n, side)
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%material == 0 .or. host_of(scene, g) /= body) cycle
+      associate (material => scene%materials(scene%groups(g)%material))
+        if (laws(material%law_id)%kind /= heat_law) cycle
+        block
+          real(wp) :: given(driver_count(laws(material%law_id)), 1)
+
+          given = 0
+          if (size(given, 1) > 1 .and. size(drivers(g)%value, 1) == size(given, 1)) &
+            given(2:, 1) = drivers(g)%value(2:, 1, near(1), element)
+          given(driver_temperature, 1) = mean_temperature(scene, solution, scene%groups(body), element)
+          call laws(material%law_id)%conduct(material, given, conductivity, slope)
+          call laws(material%law_id)%store(material, given, given, taken, capacity)
+        end block
+        b = sqrt(conductivity(1)*capacity(1))
+      end associate
+    end do
+  end function effusivity
 
   !> What a TEMPE card gives, or the mean of the field over the corners of the element.
   pure function mean_temperature(scene, solution, body, element) result(temperature)

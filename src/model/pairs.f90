@@ -32,7 +32,8 @@ contains
     allocate (pairs(maxval([0, scene%groups%pairs])))
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
-        if (group%pairs == 0) cycle
+        ! heat through a contact has the pairs of that
+        if (group%pairs == 0 .or. group%host > 0) cycle
         allocate (pairs(group%pairs)%piece(group%rule%n, size(group%connectivity, 2)), source=0)
       end associate
     end do

@@ -3,6 +3,7 @@ module scene
   use dies, only: die_t
   use effects, only: effect_t
   use fields, only: field_t
+  use heat_contacts, only: die_heat_t, heat_contact_t
   use kinds, only: wp
   use loads, only: die_force_t, die_motion_t, exchange_t, fixation_t, multiplier_t, nodal_force_t, start_t
   use materials, only: material_t
@@ -18,7 +19,7 @@ module scene
   implicit none
   private
   public :: scene_t, group_t, plane_state_names, host_of, is_solid, lacks_mesh
-  public :: role_body, role_second, role_contact, role_side_load, role_volume_load, role_spring
+  public :: role_body, role_second, role_contact, role_side_load, role_volume_load, role_spring, role_heat_contact, role_die_heat
   public :: plane_strain, axisymmetric, plane_stress, generalised_plane_strain
 
   !> Plane states.
@@ -29,14 +30,16 @@ module scene
   character(len=6), parameter :: plane_state_names(4) = ['PLSTN ', 'AXISYM', 'PLSTS ', 'GPLSTN']
 
   !> What a group is: a body with its first formulation, a further formulation on a body's elements and points, contact of sides,
-  !> a load on sides or on the volume of a body, the spring of a die.
-  integer, parameter :: role_body = 1, role_second = 2, role_contact = 3, role_side_load = 4, role_volume_load = 5, role_spring = 6
+  !> a load on sides or on the volume of a body, the spring of a die, heat between sides and a die, the heat capacity of a die.
+  integer, parameter :: role_body = 1, role_second = 2, role_contact = 3, role_side_load = 4, role_volume_load = 5, &
+                        role_spring = 6, role_heat_contact = 7, role_die_heat = 8
 
   !> Elements of one ELEM and one LAW with their state: the unit of the element loop.
   type :: group_t
     character(len=:), allocatable :: name
     integer :: role = 0
-    !> Body whose elements these are (position in the scene's list), for further formulations and loads on the volume; 0 for others.
+    !> Body whose elements these are (position in the scene's list), for further formulations and loads on the volume; contact whose
+    !> sides these are, for heat between them and the die; 0 for others.
     integer :: host = 0
     !> Member of the ELEM family, by name and position in its list.
     character(len=:), allocatable :: elem
@@ -59,11 +62,12 @@ module scene
     integer :: component = 0
     real(wp) :: stiffness = 0.0_wp
     !> Load on sides or on the volume: amplitude (of a pressure, of a force per volume, density times squared speed of rotation)
-    !> times multiplier.
+    !> times multiplier; heat capacity of a die.
     integer :: multiplier = 0
     real(wp) :: amplitude = 0.0_wp
-    !> Heat that passes the sides.
+    !> Heat that passes the sides; and that between sides and a die.
     type(exchange_t) :: exchange
+    type(heat_contact_t) :: heat_contact
     !> Torch that heats the body (position in the scene's list), 0 for others.
     integer :: source = 0
     !> Direction of a force on the volume: 1 = x, 2 = y; 0 where unused.
@@ -98,6 +102,7 @@ module scene
     type(fixation_t), allocatable :: fixations(:)
     type(die_motion_t), allocatable :: die_motions(:)
     type(die_force_t), allocatable :: die_forces(:)
+    type(die_heat_t), allocatable :: die_heats(:)
     type(nodal_force_t), allocatable :: forces(:)
     type(probe_t), allocatable :: probes(:)
     !> Heat of welding torches.

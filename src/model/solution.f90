@@ -1,10 +1,10 @@
 !> The state of a run at an accepted instant, and the trial state of the present step.
 module solution
   use acceptance, only: probation_t
-  use fields, only: displacement_field, field_t, on_nodes, on_pilots, pilot_field, section_field, start_field
+  use fields, only: displacement_field, field_t, find_field, on_nodes, on_pilots, pilot_field, section_field, start_field
   use heat_record, only: heat_record_t
   use kinds, only: wp
-  use loads, only: start_t
+  use loads, only: multiplier_at, start_t
   use pairs, only: pairs_t, start_pairs
   use remeshing, only: estimate_t
   use scene, only: is_solid, scene_t
@@ -101,7 +101,7 @@ contains
   pure subroutine start_fields(scene, fields)
     type(scene_t), intent(in) :: scene
     type(field_t), allocatable, intent(out) :: fields(:)
-    integer :: k
+    integer :: k, d
 
     allocate (fields, source=scene%fields)
     do k = 1, size(fields)
@@ -123,6 +123,15 @@ contains
       fields(pilot_field)%value(:, k) = scene%dies(k)%pilot
     end do
     fields(section_field)%value(:, 1) = scene%section
+    k = find_field(fields, 'die_temperature')
+    if (k == 0) return
+    do d = 1, size(scene%die_heats)
+      associate (heat => scene%die_heats(d))
+        fields(k)%value(1, heat%die) = heat%temperature
+        if (heat%multiplier > 0) fields(k)%value(1, heat%die) = heat%temperature*multiplier_at(scene%multipliers(heat%multiplier), &
+                                                                                              0.0_wp)
+      end associate
+    end do
   end subroutine start_fields
 
   !> The values of a field on the nodes of a body, or on all.

@@ -47,6 +47,7 @@ contains
     call visitor%derived('multipliers', of_the_deck)
     call visitor%derived('die_motions', of_the_deck)
     call visitor%derived('die_forces', of_the_deck)
+    call visitor%derived('die_heats', of_the_deck)
     call visitor%derived('forces', of_the_deck)
     call visitor%derived('probes', of_the_deck)
     call visitor%derived('sources', of_the_deck)

@@ -4,7 +4,7 @@
 !> temperature of a node. Each is free (it has an equation) or prescribed (its motion is known: elimination, no penalty).
 module dofs
   use elem_api, only: elem_t, field_nodes, layout_of, layout_t, most_components
-  use fields, only: field_t, on_nodes, on_pilots, on_section, pilot_field, section_field
+  use fields, only: field_t, find_field, on_nodes, on_pilots, on_section, pilot_field, section_field
   use kinds, only: wp
   use loads, only: multiplier_at
   use pairs, only: most_pieces, nodes_per_piece, paired_nodes, pairs_t, start_pairs
@@ -219,6 +219,7 @@ contains
           by_dof(d) = prescribed_t(d, motion%amplitude, motion%multiplier)
         end associate
       end do
+      if (allocated(scene%die_heats)) call list_die_temperatures()
       do k = 1, size(scene%fixations)
         associate (fixation => scene%fixations(k))
           do i = 1, size(fixation%nodes)
@@ -234,6 +235,24 @@ contains
       end do
     end associate
     dofs%prescribed = pack(by_dof, by_dof%dof > 0)
+
+  contains
+
+    !> Dies whose temperature is given: without a multiplier it stays as it began.
+    subroutine list_die_temperatures()
+      integer :: f
+
+      f = find_field(scene%fields, 'die_temperature')
+      if (f == 0) return
+      do k = 1, size(scene%die_heats)
+        associate (heat => scene%die_heats(k))
+          d = dofs%fields(f)%number(1, heat%die)
+          if (d == 0 .or. heat%capacity > 0) cycle
+          by_dof(d) = prescribed_t(d, heat%temperature, heat%multiplier, f, 1, heat%die)
+        end associate
+      end do
+    end subroutine list_die_temperatures
+
   end subroutine list_prescribed
 
   !> Unknowns that are not prescribed, and that some element acts on: what elements only read of a field that ends beside them stays

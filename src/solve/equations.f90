@@ -1,10 +1,10 @@
 !> The discrete equations of a scene: unknowns, pattern, element loop, linear solver.
 module equations
   use axis_wall, only: axis_wall_t, find_axis_wall, press_on_axis
-  use contact_point, only: at_piece
   use dies, only: is_deformable, place_on_nodes
   use dofs, only: dofs_t, number_dofs, number_pairs
   use elem_api, only: block_done, elem_t, flow_rule_t, instant_t, mode_advance, mode_error, report_t
+  use elem_heat_contact, only: name_of_piece
   use elem_registry, only: list_elems
   use elem_weld_source, only: source_factors
   use element_loop, only: element_buffers_t, gather_forces, gather_matrix, run_elements
@@ -24,6 +24,7 @@ module equations
   use sections, only: section_forced
   use solution, only: present_coordinates, solution_t
   use solves, only: list_solves, number_equations, quantities_of, set_up_pattern, solve_t
+  use state_variables, only: find_variable
   use strategy, only: strategy_t
   use threads, only: fit_to_load, team_t
   use timers, only: ledger_t
@@ -176,12 +177,12 @@ contains
 
     n = 0
     do g = 1, size(scene%groups)
-      if (scene%groups(g)%pairs > 0) n = n + size(equations%dofs%groups(g)%nodes)/3
+      if (scene%groups(g)%pairs > 0 .and. scene%groups(g)%host == 0) n = n + size(equations%dofs%groups(g)%nodes)/3
     end do
     allocate (links(8, n))
     n = 0
     do g = 1, size(scene%groups)
-      if (scene%groups(g)%pairs == 0) cycle
+      if (scene%groups(g)%pairs == 0 .or. scene%groups(g)%host > 0) cycle
       associate (nodes => equations%dofs%groups(g)%nodes)
         do e = 1, size(nodes, 2)
           do k = 3, size(nodes, 1) - 3, 3
@@ -221,14 +222,16 @@ contains
   end subroutine pair_up
 
   !> Pairs around the closest points just found; points without one keep theirs.
-  pure subroutine renew_pairs(scene, solution)
+  pure subroutine renew_pairs(scene, active, solution)
     type(scene_t), intent(in) :: scene
+    logical, intent(in) :: active(:)   !! (ngroup) groups that were just computed
     type(solution_t), intent(inout) :: solution
-    integer :: g
+    integer :: g, at
 
     do g = 1, size(scene%groups)
-      if (scene%groups(g)%pairs == 0) cycle
-      associate (middle => solution%pairs(scene%groups(g)%pairs)%piece, found => nint(solution%groups(g)%trial(at_piece, :, :)))
+      if (scene%groups(g)%pairs == 0 .or. .not. active(g)) cycle
+      at = scene%groups(g)%variables(find_variable(scene%groups(g)%variables, name_of_piece))%first
+      associate (middle => solution%pairs(scene%groups(g)%pairs)%piece, found => nint(solution%groups(g)%trial(at, :, :)))
         where (found > 0) middle = found
       end associate
     end do
@@ -247,6 +250,8 @@ contains
     do g = 1, size(scene%groups)
       associate (row => equations%elems(scene%groups(g)%elem_id), m => scene%groups(g)%material)
         if (.not. equations%solves(s)%active(g)) cycle
+        ! radiation depends on two temperatures, on each in its way
+        symmetric = symmetric .and. .not. scene%groups(g)%heat_contact%radiation > 0
         symmetric = symmetric .and. (row%symmetric .or. .not. (row%follows .or. scene%finite))
         symmetric = symmetric .and. .not. (scene%finite .and. scene%groups(g)%option == row%unsymmetric_option)
         if (m == 0) cycle
@@ -416,7 +421,7 @@ contains
                         solution, equations%drivers, equations%buffers, equations%timers, report)
       if (report%status /= block_done) return
       if (.not. report%unpaired) exit
-      call renew_pairs(scene, solution)
+      call renew_pairs(scene, equations%solves(equations%now)%active, solution)
     end do
     equations%source = sqrt(report%source)
     if (solves_heat(scene, equations)) then

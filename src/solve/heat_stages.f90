@@ -45,13 +45,16 @@ contains
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     logical :: yes
-    integer :: f
+    integer :: f, k
 
     f = find_field(scene%fields, 'temperature')
     yes = .false.
     if (f == 0) return
     associate (own => equations%solves(equations%now)%own)
-      yes = scene%fields(f)%declared .and. own(f) .and. count(own .and. scene%fields%declared) == 1
+      yes = scene%fields(f)%declared .and. own(f)
+      do k = 1, size(own)
+        if (own(k) .and. scene%fields(k)%declared) yes = yes .and. scene%fields(k)%quantity == 'temperature'
+      end do
     end associate
   end function is_heat_alone
 

@@ -121,7 +121,10 @@ contains
                                                 size(group%connectivity, 2)])
       if (file%failed() .or. group%die == 0) return
       if (.not. is_deformable(scene%dies(group%die))) return
-      if (size(scene%dies(group%die)%nodes) > 0) group%pairs = maxval([0, scene%groups(:g - 1)%pairs]) + 1
+      if (size(scene%dies(group%die)%nodes) == 0) return
+      group%pairs = maxval([0, scene%groups(:g - 1)%pairs]) + 1
+      ! heat through a contact has the pairs of that
+      if (group%host > 0) group%pairs = scene%groups(group%host)%pairs
     end associate
   end subroutine check_members_of_group
 

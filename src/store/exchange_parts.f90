@@ -11,7 +11,7 @@ module exchange_parts
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use mesh, only: side_set_t
-  use scene, only: axisymmetric, group_t, is_solid, role_second, role_volume_load, scene_t
+  use scene, only: axisymmetric, group_t, is_solid, role_contact, role_heat_contact, role_second, role_volume_load, scene_t
   use shape_functions, only: quad8, quad8_side
   use quadrature, only: rule_number, square_rule
   use solution, only: solution_t
@@ -194,6 +194,12 @@ contains
       if (file%failed()) return
       call require(file, place//'/connectivity', same_elements(group%connectivity, scene%groups(group%host)%connectivity), &
                    'holds other elements than those of its body')
+    else if (group%role == role_heat_contact) then
+      if (group%host == 0) return
+      call require(file, place//'/host', scene%groups(group%host)%role == role_contact, 'holds '//to_text(group%host)// &
+                   ', which is no contact')
+      call require(file, place//'/connectivity', same_elements(group%connectivity, scene%groups(group%host)%connectivity), &
+                   'holds other sides than those of its contact')
     else
       call require(file, place//'/host', group%host == 0, 'holds '//to_text(group%host)//', where 0 is wanted')
     end if

@@ -1,0 +1,81 @@
+!> Heat through contact: conductance of closed points, exchange across a gap, and the temperatures of rigid dies.
+!>
+!> Heat that comes into the body per area, from the facing point of the die at Td to its own surface at T:
+!> q = h (Td - T) + EPS SIGMA ((Td + Z)^4 - (T + Z)^4). Closed points have h = H f(pressure) and no radiation; open ones within the
+!> reach have h = H g(gap) + HO (a film of gas conducts as 1/gap; convection) and radiate; f and g are tables, f = 1 and g = 0 where
+!> none is given. Sources: M.G. Cooper, B.B. Mikic, M.M. Yovanovich, Int. J. Heat Mass Transfer 12 (1969) 279-300 (conductance by
+!> pressure); F.P. Incropera, D.P. DeWitt, Fundamentals of Heat and Mass Transfer, sec. 3.1 and 13.3 (gaps, radiation).
+module heat_contacts
+  use kinds, only: wp
+  use loads, only: value_in_table
+  implicit none
+  private
+  public :: die_heat_t, heat_contact_t, flow_from_die, share_by_effusivity
+
+  !> Numbers of the exchange of heat between sides and a die.
+  type :: heat_contact_t
+    !> Conductance where they touch [power/area/temperature], and factors of it by pressure and by gap (2, n); not allocated where
+    !> none are given.
+    real(wp) :: conductance = 0.0_wp
+    real(wp), allocatable :: by_pressure(:, :), by_gap(:, :)
+    !> Convection across a gap [power/area/temperature]; emissivity times the constant of radiation, and what makes temperatures
+    !> absolute; largest gap across which heat is exchanged [length].
+    real(wp) :: convection = 0.0_wp, radiation = 0.0_wp, zero = 0.0_wp, reach = 0.0_wp
+    !> Share of the work of friction that becomes heat; of this the share of the body, below 0: by effusivity; effusivity of a rigid
+    !> die [power time^(1/2)/area/temperature].
+    real(wp) :: friction = 0.0_wp, share = -1.0_wp, effusivity = 0.0_wp
+  end type heat_contact_t
+
+  !> Temperature of a rigid die: given, times a multiplier (0 for none); or with a heat capacity [energy/temperature, per radian
+  !> when axisymmetric], one temperature that begins there.
+  type :: die_heat_t
+    integer :: die = 0
+    real(wp) :: temperature = 0.0_wp, capacity = 0.0_wp
+    integer :: multiplier = 0
+  end type die_heat_t
+
+contains
+
+  !> Heat that comes into the body per area, and its derivatives by the temperatures of the body and of the die.
+  pure subroutine flow_from_die(contact, closed, pressure, gap, t, t_die, q, slope, slope_die)
+    type(heat_contact_t), intent(in) :: contact
+    logical, intent(in) :: closed
+    real(wp), intent(in) :: pressure           !! [stress]
+    real(wp), intent(in) :: gap                !! [length]
+    real(wp), intent(in) :: t, t_die           !! [temperature]
+    real(wp), intent(out) :: q                 !! [power/area]
+    real(wp), intent(out) :: slope, slope_die  !! [power/area/temperature]
+    real(wp) :: h, factor, unused
+
+    if (closed) then
+      factor = 1
+      if (allocated(contact%by_pressure)) call value_in_table(contact%by_pressure, pressure, factor, unused)
+      h = contact%conductance*factor
+    else
+      factor = 0
+      if (allocated(contact%by_gap)) call value_in_table(contact%by_gap, gap, factor, unused)
+      h = contact%conductance*factor + contact%convection
+    end if
+    q = h*(t_die - t)
+    slope = -h
+    slope_die = h
+    if (closed .or. .not. contact%radiation > 0) return
+    ! the difference of fourth powers without the loss of digits
+    associate (a => t_die + contact%zero, b => t + contact%zero)
+      q = q + contact%radiation*(a - b)*(a + b)*(a**2 + b**2)
+      slope = slope - 4*contact%radiation*b**3
+      slope_die = slope_die + 4*contact%radiation*a**3
+    end associate
+  end subroutine flow_from_die
+
+  !> Share of friction heat that goes into a body: its effusivity over the sum of both (half spaces that rub have one temperature
+  !> where they touch; H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, sec. 2.15).
+  pure function share_by_effusivity(body, die) result(share)
+    real(wp), intent(in) :: body, die   !! sqrt(conductivity times heat capacity) [power time^(1/2)/area/temperature]
+    real(wp) :: share
+
+    share = 1
+    if (body + die > 0) share = body/(body + die)
+  end function share_by_effusivity
+
+end module heat_contacts
