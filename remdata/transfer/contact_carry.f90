@@ -9,7 +9,7 @@ module contact_carry
   use offset_parabolas, only: length_between
   use part_contour, only: contour_t
   use quadrature, only: line_rule
-  use scene, only: axisymmetric, scene_t
+  use scene, only: axisymmetric, role_heat_contact, scene_t
   use shape_functions, only: line3
   use solution, only: present_coordinates, solution_t
   use state_variables, only: component_names, find_variable, kind_contact => transfer_contact
@@ -44,7 +44,7 @@ contains
     type(interval_points_t) :: row_old, row_new
     integer, allocatable :: carried(:)
     logical, allocatable :: conserved(:)
-    integer :: c, k, g, i
+    integer :: c, k, g, h, i
 
     allocate (rows(0))
     x = present_coordinates(old, from)
@@ -53,11 +53,15 @@ contains
         g = contours(c)%contacts(k)%interval%group
         call old_row(old, g, contours(c)%loop, contours(c)%contacts(k)%interval, x, row_old)
         call new_row(new, g, contours, c, k, mesh, row_new)
-        call list_carried(old, g, carried, conserved)
-        call carry_interval(carried, conserved, row_old, row_new, from%groups(g)%committed, status_row(old, g), &
-                            to%groups(g)%committed)
-        call add_integrals(old, g, carried(pack([(i, i=1, size(carried))], conserved)), row_old, from%groups(g)%committed, &
-                           row_new, to%groups(g)%committed, rows)
+        ! the group, and heat through its points
+        do h = 1, size(old%groups)
+          if (h /= g .and. .not. (old%groups(h)%role == role_heat_contact .and. old%groups(h)%host == g)) cycle
+          call list_carried(old, h, carried, conserved)
+          call carry_interval(carried, conserved, row_old, row_new, from%groups(h)%committed, status_row(old, h), &
+                              to%groups(h)%committed)
+          call add_integrals(old, h, carried(pack([(i, i=1, size(carried))], conserved)), row_old, from%groups(h)%committed, &
+                             row_new, to%groups(h)%committed, rows)
+        end do
       end do
     end do
     do g = 1, size(to%groups)
