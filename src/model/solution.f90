@@ -124,7 +124,7 @@ contains
     end do
     fields(section_field)%value(:, 1) = scene%section
     k = find_field(fields, 'die_temperature')
-    if (k == 0) return
+    if (k == 0 .or. .not. allocated(scene%die_heats)) return
     do d = 1, size(scene%die_heats)
       associate (heat => scene%die_heats(d))
         fields(k)%value(1, heat%die) = heat%temperature

@@ -1,0 +1,305 @@
+#!/usr/bin/env python3
+"""Heat through contact (COU2DC, TDIE) against closed forms, and its books.
+
+usage: run_heat_contact.py [-v] [-k]
+
+- `slab`: on a die with a heat capacity: both temperatures go to their mean by exp(-h A t (1/C1 + 1/C2)); first order in time with
+  implicit Euler, what the slab loses the die gains; in a plane and around an axis.
+- `wall`: steady, of two bodies with a resistance between them, and on a die whose temperature is given: q = dT/(L1/k1 + 1/h + L2/k2).
+- `gap`: steady, across a gap by convection, a film of gas and radiation: the root of the balance.
+- `half`: two half spaces brought together (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, sec. 2.7 and 2.15): without resistance
+  T = (b1 T1 + b2 T2)/(b1 + b2), b = sqrt(k rho c), at all times; with h T + (T1 - T) exp(g^2 t) erfc(g sqrt(t)), g = h (b1 + b2)/(b1 b2).
+- `shock`: a Biot number of 1000 on a coarse mesh, BILINEAR and implicit Euler: no temperature outside those at the start.
+- `slide`: a block drawn over a die, over another body: the work of friction is the heat released, less that of the last step where
+  temperatures are found once and first; shared by SHARE and by effusivity; all ways of coupling; the same bits by any number of threads
+  and resumed.
+- `billet`: pressed between chilled dies and remeshed twice: temperatures of the dies and the heat that they got go on.
+"""
+import glob
+import math
+import os
+import shutil
+import sys
+
+sys.dont_write_bytecode = True
+HERE = os.path.dirname(os.path.abspath(__file__))
+TESTS = os.path.dirname(HERE)
+sys.path[:0] = [HERE] + [os.path.join(TESTS, folder) for folder in ("patch", "runs", "cycle")]
+from patch_support import Checks, Run, np  # noqa: E402
+from remeshed import cycle, tries  # noqa: E402
+from run_coupling import call, content  # noqa: E402
+from run_exchange import STEADY, TIGHT, root  # noqa: E402
+from support import DONE, history, result_differences, said, write  # noqa: E402
+
+HEAD = "TITLE {0}\nSTATE {1}\nKINEM SMALL\n"
+EASY = "NORMS FORCE 1.E-10 DISPL 1.E-10\n"
+
+
+def slab(checks):
+    """A slab of good conductivity, 0.1 high, h = 0.5 over an area of 1."""
+    for state, area in (("PLSTN", 1.0), ("AXISYM", math.pi)):
+        c1, c2, h = 0.2*area, 0.3*area, 0.5*area
+        rate, mean = h*(1/c1 + 1/c2), (c1*1000 + c2*20)/(c1 + c2)
+        exact = mean + (1000 - mean)*math.exp(-rate)
+        errors = []
+        for kind, step in (("BILINEAR", 0.02), ("BILINEAR", 0.01), ("", 0.01)):
+            run = Run(checks, f"slab-{state}{kind}{step}", HEAD.format("slab", state)
+                      + f"BLOCK slab PL8TM 9 stuff {kind}\n   0. 0. 1. 0. 1. 0.1 0. 0.1\n   2 1. 2 1.\nLAW stuff HEAT\n   1.E9 2.\n"
+                      "DIE cold\n   SEGM -1. 0. 2. 0.\n" f"TDIE cold T 20. C {c2}\nCOU2DC slab 1 cold H 0.5\nSTART T 1000.\n"
+                      f"PROBE top NODE T 0. 0.1\nSTRAT {step} 1.E-6 {step} 4 3\nSTOP 1.\n" + EASY + "END\n")
+            if not run.ok:
+                return
+            errors.append(abs(run.history["top"][-1] - exact))
+            lost = c1*(1000 - run.history["top"][-1])
+            checks.small(abs(c2*(run.history["temperature_cold"][-1] - 20)/lost - 1), 1e-7, f"{run.name}: the die gains what is lost")
+            checks.small(abs(run.history["heat_imbalance"][-1]), 1e-9, f"{run.name}: books of heat")
+        checks.small(abs(math.log2(errors[0]/errors[1]) - 1), 0.05, f"slab {state}: first order in time ({errors[0]:.2f} K)")
+        checks.small(errors[1], 4.5, f"slab {state}: {exact:.3f} after 1")
+        checks.small(abs(errors[2] - errors[1]), 1e-3, f"slab {state}: 8 temperatures an element and 4 alike")
+
+
+BODIES = ("BLOCK a PL8TM 9 one {kind}\n   0. 0. 1. 0. 1. 2. 0. 2.\n   {na} 1. 3 1.\n"
+          "BLOCK b PL8TM 9 two {kind}\n   0. -1. 1. -1. 1. {gap} 0. {gap}\n   {nb} 1. 2 1.\n"
+          "LAW one HEAT\n   {k1} {c1}\nLAW two HEAT\n   {k2} {c2}\nDIE face SIDES b 3\n")
+
+
+def wall(checks):
+    """Steady: flow and the temperatures on both sides of the contact."""
+    for kind in ("", "BILINEAR"):
+        for na, nb in ((1, 1), (2, 3), (3, 1)):
+            q = 100/(2/4.0 + 1/5.0 + 1/10.0)
+            run = Run(checks, f"wall{kind}{na}{nb}", HEAD.format("wall", "PLSTN")
+                      + BODIES.format(kind=kind, na=na, nb=nb, gap="0.", k1=4., c1=1., k2=10., c2=1.)
+                      + "COU2DC a 1 face H 5.\nIMPOS a 3 T on 120.\nIMPOS b 1 T on 20.\nLIC on\n   0. 1.\n"
+                      "PROBE up NODE T 0. 2.\nPROBE side NODE T 1. 0.6666666666666667\n" + STEADY + TIGHT + "END\n")
+            if run.ok:
+                # nodes that do not match share the points' heat by functions with kinks between them, as they do the pressure
+                checks.small(abs(run.history["side"][-1] - (120 - q*(2 - 2/3)/4)), 1e-8 if na != 2 else 1e-5, f"{run.name}: steady")
+                checks.small(abs(run.history["heat_imbalance"][-1]), 1e-8, f"{run.name}: books of heat")
+        q = 100/(2/4.0 + 1/5.0)
+        run = Run(checks, f"wall{kind}die", HEAD.format("wall", "PLSTN")
+                  + f"BLOCK a PL8TM 9 one {kind}\n   0. 0. 1. 0. 1. 2. 0. 2.\n   2 1. 3 1.\nLAW one HEAT\n   4. 1.\n"
+                  "DIE cold\n   SEGM -1. 0. 2. 0.\nTDIE cold T 10. on\nCOU2DC a 1 cold H 5.\nIMPOS a 3 T on 60.\nLIC on\n   0. 2.\n"
+                  "PROBE low NODE T 0. 0.\n" + STEADY + TIGHT + "END\n")
+        if run.ok:
+            checks.small(abs(run.history["low"][-1] - (120 - q*2/4)), 1e-8, f"{run.name}: steady")
+            checks.small(abs(run.history["heat_flow_cold"][-1]/q - 1), 1e-8, f"{run.name}: the flow into the die")
+
+
+def gap(checks):
+    """Steady, across 0.02: what leaves the wall passes the gap."""
+    h, eps, sigma, width = 5.0, 0.6, 5.67e-8, 0.02
+    film = h*np.interp(width, [0.0, 0.05], [1.0, 0.2])
+
+    def balance(up):
+        q = 4.0*(900 - up)/2
+        low = 20 + q*1.0/10.0
+        return q - (film + 0.7)*(up - low) - eps*sigma*((up + 273.15)**4 - (low + 273.15)**4)
+
+    up = root(balance, 20.0, 900.0)
+    for kind in ("", "BILINEAR"):
+        run = Run(checks, f"gap{kind}", HEAD.format("gap", "PLSTN")
+                  + BODIES.format(kind=kind, na=2, nb=2, gap=f"-{width}", k1=4., c1=1., k2=10.*(1 - width), c2=1.)
+                  + f"COU2DC a 1 face H {h} HO 0.7 EPS {eps} SIGMA {sigma} ZERO 273.15 REACH 0.1\n   GAP 0. 1. 0.05 0.2\n"
+                  "IMPOS a 3 T on 900.\nIMPOS b 1 T on 20.\nLIC on\n   0. 1.\nSTART T 400.\nPROBE low NODE T 0. 0.\n" + STEADY + TIGHT
+                  + "END\n")
+        if run.ok:
+            checks.small(abs(run.history["low"][-1] - up), 1e-7*up, f"{run.name}: {up:.4f}")
+
+
+def half_spaces(checks):
+    """As deep as heat comes within the time, steps by their error."""
+    b1, b2, t1, t2 = 1.0, 6.0, 100.0, 0.0
+    common = (b1*t1 + b2*t2)/(b1 + b2)
+    for kind in ("", "BILINEAR"):
+        for h in (1e7, 2.0):
+            run = Run(checks, f"half{kind}{h:.0f}", HEAD.format("half spaces", "PLSTN")
+                      + f"BLOCK a PL8TM 9 one {kind}\n   0. 0. 1. 0. 1. 8. 0. 8.\n   1 1. 60 20.\n"
+                      f"BLOCK b PL8TM 9 two {kind}\n   0. -12. 1. -12. 1. 0. 0. 0.\n   1 1. 60 0.05\n"
+                      "LAW one HEAT\n   1. 1.\nLAW two HEAT\n   9. 4.\nDIE face SIDES b 3\n"
+                      f"COU2DC a 1 face H {h}\nSTART T {t1} a\nSTART T {t2} b\nTHETA TRBDF2 TOL 0.002\n"
+                      "PROBE p NODE T 0. 0.\nSTRAT 1.E-6 1.E-7 0.02 4 3\nSTOP 1.\n" + EASY + "END\n")
+            if not run.ok:
+                continue
+            g = h*(b1 + b2)/(b1*b2)
+            # exp(g^2 t) erfc(g sqrt(t)) for a large argument: 1/(g sqrt(pi t))
+            part = math.exp(g*g)*math.erfc(g) if g < 20 else 1/(g*math.sqrt(math.pi))
+            exact = common + (t1 - common)*part
+            checks.small(abs(run.history["p"][-1] - exact), 0.05, f"{run.name}: {exact:.4f} at 1")
+            checks.small(abs(run.history["heat_imbalance"][-1]), 1e-8, f"{run.name}: books of heat")
+
+
+def shock(checks):
+    """Any step, a coarse mesh: temperatures stay between those of the start."""
+    for step in (1e-6, 1e-3, 1.0):
+        run = Run(checks, f"shock{step}", HEAD.format("shock", "PLSTN")
+                  + BODIES.format(kind="BILINEAR", na=3, nb=2, gap="0.", k1=1., c1=1., k2=3., c2=2.)
+                  + f"COU2DC a 1 face H 1000.\nSTART T 1000. a\nSTRAT {step} {step} {step} 4 3\nSTOP {20*step}\n" + EASY
+                  + "SAVE 1\nEND\n")
+        if not run.ok:
+            continue
+        with run.open() as file:
+            found = [file[f"steps/{name}/node/temperature"][()] for name in file["steps"]]
+        checks.that(min(np.min(t) for t in found) > -1e-7 and max(np.max(t) for t in found) < 1000 + 1e-7, f"{run.name}: bounds",
+                    [(float(np.min(t)), float(np.max(t))) for t in found][-1])
+
+
+SLIDE = """TITLE  A block drawn over another
+STATE  PLSTN
+KINEM  LOG
+BLOCK  b PL8LS 4 steel
+   0. 0.  10. 0.  10. 5.  0. 5.
+   6 1.  3 1.
+LAW    steel ELA
+   200000. 0.3
+ADDEL  b PL8TM hot {kind}
+LAW    hot HEAT
+   40. 4.
+LAW    rough COUL2D
+   PENETR 1.E-3   PHI 0.3
+{die}
+CNT2D  b 1 under {points} rough
+COU2DC b 1 under {heat}
+START  T 20.
+MOVE   b 3 X slide 3.
+MOVE   b 3 Y press -0.005
+LIC    press
+   0. 0.  0.1 1.
+LIC    slide
+   0. 0.  0.1 0.  1. 1.
+STRAT  0.02 1.E-6 0.05   4 3
+NORMS  FORCE 1.E-10 DISPL 1.E-10
+STOP   1.
+SOLVE  {solve}
+CKPT   5
+END
+"""
+RIGID = "DIE    under PILOT 0. 0.\n   SEGM -50. 0.  50. 0.\nTDIE   under T 20. C 500."
+SIDES = ("BLOCK  u PL8LS 4 steel\n   -5. -4.  18. -4.  18. 0.  -5. 0.\n   9 1.  2 1.\nADDEL  u PL8TM warm {kind}\nLAW    warm HEAT\n"
+         "   90. 1.\nDIE    under SIDES u 3\nFIXED  u 1 XY")
+WAYS = ("ONCE", "CONVERGE", "MONOLITHIC")
+
+
+def balance(checks, name, text, once, body_share=None):
+    """Heat released is the work of friction; without conductance a die takes its share."""
+    run = Run(checks, name, text)
+    if not run.ok:
+        return
+    work = run.history["friction_work"]
+    released = run.history["heat_released"]
+    checks.that(work[-1] > 1000, f"{name}: friction works", work[-1])
+    expected = np.append(0.0, work[:-1]) if once else work
+    checks.small(np.max(np.abs(released - expected))/work[-1], 1e-8, f"{name}: its work becomes heat")
+    checks.small(abs(run.history["heat_imbalance"][-1]), 1e-8, f"{name}: books of heat")
+    if body_share is not None:
+        gained = 500*(run.history["temperature_under"][-1] - 20)
+        checks.small(abs(gained/released[-1] - (1 - body_share)), 1e-8, f"{name}: the share of the die")
+
+
+def slide(checks):
+    """Friction on a rigid die and on a body."""
+    for solve in WAYS:
+        once = solve == "ONCE"
+        balance(checks, f"share-{solve}", SLIDE.format(kind="BILINEAR", die=RIGID, points="-3", heat="H 0. FRIC 1. SHARE 0.3", solve=solve),
+                once, 0.3)
+        # effusivity of the block sqrt(40 4), of the die 13
+        body = math.sqrt(160.0)/(math.sqrt(160.0) + 13)
+        balance(checks, f"effusivity-{solve}", SLIDE.format(kind="", die=RIGID, points="-3", heat="H 0. FRIC 1. EFFUS 13.", solve=solve),
+                once, body)
+        balance(checks, f"bodies-{solve}", SLIDE.format(kind="BILINEAR", die=SIDES.format(kind="BILINEAR"), points="",
+                                                        heat="H 5. FRIC 1.\n   PRESS 0. 0.2  100. 1.", solve=solve), once)
+
+
+def same_bits(checks):
+    """Threads, and resumed from the older checkpoint."""
+    decks = {"rigid": SLIDE.format(kind="BILINEAR", die=RIGID, points="-3", heat="H 5. FRIC 1. SHARE 0.5\n   PRESS 0. 0.2 100. 1.",
+                                   solve="ONCE"),
+             "body": SLIDE.format(kind="", die=SIDES.format(kind=""), points="", heat="H 5. FRIC 1.", solve="MONOLITHIC")}
+    for name, text in decks.items():
+        deck = write(os.path.join(checks.folder, f"{name}.lag"), text)
+        whole, two, again = (os.path.join(checks.folder, f"{name}-{which}") for which in ("one", "two", "again"))
+        if not (call(checks, deck, whole, "--threads", "1") and call(checks, deck, two, "--threads", "2")):
+            continue
+        checks.that(not result_differences(whole, two), f"{name}: the same bits with 1 and 2 threads", result_differences(whole, two))
+        old = glob.glob(os.path.join(whole, "*.ckp.1.h5"))[0]
+        shutil.copytree(whole, again)
+        if call(checks, deck, again, "--threads", "1", "--resume", os.path.join(again, os.path.basename(old))):
+            checks.that(not result_differences(whole, again), f"{name}: resumed, as in one go", result_differences(whole, again))
+
+
+BILLET = """TITLE  Billet between chilled dies, remeshed
+STATE  AXISYM
+KINEM  LOG
+BLOCK  billet PL8LS 4 steel
+   0. 0.  10. 0.  10. 15.  0. 15.
+   6 1.   9 1.
+LAW    steel EPLA
+   200000. 0.3
+   LINEAR 700. 300.
+ADDEL  billet PL8TM heat BILINEAR
+LAW    heat HEAT
+   50. 3.6
+START  T 1000.
+LAW    rough  COUL2D
+   PENETR 1.E-3   PHI 0.2
+DIE    upper  PILOT 0. 15.
+   SEGM  30. 15.   -1. 15.
+CNT2D  billet 2 3  upper -3 rough
+TDIE   upper T 200. C 5.E3
+COU2DC billet 2 3 upper H 20. EPS 0.5 SIGMA 5.67E-11 ZERO 273.15 REACH 5. FRIC 1. SHARE 0.5
+FIXED  billet 1 Y
+FIXED  billet 4 X
+LIC    press
+   0. 0.     1. -6.
+MOVE   upper Y press
+STRAT  0.02  1.E-5  0.05   4 3
+STOP   0.7
+REMSH
+   TIMES 0.3 0.6
+END
+"""
+
+
+def billet(checks):
+    """From mesh to mesh."""
+    deck, out = write(os.path.join(checks.folder, "billet.lag"), BILLET), os.path.join(checks.folder, "billet")
+    result = cycle(deck, out)
+    checks.that(result.returncode == DONE, "billet: lagacycle", said(result))
+    if result.returncode != DONE:
+        return
+    checks.that([row["accepted"] for row in tries(out)].count("y") == 2, "billet: two new meshes", tries(out))
+    columns = {name: np.array(values) for name, values in history(out).items()}
+    die = columns["temperature_upper"]
+    checks.that(np.all(np.diff(die) > 0) and die[-1] > 220, "billet: the die warms up all the while", die)
+    flow = columns["heat_flow_upper"]*columns["step_length"]
+    checks.small(abs(5e3*(die[-1] - 200)/np.sum(flow) - 1), 1e-9, "billet: what the die got is its temperature, over all meshes")
+    checks.small(abs(columns["heat_imbalance"][-1]), 1e-5, "billet: books of heat")
+    # what slides while equilibrium is restored on a new mesh is counted with the step after it, and makes no heat
+    heat, work = np.diff(columns["heat_released"])[1:], np.diff(columns["friction_work"])[:-1]
+    missing = np.abs(heat - work)/work
+    checks.that(np.sum(missing > 1e-9) <= 4 and np.sum(missing > 1e-3) <= 2 and np.max(missing) < 0.1,
+                "billet: heat of friction, over all meshes", missing)
+    for generation in (1, 2):
+        before, after = (os.path.join(out, f"billet.g{generation + k:02}.{end}.h5") for k, end in ((0, "end"), (1, "start")))
+        (old, low, high), (new, least, most) = content(before), content(after)
+        checks.small(abs(new/old - 1), 1e-3, f"billet: heat across remesh {generation}")
+        slack = 1e-3*(high - low)
+        checks.that(low - slack <= least and most <= high + slack, f"billet: bounds of the temperature, remesh {generation}",
+                    f"{least} to {most}, were {low} to {high}")
+
+
+def main():
+    checks = Checks()
+    slab(checks)
+    wall(checks)
+    gap(checks)
+    half_spaces(checks)
+    shock(checks)
+    slide(checks)
+    same_bits(checks)
+    billet(checks)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
