@@ -1,7 +1,8 @@
 !> CNTTM and CNDTM: heat between 3-node sides of a body and the die that they face, a rigid one with one temperature or sides of
 !> other bodies.
 !>
-!> Per area q (heat_contacts) comes into the side and leaves the facing point of the die: F_i = -sum_k w_k integral phi_i q dA,
+!> Per area q (heat_contacts) comes into the side and leaves the facing point of the die, the area as it is projected on the tangent
+!> of the die there: a side that stands on the die with its end gets no heat along itself; F_i = -sum_k w_k integral phi_i q dA,
 !> F_j = +sum_k w_k integral psi_j q dA at the instants k of the flow rule (elem_api), psi = 1 for a rigid die and the functions of
 !> the facing side at the closest point for a deformable one: what the die loses the side gains, point by point. Where temperatures
 !> stand on corners each pair of ends exchanges for itself, with the product of their shares of the area: the same sum, and no
@@ -24,6 +25,7 @@ module elem_heat_contact
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_open, law_t
   use pairs, only: list_pieces, pieces_in_reach
+  use parabolas, only: tangent_on
   use plane_vectors, only: turned
   use point_drivers, only: at_body_effusivity, at_corner_place, at_corner_work, at_die_effusivity, at_die_piece, at_die_xi, &
                            at_friction_work, at_gap, at_pressure, at_status
@@ -51,6 +53,8 @@ module elem_heat_contact
     logical :: found = .false., closed = .false.
     integer :: piece = 0
     real(wp) :: xi = 0.0_wp, pressure(2) = 0.0_wp, gap = 0.0_wp
+    !> Unit tangent of the die, in the sense in which the side is walked.
+    real(wp) :: along(2) = 0.0_wp
   end type facing_t
 
   !> Unknowns that a point acts on: local places, and its shares of the side and of the die there.
@@ -111,7 +115,7 @@ contains
     real(wp), intent(inout) :: stiffness(:, :, :)
     type(report_t), intent(out) :: report
     real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: y(2, 3), phi(3), dphi(3), tangent(2), length, thickness, area, darea(6), section(3), side, energy(2), due
+    real(wp) :: y(2, 3), phi(3), dphi(3), length, thickness, area, darea(6), section(3), side, energy(2), due
     integer :: e, p, u, nnode, npiece, row_due, row_piece
     integer :: pieces(pieces_in_reach*group%rule%n), along(6)
     logical :: rigid, corners
@@ -147,13 +151,12 @@ contains
           report%unpaired = .true.
           cycle
         end if
-        tangent = matmul(y, dphi)
-        length = length_of(tangent)
+        length = dot_product(matmul(y, dphi), facing%along)
         thickness = thickness_at(section, matmul(y, phi))
         area = weight(p)*length*thickness
-        darea(1:3) = weight(p)*(dphi*tangent(1)/length*thickness + length*section(2)*phi)
-        darea(4:6) = weight(p)*(dphi*tangent(2)/length*thickness + length*section(3)*phi)
-        if (facing%found) call add_exchange()
+        darea(1:3) = weight(p)*(dphi*facing%along(1)*thickness + length*section(2)*phi)
+        darea(4:6) = weight(p)*(dphi*facing%along(2)*thickness + length*section(3)*phi)
+        if (facing%found .and. length > 0) call add_exchange()
         if (row_due == 0 .or. .not. instant%content) cycle
         due = committed(row_due, p, e)*weight(p)*area_at(xi(p), section, x(:, 1:3, e))
         if (scene%strategy%coupling /= coupling_once) then
@@ -291,6 +294,12 @@ contains
     if (facing%piece == 0) return
     facing%closed = facing%closed .or. facing%gap <= touching*side
     facing%found = facing%closed .or. facing%gap <= group%heat_contact%reach
+    if (allocated(scene%dies(group%die)%nodes)) then
+      facing%along = tangent_on(instant%dies(group%die)%pieces(:, :, facing%piece), facing%xi)
+    else
+      facing%along = turned(tangent_on(scene%dies(group%die)%pieces(:, :, facing%piece), facing%xi), instant%pilots(3, group%die))
+    end if
+    facing%along = facing%along/length_of(facing%along)
   end subroutine find_facing
 
   !> Unknowns of the side and of the die at a point; none of a deformable die whose piece is no pair of the side.

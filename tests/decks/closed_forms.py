@@ -9,7 +9,8 @@ import math
 
 # Those that reference.csv may name.
 FORMS = ("ring_bore", "ring_pressure", "extrusion_work", "extrusion_avitzur", "extrusion_parallel", "extrusion_container",
-         "disc_stress", "disc_radius", "disc_friction", "tube_pressure", "squeeze_scott", "squeeze_bound")
+         "disc_stress", "disc_radius", "disc_friction", "tube_pressure", "squeeze_scott", "squeeze_bound",
+         "slab_cooled")
 
 
 def integral(function, begin, end, parts=200):
@@ -246,6 +247,22 @@ def squeeze_bound(n, travel, speed, temperature, radius=40.0, half=1.0):
     return power(q)
 
 
+def slab_cooled(place, biot, fourier, terms=60):
+    """Share of the difference to the surroundings that is left at `place`, 0 in the middle to 1 at the surface, of a slab that cools by
+    convection; H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, 2nd ed., section 3.11."""
+    left = 0.0
+    for n in range(terms):
+        low, high = n*math.pi, (n + 0.5)*math.pi
+        for _ in range(100):
+            root = 0.5*(low + high)
+            if root*math.sin(root) < biot*math.cos(root) if n % 2 == 0 else root*math.sin(root) > biot*math.cos(root):
+                low = root
+            else:
+                high = root
+        left += 2*math.sin(root)/(root + math.sin(root)*math.cos(root))*math.cos(root*place)*math.exp(-root*root*fourier)
+    return left
+
+
 def wrong():
     """What does not hold among these functions, a line each."""
     lines = []
@@ -288,6 +305,10 @@ def wrong():
             return gsell(1/math.sqrt(3)*math.log(square/start**2), dp, 150.0)*dp
         return integral(rate, 0.0, 5.0)*start
     near("work of a tube", integral(lambda u: tube_pressure(u, 1.0, 150.0)*(10 + u), 0.0, 5.0), integral(work, 10.0, 15.0), 1e-6)
+    # a slab that cools: all of it at the start; with a small Biot number one temperature; as a half space for a short time
+    near("slab at the start", slab_cooled(0.3, 2.0, 0.0), 1.0, 1e-2)
+    near("slab of one temperature", slab_cooled(0.5, 1e-4, 5000.0), math.exp(-0.5), 1e-4)
+    near("slab as a half space", slab_cooled(1.0, 2.0, 1e-2), math.exp(0.04)*math.erfc(0.2), 1e-6)
     # tau = m s/sqrt(3) on the face: s + 2 tau (R - r)/(2 h), its mean
     radius = disc_radius(2.0)
     mean = integral(lambda r: (1 + 0.3/math.sqrt(3)*(radius - r)/3.0)*2*r, 0.0, radius)/radius**2
