@@ -3,14 +3,15 @@ module state_pieces
   use errors, only: error_t, exit_bug, fail
   use fields, only: displacement_field
   use kinds, only: wp
-  use scene, only: axisymmetric, is_solid, scene_t
+  use scene, only: axisymmetric, is_solid, role_second, scene_t
   use solution, only: solution_t
-  use state_variables, only: find_variable, state_variable_t
+  use state_variables, only: find_variable, state_variable_t, total_components
   use text, only: to_text
   use transfer_mesh, only: set_up_mesh, transfer_mesh_t
   implicit none
   private
-  public :: state_group_t, state_pieces_t, solid_pieces, store_states, mesh_of, list_variables, gather_states, hand_out_states
+  public :: state_group_t, state_pieces_t, solid_pieces, join_values, store_states, mesh_of, list_variables, gather_states, &
+            hand_out_states
 
   !> Elements with the same state variables.
   type :: state_group_t
@@ -21,8 +22,9 @@ module state_pieces
     integer, allocatable :: connectivity(:, :)   !! (8, nelem)
     type(state_variable_t), allocatable :: variables(:)
     real(wp), allocatable :: values(:, :, :)   !! (component, point, element)
-    !> Number of the group in its scene.
+    !> Number of the group in its scene, and of further formulations on its elements (nsecond): their state follows its own.
     integer :: scene_group = 0
+    integer, allocatable :: seconds(:)
   end type state_group_t
 
   type :: state_pieces_t
@@ -59,8 +61,9 @@ contains
         group%material = k
         group%npoint = scene%groups(g)%rule%n
         allocate (group%connectivity, source=scene%groups(g)%connectivity)
-        allocate (group%variables, source=scene%groups(g)%variables)
-        if (present(solution)) allocate (group%values, source=solution%groups(g)%committed)
+        group%seconds = pack([(other, other=1, size(scene%groups))], scene%groups%role == role_second .and. scene%groups%host == g)
+        call join_variables(scene, group)
+        if (present(solution)) call join_values(solution, group)
       end associate
     end do
     do k = 2, nsolid
@@ -77,6 +80,42 @@ contains
       end do
     end do
   end subroutine solid_pieces
+
+  !> Variables of a group and of the further formulations on its elements, one after the other.
+  pure subroutine join_variables(scene, group)
+    type(scene_t), intent(in) :: scene
+    type(state_group_t), intent(inout) :: group
+    integer :: k, v, n
+
+    group%variables = scene%groups(group%scene_group)%variables
+    do k = 1, size(group%seconds)
+      n = total_components(group%variables)
+      v = size(group%variables)
+      group%variables = [group%variables, scene%groups(group%seconds(k))%variables]
+      group%variables(v + 1:)%first = group%variables(v + 1:)%first + n
+    end do
+  end subroutine join_variables
+
+  !> Their states.
+  pure subroutine join_values(solution, group)
+    type(solution_t), intent(in) :: solution
+    type(state_group_t), intent(inout) :: group
+    integer :: k, n, last
+
+    associate (own => solution%groups(group%scene_group)%committed)
+      if (allocated(group%values)) deallocate (group%values)
+      allocate (group%values(total_components(group%variables), size(own, 2), size(own, 3)))
+      n = size(own, 1)
+      group%values(:n, :, :) = own
+    end associate
+    do k = 1, size(group%seconds)
+      associate (more => solution%groups(group%seconds(k))%committed)
+        last = n + size(more, 1)
+        group%values(n + 1:last, :, :) = more
+        n = last
+      end associate
+    end do
+  end subroutine join_values
 
   pure subroutine touch(connectivity, touched)
     integer, intent(in) :: connectivity(:, :)
@@ -104,13 +143,20 @@ contains
   pure subroutine store_states(pieces, solution)
     type(state_pieces_t), intent(in) :: pieces
     type(solution_t), intent(inout) :: solution
-    integer :: k
+    integer :: k, i, n, g, last
 
     do k = 1, size(pieces%groups)
-      associate (state => solution%groups(pieces%groups(k)%scene_group))
-        state%committed = pieces%groups(k)%values
-        state%trial = pieces%groups(k)%values
-      end associate
+      n = 0
+      do i = 0, size(pieces%groups(k)%seconds)
+        g = pieces%groups(k)%scene_group
+        if (i > 0) g = pieces%groups(k)%seconds(i)
+        associate (state => solution%groups(g))
+          last = n + size(state%committed, 1)
+          state%committed = pieces%groups(k)%values(n + 1:last, :, :)
+          state%trial = state%committed
+          n = last
+        end associate
+      end do
     end do
   end subroutine store_states
 
