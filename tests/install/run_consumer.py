@@ -67,7 +67,7 @@ def check_programs(prefix):
         version = re.search(r"project\(lagamine VERSION (\S+)", file.read()).group(1)
     programs = ["lagamine", "remdata", "lagacycle"]
     if os.path.exists(os.path.join(BUILD, "bin", "lagareport")):
-        programs += ["lagareport", "lagaimport"]
+        programs += ["lagareport", "lagaimport", "lagastudy"]
     for program in programs:
         said = call(os.path.join(prefix, cache("CMAKE_INSTALL_BINDIR"), program), "--version")
         check(said.returncode == 0 and said.stdout.split("\n")[0].startswith(f"{program} {version}"), f"{program} --version",
@@ -136,7 +136,7 @@ def check_folders(folder):
         return
     for made_file in files_of(BUILD):
         top = made_file.split(os.sep)[0]
-        if top in ("bin", "modules") and os.path.basename(made_file) not in ("lagareport", "lagaimport", "lagacycle") \
+        if top in ("bin", "modules") and os.path.basename(made_file) not in ("lagareport", "lagaimport", "lagastudy", "lagacycle") \
                 or made_file.endswith("_core.a"):
             os.makedirs(os.path.dirname(os.path.join(build, made_file)), exist_ok=True)
             shutil.copy2(os.path.join(BUILD, made_file), os.path.join(build, made_file))
@@ -146,7 +146,7 @@ def check_folders(folder):
     found = {file.split(os.sep)[0] for file in files_of(prefix)}
     check(found == set(FOLDERS.values()), "folders of the installation", sorted(found))
     if os.path.exists(os.path.join(BUILD, "bin", "lagareport")):
-        for program in ("lagareport", "lagaimport"):
+        for program in ("lagareport", "lagaimport", "lagastudy"):
             said = call(os.path.join(prefix, FOLDERS["bin"], program), "--version")
             check(said.returncode == 0, f"{program} from other folders", said.stdout)
 

@@ -1,0 +1,1 @@
+"""`lagastudy`: one deck over ladders of parameters, what accuracy costs in time."""

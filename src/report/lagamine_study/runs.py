@@ -1,0 +1,116 @@
+"""The runs of a study: those that are there already are taken, the others are made, one after the other or several at a time."""
+import hashlib
+import json
+import os
+import re
+import shlex
+import shutil
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Dict, List, Sequence
+
+from lagamine_report.errors import EXIT_MACHINE, ReportError
+from lagamine_report.program import write
+from lagamine_report.reader import Run
+from lagamine_report.tables import number, read_object, read_summary
+
+from .ladders import Quantity, Rung
+
+MARK = "study.json"      # in the folder of a run: the call that made it
+
+
+@dataclass
+class Result:
+    """What a run ended with; `values` by the texts of the quantities."""
+
+    rung: Rung
+    code: int
+    reason: str
+    values: Dict[str, float]
+    seconds: float
+    steps: float
+    iterations: float
+    elements: float
+    equations: float
+
+
+def program_of(deck: str) -> str:
+    """`lagacycle` for a deck that asks for new meshes, `lagamine` for others."""
+    try:
+        with open(deck, encoding="utf-8", errors="replace") as file:
+            return "lagacycle" if re.search(r"(?m)^REMSH\b", file.read()) else "lagamine"
+    except OSError as error:
+        raise ReportError(f"{deck}: cannot be read: {error.strerror}") from error
+
+
+def command_of(deck: str, rung: Rung, fixed: Sequence[str], programs: str, threads: int) -> List[str]:
+    """The call of one run. Parameters of the ladder count more than fixed ones."""
+    words = [f"{name}={value}" for name, value in rung.parameters.items()]
+    words = [word for word in fixed if word.partition("=")[0] not in rung.parameters] + words
+    return [os.path.join(programs, program_of(deck)), deck, "--out", rung.folder, "--quiet", "--threads", str(threads),
+            *(part for word in words for part in ("-p", word))]
+
+
+def digest_of(deck: str) -> str:
+    """SHA-256 of a deck and the files it includes."""
+    digest, waiting, seen = hashlib.sha256(), [os.path.abspath(deck)], set()
+    while waiting:
+        path = waiting.pop()
+        if path in seen:
+            continue
+        seen.add(path)
+        try:
+            with open(path, "rb") as file:
+                content = file.read()
+        except OSError as error:
+            raise ReportError(f"{path}: cannot be read: {error.strerror}") from error
+        digest.update(content)
+        names = re.findall(rb"(?im)^[ \t]*(?:INCLU|STEEL)[ \t]+(?:'([^']*)'|(\S+))", content)
+        waiting += [os.path.join(os.path.dirname(path), os.fsdecode(a or b)) for a, b in names]
+    return digest.hexdigest()
+
+
+def is_there(rung: Rung, mark: Dict[str, object]) -> bool:
+    """The folder has the results of the same call, to their end."""
+    try:
+        return read_object(os.path.join(rung.folder, MARK)) == mark and read_summary(os.path.join(rung.folder, "summary.json")).get("exit_code") in (0, 3)
+    except ReportError:
+        return False
+
+
+def make_runs(commands: Dict[str, List[str]], marks: Dict[str, Dict[str, object]], jobs: int, tell) -> None:
+    """Run the calls by folder, `jobs` at a time. A folder is marked before its run, so that one of another call is not taken for it."""
+
+    def one(folder: str) -> None:
+        try:
+            if os.path.isfile(os.path.join(folder, MARK)):
+                shutil.rmtree(folder)
+            os.makedirs(folder)
+            write(os.path.join(folder, MARK), json.dumps(marks[folder], indent=1).encode("utf-8"))
+            done = subprocess.run(commands[folder], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                                  check=False, errors="replace")
+        except FileExistsError as error:
+            raise ReportError(f"{folder}: is there, and no run of a study", advice="move it away, or choose another --out") from error
+        except OSError as error:
+            raise ReportError(f"{commands[folder][0]}: cannot be started: {error.strerror}", EXIT_MACHINE) from error
+        if done.returncode not in (0, 3):
+            raise ReportError(f"{shlex.join(commands[folder])}: {done.stderr.strip() or f'ended with {done.returncode}'}", done.returncode)
+        tell(folder)
+
+    with ThreadPoolExecutor(jobs) as pool:
+        for finished in [pool.submit(one, folder) for folder in commands]:
+            finished.result()
+
+
+def read_result(rung: Rung, quantities: Sequence[Quantity]) -> Result:
+    """A finished run. One that did not reach its end has no values."""
+    run = Run(rung.folder)
+    s = run.summary
+    code = int(number(s.get("exit_code", 0)))
+    values = {quantity.text: quantity.of(run.history) if code == 0 else float("nan") for quantity in quantities}
+    calls = run.calls
+    seconds = calls.wall if calls.number > 1 else number(s.get("wall_s"))
+    remesher = sum(row.numbers["remdata"] for row in run.tries if row.numbers["remdata"] == row.numbers["remdata"])
+    return Result(rung, code, s.get("stop_reason") or "", values, seconds + remesher, number(s.get("steps")), number(s.get("iterations")),
+                  number(s.get("elements")), number(s.get("dofs")))

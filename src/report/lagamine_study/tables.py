@@ -1,0 +1,85 @@
+"""A study as a table for programs (CSV), for people (Markdown), and as pictures."""
+import csv
+import io
+import math
+from typing import Dict, List, Sequence, Tuple
+
+from lagamine_report.picture import Picture
+from lagamine_report.style import LINES, figure
+from lagamine_report.words import brief
+
+from .errors_of_ladder import Verdict
+from .ladders import Ladder, Quantity
+from .runs import Result
+
+Verdicts = Dict[Tuple[str, str], Verdict]      # by ladder and quantity
+HEADINGS = ["ladder", "run", "exit_code", "quantity", "value", "truth", "truth_from", "relative_error", "order", "wall_s", "steps", "iterations", "elements",
+            "equations"]
+
+
+def rows(ladder: Ladder, results: Sequence[Result], quantities: Sequence[Quantity], verdicts: Verdicts) -> List[list]:
+    """A row a run and quantity."""
+    found = []
+    for quantity in quantities:
+        verdict = verdicts[ladder.name, quantity.text]
+        for k, result in enumerate(results):
+            order = verdict.orders[k - 1] if k else float("nan")
+            found.append([ladder.name, result.rung.title, result.code, quantity.text, result.values[quantity.text], verdict.truth, verdict.source,
+                          verdict.errors[k], order, result.seconds, result.steps, result.iterations, result.elements, result.equations])
+    return found
+
+
+def as_csv(all_rows: Sequence[list]) -> bytes:
+    """The table for programs; not a number where nothing is known."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(HEADINGS)
+    writer.writerows([repr(cell) if isinstance(cell, float) else cell for cell in row] for row in all_rows)
+    return text.getvalue().encode("utf-8")
+
+
+def as_markdown(title: str, ladders: Sequence[Ladder], results: Dict[str, List[Result]], quantities: Sequence[Quantity], verdicts: Verdicts) -> bytes:
+    """Tables for people, a ladder and quantity each; runs that did not reach their end are named."""
+    lines = [f"# {title}", ""]
+    for ladder in ladders:
+        held = results[ladder.name]
+        for quantity in quantities:
+            verdict = verdicts[ladder.name, quantity.text]
+            lines += [f"## {quantity.text} over {ladder.name}", f"Truth {brief(verdict.truth, 7)}: {verdict.source}.{_price(verdict)}", "",
+                      "| run | value | error % | order | seconds | steps | iterations | elements |", "|---|---|---|---|---|---|---|---|"]
+            for k, result in enumerate(held):
+                order = verdict.orders[k - 1] if k else float("nan")
+                lines.append(f"| {result.rung.title} | {_cell(result.values[quantity.text], 7)} | {_cell(100 * verdict.errors[k], 3)} | {_cell(order, 3)} | "
+                             f"{_cell(result.seconds, 3)} | {_cell(result.steps)} | {_cell(result.iterations)} | {_cell(result.elements)} |")
+            lines.append("")
+        lines += [f"{result.rung.title} did not reach its end: {result.reason}" for result in held if result.code]
+    return ("\n".join(lines).rstrip() + "\n").encode("utf-8")
+
+
+def _price(verdict: Verdict) -> str:
+    return "" if math.isnan(verdict.half_costs) else f" Half the error costs {brief(verdict.half_costs, 2)} times the time."
+
+
+def _cell(value: float, digits: int = 6) -> str:
+    return "–" if math.isnan(value) else brief(value, digits)
+
+
+def work_precision(ladders: Sequence[Ladder], results: Dict[str, List[Result]], quantities: Sequence[Quantity], verdicts: Verdicts) -> Picture:
+    """Error over seconds, a curve a ladder, a panel a quantity."""
+    columns = min(2, len(quantities))
+    count = -(-len(quantities) // columns)
+    fig, axes = figure(count, columns, (4.7 * columns + (1.6 if columns == 1 else 0), 3.6 * count))
+    for panel, quantity in zip(axes.flat, quantities):
+        for ladder, colour in zip(ladders, LINES * len(ladders)):
+            verdict = verdicts[ladder.name, quantity.text]
+            known = [(result.seconds, 100 * error) for result, error in zip(results[ladder.name], verdict.errors) if error > 0 and result.seconds > 0]
+            if known:
+                panel.loglog(*zip(*known), marker="o", color=colour, label=ladder.name)
+        panel.set_title(quantity.text)
+        panel.set_xlabel("seconds")
+        panel.set_ylabel("error %")
+        if panel.get_legend_handles_labels()[0]:
+            panel.legend()
+    for panel in axes.flat[len(quantities):]:
+        panel.set_visible(False)
+    return Picture("work_precision", "error over seconds on the wall", fig, vector=True)
