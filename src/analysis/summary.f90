@@ -162,6 +162,7 @@ contains
         zero = find_parameter(equations%laws(material%law_id), 'ZERO')
         time = find_parameter(equations%laws(material%law_id), 'TIME')
         if (zero == 0 .or. time == 0) cycle
+        if (.not. material%values(time) > 0) cycle   ! the phases are those of another law
         call json%begin_object()
         call json%add('name', material%steel%name)
         call json%add('law', material%name)
