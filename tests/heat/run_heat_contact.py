@@ -13,7 +13,8 @@ usage: run_heat_contact.py [-v] [-k]
 - `slide`: a block drawn over a die, over another body: the work of friction is the heat released, less that of the last step where
   temperatures are found once and first; shared by SHARE and by effusivity; all ways of coupling; the same bits by any number of threads
   and resumed.
-- `billet`: pressed between chilled dies and remeshed twice: temperatures of the dies and the heat that they got go on.
+- `billet`: pressed between chilled dies and remeshed twice: temperatures of the dies and the heat that they got go on, as
+  does heat of plastic work and friction, work that has not become heat yet among it.
 """
 import glob
 import math
@@ -239,6 +240,7 @@ LAW    steel EPLA
 ADDEL  billet PL8TM heat BILINEAR
 LAW    heat HEAT
    50. 3.6
+   QUINNEY 0.9
 START  T 1000.
 LAW    rough  COUL2D
    PENETR 1.E-3   PHI 0.2
@@ -274,11 +276,13 @@ def billet(checks):
     flow = columns["heat_flow_upper"]*columns["step_length"]
     checks.small(abs(5e3*(die[-1] - 200)/np.sum(flow) - 1), 1e-9, "billet: what the die got is its temperature, over all meshes")
     checks.small(abs(columns["heat_imbalance"][-1]), 1e-5, "billet: books of heat")
-    # what slides while equilibrium is restored on a new mesh is counted with the step after it, and makes no heat
-    heat, work = np.diff(columns["heat_released"])[1:], np.diff(columns["friction_work"])[:-1]
+    # what slides while equilibrium is restored on a new mesh is counted with the step after it, and makes no heat; and work per volume
+    # is of the volume where the mesh begins, under pressure on later meshes: 2e-3
+    work = columns["friction_work"] + 0.9*columns["plastic_work"]
+    heat, work = np.diff(columns["heat_released"])[1:], np.diff(work)[:-1]
     missing = np.abs(heat - work)/work
-    checks.that(np.sum(missing > 1e-9) <= 4 and np.sum(missing > 1e-3) <= 2 and np.max(missing) < 0.1,
-                "billet: heat of friction, over all meshes", missing)
+    checks.that(np.max(missing[:9]) < 1e-9 and np.max(missing) < 3e-3,
+                "billet: heat of friction and of plastic work, over all meshes", missing)
     for generation in (1, 2):
         before, after = (os.path.join(out, f"billet.g{generation + k:02}.{end}.h5") for k, end in ((0, "end"), (1, "start")))
         (old, low, high), (new, least, most) = content(before), content(after)

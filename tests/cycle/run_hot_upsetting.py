@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Hot upsetting to 60 % between chilled dies by lagacycle, with all ways of coupling: balances of energy and heat over all meshes.
+
+usage: run_hot_upsetting.py [-v] [-k] [--write]     --write puts the tables into decks/hot_upsetting/README.md
+
+Energy and heat close to 1 %; over each new mesh the heat (the integral of the temperature over the volume) is kept to 1e-3 and
+temperatures stay within their old bounds; heat of plastic work and friction is their work to 1 %; the die has got what is its
+temperature now. CONVERGE and MONOLITHIC agree, with steps and meshes of their own, to 1 % of the force and of the heat.
+"""
+import glob
+import os
+import sys
+import time
+
+sys.dont_write_bytecode = True
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [HERE, os.path.join(os.path.dirname(HERE), "heat")]
+from remeshed import ROOT, cycle, put_table, tries, within_limits  # noqa: E402
+from run_coupling import content  # noqa: E402
+from support import DONE, Checks, history, said, summary, write  # noqa: E402
+
+DECK = os.path.join(ROOT, "decks", "hot_upsetting", "hot_upsetting.lag")
+README = os.path.join(os.path.dirname(DECK), "README.md")
+MARK = "<!-- table -->"
+WAYS = ("ONCE", "CONVERGE", "MONOLITHIC")
+BALANCE, KEPT, BOUNDS = 0.01, 1e-3, 1e-3
+
+
+def meshes(checks, way, out):
+    """Heat and bounds over each new mesh; rows of the table."""
+    lines = []
+    for one in tries(out):
+        if one["accepted"] != "y":
+            continue
+        generation = int(one["generation [-]"])
+        before = glob.glob(os.path.join(out, f"*.g{generation - 1:02d}.end.h5"))[0]
+        after = glob.glob(os.path.join(out, f"*.g{generation:02d}.start.h5"))[0]
+        (old, low, high), (new, least, most) = content(before), content(after)
+        checks.that(abs(new/old - 1) < KEPT, f"{way}, mesh {generation}: heat", f"{new/old - 1:.2e}")
+        slack = BOUNDS*(high - low)
+        checks.that(low - slack <= least and most <= high + slack, f"{way}, mesh {generation}: bounds of the temperature",
+                    f"{least} to {most}, were {low} to {high}")
+        lines.append(f"| {generation} | {float(one['stop_time [time]']):.3f} | {one['old_elements [-]']} -> {one['new_elements [-]']} | "
+                     f"{100*(new/old - 1):+.4f} | {least:.0f} to {most:.0f} |")
+    return lines
+
+
+def main():
+    checks = Checks()
+    with open(DECK, encoding="utf-8") as file:
+        text = file.read()
+    table = ["| coupling | steps | meshes | seconds | force kN | core C | face C | die C | heat released / work % | energy missing % | heat missing % |",
+             "|---|---|---|---|---|---|---|---|---|---|---|"]
+    ends, listed = {}, []
+    for way in WAYS:
+        out = checks.path(way)
+        deck = write(checks.path(f"{way}.lag"), text.replace("\nSAVE ", f"\nSOLVE  {way}\nSAVE "))
+        begun = time.monotonic()
+        result = cycle(deck, out)
+        seconds = time.monotonic() - begun
+        if not checks.that(result.returncode == DONE, f"{way}: the cycle ends by itself", said(result)):
+            continue
+        within_limits(checks, out)
+        rows = history(out)
+        checks.that(abs(rows["displacement_y_upper"][-1] + 9) < 1e-9, f"{way}: 60 % reached", rows["displacement_y_upper"][-1])
+        checks.that(len(tries(out)) >= 5, f"{way}: at least 5 remeshings", len(tries(out)))
+        lines = meshes(checks, way, out)
+        listed = listed or lines
+        energy, heat = summary(out)["checks"]["energy_imbalance"], rows["heat_imbalance"][-1]
+        k = -2 if way == "ONCE" else -1
+        share = rows["heat_released"][-1]/(0.9*rows["plastic_work"][k] + rows["friction_work"][k])
+        checks.that(abs(energy) < BALANCE, f"{way}: energy", energy)
+        checks.that(abs(heat) < 1e-6, f"{way}: heat", heat)
+        checks.that(abs(share - 1) < BALANCE, f"{way}: heat of plastic work and friction", share)
+        got = sum(flow*step for flow, step in zip(rows["heat_flow_upper"], rows["step_length"]))
+        checks.that(abs(2e5*(rows["temperature_upper"][-1] - 250)/got - 1) < 1e-9, f"{way}: heat in the die", got)
+        ends[way] = [rows[name][-1] for name in ("force_y_upper", "core", "face", "temperature_upper", "heat_released")]
+        force, core, face, die, _ = ends[way]
+        table.append(f"| `{way}` | {len(rows['step'])} | {1 + sum(t['accepted'] == 'y' for t in tries(out))} | {seconds:.1f} | {force/1000:.2f} | "
+                     f"{core:.1f} | {face:.1f} | {die:.2f} | {100*share:.2f} | {100*energy:+.3f} | {100*heat:+.1e} |")
+    if len(ends) == len(WAYS):
+        for one, other in (("ONCE", "MONOLITHIC"), ("CONVERGE", "MONOLITHIC")):
+            worst = max(abs(a/b - 1) for a, b in zip(ends[one], ends[other]))
+            checks.that(worst < 0.01 if one == "CONVERGE" else worst < 0.02, f"{one} and MONOLITHIC", f"{worst:.2%}")
+    lines = table + ["", "| mesh | at s | elements | heat % | temperatures |", "|---|---|---|---|---|"] + listed
+    print("\n".join(lines))
+    if "--write" in sys.argv:
+        put_table(README, MARK, lines)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
