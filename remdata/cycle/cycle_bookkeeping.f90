@@ -5,17 +5,21 @@ module cycle_bookkeeping
   use cycle_action, only: act_accept, act_keep_end, act_keep_old_mesh, act_refuse, act_remesh, act_resume, act_roll_back, action_t
   use cycle_folder, only: most_tries
   use cycle_situation, only: checkpoint_file_t, current_name, due_reason, is_read, mesh_name, situation_t, try_name
-  use cycle_table, only: has_new_mesh, line_of_cells, number_of_columns, table_heading
+  use cycle_table, only: first_step_of, has_new_mesh, line_of_cells, number_of_columns, table_heading
   use cycle_ways, only: old_state
   use errors, only: error_t
   use exact_numbers, only: exact_text
+  use first_step_force, only: first_step_change
   use json_lookup, only: json_number, json_text, read_json
   use kinds, only: wp
-  use system, only: file_exists, remove_file, rename_file
+  use system, only: file_exists, join_path, remove_file, rename_file
   use text, only: string_t, to_text
   implicit none
   private
   public :: carry_out
+
+  !> Table of the run's steps, in the folder of its results.
+  character(len=*), parameter :: history_name = 'history.csv'
 
 contains
 
@@ -175,11 +179,30 @@ contains
     cells(18)%s = scaled(restart, 'energy_change', 100.0_wp)
     cells(19)%s = json_text(restart, 'depth_change')
     cells(20)%s = json_text(steps, 'least_step_ratio')
-    cells(21)%s = json_text(made, 'wall_s')
-    cells(22)%s = json_text(restart, 'wall_s')
-    cells(23)%s = action%reason
+    cells(21)%s = ''
+    if (judged .and. accepted == 'y') cells(21)%s = force_change_of(s, old%facts%step)
+    cells(22)%s = json_text(made, 'wall_s')
+    cells(23)%s = json_text(restart, 'wall_s')
+    cells(24)%s = action%reason
     line = line_of_cells(cells)
   end function row_of
+
+  !> Change of the largest die force at the first full step on the new mesh in percent; '' where it says nothing.
+  function force_change_of(s, step) result(digits)
+    type(situation_t), intent(in) :: s
+    integer, intent(in) :: step   !! the last one of the old mesh
+    character(len=:), allocatable :: digits
+    character(len=:), allocatable :: history
+    type(error_t), allocatable :: error
+    real(wp) :: change
+    logical :: known
+
+    digits = ''
+    if (file_exists(join_path(s%folder, history_name))) call read_text(join_path(s%folder, history_name), history, error)
+    if (.not. allocated(history) .or. allocated(error)) return
+    call first_step_change(history, first_step_of(s%rows, s%new%generation - 1), step, change, known)
+    if (known) digits = to_text(100*change, 4)
+  end function force_change_of
 
   !> The line for the user that a mesh is accepted.
   function accepted_line(s, action) result(line)

@@ -8,7 +8,7 @@ module cycle_table
   private
   public :: try_row_t, table_heading, number_of_columns, parse_table, line_of_cells
   public :: way_deck, way_transfer, way_finer, way_earlier, way_old_mesh
-  public :: number_refused, was_refused, has_new_mesh, keeps_old_mesh, transfer_is_responsible, took_earlier
+  public :: first_step_of, number_refused, was_refused, has_new_mesh, keeps_old_mesh, transfer_is_responsible, took_earlier
 
   !> What is done for a new mesh, as the column `action` names it: as the deck says, another state transfer, finer elements, from
   !> the checkpoint one save earlier; or the old mesh goes on for a while.
@@ -18,10 +18,11 @@ module cycle_table
   character(len=*), parameter :: table_heading = &
     'generation [-],try [-],stop_step [-],stop_time [time],step [-],trigger,action,result,accepted,stage,'// &
     'old_elements [-],new_elements [-],error_before [%],error_after [%],first_residual [-],iterations [-],force_change [%],'// &
-    'energy_change [%],depth_change [-],least_step_ratio [-],remdata [s],restart [s],reason'
+    'energy_change [%],depth_change [-],least_step_ratio [-],first_step_force_change [%],remdata [s],restart [s],reason'
   !> Numbers of columns in it.
-  integer, parameter :: at_generation = 1, at_stop_step = 3, at_stop_time = 4, at_action = 7, at_accepted = 9, at_stage = 10
-  integer, parameter :: number_of_columns = 23
+  integer, parameter :: at_generation = 1, at_stop_step = 3, at_stop_time = 4, at_step = 5, at_action = 7, at_accepted = 9, &
+                        at_stage = 10
+  integer, parameter :: number_of_columns = 24
 
   !> Times are the same up to this share: the table has all their digits.
   real(wp), parameter :: same_time = 1.0e-12_wp
@@ -31,6 +32,7 @@ module cycle_table
     integer :: generation = 0                !! of the new mesh
     integer :: stop_step = 0                 !! step at which the old mesh stopped
     real(wp) :: stop_time = 0.0_wp           !! [time]
+    integer :: step = 0                      !! of the state that was remeshed
     character(len=:), allocatable :: action  !! one of the ways above
     character(len=:), allocatable :: stage   !! responsible, '' when accepted
     logical :: accepted = .false.
@@ -89,6 +91,8 @@ contains
     if (status /= 0) return
     read (cells(at_stop_time)%s, *, iostat=status) row%stop_time
     if (status /= 0) return
+    read (cells(at_step)%s, *, iostat=status) row%step
+    if (status /= 0) return
     row%action = cells(at_action)%s
     row%accepted = cells(at_accepted)%s == 'y'
     row%stage = cells(at_stage)%s
@@ -139,6 +143,19 @@ contains
         refused = refused .or. rows(k)%action == way
     end do
   end function was_refused
+
+  !> Step at which mesh `generation` began; 0 for the first.
+  pure function first_step_of(rows, generation) result(step)
+    type(try_row_t), intent(in) :: rows(:)   !! (ntry)
+    integer, intent(in) :: generation
+    integer :: step
+    integer :: k
+
+    step = 0
+    do k = 1, size(rows)
+      if (rows(k)%generation == generation .and. rows(k)%accepted .and. rows(k)%action /= way_old_mesh) step = rows(k)%step
+    end do
+  end function first_step_of
 
   !> Is there a row of mesh `generation` as an accepted one?
   pure function has_new_mesh(rows, generation) result(has)

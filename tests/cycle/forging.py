@@ -10,7 +10,7 @@ import glob
 import math
 import os
 
-from remeshed import ROOT, facts, jump, tries, value_at, within_limits
+from remeshed import ROOT, facts, forces_go_on, jump, tries, value_at, within_limits
 from support import history, summary, with_h5py
 
 with_h5py()
@@ -25,6 +25,7 @@ STROKES = (1, 3, 4, 4.5, 5, 5.2, 5.4, 5.6)
 QUANTITIES = ("force_y_upper", "hub_top", "rim")
 PENETRATIONS = ("max_penetration_over_allowed", "max_penetration_sampled")
 LARGEST_JUMP, LARGEST_DEVIATION, LARGEST_DRIFT = 0.02, 0.03, 0.001
+TIMES_ORDINARY, LARGEST_BIAS = 2, 0.015     # change of the force at the first full steps on new meshes
 
 
 def at_stroke(rows, name, stroke):
@@ -63,6 +64,7 @@ def new_meshes(checks, out, rows, mesher):
     checks.that(all(t["accepted"] == "y" for t in rows_of_cycle), "every new mesh is taken at the first try",
                 [t["reason"] for t in rows_of_cycle if t["accepted"] != "y"])
     within_limits(checks, out)
+    forces_go_on(checks, out, TIMES_ORDINARY, LARGEST_BIAS)
     volume = summary(out)["initial_volume"]
     checks.that(abs(volume / (math.pi * RADIUS**2 * HEIGHT) - 1) < 1e-12, "the first mesh has the volume of the contour", volume)
     lines = ["| mesh | at mm | elements | sides of contact | scaled Jacobian | first residual | iterations | jump of force % | "

@@ -9,6 +9,7 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, os.path.join(os.path.dirname(HERE), "runs"))
+from force_changes import changes_at_ordinary_steps, changes_at_remeshes, mean_size  # noqa: E402
 from support import BIN, LONGEST_RUN  # noqa: E402
 
 CYCLE = os.path.join(os.path.abspath(BIN), "lagacycle")
@@ -55,6 +56,22 @@ def within_limits(checks, out):
                 "depth_change [-]": restart["depth_change"], "least_step_ratio [-]": steps["least_step_ratio"]}
         wrong = [key for key, value in reported.items() if abs(float(one[key]) - value) > 1e-3 * abs(value)]
         checks.that(not wrong, f"mesh {generation}: cycle.csv states the same", wrong)
+
+
+def forces_go_on(checks, out, times, bias):
+    """At the first full steps on new meshes the largest die force goes on as the old meshes' last steps foretell: the mean size of
+    the changes is at most so many times that of ordinary steps, their mean at most `bias`. The table states the same."""
+    column = {int(one["generation [-]"]): one["first_step_force_change [%]"] for one in tries(out) if one["accepted"] == "y"}
+    found = changes_at_remeshes(out, so_far=True)
+    wrong = {g: (change, column.get(g)) for g, change in found.items() if abs(float(column.get(g) or "nan") / 100 - change) > 1e-3 * abs(change)}
+    checks.that(found and not wrong, "cycle.csv states the change of the force at the first full step on every mesh", wrong)
+    at_remeshes, ordinary = list(changes_at_remeshes(out).values()), changes_at_ordinary_steps(out)
+    print(f"change of the largest die force: {', '.join(f'{100 * change:+.2f}' for change in at_remeshes)} % at the first full steps on "
+          f"new meshes; mean size {100 * mean_size(ordinary):.2f} % at ordinary steps")
+    checks.that(mean_size(at_remeshes) <= times * mean_size(ordinary), f"mean size at most {times} times that of ordinary steps",
+                (mean_size(at_remeshes), mean_size(ordinary)))
+    mean = sum(at_remeshes) / len(at_remeshes)
+    checks.that(abs(mean) < bias, f"in the mean below {bias:.1%}", f"{mean:.2%}")
 
 
 def value_at(rows, name, along, wanted):

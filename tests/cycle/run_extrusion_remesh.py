@@ -9,12 +9,13 @@ import os
 import sys
 
 sys.dont_write_bytecode = True
-from remeshed import ROOT, cycle, facts, tries, value_at, within_limits  # noqa: E402
+from remeshed import ROOT, cycle, facts, forces_go_on, tries, value_at, within_limits  # noqa: E402
 from support import DONE, Checks, history, run, said, summary  # noqa: E402
 
 FOLDER = os.path.join(ROOT, "decks", "extrusion")
 PLACES = [0.3, 0.4, 0.45, 0.55, 0.6, 0.65, 0.7, 0.8, 0.85, 0.9, 0.95, 1.0]
 AT_A_PLACE, IN_THE_MEAN, LARGEST_DRIFT = 0.03, 0.01, 0.001
+TIMES_ORDINARY, LARGEST_BIAS = 5, 0.04     # change of the force at the first full steps: worn meshes, two of them coarser, give way
 
 
 def main():
@@ -23,6 +24,7 @@ def main():
     result = cycle(os.path.join(FOLDER, "extrusion_remesh.lag"), out)
     checks.that(result.returncode == DONE, "the cycle ends by itself", said(result))
     within_limits(checks, out)
+    forces_go_on(checks, out, TIMES_ORDINARY, LARGEST_BIAS)
     result = run([os.path.join(FOLDER, "extrusion_cone.lag"), "--out", plain, "--threads", "1"])
     checks.that(result.returncode == DONE, "one mesh: done", said(result))
     rows, fine, made = history(out), history(plain), tries(out)

@@ -14,7 +14,7 @@ import os
 import sys
 
 sys.dont_write_bytecode = True
-from remeshed import ON_CONTOUR, ROOT, cycle, facts, jump, put_table, tries, value_at, within_limits  # noqa: E402
+from remeshed import ON_CONTOUR, ROOT, cycle, facts, forces_go_on, jump, put_table, tries, value_at, within_limits  # noqa: E402
 from support import DONE, Checks, history, summary, with_h5py  # noqa: E402
 
 with_h5py()
@@ -32,6 +32,7 @@ TANGENT = math.tan(math.pi / 4 - DRAFT / 2)       # length of a fillet of radius
 MOUTH = 28.5 + 1.5 * TANGENT                      # where the fillet towards the flash ends
 FULL = 0.98
 LARGEST_JUMP, LARGEST_DEVIATION, LARGEST_DRIFT = 0.02, 0.03, 0.001
+TIMES_ORDINARY, LARGEST_BIAS = 1, 0.005           # change of the force at the first full steps on new meshes
 SHORTEST, GAP = 0.05, 0.01                        # shares of a side: ends so near to a node go there; width of gaps
 ON_AXIS = 1e-9
 SAMPLES = numpy.linspace(-1, 1, 21)
@@ -254,6 +255,7 @@ def main():
     rows["travel"] = [-u for u in rows["displacement_y_upper"]]
     checks.that(abs(rows["travel"][-1] - TRAVEL) < 1e-9, "the die has come to its end", rows["travel"][-1])
     within_limits(checks, out)
+    forces_go_on(checks, out, TIMES_ORDINARY, LARGEST_BIAS)
     lines = new_meshes(checks, out, rows) + [""] + filling(checks, out) + [""] + against_one_mesh(checks, rows)
     worst, deep = true_contact(checks, out), summary(out)["checks"]
     checks.that(deep["max_penetration_over_allowed"] < 1 + 1e-6, "the solver too: no point deeper than allowed, in any step",

@@ -10,7 +10,7 @@ import os
 import sys
 
 sys.dont_write_bytecode = True
-from remeshed import ROOT, cycle, facts, jump, put_table, tries, value_at, within_limits  # noqa: E402
+from remeshed import ROOT, cycle, facts, forces_go_on, jump, put_table, tries, value_at, within_limits  # noqa: E402
 from support import DONE, Checks, history, run, said, summary  # noqa: E402
 
 DECK = os.path.join(ROOT, "decks", "upsetting_remesh", "upsetting_remesh.lag")
@@ -20,6 +20,7 @@ MARK = "<!-- table -->"
 HALF_HEIGHT = 15.0
 PERCENT = (30, 44, 50, 55, 60)
 LARGEST_JUMP, LARGEST_DEVIATION, LARGEST_DRIFT = 0.02, 0.03, 0.001
+TIMES_ORDINARY, LARGEST_BIAS = 2, 0.005     # change of the force at the first full steps on new meshes
 
 
 def main():
@@ -28,6 +29,7 @@ def main():
     result = cycle(DECK, out)
     checks.that(result.returncode == DONE, "the cycle ends by itself", said(result))
     within_limits(checks, out)
+    forces_go_on(checks, out, TIMES_ORDINARY, LARGEST_BIAS)
     rows, made_meshes = history(out), tries(out)
     rows["travel"] = [-u for u in rows["displacement_y_upper"]]
     checks.that(abs(rows["displacement_y_upper"][-1] + 0.85 * HALF_HEIGHT) < 1e-9, "85 % reached",

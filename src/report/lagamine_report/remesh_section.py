@@ -14,7 +14,8 @@ NONE = "–"
 # Columns that are held to a limit: name in cycle.csv, in words, and what a share is shown in.
 LIMITED = (("first_residual", "first residual", 1), ("iterations", "iterations", 1), ("force_change", "change of force [%]", 100),
            ("energy_change", "of energy [%]", 100), ("depth_change", "of depth", 1), ("least_step_ratio", "least step", 1))
-HEAD = ("mesh", "step", "time", "height", "why", "elements", "error of stress [%]", *(words for _, words, _ in LIMITED), "seconds")
+HEAD = ("mesh", "step", "time", "height", "why", "elements", "error of stress [%]", *(words for _, words, _ in LIMITED),
+        "force at first step [%]", "seconds")
 
 
 def remesh_section(run: Run, pictures: Sequence[Picture]) -> Sections:
@@ -63,7 +64,7 @@ def cells(run: Run, row: Try) -> List[str]:
     return [str(row.generation), str(row.step), shown_number(n["stop_time"]), shown_number(height(run, row)), why,
             f"{shown_number(n['old_elements'], 9)} → {shown_number(n['new_elements'], 9)}",
             f"{shown_number(n['error_before'], 3)} → {shown_number(n['error_after'], 3)}",
-            *(shown_number(n[name], 3) for name, _, _ in LIMITED), shown_number(seconds, 3)]
+            *(shown_number(n[name], 3) for name, _, _ in LIMITED), signed(n["first_step_force_change"]), shown_number(seconds, 3)]
 
 
 def limits(made: Sequence[Try]) -> List[Tuple[str, List[str]]]:
@@ -75,7 +76,7 @@ def limits(made: Sequence[Try]) -> List[Tuple[str, List[str]]]:
         return []
     shown = [f"{'≥' if name == 'least_step_ratio' else '≤'} {shown_number(factor * allowed[name], 3)}" if name in allowed else NONE
              for name, _, factor in LIMITED]
-    return [("off", ["", "", "", "", "limits (REMSH ACCEPT)", "", "", *shown, ""])]
+    return [("off", ["", "", "", "", "limits (REMSH ACCEPT)", "", "", *shown, "", ""])]
 
 
 def height(run: Run, row: Try) -> float:

@@ -1,0 +1,166 @@
+!> Change of the largest die force at the first full step on a new mesh, against what the old mesh's last steps foretell.
+!>
+!> The die is the one with the largest force at the last step of the old mesh. Its force in the last four steps is fitted by a
+!> straight line in time (least squares). The first full step is the first one that ends half a step of the old mesh, or more, after
+!> the remesh: what is shorter has hardly left the equilibrium of the restart. tests/cycle/force_changes.py does the same for all
+!> steps of a run.
+module first_step_force
+  use kinds, only: wp
+  use text, only: string_t
+  implicit none
+  private
+  public :: first_step_change
+
+  !> Steps that foretell, and those of the new mesh that are looked at: as many as it is on probation.
+  integer, parameter :: steps_before = 4, steps_after = 5
+  !> A full step is at least this share of the mean of the last steps.
+  real(wp), parameter :: full_step = 0.5_wp
+  !> Below this share of the largest force of the run so far a force says nothing about the mesh.
+  real(wp), parameter :: least_share = 0.2_wp
+
+contains
+
+  !> `known` is false where the old mesh has made too few steps, the new one none, the force is low, or the table is not to be read.
+  pure subroutine first_step_change(table, first, last, change, known)
+    character(len=*), intent(in) :: table   !! text of history.csv
+    integer, intent(in) :: first, last      !! step at which the old mesh began, and its last one
+    real(wp), intent(out) :: change         !! relative to the force foretold [-]
+    logical, intent(out) :: known
+    real(wp), allocatable :: force(:)
+    real(wp) :: time(-steps_before:steps_after), forces(-steps_before:steps_after), now, largest, foretold
+    integer, allocatable :: columns(:)
+    integer :: line, next, step, die, after, k
+    logical :: good
+
+    change = 0
+    known = .false.
+    if (last - first < steps_before) return
+    next = 1
+    call next_line(table, next, line)
+    call find_columns(table(line:next - 2), columns)
+    if (size(columns) < 4) return
+    ! the die is known at the last step, the largest force in the steps up to it
+    largest = 0
+    die = 0
+    do while (next <= len(table) .and. die == 0)
+      call next_line(table, next, line)
+      call read_row(table(line:next - 2), columns, step, now, force, good)
+      if (.not. good) return
+      largest = max(largest, maxval(force))
+      if (step == last) die = maxloc(force, 1)
+    end do
+    if (die == 0) return
+    if (force(die) < least_share*largest) return
+    after = -huge(1)
+    next = 1
+    call next_line(table, next, line)
+    do while (next <= len(table))
+      call next_line(table, next, line)
+      call read_row(table(line:next - 2), columns, step, now, force, good)
+      if (.not. good) return
+      k = step - last
+      ! steps up to the last are numbered -3 to 0
+      if (k <= -steps_before .or. k > steps_after) cycle
+      time(k) = now
+      forces(k) = force(die)
+      after = k
+    end do
+    if (after < 1) return
+    do k = 1, after - 1
+      if (time(k) - time(0) >= full_step*(time(0) - time(1 - steps_before))/(steps_before - 1)) exit
+    end do
+    associate (t => time(1 - steps_before:0), f => forces(1 - steps_before:0))
+      foretold = line_at(t, f, time(k))
+    end associate
+    known = foretold > 0
+    if (known) change = forces(k)/foretold - 1
+  end subroutine first_step_change
+
+  !> The straight line through points at x, by least squares.
+  pure function line_at(t, f, x) result(value)
+    real(wp), intent(in) :: t(:), f(:)   !! (npoint) [time]; (npoint) [force]
+    real(wp), intent(in) :: x            !! [time]
+    real(wp) :: value
+    real(wp) :: mean
+
+    mean = sum(t)/size(t)
+    value = sum(f)/size(f) + (x - mean)*sum((t - mean)*f)/sum((t - mean)**2)
+  end function line_at
+
+  !> The line that begins at `next`, without its end, is text(line:next - 2).
+  pure subroutine next_line(text, next, line)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: next
+    integer, intent(out) :: line
+    integer :: length
+
+    line = next
+    length = index(text(line:), new_line('a')) - 1
+    if (length < 0) length = len(text) - line + 1
+    next = line + length + 1
+  end subroutine next_line
+
+  !> Columns of the time, the step, and of both forces of each die, in this order; none where one is missing.
+  pure subroutine find_columns(heading, columns)
+    character(len=*), intent(in) :: heading
+    integer, allocatable, intent(out) :: columns(:)
+    type(string_t), allocatable :: cells(:)
+    integer :: k
+
+    call split(heading, cells)
+    allocate (columns(0))
+    if (size(cells) < 2) return
+    if (index(cells(1)%s, 'time ') /= 1 .or. index(cells(2)%s, 'step ') /= 1) return
+    columns = [1, 2]
+    do k = 3, size(cells) - 1
+      if (index(cells(k)%s, 'force_x_') == 1 .and. index(cells(k + 1)%s, 'force_y_') == 1) columns = [columns, k, k + 1]
+    end do
+  end subroutine find_columns
+
+  !> Time, step and the size of the force on each die.
+  pure subroutine read_row(row, columns, step, time, force, good)
+    character(len=*), intent(in) :: row
+    integer, intent(in) :: columns(:)   !! (2 + 2*ndie) of `find_columns`
+    integer, intent(out) :: step
+    real(wp), intent(out) :: time
+    real(wp), allocatable, intent(out) :: force(:)   !! (ndie) [force]
+    logical, intent(out) :: good
+    type(string_t), allocatable :: cells(:)
+    real(wp) :: parts(2)
+    integer :: k, c, status
+
+    allocate (force(size(columns)/2 - 1))
+    step = 0
+    time = 0
+    call split(row, cells)
+    good = size(cells) >= maxval(columns)
+    if (.not. good) return
+    read (cells(columns(1))%s, *, iostat=status) time
+    good = status == 0
+    read (cells(columns(2))%s, *, iostat=status) step
+    good = good .and. status == 0
+    do k = 1, size(force)
+      do c = 1, 2
+        read (cells(columns(2*k + c))%s, *, iostat=status) parts(c)
+        good = good .and. status == 0
+      end do
+      if (good) force(k) = norm2(parts)
+    end do
+  end subroutine read_row
+
+  !> Cells of a line.
+  pure subroutine split(line, cells)
+    character(len=*), intent(in) :: line
+    type(string_t), allocatable, intent(out) :: cells(:)   !! (ncell)
+    integer :: k, first, last
+
+    allocate (cells(1 + count([(line(k:k) == ',', k=1, len(line))])))
+    first = 1
+    do k = 1, size(cells)
+      last = first + index(line(first:)//',', ',') - 2
+      cells(k)%s = line(first:last)
+      first = last + 2
+    end do
+  end subroutine split
+
+end module first_step_force
