@@ -7,7 +7,7 @@
 !>   shape_weights (transfer_nodes).
 !>
 !> Carried stresses need not satisfy equilibrium, nor the yield condition of the carried history: the first equilibrium on the new
-!> mesh, at fixed time and fixed dies, calls the laws, whose return mapping restores the yield condition.
+!> mesh, at fixed time and fixed dies, is elastic, and the first step returns what lies outside the yield surface.
 module transfer_states
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
