@@ -34,7 +34,7 @@ module remesh_scene
   use scene, only: axisymmetric, is_solid, lacks_mesh, scene_t
   use size_field, only: need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t
   use solution, only: present_coordinates, solution_t, start_solution
-  use state_pieces, only: join_values, mesh_of, solid_pieces, state_pieces_t, store_states
+  use state_pieces, only: mesh_of, solid_pieces, state_pieces_t, store_states, take_values
   use text, only: to_text
   use transfer_api, only: transfer_options_t
   use transfer_mesh, only: build_mesh_trees, transfer_mesh_t
@@ -380,7 +380,7 @@ contains
     call solid_pieces(old, from, before)
     call solid_pieces(new, to)
     do k = 1, size(to%groups)
-      call join_values(after, to%groups(k))
+      call take_values(after, to%groups(k))
     end do
     call mesh_of(from, mesh)
     call build_mesh_trees(mesh)

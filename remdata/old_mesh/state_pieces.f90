@@ -1,4 +1,7 @@
 !> The solid elements of a scene with their state, and that state as one table (component, point) of all groups.
+!>
+!> The state of a body is that of its own formulation and of all further ones on the same points (heat with phases). Variables of
+!> the latter are known here by the name of their element and their own, `PL8TM austenite`: names may be the same in both.
 module state_pieces
   use errors, only: error_t, exit_bug, fail
   use fields, only: displacement_field
@@ -10,7 +13,7 @@ module state_pieces
   use transfer_mesh, only: set_up_mesh, transfer_mesh_t
   implicit none
   private
-  public :: state_group_t, state_pieces_t, solid_pieces, join_values, store_states, mesh_of, list_variables, gather_states, &
+  public :: state_group_t, state_pieces_t, solid_pieces, take_values, store_states, mesh_of, list_variables, gather_states, &
             hand_out_states
 
   !> Elements with the same state variables.
@@ -22,9 +25,10 @@ module state_pieces
     integer, allocatable :: connectivity(:, :)   !! (8, nelem)
     type(state_variable_t), allocatable :: variables(:)
     real(wp), allocatable :: values(:, :, :)   !! (component, point, element)
-    !> Number of the group in its scene, and of further formulations on its elements (nsecond): their state follows its own.
+    !> Number of the group in its scene.
     integer :: scene_group = 0
-    integer, allocatable :: seconds(:)
+    !> Groups of the scene whose states these are, the body first, and the first component of each.
+    integer, allocatable :: parts(:), rows(:)
   end type state_group_t
 
   type :: state_pieces_t
@@ -35,8 +39,8 @@ module state_pieces
 
 contains
 
-  !> Solid groups of a scene in its initial position or, with a solution, its present one. Groups of one material that share nodes
-  !> have one number, that of the first of them: bodies of one material that only touch are kept apart.
+  !> Solid groups of a scene in its initial position or, with a solution, its present one. Groups of the same materials that share
+  !> nodes have one number, that of the first of them: bodies of one material that only touch are kept apart.
   pure subroutine solid_pieces(scene, pieces, solution)
     type(scene_t), intent(in) :: scene
     type(state_pieces_t), intent(out) :: pieces
@@ -61,16 +65,15 @@ contains
         group%material = k
         group%npoint = scene%groups(g)%rule%n
         allocate (group%connectivity, source=scene%groups(g)%connectivity)
-        group%seconds = pack([(other, other=1, size(scene%groups))], scene%groups%role == role_second .and. scene%groups%host == g)
-        call join_variables(scene, group)
-        if (present(solution)) call join_values(solution, group)
+        call list_parts(scene, group)
+        if (present(solution)) call take_values(solution, group)
       end associate
     end do
     do k = 2, nsolid
       touched = .false.
       call touch(pieces%groups(k)%connectivity, touched)
       do other = 1, k - 1
-        if (scene%groups(pieces%groups(k)%scene_group)%material /= scene%groups(pieces%groups(other)%scene_group)%material) cycle
+        if (.not. alike(scene, pieces%groups(k), pieces%groups(other))) cycle
         if (.not. touches(pieces%groups(other)%connectivity, touched)) cycle
         low = min(pieces%groups(k)%material, pieces%groups(other)%material)
         high = max(pieces%groups(k)%material, pieces%groups(other)%material)
@@ -81,41 +84,59 @@ contains
     end do
   end subroutine solid_pieces
 
-  !> Variables of a group and of the further formulations on its elements, one after the other.
-  pure subroutine join_variables(scene, group)
+  !> The formulations on a body that have a state, and their variables one after the other.
+  pure subroutine list_parts(scene, group)
     type(scene_t), intent(in) :: scene
-    type(state_group_t), intent(inout) :: group
-    integer :: k, v, n
+    type(state_group_t), intent(inout) :: group   !! its scene_group is set
+    type(state_variable_t), allocatable :: variables(:), list(:)
+    integer :: s, v, n
 
-    group%variables = scene%groups(group%scene_group)%variables
-    do k = 1, size(group%seconds)
-      n = total_components(group%variables)
-      v = size(group%variables)
-      group%variables = [group%variables, scene%groups(group%seconds(k))%variables]
-      group%variables(v + 1:)%first = group%variables(v + 1:)%first + n
+    allocate (variables, source=scene%groups(group%scene_group)%variables)
+    allocate (group%parts(1), source=group%scene_group)
+    allocate (group%rows(1), source=1)
+    do s = 1, size(scene%groups)
+      if (scene%groups(s)%role /= role_second .or. scene%groups(s)%host /= group%scene_group) cycle
+      if (size(scene%groups(s)%variables) == 0) cycle
+      n = total_components(variables)
+      group%parts = [group%parts, s]
+      group%rows = [group%rows, n + 1]
+      allocate (list(size(variables) + size(scene%groups(s)%variables)))
+      list(:size(variables)) = variables
+      do v = 1, size(scene%groups(s)%variables)
+        associate (variable => list(size(variables) + v))
+          variable = scene%groups(s)%variables(v)
+          variable%name = scene%groups(s)%elem//' '//variable%name
+          variable%first = n + variable%first
+        end associate
+      end do
+      call move_alloc(list, variables)
     end do
-  end subroutine join_variables
+    call move_alloc(variables, group%variables)
+  end subroutine list_parts
 
-  !> Their states.
-  pure subroutine join_values(solution, group)
+  !> Values of all parts of a group.
+  pure subroutine take_values(solution, group)
     type(solution_t), intent(in) :: solution
     type(state_group_t), intent(inout) :: group
-    integer :: k, n, last
+    integer :: p
 
-    associate (own => solution%groups(group%scene_group)%committed)
-      if (allocated(group%values)) deallocate (group%values)
-      allocate (group%values(total_components(group%variables), size(own, 2), size(own, 3)))
-      n = size(own, 1)
-      group%values(:n, :, :) = own
-    end associate
-    do k = 1, size(group%seconds)
-      associate (more => solution%groups(group%seconds(k))%committed)
-        last = n + size(more, 1)
-        group%values(n + 1:last, :, :) = more
-        n = last
+    allocate (group%values(total_components(group%variables), group%npoint, size(group%connectivity, 2)))
+    do p = 1, size(group%parts)
+      associate (state => solution%groups(group%parts(p))%committed)
+        group%values(group%rows(p):group%rows(p) + size(state, 1) - 1, :, :) = state
       end associate
     end do
-  end subroutine join_values
+  end subroutine take_values
+
+  !> Two bodies are of the same materials, in all formulations that have a state.
+  pure function alike(scene, one, other) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(state_group_t), intent(in) :: one, other
+    logical :: yes
+
+    yes = size(one%parts) == size(other%parts)
+    if (yes) yes = all(scene%groups(one%parts)%material == scene%groups(other%parts)%material)
+  end function alike
 
   pure subroutine touch(connectivity, touched)
     integer, intent(in) :: connectivity(:, :)
@@ -143,20 +164,18 @@ contains
   pure subroutine store_states(pieces, solution)
     type(state_pieces_t), intent(in) :: pieces
     type(solution_t), intent(inout) :: solution
-    integer :: k, i, n, g, last
+    integer :: k, p, last
 
     do k = 1, size(pieces%groups)
-      n = 0
-      do i = 0, size(pieces%groups(k)%seconds)
-        g = pieces%groups(k)%scene_group
-        if (i > 0) g = pieces%groups(k)%seconds(i)
-        associate (state => solution%groups(g))
-          last = n + size(state%committed, 1)
-          state%committed = pieces%groups(k)%values(n + 1:last, :, :)
-          state%trial = state%committed
-          n = last
-        end associate
-      end do
+      associate (group => pieces%groups(k))
+        do p = 1, size(group%parts)
+          associate (state => solution%groups(group%parts(p)))
+            last = group%rows(p) + size(state%committed, 1) - 1
+            state%committed = group%values(group%rows(p):last, :, :)
+            state%trial = state%committed
+          end associate
+        end do
+      end associate
     end do
   end subroutine store_states
 
