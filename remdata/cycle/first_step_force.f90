@@ -6,7 +6,6 @@
 !> steps of a run.
 module first_step_force
   use kinds, only: wp
-  use text, only: string_t
   implicit none
   private
   public :: first_step_change
@@ -104,16 +103,13 @@ contains
   pure subroutine find_columns(heading, columns)
     character(len=*), intent(in) :: heading
     integer, allocatable, intent(out) :: columns(:)
-    type(string_t), allocatable :: cells(:)
     integer :: k
 
-    call split(heading, cells)
     allocate (columns(0))
-    if (size(cells) < 2) return
-    if (index(cells(1)%s, 'time ') /= 1 .or. index(cells(2)%s, 'step ') /= 1) return
+    if (index(cell(heading, 1), 'time ') /= 1 .or. index(cell(heading, 2), 'step ') /= 1) return
     columns = [1, 2]
-    do k = 3, size(cells) - 1
-      if (index(cells(k)%s, 'force_x_') == 1 .and. index(cells(k + 1)%s, 'force_y_') == 1) columns = [columns, k, k + 1]
+    do k = 3, number_of_cells(heading) - 1
+      if (index(cell(heading, k), 'force_x_') == 1 .and. index(cell(heading, k + 1), 'force_y_') == 1) columns = [columns, k, k + 1]
     end do
   end subroutine find_columns
 
@@ -125,42 +121,62 @@ contains
     real(wp), intent(out) :: time
     real(wp), allocatable, intent(out) :: force(:)   !! (ndie) [force]
     logical, intent(out) :: good
-    type(string_t), allocatable :: cells(:)
     real(wp) :: parts(2)
     integer :: k, c, status
+    character(len=:), allocatable :: text
 
     allocate (force(size(columns)/2 - 1))
+    force = 0
     step = 0
     time = 0
-    call split(row, cells)
-    good = size(cells) >= maxval(columns)
+    good = number_of_cells(row) >= maxval(columns)
     if (.not. good) return
-    read (cells(columns(1))%s, *, iostat=status) time
+    text = cell(row, columns(1))
+    read (text, *, iostat=status) time
     good = status == 0
-    read (cells(columns(2))%s, *, iostat=status) step
+    text = cell(row, columns(2))
+    read (text, *, iostat=status) step
     good = good .and. status == 0
     do k = 1, size(force)
       do c = 1, 2
-        read (cells(columns(2*k + c))%s, *, iostat=status) parts(c)
+        text = cell(row, columns(2*k + c))
+        read (text, *, iostat=status) parts(c)
         good = good .and. status == 0
       end do
       if (good) force(k) = norm2(parts)
     end do
   end subroutine read_row
 
-  !> Cells of a line.
-  pure subroutine split(line, cells)
+  pure function number_of_cells(line) result(number)
     character(len=*), intent(in) :: line
-    type(string_t), allocatable, intent(out) :: cells(:)   !! (ncell)
-    integer :: k, first, last
+    integer :: number
+    integer :: k
 
-    allocate (cells(1 + count([(line(k:k) == ',', k=1, len(line))])))
-    first = 1
-    do k = 1, size(cells)
-      last = first + index(line(first:)//',', ',') - 2
-      cells(k)%s = line(first:last)
-      first = last + 2
+    number = 1 + count([(line(k:k) == ',', k=1, len(line))])
+  end function number_of_cells
+
+  !> Where the k-th cell of a line begins; it has so many.
+  pure function cell_start(line, k) result(start)
+    character(len=*), intent(in) :: line
+    integer, intent(in) :: k
+    integer :: start
+    integer :: passed
+
+    start = 1
+    do passed = 1, k - 1
+      start = start + index(line(start:), ',')
     end do
-  end subroutine split
+  end function cell_start
+
+  pure function cell(line, k) result(text)
+    character(len=*), intent(in) :: line
+    integer, intent(in) :: k
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (k > number_of_cells(line)) return
+    text = line(cell_start(line, k):)
+    text = text(:index(text//',', ',') - 1)
+  end function cell
 
 end module first_step_force
