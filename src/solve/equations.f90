@@ -112,7 +112,9 @@ contains
     allocate (equations%weight(size(equations%dofs%quantities)), source=1.0_wp)
     call start_pairs(scene, equations%pairs)
     associate (pattern => equations%solves(1)%pattern)
-      allocate (equations%buffers%force(pattern%force_length), equations%buffers%matrix(pattern%matrix_length))
+      ! on a new mesh the books ask for the forces of loads before all of them are computed
+      allocate (equations%buffers%force(pattern%force_length), source=0.0_wp)
+      allocate (equations%buffers%matrix(pattern%matrix_length))
     end associate
     equations%nnode = size(scene%mesh%coordinates, 2)
     equations%size = length_of(maxval(scene%mesh%coordinates, 2) - minval(scene%mesh%coordinates, 2))
