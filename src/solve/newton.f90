@@ -4,7 +4,7 @@
 !> correction still to come (the last one times the last fall of the residual) is below
 !> `displacement_norm` of the motion of the step.
 module newton
-  use augmentations, only: augment, augmentations_t, begin_augmentations, give_way, put_back
+  use augmentations, only: augment, augmentations_t, begin_augmentations, go_back, put_back
   use contact_changes, only: contact_set, note_contact
   use convergence, only: pilots_in_equilibrium, relative_motion, relative_residual, weigh_quantities
   use elem_api, only: block_done, block_inverted, block_without_source, report_t
@@ -132,13 +132,21 @@ contains
         end if
       end if
       call judge(scene, outcome%history(first:), outcome%reason)
-      if (allocated(outcome%reason)) exit
+      if (allocated(outcome%reason)) then
+        if (made%times == 0) exit
+        call start_again()
+        if (made%gave_way) exit
+        cycle
+      end if
 
       call add_missing(equations, missing, residual)
       call solve_correction(equations, residual, correction, outcome%error)
       if (allocated(outcome%error)) then
         call set_solver_cause(outcome)
-        exit
+        if (allocated(outcome%error) .or. made%times == 0) exit
+        call start_again()
+        if (made%gave_way) exit
+        cycle
       end if
       outcome%linear_residual = max(outcome%linear_residual, equations%solves(equations%now)%solver%residual)
       call follow_content(scene, equations, solution, outcome%du, correction, followed)
@@ -151,7 +159,10 @@ contains
                         line%line_search, report)
       if (.not. abs(line%line_search) > 0) then
         call set_cause(report, outcome)
-        exit
+        if (made%times == 0) exit
+        call start_again()
+        if (made%gave_way) exit
+        cycle
       end if
       call note_contact(scene, solution, contact, line%contact_changed)
       line%contact_changed = line%contact_changed .or. followed .or. any(held .neqv. equations%wall%held)
@@ -160,12 +171,6 @@ contains
       missing = 0
     end do
 
-    if (made%times > 0 .and. allocated(outcome%reason)) then
-      deallocate (outcome%reason)
-      outcome%group = 0
-      outcome%element = 0
-      call give_way(scene, equations, solution, dt, made, outcome%du, report)
-    end if
     outcome%augmentations = made%times
     outcome%gave_way = made%gave_way
     outcome%strain = report%strain
@@ -185,6 +190,22 @@ contains
     if (outcome%converged) return
     outcome%residual = residual
     call put_back(made, solution)
+
+  contains
+
+    !> No equilibrium after an augmentation: from the one before it, which is the result where none is found by shorter ways either.
+    subroutine start_again()
+      deallocate (outcome%reason)
+      outcome%group = 0
+      outcome%element = 0
+      call go_back(scene, equations, solution, dt, made, outcome%du, report)
+      first = size(outcome%history) + 1
+      correction = 0
+      missing = 0
+      line%contact_changed = .false.
+      contact = contact_set(scene, solution)
+      held = equations%wall%held
+    end subroutine start_again
   end subroutine solve_step
 
   !> Both norms are met. A motion that starts in equilibrium needs no correction.
