@@ -34,7 +34,7 @@ module remesh_scene
   use scene, only: axisymmetric, is_solid, lacks_mesh, scene_t
   use size_field, only: need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t
   use solution, only: present_coordinates, solution_t, start_solution
-  use state_pieces, only: mesh_of, solid_pieces, state_pieces_t, store_states, take_values
+  use state_pieces, only: change_volume_ratios, mesh_of, solid_pieces, state_pieces_t, store_states, take_values
   use text, only: to_text
   use transfer_api, only: transfer_options_t
   use transfer_mesh, only: build_mesh_trees, transfer_mesh_t
@@ -368,9 +368,9 @@ contains
     type(solution_t), intent(inout) :: after
     type(transfer_report_t), intent(out) :: report
     type(error_t), allocatable, intent(out) :: error
-    type(state_pieces_t) :: from, to
+    type(state_pieces_t) :: from, to, start
     type(transfer_options_t) :: options
-    type(transfer_mesh_t) :: mesh, target
+    type(transfer_mesh_t) :: mesh, target, rest
     integer, allocatable :: material(:)
     integer :: k
 
@@ -383,6 +383,9 @@ contains
       call take_values(after, to%groups(k))
     end do
     call mesh_of(from, mesh)
+    call solid_pieces(old, start)
+    call mesh_of(start, rest)
+    call change_volume_ratios(rest%volumes, mesh%volumes, from)
     call build_mesh_trees(mesh)
     call mesh_of(to, target)
     call carry_states(mesh, target, from, to, options, report, error)

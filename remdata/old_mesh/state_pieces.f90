@@ -8,13 +8,13 @@ module state_pieces
   use kinds, only: wp
   use scene, only: axisymmetric, is_solid, role_second, scene_t
   use solution, only: solution_t
-  use state_variables, only: find_variable, state_variable_t, total_components
+  use state_variables, only: find_variable, name_of_ratio, state_variable_t, total_components
   use text, only: to_text
   use transfer_mesh, only: set_up_mesh, transfer_mesh_t
   implicit none
   private
   public :: state_group_t, state_pieces_t, solid_pieces, take_values, store_states, mesh_of, list_variables, gather_states, &
-            hand_out_states
+            change_volume_ratios, hand_out_states
 
   !> Elements with the same state variables.
   type :: state_group_t
@@ -178,6 +178,32 @@ contains
       end associate
     end do
   end subroutine store_states
+
+  !> Volume ratios at the start of the next mesh: those of this one, times what the volume has changed on it.
+  pure subroutine change_volume_ratios(before, now, pieces)
+    real(wp), intent(in) :: before(:), now(:)   !! (npoint) volumes of the points of all groups in sequence [volume]
+    type(state_pieces_t), intent(inout) :: pieces
+    integer :: g, k, v, e, p, n
+
+    n = 0
+    do g = 1, size(pieces%groups)
+      associate (group => pieces%groups(g))
+        ! of the body itself, or of a further formulation
+        k = 0
+        do v = 1, size(group%variables)
+          associate (name => group%variables(v)%name)
+            if (name(max(1, len(name) - len(name_of_ratio) + 1):) == name_of_ratio) k = group%variables(v)%first
+          end associate
+        end do
+        do e = 1, size(group%connectivity, 2)
+          do p = 1, group%npoint
+            n = n + 1
+            if (k > 0) group%values(k, p, e) = group%values(k, p, e)*now(n)/before(n)
+          end do
+        end do
+      end associate
+    end do
+  end subroutine change_volume_ratios
 
   !> All elements of the groups, in their order.
   pure subroutine mesh_of(pieces, mesh)

@@ -4,12 +4,14 @@ module cards_remesh
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
   use dies, only: is_deformable
+  use fields, only: displacement_field
   use kinds, only: wp
   use remeshing, only: aspect_ratio, jacobian_ratio, largest_angle, least_angle, middle_share, never, remesh_rules_t, &
                        scaled_jacobian, stroke_t
   use remesher_options, only: has_contours
   use remesher_rows, only: complete_options, read_remesher_row, remesher_words
   use scene_draft, only: close_card, draft_t, only_card, words_of
+  use state_variables, only: name_of_ratio, state_variable, state_variable_t, total_components, transfer_scalar
   use text, only: string_t, to_text
   implicit none
   private
@@ -47,7 +49,26 @@ contains
       call close_card(draft, cursor, deck%cards(k))
     end if
     call complete_options(draft%scene%remesher)
+    if (draft%groups_sound .and. draft%scene%remesh%on) call keep_volume_ratios(draft)
   end subroutine read_remesh
+
+  !> Where bodies that conduct heat deform and get new meshes their points keep how the volume has changed: heat goes with the mass.
+  subroutine keep_volume_ratios(draft)
+    type(draft_t), intent(inout) :: draft
+    type(state_variable_t) :: ratio
+    integer :: g
+
+    if (.not. (draft%scene%finite .and. draft%scene%fields(displacement_field)%declared)) return
+    ratio = state_variable(name_of_ratio, '-', transfer_scalar)
+    ratio%initial = 1
+    do g = 1, size(draft%scene%groups)
+      associate (group => draft%scene%groups(g))
+        if (group%elem /= 'PL8TM' .or. .not. allocated(group%variables)) cycle
+        ratio%first = total_components(group%variables) + 1
+        group%variables = [group%variables, ratio]
+      end associate
+    end do
+  end subroutine keep_volume_ratios
 
   !> Each row once, but STROKE, and at least one with a limit.
   subroutine read_rows(cursor, draft)

@@ -5,7 +5,8 @@
 !> F_i = sum phi_i (h(T) - h(T_n))/dt dv0 + sum_k w_k sum grad phi_i LAMBDA grad T_k dv + sum phi_i (SOURCE (e - e_n) - r)/dt dv0,
 !> with T_k at the instants k of the flow rule (elem_api: the end of the step for implicit Euler), h the heat content and r the heat
 !> released by the law; heat flow per unit of the section (per radian when axisymmetric). The heat content goes with the mass: dv0
-!> is the volume at the start of the mesh; e is the volume strain, ln(dv) where kinematics are finite, of the motion that PL8LS
+!> is the volume at the start of the scene, that at the start of the mesh over the volume ratio that points then have (1 on the
+!> first mesh; kept where new meshes may come); e is the volume strain, ln(dv) where kinematics are finite, of the motion that PL8LS
 !> gives the body. Linearised exactly, along the displacements too, but for the plastic work behind r.
 !> Source: K.J. Bathe, Finite Element Procedures, sec. 7.2; R.W. Lewis et al., The Finite Element Method in Heat Transfer Analysis.
 module elem_pl8tm
@@ -21,7 +22,7 @@ module elem_pl8tm
   use scene, only: group_t, role_body, scene_t
   use sections, only: thickness_at
   use shape_functions, only: quad4, quad8_corner
-  use state_variables, only: state_variable_t
+  use state_variables, only: find_variable, name_of_ratio, state_variable_t
   implicit none
   private
   public :: elem_pl8tm_row
@@ -38,7 +39,7 @@ module elem_pl8tm
 
   !> Geometry of an element in a step at its points.
   type :: heat_points_t
-    real(wp) :: dv(9), dv0(9)                 !! volumes at the end of the step and at the start of the mesh
+    real(wp) :: dv(9), dv0(9)                 !! volumes at the end of the step and at the start of the scene
     real(wp) :: gx(8, 9), gy(8, 9)            !! gradients of the functions of the temperature
     real(wp) :: nx(8, 9), ny(8, 9)            !! gradients of the shape functions
     real(wp) :: strain(9), swelling(16, 9)    !! volume strain of the step, and its derivative along the displacements
@@ -109,7 +110,7 @@ contains
     type(functions_t) :: own
     type(heat_points_t) :: place
     real(wp) :: motion(16)
-    integer :: e, k, u
+    integer :: e, k, u, ratio, n
 
     force = 0
     if (instant%content .and. instant%mode /= mode_error) trial = committed
@@ -121,6 +122,10 @@ contains
       end do
       return
     end if
+    ! behind the law's own state
+    ratio = find_variable(group%variables, name_of_ratio)
+    if (ratio > 0) ratio = group%variables(ratio)%first
+    n = merge(ratio - 1, size(committed, 1), ratio > 0)
     call quad8_rule(group%rule%n, rule)
     call functions_of(group%option == bilinear, rule, own)
     u = first_unknown(layout, displacement_field)
@@ -134,6 +139,7 @@ contains
         report%element = first + e - 1
         return
       end if
+      if (ratio > 0) place%dv0(:rule%npoint) = place%dv0(:rule%npoint)/committed(ratio, :, e)
       associate (material => scene%materials(group%material))
         if (instant%mode == mode_error) then
           call add_error(law, material, rule%npoint, own, group%option == bilinear, place, drivers(:, :, :, e), du(:own%n, e), &
@@ -144,7 +150,7 @@ contains
           call add_content(instant, law, material, rule%npoint, own, group%option == bilinear, place, drivers(:, :, :, e), &
                            du(:own%n, e), start(:own%n, e), force(:, e), stiffness(:, :, e), report%heat_stored)
           call add_released(instant, law, material, rule%npoint, own, place, drivers(:, :, :, e), du(:own%n, e), &
-                            start(:own%n, e), u, committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e), report)
+                            start(:own%n, e), u, committed(:n, :, e), trial(:n, :, e), force(:, e), stiffness(:, :, e), report)
         end if
         do k = 1, instant%flow%n
           call add_flow(instant, k, law, material, kinematics%finite, rule%npoint, own, place, drivers(:, :, :, e), du(:own%n, e), &

@@ -5,7 +5,8 @@ usage: run_hot_upsetting.py [-v] [-k] [--write]     --write puts the tables into
 
 Energy and heat close to 1 %; over each new mesh the heat (the integral of the temperature over the volume) is kept to 1e-3 and
 temperatures stay within their old bounds; heat of plastic work and friction is their work to 1 %; the die has got what is its
-temperature now. CONVERGE and MONOLITHIC agree, with steps and meshes of their own, to 1 % of the force and of the heat.
+temperature now. The ways of coupling, with steps and meshes of their own, agree to 1 % of temperatures and heat
+and to 3 % of the force.
 """
 import glob
 import os
@@ -23,6 +24,8 @@ DECK = os.path.join(ROOT, "decks", "hot_upsetting", "hot_upsetting.lag")
 README = os.path.join(os.path.dirname(DECK), "README.md")
 MARK = "<!-- table -->"
 WAYS = ("ONCE", "CONVERGE", "MONOLITHIC")
+# The force on a die differs by this much from mesh to mesh (run_upsetting_remesh.py).
+FORCE = 0.03
 BALANCE, KEPT, BOUNDS = 0.01, 1e-3, 1e-3
 
 
@@ -79,9 +82,10 @@ def main():
         table.append(f"| `{way}` | {len(rows['step'])} | {1 + sum(t['accepted'] == 'y' for t in tries(out))} | {seconds:.1f} | {force/1000:.2f} | "
                      f"{core:.1f} | {face:.1f} | {die:.2f} | {100*share:.2f} | {100*energy:+.3f} | {100*heat:+.1e} |")
     if len(ends) == len(WAYS):
-        for one, other in (("ONCE", "MONOLITHIC"), ("CONVERGE", "MONOLITHIC")):
-            worst = max(abs(a/b - 1) for a, b in zip(ends[one], ends[other]))
-            checks.that(worst < 0.01 if one == "CONVERGE" else worst < 0.02, f"{one} and MONOLITHIC", f"{worst:.2%}")
+        for one in ("ONCE", "CONVERGE"):
+            force, *others = (abs(a/b - 1) for a, b in zip(ends[one], ends["MONOLITHIC"]))
+            checks.that(force < FORCE, f"{one} and MONOLITHIC: force, each on meshes of its own", f"{force:.2%}")
+            checks.that(max(others) < BALANCE, f"{one} and MONOLITHIC: temperatures and heat", f"{max(others):.2%}")
     lines = table + ["", "| mesh | at s | elements | heat % | temperatures |", "|---|---|---|---|---|"] + listed
     print("\n".join(lines))
     if "--write" in sys.argv:

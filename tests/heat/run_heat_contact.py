@@ -276,12 +276,12 @@ def billet(checks):
     flow = columns["heat_flow_upper"]*columns["step_length"]
     checks.small(abs(5e3*(die[-1] - 200)/np.sum(flow) - 1), 1e-9, "billet: what the die got is its temperature, over all meshes")
     checks.small(abs(columns["heat_imbalance"][-1]), 1e-5, "billet: books of heat")
-    # what slides while equilibrium is restored on a new mesh is counted with the step after it, and makes no heat; and work per volume
-    # is of the volume where the mesh begins, under pressure on later meshes: 2e-3
+    # what slides while equilibrium is restored on a new mesh is counted with the step after it, and makes no heat. Work and heat are of
+    # the mass: by the volume where a mesh begins, under pressure, they would differ by 2e-3 on all later meshes
     work = columns["friction_work"] + 0.9*columns["plastic_work"]
     heat, work = np.diff(columns["heat_released"])[1:], np.diff(work)[:-1]
     missing = np.abs(heat - work)/work
-    checks.that(np.max(missing[:9]) < 1e-9 and np.max(missing) < 3e-3,
+    checks.that(np.max(missing[:9]) < 1e-9 and np.sum(missing > 1e-5) <= 4 and np.max(missing) < 1e-3,
                 "billet: heat of friction and of plastic work, over all meshes", missing)
     for generation in (1, 2):
         before, after = (os.path.join(out, f"billet.g{generation + k:02}.{end}.h5") for k, end in ((0, "end"), (1, "start")))
