@@ -17,8 +17,8 @@ module elem_heat_contact
   use contact_point, only: area_at, contact_point_t, most_unknowns, side_length, side_point
   use contact_work, only: friction_energy
   use curve_search, only: closest_facing_point
-  use elem_api, only: elem_t, first_unknown, instant_t, layout_t, mode_advance, mode_error, no_variables, report_t, &
-                      that_reads, unknown_t
+  use elem_api, only: elem_t, first_unknown, instant_t, layout_t, mode_advance, mode_error, report_t, unknown_t
+  use elem_heat_sides, only: heat_side_row
   use fields, only: displacement_field, field_t, has_corners_only, on_pilots
   use heat_contacts, only: flow_from_die, share_by_effusivity
   use kinds, only: wp
@@ -85,16 +85,7 @@ contains
     character(len=*), intent(in) :: name, purpose
     type(elem_t) :: row
 
-    row%name = name
-    row%purpose = purpose
-    row%nnode = 3
-    row%role = role_heat_contact
-    allocate (row%unknowns, source=[that_reads('temperature'), that_reads('displacement')])
-    row%unknowns(1)%acts = .true.
-    row%follows = .true.
-    row%effect = 'heat'
-    allocate (row%options(0))
-    row%variables => no_variables
+    row = heat_side_row(name, purpose, role_heat_contact)
     row%compute => compute
   end function common_row
 

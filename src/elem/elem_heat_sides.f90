@@ -20,7 +20,7 @@ module elem_heat_sides
   use vectors, only: length_of
   implicit none
   private
-  public :: elem_flux_row, elem_conve_row, elem_radia_row, flow_in
+  public :: elem_flux_row, elem_conve_row, elem_radia_row, flow_in, heat_side_row
 
   !> The temperature is the first of the element's unknowns.
   integer, parameter :: temperature = 1
@@ -49,18 +49,27 @@ contains
     character(len=*), intent(in) :: name, purpose
     type(elem_t) :: row
 
+    row = heat_side_row(name, purpose, role_side_load)
+    row%compute => compute
+  end function common_row
+
+  !> What elements of heat on sides of three nodes have in common: they act on the temperature, and read the motion.
+  function heat_side_row(name, purpose, role) result(row)
+    character(len=*), intent(in) :: name, purpose
+    integer, intent(in) :: role
+    type(elem_t) :: row
+
     row%name = name
     row%purpose = purpose
     row%nnode = 3
-    row%role = role_side_load
+    row%role = role
     allocate (row%unknowns, source=[that_reads('temperature'), that_reads('displacement')])
     row%unknowns(1)%acts = .true.
     row%follows = .true.
     row%effect = 'heat'
     allocate (row%options(0))
     row%variables => no_variables
-    row%compute => compute
-  end function common_row
+  end function heat_side_row
 
   !> Heat flows out of the nodes of all sides of a block, and their derivatives. A side never fails.
   subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &

@@ -31,9 +31,9 @@ contains
       radius = hypot(0.5_wp*(stress(1) - stress(2)), stress(3))
       high = middle + radius
       low = middle - radius
+      value = min(low, stress(4))
       if (measure == 3) value = max(high, stress(4))
       if (measure == 4) value = max(low, min(high, stress(4)))
-      if (measure == 5) value = min(low, stress(4))
     end select
   end function stress_measure
 
