@@ -1,11 +1,12 @@
-!> Fields of the solid bodies at the nodes, for pictures: every component of their states, and von Mises' equivalent stress.
+!> Fields of the solid bodies at the nodes, for pictures: every component of their states, and von Mises' equivalent stress. Further
+!> formulations on a body (phases) add what the body does not have itself.
 !>
 !> Where materials meet, a node has the mean of the values of each material there, weighed by the number of its elements: the
 !> stress of one is no bound for that of the other.
 module nodal_fields
   use kinds, only: wp
   use nodal_average, only: add_elements, begin_average, limited_average, nodal_average_t
-  use scene, only: is_solid, scene_t
+  use scene, only: is_solid, role_second, scene_t
   use solution, only: solution_t
   use state_variables, only: component_names, find_variable
   use stress_measures, only: von_mises
@@ -27,7 +28,7 @@ contains
 
     names = [string_t(mises_name)]
     do g = 1, size(scene%groups)
-      if (.not. is_solid(scene%groups(g))) cycle
+      if (.not. has_points(scene, g)) cycle
       call component_names(scene%groups(g)%variables, own)
       do c = 1, size(own)
         if (place_of(own(c)%s, names) == 0) names = [names, own(c)]
@@ -69,7 +70,11 @@ contains
     integer :: g, c
 
     do g = 1, size(scene%groups)
-      if (.not. is_solid(scene%groups(g)) .or. scene%groups(g)%material /= material) cycle
+      if (.not. has_points(scene, g) .or. scene%groups(g)%material /= material) cycle
+      if (.not. is_solid(scene%groups(g))) then
+        call component_names(scene%groups(scene%groups(g)%host)%variables, own)
+        if (name == mises_name .or. place_of(name, own) > 0) cycle
+      end if
       associate (state => solution%groups(g)%committed, nodes => scene%groups(g)%connectivity)
         if (name == mises_name) then
           ! bodies of heat alone have none
@@ -84,6 +89,15 @@ contains
       end associate
     end do
   end subroutine add_material
+
+  !> The points of a group are those of a body.
+  pure function has_points(scene, g) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g   !! number of the group
+    logical :: yes
+
+    yes = is_solid(scene%groups(g)) .or. scene%groups(g)%role == role_second
+  end function has_points
 
   !> von Mises' equivalent stress of stresses.
   pure function mises(stress) result(q)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Nodal fields of saved instants against the state of the points in the same file: two materials, a joined body of one of them, and
-a punch that folds: every value within the range of the points around its node, material by material, and what it should be."""
+a punch that folds: every value within the range of the points around its node, material by material, and what it should be. Phases of a
+further formulation on a body are among them."""
 import os
 import subprocess
 import sys
@@ -43,6 +44,26 @@ MOVE   punch Y press
 LIC    press
    0. 0.   1. -1.5
 STRAT  0.1  1.E-4  0.2   4 3
+END
+"""
+QUENCH = """TITLE  Phases of a further formulation
+STATE  AXISYM
+KINEM  SMALL
+BLOCK  bar PL8LS 4 cold
+   0. 0.   0.02 0.   0.02 0.01   0. 0.01
+   5 1.   2 1.
+ADDEL  bar PL8TM hot BILINEAR
+LAW    cold ELA
+   2.E11 0.3
+LAW    hot META
+   STEEL '{steel}' '16MND5'
+   ENERGY 1.E6
+START  T 900.
+CONVE  bar 2 H 5000. TS 20.
+FIXED  bar 1 Y
+STRAT  0.1 1.E-6 0.5   5 3
+STOP   12.
+SAVE   1000
 END
 """
 MATERIALS = {"low": "soft", "high": "hard", "side": "soft"}
@@ -91,42 +112,58 @@ def expected(bodies, field, nodes):
         return total / elements, least, largest, free / elements
 
 
-def main():
-    faults = []
-    with tempfile.TemporaryDirectory(prefix="lagamine-nodal-") as folder:
-        deck, out = os.path.join(folder, "punch.lag"), os.path.join(folder, "out")
-        with open(deck, "w", encoding="utf-8") as file:
-            file.write(DECK)
-        subprocess.run([os.path.join(BIN, "lagamine"), deck, "--out", out, "--quiet"], check=True)
-        with h5py.File(os.path.join(out, "punch.g01.h5"), "r") as file:
-            nodes = len(file["mesh/coordinates"])
-            step = file["steps"][max(file["steps"])]
-            bodies = []
-            for number, group in file["mesh/groups"].items():
-                if group["connectivity"].shape[1] != 8:
-                    continue
-                names = [name.decode().strip() for name in step[f"points/{number}/components"][()]]
-                state = dict(zip(names, np.moveaxis(step[f"points/{number}/state"][()], 2, 0)))
+def check(folder, name, text, materials):
+    """Faults of the last instant of a run; its fields, values that had to be limited, and nodes by field."""
+    faults, beyond = [], 0
+    deck, out = os.path.join(folder, name + ".lag"), os.path.join(folder, name)
+    with open(deck, "w", encoding="utf-8") as file:
+        file.write(text)
+    subprocess.run([os.path.join(BIN, "lagamine"), deck, "--out", out, "--quiet"], check=True)
+    with h5py.File(os.path.join(out, name + ".g01.h5"), "r") as file:
+        nodes = len(file["mesh/coordinates"])
+        step = file["steps"][max(file["steps"])]
+        bodies = []
+        for number, group in file["mesh/groups"].items():
+            if group["connectivity"].shape[1] != 8 or "state" not in step[f"points/{number}"]:
+                continue
+            components = [component.decode().strip() for component in step[f"points/{number}/components"][()]]
+            state = dict(zip(components, np.moveaxis(step[f"points/{number}/state"][()], 2, 0)))
+            if "stress_xx" in state:
                 state["mises"] = mises(state)
-                bodies.append((MATERIALS[group.attrs["name"].decode()], group["connectivity"][()], state))
-            fields = [name for name in step["node"] if step[f"node/{name}"].ndim == 1]
-            beyond = 0
-            for field in fields:
-                found = step[f"node/{field}"][()]
-                value, least, largest, free = expected(bodies, field, nodes)
-                scale = np.nanmax(np.abs(value))
-                there = np.isfinite(value)
-                if not (np.abs(found - value)[there] <= ROUND_OFF * scale).all():
-                    faults.append(f"{field}: off by {np.abs(found - value)[there].max()} of {scale}")
-                if not ((found >= least - ROUND_OFF * scale) & (found <= largest + ROUND_OFF * scale))[there].all():
-                    faults.append(f"{field}: leaves the range of the points around the node")
-                if (found[~there] != 0).any():
-                    faults.append(f"{field}: not 0 where there is no such field")
-                beyond += int(((free < least) | (free > largest))[there].sum())
-            strain = step["node/plastic_strain"][()]
-            if strain.min() < 0 or {"mises", "plastic_strain", "stress_xx"} - set(fields) or beyond < 50:
-                faults.append(f"the run shows little: {fields}, least plastic strain {strain.min()}, {beyond} values to be limited")
-    print("\n".join(faults) or f"{len(fields)} fields at {nodes} nodes, {beyond} values limited")
+            body = group.attrs["name"].decode()
+            bodies.append((materials.get(body, body), group["connectivity"][()], state))
+        components = {component for _, _, state in bodies for component in state}
+        values = {field: step[f"node/{field}"][()] for field in step["node"]}
+    fields = [field for field in values if field in components]
+    if components - set(fields):
+        faults.append(f"components that no field shows: {components - set(fields)}")
+    for field in fields:
+        found = values[field]
+        value, least, largest, free = expected(bodies, field, nodes)
+        scale = np.nanmax(np.abs(value))
+        there = np.isfinite(value)
+        if not (np.abs(found - value)[there] <= ROUND_OFF * scale).all():
+            faults.append(f"{field}: off by {np.abs(found - value)[there].max()} of {scale}")
+        if not ((found >= least - ROUND_OFF * scale) & (found <= largest + ROUND_OFF * scale))[there].all():
+            faults.append(f"{field}: leaves the range of the points around the node")
+        if (found[~there] != 0).any():
+            faults.append(f"{field}: not 0 where there is no such field")
+        beyond += int(((free < least) | (free > largest))[there].sum())
+    return faults, fields, beyond, values
+
+
+def main():
+    with tempfile.TemporaryDirectory(prefix="lagamine-nodal-") as folder:
+        faults, fields, beyond, values = check(folder, "punch", DECK, MATERIALS)
+        strain = values["plastic_strain"]
+        if strain.min() < 0 or {"mises", "plastic_strain", "stress_xx"} - set(fields) or beyond < 50:
+            faults.append(f"the run shows little: {fields}, least plastic strain {strain.min()}, {beyond} values to be limited")
+        steel = os.path.join(os.path.abspath(SOURCE), "decks", "steels", "16mnd5.met")
+        more, phases, _, values = check(folder, "quench", QUENCH.format(steel=steel), {})
+        if {"mises", "austenite", "bainite", "hardness"} - set(phases) or not 0 < values["bainite"].max() <= 1:
+            more.append(f"phases are missing: {phases}")
+    faults += more
+    print("\n".join(faults) or f"{len(fields)} and {len(phases)} fields, {beyond} values limited")
     return 1 if faults else 0
 
 

@@ -4,7 +4,7 @@ from typing import List, Optional, Sequence
 from .contact_curves import contact_picture
 from .contact_map import pressure_picture
 from .cooling import cooling_picture
-from .curves import energy_picture, force_picture, probes_picture, seconds_picture, steps_picture
+from .curves import energy_picture, force_picture, heat_picture, probes_picture, seconds_picture, steps_picture
 from .errors import ReportError
 from .picture import Picture
 from .pictures import MAIN_FIELDS, fields_of, fields_picture, generations_picture, known_field, mesh_picture, series_picture
@@ -15,7 +15,7 @@ from .scene_view import SceneView
 
 def make_pictures(run: Run, fields: Sequence[str] = (), mirror: bool = False) -> List[Picture]:
     """All pictures that the run has something to show for, in the order of the page."""
-    curves = [force_picture(run), probes_picture(run), cooling_picture(run), steps_picture(run), energy_picture(run), seconds_picture(run)]
+    curves = [force_picture(run), probes_picture(run), cooling_picture(run), steps_picture(run), energy_picture(run), heat_picture(run), seconds_picture(run)]
     return [picture for picture in [*shapes(run, fields, mirror), *curves] if picture is not None]
 
 

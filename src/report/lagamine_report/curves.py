@@ -12,7 +12,8 @@ from .tables import Column, number
 
 FIXED_COLUMNS = ["time", "step", "step_length", "iterations", "cutbacks", "strain_increment", "external_work", "elastic_energy",
                  "plastic_work", "friction_work", "volume_drift", "max_penetration", "points_sticking", "points_slipping"]
-DIE_COLUMNS = ["force_x_", "force_y_", "moment_", "displacement_x_", "displacement_y_", "rotation_"]
+HEAT_COLUMNS = ["heat_stored", "heat_in", "heat_released", "heat_imbalance"]
+DIE_COLUMNS = ["force_x_", "force_y_", "moment_", "displacement_x_", "displacement_y_", "rotation_", "temperature_", "heat_flow_"]
 
 
 def moved(values: np.ndarray) -> float:
@@ -67,7 +68,7 @@ def force_picture(run: Run) -> Optional[Picture]:
 def probe_columns(run: Run) -> List[Column]:
     """Columns of the deck's PROBE cards: those that are not of the system."""
     of_dies = {prefix + die for prefix in DIE_COLUMNS for die in run.die_names}
-    return [column for name, column in run.history.items() if name not in FIXED_COLUMNS and name not in of_dies]
+    return [column for name, column in run.history.items() if name not in FIXED_COLUMNS + HEAT_COLUMNS and name not in of_dies]
 
 
 def probes_picture(run: Run) -> Optional[Picture]:
@@ -147,6 +148,28 @@ def energy_picture(run: Run) -> Optional[Picture]:
     rest.set_title("neither stored nor dissipated [% of the work]")
     rest.set_xlabel("time")
     return Picture("energy", caption + "; shaded: within 2 %", fig, vector=True)
+
+
+def heat_picture(run: Run) -> Optional[Picture]:
+    """The books of heat, and temperatures of dies that have one and the heat that comes from them."""
+    history = run.history
+    if not set(HEAT_COLUMNS) <= set(history) or not len(history["time"].values):
+        return None
+    time = history["time"].values
+    flows = [history[f"heat_flow_{die}"] for die in run.die_names if f"heat_flow_{die}" in history]
+    warm = [history[f"temperature_{die}"] for die in run.die_names if f"temperature_{die}" in history]
+    panels = [("heat since the start [energy]", [history[name] for name in HEAT_COLUMNS[:3]])]
+    panels += [(title, held) for title, held in (("heat from the dies [power]", flows), ("temperature of the dies", warm)) if held]
+    fig, axes = figure(1, len(panels), (3.6 * len(panels) + (1.6 if len(panels) == 1 else 0), 3.1))
+    for panel, (title, held) in zip(axes.flat, panels):
+        for column, colour in zip(held, LINES * len(held)):
+            panel.plot(time, column.values, color=colour, label=column.name)
+        panel.set_title(title)
+        panel.set_xlabel("time")
+        panel.legend()
+    worst = float(np.nanmax(np.abs(history["heat_imbalance"].values)))
+    return Picture("heat", f"what the bodies took up, what came in through their sides, what was released in them; missing at most {worst:.1e} of it", fig,
+                   vector=True)
 
 
 def seconds_picture(run: Run) -> Optional[Picture]:

@@ -25,6 +25,7 @@ SECTIONS: List[Tuple[str, str, Sequence[str]]] = [
     ("cooling", "Cooling", ("cooling",)),
     ("march", "Steps and iterations", ("steps",)),
     ("energy", "Energies", ("energy",)),
+    ("heat", "Heat", ("heat",)),
     ("seconds", "Seconds", ("seconds",)),
 ]
 LONGEST_LIST = 40
