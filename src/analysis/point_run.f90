@@ -16,6 +16,7 @@ module point_run
   use run_options, only: run_options_t, stem_of
   use standard_streams, only: print_line
   use state_variables, only: component_names, state_variable_t, total_components
+  use stress_measures, only: von_mises
   use system, only: join_path, make_directory
   use text, only: string_t, to_text
   implicit none
@@ -238,12 +239,5 @@ contains
     write (line, '(10(1x, es11.4))') time, point%strain, point%state(1:4), von_mises(point%state(1:4))
     call print_line(line, error)
   end subroutine print_point
-
-  pure function von_mises(s) result(q)
-    real(wp), intent(in) :: s(4)
-    real(wp) :: q
-
-    q = sqrt(0.5_wp*((s(1) - s(2))**2 + (s(2) - s(4))**2 + (s(4) - s(1))**2) + 3*s(3)**2)
-  end function von_mises
 
 end module point_run

@@ -26,6 +26,7 @@ module law_arbthmet
   use rate_dependence, only: rate_cowper
   use state_variables, only: state_variable, transfer_fraction, transfer_scalar
   use steels, only: austenite, phase_count, phase_names
+  use stress_measures, only: von_mises
   use text, only: add_text, string_t
   implicit none
   private
@@ -41,6 +42,9 @@ module law_arbthmet
   integer, parameter :: driver_fraction = 2
   !> Rows of what the return knows of a point: plastic strain, work, rate.
   integer, parameter :: return_rows = 3
+
+  !> Normal components of a tensor (xx, yy, xy, zz).
+  integer, parameter :: normal(3) = [1, 2, 4]
 
 contains
 
@@ -146,8 +150,7 @@ contains
     real(wp), intent(out) :: tangent(4, 4)
     integer, intent(out) :: status
     type(flow_t) :: flow
-    real(wp) :: trial(4), curve(2, phase_count), known(return_rows), found(return_rows), dg, a, q, mean
-    integer, parameter :: normal(3) = [1, 2, 4]
+    real(wp) :: trial(4), curve(2, phase_count), known(return_rows), found(return_rows), dg, a, q
 
     associate (steel => material%steel, hardened => history(first_hardening:first_hardening + phase_count - 1))
       call elastic_flow(material, z(:, 2), temperature(2), flow)
@@ -175,12 +178,8 @@ contains
       end if
     end associate
     if (a > 1) then
-      mean = sum(stress(normal))/3
-      stress = stress/a
-      stress(normal) = stress(normal) + mean*(1 - 1/a)
-      mean = sum(elastic_strain(normal))/3
-      elastic_strain = elastic_strain/a
-      elastic_strain(normal) = elastic_strain(normal) + mean*(1 - 1/a)
+      stress = with_deviator_over(a, stress)
+      elastic_strain = with_deviator_over(a, elastic_strain)
       tangent = tangent/a
       tangent(normal, normal) = tangent(normal, normal) + flow%bulk*(1 - 1/a)
     end if
@@ -274,12 +273,15 @@ contains
     young = young*material%values(place_stress)
   end subroutine elastic_of_austenite
 
-  pure function von_mises(stress) result(q)
-    real(wp), intent(in) :: stress(4)
-    real(wp) :: q
+  !> A symmetric tensor (xx, yy, xy, zz) whose deviator is divided by a number.
+  pure function with_deviator_over(a, tensor) result(divided)
+    real(wp), intent(in) :: a
+    real(wp), intent(in) :: tensor(4)   !! [of any unit]
+    real(wp) :: divided(4)
 
-    q = sqrt(0.5_wp*((stress(1) - stress(2))**2 + (stress(2) - stress(4))**2 + (stress(4) - stress(1))**2) + 3*stress(3)**2)
-  end function von_mises
+    divided = tensor/a
+    divided(normal) = divided(normal) + sum(tensor(normal))/3*(1 - 1/a)
+  end function with_deviator_over
 
   !> The steel has the mechanics of all phases that may be there; RATE0 and COWPER go together.
   pure subroutine check(material, problems)
