@@ -3,7 +3,7 @@
 !> Heat that comes in per area, q: FLUX an amplitude (by the temperature T of the surface, where a table is given) times a
 !> multiplier; CONVE h (Ts - T), the coefficient h like the amplitude of FLUX, Ts the temperature of the surroundings; RADIA
 !> h (Ta^4 - (T + Z)^4), h emissivity times Stefan's and Boltzmann's constant, Ta = Ts + Z, Z what makes the temperatures of the
-!> deck absolute (J. Stefan 1879; L. Boltzmann 1884). F_i = -sum_k w_k integral phi_i q dA at the instants k of the flow rule
+!> deck absolute (module radiation). F_i = -sum_k w_k integral phi_i q dA at the instants k of the flow rule
 !> (elem_api), on the side as it is at the end of the step; linearised exactly, along the displacements too. Where temperatures
 !> stand on corners all is lumped at the ends of the side, as the capacity is: no temperature leaves those around it.
 module elem_heat_sides
@@ -14,6 +14,7 @@ module elem_heat_sides
   use law_api, only: law_t
   use loads, only: by_convection, by_radiation, exchange_t, value_in_table
   use quadrature, only: line_rule
+  use radiation, only: fourth_powers
   use scene, only: group_t, role_side_load, scene_t
   use sections, only: thickness_at
   use shape_functions, only: line3
@@ -164,7 +165,7 @@ contains
     real(wp), intent(in) :: multipliers(:)   !! (nmultiplier) at the instant [-]
     real(wp), intent(in) :: t                !! [temperature]
     real(wp), intent(out) :: q, slope        !! [power/area], [power/area/temperature]
-    real(wp) :: h, dh, surroundings
+    real(wp) :: h, dh, surroundings, powers, by_t, unused
 
     h = exchange%amplitude
     dh = 0
@@ -184,11 +185,9 @@ contains
       q = h*(surroundings - t)
       slope = dh*(surroundings - t) - h
     case (by_radiation)
-      ! the difference of fourth powers without the loss of digits
-      associate (a => surroundings + exchange%zero, b => t + exchange%zero)
-        q = h*(a - b)*(a + b)*(a**2 + b**2)
-        slope = dh*(a - b)*(a + b)*(a**2 + b**2) - 4*h*b**3
-      end associate
+      call fourth_powers(surroundings + exchange%zero, t + exchange%zero, powers, unused, by_t)
+      q = h*powers
+      slope = dh*powers + h*by_t
     case default
       q = h
       slope = dh

@@ -8,6 +8,7 @@
 module heat_contacts
   use kinds, only: wp
   use loads, only: value_in_table
+  use radiation, only: fourth_powers
   implicit none
   private
   public :: die_heat_t, heat_contact_t, flow_from_die, share_by_effusivity
@@ -45,7 +46,7 @@ contains
     real(wp), intent(in) :: t, t_die           !! [temperature]
     real(wp), intent(out) :: q                 !! [power/area]
     real(wp), intent(out) :: slope, slope_die  !! [power/area/temperature]
-    real(wp) :: h, factor, unused
+    real(wp) :: h, factor, powers, by_body, by_die, unused
 
     if (closed) then
       factor = 1
@@ -60,12 +61,10 @@ contains
     slope = -h
     slope_die = h
     if (closed .or. .not. contact%radiation > 0) return
-    ! the difference of fourth powers without the loss of digits
-    associate (a => t_die + contact%zero, b => t + contact%zero)
-      q = q + contact%radiation*(a - b)*(a + b)*(a**2 + b**2)
-      slope = slope - 4*contact%radiation*b**3
-      slope_die = slope_die + 4*contact%radiation*a**3
-    end associate
+    call fourth_powers(t_die + contact%zero, t + contact%zero, powers, by_die, by_body)
+    q = q + contact%radiation*powers
+    slope = slope + contact%radiation*by_body
+    slope_die = slope_die + contact%radiation*by_die
   end subroutine flow_from_die
 
   !> Share of friction heat that goes into a body: its effusivity over the sum of both (half spaces that rub have one temperature

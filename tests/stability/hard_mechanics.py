@@ -1,0 +1,231 @@
+"""Hard cases of solids: what makes programs fail that are right on easy ones. Each answers how far it is off, and its bound."""
+import math
+
+from hard_support import Case, LONG, PLASTIC, block, deck, np, report
+
+STEEL = "LAW m ELA\n 200000. 0.3\n"
+
+
+def limit_load(checks):
+    """A thick cylinder without hardening under more pressure than it bears: the last equilibrium is at the limit (Hill 1950)."""
+    limit = 2/math.sqrt(3)*250*math.log(2.0)
+    run = checks.run("limit-load", deck(
+        "PLSTN", "SMALL", block("100. 0. 200. 0. 0. 200. 0. 100.", "12 2. 12 1.", " SIDE 2 ARC 0. 0.\n SIDE 4 ARC 0. 0.\n"),
+        "LAW m EPLA\n 200000. 0.3\n LINEAR 250. 0.\n", "FIXED b 1 Y\nFIXED b 3 X\nPRES2D b 4 3 400. p\nLIC p\n 0. 0. 1. 1.\n",
+        "STRAT 0.02 1.E-6 0.02 5 3"), code=3)
+    return abs(run.history["time"][-1]*400/limit - 1)
+
+
+def deep_notch(checks):
+    """A deeply notched strip pulled far beyond its limit load: the force stays at Prandtl's, it neither climbs nor falls."""
+    run = checks.run("deep-notch", deck(
+        "PLSTN", "SMALL", block("0. 0. 5. 0. 5. 40. 0. 40.", "10 1. 20 20.")
+        + "BLOCK c PL8LS 4 m\n 5. 0. 40. 0. 40. 40. 5. 40.\n 14 20. 20 20.\nJOIN b 2 c 4\n",
+        "LAW m EPLA\n 200000. 0.3\n LINEAR 250. 0.\n",
+        "FIXED b 1 Y\nFIXED b 4 X\nMOVE b 3 Y go\nMOVE c 3 Y go\nLIC go\n 0. 0. 1. 0.6\nPROBE f REACT Y b 3\nPROBE g REACT Y c 3\n",
+        "STRAT 0.02 1.E-6 0.05 5 3"))
+    force, limit = run.history["f"] + run.history["g"], 5*2*250/math.sqrt(3)*(1 + math.pi/2)
+    return max(abs(force[-1]/limit - 1), abs(force.max()/force[-1] - 1))
+
+
+def penalties(checks):
+    """A block pressed by a die with penalties from a hundredth to a million times its stiffness: two springs one after the other."""
+    worst = 0.0
+    for k, factor in enumerate((1e-2, 1.0, 1e2, 1e4, 1e6)):
+        penalty = factor*200000/2.5
+        run = checks.run(f"penalty-{k}", deck(
+            "PLSTN", "SMALL", block("0. 0. 10. 0. 10. 10. 0. 10.", "4 1. 4 1."),
+            f"LAW m ELA\n 200000. 0.\nLAW k COUL2D\n AKP {penalty!r} PHI 0.\n",
+            "FIXED b 1 Y\nFIXED b 4 X\nDIE d PILOT 0. 10.\n SEGM 20. 10. -5. 10.\nCNT2D b 3 d k\nMOVE d Y go\nLIC go\n 0. 0. 1. -0.01\n",
+            "STRAT 0.5 1.E-6 0.5 5 3"))
+        expected = 0.01/(10/200000 + 1/penalty)*10
+        worst = max(worst, abs(abs(run.history["force_y_d"][-1])/expected - 1))
+    return worst
+
+
+def rate_exponents(checks):
+    """A Norton-Hoff bar pulled, from nearly without rate to linear in the rate: the stress is the law's at the strain rate of now."""
+    worst = 0.0
+    for k, m in enumerate((0.005, 0.05, 0.3, 1.0)):
+        run = checks.run(f"rate-{k}", deck(
+            "AXISYM", "LOG", block("0. 0. 5. 0. 5. 10. 0. 10.", "2 1. 2 1."),
+            f"LAW m EVP-NH\n 200000. 0.3\n 0. 50. {m!r} 0.\n",
+            "FIXED b 1 Y\nFIXED b 4 X\nMOVE b 3 Y go\nLIC go\n 0. 0. 1. 3.\nPROBE s POINT stress_yy 2. 5.\n", "STRAT 0.01 1.E-6 0.02 5 3"))
+        rate = 3/13
+        worst = max(worst, abs(run.history["s"][-1]/(50*math.sqrt(3)*(math.sqrt(3)*rate)**m) - 1))
+    return worst
+
+
+def stiffness_ratio(checks):
+    """Two joined blocks, one a hundred million times stiffer: both give way as they should."""
+    run = checks.run("stiffness-ratio", deck(
+        "PLSTN", "SMALL", block("0. 0. 10. 0. 10. 5. 0. 5.", "3 1. 3 1.")
+        + "BLOCK hard PL8LS 4 h\n 0. 5. 10. 5. 10. 10. 0. 10.\n 3 1. 3 1.\nJOIN b 3 hard 1\n",
+        "LAW m ELA\n 1. 0.\nLAW h ELA\n 1.E8 0.\n",
+        "FIXED b 1 Y\nFIXED b 4 X\nTRACT hard 3 Y -0.01 go\nLIC go\n 0. 0. 1. 1.\nPROBE u NODE UY 0. 5.\nPROBE a MAX stress_yy hard\nPROBE z MIN stress_yy hard\n",
+        "STRAT 1. 1. 1. 5 3"))
+    return max(abs(run.history["u"][-1]/-0.05 - 1), *(abs(run.history[name][-1]/-0.01 - 1) for name in "az"))
+
+
+def full_turn(checks):
+    """A bar glued to a die that turns once around: no stress, and every node where it began."""
+    run = checks.run("full-turn", deck(
+        "PLSTN", "LOG", block("0. 0. 4. 0. 4. 10. 0. 10.", "2 1. 5 1."), STEEL + "LAW k GLUE2D\n PENETR 1.E-3\n",
+        "DIE d PILOT 0. 0.\n SEGM -5. 0. 10. 0.\nCNT2D b 1 d k\nMOVE d A go\nLIC go\n 0. 0. 1. 2*pi\n"
+        "PROBE s MAX mises b\nPROBE ux NODE UX 4. 10.\nPROBE uy NODE UY 4. 10.\n", "STRAT 0.05 1.E-6 0.05 5 3"))
+    return max(run.history["s"].max()/200000, abs(run.history["ux"][-1])/10, abs(run.history["uy"][-1])/10)
+
+
+def axis_aspect(checks):
+    """Elements on the axis, a hundred times as high as wide, pulled: the stress is uniform, as in a round bar."""
+    run = checks.run("axis-aspect", deck(
+        "AXISYM", "SMALL", block("0. 0. 1. 0. 1. 100. 0. 100.", "10 1. 10 1."), STEEL,
+        "FIXED b 1 Y\nMOVE b 3 Y go\nLIC go\n 0. 0. 1. 0.1\nPROBE a MAX stress_yy b\nPROBE z MIN stress_yy b\nPROBE r MAX stress_xx b\n",
+        "STRAT 1. 1. 1. 5 3"))
+    a, z, r = (run.history[name][-1]/200.0 for name in "azr")
+    return max(abs(a - 1), abs(z - 1), abs(r))
+
+
+def off_centre(checks):
+    """Middle nodes off the middle of their sides by a tenth: a uniform stress is still met exactly."""
+    place = {1: (0, 0), 2: (4, 0), 3: (4, 3), 4: (0, 3), 5: (2.4, 0), 6: (4, 1.7), 7: (1.6, 3), 8: (0, 1.2),
+             9: (9, 0), 10: (9, 3), 11: (6, 0), 12: (9, 1.3), 13: (7, 3)}
+    rows = "".join(f" {k} {x!r} {y!r}\n" for k, (x, y) in place.items())
+    run = checks.run("off-centre", deck(
+        "PLSTN", "LOG", f"NODES\n{rows}PL8LS b 9 m\n 1 1 2 3 4 5 6 7 8\n 2 2 9 10 3 11 12 13 6\nSIDES low\n 1 1\n 2 1\nSIDES left\n 1 4\n"
+        "SIDES right\n 2 2\n", STEEL, "FIXED low Y\nFIXED left X\nMOVE right X go\nLIC go\n 0. 0. 1. 0.9\n"
+        "PROBE a MAX stress_xx b\nPROBE z MIN stress_xx b\nPROBE s MAX stress_yy b\n", "STRAT 0.5 0.1 0.5 5 3"))
+    a, z, s = (run.history[name][-1] for name in "azs")
+    return max(abs(a/z - 1), abs(s)/a)
+
+
+UPSET = ("BLOCK b PL8LS 4 m\n 0. 0. {r} 0. {r} {h} 0. {h}\n 6 1. 8 1.\n",
+         "LAW m EPLA\n {e} 0.3\n LINEAR {y} {t}\nLAW k COUL2D\n PENETR 1.E-3 PHI 0.3\n",
+         "FIXED b 1 Y\nFIXED b 4 X\nDIE d PILOT 0. {h}\n SEGM {w} {h} {l} {h}\nCNT2D b 2 3 d -3 k\nMOVE d Y go\nLIC go\n 0. 0. 1. {way}\n"
+         "PROBE bulge NODE UX {r} 0.\n")
+
+
+def upset(checks, name, length=1.0, stress=1.0, strat="STRAT 0.02 1.E-6 0.05 5 3", threads=1, code=0):
+    """A billet with friction and a folding side, pressed to half its height, in units of this length and stress."""
+    r, h, w, low, way = (repr(length*v) for v in (10.0, 15.0, 30.0, -1.0, -6.0))
+    e, y, t = (repr(stress*v) for v in (200000.0, 700.0, 300.0))
+    body, laws, loads = (part.format(r=r, h=h, w=w, l=low, way=way, e=e, y=y, t=t) for part in UPSET)
+    return checks.run(name, deck("AXISYM", "LOG", body, laws, loads, strat), code=code, threads=threads)
+
+
+def units(checks):
+    """The same billet in mm-N-MPa and in m-N-Pa: the same numbers and as many iterations."""
+    one, other = upset(checks, "units-mm"), upset(checks, "units-m", 1e-3, 1e6)
+    if len(one.history["time"]) != len(other.history["time"]) or sum(one.history["iterations"]) != sum(other.history["iterations"]):
+        return 1.0
+    return max(np.abs(other.history["force_y_d"]/one.history["force_y_d"] - 1).max(),
+               np.abs(other.history["bulge"]*1e3/one.history["bulge"] - 1).max())
+
+
+def threads(checks):
+    """The same billet by one, two, four and eight threads: the same bits."""
+    runs = [upset(checks, f"threads-{n}", threads=n).history for n in (1, 2, 4, 8)]
+    return 0.0 if all(np.array_equal(runs[0][c], run[c]) for run in runs[1:] for c in ("time", "force_y_d", "bulge", "iterations")) else 1.0
+
+
+def long_steps(checks):
+    """The same billet with a first step of the whole stroke: it recovers by cutting, and ends where short steps end."""
+    one, other = upset(checks, "steps-short"), upset(checks, "steps-long", strat="STRAT 1. 1.E-6 1. 5 3")
+    return max(abs(other.history[c][-1]/one.history[c][-1] - 1) for c in ("force_y_d", "bulge"))
+
+
+def mirrored(checks):
+    """A block pressed by a tilted die with friction, and its mirror image with elements in the other order."""
+    runs = []
+    for name, s in (("image", 1), ("mirror", -1)):
+        left, right = (f"{s*-6.0!r}", f"{s*6.0!r}")
+        corners = f"{left} 0. {right} 0. {right} 8. {left} 8." if s > 0 else f"{right} 0. {left} 0. {left} 8. {right} 8."
+        a, b = (12.0, 8.0), (-12.0, 10.0)
+        piece = f" SEGM {a[0]!r} {a[1]!r} {b[0]!r} {b[1]!r}\n" if s > 0 else f" SEGM {-b[0]!r} {b[1]!r} {-a[0]!r} {a[1]!r}\n"
+        runs.append(checks.run(name, deck(
+            "PLSTN", "LOG", block(corners, "6 1. 4 1."), PLASTIC, f"FIXED b 1 XY\nDIE d PILOT 0. 9.\n{piece}CNT2D b 2 3 4 d -3 k\n"
+            f"MOVE d Y go\nLIC go\n 0. 0. 1. -2.5\nPROBE u NODE UY {s*6.0!r} 8.\n", "STRAT 0.02 1.E-6 0.05 5 3")).history)
+    one, other = runs
+    if len(one["time"]) != len(other["time"]):
+        return 1.0
+    size = abs(one["force_y_d"]).max()
+    return max(abs(one["force_y_d"] - other["force_y_d"]).max()/size, abs(one["force_x_d"] + other["force_x_d"]).max()/size,
+               abs(one["u"][-1]/other["u"][-1] - 1))
+
+
+def friction_alone(checks):
+    """A block that two dies hold by friction alone, pushed sideways by four fifths of what friction bears: it stays."""
+    run = checks.run("friction-alone", deck(
+        "PLSTN", "LOG", block("0. 0. 10. 0. 10. 6. 0. 6.", "6 1. 4 1."), STEEL + "LAW k COUL2D\n PENETR 1.E-3 PHI 0.25\n",
+        "DIE low\n SEGM -5. 0. 20. 0.\nDIE up PILOT 0. 6.\n SEGM 20. 6. -5. 6.\nCNT2D b 1 low k\nCNT2D b 3 up k\n"
+        "MOVE up Y grip\nLIC grip\n 0. 0. 1. -0.01 2. -0.01\nTRACT b 4 X 1. push\nLIC push\n 0. 0. 1. 0. 2. 20.\n"
+        "PROBE u NODE UX 0. 3.\n", "STRAT 0.1 1.E-6 0.1 5 3"))
+    grip = abs(run.history["force_y_up"][-1])
+    balance = abs(run.history["force_x_up"][-1] + run.history["force_x_low"][-1])/120 - 1
+    return max(abs(balance), abs(run.history["u"][-1])/10, 0.0 if 120 < 2*0.25*grip else 1.0)
+
+
+def contact_again(checks):
+    """A die presses a billet, leaves it, and presses it again as far: the force of before, as the metal answers elastically."""
+    run = checks.run("contact-again", deck(
+        "AXISYM", "LOG", block("0. 0. 10. 0. 10. 15. 0. 15.", "5 1. 7 1."), PLASTIC.replace("PHI 0.2", "PHI 0."),
+        "FIXED b 1 Y\nFIXED b 4 X\nDIE d PILOT 0. 15.\n SEGM 30. 15. -1. 15.\nCNT2D b 2 3 d -3 k\nMOVE d Y go\n"
+        "LIC go\n 0. 0. 1. -3. 2. 5. 3. -3.\n", "STRAT 0.02 1.E-6 0.1 5 3"))
+    time, force = run.history["time"], run.history["force_y_d"]
+    first, gap, again = (force[np.argmin(abs(time - t))] for t in (1, 2, 3))
+    return max(abs(again/first - 1), abs(gap/first))
+
+
+def past_the_end(checks):
+    """A block under a weight dragged over the open end of its table and back: it stays whole, and the force is friction's."""
+    run = checks.run("past-the-end", deck(
+        "PLSTN", "LOG", block("-20. 0. 20. 0. 20. 10. -20. 10.", "10 1. 3 1."), STEEL + "LAW k COUL2D\n PENETR 1.E-3 PHI 0.2\n",
+        "DIE table\n SEGM -60. 0. 25. 0.\nCNT2D b 1 table -3 k\nTRACT b 3 Y -10. weight\nLIC weight\n 0. 0. 0.1 1. 3. 1.\n"
+        "MOVE b 4 X drag\nLIC drag\n 0. 0. 0.1 0. 1. 12. 2. 0. 3. -3.\nPROBE f REACT X b 4\n", "STRAT 0.01 1.E-6 0.05 5 3"))
+    time, force = run.history["time"], run.history["f"]
+    return max(abs(force[np.argmin(abs(time - t))]/(s*80) - 1) for t, s in ((1.0, 1), (2.0, -1), (3.0, -1)))
+
+
+def stick_slip(checks):
+    """A block driven to and fro on a table: the force is friction's on every way, and friction never gives work back."""
+    run = checks.run("stick-slip", deck(
+        "PLSTN", "LOG", block("-20. 0. 20. 0. 20. 10. -20. 10.", "8 1. 2 1."), STEEL + "LAW k COUL2D\n PENETR 1.E-3 PHI 0.3\n",
+        "DIE table\n SEGM -60. 0. 60. 0.\nCNT2D b 1 table -3 k\nTRACT b 3 Y -10. weight\nLIC weight\n 0. 0. 0.1 1. 5. 1.\n"
+        "MOVE b 4 X drag\nLIC drag\n 0. 0. 0.1 0. 1. 1. 2. -1. 3. 1. 4. -1. 5. 0.\nPROBE f REACT X b 4\n", "STRAT 0.02 1.E-6 0.1 5 3"))
+    time, force = run.history["time"], run.history["f"]
+    least = report(run)["checks"]["least_dissipation"]
+    return max(max(abs(force[np.argmin(abs(time - t))]/(s*120) - 1) for t, s in ((1, 1), (2, -1), (3, 1), (4, -1), (5, 1))),
+               0.0 if least > -1e-12 else 1.0)
+
+
+def s_shaped(checks):
+    """A block pressed into an S-shaped die of parabolas by a second of the same shape: it runs, and keeps its volume."""
+    run = checks.run("s-shaped", deck(
+        "PLSTN", "LOG", block("0. 4. 30. 4. 30. 7. 0. 7.", "30 1. 3 1."), PLASTIC,
+        "DIE low\n PARAB -2. 0. 6.5 -4. 15. 0.\n PARAB 15. 0. 23.5 4. 32. 0.\n"
+        "DIE up PILOT 0. 7.\n PARAB 32. 11. 23.5 15. 15. 11.\n PARAB 15. 11. 6.5 7. -2. 11.\n"
+        "CNT2D b 1 low k\nCNT2D b 3 up k\nMOVE up Y go\nLIC go\n 0. 0. 1. -7.6\nFIXED POINT 15. 4. X\n", "STRAT 0.01 1.E-6 0.02 5 3"))
+    return abs(report(run)["checks"]["volume_drift_unloaded"])
+
+
+def thin_rib(checks):
+    """A rib of half an element's width pressed into a block: the force is that of elements a third as wide within a half."""
+    forces = []
+    for name, n in (("rib-coarse", 8), ("rib-fine", 24)):
+        run = checks.run(name, deck(
+            "PLSTN", "LOG", block("0. 0. 8. 0. 8. 6. 0. 6.", f"{n} 1. {3*n//4} 1."), PLASTIC,
+            "FIXED b 1 Y\nFIXED b 4 X\nFIXED b 2 X\nDIE rib PILOT 0. 6.\n SEGM 0.5 20. 0.5 6.5\n ARC 0.5 6.5 0.5-0.5*(1-sqrt(0.5)) 6.5-0.5*sqrt(0.5) 0. 6. 1.E-3\n"
+            " SEGM 0. 6. -1. 6.\nCNT2D b 3 rib k\nMOVE rib Y go\nLIC go\n 0. 0. 1. -0.5\n", "STRAT 0.02 1.E-6 0.02 5 3"))
+        forces.append(abs(run.history["force_y_rib"][-1]))
+    return abs(forces[0]/forces[1] - 1)
+
+
+CASES = (
+    Case("limit load", limit_load, 1e-3), Case("deep notch", deep_notch, 0.03), Case("penalty 1e-2 to 1e6", penalties, 1e-6),
+    Case("rate exponent .005 to 1", rate_exponents, 0.003), Case("stiffness ratio 1e8", stiffness_ratio, 1e-5),
+    Case("turn by 360 degrees", full_turn, 1e-8), Case("aspect 100 on the axis", axis_aspect, 1e-9),
+    Case("middle nodes off centre", off_centre, 1e-9), Case("change of units", units, 1e-9), Case("threads", threads, 0.0),
+    Case("steps far too long", long_steps, 0.02), Case("mirror image", mirrored, 1e-7),
+    Case("held by friction alone", friction_alone, 1e-2), Case("contact again", contact_again, 0.01),
+    Case("past a die's end", past_the_end, 1e-2), Case("stick-slip reversal", stick_slip, 1e-3),
+    Case("S-shaped dies", s_shaped, 1e-3), Case("rib thinner than elements", thin_rib, 0.5, LONG))
