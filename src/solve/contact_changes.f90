@@ -5,13 +5,13 @@
 !> (2003) 865-888: primal-dual active sets are Newton's method).
 module contact_changes
   use kinds, only: wp
-  use law_api, only: contact_slip
-  use scene, only: scene_t
+  use law_api, only: contact_open, contact_slip
+  use scene, only: group_t, scene_t
   use solution, only: solution_t
   use state_variables, only: find_variable
   implicit none
   private
-  public :: contact_set, note_contact
+  public :: contact_set, note_contact, loses_a_die
 
 contains
 
@@ -27,6 +27,35 @@ contains
     changed = any(now /= set)
     call move_alloc(now, set)
   end subroutine note_contact
+
+  !> A die that the sides of a group touched at the start of the step touches none of them in the trial state.
+  pure function loses_a_die(scene, solution) result(loses)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    logical :: loses
+    integer :: g
+
+    loses = .false.
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%die == 0 .or. scene%groups(g)%material == 0) cycle
+      loses = loses .or. (touches(scene%groups(g), solution%groups(g)%committed) &
+                          .and. .not. touches(scene%groups(g), solution%groups(g)%trial))
+    end do
+  end function loses_a_die
+
+  !> A point or a corner of a group of contact is closed in this state.
+  pure function touches(group, state)
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: state(:, :, :)   !! (component, point, element)
+    logical :: touches
+
+    associate (variables => group%variables)
+      touches = any(nint(state(variables(find_variable(variables, 'contact_status'))%first, :, :)) /= contact_open)
+      if (find_variable(variables, 'corner_place') == 0) return
+      touches = touches .or. &
+                any(nint(state(variables(find_variable(variables, 'corner_contact_status'))%first, :, :)) /= contact_open)
+    end associate
+  end function touches
 
   !> Status of all points and corners in the trial state, one after the other: open, stick, slip; slip backwards is negative.
   pure function contact_set(scene, solution) result(set)

@@ -14,11 +14,17 @@
 !> Where points of contact change to and fro, the corrections from the states on both sides of the change go too far
 !> in turns; the caller may ask for a closer search, which stops between them.
 !>
+!> Where no point touches a die that was touched at the start of the step, nothing may hold the part, and a slender one
+!> springs back in a correction far longer than the gap. Then shares are tried, each a tenth of the one before, as long as they
+!> touch the die again, and the shortest of them is taken, whatever the residual: with the die in its matrix the next
+!> correction is the right one.
+!>
 !> A correction on which the residual does negative work is an ascent direction: the state is past a limit point,
 !> as where a side lifts off a die it was bent around. If the whole of it is no better, the correction is reversed (s = -1): the
 !> forces drive the body in that direction, whatever the residual. Equilibrium is further on, and no shorter step would find it
 !> nearer (J.J. More, D.C. Sorensen, Math. Programming 16 (1979) 1-20: directions of negative curvature).
 module line_search
+  use contact_changes, only: loses_a_die
   use convergence, only: free_force, slope_along
   use elem_api, only: block_done, report_t
   use equations, only: equations_t, evaluate
@@ -39,7 +45,9 @@ module line_search
   real(wp), parameter :: search_above = 0.8_wp, search_closely_above = 0.3_wp
   !> A share of the correction is taken when the whole residual falls to this part of what it was.
   real(wp), parameter :: real_fall = 0.5_wp
-  integer, parameter :: max_searches = 6
+  integer, parameter :: max_searches = 12
+  !> From one share to the next, where a die was lost.
+  real(wp), parameter :: tenth = 0.1_wp
 
 contains
 
@@ -57,8 +65,8 @@ contains
     real(wp), intent(inout) :: du(:)   !! (ndof) [unknown]
     real(wp), intent(out) :: s
     type(report_t), intent(out) :: report
-    real(wp) :: start(size(du)), trial, slope0, slope, enough, best, norm, norm0, near(2), far(2)
-    logical :: ascent, accepted
+    real(wp) :: start(size(du)), trial, slope0, slope, enough, best, norm, norm0, near(2), far(2), touching
+    logical :: ascent, accepted, lost
     integer :: k
 
     start = du
@@ -71,6 +79,8 @@ contains
     far = 0
     best = huge(best)
     s = 0
+    touching = 0
+    lost = loses_a_die(scene, solution)
     do k = 1, max_searches
       du = start + trial*correction + missing
       call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
@@ -91,17 +101,31 @@ contains
         s = trial
         return
       end if
+      if (lost) then
+        if (.not. loses_a_die(scene, solution)) then
+          touching = trial
+          trial = tenth*trial
+          cycle
+        else if (abs(touching) > 0) then
+          s = touching
+          exit
+        end if
+      end if
       if (ascent .and. k == 1) then
         du = start - correction
         call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
         if (report%status == block_done) then
           s = -1
-          return
+          if (.not. lost .or. loses_a_die(scene, solution)) return
+          touching = -1
+          trial = -tenth
+          cycle
         end if
       end if
       call narrow(trial, slope, near, far)
     end do
-    if (.not. s > 0) return
+    if (abs(touching) > 0) s = touching
+    if (.not. abs(s) > 0) return
     du = start + s*correction + missing
     call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
   end subroutine search_along

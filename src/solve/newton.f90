@@ -150,7 +150,8 @@ contains
       end if
       outcome%linear_residual = max(outcome%linear_residual, equations%solves(equations%now)%solver%residual)
       call follow_content(scene, equations, solution, outcome%du, correction, followed)
-      manner = manner_t(whole=caught(outcome%history(first:)), closely=in_turmoil(outcome%history(first:)))
+      manner = manner_t(whole=caught(outcome%history(first:)), &
+                        closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
       if (followed) then
         manner%whole = .true.
         if (in_circles(outcome%history(first:))) correction = 0.5_wp*correction
@@ -231,7 +232,24 @@ contains
 
     caught = size(history) > short_searches
     if (caught) caught = all(abs(history(size(history) - short_searches + 1:)%line_search) < short_share)
+    if (caught) caught = .not. went_round(history)
   end function caught
+
+  !> The whole correction was taken after short searches before, and the short searches since came back to no less: to take it again
+  !> would go round in circles.
+  pure function went_round(history)
+    type(iteration_t), intent(in) :: history(:)
+    logical :: went_round
+    integer :: n, whole
+
+    n = size(history)
+    whole = n - short_searches
+    went_round = whole > short_searches + 1
+    if (.not. went_round) return
+    went_round = history(whole)%line_search >= 1 &
+                 .and. all(abs(history(whole - short_searches:whole - 1)%line_search) < short_share) &
+                 .and. history(n)%force_norm > circling*history(whole - 1)%force_norm
+  end function went_round
 
   !> Contact keeps changing and the residual does not fall: it stagnates over the last two iterations.
   pure function in_turmoil(history)
