@@ -45,8 +45,8 @@ module line_search
   real(wp), parameter :: search_above = 0.8_wp, search_closely_above = 0.3_wp
   !> A share of the correction is taken when the whole residual falls to this part of what it was.
   real(wp), parameter :: real_fall = 0.5_wp
-  integer, parameter :: max_searches = 12
-  !> From one share to the next, where a die was lost.
+  integer, parameter :: max_searches = 6, max_touches = 12
+  !> From one share to the next, where a die was lost; there are `max_touches` of them at most.
   real(wp), parameter :: tenth = 0.1_wp
 
 contains
@@ -81,7 +81,7 @@ contains
     s = 0
     touching = 0
     lost = loses_a_die(scene, solution)
-    do k = 1, max_searches
+    do k = 1, merge(max_touches, max_searches, lost)
       du = start + trial*correction + missing
       call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
       if (report%status /= block_done) then
