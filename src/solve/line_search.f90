@@ -16,7 +16,7 @@
 !>
 !> Where no point touches a die that was touched at the start of the step, nothing may hold the part, and a slender one
 !> springs back in a correction far longer than the gap. Then shares are tried, each a tenth of the one before, as long as they
-!> touch the die again, and the shortest of them is taken, whatever the residual: with the die in its matrix the next
+!> touch the die again, the shortest within a factor of two is found between the last two, and is taken, whatever the residual: with the die in its matrix the next
 !> correction is the right one.
 !>
 !> A correction on which the residual does negative work is an ascent direction: the state is past a limit point,
@@ -48,6 +48,8 @@ module line_search
   integer, parameter :: max_searches = 6, max_touches = 12
   !> From one share to the next, where a die was lost; there are `max_touches` of them at most.
   real(wp), parameter :: tenth = 0.1_wp
+  !> A share that touches the die is short enough when one that does not is longer than this part of it.
+  real(wp), parameter :: near_touch = 0.5_wp
 
 contains
 
@@ -65,7 +67,7 @@ contains
     real(wp), intent(inout) :: du(:)   !! (ndof) [unknown]
     real(wp), intent(out) :: s
     type(report_t), intent(out) :: report
-    real(wp) :: start(size(du)), trial, slope0, slope, enough, best, norm, norm0, near(2), far(2), touching
+    real(wp) :: start(size(du)), trial, slope0, slope, enough, best, norm, norm0, near(2), far(2), touching, missed
     logical :: ascent, accepted, lost
     integer :: k
 
@@ -80,6 +82,7 @@ contains
     best = huge(best)
     s = 0
     touching = 0
+    missed = 0
     lost = loses_a_die(scene, solution)
     do k = 1, merge(max_touches, max_searches, lost)
       du = start + trial*correction + missing
@@ -102,13 +105,13 @@ contains
         return
       end if
       if (lost) then
-        if (.not. loses_a_die(scene, solution)) then
-          touching = trial
-          trial = tenth*trial
+        if (.not. loses_a_die(scene, solution)) touching = trial
+        if (abs(touching) > abs(trial)) missed = trial
+        if (abs(touching) > 0) then
+          if (abs(missed) > near_touch*abs(touching)) exit
+          trial = tenth*touching
+          if (abs(missed) > 0) trial = sign(sqrt(touching*missed), touching)
           cycle
-        else if (abs(touching) > 0) then
-          s = touching
-          exit
         end if
       end if
       if (ascent .and. k == 1) then
