@@ -16,8 +16,8 @@
 !>
 !> Where no point touches a die that was touched at the start of the step, nothing may hold the part, and a slender one
 !> springs back in a correction far longer than the gap. Then shares are tried, each a tenth of the one before, as long as they
-!> touch the die again, the shortest within a factor of two is found between the last two, and is taken, whatever the residual: with the die in its matrix the next
-!> correction is the right one.
+!> touch the die again; the shortest that does is found within a factor of two between the last two of them, and is taken,
+!> whatever the residual: with the die in its matrix the next correction is the right one.
 !>
 !> A correction on which the residual does negative work is an ascent direction: the state is past a limit point,
 !> as where a side lifts off a die it was bent around. If the whole of it is no better, the correction is reversed (s = -1): the

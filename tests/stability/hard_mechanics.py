@@ -220,6 +220,41 @@ def thin_rib(checks):
     return abs(forces[0]/forces[1] - 1)
 
 
+def slender(checks, name, body, loads, strat):
+    """A slender part that one or two points of contact hold: cuts over steps, and that the books of energy close."""
+    summary = report(checks.run(name, deck("PLSTN", "LOG", body, PLASTIC.replace("PHI 0.2", "PHI 0.1"), loads, strat)))
+    return summary["cutbacks"]/summary["steps"] + (0.0 if abs(summary["checks"]["energy_imbalance"]) < 0.01 else 1.0)
+
+
+def round_a_pin(checks):
+    """A clamped beam bent round a pin that slides along it: cuts over steps (0.44 where a lost die was not touched again)."""
+    return slender(checks, "pin", block("0. 0. 50. 0. 50. 1. 0. 1.", "50 1. 2 1."),
+                   "FIXED b 4 XY\nDIE pin PILOT 45. 4.\n ARC 48. 4. 45. 1. 42. 4. 1.E-3\nCNT2D b 3 pin k\nMOVE pin Y down\nMOVE pin X left\n"
+                   "LIC down\n 0. 0. 1. -35.\nLIC left\n 0. 0. 0.3 -3. 1. -20.\n", "STRAT 0.01 1.E-7 0.02 5 3")
+
+
+def three_point_bending(checks):
+    """A strip bent between three rollers and let go: cuts over steps (0.28 where searches ended after six shares)."""
+    return slender(checks, "bending", block("0. 0. 40. 0. 40. 2. 0. 2.", "40 1. 3 1."),
+                   "FIXED b 4 X\nDIE punch PILOT 0. 2.\n ARC 5. 7. 5*sin(pi/4) 7-5*cos(pi/4) 0. 2. 1.E-3\n"
+                   " ARC 0. 2. -5*sin(pi/4) 7-5*cos(pi/4) -5. 7. 1.E-3\nDIE rest\n ARC 25. -5. 30-5*sin(pi/4) -5+5*cos(pi/4) 30. 0. 1.E-3\n"
+                   " ARC 30. 0. 30+5*sin(pi/4) -5+5*cos(pi/4) 35. -5. 1.E-3\nCNT2D b 3 punch k\nCNT2D b 1 rest k\nMOVE punch Y go\n"
+                   "LIC go\n 0. 0. 1. -15. 2. 0.\n", "STRAT 0.01 1.E-7 0.05 5 3")
+
+
+def rolling(checks):
+    """A strip drawn in by a roll that turns, a fifth thinner behind it: its length grows as its height falls (plane strain)."""
+    run = checks.run("rolling", deck(
+        "PLSTN", "LOG", block("-30. 0. 0. 0. 0. 2. -30. 2.", "40 1. 3 1."), PLASTIC.replace("PHI 0.2", "PHI 0.3"),
+        "FIXED b 1 Y\nDIE roll PILOT 10. 41.6\n"
+        " ARC 10+40*sin(0.6) 41.6-40*cos(0.6) 10. 1.6 10-40*sin(0.6) 41.6-40*cos(0.6) 1.E-3\n"
+        " ARC 10-40*sin(0.6) 41.6-40*cos(0.6) 10-40*sin(1.1) 41.6-40*cos(1.1) 10-40*sin(1.6) 41.6-40*cos(1.6) 1.E-3\nCNT2D b 2 3 roll k\nMOVE roll A turn\n"
+        "LIC turn\n 0. 0. 1. 0.9\nMOVE b 4 X push\nLIC push\n 0. 0. 0.1 3. 1. 33.\nPROBE h NODE Y -15. 2.\nPROBE a NODE X -20. 1.\n"
+        "PROBE c NODE X -10. 1.\n", "STRAT 0.005 1.E-6 0.02 5 3"))
+    lengths = run.history["c"] - run.history["a"]
+    return max(abs(run.history["h"][-1]/2*lengths[-1]/lengths[0] - 1), abs(run.history["h"][-1]/1.6 - 1))
+
+
 CASES = (
     Case("limit load", limit_load, 1e-3), Case("deep notch", deep_notch, 0.03), Case("penalty 1e-2 to 1e6", penalties, 1e-6),
     Case("rate exponent .005 to 1", rate_exponents, 0.003), Case("stiffness ratio 1e8", stiffness_ratio, 1e-5),
@@ -228,4 +263,5 @@ CASES = (
     Case("steps far too long", long_steps, 0.02), Case("mirror image", mirrored, 1e-7),
     Case("held by friction alone", friction_alone, 1e-2), Case("contact again", contact_again, 0.01),
     Case("past a die's end", past_the_end, 1e-2), Case("stick-slip reversal", stick_slip, 1e-3),
-    Case("S-shaped dies", s_shaped, 1e-3), Case("rib thinner than elements", thin_rib, 0.5, LONG))
+    Case("bent round a pin", round_a_pin, 0.25), Case("bent between three rollers", three_point_bending, 0.2),
+    Case("rolling", rolling, 0.01, LONG), Case("S-shaped dies", s_shaped, 1e-3), Case("rib thinner than elements", thin_rib, 0.5, LONG))
