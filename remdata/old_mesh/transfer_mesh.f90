@@ -2,9 +2,9 @@
 module transfer_mesh
   use box_tree, only: box_tree_t, build_tree
   use kinds, only: wp
-  use parabolas, only: box_of_parabola
+  use nearest_element, only: box_of_element
   use quadrature, only: square_rule
-  use shape_functions, only: quad8, quad8_side
+  use shape_functions, only: quad8
   implicit none
   private
   public :: transfer_mesh_t, set_up_mesh, build_element_trees, build_mesh_trees
@@ -91,25 +91,11 @@ contains
     if (allocated(mesh%element_trees)) deallocate (mesh%element_trees)
     allocate (boxes(4, size(mesh%material)), mesh%element_trees(mesh%nmaterial))
     do e = 1, size(mesh%material)
-      boxes(:, e) = box_of(mesh%nodes(:, mesh%connectivity(:, e)))
+      boxes(:, e) = box_of_element(mesh%nodes(:, mesh%connectivity(:, e)))
     end do
     do m = 1, mesh%nmaterial
       call build_tree(boxes, pack([(i, i=1, size(mesh%material))], mesh%material == m), mesh%element_trees(m))
     end do
   end subroutine build_element_trees
-
-  !> Box that contains an element with curved sides.
-  pure function box_of(x) result(box)
-    real(wp), intent(in) :: x(2, 8)
-    real(wp) :: box(4)
-    integer :: s
-
-    box = box_of_parabola(x(:, quad8_side(:, 1)))
-    do s = 2, 4
-      associate (side => box_of_parabola(x(:, quad8_side(:, s))))
-        box = [min(box(1:2), side(1:2)), max(box(3:4), side(3:4))]
-      end associate
-    end do
-  end function box_of
 
 end module transfer_mesh

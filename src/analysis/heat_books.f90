@@ -19,7 +19,7 @@ contains
 
     f = find_field(scene%fields, 'temperature')
     yes = f > 0
-    if (yes) yes = scene%fields(f)%declared
+    if (yes) yes = scene%fields(f)%declared .and. .not. scene%fields(f)%given
   end function has_heat
 
   !> Add the heat of a step that was just found; reactions are booked already.

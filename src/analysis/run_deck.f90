@@ -29,7 +29,7 @@ module run_deck
   use scene_summary, only: scene_lines
   use solution, only: solution_t, start_solution
   use standard_streams, only: print_lines
-  use steel_files, only: fingerprint_with_steels
+  use steel_files, only: fingerprint_with_files
   use summary, only: run_facts_t, summary_lines, write_summary
   use system, only: catch_signals, directory_exists, join_path, make_directory, remove_file, wall_seconds
   use text, only: join, nearest_word, string_t
@@ -139,7 +139,7 @@ contains
     call read_deck(options%deck, options%overrides, deck, diagnostics)
     sound = diagnostics%count() == 0
     if (sound .and. allocated(options%resume)) then
-      call fingerprint_with_steels(deck, text)
+      call fingerprint_with_files(deck, text)
       call open_checkpoint(options%resume, checkpoint, unfit)
       if (.not. allocated(unfit)) call read_mesh_of(checkpoint, text, remesh, unfit)
     end if
@@ -154,7 +154,7 @@ contains
       end if
     end if
     if (.not. allocated(error) .and. allocated(unfit)) call move_alloc(unfit, error)
-    if (.not. allocated(error)) call fingerprint_with_steels(deck, text)
+    if (.not. allocated(error)) call fingerprint_with_files(deck, text)
     at_rest = allocated(remesh)
     if (at_rest) at_rest = remesh%step == 0
     if (.not. allocated(remesh)) at_rest = lacks_mesh(scene)

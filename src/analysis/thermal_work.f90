@@ -102,7 +102,7 @@ contains
       u = temperature_place(layout)
       do e = 1, size(nodes, 2)
         p = (e - 1)*n
-        if (u > 0) then
+        if (u > 0 .and. group%temperature_multiplier == 0) then
           f = layout%field(u)
           do k = 1, layout%count(u)
             du(layout%first(1, u) + k - 1) = solution%fields(f)%last_increment(1, nodes(k, e))

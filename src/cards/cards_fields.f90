@@ -1,28 +1,25 @@
-!> ADDEL, START, IMPOS and SOLVE: further formulations on bodies, values of their fields at the start and where they are imposed,
-!> and how fields are coupled.
+!> ADDEL, IMPOS and SOLVE: further formulations on bodies, values of their fields where they are imposed, and how fields are
+!> coupled.
 module cards_fields
   use card_places, only: place_t, read_place
   use cards_laws, only: read_material
   use cards_mesh, only: is_body_elem, read_option
   use cards_sides, only: append_group
   use deck_cursor, only: cursor_t
-  use deck_expression, only: evaluate
-  use deck_parameters, only: parameters_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
   use elem_api, only: declare_fields
   use field_places, only: refuse_unlike_nodes, refuse_without_field
   use fields, only: field_t
-  use kinds, only: wp
   use law_api, only: law_of_material
-  use loads, only: fixation_t, start_t
+  use loads, only: fixation_t
   use scene, only: group_t, is_solid, role_second
   use scene_draft, only: close_card, draft_t, find_elem, only_card
   use strategy, only: coupling_names
-  use text, only: string_t, to_text
+  use text, only: string_t
   implicit none
   private
-  public :: read_formulations, read_start_values, read_imposed_values, read_coupling, field_words
+  public :: read_formulations, read_imposed_values, read_coupling, read_body, read_field, field_words
 
 contains
 
@@ -132,133 +129,6 @@ contains
       words(n)%s = fields(place(n))%word
     end do
   end subroutine field_words
-
-  !> All START cards, `field value [body]`: the value of a field at the start, everywhere or on a body; a number, or a formula of
-  !> the place where the material is in the deck's own mesh.
-  subroutine read_start_values(deck, draft, diagnostics)
-    type(deck_t), intent(inout), target :: deck
-    type(draft_t), intent(inout) :: draft
-    type(diagnostics_t), intent(inout), target :: diagnostics
-    type(cursor_t) :: cursor
-    type(start_t) :: start
-    type(start_t), allocatable :: everywhere(:)
-    logical, allocatable :: given(:)
-    character(len=:), allocatable :: formula
-    integer, allocatable :: cards(:)
-    real(wp) :: value
-    integer :: i, f
-
-    allocate (given(0), cards(0), everywhere(0), draft%scene%starts(0))
-    if (draft%groups_sound) given = spread(.false., 1, size(draft%scene%fields))
-    do i = 1, size(deck%cards)
-      if (deck%cards(i)%keyword /= 'START') cycle
-      call cursor%open(deck%cards(i), diagnostics)
-      call read_field(cursor, draft, f)
-      if (f > 0) then
-        start%field = f
-        start%body = ''
-        if (size(deck%cards(i)%head%fields) < 3 .and. given(f)) &
-          call cursor%fail('the start of '//draft%scene%fields(f)%word//' is given twice')
-        call cursor%real_or_formula('the value at the start', value, formula, draft%scene%fields(f)%unit)
-        call values_at_nodes(cursor, draft, value, formula, start%values)
-        if (size(deck%cards(i)%head%fields) < 3) then
-          given(f) = .true.
-          if (formula == '') draft%scene%fields(f)%initial = value
-          if (formula /= '') everywhere = [everywhere, start]
-        else
-          call read_start_of_body(cursor, draft, f, start)
-          cards = [cards, i]
-        end if
-      end if
-      call close_card(draft, cursor, deck%cards(i))
-    end do
-    if (draft%mesh_sound .and. draft%groups_sound .and. size(cards) == size(draft%scene%starts)) then
-      do i = 1, size(cards)
-        call cursor%open(deck%cards(cards(i)), diagnostics)
-        call refuse_two_starts(cursor, draft, everywhere, draft%scene%starts(i))
-      end do
-    end if
-    draft%scene%starts = [everywhere, draft%scene%starts]
-  end subroutine read_start_values
-
-  !> A value, or that of a formula, at every node of the mesh; none without a mesh.
-  subroutine values_at_nodes(cursor, draft, value, formula, values)
-    type(cursor_t), intent(inout) :: cursor
-    type(draft_t), intent(in) :: draft
-    real(wp), intent(in) :: value
-    character(len=*), intent(in) :: formula             !! empty where the value is a number
-    real(wp), allocatable, intent(out) :: values(:)     !! (nnode) [of the field]
-    type(parameters_t) :: none
-    character(len=:), allocatable :: message
-    integer :: k, position
-    logical :: failed
-
-    allocate (values(0))
-    if (.not. draft%mesh_sound .or. cursor%failed()) return
-    associate (places => draft%scene%mesh%origin)
-      values = spread(value, 1, size(places, 2))
-      if (formula == '') return
-      do k = 1, size(places, 2)
-        call evaluate(formula, none, values(k), failed, message, position, places(:, k))
-        if (.not. failed) cycle
-        call cursor%fail('at x = '//to_text(places(1, k), 6)//', y = '//to_text(places(2, k), 6)//': '//message)
-        return
-      end do
-    end associate
-  end subroutine values_at_nodes
-
-  !> The body that a start is of.
-  subroutine read_start_of_body(cursor, draft, field, start)
-    type(cursor_t), intent(inout) :: cursor
-    type(draft_t), intent(inout) :: draft
-    integer, intent(in) :: field
-    type(start_t), intent(inout) :: start
-    integer :: body, k
-
-    call read_body(cursor, draft, body)
-    if (body == 0) return
-    start%body = draft%scene%groups(body)%name
-    call refuse_without_field(cursor, draft, field, [draft%scene%groups(body)%connectivity], start%body, own=.true.)
-    do k = 1, size(draft%scene%starts)
-      if (draft%scene%starts(k)%field == field .and. draft%scene%starts(k)%body == start%body) &
-        call cursor%fail('the start of '//draft%scene%fields(field)%word//' of '''//start%body//''' is given twice')
-    end do
-    if (.not. cursor%failed()) draft%scene%starts = [draft%scene%starts, start]
-  end subroutine read_start_of_body
-
-  !> A node that two bodies share starts with one value.
-  subroutine refuse_two_starts(cursor, draft, everywhere, start)
-    type(cursor_t), intent(inout) :: cursor
-    type(draft_t), intent(in) :: draft
-    type(start_t), intent(in) :: everywhere(:)   !! formulas for all nodes
-    type(start_t), intent(in) :: start
-    logical :: of_body(size(draft%scene%mesh%coordinates, 2))
-    real(wp) :: values(size(draft%scene%mesh%coordinates, 2))
-    integer :: g, k
-
-    of_body = .false.
-    do g = 1, size(draft%scene%groups)
-      if (is_solid(draft%scene%groups(g)) .and. draft%scene%groups(g)%name == start%body) &
-        of_body([draft%scene%groups(g)%connectivity]) = .true.
-    end do
-    do g = 1, size(draft%scene%groups)
-      associate (group => draft%scene%groups(g))
-        if (.not. is_solid(group) .or. group%name == start%body) cycle
-        if (.not. any(of_body([group%connectivity]))) cycle
-        values = draft%scene%fields(start%field)%initial
-        do k = 1, size(everywhere)
-          if (everywhere(k)%field == start%field) values = everywhere(k)%values
-        end do
-        do k = 1, size(draft%scene%starts)
-          if (draft%scene%starts(k)%field == start%field .and. draft%scene%starts(k)%body == group%name) &
-            values = draft%scene%starts(k)%values
-        end do
-        if (any(of_body([group%connectivity]) .and. abs(values([group%connectivity]) - start%values([group%connectivity])) > 0)) &
-          call cursor%fail('the bodies '''//start%body//''' and '''//group%name &
-                           //''' share nodes: they must start with the same '//draft%scene%fields(start%field)%word)
-      end associate
-    end do
-  end subroutine refuse_two_starts
 
   !> All IMPOS cards, `place field lic [amplitude]`: the value of a field, amplitude times multiplier.
   subroutine read_imposed_values(deck, draft, diagnostics)
@@ -371,6 +241,7 @@ contains
     yes = .false.
     do i = 1, size(fields)
       do j = 1, i - 1
+        if (any(fields([i, j])%given)) cycle
         if (fields(i)%declared .and. fields(j)%declared) yes = yes .or. fields(i)%quantity /= fields(j)%quantity
       end do
     end do

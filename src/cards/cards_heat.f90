@@ -210,7 +210,7 @@ contains
     type(diagnostics_t), intent(inout), target :: diagnostics
     type(cursor_t) :: cursor
     type(string_t), allocatable :: words(:)
-    integer :: k
+    integer :: f, k
 
     call only_card(deck, 'THETA', .false., diagnostics, k)
     if (k == 0) return
@@ -235,8 +235,9 @@ contains
       end if
     end associate
     if (draft%groups_sound) then
-      if (find_field(draft%scene%fields, 'temperature') == 0) &
-        call cursor%fail('no body of this scene has a temperature among its unknowns (PL8TM)')
+      f = find_field(draft%scene%fields, 'temperature')
+      if (f > 0) f = merge(0, f, draft%scene%fields(f)%given)
+      if (f == 0) call cursor%fail('no body of this scene has a temperature among its unknowns (PL8TM)')
       associate (strategy => draft%scene%strategy)
         if ((strategy%scheme == scheme_tr_bdf2 .or. strategy%time_tolerance > 0) .and. strategy%coupling == coupling_monolithic &
             .and. count(draft%scene%fields%declared) > 1) &

@@ -45,6 +45,9 @@ contains
       draft%scene%remesh%on = .true.
       draft%scene%remesh%estimate = .true.
       draft%scene%remesher%wanted = .true.
+      if (allocated(draft%scene%histories)) then
+        if (size(draft%scene%histories) > 0) call cursor%fail('a scene on the temperatures of another run (TEMPE) keeps its mesh')
+      end if
       call read_rows(cursor, draft)
       call close_card(draft, cursor, deck%cards(k))
     end if

@@ -1,20 +1,28 @@
-!> TEMPE: the temperature of a body, and the check that laws which need one have it.
+!> TEMPE: the temperature of a body, given in time or by another run, and the check that laws which need one have it.
 module cards_temperature
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
   use elem_api, only: acts_on
+  use fields, only: field_t, find_field
   use kinds, only: wp
   use law_api, only: asks_for, law_t
+  use loads, only: field_history_t, instants_around, start_t
   use materials, only: material_t
-  use scene_draft, only: close_card, draft_t
+  use other_run, only: nodes_of_body, read_file_of_run, temperatures_at_nodes
+  use run_temperatures, only: run_temperatures_t
+  use scene_draft, only: close_card, draft_t, find_elem
+  use text, only: to_text
   implicit none
   private
-  public :: read_temperatures_of_bodies, knows_temperature
+  public :: read_temperatures_of_bodies, knows_temperature, refuse_short_histories
+
+  !> A run may end so much before the scene, over its length: rounding of the last step.
+  real(wp), parameter :: end_slack = 1.0e-9_wp
 
 contains
 
-  !> All TEMPE cards: `body amplitude lic`.
+  !> All TEMPE cards: `body amplitude lic`, or `body FROM file`.
   subroutine read_temperatures_of_bodies(deck, draft, diagnostics)
     type(deck_t), intent(inout), target :: deck
     type(draft_t), intent(inout) :: draft
@@ -24,6 +32,7 @@ contains
     integer :: i, k, g, before
 
     before = diagnostics%count()
+    allocate (draft%scene%histories(0))
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword /= 'TEMPE') cycle
       call cursor%open(deck%cards(i), diagnostics)
@@ -33,6 +42,13 @@ contains
       if (k > 0 .and. g == 0) call cursor%fail(''''//draft%places%words(k)%s//''' is a '//draft%places%keywords(k)%s &
                                                //', expected a body')
       if (g > 0) call check_body(cursor, draft, g)
+      if (cursor%peek_word() == 'FROM') then
+        call read_history(cursor, deck%path, draft, g)
+        call close_card(draft, cursor, deck%cards(i))
+        ! without it nothing is known of a temperature that others may ask for
+        if (cursor%failed()) draft%groups_sound = .false.
+        cycle
+      end if
       call cursor%real('the amplitude of the temperature', amplitude, unit='temperature')
       call draft%multipliers%find(cursor, 'the name of a LIC', k)
       call close_card(draft, cursor, deck%cards(i))
@@ -42,6 +58,102 @@ contains
     end do
     if (diagnostics%count() == before) call refuse_bodies_without(draft, diagnostics)
   end subroutine read_temperatures_of_bodies
+
+  !> `FROM file`: the temperatures of another run. Nodes of the body then have a temperature that is given.
+  subroutine read_history(cursor, deck_path, draft, g)
+    type(cursor_t), intent(inout) :: cursor
+    character(len=*), intent(in) :: deck_path
+    type(draft_t), intent(inout) :: draft
+    integer, intent(in) :: g   !! number of the body, 0 where there is none
+    type(run_temperatures_t) :: run
+    type(field_history_t) :: history
+    type(start_t) :: start
+    integer :: k, before
+    real(wp) :: share
+
+    call read_file_of_run(cursor, deck_path, history%source, run)
+    if (cursor%failed() .or. g == 0 .or. .not. (draft%mesh_sound .and. draft%groups_sound)) return
+    do k = 1, size(draft%scene%groups)
+      if (acts_on(draft%elems(draft%scene%groups(k)%elem_id), 'temperature')) &
+        call cursor%fail('the temperature is an unknown of this scene (body '//draft%scene%groups(k)%name &
+                         //'): temperatures of another run are for scenes without')
+    end do
+    history%body = draft%scene%groups(g)%name
+    call nodes_of_body(draft, g, history%nodes)
+    call refuse_other_source(cursor, draft, history)
+    call temperatures_at_nodes(cursor, draft, run, history%source, history%body, history%nodes, history%values)
+    if (cursor%failed()) return
+    call move_alloc(run%time, history%time)
+    if (history%time(1) > 0) then
+      call cursor%fail('the first instant of '''//history%source//''' is at '//to_text(history%time(1), 6)//', expected one at 0')
+      return
+    end if
+    call declare_given(draft, history%field)
+    ! what is free of thermal strain is so at the first of them
+    call instants_around(history%time, 0.0_wp, before, share)
+    start%field = history%field
+    start%body = history%body
+    allocate (start%values(size(draft%scene%mesh%coordinates, 2)), source=0.0_wp)
+    start%values(history%nodes) = history%values(:, before)
+    if (share > 0) start%values(history%nodes) = (1 - share)*history%values(:, before) + share*history%values(:, before + 1)
+    draft%scene%starts = [draft%scene%starts, start]
+    draft%scene%histories = [draft%scene%histories, history]
+    draft%scene%groups(g)%temperature_history = size(draft%scene%histories)
+  end subroutine read_history
+
+  !> Bodies that share nodes have the temperatures of one run.
+  subroutine refuse_other_source(cursor, draft, history)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(field_history_t), intent(in) :: history
+    logical :: own(size(draft%scene%mesh%coordinates, 2))
+    integer :: k
+
+    own = .false.
+    own(history%nodes) = .true.
+    do k = 1, size(draft%scene%histories)
+      if (draft%scene%histories(k)%source == history%source .or. .not. any(own(draft%scene%histories(k)%nodes))) cycle
+      call cursor%fail('the bodies '''//history%body//''' and '''//draft%scene%histories(k)%body &
+                       //''' share nodes: expected temperatures of the same run')
+    end do
+  end subroutine refuse_other_source
+
+  !> The temperature as a field that is given: as PL8TM declares it on eight nodes.
+  subroutine declare_given(draft, place)
+    type(draft_t), intent(inout) :: draft
+    integer, intent(out) :: place   !! in the scene's list of fields
+    type(field_t) :: field
+
+    place = find_field(draft%scene%fields, 'temperature')
+    if (place > 0) return
+    field = draft%elems(find_elem(draft%elems, 'PL8TM'))%unknowns(1)%field
+    field%given = .true.
+    field%declared = .true.
+    draft%scene%fields = [draft%scene%fields, field]
+    place = size(draft%scene%fields)
+  end subroutine declare_given
+
+  !> The temperatures of other runs must last until the end of the scene.
+  subroutine refuse_short_histories(deck, draft, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(draft_t), intent(inout) :: draft
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(cursor_t) :: cursor
+    integer :: i, k
+
+    do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword /= 'TEMPE') cycle
+      do k = 1, size(draft%scene%histories)
+        if (deck%cards(i)%head%fields(1)%text /= draft%scene%histories(k)%body) cycle
+        associate (time => draft%scene%histories(k)%time)
+          if (.not. time(size(time)) < draft%scene%strategy%end_time*(1 - end_slack)) cycle
+          call cursor%open(deck%cards(i), diagnostics)
+          call cursor%fail('the last instant of '''//draft%scene%histories(k)%source//''' is at '//to_text(time(size(time)), 6) &
+                           //', before the end of this scene at '//to_text(draft%scene%strategy%end_time, 6))
+        end associate
+      end do
+    end do
+  end subroutine refuse_short_histories
 
   !> The group of a body, 0 for other places.
   pure function body_group(draft, name) result(g)
@@ -64,7 +176,8 @@ contains
 
     associate (group => draft%scene%groups(g))
       if (has_field(draft, g)) call cursor%fail('the temperature of '//group%name//' is an unknown of this scene')
-      if (group%temperature_multiplier > 0) call cursor%fail('the temperature of '''//group%name//''' is given twice')
+      if (max(group%temperature_multiplier, group%temperature_history) > 0) &
+        call cursor%fail('the temperature of '''//group%name//''' is given twice')
       if (group%material == 0) return
       associate (material => draft%scene%materials(group%material))
         law = material%law_id
@@ -97,7 +210,8 @@ contains
 
     do g = 1, size(draft%scene%groups)
       associate (group => draft%scene%groups(g))
-        if (group%material == 0 .or. group%temperature_multiplier > 0 .or. has_field(draft, g)) cycle
+        if (group%material == 0 .or. max(group%temperature_multiplier, group%temperature_history) > 0) cycle
+        if (has_field(draft, g)) cycle
         associate (material => draft%scene%materials(group%material))
           if (material%law_id == 0) cycle
           if (.not. knows_temperature(draft%laws(material%law_id), material)) cycle

@@ -36,6 +36,12 @@ contains
         end associate
       end associate
     end do
+    ! what is given can be seen, not set
+    if (draft%scene%fields(field)%given .and. .not. own) then
+      do g = 1, size(draft%scene%histories)
+        if (draft%scene%histories(g)%field == field) has(draft%scene%histories(g)%nodes) = .true.
+      end do
+    end if
     if (.not. all(has(nodes))) then
       call cursor%fail(label//': nodes here are of a body without '//draft%scene%fields(field)%name)
     else if (own .and. .not. any(is_own(nodes))) then

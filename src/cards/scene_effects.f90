@@ -61,7 +61,7 @@ contains
         case ('pressure')
           call switch_on(6, .true., group%elem, before_slash(group%name), 'forces and matrix of the loaded sides')
         end select
-        if (group%temperature_multiplier > 0) &
+        if (max(group%temperature_multiplier, group%temperature_history) > 0) &
           call switch_on(10, .true., 'TEMPE', group%name, 'numbers of laws at the temperature given')
         if (group%material == 0) cycle
         associate (material => scene%materials(group%material))

@@ -4,7 +4,7 @@ module scene_reader
   use cards_body_forces, only: read_body_forces
   use cards_contours, only: read_contours, refuse_half_contours
   use cards_dies, only: read_dies
-  use cards_fields, only: read_coupling, read_formulations, read_imposed_values, read_start_values
+  use cards_fields, only: read_coupling, read_formulations, read_imposed_values
   use cards_head, only: read_kinematics, read_title
   use cards_heat, only: read_exchanges, read_time_scheme
   use cards_heat_contact, only: read_heat_contacts
@@ -17,8 +17,9 @@ module scene_reader
   use cards_section, only: read_section, read_state
   use cards_side_dies, only: read_side_dies
   use cards_sides, only: read_contacts, read_pressures
+  use cards_start, only: read_start_values
   use cards_strategy, only: read_strategy
-  use cards_temperature, only: read_temperatures_of_bodies
+  use cards_temperature, only: read_temperatures_of_bodies, refuse_short_histories
   use cards_tractions, only: read_tractions
   use cards_weld, only: read_torches
   use cards_zones, only: read_zones
@@ -104,6 +105,7 @@ contains
     call read_tractions(deck, draft, diagnostics)
     call read_pilots(deck, draft, diagnostics)
     call read_strategy(deck, draft, diagnostics)
+    call refuse_short_histories(deck, draft, diagnostics)
     call read_coupling(deck, draft, diagnostics)
     call read_time_scheme(deck, draft, diagnostics)
     call read_remesh(deck, draft, diagnostics)

@@ -172,6 +172,8 @@ contains
       if (scene%groups(g)%elem == 'CENTR') s = s//'^2'
       if (any(scene%groups(g)%elem == [character(len=5) :: 'FLUX', 'CONVE', 'RADIA', 'HEATS'])) s = exchange_of(scene%groups(g))
       if (scene%groups(g)%source > 0) s = torch_of(scene%sources(scene%groups(g)%source))
+      if (scene%groups(g)%temperature_history > 0) &
+        s = s//', temperature of '//scene%histories(scene%groups(g)%temperature_history)%source
       if (scene%groups(g)%temperature_multiplier > 0) &
         s = s//', temperature '//to_text(scene%groups(g)%temperature_amplitude)//' x ' &
             //scene%multipliers(scene%groups(g)%temperature_multiplier)%name

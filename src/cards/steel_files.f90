@@ -1,14 +1,18 @@
-!> Steels that the LAW cards of a deck name: `STEEL file name` as the first row.
+!> Steels that the LAW cards of a deck name: `STEEL file name` as the first row; and what all files say that a deck names.
 module steel_files
   use deck_cursor, only: cursor_t
-  use deck_reader, only: deck_t, fingerprint_text, read_deck
+  use deck_reader, only: deck_field_t, deck_t, fingerprint_text, read_deck
+  use deck_source, only: path_beside
   use diagnostics, only: diagnostics_t
+  use errors, only: error_t
+  use hash, only: sha256_length
+  use run_temperatures, only: read_run_temperatures, run_temperatures_t, temperatures_digest
   use steel_reader, only: read_steels
   use steels, only: steel_t
-  use text, only: string_t
+  use text, only: string_t, upper_case
   implicit none
   private
-  public :: read_steel_of_law, fingerprint_with_steels
+  public :: read_steel_of_law, fingerprint_with_files
 
 contains
 
@@ -44,17 +48,9 @@ contains
     if (k > 0 .and. .not. cursor%failed()) allocate (steel, source=steels(k))
   end subroutine read_steel_of_law
 
-  pure function path_beside(deck_path, file) result(path)
-    character(len=*), intent(in) :: deck_path, file
-    character(len=:), allocatable :: path
-
-    path = file
-    if (file(1:1) /= '/') path = deck_path(:index(deck_path, '/', back=.true.))//file
-  end function path_beside
-
-  !> What the deck says, and what the files say that its rows STEEL name: a run goes on from a checkpoint only where both are
-  !> the same.
-  subroutine fingerprint_with_steels(deck, text)
+  !> What the deck says, and what the files say that its rows STEEL and its words FROM name: a run goes on from a checkpoint only
+  !> where all are the same.
+  subroutine fingerprint_with_files(deck, text)
     type(deck_t), intent(in) :: deck
     character(len=:), allocatable, intent(out) :: text
     type(deck_t), target :: file
@@ -65,6 +61,7 @@ contains
 
     call fingerprint_text(deck, text)
     do i = 1, size(deck%cards)
+      if (any(deck%cards(i)%keyword == ['TEMPE', 'START'])) call add_run(deck, deck%cards(i)%head%fields, text)
       if (deck%cards(i)%keyword /= 'LAW') cycle
       do j = 1, size(deck%cards(i)%rows)
         associate (fields => deck%cards(i)%rows(j)%fields)
@@ -76,6 +73,23 @@ contains
         end associate
       end do
     end do
-  end subroutine fingerprint_with_steels
+  end subroutine fingerprint_with_files
+
+  !> The temperatures of another run that a card names.
+  subroutine add_run(deck, fields, text)
+    type(deck_t), intent(in) :: deck
+    type(deck_field_t), intent(in) :: fields(:)   !! (nfield) of the card
+    character(len=:), allocatable, intent(inout) :: text
+    type(run_temperatures_t) :: run
+    type(error_t), allocatable :: error
+    character(len=sha256_length) :: digest
+
+    if (size(fields) < 3) return
+    if (fields(2)%numeric .or. fields(3)%numeric .or. upper_case(fields(2)%text) /= 'FROM') return
+    call read_run_temperatures(path_beside(deck%path, fields(3)%text), run, error)
+    if (allocated(error)) return
+    call temperatures_digest(run, digest)
+    text = text//fields(3)%text//' '//digest
+  end subroutine add_run
 
 end module steel_files

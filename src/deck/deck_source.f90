@@ -9,7 +9,7 @@ module deck_source
   use text, only: string_t, to_text, upper_case
   implicit none
   private
-  public :: line_t, source_t, load_file, load_text, write_text
+  public :: line_t, source_t, load_file, load_text, path_beside, write_text
 
   !> Depth of included files: more is a cycle which the names did not show.
   integer, parameter :: deepest_include = 16
@@ -235,7 +235,7 @@ contains
       column = fields(1)%column
       path = fields(1)%text
       if (index(path, '$') > 0) failure = 'the name of an included file takes no parameter'
-      if (path(1:1) /= '/') path = open_files(depth)%s(:index(open_files(depth)%s, '/', back=.true.))//path
+      path = path_beside(open_files(depth)%s, path)
       do i = 1, depth
         if (plain_path(open_files(i)%s) == plain_path(path)) failure = ''''//path//''' includes itself'
       end do
@@ -338,5 +338,14 @@ contains
       first = past + 1
     end do
   end function plain_path
+
+  !> The path of a file that a deck names: relative to the folder of the deck, where it is not absolute.
+  pure function path_beside(deck_path, file) result(path)
+    character(len=*), intent(in) :: deck_path, file
+    character(len=:), allocatable :: path
+
+    path = file
+    if (index(file, '/') /= 1) path = deck_path(:index(deck_path, '/', back=.true.))//file
+  end function path_beside
 
 end module deck_source

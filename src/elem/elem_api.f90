@@ -433,6 +433,10 @@ contains
         end do
       end associate
     end do
+    if (.not. allocated(scene%histories)) return
+    do k = 1, size(scene%histories)
+      scene%fields(scene%histories(k)%field)%declared = .true.
+    end do
   end subroutine declare_fields
 
   !> Add the measures of one group to the totals of the scene.

@@ -121,7 +121,8 @@ contains
       end if
     end do
 
-    if (temperature_place(layout) > 0) then
+    ! a body with a TEMPE card has that temperature also where others of the scene have a field
+    if (temperature_place(layout) > 0 .and. group%temperature_multiplier == 0) then
       functions = projected_functions(rule)
       do e = 1, nb
         p = (e - 1)*group%rule%n
@@ -155,7 +156,7 @@ contains
       end if
       call forces_of(e, instant%tangent, trial(1:4, :, e), dv(:, e), force(:n, e), stiffness(:n, :n, e))
     end do
-    if (.not. instant%tangent .or. n == size(du, 1) .or. report%status /= 0) return
+    if (.not. instant%tangent .or. n == size(du, 1) .or. report%status /= 0 .or. group%temperature_multiplier > 0) return
     if (instant%solved(layout%field(temperature_place(layout)))) call add_columns_of_temperature()
 
   contains

@@ -39,8 +39,10 @@ module fields
     character(len=:), allocatable :: word
     !> Value at the start of the scene.
     real(wp) :: initial = 0.0_wp
-    !> An element of the scene has it among its unknowns.
+    !> An element of the scene has it among its unknowns, or its values are given.
     logical :: declared = .false.
+    !> Its values are given at all times (field_history_t of the scene): elements read it, none acts on it.
+    logical :: given = .false.
     !> What acts on it and is below this is round-off (set at the first evaluation of a mesh).
     real(wp) :: floor = 0.0_wp
     !> Value at the accepted instant, its change in the last accepted step, what acted from outside at that instant, and what

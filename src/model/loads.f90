@@ -4,9 +4,9 @@ module loads
   use kinds, only: wp
   implicit none
   private
-  public :: start_t, multiplier_t, fixation_t, die_motion_t, die_force_t, nodal_force_t, exchange_t
+  public :: start_t, field_history_t, multiplier_t, fixation_t, die_motion_t, die_force_t, nodal_force_t, exchange_t
   public :: by_flux, by_convection, by_radiation
-  public :: multiplier_at, value_in_table
+  public :: instants_around, multiplier_at, value_in_table
 
   !> Piecewise linear in time, constant outside its points.
   type :: multiplier_t
@@ -22,6 +22,18 @@ module loads
     !> Values at the nodes of the mesh (nnode), used at those of the body [of the field].
     real(wp), allocatable :: values(:)
   end type start_t
+
+  !> Values of a field on the nodes of a body that are known beforehand, at instants; linear in time between them.
+  type :: field_history_t
+    !> Place in the scene's list of fields, and name of the body.
+    integer :: field = 0
+    character(len=:), allocatable :: body
+    !> Where they come from, as the deck says it.
+    character(len=:), allocatable :: source
+    integer, allocatable :: nodes(:)
+    !> Instants, ascending (n) [time], and the values then (node, n) [of the field].
+    real(wp), allocatable :: time(:), values(:, :)
+  end type field_history_t
 
   !> Imposed motion (or value) of one component of a field at some nodes: amplitude times multiplier (0 = held).
   type :: fixation_t
@@ -103,6 +115,21 @@ contains
       value = points(2, i - 1) + slope*(x - points(1, i - 1))
     end if
   end subroutine value_in_table
+
+  !> The instant before a time, and the share of the way from it to the next one, 0 to 1: linear in time. Outside of the instants
+  !> the first or the last.
+  pure subroutine instants_around(times, time, before, share)
+    real(wp), intent(in) :: times(:)   !! (n) ascending [time]
+    real(wp), intent(in) :: time       !! [time]
+    integer, intent(out) :: before     !! 1 to n - 1, 1 where there is one instant
+    real(wp), intent(out) :: share     !! [-]
+
+    before = 1
+    share = 0
+    if (size(times) == 1) return
+    before = max(1, min(size(times) - 1, count(times <= time)))
+    share = max(0.0_wp, min(1.0_wp, (time - times(before))/(times(before + 1) - times(before))))
+  end subroutine instants_around
 
   !> Value of a multiplier at a time.
   pure function multiplier_at(multiplier, time) result(value)

@@ -5,7 +5,8 @@ module scene
   use fields, only: field_t
   use heat_contacts, only: die_heat_t, heat_contact_t
   use kinds, only: wp
-  use loads, only: die_force_t, die_motion_t, exchange_t, fixation_t, multiplier_t, nodal_force_t, start_t
+  use loads, only: die_force_t, die_motion_t, exchange_t, field_history_t, fixation_t, multiplier_t, nodal_force_t, &
+                   start_t
   use materials, only: material_t
   use mesh, only: mesh_t
   use probes, only: probe_t
@@ -75,6 +76,8 @@ module scene
     !> Temperature given to the body: amplitude times multiplier; multiplier 0 where none is.
     integer :: temperature_multiplier = 0
     real(wp) :: temperature_amplitude = 0.0_wp
+    !> Or the temperatures of another run, place in the scene's list of histories; 0 for none.
+    integer :: temperature_history = 0
     !> Declared state of a point, with places in the state array.
     type(state_variable_t), allocatable :: variables(:)
   end type group_t
@@ -97,6 +100,8 @@ module scene
     type(field_t), allocatable :: fields(:)
     !> Values of fields at the start on bodies where they are others than the field's own.
     type(start_t), allocatable :: starts(:)
+    !> Values of given fields.
+    type(field_history_t), allocatable :: histories(:)
     type(die_t), allocatable :: dies(:)
     type(multiplier_t), allocatable :: multipliers(:)
     type(fixation_t), allocatable :: fixations(:)

@@ -41,6 +41,7 @@ contains
     call visitor%derived('direction', of_the_deck)
     call visitor%derived('temperature_multiplier', of_the_deck)
     call visitor%derived('temperature_amplitude', of_the_deck)
+    call visitor%derived('temperature_history', of_the_deck)
     n = 0
     if (allocated(self%variables)) n = size(self%variables)
     call visitor%list('variables', n, most_variables)

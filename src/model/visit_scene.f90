@@ -44,6 +44,7 @@ contains
     call visitor%derived('kinematics', of_the_deck)
     call visitor%derived('kinematics_id', of_the_deck)
     call visitor%derived('starts', of_the_deck)
+    call visitor%derived('histories', of_the_deck)
     call visitor%derived('multipliers', of_the_deck)
     call visitor%derived('die_motions', of_the_deck)
     call visitor%derived('die_forces', of_the_deck)

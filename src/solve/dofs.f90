@@ -6,7 +6,7 @@ module dofs
   use elem_api, only: elem_t, field_nodes, layout_of, layout_t, most_components
   use fields, only: field_t, find_field, on_nodes, on_pilots, on_section, pilot_field, section_field
   use kinds, only: wp
-  use loads, only: multiplier_at
+  use loads, only: instants_around, multiplier_at
   use pairs, only: most_pieces, nodes_per_piece, paired_nodes, pairs_t, start_pairs
   use scene, only: scene_t
   use sections, only: section_forced, section_moved
@@ -35,6 +35,8 @@ module dofs
     integer :: multiplier = 0
     !> Field and place of a value that is imposed as such; 0 where the motion since the start is.
     integer :: field = 0, component = 0, place = 0
+    !> History of the scene that gives the value, and the row there; 0 for others.
+    integer :: history = 0, row = 0
   end type prescribed_t
 
   type :: dofs_t
@@ -220,6 +222,7 @@ contains
         end associate
       end do
       if (allocated(scene%die_heats)) call list_die_temperatures()
+      if (allocated(scene%histories)) call list_given_values()
       do k = 1, size(scene%fixations)
         associate (fixation => scene%fixations(k))
           do i = 1, size(fixation%nodes)
@@ -237,6 +240,18 @@ contains
     dofs%prescribed = pack(by_dof, by_dof%dof > 0)
 
   contains
+
+    !> Fields whose values are known beforehand.
+    subroutine list_given_values()
+      do k = 1, size(scene%histories)
+        associate (history => scene%histories(k))
+          do i = 1, size(history%nodes)
+            d = dofs%fields(history%field)%number(1, history%nodes(i))
+            if (d > 0) by_dof(d) = prescribed_t(d, field=history%field, component=1, place=history%nodes(i), history=k, row=i)
+          end do
+        end associate
+      end do
+    end subroutine list_given_values
 
     !> Dies whose temperature is given: without a multiplier it stays as it began.
     subroutine list_die_temperatures()
@@ -366,11 +381,24 @@ contains
     logical, intent(in) :: from_rest
     real(wp), intent(in) :: t0, t1       !! [time]
     real(wp), intent(out) :: motion(:)   !! (nprescribed) [unknown]
-    integer :: k
+    integer :: k, before, last
+    real(wp) :: share
 
+    last = 0
+    before = 0
+    share = 0
     do k = 1, size(dofs%prescribed)
       motion(k) = 0
       associate (p => dofs%prescribed(k))
+        if (p%history > 0) then
+          associate (history => scene%histories(p%history))
+            if (p%history /= last) call instants_around(history%time, t1, before, share)
+            last = p%history
+            motion(k) = history%values(p%row, before)
+            if (share > 0) motion(k) = (1 - share)*motion(k) + share*history%values(p%row, before + 1)
+          end associate
+          motion(k) = motion(k) - fields(p%field)%value(p%component, p%place)
+        end if
         if (p%multiplier == 0) cycle
         motion(k) = multiplier_at(scene%multipliers(p%multiplier), t1)
         if (p%field > 0) then

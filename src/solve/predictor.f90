@@ -39,6 +39,7 @@ contains
     real(wp) :: ratio
     integer :: k
 
+    call prescribed_motion(scene, equations%dofs, solution%fields, solution%step == 0, solution%time, solution%time + dt, motion)
     fixed = .not. equations%solves(equations%now)%is_own
     if (present(go_on)) fixed = fixed .or. go_on
     ratio = 0
@@ -51,7 +52,6 @@ contains
       call start_from(0.0_wp)
     end if
 
-    call prescribed_motion(scene, equations%dofs, solution%fields, solution%step == 0, solution%time, solution%time + dt, motion)
     missing = 0
     do k = 1, size(motion)
       associate (d => equations%dofs%prescribed(k)%dof)
@@ -71,6 +71,9 @@ contains
 
       call proportion(equations%dofs, solution%fields, share, du)
       if (present(given)) du = merge(given, du, fixed)
+      do k = 1, size(motion)
+        if (equations%dofs%prescribed(k)%history > 0) du(equations%dofs%prescribed(k)%dof) = motion(k)
+      end do
       call evaluate(scene, equations, solution, dt, du, .true., report, predicted=.true.)
     end subroutine start_from
 

@@ -44,7 +44,8 @@ contains
     integer :: f, n
 
     allocate (solves(0))
-    left = fields%declared
+    ! fields whose values are given belong to no solve
+    left = fields%declared .and. .not. fields%given
     if (coupling == coupling_monolithic .or. .not. any(left)) then
       deallocate (solves)
       allocate (solves(1))
@@ -59,7 +60,7 @@ contains
       if (.not. left(f)) cycle
       n = n + 1
       solves(n)%name = fields(f)%quantity
-      allocate (solves(n)%own(size(fields)), source=is_of(fields, fields(f)%quantity))
+      allocate (solves(n)%own(size(fields)), source=is_of(fields, fields(f)%quantity) .and. .not. fields%given)
       left = left .and. .not. solves(n)%own
     end do
   end subroutine list_solves
@@ -84,7 +85,7 @@ contains
 
     n = 0
     do f = 1, size(fields)
-      if (.not. fields(f)%declared) cycle
+      if (.not. fields(f)%declared .or. fields(f)%given) cycle
       if (any(is_of(fields(:f - 1), fields(f)%quantity) .and. fields(:f - 1)%declared)) cycle
       n = n + 1
     end do

@@ -1,10 +1,11 @@
 !> Opening, closing, groups and names of HDF5 files.
 submodule(hdf5_file) hdf5_file_access
-  use hdf5, only: h5dont_atexit_f, h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_close_strong_f, &
-    h5f_scope_local_f, h5fclose_f, h5fcreate_f, h5fflush_f, h5fopen_f, h5gclose_f, h5gcreate_f, h5gget_obj_info_idx_f, &
-    h5gn_members_f, h5iis_valid_f, h5lcreate_external_f, h5ldelete_f, h5lexists_f, h5open_f, h5p_file_access_f, &
-    h5p_file_create_f, h5p_link_create_f, h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_fclose_degree_f, &
-    h5pset_userblock_f, h5t_native_double, hsize_t
+  use hdf5, only: h5_index_name_f, h5_iter_inc_f, h5dont_atexit_f, h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, &
+    h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_local_f, h5fclose_f, h5fcreate_f, h5fflush_f, h5fopen_f, &
+    h5gclose_f, h5gcreate_f, h5gn_members_f, h5iis_valid_f, h5lcreate_external_f, h5ldelete_f, h5lexists_f, &
+    h5lget_name_by_idx_f, h5open_f, h5p_file_access_f, h5p_file_create_f, h5p_link_create_f, h5pclose_f, &
+    h5pcreate_f, h5pset_create_inter_group_f, h5pset_fclose_degree_f, h5pset_userblock_f, h5t_native_double, &
+    hsize_t
   use errors, only: exit_bug, exit_input, exit_machine, fail
   use system, only: set_environment
   implicit none
@@ -172,7 +173,7 @@ contains
 
   module procedure list
     character(len=256) :: name
-    integer :: n, i, kind, flag
+    integer :: n, i, flag
 
     allocate (names(0))
     if (self%failed()) return
@@ -184,7 +185,9 @@ contains
     deallocate (names)
     allocate (names(n))
     do i = 1, n
-      call h5gget_obj_info_idx_f(self%id, path, i - 1, name, kind, flag)
+      ! the name of the link: what it stands for need not be there
+      call h5lget_name_by_idx_f(self%id, path, h5_index_name_f, h5_iter_inc_f, int(i - 1, hsize_t), name, flag)
+      if (flag /= 0) name = ''
       names(i)%s = trim(name)
     end do
   end procedure list

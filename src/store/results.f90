@@ -222,7 +222,7 @@ contains
       call put_vector(file, field%dual, field%applied, grid)
     else
       call put_scalar(file, field%name, field%value(1, :), grid)
-      call put_scalar(file, field%dual, field%applied(1, :), grid)
+      if (.not. field%given) call put_scalar(file, field%dual, field%applied(1, :), grid)
     end if
   end subroutine put_field
 
