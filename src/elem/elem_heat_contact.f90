@@ -10,58 +10,36 @@
 !>
 !> Pressure, gap and the facing point are those that the contact group of the same sides and points (its host) has reached, at the
 !> end of the step where it is solved for in turns or together with the temperature, else at the start. Where it knows none (first
-!> step, wide gaps), and in scenes of heat alone, the die is searched as it stands. Linearised exactly at given pressure, gap and
-!> facing point: along all temperatures, and along the displacements that change the area.
+!> step, wide gaps), and in scenes of heat alone, the die is searched as it stands. Linearised exactly at the given facing point:
+!> along all temperatures, and along the displacements that change the area, the pressure (its slope by the depth is the normal
+!> penalty of the contact) and the gap; the heat of friction and the motion of a free die's pilot are left out.
 module elem_heat_contact
-  use closest_point, only: closest_point_t
-  use contact_point, only: area_at, contact_point_t, most_unknowns, side_length, side_point
+  use contact_point, only: area_at, penalties, side_length
   use contact_work, only: friction_energy
-  use curve_search, only: closest_facing_point
   use elem_api, only: elem_t, first_unknown, instant_t, layout_t, mode_advance, mode_error, report_t, unknown_t
   use elem_heat_sides, only: heat_side_row
   use fields, only: displacement_field, field_t, has_corners_only, on_pilots
-  use heat_contacts, only: flow_from_die, share_by_effusivity
+  use heat_contact_point, only: facing_t, find_facing, share_out, shares_t
+  use heat_contacts, only: conductance_slope, flow_from_die, share_by_effusivity
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
-  use law_api, only: contact_open, law_t
+  use law_api, only: law_t
   use pairs, only: list_pieces, pieces_in_reach
-  use parabolas, only: tangent_on
-  use plane_vectors, only: turned
-  use point_drivers, only: at_body_effusivity, at_corner_place, at_corner_work, at_die_effusivity, at_die_piece, at_die_xi, &
-                           at_friction_work, at_gap, at_pressure, at_status
+  use point_drivers, only: at_body_effusivity, at_corner_place, at_corner_work, at_die_effusivity, at_friction_work
   use quadrature, only: line_rule
   use scene, only: group_t, role_heat_contact, scene_t
   use sections, only: thickness_at
   use shape_functions, only: line3
   use state_variables, only: find_variable
   use strategy, only: coupling_once
-  use vectors, only: length_of
   implicit none
   private
   public :: elem_cnttm_row, elem_cndtm_row, name_of_due, name_of_piece
 
   !> Names of the state of a point, where it is kept: work of friction that has not become heat yet, per area; and the facing piece.
   character(len=*), parameter :: name_of_due = 'friction_due', name_of_piece = 'die_piece'
-  !> The temperature is the first of the element's unknowns, that of a rigid die the second.
-  integer, parameter :: temperature = 1, of_die = 2
-  !> A point is closed at a gap below this share of its side, round-off of coordinates; the die is searched for within this share
-  !> where no wider reach is given.
-  real(wp), parameter :: touching = 1.0e-9_wp, searched = 1.0e-3_wp
-
-  !> What a point faces.
-  type :: facing_t
-    logical :: found = .false., closed = .false.
-    integer :: piece = 0
-    real(wp) :: xi = 0.0_wp, pressure(2) = 0.0_wp, gap = 0.0_wp
-    !> Unit tangent of the die, in the sense in which the side is walked.
-    real(wp) :: along(2) = 0.0_wp
-  end type facing_t
-
-  !> Unknowns that a point acts on: local places, and its shares of the side and of the die there.
-  type :: shares_t
-    integer :: nside = 0, ndie = 0, place(6) = 0
-    real(wp) :: side(3) = 0.0_wp, die(3) = 0.0_wp
-  end type shares_t
+  !> The temperature is the first of the element's unknowns.
+  integer, parameter :: temperature = 1
 
 contains
 
@@ -106,7 +84,7 @@ contains
     real(wp), intent(inout) :: stiffness(:, :, :)
     type(report_t), intent(out) :: report
     real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: y(2, 3), phi(3), dphi(3), length, thickness, area, darea(6), section(3), side, energy(2), due
+    real(wp) :: y(2, 3), phi(3), dphi(3), length, thickness, area, darea(6), section(3), side, energy(2), due, penalty(2)
     integer :: e, p, u, nnode, npiece, row_due, row_piece
     integer :: pieces(pieces_in_reach*group%rule%n), along(6)
     logical :: rigid, corners
@@ -132,6 +110,12 @@ contains
       y = x(:, 1:3, e)
       if (u > 0 .and. kinematics%finite) y = y + transpose(reshape(du(along, e), [3, 2]))
       side = side_length(scene, group%connectivity(:, first + e - 1))
+      penalty = 0
+      if (group%host > 0) then
+        associate (contact => scene%groups(group%host))
+          penalty = penalties(scene%materials(contact%material), contact%modulus, side)
+        end associate
+      end if
       if (.not. rigid) call list_pieces(instant%dies(group%die), instant%pairs(group%pairs)%piece(:, first + e - 1), npiece, pieces)
       do p = 1, size(xi)
         call line3(xi(p), phi, dphi)
@@ -202,8 +186,8 @@ contains
       integer, intent(in) :: k
       type(shares_t), intent(in) :: means
       real(wp), intent(in) :: part, t(:), pressure
-      real(wp) :: q, slope, slope_die, gives(6), takes(6)
-      integer :: n, m, j
+      real(wp) :: q, slope, slope_die, gives(6), takes(6), by_depth, normal
+      integer :: n, m, i, j, c
 
       m = means%nside
       n = m + means%ndie
@@ -220,9 +204,27 @@ contains
           stiffness(place, place(j), e) = stiffness(place, place(j), e) &
                                           + gives(:n)*(w*area*instant%flow%share(k)*takes(j))
         end do
-        if (u == 0 .or. .not. kinematics%finite) return
-        do j = 1, 6
-          stiffness(place, along(j), e) = stiffness(place, along(j), e) + gives(:n)*(w*q*darea(j))
+        if (u == 0) return
+        if (kinematics%finite) then
+          do j = 1, 6
+            stiffness(place, along(j), e) = stiffness(place, along(j), e) + gives(:n)*(w*q*darea(j))
+          end do
+        end if
+        if (.not. facing%by_contact) return
+        by_depth = conductance_slope(group%heat_contact, facing%closed, pressure, facing%gap) &
+                   *merge(instant%flow%share(k)*penalty(1), -1.0_wp, facing%closed) &
+                   *(dot_product(means%die(:n - m), t(m + 1:n)) - dot_product(means%side(:m), t(:m)))
+        if (.not. abs(by_depth) > 0) return
+        ! the depth of the point grows along the inner normal of the die
+        do c = 1, 2
+          normal = merge(facing%along(2), -facing%along(1), c == 1)
+          do j = 1, 3
+            i = along(j + 3*(c - 1))
+            stiffness(place, i, e) = stiffness(place, i, e) + gives(:n)*(w*area*by_depth*phi(j)*normal)
+            if (rigid) cycle
+            i = u + 3*means%piece + j - 1 + (c - 1)*nnode
+            stiffness(place, i, e) = stiffness(place, i, e) - gives(:n)*(w*area*by_depth*means%psi(j)*normal)
+          end do
         end do
       end associate
     end subroutine add_flow
@@ -244,93 +246,5 @@ contains
     end subroutine add_friction
 
   end subroutine compute
-
-  !> What a point faces: by its contact, or by a search where that knows nothing.
-  subroutine find_facing(scene, group, instant, drivers, phi, dphi, section, side, x, y, facing)
-    type(scene_t), intent(in) :: scene
-    type(group_t), intent(in) :: group
-    type(instant_t), intent(in) :: instant
-    real(wp), intent(in) :: drivers(:, :), phi(3), dphi(3), section(3)
-    real(wp), intent(in) :: side                 !! length of the side [length]
-    real(wp), intent(in) :: x(2, 3), y(2, 3)     !! nodes at the start and at the end of the step [length]
-    type(facing_t), intent(out) :: facing
-    type(contact_point_t) :: point
-    type(closest_point_t) :: closest
-    real(wp), parameter :: still(6) = 0.0_wp
-    real(wp) :: reach
-
-    if (size(drivers, 1) > 0) then
-      facing%pressure = drivers(at_pressure, :)
-      facing%piece = nint(drivers(at_die_piece, 2))
-      facing%xi = drivers(at_die_xi, 2)
-      facing%gap = -drivers(at_gap, 2)
-      facing%closed = nint(drivers(at_status, 2)) /= contact_open
-    end if
-    if (facing%piece == 0) then
-      reach = max(group%heat_contact%reach, searched*side)
-      if (allocated(scene%dies(group%die)%nodes)) then
-        call side_point(phi, dphi, section, y, still, most_unknowns, point)
-        call closest_facing_point(instant%dies(group%die), point%x, point%e_r, reach, closest)
-      else
-        associate (pilot => instant%pilots(:, group%die))
-          call side_point(phi, dphi, section, x, still, most_unknowns, point)
-          call closest_facing_point(scene%dies(group%die), turned(point%x - pilot(1:2), -pilot(3)), &
-                                    turned(point%e_r, -pilot(3)), reach, closest)
-        end associate
-      end if
-      facing%piece = closest%piece
-      facing%xi = closest%xi
-      facing%gap = -closest%d
-    end if
-    if (facing%piece == 0) return
-    facing%closed = facing%closed .or. facing%gap <= touching*side
-    facing%found = facing%closed .or. facing%gap <= group%heat_contact%reach
-    if (allocated(scene%dies(group%die)%nodes)) then
-      facing%along = tangent_on(instant%dies(group%die)%pieces(:, :, facing%piece), facing%xi)
-    else
-      facing%along = turned(tangent_on(scene%dies(group%die)%pieces(:, :, facing%piece), facing%xi), instant%pilots(3, group%die))
-    end if
-    facing%along = facing%along/length_of(facing%along)
-  end subroutine find_facing
-
-  !> Unknowns of the side and of the die at a point; none of a deformable die whose piece is no pair of the side.
-  pure subroutine share_out(layout, n, rigid, xi, phi, facing, pieces, shares)
-    type(layout_t), intent(in) :: layout
-    integer, intent(in) :: n   !! temperatures on a side: of its nodes, or of its ends
-    logical, intent(in) :: rigid
-    real(wp), intent(in) :: xi, phi(3)
-    type(facing_t), intent(in) :: facing
-    integer, intent(in) :: pieces(:)
-    type(shares_t), intent(out) :: shares
-    real(wp) :: dpsi(3)
-    integer :: k, at
-
-    shares%nside = n
-    shares%place(:n) = layout%first(1, temperature) + [(k - 1, k=1, n)]
-    shares%side(:n) = values_on_side(n, xi, phi)
-    if (rigid) then
-      shares%ndie = 1
-      shares%place(n + 1) = layout%first(1, of_die)
-      shares%die(1) = 1
-      return
-    end if
-    if (facing%piece == 0) return
-    at = findloc(pieces, facing%piece, 1)
-    if (at == 0) return
-    shares%ndie = n
-    shares%place(n + 1:2*n) = layout%first(1, temperature) + n*at + [(k - 1, k=1, n)]
-    call line3(facing%xi, shares%die, dpsi)
-    shares%die(:n) = values_on_side(n, facing%xi, shares%die)
-  end subroutine share_out
-
-  !> Functions of the temperature on a side: of its nodes, or of its ends.
-  pure function values_on_side(n, xi, phi) result(values)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: xi, phi(3)
-    real(wp) :: values(n)
-
-    if (n == 3) values = phi(:n)
-    if (n == 2) values = 0.5_wp*[1 - xi, 1 + xi]
-  end function values_on_side
 
 end module elem_heat_contact

@@ -1,0 +1,137 @@
+!> What a point of a side faces for heat through contact, and the unknowns that it exchanges between (elem_heat_contact).
+module heat_contact_point
+  use closest_point, only: closest_point_t
+  use contact_point, only: contact_point_t, most_unknowns, side_point
+  use curve_search, only: closest_facing_point
+  use elem_api, only: instant_t, layout_t
+  use kinds, only: wp
+  use law_api, only: contact_open
+  use parabolas, only: tangent_on
+  use plane_vectors, only: turned
+  use point_drivers, only: at_die_piece, at_die_xi, at_gap, at_pressure, at_status
+  use scene, only: group_t, scene_t
+  use shape_functions, only: line3
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: facing_t, find_facing, share_out, shares_t
+
+  !> The temperature is the first of the element's unknowns, that of a rigid die the second.
+  integer, parameter :: temperature = 1, of_die = 2
+  !> A point is closed at a gap below this share of its side, round-off of coordinates; the die is searched for within this share
+  !> where no wider reach is given.
+  real(wp), parameter :: touching = 1.0e-9_wp, searched = 1.0e-3_wp
+
+  !> What a point faces.
+  type :: facing_t
+    logical :: found = .false., closed = .false.
+    !> The contact of the side has found it; otherwise a search.
+    logical :: by_contact = .false.
+    integer :: piece = 0
+    real(wp) :: xi = 0.0_wp, pressure(2) = 0.0_wp, gap = 0.0_wp
+    !> Unit tangent of the die, in the sense in which the side is walked.
+    real(wp) :: along(2) = 0.0_wp
+  end type facing_t
+
+  !> Unknowns that a point acts on: local places, and its shares of the side and of the die there.
+  type :: shares_t
+    integer :: nside = 0, ndie = 0, place(6) = 0
+    real(wp) :: side(3) = 0.0_wp, die(3) = 0.0_wp
+    !> Place of the facing side among those that a deformable die has here, 0 for a rigid one; and functions of its nodes.
+    integer :: piece = 0
+    real(wp) :: psi(3) = 0.0_wp
+  end type shares_t
+
+contains
+
+  !> What a point faces: by its contact, or by a search where that knows nothing.
+  subroutine find_facing(scene, group, instant, drivers, phi, dphi, section, side, x, y, facing)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(instant_t), intent(in) :: instant
+    real(wp), intent(in) :: drivers(:, :), phi(3), dphi(3), section(3)
+    real(wp), intent(in) :: side                 !! length of the side [length]
+    real(wp), intent(in) :: x(2, 3), y(2, 3)     !! nodes at the start and at the end of the step [length]
+    type(facing_t), intent(out) :: facing
+    type(contact_point_t) :: point
+    type(closest_point_t) :: closest
+    real(wp), parameter :: still(6) = 0.0_wp
+    real(wp) :: reach
+
+    if (size(drivers, 1) > 0) then
+      facing%pressure = drivers(at_pressure, :)
+      facing%piece = nint(drivers(at_die_piece, 2))
+      facing%xi = drivers(at_die_xi, 2)
+      facing%gap = -drivers(at_gap, 2)
+      facing%closed = nint(drivers(at_status, 2)) /= contact_open
+      facing%by_contact = facing%piece > 0 .and. group%host > 0
+    end if
+    if (facing%piece == 0) then
+      reach = max(group%heat_contact%reach, searched*side)
+      if (allocated(scene%dies(group%die)%nodes)) then
+        call side_point(phi, dphi, section, y, still, most_unknowns, point)
+        call closest_facing_point(instant%dies(group%die), point%x, point%e_r, reach, closest)
+      else
+        associate (pilot => instant%pilots(:, group%die))
+          call side_point(phi, dphi, section, x, still, most_unknowns, point)
+          call closest_facing_point(scene%dies(group%die), turned(point%x - pilot(1:2), -pilot(3)), &
+                                    turned(point%e_r, -pilot(3)), reach, closest)
+        end associate
+      end if
+      facing%piece = closest%piece
+      facing%xi = closest%xi
+      facing%gap = -closest%d
+    end if
+    if (facing%piece == 0) return
+    facing%closed = facing%closed .or. facing%gap <= touching*side
+    facing%found = facing%closed .or. facing%gap <= group%heat_contact%reach
+    if (allocated(scene%dies(group%die)%nodes)) then
+      facing%along = tangent_on(instant%dies(group%die)%pieces(:, :, facing%piece), facing%xi)
+    else
+      facing%along = turned(tangent_on(scene%dies(group%die)%pieces(:, :, facing%piece), facing%xi), instant%pilots(3, group%die))
+    end if
+    facing%along = facing%along/length_of(facing%along)
+  end subroutine find_facing
+
+  !> Unknowns of the side and of the die at a point; none of a deformable die whose piece is no pair of the side.
+  pure subroutine share_out(layout, n, rigid, xi, phi, facing, pieces, shares)
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: n   !! temperatures on a side: of its nodes, or of its ends
+    logical, intent(in) :: rigid
+    real(wp), intent(in) :: xi, phi(3)
+    type(facing_t), intent(in) :: facing
+    integer, intent(in) :: pieces(:)
+    type(shares_t), intent(out) :: shares
+    real(wp) :: dpsi(3)
+    integer :: k, at
+
+    shares%nside = n
+    shares%place(:n) = layout%first(1, temperature) + [(k - 1, k=1, n)]
+    shares%side(:n) = values_on_side(n, xi, phi)
+    if (rigid) then
+      shares%ndie = 1
+      shares%place(n + 1) = layout%first(1, of_die)
+      shares%die(1) = 1
+      return
+    end if
+    if (facing%piece == 0) return
+    at = findloc(pieces, facing%piece, 1)
+    if (at == 0) return
+    shares%ndie = n
+    shares%place(n + 1:2*n) = layout%first(1, temperature) + n*at + [(k - 1, k=1, n)]
+    shares%piece = at
+    call line3(facing%xi, shares%psi, dpsi)
+    shares%die(:n) = values_on_side(n, facing%xi, shares%psi)
+  end subroutine share_out
+
+  !> Functions of the temperature on a side: of its nodes, or of its ends.
+  pure function values_on_side(n, xi, phi) result(values)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: xi, phi(3)
+    real(wp) :: values(n)
+
+    if (n == 3) values = phi(:n)
+    if (n == 2) values = 0.5_wp*[1 - xi, 1 + xi]
+  end function values_on_side
+
+end module heat_contact_point
