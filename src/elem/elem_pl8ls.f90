@@ -17,6 +17,7 @@ module elem_pl8ls
   use law_api, only: driver_count, driver_temperature, law_done, law_t, solid_law
   use mean_dilatation, only: dilatation_t, mean_option, share_dilatation, share_pressure
   use plane_stress_points, only: update_plane_stress
+  use plastic_heat, only: add_heat_of_work, heated_by_work, move_along, ncomponent
   use point_temperatures, only: nodal_temperatures, point_temperatures_of, projected_functions, temperature_field, temperature_place
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
   use scene, only: generalised_plane_strain, group_t, plane_stress, role_body, scene_t
@@ -158,6 +159,7 @@ contains
     end do
     if (.not. instant%tangent .or. n == size(du, 1) .or. report%status /= 0 .or. group%temperature_multiplier > 0) return
     if (instant%solved(layout%field(temperature_place(layout)))) call add_columns_of_temperature()
+    if (heated_by_work(scene, group, layout, instant) > 0) call add_rows_of_heat()
 
   contains
 
@@ -230,23 +232,65 @@ contains
     subroutine stresses_at(change, stress)
       real(wp), intent(in) :: change
       real(wp), intent(out) :: stress(:, :, :)
-      real(wp) :: other(nstate, group%rule%n, nb), shifted(size(given, 1), 2, group%rule%n*nb), g(5, group%rule%n, nb)
-      real(wp) :: unused(4, 5, group%rule%n, nb)
+      real(wp) :: other(nstate, group%rule%n, nb), g(5, group%rule%n, nb)
+
+      g = f
+      call update_at(committed, change, g, other)
+      stress = other(1:4, :, :)
+      if (scene%plane_state == plane_stress .and. kinematics%finite) stress = stress*spread(g(5, :, :)/f(5, :, :), 1, 4)
+    end subroutine stresses_at
+
+    !> State at the end of the step from the state `before`, were temperatures higher and the motion g.
+    subroutine update_at(before, change, g, other)
+      real(wp), intent(in) :: before(:, :, :), change
+      real(wp), intent(inout) :: g(:, :, :)
+      real(wp), intent(out) :: other(:, :, :)
+      real(wp) :: shifted(size(given, 1), 2, group%rule%n*nb), unused(4, 5, group%rule%n, nb)
       integer :: answers(group%rule%n, nb)
 
       shifted = given
       shifted(driver_temperature, 2, :) = shifted(driver_temperature, 2, :) + change
-      g = f
       if (scene%plane_state == plane_stress) then
         call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, shifted, &
-                                 g, committed, other, unused, answers)
+                                 g, before, other, unused, answers)
       else
-        call kinematics%update(law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, shifted, g, committed, &
+        call kinematics%update(law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, shifted, g, before, &
                                other, unused, answers)
       end if
-      stress = other(1:4, :, :)
-      if (scene%plane_state == plane_stress .and. kinematics%finite) stress = stress*spread(g(5, :, :)/f(5, :, :), 1, 4)
-    end subroutine stresses_at
+    end subroutine update_at
+
+    !> d(heat)/d(motion) and d(heat)/d(temperature) of the plastic work, by differences of the whole update. The work of the step alone
+    !> is looked at, so that what was done before costs no digits; it bends over elastic strains, some 1e-3, of which a step of 1e-10
+    !> is 1e-7.
+    subroutine add_rows_of_heat()
+      real(wp), parameter :: step = 1.0e-10_wp
+      real(wp) :: slopes(ncomponent + 1, group%rule%n, nb)
+      real(wp), dimension(nstate, group%rule%n, nb) :: without, other
+      real(wp) :: g(5, group%rule%n, nb), done(group%rule%n, nb), change
+      integer :: c, work
+
+      work = group%variables(find_variable(group%variables, 'plastic_work'))%first
+      if (.not. any(abs(trial(work, :, :) - committed(work, :, :)) > 0)) return
+      without = committed
+      without(work, :, :) = 0
+      g = f
+      call update_at(without, 0.0_wp, g, other)
+      done = other(work, :, :)
+      slopes = 0
+      do c = 1, merge(ncomponent - 1, ncomponent, scene%plane_state == plane_stress)
+        g = f
+        call move_along(c, step, kinematics%finite, g)
+        call update_at(without, 0.0_wp, g, other)
+        slopes(c, :, :) = (other(work, :, :) - done)/step
+      end do
+      change = sqrt(epsilon(1.0_wp))*maxval(abs(given(driver_temperature, :, :)))
+      if (change > 0) then
+        g = f
+        call update_at(without, change, g, other)
+        slopes(ncomponent + 1, :, :) = (other(work, :, :) - done)/change
+      end if
+      call add_heat_of_work(scene, group, instant, layout, rule, first, nx, ny, zx, start, slopes, stiffness)
+    end subroutine add_rows_of_heat
 
   end subroutine compute
 

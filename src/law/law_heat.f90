@@ -13,7 +13,7 @@ module law_heat
   use state_variables, only: state_variable, transfer_scalar
   implicit none
   private
-  public :: law_heat_row, law_heath_row
+  public :: law_heat_row, law_heath_row, share_of_work
 
   !> Places among the values of a material; the second is RHOC or H. Places of the drivers.
   integer, parameter :: place_conductivity = 1, place_content = 2, place_source = 3, place_share = 4, driver_work = 2
@@ -156,16 +156,23 @@ contains
     real(wp), intent(in) :: dt, drivers(:, :), committed(:)
     real(wp), intent(out) :: released, slope, history(:)
 
-    real(wp) :: values(size(material%values))
-
     released = 0
     slope = 0
     if (size(history) == 0) return
-    ! the share changes little with the temperature: that of the start of the step
-    call values_at(material, drivers(driver_temperature, 1), values)
     history(1) = drivers(driver_work, 2)
-    released = values(place_share)*(drivers(driver_work, 2) - committed(1))
+    released = share_of_work(material, drivers(driver_temperature, 1))*(drivers(driver_work, 2) - committed(1))
   end subroutine release
+
+  !> QUINNEY: it changes little with the temperature, that of the start of the step.
+  pure function share_of_work(material, temperature) result(share)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: temperature   !! at the start of the step [temperature]
+    real(wp) :: share                     !! [-]
+    real(wp) :: values(size(material%values))
+
+    call values_at(material, temperature, values)
+    share = values(place_share)
+  end function share_of_work
 
   !> SOURCE, at the temperature of the start of the step.
   pure function swell(material, temperature) result(heat)

@@ -13,12 +13,16 @@ usage: run_heat_contact.py [-v] [-k]
 - `slide`: a block drawn over a die, over another body: the work of friction is the heat released, less that of the last step where
   temperatures are found once and first; shared by SHARE and by effusivity; all ways of coupling; the same bits by any number of threads
   and resumed.
+- `newton`: hot steel whose flow depends on the temperature, pressed, by SOLVE MONOLITHIC with heat of plastic work and a conductance by
+  pressure: residuals fall with the square of those before, r2 <= C r1^2 with one C for all steps. Heat of friction is held while the
+  matrix is made: with it they fall by at least a factor 300 an iteration.
 - `billet`: pressed between chilled dies and remeshed twice: temperatures of the dies and the heat that they got go on, as
   does heat of plastic work and friction, work that has not become heat yet among it.
 """
 import glob
 import math
 import os
+import re
 import shutil
 import sys
 
@@ -262,6 +266,65 @@ END
 """
 
 
+HOT = """TITLE  Hot billet on a cold die
+STATE  AXISYM
+KINEM  LOG
+BLOCK  billet PL8LS 4 steel
+   0. 0.   10. 0.   10. 15.   0. 15.
+   6 1.   9 0.4
+LAW    steel EVP-NH
+   TEMP 500.
+   150000. 0.3
+   0. 260. 0.06 0.1
+   TEMP 1200.
+   80000. 0.3
+   0. 27. 0.18 0.1
+ADDEL  billet PL8TM heat BILINEAR
+LAW    heat HEAT
+   28. 4.9
+   QUINNEY 0.9
+START  T 1100.
+LAW    rough COUL2D
+   PENETR 1.E-3   PHI 0.3
+DIE    upper PILOT 0. 15.
+   SEGM  40. 15.   -1. 15.
+CNT2D  billet 3 upper -3 rough
+TDIE   upper T 250. C 2.E5
+COU2DC billet 3 upper H 20. {friction}
+   PRESS  0. 0.2   20. 1.   200. 2.
+FIXED  billet 1 Y
+FIXED  billet 4 X
+LIC    press
+   0. 0.   0.9 -9.
+MOVE   upper Y press
+STRAT  0.002  1.E-7  0.004   9 3
+NORMS  FORCE 1.E-11 DISPL 1.E-11
+SOLVE  MONOLITHIC
+STOP   0.03
+END
+"""
+
+
+def newton(checks):
+    """Residuals of the listing, those of the predictor left out."""
+    for name, friction in (("newton", ""), ("newton-friction", "FRIC 1. EFFUS 13.")):
+        run = Run(checks, name, HOT.format(friction=friction))
+        if not run.ok:
+            continue
+        with open(os.path.join(run.out, name + ".log"), encoding="utf-8") as file:
+            steps = re.split(r"(?m)^step ", file.read())[1:]
+        pairs = []
+        for part in steps[2:]:
+            residuals = [float(row) for row in re.findall(r"(?m)^ +\d+ +(\d\.\d+E[+-]\d+)", part)][1:]
+            pairs += [(a, b) for a, b in zip(residuals, residuals[1:]) if 1e-9 < a < 1e-3]
+        if friction:
+            worst = max(b/a for a, b in pairs if a < 1e-5)
+            checks.small(worst, 3e-3, f"{name}: {len(pairs)} iterations")
+        else:
+            worst = max(max(0.0, b - 1e-11)/a**2 for a, b in pairs)
+            checks.that(len(pairs) > 8 and worst < 100, f"{name}: quadratic, {len(pairs)} iterations", worst)
+
+
 def billet(checks):
     """From mesh to mesh."""
     deck, out = write(os.path.join(checks.folder, "billet.lag"), BILLET), os.path.join(checks.folder, "billet")
@@ -301,6 +364,7 @@ def main():
     shock(checks)
     slide(checks)
     same_bits(checks)
+    newton(checks)
     billet(checks)
     checks.end()
 

@@ -1,0 +1,119 @@
+!> Heat that the plastic work of a body releases (QUINNEY), along the motion and the temperature of the body.
+!>
+!> PL8TM releases it as -phi_i SHARE (w - w_n)/dt dv0 and knows the work w at the points, not how that depends on the motion.
+!> PL8LS does: where all fields are solved for together it adds -phi_i SHARE dw/dt dv0 to the rows of the temperature, with dw along
+!> h = d(du)/dx(n+1) and the temperature at the points. Left out are the volume ratio of bodies that have had a new mesh, the
+!> sharing of the change of volume by the option MEAN, and the section's own motion in generalised plane strain.
+module plastic_heat
+  use elem_api, only: instant_t, layout_t, mode_advance
+  use elem_pl8tm, only: functions_of, functions_t
+  use fields, only: displacement_field
+  use kinds, only: wp
+  use law_heat, only: share_of_work
+  use point_temperatures, only: nodal_temperatures, projected_functions, temperature_place
+  use quad8_geometry, only: derivatives, quad8_rule_t
+  use scene, only: group_t, role_second, scene_t
+  use sections, only: thickness_at
+  use state_variables, only: find_variable
+  implicit none
+  private
+  public :: add_heat_of_work, heated_by_work, move_along, ncomponent
+
+  !> Components of h: xx, xy, yx, yy, zz.
+  integer, parameter :: ncomponent = 5
+
+contains
+
+  !> The material for heat on a body whose plastic work becomes heat in the solve under way; 0 where there is none.
+  pure function heated_by_work(scene, group, layout, instant) result(material)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group   !! of the body
+    type(layout_t), intent(in) :: layout
+    type(instant_t), intent(in) :: instant
+    integer :: material                  !! place in the scene's list
+    integer :: g
+
+    material = 0
+    if (instant%mode /= mode_advance .or. .not. instant%content .or. temperature_place(layout) == 0) return
+    if (.not. (instant%solved(layout%field(temperature_place(layout))) .and. instant%solved(displacement_field))) return
+    if (find_variable(group%variables, 'plastic_work') == 0) return
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%role /= role_second .or. scene%groups(g)%elem /= 'PL8TM') cycle
+      if (scene%groups(scene%groups(g)%host)%name /= group%name) cycle
+      if (find_variable(scene%groups(g)%variables, 'work_heated') > 0) material = scene%groups(g)%material
+    end do
+  end function heated_by_work
+
+  !> The motion of a step, moved along a component of h.
+  pure subroutine move_along(component, step, finite, f)
+    integer, intent(in) :: component       !! of h
+    real(wp), intent(in) :: step           !! [-]
+    logical, intent(in) :: finite
+    real(wp), intent(inout) :: f(:, :, :)  !! (5, npoint, nelem) dx(n+1)/dx(n), or 1 + h where strains are small [-]
+    real(wp) :: g(5, size(f, 2), size(f, 3))
+    integer :: row, column
+
+    if (.not. finite) then
+      f(component, :, :) = f(component, :, :) + step
+    else if (component == 5) then
+      f(5, :, :) = f(5, :, :)*(1 + step)
+    else
+      g = f
+      row = (component - 1)/2
+      column = mod(component - 1, 2)
+      f(2*row + 1:2*row + 2, :, :) = g(2*row + 1:2*row + 2, :, :) + step*g(2*column + 1:2*column + 2, :, :)
+    end if
+  end subroutine move_along
+
+  !> Add the derivatives of the heat of a block of elements to the rows of the temperature.
+  subroutine add_heat_of_work(scene, group, instant, layout, rule, first, nx, ny, zx, start, slopes, stiffness)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
+    type(quad8_rule_t), intent(in) :: rule
+    integer, intent(in) :: first                                   !! element of the block
+    real(wp), intent(in) :: nx(:, :, :), ny(:, :, :), zx(:, :, :)  !! (8, npoint, nelem) gradients, and d h_zz/d(ux) [1/length]
+    real(wp), intent(in) :: start(:, :)                            !! (ndof, nelem) values at the start of the step [unknown]
+    real(wp), intent(in) :: slopes(:, :, :)                        !! (6, npoint, nelem) d(work)/dh [stress], and by temperature
+    real(wp), intent(inout) :: stiffness(:, :, :)                  !! (ndof, ndof, nelem)
+    type(functions_t) :: own
+    real(wp) :: x(2, 8), unused_x(8), unused_y(8), detj, weight, row(size(stiffness, 2)), projected(8, rule%npoint)
+    integer :: u, n, e, p, k, at, material
+
+    material = heated_by_work(scene, group, layout, instant)
+    u = temperature_place(layout)
+    n = layout%count(u)
+    at = layout%first(1, u) - 1
+    call functions_of(n == 4, rule, own)
+    projected = projected_functions(rule)
+    do e = 1, size(stiffness, 3)
+      x = scene%mesh%coordinates(:, group%connectivity(:, first + e - 1))
+      do p = 1, rule%npoint
+        call derivatives(rule%dphi(:, :, p), x, unused_x, unused_y, detj)
+        weight = share_of_work(scene%materials(material), dot_product(own%phi(:n, p), start(at + 1:at + n, e))) &
+                 *detj*rule%weight(p)*thickness_at(scene%section, matmul(x, rule%phi(:, p)))/instant%dt
+        row = 0
+        associate (s => slopes(:, p, e))
+          row(1:8) = s(1)*nx(:, p, e) + s(2)*ny(:, p, e) + s(5)*zx(:, p, e)
+          row(9:16) = s(3)*nx(:, p, e) + s(4)*ny(:, p, e)
+          do k = 1, n
+            row(at + k) = s(6)*dot_product(nodal_temperatures(unit_vector(k, n)), projected(:, p))
+          end do
+        end associate
+        do k = 1, n
+          stiffness(at + k, :, e) = stiffness(at + k, :, e) - (own%phi(k, p)*weight)*row
+        end do
+      end do
+    end do
+  end subroutine add_heat_of_work
+
+  pure function unit_vector(k, n) result(v)
+    integer, intent(in) :: k, n
+    real(wp) :: v(n)
+
+    v = 0
+    v(k) = 1
+  end function unit_vector
+
+end module plastic_heat
