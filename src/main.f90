@@ -1,6 +1,7 @@
 !> The solver: arguments -> run -> exit code.
 program lagamine
   use blas, only: blas_build, blas_core_name
+  use card_print, only: print_cards
   use errors, only: error_t, exit_done
   use kinds, only: wp
   use memory_limits, only: require_memory
@@ -31,6 +32,8 @@ program lagamine
   else if (options%version) then
     call settle_libraries()
     call print_version('lagamine', blas_words(blas_build(), blas_core_name()), number_of_threads(), error)
+  else if (options%cards) then
+    call print_cards(error)
   else if (allocated(options%law)) then
     call print_law(options%law, error)
   else if (allocated(options%met)) then

@@ -20,6 +20,8 @@ module run_options
     character(len=:), allocatable :: met
     type(string_t), allocatable :: overrides(:)
     logical :: check = .false., point = .false., quiet = .false., help = .false., version = .false.
+    !> The keywords of all cards are asked for.
+    logical :: cards = .false.
     !> Progress only, also where the output is no terminal.
     logical :: progress = .false.
     integer :: threads = 0   !! 0: as many as there are free processors
@@ -44,6 +46,8 @@ contains
         options%help = .true.
       case ('--version')
         options%version = .true.
+      case ('--cards')
+        options%cards = .true.
       case ('--check')
         options%check = .true.
       case ('--point')
@@ -78,7 +82,8 @@ contains
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
           call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--check'), string_t('--quiet'), &
                                     string_t('--progress'), string_t('--out'), string_t('--resume'), string_t('--law'), &
-                                    string_t('--met'), string_t('--point'), string_t('-p'), string_t('--threads')], &
+                                    string_t('--met'), string_t('--cards'), string_t('--point'), string_t('-p'), &
+                                    string_t('--threads')], &
                              'lagamine', error)
         else if (allocated(options%deck)) then
           call fail(error, exit_input, 'one deck at a time: found '''//options%deck//''' and '''//word//'''')
@@ -87,7 +92,7 @@ contains
         end if
       end select
     end do
-    if (allocated(error) .or. options%help .or. options%version .or. allocated(options%law)) return
+    if (allocated(error) .or. options%help .or. options%version .or. options%cards .or. allocated(options%law)) return
     if (allocated(options%met)) then
       if (allocated(options%deck)) call fail(error, exit_input, '--met takes no deck: found '''//options%deck//'''')
       if (.not. allocated(options%out)) options%out = stem_of(options%met)
@@ -124,7 +129,7 @@ contains
            '         [--progress|--quiet]'//nl// &
            'lagamine --point DECK [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --met FILE [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
-           'lagamine --law [NAME] | --help | --version'//nl//nl// &
+           'lagamine --law [NAME] | --cards | --help | --version'//nl//nl// &
            '  --out DIR       folder of the results (default: the deck''s name); with --check: for DIR/NAME.scene.json'//nl// &
            '  --check         read the deck, print the scene, run nothing'//nl// &
            '  --resume FILE   go on from a checkpoint of the same deck'//nl// &
@@ -134,7 +139,8 @@ contains
            '  --met FILE      print the steels of a .MET file: temperatures, isothermal diagram, coolings; tables into DIR'//nl// &
            '  --progress      print the progress only, no summary; once a minute where that goes into a file'//nl// &
            '  --quiet         print errors only'//nl// &
-           '  --law [NAME]    print the card of a law: parameters, units, state, source; without a name, list all laws'//nl//nl// &
+           '  --law [NAME]    print the card of a law: parameters, units, state, source; without a name, list all laws'//nl// &
+           '  --cards         list the keywords of all cards'//nl//nl// &
            'Exit codes: 0 done, 2 input refused, 3 no convergence at the smallest step, 4 remesh due,'//nl// &
            '            5 the machine failed, 6 a check of our own failed, 128+n stopped by signal n'
   end function usage_text

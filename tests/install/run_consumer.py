@@ -18,7 +18,7 @@ CMAKE = os.environ.get("LAGAMINE_CMAKE") or "cmake"
 BULK = 2000.0           # of fluid.point
 # Folders that are not the defaults: nothing may know them but by the standard variables.
 FOLDERS = {"bin": "programs", "lib": "libraries", "include": "headers", "share": "data"}
-GNU_DIRECTORIES = {"BIN": "bin", "LIB": "lib", "INCLUDE": "include", "DATA": "share"}
+GNU_DIRECTORIES = {"BIN": "bin", "LIB": "lib", "INCLUDE": "include", "DATAROOT": "share"}
 
 passed, failed = 0, 0
 
@@ -137,7 +137,7 @@ def check_folders(folder):
     for made_file in files_of(BUILD):
         top = made_file.split(os.sep)[0]
         if top in ("bin", "modules") and os.path.basename(made_file) not in ("lagareport", "lagaimport", "lagastudy", "lagacycle") \
-                or made_file.endswith("_core.a"):
+                or made_file.endswith("_core.a") or made_file.startswith(os.path.join("share", "documents")):
             os.makedirs(os.path.dirname(os.path.join(build, made_file)), exist_ok=True)
             shutil.copy2(os.path.join(BUILD, made_file), os.path.join(build, made_file))
     done = call(CMAKE, "--install", build)
