@@ -24,11 +24,16 @@ module xdmf_writer
     character(len=:), allocatable :: kind     !! Scalar, Vector (3), Tensor6 (6) or Tensor (9 components)
     character(len=:), allocatable :: dataset  !! path in the HDF5 file
     logical :: is_integer = .false.           !! 32-bit integers rather than doubles
+    logical :: of_mesh = .false.              !! the dataset is in the file of the topology
+    !> Of a scalar that is a component of an array of these extents, as Fortran has them: which one; 0 where it is all of the array.
+    integer :: component = 0
+    integer :: extents(3) = 0
   end type xdmf_field_t
 
-  !> The grid saved at one step.
+  !> The grid saved at one step; points alone where there is no topology.
   type :: xdmf_grid_t
     real(wp) :: time = 0
+    character(len=:), allocatable :: label     !! shown to the user; unallocated = mesh
     character(len=:), allocatable :: file      !! HDF5 file, relative to the directory of the XDMF file
     character(len=:), allocatable :: mesh_file !! that of the topology; unallocated = the same
     character(len=:), allocatable :: geometry  !! dataset of coordinates
@@ -47,6 +52,7 @@ module xdmf_writer
     type(string_t), allocatable :: grids(:)
   contains
     procedure :: add
+    procedure :: add_together
     procedure :: resume
     procedure :: write_file
     procedure :: size => number_of_grids
@@ -57,8 +63,9 @@ module xdmf_writer
     '<Xdmf Version="3.0">'//nl//' <Domain>'//nl// &
     '  <Grid Name="history" GridType="Collection" CollectionType="Temporal">'//nl
   character(len=*), parameter :: tail = '  </Grid>'//nl//' </Domain>'//nl//'</Xdmf>'//nl
-  !> Beginning and end of each grid in the files written here; `resume` searches for them.
-  character(len=*), parameter :: grid_head = '   <Grid Name="mesh" GridType="Uniform">'//nl//'    <Time Value="'
+  !> Beginning and end of each instant in the files written here; `resume` searches for them. Grids within one begin further right.
+  character(len=*), parameter :: grid_head = '   <Grid Name="'
+  character(len=*), parameter :: time_mark = '    <Time Value="'
   character(len=*), parameter :: grid_foot = '   </Grid>'//nl
 
 contains
@@ -68,28 +75,78 @@ contains
     class(xdmf_t), intent(inout) :: self
     type(xdmf_grid_t), intent(in) :: grid
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: s, shape, mesh_file
+    character(len=:), allocatable :: s
+
+    call grid_text(grid, '   ', time_line(grid%time), s, error)
+    if (.not. allocated(error)) call append(self, s)
+  end subroutine add
+
+  !> Add several grids of one saved step.
+  subroutine add_together(self, label, grids, error)
+    class(xdmf_t), intent(inout) :: self
+    character(len=*), intent(in) :: label
+    type(xdmf_grid_t), intent(in) :: grids(:)   !! (ngrid), at least one, of one time
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: s, one
     integer :: i
 
+    s = grid_head//escaped(label)//'" GridType="Collection" CollectionType="Spatial">'//nl//time_line(grids(1)%time)
+    do i = 1, size(grids)
+      call grid_text(grids(i), '    ', '', one, error)
+      if (allocated(error)) return
+      s = s//one
+    end do
+    call append(self, s//grid_foot)
+  end subroutine add_together
+
+  subroutine append(self, s)
+    type(xdmf_t), intent(inout) :: self
+    character(len=*), intent(in) :: s
+
+    if (.not. allocated(self%grids)) allocate (self%grids(0))
+    self%grids = [self%grids, string_t(s)]
+  end subroutine append
+
+  function time_line(time) result(s)
+    real(wp), intent(in) :: time
+    character(len=:), allocatable :: s
+
+    s = time_mark//exact_text(time)//'"/>'//nl
+  end function time_line
+
+  !> A grid with its fields, from the column of `indent` on.
+  pure subroutine grid_text(grid, indent, time, s, error)
+    type(xdmf_grid_t), intent(in) :: grid
+    character(len=*), intent(in) :: indent, time   !! the line of the time may be empty
+    character(len=:), allocatable, intent(out) :: s
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: shape, mesh_file, label
+    integer :: i
+
+    label = 'mesh'
+    if (allocated(grid%label)) label = grid%label
     shape = 'Quadrilateral_8'
     if (allocated(grid%shape)) shape = grid%shape
     mesh_file = grid%file
     if (allocated(grid%mesh_file)) mesh_file = grid%mesh_file
-    s = grid_head//exact_text(grid%time)//'"/>'//nl// &
+    s = indent//'<Grid Name="'//escaped(label)//'" GridType="Uniform">'//nl//time// &
       '    <Geometry GeometryType="'//trim(merge('XY ', 'XYZ', grid%ndim == 2))//'">'//nl// &
-      data_item(grid%file, grid%geometry, grid%nnode, grid%ndim, .false.)//'    </Geometry>'//nl// &
-      '    <Topology TopologyType="'//shape//'" NumberOfElements="'//to_text(grid%nelement)//'">'//nl// &
-      data_item(mesh_file, grid%topology, grid%nelement, grid%nodes_per_element, .true.)//'    </Topology>'//nl
+      data_item(grid%file, grid%geometry, grid%nnode, grid%ndim, .false.)//'    </Geometry>'//nl
+    if (allocated(grid%topology)) then
+      s = s//'    <Topology TopologyType="'//shape//'" NumberOfElements="'//to_text(grid%nelement)//'">'//nl// &
+        data_item(mesh_file, grid%topology, grid%nelement, grid%nodes_per_element, .true.)//'    </Topology>'//nl
+    else
+      s = s//'    <Topology TopologyType="Polyvertex" NumberOfElements="'//to_text(grid%nnode)//'"/>'//nl
+    end if
     if (allocated(grid%fields)) then
       do i = 1, size(grid%fields)
         call check_field(grid%fields(i), error)
         if (allocated(error)) return
-        s = s//field_text(grid, grid%fields(i))
+        s = s//field_text(grid, grid%fields(i), mesh_file)
       end do
     end if
-    if (.not. allocated(self%grids)) allocate (self%grids(0))
-    self%grids = [self%grids, string_t(s//grid_foot)]
-  end subroutine add
+    s = s//indent//'</Grid>'//nl
+  end subroutine grid_text
 
   !> Take over the grids of an older file of this system up to `time`, and before the first that has its mesh in `until`; without
   !> a file there are no grids.
@@ -97,7 +154,7 @@ contains
     class(xdmf_t), intent(inout) :: self
     character(len=*), intent(in) :: path
     real(wp), intent(in) :: time
-    character(len=*), intent(in) :: until   !! name of an HDF5 file, as in the grids
+    character(len=*), intent(in) :: until   !! name of a mesh's HDF5 file, NAME.gNN.h5; its instants are in NAME.gNN/
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: old
     real(wp) :: grid_time
@@ -115,11 +172,12 @@ contains
     first = len(head) + 1
     do while (index(old(first:), grid_head) == 1)
       last = first - 1 + index(old(first:), nl//grid_foot) + len(grid_foot)
-      number = first + len(grid_head)
+      number = first - 1 + index(old(first:), time_mark) + len(time_mark)
       read (old(number:number + index(old(number:), '"') - 2), *, iostat=flag) grid_time
       if (flag /= 0) exit
       if (grid_time > time) exit
       if (index(old(first:last), '>'//escaped(until)//':') > 0) exit
+      if (index(old(first:last), '>'//escaped(until(:len(until) - len('.h5')))//'/') > 0) exit
       self%grids = [self%grids, string_t(old(first:last))]
       first = last + 1
     end do
@@ -158,17 +216,40 @@ contains
   end function number_of_grids
 
   !> One field as XDMF has it.
-  pure function field_text(grid, field) result(s)
+  pure function field_text(grid, field, mesh_file) result(s)
     type(xdmf_grid_t), intent(in) :: grid
     type(xdmf_field_t), intent(in) :: field
-    character(len=:), allocatable :: s
+    character(len=*), intent(in) :: mesh_file
+    character(len=:), allocatable :: s, file
     integer :: n
 
     n = grid%nnode
     if (field%center == 'Cell') n = grid%nelement
-    s = '    <Attribute Name="'//escaped(field%name)//'" AttributeType="'//field%kind//'" Center="'//field%center//'">'//nl// &
-      data_item(grid%file, field%dataset, n, components(field%kind), field%is_integer)//'    </Attribute>'//nl
+    file = grid%file
+    if (field%of_mesh) file = mesh_file
+    s = '    <Attribute Name="'//escaped(field%name)//'" AttributeType="'//field%kind//'" Center="'//field%center//'">'//nl
+    if (field%component > 0) then
+      s = s//component_item(file, field)
+    else
+      s = s//data_item(file, field%dataset, n, components(field%kind), field%is_integer)
+    end if
+    s = s//'    </Attribute>'//nl
   end function field_text
+
+  !> One component of an array of three extents: start, stride and count of XDMF's hyperslab, slowest first.
+  pure function component_item(file, field) result(s)
+    character(len=*), intent(in) :: file
+    type(xdmf_field_t), intent(in) :: field
+    character(len=:), allocatable :: s, rows
+
+    associate (n => field%extents)
+      rows = to_text(n(3))//' '//to_text(n(2))
+      s = '     <DataItem ItemType="HyperSlab" Dimensions="'//rows//' 1">'//nl// &
+        '      <DataItem Format="XML" Dimensions="3 3">0 0 '//to_text(field%component - 1)//' 1 1 1 '//rows//' 1</DataItem>'//nl// &
+        '      <DataItem Format="HDF" Dimensions="'//rows//' '//to_text(n(1))//'" NumberType="Float" Precision="8">'// &
+        escaped(file)//':/'//escaped(field%dataset)//'</DataItem>'//nl//'     </DataItem>'//nl
+    end associate
+  end function component_item
 
   !> Where an array lies and how large it is: `n` rows, of several columns unless `ncomponent` is 1.
   pure function data_item(file, dataset, n, ncomponent, is_integer) result(s)

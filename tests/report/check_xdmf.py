@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Hold every NAME.xdmf of a folder of results against the HDF5 files it points into.
+"""Hold every .xdmf of a folder of results against the HDF5 files it points into.
 
 usage: check_xdmf.py DIR...
 Every array must exist and have the shape and type that the XDMF file says; topologies must point to nodes that exist;
@@ -44,6 +44,8 @@ class Checker:
     def array(self, parent, where, shape):
         """The array of a DataItem, None when something about it is wrong."""
         item = parent.find("DataItem")
+        if item is not None and item.get("ItemType") == "HyperSlab":
+            return self.component(item, where, shape)
         if item is None or item.get("Format") != "HDF":
             self.fault(f"{where}: no DataItem of format HDF")
             return None
@@ -69,12 +71,40 @@ class Checker:
             return None
         return name, place, data[()]
 
-    def grid(self, grid, number, last_time):
-        """One instant; returns its time."""
+    def component(self, item, where, shape):
+        """A component of an array of three extents; None when something about it is wrong."""
+        said = tuple(int(word) for word in item.get("Dimensions", "").split())
+        (place, stride, count), whole = np.array(item.findall("DataItem")[0].text.split(), int).reshape(3, 3), item.findall("DataItem")[1]
+        extents = tuple(int(word) for word in whole.get("Dimensions").split())
+        holder = ElementTree.Element("Attribute")
+        holder.append(whole)
+        found = self.array(holder, where, extents)
+        if found is None:
+            return None
+        if list(stride) != [1, 1, 1] or tuple(count) != said or said != (*extents[:2], 1) or not 0 <= place[2] < extents[2] or any(place[:2]):
+            self.fault(f"{where}: the hyperslab {place} {stride} {count} does not fit {extents}")
+            return None
+        values = found[2][:, :, place[2]].ravel()
+        if shape is not None and values.shape != shape:
+            self.fault(f"{where}: {values.shape} values, {shape} are wanted here")
+            return None
+        return found[0], found[1], values
+
+    def instant(self, grid, number, last_time):
+        """One instant, of one grid or of several together; returns its time."""
         where = f"grid {number}"
         time = float(grid.find("Time").get("Value"))
         if not time >= last_time:
             self.fault(f"{where}: time {time} after {last_time}")
+        parts = grid.findall("Grid") if grid.get("CollectionType") == "Spatial" else [grid]
+        if not parts:
+            self.fault(f"{where}: no grids in it")
+        for part in parts:
+            self.grid(part, f"{where}, {part.get('Name')}" if part is not grid else where, time)
+        return time
+
+    def grid(self, grid, where, time):
+        """One grid of an instant."""
         topology, geometry = grid.find("Topology"), grid.find("Geometry")
         width = {"XY": 2, "XYZ": 3}.get(geometry.get("GeometryType"))
         found = self.array(geometry, f"{where}, geometry", None)
@@ -89,11 +119,16 @@ class Checker:
                 self.fault(f"{where}: coordinates of shape {x.shape} are not {geometry.get('GeometryType')}")
             if not np.isfinite(x).all():
                 self.fault(f"{where}: coordinates are not finite")
-            stored = self.files[name][os.path.dirname(place)].attrs.get("time")
+            stored = self.files[name].attrs.get("time")
             if stored is not None and stored != time:
                 self.fault(f"{where}: time {time}, {name} says {stored}")
         elements = int(topology.get("NumberOfElements"))
-        found = self.array(topology, f"{where}, topology", (elements, NODES.get(topology.get("TopologyType"))))
+        if topology.get("TopologyType") == "Polyvertex":
+            if elements != nodes:
+                self.fault(f"{where}: {elements} points, coordinates of {nodes}")
+            found = None
+        else:
+            found = self.array(topology, f"{where}, topology", (elements, NODES.get(topology.get("TopologyType"))))
         if found and nodes is not None and found[2].size and not 0 <= found[2].min() <= found[2].max() < nodes:
             self.fault(f"{where}: topology points to nodes {found[2].min()} to {found[2].max()} of {nodes}")
         names = set()
@@ -108,7 +143,6 @@ class Checker:
                 self.fault(f"{label}: {field.get('AttributeType')} at {field.get('Center')} is not known")
             elif n is not None:
                 self.array(field, label, (n,) if components == 1 else (n, components))
-        return time
 
     def check(self):
         """All grids, and all steps that were saved."""
@@ -118,11 +152,12 @@ class Checker:
                 self.fault("no grids")
             time = -np.inf
             for number, grid in enumerate(grids, start=1):
-                time = self.grid(grid, number, time)
+                time = self.instant(grid, number, time)
         except (ElementTree.ParseError, OSError, AttributeError, TypeError, ValueError) as error:
             self.fault(f"damaged: {error}")
             grids = []
-        for path in sorted(glob.glob(glob.escape(self.path[:-len(".xdmf")]) + ".g*.h5")):
+        stem = re.sub(r"(\.dies|\.points)?\.xdmf$", "", self.path)
+        for path in sorted(glob.glob(glob.escape(stem) + ".g[0-9][0-9].h5")):
             file = self.file(os.path.basename(path))
             for step in file.get("steps", {}) if file else ():
                 if f"steps/{step}" not in self.saved.get(os.path.basename(path), ()):

@@ -3,6 +3,7 @@
 import contextlib
 import fnmatch
 import glob
+import importlib.util
 import io
 import os
 import re
@@ -90,6 +91,62 @@ class Package(unittest.TestCase):
             for place, attribute, _ in rows("Attributes"):
                 found = [name for name in held if fnmatch.fnmatch(name, place.strip("/")) and name.count("/") == place.strip("/").count("/")]
                 self.assertTrue(found and all(attribute in held[name][2] for name in found), f"{place} {attribute}")
+            self.assertEqual(("lagamine results", 1), (held[""][2]["format"].decode(), held[""][2]["format_version"]))
+            self.check_units_and_points(held)
+
+    def check_units_and_points(self, held):
+        """Units of fields with the words of the manual; points where the elements' shape functions put them; dies where their pilots are."""
+        last = max(name for name in held if re.fullmatch(r"steps/\d+", name))
+        for field, unit in (("mises", "stress"), ("stress_xy", "stress"), ("plastic_strain", "-"), ("displacement", "length"), ("applied_force", "force")):
+            self.assertEqual(unit, held[f"{last}/node/{field}"][2]["unit"].decode(), field)
+        bodies = [name for name in held if re.fullmatch(rf"{last}/points/\d+/coordinates", name)]
+        self.assertEqual(1, len(bodies))
+        group = bodies[0].split("/")[3]
+        names, units = (held[f"{last}/points/{group}/{what}"][3].tolist() for what in ("components", "units"))
+        self.assertEqual({b"stress"}, {unit for name, unit in zip(names, units) if name.startswith(b"stress")})
+        number = int(last.split("/")[1])
+        k = next(k for k, step in enumerate(self.run_._run.steps) if step.number == number and step.generation.number == held[""][2]["generation"])
+        np.testing.assert_allclose(held[bodies[0]][3], self.run_.points("tooth", k).x.reshape(-1, 2), rtol=1e-13, atol=1e-12)
+        x = held[f"{last}/die_coordinates"][3]
+        np.testing.assert_allclose(x[:, 0], [10, 4.5, -1])
+        np.testing.assert_allclose(x[:, 1], held[f"{last}/pilots"][3][0, 1], rtol=1e-14)
+        self.assertEqual([[0, 2, 1]], held["mesh/die_topology"][3].tolist())
+
+    def test_meshio_reads_the_xdmf(self):
+        """Bodies and dies over time, as the page says; the last mesh and its fields are those of the HDF5 files."""
+        import meshio
+        for ending, kind, fields in ((".xdmf", "quad8", {"mises", "plastic_strain", "displacement"}), (".dies.xdmf", "line3", set())):
+            with meshio.xdmf.TimeSeriesReader(os.path.join(self.out, "import_tooth" + ending)) as reader:
+                _, cells = reader.read_points_cells()
+                self.assertEqual([kind], [block.type for block in cells])
+                times = [reader.read_data(k) for k in range(reader.num_steps)]
+            self.assertEqual(list(self.run_.times), [time for time, _, _ in times])
+            self.assertLessEqual(fields, set(times[-1][1]))
+            if fields:
+                np.testing.assert_array_equal(times[-1][1]["mises"], self.run_.field("mises"))
+            else:
+                np.testing.assert_array_equal(times[-1][2]["die"][0], [1])
+
+    @unittest.skipUnless(importlib.util.find_spec("pyvista"), "pyvista is not installed")
+    def test_pyvista_reads_the_xdmf(self):
+        """Bodies, dies and integration points at the last instant."""
+        import pyvista
+        for ending in (".xdmf", ".dies.xdmf", ".points.xdmf"):
+            reader = pyvista.get_reader(os.path.join(self.out, "import_tooth" + ending))
+            np.testing.assert_allclose(reader.time_values, sorted(set(self.run_.times)), rtol=1e-12)
+            reader.set_active_time_value(reader.time_values[-1])
+            grid = reader.read()
+            if ending == ".points.xdmf":
+                while isinstance(grid, pyvista.MultiBlock):
+                    grid = grid[0]
+                points = self.run_.points("tooth")
+                np.testing.assert_allclose(grid.points[:, :2], points.x.reshape(-1, 2), rtol=1e-6)
+                np.testing.assert_array_equal(grid["stress_yy"], points["stress_yy"].ravel())
+            elif ending == ".xdmf":
+                np.testing.assert_array_equal(grid["mises"], self.run_.field("mises"))
+                self.assertEqual(self.run_.grid().n_cells, grid.n_cells)
+            else:
+                self.assertEqual(3, grid.n_points)
 
     def test_values_are_those_of_the_files(self):
         run = self.run_

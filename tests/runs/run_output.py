@@ -108,7 +108,7 @@ def put_away(path):
 def only_regular_files(checks, out, report_there):
     """Every file of a run, its temporary name, the files of a remesh and of the report."""
     checkpoint = os.path.join(out, "upsetting.ckp.h5")
-    run_names = ("history.csv", "summary.json", "upsetting.log", "upsetting.ckp.h5", "upsetting.xdmf", "upsetting.g01.h5",
+    run_names = ("history.csv", "summary.json", "upsetting.log", "upsetting.ckp.h5", "upsetting.xdmf", "upsetting.dies.xdmf", "upsetting.g01.h5",
                  "history.csv.tmp", "upsetting.ckp.h5.tmp")
     folder = checks.path("obstacles")
     os.makedirs(folder)
