@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""The documents as a site: every link of every text leads somewhere, chapters and cards have their pages; built by MkDocs where it is installed."""
+import glob
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SOURCE = os.path.abspath(os.environ.get("LAGAMINE_SOURCE") or os.path.dirname(os.path.dirname(HERE)))
+BIN = os.path.abspath(os.environ.get("LAGAMINE_BIN") or os.path.join(SOURCE, "build", "bin"))
+sys.path.insert(0, os.path.join(SOURCE, "src", "documents"))
+sys.dont_write_bytecode = True
+from site_text import Links, Page, finished, split_manual  # noqa: E402
+
+
+def page(name, source, text):
+    return Page(name, source, name, text.splitlines())
+
+
+class Texts(unittest.TestCase):
+    def test_links_follow_headings_to_their_pages(self):
+        manual = split_manual("decks/README.md", "# M\nsee [a\ncard](#b1)\n## One\n### `B1`\ntext\n### After\n[up](#m) [deck](d/README.md#two)\n")
+        self.assertEqual(["manual/index.md", "manual/one.md", "cards/b1.md", "manual/after.md"], [one.name for one in manual])
+        deck = page("decks/d.md", "decks/d/README.md", "# D\n## Two\n[c](../README.md#b1) [no](../README.md#b2) [nor](x.lag) [out](https://a.b/c#d)")
+        links = Links([*manual, deck])
+        texts = [finished(one, links, SOURCE) for one in (*manual, deck)]
+        self.assertIn("[a\ncard](../cards/b1.md#b1)", texts[0])
+        self.assertIn("# B1\n" if "# B1" in texts[2] else "# `B1`\n", texts[2])
+        self.assertIn("[up](index.md#m) [deck](../decks/d.md#two)", texts[3])
+        self.assertIn("[c](../cards/b1.md#b1)", texts[4])
+        self.assertIn("https://a.b/c#d", texts[4])
+        self.assertEqual(["decks/d/README.md: ../README.md#b2: no such heading", "decks/d/README.md: x.lag: no such file"], links.lost)
+
+    def test_what_github_reads_is_written_as_markdown_wants_it(self):
+        text = finished(page("a.md", "a.md", "words\n- item\n  more\n- item\n\nwords\n| a |\n|---|\n| `x\\|y` |\n```lag skeleton\n- no item\n[no](link)\n```"),
+                        Links([]), SOURCE)
+        self.assertEqual("words\n\n- item\n  more\n- item\n\nwords\n\n| a |\n|---|\n| `x|y` |\n\n```lag\n- no item\n[no](link)\n```\n", text)
+
+
+class Site(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="lagamine-site-")
+        cls.addClassCleanup(shutil.rmtree, cls.folder, True)
+        whole = [] if shutil.which("mkdocs") else ["--pages-only"]
+        cls.done = subprocess.run([sys.executable, os.path.join(SOURCE, "src", "documents", "site.py"), "--root", SOURCE, "--programs", BIN,
+                                   "--out", cls.folder, *whole], text=True, capture_output=True, check=False, timeout=300)
+
+    def test_no_link_is_lost(self):
+        self.assertEqual((0, ""), (self.done.returncode, self.done.stderr))
+        self.assertRegex(self.done.stdout, r"^\d+ pages in ")
+
+    def test_cards_laws_and_decks_have_pages(self):
+        def names(part):
+            return {os.path.basename(path)[:-3] for path in glob.glob(os.path.join(self.folder, "pages", part, "*.md"))} - {"index"}
+        lagamine = os.path.join(BIN, "lagamine")
+        cards = subprocess.run([lagamine, "--cards"], text=True, capture_output=True, check=True).stdout.lower().split()
+        self.assertEqual(set(cards) - {"pl8tm"}, names("cards"))
+        laws = subprocess.run([lagamine, "--law"], text=True, capture_output=True, check=True).stdout.lower().splitlines()
+        self.assertEqual({line.split()[0] for line in laws}, names("laws"))
+        decks = {os.path.basename(os.path.dirname(path)) for path in glob.glob(os.path.join(SOURCE, "decks", "*", "README.md"))}
+        self.assertEqual(decks, names("decks"))
+
+    def test_commands_of_the_recipes_are_read(self):
+        """Decks and parameters are there: each run is asked for as --check."""
+        with open(os.path.join(SOURCE, "decks", "RECIPES.md"), encoding="utf-8") as file:
+            commands = re.findall(r"^lagamine (.*)$", "\n".join(re.findall(r"```sh\n(.*?)```", file.read(), re.S)), re.M)
+        self.assertGreater(len(commands), 5)
+        for command in commands:
+            words = re.sub(r"--out \S+", "", command).split()
+            done = subprocess.run([os.path.join(BIN, "lagamine"), *words, *([] if "--check" in words else ["--check"])], cwd=SOURCE, text=True,
+                                  capture_output=True, check=False)
+            self.assertEqual(0, done.returncode, f"{command}: {done.stderr}")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
