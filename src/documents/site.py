@@ -41,7 +41,7 @@ def deck_pages(root):
         title = re.match(r"# (.*)", text).group(1)
         pages.append(Page(f"decks/{name}.md", f"decks/{name}/README.md", title, text.splitlines()))
         gallery += [f"## [{title}]({name}/README.md)"]
-        gallery += [f"![{title}]({name}/{os.path.basename(picture)})" for picture in sorted(glob.glob(os.path.join(root, "decks", name, "picture*.png")))]
+        gallery += [f"![{title}]({name}/{os.path.basename(picture)})" for picture in sorted(glob.glob(os.path.join(root, "decks", name, "picture_*.png")))]
         gallery.append("")
     return [Page("decks/index.md", "decks/GALLERY", "Gallery", gallery), *pages]
 

@@ -41,6 +41,35 @@ class Texts(unittest.TestCase):
         self.assertEqual("words\n\n- item\n  more\n- item\n\nwords\n\n| a |\n|---|\n| `x|y` |\n\n```lag\n- no item\n[no](link)\n```\n", text)
 
 
+class Gallery(unittest.TestCase):
+    def test_every_deck_has_its_picture(self):
+        decks = sorted(glob.glob(os.path.join(SOURCE, "decks", "*", "*.lag")))
+        self.assertGreater(len(decks), 40)
+        for deck in decks:
+            folder, name = os.path.split(deck)
+            picture = f"picture_{name[:-len('.lag')]}.png"
+            with open(os.path.join(folder, picture), "rb") as file:
+                data = file.read()
+            self.assertEqual(b"\x89PNG", data[:4], picture)
+            self.assertLess(len(data), 100_000, picture)
+            with open(os.path.join(folder, "README.md"), encoding="utf-8") as file:
+                self.assertIn(f"]({picture})", file.read())
+        shown = glob.glob(os.path.join(SOURCE, "decks", "*", "picture_*.png"))
+        self.assertEqual(len(decks), len(shown), "a picture of no deck")
+
+    def test_the_command_draws(self):
+        """A run and its picture: of a deck with a field, and of one whose fields are the same everywhere."""
+        import gallery
+        folder = tempfile.mkdtemp(prefix="lagamine-gallery-")
+        self.addCleanup(shutil.rmtree, folder, True)
+        for name, field in (("cook", "mises"), ("upsetting_frictionless", None)):
+            out = os.path.join(folder, name)
+            subprocess.run([os.path.join(BIN, "lagamine"), os.path.join(SOURCE, "decks", name, name + ".lag"), "--out", out, "--quiet"], check=True)
+            self.assertEqual(field, gallery.field_of(gallery.Run(out), name)[0])
+            size = gallery.save(gallery.draw(out, name), out + ".png")
+            self.assertTrue(1000 < size < gallery.MOST_BYTES, size)
+
+
 class Site(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
