@@ -1,8 +1,8 @@
 !> The remesher's algorithm: from the checkpoint of an old mesh to that of a new one.
 !>
-!> contour -> sizes -> zones -> mesh, or Gmsh's mesh -> state -> checkpoint (annex 2; chapter 12). Bodies without a mesh get their
-!> first one in the same way, from the contours of their cards and without state. A failure ends in an error that names its stage;
-!> the old checkpoint is never modified.
+!> contour -> sizes -> zones -> mesh, or a mesh without zones -> state -> checkpoint (annex 2; chapter 12). Bodies without a mesh
+!> get their first one in the same way, from the contours of their cards and without state. A failure ends in an error that names
+!> its stage; the old checkpoint is never modified.
 module remesh_scene
   use arcs_on_die, only: placed_piece
   use axis_nodes, only: put_on_axis
@@ -12,11 +12,11 @@ module remesh_scene
   use contact_ends, only: contact_end_t
   use contour_needs, only: geometry_settings_t, needs_of_boundary, needs_of_die
   use dies, only: is_deformable
-  use errors, only: error_t
+  use errors, only: error_t, exit_input
   use exchange, only: open_checkpoint, read_bare_scene, read_contact_ends, read_deck_of_checkpoint, read_state, write_checkpoint
   use fields, only: displacement_field, on_nodes, pilot_field
   use first_contours, only: contours_of_cards
-  use gmsh_call, only: find_gmsh, gmsh_t
+  use gmsh_call, only: find_gmsh
   use kept_members, only: member_memory_t
   use kinds, only: wp
   use material_interfaces, only: interface_t, interfaces_of
@@ -27,10 +27,11 @@ module remesh_scene
   use new_mesh_check, only: check_new_mesh, check_shape
   use new_scene, only: set_up_new_scene
   use pair_fit, only: fit_pairs, update_closest_points
+  use outline_mesh, only: mesher_t
   use part_contour, only: build_contours, contour_options_t, contour_t
   use remesh_facts, only: begin_task, end_task, remesh_facts_t
   use remesh_options, only: remesh_options_t
-  use remesher_options, only: as_it_comes, by_gmsh, has_zones, remesher_options_t
+  use remesher_options, only: as_it_comes, by_free, by_gmsh, has_zones, remesher_options_t
   use scene, only: axisymmetric, is_solid, lacks_mesh, scene_t
   use size_field, only: need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t
   use solution, only: present_coordinates, solution_t, start_solution
@@ -93,15 +94,14 @@ contains
     call begin_task(facts, 'mesh', 'sizes')
     call interfaces_of(old, before, contours, interfaces)
     call requested_sizes(old, before, contours, first, sizes)
-    if (old%remesher%mesher /= by_gmsh) then
+    if (all(old%remesher%mesher /= [by_free, by_gmsh])) then
       call begin_task(facts, 'mesh', 'zones')
       call plan_zones(old, present_coordinates(old, before), before%fields(pilot_field)%value, materials_of(old, before), &
                       contours, interfaces, plan, error)
       call begin_task(facts, 'mesh', 'mesh')
       if (.not. allocated(error)) call make_mesh(old, before, contours, plan, sizes, options%finer, mesh, facts, error)
     end if
-    if (uses_gmsh(old%remesher, size(interfaces) > 0, error)) then
-      call begin_task(facts, 'mesh', 'gmsh')
+    if (needs_free_mesh(old%remesher, size(interfaces) > 0, error)) then
       call make_free_mesh(old, before, contours, sizes, options, plan, mesh, facts, error)
     end if
     if (allocated(error)) return
@@ -307,17 +307,18 @@ contains
   end subroutine make_mesh
 
   !> Is a mesh without zones needed: because it is requested, or because zones that the user did not give failed?
-  pure function uses_gmsh(remesher, materials_share, error) result(yes)
+  pure function needs_free_mesh(remesher, materials_share, error) result(yes)
     type(remesher_options_t), intent(in) :: remesher
     logical, intent(in) :: materials_share            !! sides, which no mesh without zones keeps
     type(error_t), allocatable, intent(in) :: error   !! of the mesh by zones
     logical :: yes
 
-    yes = remesher%mesher == by_gmsh .or. (allocated(error) .and. remesher%mesher == as_it_comes .and. &
-                                           .not. (has_zones(remesher) .or. materials_share))
-  end function uses_gmsh
+    yes = any(remesher%mesher == [by_free, by_gmsh]) .or. &
+          (allocated(error) .and. remesher%mesher == as_it_comes .and. .not. (has_zones(remesher) .or. materials_share))
+  end function needs_free_mesh
 
-  !> A mesh without zones. Where Gmsh is not available, the error of the zones is the one to report.
+  !> A mesh without zones: by the free mesher, or by Gmsh where it is requested or the free mesher failed. Where both fail, the
+  !> error of the free mesher is the one to report.
   subroutine make_free_mesh(old, before, contours, sizes, options, plan, mesh, facts, error)
     type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
@@ -328,19 +329,30 @@ contains
     type(new_mesh_t), intent(out) :: mesh
     type(remesh_facts_t), intent(inout) :: facts
     type(error_t), allocatable, intent(inout) :: error
-    type(error_t), allocatable :: zone_error
-    type(gmsh_t) :: gmsh
+    type(error_t), allocatable :: first_error
+    type(mesher_t) :: mesher
 
-    call move_alloc(error, zone_error)
+    if (old%remesher%mesher /= by_gmsh) then
+      facts%mesher = 'free'
+      call begin_task(facts, 'mesh', 'free')
+      call make_mesh_without_zones(old, materials_of(old, before), contours, sizes, options%finer, mesher, plan, mesh, facts%mesh, &
+                                   error)
+      if (allocated(mesh%zone)) facts%coarser = mesh%division%factor
+      if (.not. allocated(error) .or. old%remesher%mesher == by_free) return
+      if (error%code == exit_input) return
+      call move_alloc(error, first_error)
+    end if
     facts%mesher = 'gmsh'
-    call find_gmsh(options%out, options%limit, gmsh)
-    call make_mesh_without_zones(old, materials_of(old, before), contours, sizes, options%finer, gmsh, plan, mesh, facts%mesh, &
+    call begin_task(facts, 'mesh', 'gmsh')
+    mesher%is_gmsh = .true.
+    call find_gmsh(options%out, options%limit, mesher%gmsh)
+    call make_mesh_without_zones(old, materials_of(old, before), contours, sizes, options%finer, mesher, plan, mesh, facts%mesh, &
                                  error)
     if (allocated(mesh%zone)) facts%coarser = mesh%division%factor
-    if (gmsh%available .or. .not. allocated(zone_error)) return
-    zone_error%code = error%code
-    zone_error%advice = error%advice
-    call move_alloc(zone_error, error)
+    if (allocated(error) .and. allocated(first_error)) then
+      facts%mesher = 'free'
+      call move_alloc(first_error, error)
+    end if
   end subroutine make_free_mesh
 
   !> Time, dies, work: what does not depend on the mesh (visit_solution says of each member how it is carried).

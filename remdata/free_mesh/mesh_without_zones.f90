@@ -1,12 +1,12 @@
-!> The mesh of a scene without zones, or whose derived zones failed: Gmsh's, in several attempts, checked as every new mesh.
+!> The mesh of a scene without zones, or whose derived zones failed: by the free mesher or Gmsh, in several attempts, checked as
+!> every new mesh.
 module mesh_without_zones
   use body_outlines, only: find_outlines, outline_t
   use boundary_curves, only: boundary_curve_t
   use errors, only: error_t
-  use gmsh_call, only: gmsh_t
   use kinds, only: wp
   use new_mesh_check, only: check_new_mesh, mesh_check_t
-  use outline_mesh, only: mesh_outlines
+  use outline_mesh, only: mesh_outlines, mesher_t
   use part_contour, only: contour_t
   use scene, only: scene_t
   use size_field, only: size_field_t
@@ -16,8 +16,8 @@ module mesh_without_zones
   private
   public :: make_mesh_without_zones
 
-  !> Other sizes give another mesh, when one is of bad shape, has triangles or Gmsh fails: factors of refinement; elements of twice
-  !> the size that are split are quadrilaterals in any case.
+  !> Other sizes give another mesh, when one is of bad shape, has triangles or the mesher fails: factors of refinement; elements
+  !> of twice the size that are split are quadrilaterals in any case.
   real(wp), parameter :: finer_by(7) = [1.0_wp, 1.05_wp, 1.0_wp, 1.12_wp, 1.12_wp, 1.25_wp, 2.0_wp]
   logical, parameter :: split(7) = [.false., .false., .true., .false., .true., .true., .true.]
   !> Elements are untangled below this sine: their corners are not constrained by a grid.
@@ -26,13 +26,13 @@ module mesh_without_zones
 contains
 
   !> In `plan` each zone is a body in one piece.
-  subroutine make_mesh_without_zones(scene, material, contours, sizes, finer, gmsh, plan, mesh, check, error)
+  subroutine make_mesh_without_zones(scene, material, contours, sizes, finer, mesher, plan, mesh, check, error)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: material(:)           !! of each group of the scene, as for the sizes (ngroup)
     type(contour_t), intent(in) :: contours(:)   !! (ncontour)
     type(size_field_t), intent(in) :: sizes
     real(wp), intent(in) :: finer   !! requested sizes are divided by this factor
-    type(gmsh_t), intent(inout) :: gmsh
+    type(mesher_t), intent(inout) :: mesher
     type(plan_t), intent(out) :: plan
     type(new_mesh_t), intent(out) :: mesh
     type(mesh_check_t), intent(out) :: check
@@ -52,9 +52,9 @@ contains
     do attempt = 1, size(finer_by)
       if (allocated(error)) deallocate (error)
       settings%division%refine = finer*finer_by(attempt)
-      call mesh_outlines(boundaries, outlines, sizes, settings, split(attempt), gmsh, mesh, error)
+      call mesh_outlines(boundaries, outlines, sizes, settings, split(attempt), mesher, mesh, error)
       if (.not. allocated(error)) call check_new_mesh(contours, mesh, check, error)
-      if (.not. allocated(error) .or. .not. gmsh%available .or. gmsh%late) exit
+      if (.not. allocated(error) .or. .not. mesher%gmsh%available .or. mesher%gmsh%late) exit
     end do
     if (allocated(error)) return
     allocate (plan%points(0), plan%group(size(outlines)))

@@ -1,7 +1,8 @@
 !> A mesh of 8-node quadrilaterals from contours and requested sizes, without zones.
 !>
-!> Ends of elements are placed along the contours as for zones; Gmsh makes quadrilaterals of four nodes between them. The middle
-!> nodes of their sides are placed here: on the contour by its parabolas, halfway inside; then bad elements are untangled.
+!> Ends of elements are placed along the contours as for zones; the free mesher, or Gmsh, makes quadrilaterals of four nodes
+!> between them. The middle nodes of their sides are placed here: on the contour by its parabolas, halfway inside; then bad
+!> elements are untangled.
 module outline_mesh
   use block_mesh, only: polygon_area
   use body_outlines, only: divide_outlines, lay_out_outlines, outline_t
@@ -9,8 +10,10 @@ module outline_mesh
   use errors, only: error_t
   use flat_quads, only: open_flat_corners
   use gmsh_call, only: gmsh_t, mesh_outline
-  use gmsh_files, only: cell_t, quads_t, refuse_mesh
+  use gmsh_files, only: cell_t
   use kinds, only: pi, wp
+  use quad_lists, only: quads_t, refuse_mesh
+  use quad_mesher, only: fill_with_quads
   use side_curves, only: curve_point, curve_t
   use side_middles, only: place_middle
   use size_cells, only: cover
@@ -22,7 +25,13 @@ module outline_mesh
   use zones, only: zone_layout_t
   implicit none
   private
-  public :: mesh_outlines
+  public :: mesh_outlines, mesher_t
+
+  !> Who makes quadrilaterals inside contours: Gmsh, or the free mesher.
+  type :: mesher_t
+    logical :: is_gmsh = .false.
+    type(gmsh_t) :: gmsh
+  end type mesher_t
 
   !> The limit on the number of elements is met by increasing the sizes, by a little more than the square root, in several attempts.
   real(wp), parameter :: growth = 1.02_wp
@@ -48,13 +57,13 @@ module outline_mesh
 contains
 
   !> The mesh, or the reason of the failure. `division%factor` of the mesh is the effect of a limited number of elements.
-  subroutine mesh_outlines(boundaries, outlines, field, settings, split, gmsh, mesh, error)
+  subroutine mesh_outlines(boundaries, outlines, field, settings, split, mesher, mesh, error)
     type(boundary_curve_t), intent(in) :: boundaries(:)   !! (nboundary)
     type(outline_t), intent(in) :: outlines(:)            !! (nbody)
     type(size_field_t), intent(in) :: field
     type(mesh_settings_t), intent(in) :: settings
-    logical, intent(in) :: split   !! Gmsh's elements are twice as large, and split
-    type(gmsh_t), intent(inout) :: gmsh
+    logical, intent(in) :: split   !! elements are made twice as large, and split
+    type(mesher_t), intent(inout) :: mesher
     type(new_mesh_t), intent(out) :: mesh
     type(error_t), allocatable, intent(out) :: error
     type(curve_t), allocatable :: curves(:)
@@ -68,21 +77,21 @@ contains
     factor = 1/settings%division%refine
     do attempt = 1, attempts
       call divide_outlines(boundaries, outlines, mesh%layout, field, factor, split, curves, mesh%division, first, ends)
-      call make_corners(boundaries, outlines, field, mesh%layout, curves, factor, split, first, ends, gmsh, draft, error)
+      call make_corners(boundaries, outlines, field, mesh%layout, curves, factor, split, first, ends, mesher, draft, error)
       if (allocated(error)) return
       if (size(draft%zone) <= settings%division%most_elements) exit
       factor = growth*factor*sqrt(real(size(draft%zone), wp)/settings%division%most_elements)
     end do
     mesh%division%nelem = size(draft%zone)
-    call complete(boundaries, curves, first, ends, draft, mesh, error)
+    call complete(boundaries, curves, first, ends, name_of(mesher), draft, mesh, error)
     if (allocated(error) .or. .not. settings%least_sine > 0) return
     associate (nend => size(draft%x, 2), n => size(draft%next))
       call untangle(mesh%connectivity, [(k > n, k=1, nend)], settings%least_sine, mesh%coordinates)
     end associate
   end subroutine mesh_outlines
 
-  !> Corners of all elements: along the contours, and by Gmsh body by body.
-  subroutine make_corners(boundaries, outlines, field, layout, curves, factor, split, first, ends, gmsh, draft, error)
+  !> Corners of all elements: along the contours, and by the mesher body by body.
+  subroutine make_corners(boundaries, outlines, field, layout, curves, factor, split, first, ends, mesher, draft, error)
     type(boundary_curve_t), intent(in) :: boundaries(:)
     type(outline_t), intent(in) :: outlines(:)
     type(size_field_t), intent(in) :: field
@@ -91,11 +100,10 @@ contains
     real(wp), intent(in) :: factor, ends(:)
     logical, intent(in) :: split
     integer, intent(in) :: first(:)
-    type(gmsh_t), intent(inout) :: gmsh
+    type(mesher_t), intent(inout) :: mesher
     type(corner_mesh_t), intent(out) :: draft
     type(error_t), allocatable, intent(out) :: error
     type(quads_t) :: quads
-    type(cell_t), allocatable :: cells(:)
     integer, allocatable :: begins(:)
     integer :: b, low, high
 
@@ -105,14 +113,14 @@ contains
       call find_contours(layout, b, draft%start, begins)
       low = begins(1)
       high = begins(size(begins)) - 1
-      call cover(field, outlines(b)%material, minval(draft%x(:, low:high), 2), maxval(draft%x(:, low:high), 2), cells)
+      begins = begins - low
       if (split) then
-        call mesh_outline(gmsh, draft%x(:, low:high:2), (begins - low)/2 + 1, cells, 2*factor, quads, error)
+        call fill_contours(mesher, draft%x(:, low:high:2), begins/2 + 1, field, outlines(b)%material, 2*factor, quads, error)
         if (.not. allocated(error)) &
           call split_into_quads(draft%x(:, low:high:2), (draft%next(draft%next(low:high:2)) - low)/2 + 1, quads)
       else
-        call mesh_outline(gmsh, draft%x(:, low:high), begins - low + 1, cells, factor, quads, error)
-        if (.not. allocated(error)) call refuse_triangles(quads, error)
+        call fill_contours(mesher, draft%x(:, low:high), begins + 1, field, outlines(b)%material, factor, quads, error)
+        if (.not. allocated(error)) call refuse_triangles(mesher, quads, error)
       end if
       if (allocated(error)) return
       call add_quads(quads, b, low, high, draft)
@@ -120,12 +128,48 @@ contains
     call open_flat_corners(draft%next, draft%smooth, draft%x, draft%corners, draft%zone)
   end subroutine make_corners
 
-  pure subroutine refuse_triangles(quads, error)
+  !> Quadrilaterals, and perhaps triangles, between the points along the contours of a body.
+  subroutine fill_contours(mesher, points, first, field, material, factor, quads, error)
+    type(mesher_t), intent(inout) :: mesher
+    real(wp), intent(in) :: points(:, :)   !! (2, n) [length]
+    integer, intent(in) :: first(:)        !! (ncontour + 1) of each contour among the points, and one past the last
+    type(size_field_t), intent(in) :: field
+    integer, intent(in) :: material
+    real(wp), intent(in) :: factor         !! ratio of the sizes to those of the field
+    type(quads_t), intent(out) :: quads
+    type(error_t), allocatable, intent(out) :: error
+    type(cell_t), allocatable :: cells(:)
+    integer :: sides(2, size(points, 2)), c, k
+
+    if (mesher%is_gmsh) then
+      call cover(field, material, minval(points, 2), maxval(points, 2), cells)
+      call mesh_outline(mesher%gmsh, points, first, cells, factor, quads, error)
+      return
+    end if
+    do c = 1, size(first) - 1
+      do k = first(c), first(c + 1) - 1
+        sides(:, k) = [k, merge(first(c), k + 1, k + 1 == first(c + 1))]
+      end do
+    end do
+    call fill_with_quads(points, sides, size(sides, 2), field, material, factor, quads, error)
+  end subroutine fill_contours
+
+  pure subroutine refuse_triangles(mesher, quads, error)
+    type(mesher_t), intent(in) :: mesher
     type(quads_t), intent(in) :: quads
     type(error_t), allocatable, intent(out) :: error
 
-    if (any(quads%corners == 0)) call refuse_mesh('it has '//to_text(count(quads%corners == 0))//' triangles', error)
+    if (any(quads%corners == 0)) &
+      call refuse_mesh(name_of(mesher), 'it has '//to_text(count(quads%corners == 0))//' triangles', error)
   end subroutine refuse_triangles
+
+  pure function name_of(mesher) result(name)
+    type(mesher_t), intent(in) :: mesher
+    character(len=:), allocatable :: name
+
+    name = 'the free mesher'
+    if (mesher%is_gmsh) name = 'Gmsh'
+  end function name_of
 
   !> Ends of elements along all sides.
   pure subroutine put_points(boundaries, layout, curves, first, ends, draft)
@@ -215,11 +259,12 @@ contains
   end subroutine add_quads
 
   !> Middle nodes, positions on the contour, sides along it; and whether the elements fill the contour.
-  pure subroutine complete(boundaries, curves, first, ends, draft, mesh, error)
+  pure subroutine complete(boundaries, curves, first, ends, name, draft, mesh, error)
     type(boundary_curve_t), intent(in) :: boundaries(:)
     type(curve_t), intent(in) :: curves(:)
     integer, intent(in) :: first(:)
     real(wp), intent(in) :: ends(:)
+    character(len=*), intent(in) :: name   !! of the mesher
     type(corner_mesh_t), intent(in) :: draft
     type(new_mesh_t), intent(inout) :: mesh
     type(error_t), allocatable, intent(out) :: error
@@ -233,7 +278,7 @@ contains
     mesh%connectivity(1:4, :) = draft%corners
     call number_middles(draft%next, nend, mesh%connectivity, mesh%sides%element, nnode, fills)
     if (.not. fills) then
-      call refuse_mesh('its elements do not fill the contour', error)
+      call refuse_mesh(name, 'its elements do not fill the contour', error)
       return
     end if
     allocate (mesh%coordinates(2, nnode), mesh%boundary(nnode), mesh%position(nnode))

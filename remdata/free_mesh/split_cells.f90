@@ -3,8 +3,8 @@
 !> A triangle becomes three quadrilaterals, a quadrilateral four, around a new node in its middle and between new ones halfway along
 !> its sides; on the contour these are the omitted points. So every mesh becomes one of quadrilaterals only, if less regular.
 module split_cells
-  use gmsh_files, only: quads_t
   use kinds, only: wp
+  use quad_lists, only: quads_t
   implicit none
   private
   public :: split_into_quads

@@ -8,7 +8,7 @@ module remesher_rows
   use deck_cursor, only: cursor_t
   use kinds, only: pi, wp
   use mesh_parts, only: mesh_parts_t
-  use remesher_options, only: by_gmsh, has_zones, own_mesh_t, remesher_options_t
+  use remesher_options, only: by_free, by_gmsh, has_zones, own_mesh_t, remesher_options_t
   use scene_draft, only: words_of
   use text, only: string_t
   implicit none
@@ -18,7 +18,7 @@ module remesher_rows
   !> In the order of `read_remesher_row`.
   character(len=*), parameter :: remesher_words = 'STRAIN SIZE COUNT ACROSS TURN TRANSFER ACCEPT TRIES MESHER'
   !> Meshers by their numbers, from 1.
-  character(len=*), parameter :: meshers = 'ZONES GMSH'
+  character(len=*), parameter :: meshers = 'ZONES GMSH FREE'
   !> Methods of transfer by their numbers, from 0.
   character(len=*), parameter :: methods = 'DIST MLS PATCH'
   !> Limits of ACCEPT.
@@ -63,6 +63,8 @@ contains
       call cursor%name('who makes the mesh', words, options%mesher)
       if (options%mesher == by_gmsh .and. has_zones(options)) &
         call cursor%fail('ZONE cards and Gmsh exclude one another: leave out the one or the other')
+      if (options%mesher == by_free .and. has_zones(options)) &
+        call cursor%fail('ZONE cards and MESHER FREE exclude one another: leave out the one or the other')
     end select
   end subroutine read_remesher_row
 

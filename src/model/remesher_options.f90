@@ -6,10 +6,10 @@ module remesher_options
   implicit none
   private
   public :: own_mesh_t, remesher_options_t, has_zones, has_contours
-  public :: as_it_comes, by_zones, by_gmsh
+  public :: as_it_comes, by_zones, by_gmsh, by_free
 
-  !> Mesher: zones, and Gmsh where they fail; zones alone; Gmsh alone.
-  integer, parameter :: as_it_comes = 0, by_zones = 1, by_gmsh = 2
+  !> Mesher: zones, and where they fail the free mesher, then Gmsh; zones alone; Gmsh alone; the free mesher alone.
+  integer, parameter :: as_it_comes = 0, by_zones = 1, by_gmsh = 2, by_free = 3
 
   !> The mesh that the cards make, before any remesh took its place.
   type :: own_mesh_t

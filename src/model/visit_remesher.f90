@@ -2,7 +2,7 @@
 module visit_remesher
   use contact_ends, only: contact_end_t
   use kinds, only: pi, wp
-  use remesher_options, only: by_gmsh, own_mesh_t, remesher_options_t
+  use remesher_options, only: by_free, own_mesh_t, remesher_options_t
   use visitors, only: kept, not_carried, visitor_t
   use zone_marks, only: contour_card_t, mark_corner, mark_inside, name_length, zone_card_t, zone_mark_t
   implicit none
@@ -35,7 +35,7 @@ contains
     call visitor%member('most_elements', self%most_elements, kept, low=0)
     call visitor%member('across_contact', self%across_contact, kept, low=0)
     call visitor%member('turn', self%turn, kept, 'radian', low=tiny(1.0_wp), high=pi/2)
-    call visitor%member('mesher', self%mesher, kept, low=0, high=by_gmsh)
+    call visitor%member('mesher', self%mesher, kept, low=0, high=by_free)
     call visitor%member('tries', self%tries, kept, low=0)
     call visitor%enter('own_mesh')
     call visit_own_mesh(visitor, self%own_mesh)

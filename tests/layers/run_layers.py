@@ -46,8 +46,8 @@ NOT_FOR_REMDATA = {
 }
 
 # Rooms of remdata from top to bottom: a room may use itself and what is below. The driver stands in remdata/ itself.
-ROOMS = ["remdata", *(f"remdata/{room}" for room in ("transfer", "free_mesh", "plan", "mesh", "sizes", "contour", "contact",
-                                                     "old_mesh", "curves"))]
+ROOMS = ["remdata", *(f"remdata/{room}" for room in ("transfer", "free_mesh", "quads", "plan", "mesh", "sizes", "contour",
+                                                     "contact", "old_mesh", "curves"))]
 
 # What a cycle does next is decided beside these rooms: the driver asks, and only these floors are used.
 CYCLE, CYCLE_ON = "remdata/cycle", ("store", "model", "base")

@@ -3,8 +3,9 @@ module gmsh_call
   use arguments, only: argument
   use child_process, only: ending_t, own_process, run_child
   use errors, only: error_t, exit_no_convergence, fail
-  use gmsh_files, only: cell_t, quads_t, read_quads, unit_frame_t, write_script
+  use gmsh_files, only: cell_t, read_quads, unit_frame_t, write_script
   use kinds, only: wp
+  use quad_lists, only: quads_t
   use system, only: directory_of, from_environment, join_path, remove_file
   use text, only: string_t, to_text
   implicit none

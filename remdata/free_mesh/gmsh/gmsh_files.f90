@@ -5,12 +5,13 @@
 !> MSH file format, version 2.
 module gmsh_files
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-  use errors, only: error_t, exit_machine, exit_no_convergence, fail
+  use errors, only: error_t, exit_machine, fail
   use kinds, only: wp
+  use quad_lists, only: quads_t, refuse_mesh
   use text, only: to_text
   implicit none
   private
-  public :: cell_t, unit_frame_t, quads_t, write_script, read_quads, refuse_mesh
+  public :: cell_t, unit_frame_t, write_script, read_quads
 
   !> A square with requested element sizes.
   type :: cell_t
@@ -24,12 +25,6 @@ module gmsh_files
   type :: unit_frame_t
     real(wp) :: low(2) = 0.0_wp, width = 1.0_wp   !! [length]
   end type unit_frame_t
-
-  !> Quadrilaterals, or triangles, between given points and new ones, which are numbered after them.
-  type :: quads_t
-    real(wp), allocatable :: inside(:, :)   !! new points (2, n) [length]
-    integer, allocatable :: corners(:, :)   !! (4, nelem), in either direction; the fourth is 0 for a triangle
-  end type quads_t
 
   !> Frontal Delaunay triangles (J.-F. Remacle et al., Int. J. Num. Meth. Engng 94 (2013) 494-512) paired into quadrilaterals by
   !> Blossom (ibid. 89 (2012) 1102-1119). Options whose defaults depend on the version or the user's files are set.
@@ -101,7 +96,7 @@ contains
     allocate (x(2, 0), quads%corners(4, 0))
     open (newunit=unit, file=path, status='old', action='read', iostat=status)
     if (status /= 0) then
-      call refuse_mesh('there is no mesh', error)
+      call refuse_mesh('Gmsh', 'there is no mesh', error)
       return
     end if
     call read_nodes(unit, x, error)
@@ -135,7 +130,7 @@ contains
     call find_line(unit, '$Nodes', status)
     if (status == 0) read (unit, *, iostat=status) n
     if (status /= 0 .or. n < 1) then
-      call refuse_mesh('it has no nodes', error)
+      call refuse_mesh('Gmsh', 'it has no nodes', error)
       return
     end if
     deallocate (x)
@@ -145,7 +140,7 @@ contains
       if (status == 0 .and. .not. all(ieee_is_finite(coordinates))) status = 1
       if (status == 0 .and. (number < 1 .or. number > n)) status = 1
       if (status /= 0) then
-        call refuse_mesh('row '//to_text(k)//' of its nodes is invalid', error)
+        call refuse_mesh('Gmsh', 'row '//to_text(k)//' of its nodes is invalid', error)
         return
       end if
       x(:, number) = coordinates
@@ -165,7 +160,7 @@ contains
     call find_line(unit, '$Elements', status)
     if (status == 0) read (unit, *, iostat=status) rows
     if (status /= 0 .or. rows < 1) then
-      call refuse_mesh('it has no elements', error)
+      call refuse_mesh('Gmsh', 'it has no elements', error)
       return
     end if
     deallocate (quads%corners)
@@ -188,7 +183,7 @@ contains
         if (head(2) == point .and. (row(5) < 1 .or. row(5) > n)) status = 1
       end if
       if (status /= 0) then
-        call refuse_mesh('row '//to_text(k)//' of its elements is invalid', error)
+        call refuse_mesh('Gmsh', 'row '//to_text(k)//' of its elements is invalid', error)
         return
       end if
       select case (head(2))
@@ -201,9 +196,9 @@ contains
       end select
     end do
     if (ncell == 0) then
-      call refuse_mesh('it has no quadrilaterals', error)
+      call refuse_mesh('Gmsh', 'it has no quadrilaterals', error)
     else if (count(known > 0) /= n) then
-      call refuse_mesh('the points of the contour are missing', error)
+      call refuse_mesh('Gmsh', 'the points of the contour are missing', error)
     else
       quads%corners = quads%corners(:, :ncell)
       call number_inside(n, x, known, quads)
@@ -233,14 +228,5 @@ contains
     end do
     quads%inside = x(:, list(:last))
   end subroutine number_inside
-
-  !> Reason why a mesh is refused, and advice.
-  pure subroutine refuse_mesh(why, error)
-    character(len=*), intent(in) :: why
-    type(error_t), allocatable, intent(out) :: error
-
-    call fail(error, exit_no_convergence, 'remdata: what Gmsh made is no mesh of the contour: '//why, &
-              'give ZONE cards, or other sizes of elements')
-  end subroutine refuse_mesh
 
 end module gmsh_files
