@@ -22,8 +22,9 @@ module point_packing
   !> A point has no other one within this distance, over the size, and no side that is kept within the second.
   real(wp), parameter :: closest = 0.71_wp, closest_side = 0.45_wp
   real(wp), parameter :: root_of_two = 1.41421356237309504880_wp
-  !> Widest corner that is filled by one square: 120 degrees.
-  real(wp), parameter :: widest_corner = 2*pi/3
+  !> Widest corner that is filled by one square, 120 degrees, and the share of the size that is its own: less, for in a sharp corner
+  !> the next points of the contours are close.
+  real(wp), parameter :: widest_corner = 2*pi/3, corner_share = 0.6_wp
   !> Triangles that wait for a visit; points that far are no neighbours.
   integer, parameter :: most_visits = 200
   !> More points than this are refused.
@@ -103,7 +104,7 @@ contains
       end associate
       if (.not. mesh%inside(t)) cycle
       call grow(stamp, size(mesh%node, 2))
-      call find_neighbours(mesh, x, to/length_of(to), h, t, -s, stamp, taken)
+      call find_neighbours(mesh, x, to/length_of(to), corner_share*h, t, -s, stamp, taken)
       if (.not. taken) call add_point(mesh, x, t, new)
     end do
   end subroutine fill_corners

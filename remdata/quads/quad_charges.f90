@@ -8,9 +8,9 @@ module quad_charges
   private
   public :: charge, charge_of, saved, is_flat
 
-  !> A charge at a contour counts so many times; a corner wider than 1.6 right angles, or an inner point with two quadrilaterals,
-  !> costs this.
-  real(wp), parameter :: on_contour = 2.0_wp, widest = 1.6_wp, cost_of_flat = 10.0_wp
+  !> A charge at a contour counts so many times; corners wider than 1.6 right angles, as at an inner point with two quadrilaterals, and
+  !> several narrower than 0.4, cost this.
+  real(wp), parameter :: on_contour = 2.0_wp, widest = 1.6_wp, narrowest = 0.4_wp, cost_of_flat = 10.0_wp
 
 contains
 
@@ -32,7 +32,7 @@ contains
     cost = (number - ideal)**2
     if (fixed) cost = on_contour*cost
     if (number < 1) cost = huge(cost)/100
-    if (ideal > widest*number) cost = cost + cost_of_flat
+    if (ideal > widest*number .or. (number > 1 .and. ideal < narrowest*number)) cost = cost + cost_of_flat
   end function charge_of
 
   !> What the points cost less than before when their numbers change.

@@ -15,6 +15,8 @@ module triangle_pairs
   !> Steps of quality in which pairs are sorted, and qualities that paths may use: good pairs, then any.
   integer, parameter :: steps = 1000
   real(wp), parameter :: least_quality(2) = [0.2_wp, -1.0_wp]
+  !> Widest corner that one quadrilateral fills: 120 degrees.
+  real(wp), parameter :: widest_corner = 2*pi/3
   !> A path reaches so many triangles at most.
   integer, parameter :: most_reached = 20000
 
@@ -50,6 +52,7 @@ contains
       end do
     end do
     allocate (partner(mesh%ntriangle), source=0)
+    call fill_corners(mesh, quality, partner)
     call take_best(mesh, quality, partner)
     n = mesh%ntriangle
     allocate (search%from(n), search%base(n), search%queue(n), search%reached(n), source=0)
@@ -108,6 +111,66 @@ contains
     end do
     quality = max(1 - 2/pi*worst, -1.0_wp)
   end function quality_of
+
+  !> At a corner of a contour that one quadrilateral fills, its triangle is paired with the neighbour, or two with each other. No path
+  !> takes them apart.
+  pure subroutine fill_corners(mesh, quality, partner)
+    type(triangulation_t), intent(in) :: mesh
+    real(wp), intent(inout) :: quality(:, :)
+    integer, intent(inout) :: partner(:)
+    real(wp) :: angle(mesh%npoint), best
+    integer :: number(mesh%npoint), t, u, k, side
+
+    angle = 0
+    number = 0
+    do t = 1, mesh%ntriangle
+      if (.not. mesh%inside(t)) cycle
+      do k = 1, 3
+        associate (a => mesh%node(k, t), b => mesh%node(after(k), t), c => mesh%node(before(k), t))
+          angle(a) = angle(a) + angle_between(mesh%x(:, b) - mesh%x(:, a), mesh%x(:, c) - mesh%x(:, a))
+          number(a) = number(a) + 1
+        end associate
+      end do
+    end do
+    do t = 1, mesh%ntriangle
+      if (.not. mesh%inside(t)) cycle
+      do k = 1, 3
+        associate (point => mesh%node(k, t))
+          if (angle(point) > widest_corner .or. number(point) > 2 .or. partner(t) > 0) cycle
+          best = 0
+          side = 0
+          do u = 1, 3
+            ! the side opposite to the corner where it has one triangle, one at the corner where it has two
+            if (number(point) == 1 .neqv. u == k) cycle
+            if (.not. quality(u, t) > best) cycle
+            best = quality(u, t)
+            side = u
+          end do
+        end associate
+        if (side == 0) cycle
+        u = mesh%across(side, t)
+        if (partner(u) > 0) cycle
+        partner(t) = u
+        partner(u) = t
+        quality(:, t) = -2
+        quality(:, u) = -2
+        call close_sides(mesh, t, quality)
+        call close_sides(mesh, u, quality)
+      end do
+    end do
+  end subroutine fill_corners
+
+  !> No other triangle is paired with this one.
+  pure subroutine close_sides(mesh, t, quality)
+    type(triangulation_t), intent(in) :: mesh
+    integer, intent(in) :: t
+    real(wp), intent(inout) :: quality(:, :)
+    integer :: k
+
+    do k = 1, 3
+      if (mesh%across(k, t) > 0) quality(place_of(mesh, t, mesh%across(k, t)), mesh%across(k, t)) = -2
+    end do
+  end subroutine close_sides
 
   !> Pairs in the order of their quality.
   pure subroutine take_best(mesh, quality, partner)
