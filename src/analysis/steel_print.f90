@@ -1,7 +1,7 @@
 !> `lagamine --met FILE`: the steels of a file as tables on the screen and in CSV files.
 !>
-!> Of each steel NAME: its temperatures, the isothermal diagram (`NAME.ttt.PHASE.csv`), and mixtures and hardness after cooling at
-!> constant rates (`NAME.cct.csv`).
+!> Of each steel NAME: its temperatures, the isothermal diagram (`NAME.ttt.PHASE.csv`), mixtures and hardness after cooling at
+!> constant rates (`NAME.cct.csv`), and martensite after tempering (`NAME.temper.csv`, `steel_temper_print`).
 module steel_print
   use csv_writer, only: csv_t
   use diagnostics, only: diagnostics_t
@@ -12,6 +12,7 @@ module steel_print
   use run_options, only: run_options_t, stem_of
   use standard_streams, only: print_line, print_lines
   use steel_reader, only: read_steels
+  use steel_temper_print, only: print_tempering
   use steel_tables, only: cool_at_rate, forms_at, isothermal_time
   use steels, only: element_names, expansion_incremental, expansion_total, first_diffusive, last_diffusive, phase_count, &
                     phase_names, plasticity_names, plasticity_none, prop_alpha, prop_memory, prop_modulus, prop_plasticity, &
@@ -57,6 +58,7 @@ contains
       if (.not. (options%quiet .or. allocated(error))) call print_lines(lines, error)
       if (.not. allocated(error)) call print_isothermal(steels(k), options, stem, error)
       if (.not. allocated(error)) call print_coolings(steels(k), options, stem, error)
+      if (.not. allocated(error)) call print_tempering(steels(k), options, stem, error)
       if (.not. (allocated(error) .or. options%quiet)) call print_line('', error)
     end do
   end subroutine print_steels

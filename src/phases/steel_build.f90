@@ -152,6 +152,8 @@ contains
       call add_text(problems, 'AC3 must be above AC1')
     if (steel%maynier .and. .not. steel%composition%given) &
       call add_text(problems, 'HARDN MAYNIER needs the composition: COMPO')
+    if (is_given(steel%tempered_hardness) .and. .not. any(steel%temper_rate > 0)) &
+      call add_text(problems, 'TEMPER with HV needs a row MARTENSITE or BAINITE: nothing is tempered')
     if (any(is_given(steel%properties(prop_rise, :)) .neqv. is_given(steel%properties(prop_saturation, :)))) &
       call add_text(problems, 'QV and BV of a phase go together')
     if (any(is_given(steel%properties(prop_plasticity, :))) .and. steel%plasticity == plasticity_none) &

@@ -1,20 +1,23 @@
-!> What a heat treater reads of a steel: times at one temperature, and mixtures after cooling at a constant rate.
+!> What a heat treater reads of a steel: times at one temperature, mixtures after cooling at a constant rate, and martensite after a
+!> hold.
 module steel_tables
   use avrami, only: avrami_time
   use dual_numbers, only: dual_t
   use kinds, only: wp
   use li_kinetics, only: li_rate, li_sum
-  use phase_state, only: start_phases
+  use phase_state, only: at_rate, set_hardness, start_phases
   use phase_step, only: advance_phases
-  use steels, only: austenite, kinetics_avrami, kinetics_li, steel_t
+  use steels, only: austenite, kinetics_avrami, kinetics_li, martensite, phase_count, steel_t
   implicit none
   private
-  public :: isothermal_time, cool_at_rate, forms_at
+  public :: isothermal_time, cool_at_rate, forms_at, hold_martensite
 
   !> Length of a step of temperature while cooling [K]; sub-steps are within.
   real(wp), parameter :: step_length = 10.0_wp
   !> Fraction by which transformation has begun.
   real(wp), parameter :: begun = 0.01_wp
+  !> Cooling rate at 700 degC of martensite that has been quenched, for formulas of hardness that ask for it [K/s].
+  real(wp), parameter, public :: quench_rate = 100.0_wp
 
 contains
 
@@ -72,5 +75,23 @@ contains
         begin = a + (b - a)*(begun - (1 - committed(austenite)))/(committed(austenite) - state(austenite))
     end do
   end subroutine cool_at_rate
+
+  !> State of martensite after a time at one temperature; in no time, as quenched.
+  pure subroutine hold_martensite(steel, time, temperature, state)
+    type(steel_t), intent(in) :: steel
+    real(wp), intent(in) :: time          !! [s]
+    real(wp), intent(in) :: temperature   !! [degC]
+    real(wp), intent(out) :: state(:)     !! (state_size) [state_units]
+    real(wp) :: fractions(phase_count), committed(size(state)), slope(size(state)), heat, heat_slope
+
+    fractions = 0
+    fractions(martensite) = 1
+    call start_phases(steel, state, fractions)
+    state(at_rate) = quench_rate
+    call set_hardness(steel, state)
+    if (.not. time > 0) return
+    committed = state
+    call advance_phases(steel, time, temperature, temperature, committed, state, slope, heat, heat_slope)
+  end subroutine hold_martensite
 
 end module steel_tables
