@@ -1,7 +1,8 @@
 !> `lagamine --met FILE`: the steels of a file as tables on the screen and in CSV files.
 !>
 !> Of each steel NAME: its temperatures, the isothermal diagram (`NAME.ttt.PHASE.csv`), mixtures and hardness after cooling at
-!> constant rates (`NAME.cct.csv`), and martensite after tempering (`NAME.temper.csv`, `steel_temper_print`).
+!> constant rates (`NAME.cct.csv`), martensite after tempering (`NAME.temper.csv`, `steel_temper_print`), and what diagrams are
+!> drawn from (`NAME.steel.json`, `steel_diagrams`).
 module steel_print
   use csv_writer, only: csv_t
   use diagnostics, only: diagnostics_t
@@ -11,9 +12,10 @@ module steel_print
   use phase_state, only: at_hardness, state_size
   use run_options, only: run_options_t, stem_of
   use standard_streams, only: print_line, print_lines
+  use steel_diagrams, only: write_diagrams
   use steel_reader, only: read_steels
   use steel_temper_print, only: print_tempering
-  use steel_tables, only: cool_at_rate, forms_at, isothermal_time
+  use steel_tables, only: cool_at_rate, isothermal_rows
   use steels, only: element_names, expansion_incremental, expansion_total, first_diffusive, last_diffusive, phase_count, &
                     phase_names, plasticity_names, plasticity_none, prop_alpha, prop_memory, prop_modulus, prop_plasticity, &
                     prop_poisson, prop_rise, prop_saturation, prop_strain, prop_yield, prop_young, property_names, steel_t, &
@@ -59,6 +61,7 @@ contains
       if (.not. allocated(error)) call print_isothermal(steels(k), options, stem, error)
       if (.not. allocated(error)) call print_coolings(steels(k), options, stem, error)
       if (.not. allocated(error)) call print_tempering(steels(k), options, stem, error)
+      if (.not. (allocated(error) .or. options%check)) call write_diagrams(steels(k), stem//'.steel.json', error)
       if (.not. (allocated(error) .or. options%quiet)) call print_line('', error)
     end do
   end subroutine print_steels
@@ -146,35 +149,29 @@ contains
     type(csv_t) :: table
     type(string_t) :: columns(1 + size(shares))
     character(len=90) :: line
-    real(wp) :: t, times(size(shares))
-    integer :: phase, k, i, n
+    real(wp), allocatable :: t(:), times(:, :)
+    integer :: phase, k, i, far
 
     columns(1)%s = 'temperature [degC]'
     do i = 1, size(shares)
       columns(1 + i)%s = 'time_of_'//to_text(100*shares(i))//'_pct [s]'
     end do
     do phase = first_diffusive, last_diffusive
-      associate (kinetics => steel%kinetics(phase))
-        n = floor((kinetics%high - kinetics%low)/file_width)
-        if (.not. any([(forms_at(steel, phase, kinetics%high - k*file_width), k=0, n)])) cycle
-        if (.not. options%quiet) call print_line(lower(phase)//': seconds to 1, 50, 99 % of what can form', error)
-        if (.not. options%check) call table%create(stem//'.ttt.'//lower(phase)//'.csv', columns, error)
-        do k = 0, n
-          t = kinetics%high - k*file_width
-          if (allocated(error)) return
-          if (.not. forms_at(steel, phase, t)) cycle
-          do i = 1, size(shares)
-            times(i) = isothermal_time(steel, phase, t, shares(i))
-          end do
-          write (line, '(f8.1, 3es14.5)') t, times
-          if (mod(k, nint(row_width/file_width)) == 0 .and. .not. options%quiet) call print_line(trim(line), error)
-          if (options%check) cycle
-          call table%put(t)
-          call table%put(times)
-          call table%end_row()
-        end do
-        if (.not. (options%check .or. allocated(error))) call table%close(error)
-      end associate
+      call isothermal_rows(steel, phase, file_width, shares, t, times)
+      if (size(t) == 0) cycle
+      if (.not. options%quiet) call print_line(lower(phase)//': seconds to 1, 50, 99 % of what can form', error)
+      if (.not. options%check) call table%create(stem//'.ttt.'//lower(phase)//'.csv', columns, error)
+      do k = 1, size(t)
+        if (allocated(error)) return
+        write (line, '(f8.1, 3es14.5)') t(k), times(:, k)
+        far = nint((steel%kinetics(phase)%high - t(k))/file_width)
+        if (mod(far, nint(row_width/file_width)) == 0 .and. .not. options%quiet) call print_line(trim(line), error)
+        if (options%check) cycle
+        call table%put(t(k))
+        call table%put(times(:, k))
+        call table%end_row()
+      end do
+      if (.not. (options%check .or. allocated(error))) call table%close(error)
     end do
   end subroutine print_isothermal
 

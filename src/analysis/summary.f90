@@ -18,6 +18,7 @@ module summary
   use restore_balance, only: balance_t
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
+  use steel_diagrams, only: add_diagrams
   use system, only: cpu_seconds, peak_memory_mb
   use text, only: string_t, to_text
   implicit none
@@ -168,6 +169,7 @@ contains
         call json%add('law', material%name)
         call json%add('added_for_degC', material%values(zero))
         call json%add('seconds', material%values(time))
+        call add_diagrams(json, material%steel)
         call json%end_object()
       end associate
     end do

@@ -7,13 +7,13 @@ module steel_tables
   use li_kinetics, only: li_rate, li_sum
   use phase_state, only: at_rate, set_hardness, start_phases
   use phase_step, only: advance_phases
-  use steels, only: austenite, kinetics_avrami, kinetics_li, martensite, phase_count, steel_t
+  use steels, only: austenite, kinetics_avrami, kinetics_li, martensite, phase_count, steel_t, unknown_temperature
   implicit none
   private
-  public :: isothermal_time, cool_at_rate, forms_at, hold_martensite
+  public :: isothermal_time, isothermal_rows, cool_at_rate, forms_at, hold_martensite
 
   !> Length of a step of temperature while cooling [K]; sub-steps are within.
-  real(wp), parameter :: step_length = 10.0_wp
+  real(wp), parameter :: step_length = 2.0_wp
   !> Fraction by which transformation has begun.
   real(wp), parameter :: begun = 0.01_wp
   !> Cooling rate at 700 degC of martensite that has been quenched, for formulas of hardness that ask for it [K/s].
@@ -52,28 +52,78 @@ contains
     end if
   end function isothermal_time
 
+  !> The isothermal diagram of a phase, row by row from its highest temperature down.
+  pure subroutine isothermal_rows(steel, phase, width, shares, temperatures, times)
+    type(steel_t), intent(in) :: steel
+    integer, intent(in) :: phase
+    real(wp), intent(in) :: width       !! distance of rows [K]
+    real(wp), intent(in) :: shares(:)   !! (nshare) of what can form, above 0, below 1
+    real(wp), allocatable, intent(out) :: temperatures(:), times(:, :)   !! (nrow) [degC], (nshare, nrow) [s]
+    real(wp) :: t
+    integer :: k, i, n, row
+    logical, allocatable :: forms(:)
+
+    associate (kinetics => steel%kinetics(phase))
+      n = max(-1, floor((kinetics%high - kinetics%low)/width))
+      allocate (forms(0:n))
+      do k = 0, n
+        forms(k) = forms_at(steel, phase, kinetics%high - k*width)
+      end do
+      allocate (temperatures(count(forms)), times(size(shares), count(forms)))
+      row = 0
+      do k = 0, n
+        if (.not. forms(k)) cycle
+        t = kinetics%high - k*width
+        row = row + 1
+        temperatures(row) = t
+        do i = 1, size(shares)
+          times(i, row) = isothermal_time(steel, phase, t, shares(i))
+        end do
+      end do
+    end associate
+  end subroutine isothermal_rows
+
   !> State after cooling from austenite at a constant rate, and the temperature at which one per cent had transformed (`to` where
-  !> it had not).
-  pure subroutine cool_at_rate(steel, rate, from, to, state, begin)
+  !> it had not), also of each phase by itself and of what had transformed by 99 per cent.
+  pure subroutine cool_at_rate(steel, rate, from, to, state, begin, begin_of, finish)
     type(steel_t), intent(in) :: steel
     real(wp), intent(in) :: rate        !! [K/s]
     real(wp), intent(in) :: from, to    !! temperatures [degC]
     real(wp), intent(out) :: state(:)   !! (state_size) [state_units]
     real(wp), intent(out) :: begin      !! [degC]
+    real(wp), intent(out), optional :: begin_of(:)   !! (phase_count) [degC], unknown_temperature where there is less
+    real(wp), intent(out), optional :: finish        !! [degC], unknown_temperature where less transforms
     real(wp) :: committed(size(state)), slope(size(state)), a, b, heat, heat_slope
-    integer :: k, n
+    integer :: k, n, i
 
     call start_phases(steel, state)
     begin = to
+    if (present(begin_of)) begin_of = unknown_temperature
+    if (present(finish)) finish = unknown_temperature
     n = max(1, ceiling((from - to)/step_length))
     do k = 1, n
       a = from + (to - from)*(k - 1)/n
       b = from + (to - from)*k/n
       committed = state
       call advance_phases(steel, (a - b)/rate, a, b, committed, state, slope, heat, heat_slope)
-      if (1 - committed(austenite) < begun .and. 1 - state(austenite) >= begun) &
-        begin = a + (b - a)*(begun - (1 - committed(austenite)))/(committed(austenite) - state(austenite))
+      call note(1 - committed(austenite), 1 - state(austenite), begun, begin)
+      if (present(finish)) call note(1 - committed(austenite), 1 - state(austenite), 1 - begun, finish)
+      if (.not. present(begin_of)) cycle
+      do i = austenite + 1, phase_count
+        call note(committed(i), state(i), begun, begin_of(i))
+      end do
     end do
+
+  contains
+
+    !> The temperature at which a share passes a level between a and b.
+    pure subroutine note(before, now, level, temperature)
+      real(wp), intent(in) :: before, now, level
+      real(wp), intent(inout) :: temperature
+
+      if (before < level .and. now >= level) temperature = a + (b - a)*(level - before)/(now - before)
+    end subroutine note
+
   end subroutine cool_at_rate
 
   !> State of martensite after a time at one temperature; in no time, as quenched.

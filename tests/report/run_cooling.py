@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""What the page reads from cooling curves: a plate that is cooled at given rates, in kelvin and minutes too."""
+"""What the page reads from cooling curves: a plate that is cooled at given rates, in kelvin and minutes too. Diagrams of steels, with those curves on
+them and without a run."""
+import json
+import math
 import os
 import re
 import shutil
@@ -15,6 +18,7 @@ sys.path.insert(0, os.path.join(SOURCE, "src", "report"))
 sys.dont_write_bytecode = True
 from lagamine_report import Run  # noqa: E402
 from lagamine_report.cooling import cooling_picture, coolings  # noqa: E402
+from lagamine_report.steel_diagram import run_diagrams  # noqa: E402
 
 # Side 4 falls by 20 K/s to 100 degC, rises to 900 and falls by 40 K/s to 420; side 2 stays above 500.
 PLATE = """TITLE  Plate
@@ -77,14 +81,80 @@ class Cooling(unittest.TestCase):
         picture = cooling_picture(Run(out))
         self.assertEqual({"fast", "mild"}, {line.get_label() for line in picture.figure.axes[0].lines if not line.get_label().startswith("_")})
         picture.close()
+        self.check_diagram(Run(out))
         subprocess.run([os.path.join(BIN, "lagareport"), out, "--quiet"], check=True)
         with open(os.path.join(out, "report.html"), encoding="utf-8") as file:
             page = re.sub(r'src="data:[^"]*"', "", file.read())
         self.assertRegex(page, r'(?s)id="cooling".*<td>fast</td><td>7\.5</td><td>20</td><td>420</td>')
         self.assertRegex(page, r"<td>mild</td><td>–</td>")
 
+        self.assertRegex(page, r'(?s)id="steels".*<img alt="Steel 16MND5')
+
+    def check_diagram(self, run):
+        """One steel, cooling only; the fall of 20 K/s on it counts from Ac3 = 846 degC."""
+        picture, = run_diagrams(run)
+        panel, = picture.figure.axes
+        curve, = [line for line in panel.lines if line.get_label() == "fast"]
+        time, temperature = curve.get_data()
+        falling = time < 36
+        self.assertGreater(falling.sum(), 50)
+        for t, value in zip(time[falling], temperature[falling]):
+            self.assertAlmostEqual(846 - 20 * t, value, places=6)
+        # martensite begins at Ms while it cools fast: 1 % is there 0.4 K below
+        begin, = [line for line in panel.lines if line.get_label() == "martensite"]
+        time, temperature = begin.get_data()
+        self.assertAlmostEqual(415 + math.log(0.99) / 0.0249, temperature[-1], delta=1.0)      # linear within 2 K
+        self.assertAlmostEqual((846 - temperature[-1]) / 1000, time[-1], places=9)
+        picture.close()
+
     def test_kelvin_and_minutes(self):
         self.check(self.run_plate("kelvin", 273.15, 60.0))
+
+    def test_steels_without_a_run(self):
+        steel = os.path.join(SOURCE, "decks", "steels", "4140.met")
+        page, pngs = os.path.join(self.folder, "4140.html"), os.path.join(self.folder, "pngs")
+        done = subprocess.run([os.path.join(BIN, "lagareport"), steel, "--out", page, "--png", pngs], check=True, capture_output=True, text=True)
+        self.assertIn("steels: 4140", done.stdout)
+        with open(page, encoding="utf-8") as file:
+            text = re.sub(r'src="data:[^"]*"', "", file.read())
+        for part in ("<h2>Steel 4140</h2>", "<h2>Steel 4140, coolings</h2>", "bainite: seconds to 1, 50, 99 %"):
+            self.assertIn(part, text)
+        self.assertEqual(["diagram_1.png", "mixtures_1.png"], sorted(os.listdir(pngs)))
+        broken = os.path.join(self.folder, "broken.met")
+        with open(steel, encoding="utf-8") as file, open(broken, "w", encoding="utf-8") as out:
+            out.write(file.read().replace("LI     7.5", "LI     heavy"))
+        for options, phrase in (([broken], "broken.met:6:8: LI: expected G, the ASTM number of the grain"), ([steel, "--field", "mises"], "--field: for the results of a run")):
+            done = subprocess.run([os.path.join(BIN, "lagareport"), *options], capture_output=True, text=True, check=False, cwd=self.folder)
+            self.assertEqual(2, done.returncode, done.stderr)
+            self.assertIn(phrase, done.stderr)
+
+    def test_tables_of_a_steel(self):
+        """--met: what is drawn is what is tabulated, and what is known of the numbers."""
+        out = os.path.join(self.folder, "met")
+        for name in ("steels/4140.met", "tempering/tempered.met"):
+            subprocess.run([os.path.join(BIN, "lagamine"), "--met", os.path.join(SOURCE, "decks", *name.split("/")), "--out", os.path.join(out, name[:5]), "--quiet"],
+                           check=True)
+        with open(os.path.join(out, "steel", "4140.steel.json"), encoding="utf-8") as file:
+            held = json.load(file)
+        bainite, = [one for one in held["isothermal"] if one["phase"] == "BAINITE"]
+        with open(os.path.join(out, "steel", "4140.ttt.bainite.csv"), encoding="utf-8") as file:
+            rows = [[float(value) for value in line.split(",")] for line in file.read().splitlines()[1:]]
+        self.assertEqual(rows, [list(row) for row in zip(bainite["temperature"], bainite["start"], bainite["half"], bainite["end"])])
+        # S(.99)/S(.01) of Li 1998, at any temperature
+        for start, end in zip(bainite["start"], bainite["end"]):
+            self.assertAlmostEqual(1.947424 / 0.104340, end / start, places=3)
+        for k, rate in enumerate(held["coolings"]["rate"]):
+            shares = sum(phase["share"][k] for phase in held["coolings"]["phases"])
+            self.assertAlmostEqual(1, shares, places=12, msg=f"{rate} K/s")
+        with open(os.path.join(out, "tempe", "4140.temper.csv"), encoding="utf-8") as file:
+            rows = [[float(value) for value in line.split(",")] for line in file.read().splitlines()[1:]]
+        tempered = {(row[0], row[1]): row[2:] for row in rows}
+        for temperature, hours in ((200, 1), (600, 2)):
+            share, parameter, hardness = tempered[temperature, 3600 * hours]
+            kelvin = temperature + 273.15
+            self.assertAlmostEqual(kelvin * (20 + math.log10(hours)) / 1000, parameter, places=9)
+            self.assertAlmostEqual(1 - math.exp(-(3600 * hours * 1e9 * math.exp(-1.2e5 / (8.314462618 * kelvin)))**0.5), share, places=9)
+        self.assertAlmostEqual(322 - 53 * (parameter - 17.591) / 1.127, hardness, places=6)
 
 
 if __name__ == "__main__":

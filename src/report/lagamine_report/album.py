@@ -11,12 +11,13 @@ from .pictures import MAIN_FIELDS, fields_of, fields_picture, generations_pictur
 from .reader import Run
 from .remeshes import remesh_pictures
 from .scene_view import SceneView
+from .steel_diagram import run_diagrams
 
 
 def make_pictures(run: Run, fields: Sequence[str] = (), mirror: bool = False) -> List[Picture]:
     """All pictures that the run has something to show for, in the order of the page."""
     curves = [force_picture(run), probes_picture(run), cooling_picture(run), steps_picture(run), energy_picture(run), heat_picture(run), seconds_picture(run)]
-    return [picture for picture in [*shapes(run, fields, mirror), *curves] if picture is not None]
+    return [picture for picture in [*shapes(run, fields, mirror), *curves] if picture is not None] + run_diagrams(run)
 
 
 def shapes(run: Run, fields: Sequence[str], mirror: bool) -> List[Optional[Picture]]:

@@ -1,4 +1,4 @@
-"""`lagareport DIR`, `lagareport DIR DIR ...`, `lagareport DECK`: arguments -> page -> exit code."""
+"""`lagareport DIR`, `lagareport DIR DIR ...`, `lagareport DECK`, `lagareport FILE.met`: arguments -> page -> exit code."""
 import os
 import sys
 from typing import TYPE_CHECKING, Dict, Sequence
@@ -26,9 +26,9 @@ def run_program(arguments: Sequence[str], version: str) -> int:
     parser = Parser("lagareport", description="The results of a run as one self-contained HTML page with pictures.",
                     epilog=EXIT_CODES)
     parser.add_argument("folders", metavar="DIR", nargs="+", help="folder of the results: what `lagamine DECK --out DIR` wrote; two or more "
-                        "are compared; or a deck, which is drawn before any run")
+                        "are compared; or a deck, which is drawn before any run; or a .met file, whose steels are drawn")
     parser.add_argument("--out", metavar="FILE", help="the page (default: DIR/report.html; of several runs compare.html, of a deck NAME.html and "
-                        "NAME.svg in the present folder)")
+                        "NAME.svg, of a .met file NAME.html, in the present folder)")
     parser.add_argument("-p", metavar="NAME=VALUE", dest="parameters", action="append", default=[], help="of a deck: set a parameter of it")
     parser.add_argument("--field", metavar="NAME", action="append", default=[],
                         help="show this field large and over time, instead of the usual ones; may be repeated")
@@ -50,6 +50,8 @@ def run_program(arguments: Sequence[str], version: str) -> int:
         options.folder = options.folders[0]
         if len(options.folders) > 1:
             return compare_runs(options, version)
+        if os.path.isfile(options.folder) and options.folder.lower().endswith(".met"):
+            return draw_steels(options, version)
         if os.path.isfile(options.folder):
             return draw_deck(options, version)
         if options.parameters:
@@ -152,12 +154,36 @@ def compare_runs(options, version: str) -> int:
     return EXIT_DONE
 
 
+def refuse_of_runs(options, why: str) -> None:
+    """Options that only the results of a run have an answer to."""
+    for name, value in (("--field", options.field), ("--mirror", options.mirror), ("--animation", options.animation), ("--line", options.line), ("--side", options.side)):
+        if value:
+            raise ReportError(f"{name}: for the results of a run; {why}")
+
+
+def draw_steels(options, version: str) -> int:
+    """The page of the steels of a .met file."""
+    from .deck_scene import deck_name
+    refuse_of_runs(options, "a .met file has none")
+    target = options.out or deck_name(options.folder) + ".html"
+    refuse_to_replace(target)
+    from .steel_page import read_steels, steel_page, steel_pictures
+    steels, words = read_steels(options.folder, options.parameters)
+    pictures = steel_pictures(steels)
+    write(target, steel_page(steels, words, pictures, options.folder, version).encode("utf-8"))
+    if options.png:
+        write_pngs(options.png, pictures)
+    for picture in pictures:
+        picture.close()
+    if not options.quiet:
+        print(f"steels: {', '.join(steel['name'] for steel in steels)}\n  page: {target}")
+    return EXIT_DONE
+
+
 def draw_deck(options, version: str) -> int:
     """The page and the picture of a deck before any run."""
     from .deck_scene import deck_name, read_scene
-    for name, value in (("--field", options.field), ("--mirror", options.mirror), ("--animation", options.animation), ("--line", options.line), ("--side", options.side)):
-        if value:
-            raise ReportError(f"{name}: for the results of a run; a deck has none yet")
+    refuse_of_runs(options, "a deck has none yet")
     target = options.out or deck_name(options.folder) + ".html"
     drawing = os.path.splitext(target)[0] + ".svg"
     for path in (target, drawing):

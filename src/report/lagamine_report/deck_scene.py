@@ -97,25 +97,35 @@ class Scene:
         return np.concatenate([np.stack([c[:, :-1], c[:, 1:]], axis=2).reshape(-1, 2, 2) for c in curves])
 
 
+def solver_program() -> str:
+    """The solver beside this program, otherwise the one of the path."""
+    program = os.path.join(os.path.dirname(os.path.realpath(sys.argv[0])), "lagamine")
+    return program if os.path.exists(program) else "lagamine"
+
+
+def ask_solver(arguments: Sequence[str], parameters: Sequence[str]) -> str:
+    """What the solver prints; what it refuses is refused in its words."""
+    program = solver_program()
+    options = [word for parameter in parameters for word in ("-p", parameter)]
+    try:
+        done = subprocess.run([program, *arguments, *options], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False, errors="replace")
+    except OSError as error:
+        raise ReportError(f"{program}: cannot be started: {error.strerror}", EXIT_MACHINE) from error
+    if done.returncode != 0:
+        raise ReportError(done.stderr.strip() or f"{program} ended with {done.returncode}", done.returncode if done.returncode > 0 else EXIT_MACHINE)
+    return done.stdout
+
+
 def read_scene(deck: str, parameters: Sequence[str] = ()) -> Scene:
     """The scene of a deck, by the solver beside this program; a deck that it refuses is refused in its words."""
-    program = os.path.join(os.path.dirname(os.path.realpath(sys.argv[0])), "lagamine")
-    program = program if os.path.exists(program) else "lagamine"
     with tempfile.TemporaryDirectory(prefix="lagareport-") as folder:
-        options = [word for parameter in parameters for word in ("-p", parameter)]
-        try:
-            done = subprocess.run([program, deck, "--check", "--out", folder, *options], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                                  check=False, errors="replace")
-        except OSError as error:
-            raise ReportError(f"{program}: cannot be started: {error.strerror}", EXIT_MACHINE) from error
-        if done.returncode != 0:
-            raise ReportError(done.stderr.strip() or f"{program} ended with {done.returncode}", done.returncode if done.returncode > 0 else EXIT_MACHINE)
+        words = ask_solver([deck, "--check", "--out", folder], parameters)
         path = os.path.join(folder, deck_name(deck) + ".scene.json")
         try:
             with open(path, encoding="utf-8") as file:
-                return Scene(json.load(file), done.stdout)
+                return Scene(json.load(file), words)
         except (OSError, ValueError, KeyError) as error:
-            raise ReportError(f"{program}: wrote no scene that can be read ({error}): is it of the same version?", EXIT_MACHINE) from error
+            raise ReportError(f"{solver_program()}: wrote no scene that can be read ({error}): is it of the same version?", EXIT_MACHINE) from error
 
 
 def deck_name(deck: str) -> str:

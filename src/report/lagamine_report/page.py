@@ -23,11 +23,14 @@ SECTIONS: List[Tuple[str, str, Sequence[str]]] = [
     ("contact", "Contact", ("pressure", "contact")),
     ("probes", "Probes", ("probes",)),
     ("cooling", "Cooling", ("cooling",)),
+    ("steels", "Steels", ()),
     ("march", "Steps and iterations", ("steps",)),
     ("energy", "Energies", ("energy",)),
     ("heat", "Heat", ("heat",)),
     ("seconds", "Seconds", ("seconds",)),
 ]
+# Pictures whose names begin so are in a section too, as many as there are.
+PREFIXES = {"series": "series_", "steels": "diagram_"}
 LONGEST_LIST = 40
 
 
@@ -129,8 +132,8 @@ def _sections(pictures: Sequence[Picture]) -> Sections:
     result = []
     for anchor, heading, names in SECTIONS:
         own = [by_name[name] for name in names if name in by_name]
-        if anchor == "series":
-            own += [picture for picture in pictures if picture.name.startswith("series_")]
+        if anchor in PREFIXES:
+            own += [picture for picture in pictures if picture.name.startswith(PREFIXES[anchor])]
         parts = [figure(picture, heading) for picture in own]
         if own:
             result.append((anchor, heading, "\n".join(parts)))
