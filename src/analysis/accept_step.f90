@@ -1,6 +1,7 @@
 !> Acceptance of a step: the trial state becomes the state, and every check is made.
 module accept_step
   use bookkeeping, only: book_reactions, book_deformable_dies, measure_scene, book_spurious_mode, sample_contacts
+  use dofs, only: move_fields
   use elem_api, only: totals_t
   use energy_books, only: book_stored, book_work
   use equations, only: equations_t
@@ -11,6 +12,7 @@ module accept_step
   use heat_record, only: note_heat_step
   use kinds, only: wp
   use newton, only: outcome_t
+  use path_record, only: note_path_step
   use point_drivers, only: start_drivers
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
@@ -40,7 +42,8 @@ contains
     call book_reactions(scene, equations, solution%time + dt, solution%fields)
     call book_heat(scene, equations, dt, solution)
     call note_heat_step(outcome%heat, solution%heat)
-    call take_motion(equations, outcome%du, solution%fields)
+    call note_path_step(outcome%path, dt, solution%time + dt, solution%path)
+    call move_fields(equations%dofs, outcome%du, solution%fields)
     call fill_middles(scene, solution%fields)
     solution%time = solution%time + dt
     solution%last_step = dt
@@ -85,7 +88,7 @@ contains
     solution%work = work
     call book_reactions(scene, equations, solution%time, solution%fields)
     before = solution%fields
-    call take_motion(equations, outcome%du, solution%fields)
+    call move_fields(equations%dofs, outcome%du, solution%fields)
     do f = 1, size(before)
       solution%fields(f)%last_increment = before(f)%last_increment
     end do
@@ -108,24 +111,6 @@ contains
       end do
     end do
   end subroutine fill_middles
-
-  !> Advance all fields: nodes, pilots and section move, temperatures change.
-  pure subroutine take_motion(equations, du, fields)
-    type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: du(:)
-    type(field_t), intent(inout) :: fields(:)
-    integer :: f, k, c, d
-
-    do f = 1, size(fields)
-      do k = 1, size(fields(f)%value, 2)
-        do c = 1, fields(f)%ncomp
-          d = equations%dofs%fields(f)%number(c, k)
-          if (d > 0) fields(f)%last_increment(c, k) = du(d)
-        end do
-      end do
-      fields(f)%value = fields(f)%value + fields(f)%last_increment
-    end do
-  end subroutine take_motion
 
   !> The trial state becomes the state.
   subroutine commit(scene, equations, solution)

@@ -62,6 +62,7 @@ contains
         dt = max(min(outcome%event, largest_event)*dt, scene%strategy%least_step)
         call list_event(run%listing, solution, dt, outcome%event_reason)
         if (outcome%heat%too_long) solution%heat%shortened = solution%heat%shortened + 1
+        if (outcome%path%too_long) solution%path%shortened = solution%path%shortened + 1
         call solve_fields(scene, run%equations, solution, dt, outcome)
       end do
       if (allocated(outcome%error)) then
@@ -76,7 +77,7 @@ contains
       end if
 
       solution%next_step = after_success(scene, dt, solution%next_step, outcome%first_iterations, outcome%strain, &
-                                        outcome%heat%growth)
+                                        min(outcome%heat%growth, outcome%path%growth))
       call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
       if (allocated(error)) exit
       cuts = 0

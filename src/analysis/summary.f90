@@ -13,6 +13,8 @@ module summary
   use json_writer, only: json_t
   use kinds, only: i8, wp
   use law_api, only: find_parameter
+  use path_advice, only: motion_advice, stress_advice
+  use path_record, only: follows_path, motion_error, stress_error
   use penetration_advice, only: advice_at_points, advice_between_points, states_penetration
   use restart_report, only: add_restart
   use restore_balance, only: balance_t
@@ -108,6 +110,7 @@ contains
     if (has_motion(scene)) call json%add('energy_imbalance', energy_imbalance(solution))
     if (has_heat(scene)) call json%add('heat_imbalance', heat_imbalance(solution))
     if (has_heat(scene)) call add_heat(json, solution%heat)
+    if (follows_path(scene)) call add_path(json, solution)
     call json%add('spurious_mode', solution%worst_spurious)
     call json%end_object()
     call add_advice(json, scene, solution)
@@ -192,6 +195,18 @@ contains
     call json%add('steps_made_again_for_bounds', heat%fallbacks)
   end subroutine add_heat
 
+  !> Errors that come of the path within steps.
+  subroutine add_path(json, solution)
+    type(json_t), intent(inout) :: json
+    type(solution_t), intent(in) :: solution
+
+    call json%add('path_error_motion', motion_error(solution%path))
+    call json%add('path_error_stress', stress_error(solution%path, solution%time))
+    call json%add('path_error_stress_worst', solution%path%stress_worst)
+    call json%add('steps_shortened_by_path', solution%path%shortened)
+    call json%add('least_steps_above_path', solution%path%above)
+  end subroutine add_path
+
   !> What to do about the checks that do not hold, by their names.
   subroutine add_advice(json, scene, solution)
     type(json_t), intent(inout) :: json
@@ -200,6 +215,8 @@ contains
 
     call json%begin_object('advice')
     call add('energy_imbalance', imbalance_advice(solution))
+    call add('path_error_motion', motion_advice(solution%path))
+    call add('path_error_stress', stress_advice(solution%path, solution%time))
     call add('max_penetration_over_allowed', advice_at_points(scene, solution))
     call add('max_penetration_sampled_over_allowed', advice_between_points(scene, solution))
     call json%end_object()
@@ -353,6 +370,16 @@ contains
                //to_text(circumference(scene)*solution%heat_released, 4)//'; imbalance ' &
                //to_text(100*heat_imbalance(solution), 2)//' % of what passed')
     if (has_heat(scene)) call put_heat(solution%heat)
+    if (follows_path(scene)) then
+      call put('  errors of the path within steps: motion '//to_text(100*motion_error(solution%path), 3)//' % in sum, stress ' &
+               //to_text(100*stress_error(solution%path, solution%time), 3)//' % at the end, ' &
+               //to_text(100*solution%path%stress_worst, 3)//' % at worst; '//to_text(solution%path%shortened) &
+               //' attempts shortened for them')
+      call warn('error of the motion by the path within steps '//to_text(100*motion_error(solution%path), 3)//' %', &
+                motion_advice(solution%path))
+      call warn('error of the stress by the path within steps ' &
+                //to_text(100*stress_error(solution%path, solution%time), 3)//' %', stress_advice(solution%path, solution%time))
+    end if
     do t = 1, size(facts%warnings)
       call put('  WARNING: '//facts%warnings(t)%s)
     end do

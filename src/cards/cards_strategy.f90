@@ -75,10 +75,10 @@ contains
     type(cursor_t), intent(inout) :: cursor
     type(strategy_t), intent(inout) :: strategy
     type(string_t), allocatable :: names(:)
-    logical :: given(4)
+    logical :: given(6)
     integer :: k
 
-    call words_of('FORCE DISPL ITMAX STRAIN', names)
+    call words_of('FORCE DISPL ITMAX STRAIN PATH RATE', names)
     given = .false.
     do
       call cursor%name('the name of a norm', names, k)
@@ -96,6 +96,12 @@ contains
         call cursor%integer('the iterations after which a step is cut', strategy%max_iterations, lower=2, upper=1000)
       case (4)
         call cursor%real('the largest strain increment of a step', strategy%strain_bound, lower=0.0_wp, strict_lower=.true.)
+      case (5)
+        call cursor%real('the largest error of the motion of a step over the motion, or 0', strategy%path_bound, &
+                         lower=0.0_wp, upper=1.0_wp, strict_upper=.true.)
+      case (6)
+        call cursor%real('the largest error of the stress over the stress, or 0', strategy%rate_bound, &
+                         lower=0.0_wp, upper=1.0_wp, strict_upper=.true.)
       end select
       if (.not. cursor%more()) exit
     end do

@@ -26,8 +26,8 @@ module point_drivers
   private
   public :: at_status, at_pressure, at_gap, at_die_piece, at_die_xi, at_friction_work, at_corner_work, at_corner_place, &
             at_body_effusivity, at_die_effusivity
-  public :: drivers_t, find_drivers, missing_driver, driver_of_others, start_drivers, advance_drivers, own_states_at_end, &
-            nodal_values, is_scalar
+  public :: drivers_t, find_drivers, missing_driver, driver_of_others, start_drivers, advance_drivers, drivers_of_half, &
+            own_states_at_end, nodal_values, is_scalar
 
   !> Where a driver comes from. A state variable of the formulation itself is that at the start of the step.
   integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3, from_itself = 4, from_effusivity = 5
@@ -290,6 +290,30 @@ contains
       end associate
     end do
   end subroutine advance_drivers
+
+  !> Drivers of the first or the second half of a step: what changes goes straight, and states of the formulation itself are those in
+  !> the middle, which the first half has left as the trial state. They hold as they are: nothing advances them.
+  pure subroutine drivers_of_half(whole, groups, second, half)
+    type(drivers_t), intent(in) :: whole(:)                  !! (ngroup) of the step
+    type(group_state_t), intent(in) :: groups(:)             !! (ngroup) states
+    logical, intent(in) :: second
+    type(drivers_t), allocatable, intent(out) :: half(:)     !! (ngroup)
+    integer :: g, k
+
+    allocate (half, source=whole)
+    do g = 1, size(half)
+      half(g)%vary = .false.
+      if (.not. allocated(half(g)%value)) cycle
+      associate (value => half(g)%value)
+        value(:, merge(1, 2, second), :, :) = 0.5_wp*(value(:, 1, :, :) + value(:, 2, :, :))
+        do k = 1, size(half(g)%source)
+          if (half(g)%source(k)%kind /= from_itself) cycle
+          value(k, :, :, :) = whole(g)%value(k, :, :, :)
+          if (second) value(k, 1, :, :) = groups(g)%trial(half(g)%source(k)%row(g), :, :)
+        end do
+      end associate
+    end do
+  end subroutine drivers_of_half
 
   !> Drivers that are states of the formulation itself, as the step has left them.
   pure subroutine own_states_at_end(own, state, g, e, values)

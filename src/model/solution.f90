@@ -6,6 +6,7 @@ module solution
   use kinds, only: wp
   use loads, only: multiplier_at, start_t
   use pairs, only: pairs_t, start_pairs
+  use path_record, only: path_record_t, start_path
   use remeshing, only: estimate_t
   use scene, only: is_solid, scene_t
   use state_variables, only: total_components
@@ -49,6 +50,8 @@ module solution
     !> sum of the sizes of the last two by step. Per radian when axisymmetric.
     real(wp) :: heat_stored = 0.0_wp, heat_in = 0.0_wp, heat_released = 0.0_wp, heat_passed = 0.0_wp
     type(heat_record_t) :: heat
+    !> Errors of the path within the steps.
+    type(path_record_t) :: path
     !> Volume at the start, for the drift; 0 before it is measured.
     real(wp) :: initial_volume = 0.0_wp
     !> Worst values of all accepted steps so far.
@@ -74,6 +77,7 @@ contains
     call start_fields(scene, solution%fields)
     solution%next_step = scene%strategy%first_step
     call start_pairs(scene, solution%pairs)
+    call start_path(scene, solution%path)
     allocate (solution%groups(size(scene%groups)))
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g), state => solution%groups(g))

@@ -4,6 +4,7 @@ module visit_solution
   use heat_record, only: heat_record_t
   use kinds, only: wp
   use pairs, only: pairs_t
+  use path_record, only: path_record_t
   use solution, only: group_state_t, solution_t
   use visit_estimate, only: visit_estimate_members
   use visit_field, only: visit_field_values
@@ -53,6 +54,9 @@ contains
     call visitor%enter('heat')
     call visit_heat_record(visitor, self%heat)
     call visitor%leave('heat')
+    call visitor%enter('path')
+    call visit_path_record(visitor, self%path)
+    call visitor%leave('path')
     call visitor%enter('probation')
     call visit_probation(visitor, self%probation)
     call visitor%leave('probation')
@@ -91,6 +95,22 @@ contains
     call visitor%member('excess', self%excess, kept, 'temperature', low=0.0_wp)
     call visitor%member('fallbacks', self%fallbacks, kept, low=0)
   end subroutine visit_heat_record
+
+  subroutine visit_path_record(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(path_record_t), intent(inout) :: self
+
+    call visitor%member('moved', self%moved, kept, 'length', low=0.0_wp)
+    call visitor%member('moved_error', self%moved_error, kept, 'length', low=0.0_wp)
+    call visitor%member('error', self%error, of_the_mesh, 'component, node', 'length')
+    call visitor%member('stress_integral', self%stress_integral, kept, 'energy^0.5 time', low=0.0_wp)
+    call visitor%member('stress_error', self%stress_error, kept, 'energy^0.5')
+    call visitor%member('stress_worst', self%stress_worst, kept, '-', low=0.0_wp)
+    call visitor%member('stress', self%stress, kept, 'energy^0.5', low=0.0_wp)
+    call visitor%member('estimated', self%estimated, kept, low=0)
+    call visitor%member('shortened', self%shortened, kept, low=0)
+    call visitor%member('above', self%above, kept, low=0)
+  end subroutine visit_path_record
 
   subroutine visit_probation(visitor, self)
     class(visitor_t), intent(inout) :: visitor

@@ -13,7 +13,7 @@ module dofs
   use text, only: string_t
   implicit none
   private
-  public :: dofs_t, field_dofs_t, group_dofs_t, number_dofs, number_pairs, prescribed_motion
+  public :: dofs_t, field_dofs_t, group_dofs_t, number_dofs, number_pairs, prescribed_motion, move_fields
 
   !> Unknown of each component of a field at each place (ncomp, place), 0 where there is none.
   type :: field_dofs_t
@@ -410,5 +410,23 @@ contains
       end associate
     end do
   end subroutine prescribed_motion
+
+  !> Advance all fields: nodes, pilots and section move, temperatures change.
+  pure subroutine move_fields(dofs, motion, fields)
+    type(dofs_t), intent(in) :: dofs
+    real(wp), intent(in) :: motion(:)            !! (ndof) [unknown]
+    type(field_t), intent(inout) :: fields(:)    !! (nfield)
+    integer :: f, k, c, d
+
+    do f = 1, size(fields)
+      do k = 1, size(fields(f)%value, 2)
+        do c = 1, fields(f)%ncomp
+          d = dofs%fields(f)%number(c, k)
+          if (d > 0) fields(f)%last_increment(c, k) = motion(d)
+        end do
+      end do
+      fields(f)%value = fields(f)%value + fields(f)%last_increment
+    end do
+  end subroutine move_fields
 
 end module dofs

@@ -31,7 +31,7 @@ module equations
   use vectors, only: length_of
   implicit none
   private
-  public :: equations_t, stage_t, set_up, evaluate, measure_error, solve_correction, external_forces, take_turn
+  public :: equations_t, stage_t, set_up, evaluate, make_instant, measure_error, solve_correction, external_forces, take_turn
 
   !> A stage of a step that is made in several.
   type :: stage_t
@@ -271,8 +271,9 @@ contains
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: dt, du(:)
-    logical, intent(in) :: tangent
+    real(wp), intent(in) :: dt       !! [time]
+    real(wp), intent(in) :: du(:)    !! (ndof) motion of the step [unknown]
+    logical, intent(in) :: tangent   !! matrices are wanted
     type(instant_t), intent(out) :: instant
     real(wp), allocatable :: coordinates(:, :)
     integer :: k, c
@@ -588,11 +589,13 @@ contains
   end subroutine external_forces
 
   !> Correction of the free unknowns for a residual; prescribed ones are not touched.
-  subroutine solve_correction(equations, residual, correction, error)
+  subroutine solve_correction(equations, residual, correction, error, at_hand)
     type(equations_t), intent(inout) :: equations
     real(wp), intent(in) :: residual(:)      !! (ndof) [residual]
     real(wp), intent(out) :: correction(:)   !! (ndof) [unknown]
     type(error_t), allocatable, intent(out) :: error
+    logical, intent(in), optional :: at_hand   !! by the factors of the last matrix of the solve that was solved with
+    logical :: factors
     real(wp) :: rhs(equations%solves(equations%now)%neq), x(equations%solves(equations%now)%neq)
     integer :: d, timer
 
@@ -604,10 +607,14 @@ contains
       do d = 1, equations%dofs%ndof
         if (solve%equation(d) > 0) rhs(solve%equation(d)) = residual(d)
       end do
-      call equations%timers%add('factorisation', timer)
-      call equations%timers%start(timer)
-      call factorise(solve%solver, solve%values, error)
-      call equations%timers%stop(timer)
+      factors = .false.
+      if (present(at_hand)) factors = at_hand
+      if (.not. factors) then
+        call equations%timers%add('factorisation', timer)
+        call equations%timers%start(timer)
+        call factorise(solve%solver, solve%values, error)
+        call equations%timers%stop(timer)
+      end if
       if (allocated(error)) return
       call equations%timers%add('solution', timer)
       call equations%timers%start(timer)

@@ -16,6 +16,7 @@ module newton
   use kinds, only: wp
   use linear_solver, only: return_to_chosen
   use line_search, only: manner_t, search_along, short_share
+  use path_record, only: path_step_t
   use predictor, only: predict
   use scene, only: scene_t
   use solution, only: solution_t
@@ -44,6 +45,8 @@ module newton
     character(len=:), allocatable :: event_reason
     !> Balance of heat in time.
     type(heat_step_t) :: heat
+    !> Path within the step.
+    type(path_step_t) :: path
     !> Motion of every unknown (ndof).
     real(wp), allocatable :: du(:)
     !> Residual force of every unknown where a failed step stopped (ndof).

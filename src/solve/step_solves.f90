@@ -5,9 +5,11 @@
 !> nothing changes any more is the result of the monolithic solve.
 module step_solves
   use equations, only: equations_t
+  use fields, only: displacement_field
   use heat_stages, only: is_heat_alone, solve_heat
   use kinds, only: wp
   use newton, only: outcome_t, solve_step
+  use path_bounds, only: judge_path
   use predictor, only: proportion
   use scene, only: scene_t
   use solution, only: solution_t
@@ -22,9 +24,37 @@ module step_solves
 
 contains
 
-  !> Find the fields at the end of a step of length dt. `outcome` is that of all solves together; of a failed step, of the one that
-  !> failed.
+  !> Find the fields at the end of a step of length dt, and judge the path to there. `outcome` is that of all solves together; of a
+  !> failed step, of the one that failed.
   subroutine solve_fields(scene, equations, solution, dt, outcome)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt   !! [time]
+    type(outcome_t), intent(out) :: outcome
+    integer :: solved
+
+    solved = corrections_of_motion(equations)
+    call take_turns(scene, equations, solution, dt, outcome)
+    call judge_path(scene, equations, solution, dt, corrections_of_motion(equations) > solved, outcome)
+  end subroutine solve_fields
+
+  !> Matrices factorised, or found so, for the motion since the start.
+  pure function corrections_of_motion(equations) result(n)
+    type(equations_t), intent(in) :: equations
+    integer :: n
+    integer :: s
+
+    n = 0
+    do s = 1, size(equations%solves)
+      associate (solve => equations%solves(s))
+        if (solve%own(displacement_field)) n = n + solve%solver%factorised + solve%solver%reused
+      end associate
+    end do
+  end function corrections_of_motion
+
+  !> Each solve in its turn.
+  subroutine take_turns(scene, equations, solution, dt, outcome)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -67,7 +97,7 @@ contains
     end do
     outcome%converged = .false.
     outcome%reason = 'the fields do not agree after '//to_text(most_turns)//' turns (they change by '//to_text(change, 3)//')'
-  end subroutine solve_fields
+  end subroutine take_turns
 
   !> Change of the motion of the own unknowns over the motion.
   pure function relative_change(equations, before, now) result(change)

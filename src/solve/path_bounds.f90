@@ -1,0 +1,110 @@
+!> Length of steps by the errors that come of the path within them (path_error).
+!>
+!> The error of the motion is bounded for each step, over its motion: in sum it is no more of the whole way then. The error of the
+!> stress is bounded as what has come of all steps so far, for creep forgets what was before and elastic unloading keeps it. Where
+!> that is used up a step may add its share of the time to it, so that the run goes on.
+module path_bounds
+  use equations, only: equations_t
+  use kinds, only: wp
+  use newton, only: outcome_t
+  use path_error, only: estimate_path
+  use path_record, only: follows_path, stress_scale
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use text, only: to_text
+  implicit none
+  private
+  public :: judge_path
+
+  !> Steps aim at this share of what is allowed, so that few are made in vain.
+  real(wp), parameter :: aim = 0.5_wp
+  !> A step is shortened to no less than this share at once; to this one where the two halves cannot be made.
+  real(wp), parameter :: least_factor = 0.2_wp, without_halves = 0.5_wp
+
+contains
+
+  !> A step has converged: it is accepted, or must be shortened by its errors, and the next may be so much longer.
+  subroutine judge_path(scene, equations, solution, dt, at_hand, outcome)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt        !! [time]
+    logical, intent(in) :: at_hand    !! factors of a matrix of this step are
+    type(outcome_t), intent(inout) :: outcome
+    logical :: done
+    integer :: timer
+
+    if (.not. (outcome%converged .and. follows_path(scene))) return
+    call equations%timers%add('path error', timer)
+    call equations%timers%start(timer)
+    call estimate_path(scene, equations, solution, dt, at_hand, outcome, done)
+    call equations%timers%stop(timer)
+    if (.not. outcome%converged) return
+    outcome%path%estimated = done
+    if (done) then
+      call bound_motion()
+      if (outcome%converged) call bound_stress()
+    else if (dt > scene%strategy%least_step) then
+      call shorten(without_halves, 'the path within the step cannot be followed')
+    end if
+
+  contains
+
+    !> Over the motion, or what it is in the mean of the time where that is more. The share goes with the length.
+    subroutine bound_motion()
+      real(wp) :: scale
+
+      associate (step => outcome%path, allowed => scene%strategy%path_bound)
+        scale = step%motion
+        if (solution%time > 0) scale = max(scale, solution%path%moved/solution%time*dt)
+        if (.not. (allowed > 0 .and. step%motion_error > 0)) return
+        call bound(step%motion_error/scale, allowed, aim*allowed*scale/step%motion_error, 'motion')
+      end associate
+    end subroutine bound_motion
+
+    !> What a step adds goes with the square of its length.
+    subroutine bound_stress()
+      real(wp) :: allowed, before, room, next
+
+      associate (step => outcome%path)
+        allowed = scene%strategy%rate_bound*stress_scale(solution%path, step%stress, solution%time)
+        if (.not. (allowed > 0 .and. abs(step%stress_error) > 0)) return
+        before = step%left*solution%path%stress_error
+        room = max(allowed - abs(before), allowed*dt/(solution%time + dt))
+        next = max(allowed - step%left*abs(before + step%stress_error), allowed*dt/(solution%time + dt))
+        if (abs(step%stress_error) > room) next = room
+        call bound(abs(step%stress_error)/allowed, room/allowed, sqrt(aim*next/abs(step%stress_error)), 'stress')
+      end associate
+    end subroutine bound_stress
+
+    subroutine bound(error, allowed, factor, name)
+      real(wp), intent(in) :: error, allowed
+      real(wp), intent(in) :: factor   !! of the length, for the error aimed at
+      character(len=*), intent(in) :: name
+
+      associate (step => outcome%path)
+        if (error <= allowed) then
+          step%growth = min(step%growth, max(factor, least_factor))
+        else if (dt > scene%strategy%least_step) then
+          call shorten(max(factor, least_factor), 'error of the '//name//' by the path within the step '//to_text(error, 3) &
+                       //' above '//to_text(allowed, 3))
+        else
+          step%above = .true.
+          step%growth = min(step%growth, 1.0_wp)
+        end if
+      end associate
+    end subroutine bound
+
+    subroutine shorten(factor, reason)
+      real(wp), intent(in) :: factor
+      character(len=*), intent(in) :: reason
+
+      outcome%converged = .false.
+      outcome%event = factor
+      outcome%event_reason = reason
+      outcome%path%too_long = .true.
+    end subroutine shorten
+
+  end subroutine judge_path
+
+end module path_bounds

@@ -1,0 +1,266 @@
+#!/usr/bin/env python3
+"""Errors that come of the path within steps: bounded by default, and estimated as large as they are.
+
+usage: run_path.py [-v] [-k] [--cost]       -v prints every check, -k keeps the results; --cost times shipped decks with the bounds
+                                            and without
+
+`bounded`: a necking bar and the relaxation of a held bar, with long steps allowed. Errors against the bar's converged force and
+against the law's own differential equation (Runge and Kutta), of the code before steps were bounded by them (`before`: PATH 0 RATE 0), and now. `estimated`: the same and an upset billet with steps of one length, PATH and RATE being wide: the summed
+estimate over the error against a run of short steps (`effectivity`), of the motion in the mean square over the nodes, of the stress
+as its own. `free`: elastic and uniform plastic bars take the steps they took before.
+"""
+import csv
+import json
+import os
+import re
+import subprocess
+import sys
+import time
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "patch"))
+from patch_support import LAGAMINE, SOURCE, Checks, Run, np  # noqa: E402
+
+ALLOWED = 0.01           # of the necking force at 5 mm, and of the relaxed stress
+FACTOR = 3.0             # of an estimate, up and down
+WIDE = "NORMS  PATH 0.9 RATE 0.9\n"
+OFF = "NORMS  PATH 0 RATE 0\n"
+
+HELD = """TITLE  A bar that is pulled at once and held
+STATE  PLSTS
+KINEM  SMALL
+BLOCK  bar PL8LS 4 m
+   0. 0.   1. 0.   1. 1.   0. 1.
+   1 1.   1 1.
+LAW    m {law}
+FIXED  bar 1 Y
+FIXED  bar 4 X
+LIC    pull
+   0. 0.   {ramp} {strain}   {end} {strain}
+MOVE   bar 3 Y pull
+STRAT  {first} 1.E-7 {step}   40 3
+PROBE  force REACT Y bar 3
+{more}END
+"""
+YOUNG, STRAIN, RAMP, END = 200000.0, 0.002, 0.01, 1.01
+# Name, law, and its rate of flow at a stress.
+CREEP = [("Norton, m = 0.15", f"EVP-NH\n   {YOUNG} 0.3\n   0. 120. 0.15 0.",
+          lambda s: (s/(120*3**0.5))**(1/0.15)/3**0.5),
+         ("Norton, m = 0.5", f"EVP-NH\n   {YOUNG} 0.3\n   0. 400. 0.5 0.",
+          lambda s: (s/(400*3**0.5))**(1/0.5)/3**0.5),
+         ("Cowper and Symonds", f"EPLA\n   {YOUNG} 0.3\n   LINEAR 60. 0.\n   RATE0 0.1 COWPER 2.",
+          lambda s: 0.1*max(s/60 - 1, 0)**2)]
+
+BILLET = """TITLE  Half a billet that sticks to its die
+STATE  AXISYM
+KINEM  LOG
+BLOCK  billet PL8LS 4 steel
+   0. 0.   10. 0.   10. 15.   0. 15.
+   6 1.   9 1.
+LAW    steel EPLA
+   200000. 0.3
+   LINEAR 300. 500.
+FIXED  billet 1 Y
+FIXED  billet 4 X
+FIXED  billet 3 X
+LIC    press
+   0. 0.   1. 1.
+MOVE   billet 3 Y press -4.
+STRAT  {step} 1.E-6 {step}   40 3
+PROBE  force REACT Y billet 3
+{more}END
+"""
+
+FREE = """TITLE  A bar whose stress is the same everywhere
+STATE  {state}
+KINEM  LOG
+BLOCK  bar PL8LS 4 m
+   0. 0.   1. 0.   1. 2.   0. 2.
+   2 1.   2 1.
+LAW    m {law}
+FIXED  bar 1 Y
+FIXED  bar 4 X
+LIC    pull
+   0. 0.   1. 1.   2. 0.
+MOVE   bar 3 Y pull 0.5
+STRAT  0.05 1.E-6 0.05   40 3
+PROBE  force REACT Y bar 3
+{more}END
+"""
+
+
+def relaxed(flow, steps=400000):
+    """Stress at the end: s' = E (strain rate - flow(s)), by the fourth-order rule of Runge and Kutta."""
+    stress = 0.0
+    for length, rate in ((RAMP, STRAIN/RAMP), (END - RAMP, 0.0)):
+        n = steps//10
+        # short steps first: the rate falls by decades
+        times = length*np.linspace(0, 1, n + 1)**3 if rate == 0 else length*np.linspace(0, 1, n + 1)
+        for dt in np.diff(times):
+            def slope(s):
+                return YOUNG*(rate - flow(s))
+            a = slope(stress)
+            b = slope(stress + dt/2*a)
+            c = slope(stress + dt/2*b)
+            stress += dt/6*(a + 2*b + 2*c + slope(stress + dt*c))
+    return stress
+
+
+def converged():
+    """Force of the shipped bar at 5 mm, of its converged runs [N]."""
+    with open(os.path.join(SOURCE, "decks", "necking", "reference.csv"), newline="", encoding="utf-8") as file:
+        for row in csv.reader(file):
+            if "force" in row and "end=5" in row:
+                return float(row[row.index("end=5") + 1])
+    raise KeyError("end=5")
+
+
+def necking(step, more="", nopti=5, first=4):
+    """The shipped bar to 5 mm, coarse along and across, with steps of up to this length of the time."""
+    with open(os.path.join(SOURCE, "decks", "necking", "necking.lag"), encoding="utf-8") as file:
+        text = file.read()
+    text = re.sub(r"(?m)^STRAT .*\n", f"STRAT  $dt/{first} 1.E-6 $dt   {nopti} 3\n{more}", re.sub(r"(?m)^SAVE .*\n", "", text))
+    for name, value in (("nx", 6), ("ny", 18), ("pull", 5), ("dt", step)):
+        text = re.sub(rf"(?m)^PARAM  {name} .*\n", f"PARAM  {name} {value}\n", text)
+    return text
+
+
+def held(law, step, more="", first=0.001):
+    """The held bar."""
+    return HELD.format(law=law, ramp=RAMP, strain=STRAIN, end=END, first=min(first, step), step=step, more=more)
+
+
+def summary(run):
+    """The checks in summary.json, and how many steps."""
+    with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+        whole = json.load(file)
+    return whole["checks"], whole["steps"], whole["advice"]
+
+
+def bounded(checks):
+    """Errors with the bounds as they are by default."""
+    print(f"{'bounded':22s} {'steps':>6s} {'before':>9s} {'error':>9s} {'told':>9s}")
+
+    def row(name, deck, true):
+        off, run = (Run(checks, "bounded", deck(more)) for more in (OFF, ""))
+        if not (off.ok and run.ok):
+            return
+        was, error = (abs(one.history["force"][-1]/true - 1) for one in (off, run))
+        values, steps, advice = summary(run)
+        told = max(values["path_error_motion"], values["path_error_stress"])
+        print(f"{name:22s} {steps:6d} {was:9.5f} {error:9.5f} {told:9.5f}")
+        checks.small(error, ALLOWED, f"{name}: error")
+        checks.that(not any(key.startswith("path") for key in advice), f"{name}: no warning", advice)
+
+    for parts in (15, 25, 30):
+        row(f"necking 1/{parts}", lambda more, n=parts: necking(1/n, more), converged())
+    for name, law, flow in CREEP:
+        row(name, lambda more, law=law: held(law, 0.1, more), relaxed(flow))
+
+
+def estimated(checks):
+    """Estimates over errors, with steps of one length."""
+    print(f"\n{'estimated':22s} {'steps':>6s} {'error':>9s} {'estimate':>9s} {'effectivity':>11s}")
+
+    def row(name, steps, error, estimate):
+        print(f"{name:22s} {steps:6d} {error:9.5f} {estimate:9.5f} {estimate/error:11.2f}")
+        checks.that(1/FACTOR <= estimate/error <= FACTOR, f"{name}, {steps} steps: effectivity", estimate/error)
+
+    def motions(name, deck, lengths, finest):
+        """Motion at the end, against that of the finest run, over what was moved in sum."""
+        fine = Run(checks, f"{name}-fine", deck(finest, OFF))
+        for length in lengths:
+            run = Run(checks, name, deck(length, WIDE))
+            if not (fine.ok and run.ok):
+                continue
+            values, steps, _ = summary(run)
+            u, v = run.displacement(), fine.displacement()
+            # the motions of the steps go one way: their sum is the displacement
+            row(f"{name}: motion", steps, np.sqrt(((u - v)**2).sum()/(v**2).sum()), values["path_error_motion"])
+
+    motions("necking", lambda step, more: necking(step, more, nopti=40, first=1), (1/30, 1/60, 1/120), 1/960)
+    motions("upsetting", lambda step, more: BILLET.format(step=step, more=more), (1/20, 1/40), 1/800)
+    for name, law, flow in CREEP:
+        true = relaxed(flow)
+        for step in (0.1, 0.02):
+            run = Run(checks, "held", held(law, step, WIDE))
+            if run.ok:
+                values, steps, _ = summary(run)
+                row(name, steps, abs(run.history["force"][-1]/true - 1), values["path_error_stress"])
+
+
+def free(checks):
+    """Steps of runs without such errors."""
+    for state in ("PLSTN", "AXISYM", "PLSTS"):
+        for law in ("ELA\n   200000. 0.3", "EPLA\n   200000. 0.3\n   LINEAR 300. 500."):
+            runs = [Run(checks, "free", FREE.format(state=state, law=law, more=more)) for more in (OFF, "")]
+            if all(run.ok for run in runs):
+                name = f"{law.split()[0]} {state}"
+                steps = [len(run.history["step"]) for run in runs]
+                checks.that(steps[1] <= 1.15*steps[0], f"{name}: steps", steps)
+                checks.that(runs[0].history["force"][-1] == runs[1].history["force"][-1] or steps[0] != steps[1],
+                            f"{name}: the same bits in the same steps")
+    off = Run(checks, "off", FREE.format(state="PLSTN", law="EPLA\n   200000. 0.3\n   LINEAR 300. 500.", more=OFF))
+    checks.that("path_error_motion" not in off.history, "without bounds nothing is estimated")
+
+
+def warned(checks):
+    """Long steps that the deck allows are told."""
+    for name, text, key in (("necking", necking(1/12, WIDE, nopti=40, first=1), "path_error_motion"),
+                            ("held", held(CREEP[0][1], 0.5, WIDE, first=0.01), "path_error_stress")):
+        run = Run(checks, name, text)
+        if run.ok:
+            values, _, advice = summary(run)
+            checks.that(key in advice, f"{name}: a warning", values[key])
+
+
+COST = ("upsetting/upsetting", "ring/ring", "forging_rib/forging_rib", "stamping/draw", "extrusion/extrusion_cone",
+        "hot_upsetting/hot_upsetting", "plastic_forming/squeeze", "punch/punch")
+
+
+def cost(checks):
+    """Seconds of shipped decks with the bounds and without, the least of three runs each."""
+    print(f"{'deck':26s} {'steps':>6s} {'without':>8s} {'s':>8s} {'without':>8s} {'ratio':>6s} {'motion':>8s} {'stress':>8s}")
+    for deck in COST:
+        path = os.path.join(SOURCE, "decks", deck + ".lag")
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+        plain = re.sub(r"(?m)^STRAT ", OFF + "STRAT ", text) if "\nNORMS " not in text else \
+            re.sub(r"(?m)^NORMS +", "NORMS  PATH 0 RATE 0 ", text)
+        off = os.path.join(os.path.dirname(path), f".without-{os.getpid()}.lag")
+        try:
+            with open(off, "w", encoding="utf-8") as file:
+                file.write(plain)
+            seconds, found = {path: [], off: []}, {}
+            for _ in range(3):
+                for which in (path, off):
+                    out = os.path.join(checks.folder, "cost")
+                    start = time.perf_counter()
+                    code = subprocess.run([LAGAMINE, which, "--out", out, "--threads", "1", "--quiet"], check=False,
+                                          stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode
+                    seconds[which].append(time.perf_counter() - start)
+                    checks.that(code in (0, 4), f"{deck}: exit code", code)
+                    with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
+                        found[which] = json.load(file)
+        finally:
+            os.unlink(off)
+        now, then = min(seconds[path]), min(seconds[off])
+        values = found[path]["checks"]
+        print(f"{deck:26s} {found[path]['steps']:6d} {found[off]['steps']:8d} {now:8.2f} {then:8.2f} {now/then:6.2f} "
+              f"{values['path_error_motion']:8.5f} {values['path_error_stress']:8.5f}", flush=True)
+
+
+def main():
+    checks = Checks()
+    if "--cost" in sys.argv[1:]:
+        cost(checks)
+    else:
+        bounded(checks)
+        estimated(checks)
+        free(checks)
+        warned(checks)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
