@@ -5,9 +5,10 @@ usage: run_path.py [-v] [-k] [--cost]       -v prints every check, -k keeps the 
                                             and without
 
 `bounded`: a necking bar and the relaxation of a held bar, with long steps allowed. Errors against the bar's converged force and
-against the law's own differential equation (Runge and Kutta), of the code before steps were bounded by them (`before`: PATH 0 RATE 0), and now. `estimated`: the same and an upset billet with steps of one length, PATH and RATE being wide: the summed
-estimate over the error against a run of short steps (`effectivity`), of the motion in the mean square over the nodes, of the stress
-as its own. `free`: elastic and uniform plastic bars take the steps they took before.
+against the law's own differential equation (Runge and Kutta), of the code before steps were bounded by them (`before`: PATH 0 RATE
+0), and now. `estimated`: the same and an upset billet with steps of one length, PATH and RATE being wide: what the run tells over the
+error against a run of short steps (`effectivity`), of the motion in the mean square over the nodes, of the stress as its own.
+`free`: elastic and uniform plastic bars take the steps they took before. Long steps that a deck allows end with a warning.
 """
 import csv
 import json
@@ -109,9 +110,9 @@ def relaxed(flow, steps=400000):
 def converged():
     """Force of the shipped bar at 5 mm, of its converged runs [N]."""
     with open(os.path.join(SOURCE, "decks", "necking", "reference.csv"), newline="", encoding="utf-8") as file:
-        for row in csv.reader(file):
-            if "force" in row and "end=5" in row:
-                return float(row[row.index("end=5") + 1])
+        for row in csv.DictReader(file):
+            if (row["quantity"], row["at"]) == ("force", "end=5"):
+                return float(row["expected"])
     raise KeyError("end=5")
 
 
