@@ -9,7 +9,7 @@ module history
   use heat_books, only: has_heat, heat_imbalance
   use kinds, only: pi, wp
   use newton, only: outcome_t
-  use path_record, only: follows_path, motion_error, stress_error
+  use path_record, only: motion_error, stress_error
   use probes, only: probe_maximum, probe_mean, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
   use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
   use scene, only: axisymmetric, generalised_plane_strain, scene_t
@@ -56,7 +56,7 @@ contains
 
     allocate (columns(14 + 6*size(scene%dies) - 3*count(is_deformable(scene%dies)) &
                       + merge(6, 0, scene%plane_state == generalised_plane_strain) &
-                      + merge(2, 0, follows_path(scene)) + merge(2, 0, scene%remesh%estimate) &
+                      + merge(2, 0, scene%follows_path) + merge(2, 0, scene%remesh%estimate) &
                       + merge(4, 0, has_heat(scene)) + 2*size(scene%die_heats) &
                       + size(scene%probes)))
     n = 0
@@ -91,7 +91,7 @@ contains
       call add('section_moment_x [force*length]')
       call add('section_moment_y [force*length]')
     end if
-    if (follows_path(scene)) then
+    if (scene%follows_path) then
       call add('path_error_motion [-]')
       call add('path_error_stress [-]')
     end if
@@ -152,7 +152,7 @@ contains
       call table%put((solution%fields(section_field)%value(:, 1) - scene%section)/scene%section(1))
       call table%put(solution%fields(section_field)%applied(:, 1))
     end if
-    if (follows_path(scene)) call table%put([motion_error(solution%path), stress_error(solution%path, solution%time)])
+    if (scene%follows_path) call table%put([motion_error(solution%path), stress_error(solution%path, solution%time)])
     if (scene%remesh%estimate) call table%put([solution%estimate%stress, solution%estimate%strain])
     if (has_heat(scene)) then
       call table%put(factor*[solution%heat_stored, solution%heat_in, solution%heat_released])

@@ -14,7 +14,7 @@ module summary
   use kinds, only: i8, wp
   use law_api, only: find_parameter
   use path_advice, only: motion_advice, stress_advice
-  use path_record, only: follows_path, motion_error, stress_error
+  use path_record, only: motion_error, stress_error
   use penetration_advice, only: advice_at_points, advice_between_points, states_penetration
   use restart_report, only: add_restart
   use restore_balance, only: balance_t
@@ -110,7 +110,7 @@ contains
     if (has_motion(scene)) call json%add('energy_imbalance', energy_imbalance(solution))
     if (has_heat(scene)) call json%add('heat_imbalance', heat_imbalance(solution))
     if (has_heat(scene)) call add_heat(json, solution%heat)
-    if (follows_path(scene)) call add_path(json, solution)
+    if (scene%follows_path) call add_path(json, solution)
     call json%add('spurious_mode', solution%worst_spurious)
     call json%end_object()
     call add_advice(json, scene, solution)
@@ -370,7 +370,7 @@ contains
                //to_text(circumference(scene)*solution%heat_released, 4)//'; imbalance ' &
                //to_text(100*heat_imbalance(solution), 2)//' % of what passed')
     if (has_heat(scene)) call put_heat(solution%heat)
-    if (follows_path(scene)) then
+    if (scene%follows_path) then
       call put('  errors of the path within steps: motion '//to_text(100*motion_error(solution%path), 3)//' % in sum, stress ' &
                //to_text(100*stress_error(solution%path, solution%time), 3)//' % at the end, ' &
                //to_text(100*solution%path%stress_worst, 3)//' % at worst; '//to_text(solution%path%shortened) &

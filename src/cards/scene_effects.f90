@@ -78,6 +78,7 @@ contains
         end associate
       end associate
     end do
+    scene%follows_path = scene%effects(3)%on .and. (scene%strategy%path_bound > 0 .or. scene%strategy%rate_bound > 0)
     do k = 1, size(scene%effects)
       if (.not. scene%effects(k)%on) scene%effects(k)%adds = 'nothing'
     end do

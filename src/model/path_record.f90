@@ -1,12 +1,11 @@
 !> What is known of the error that comes of the path within steps: of a step, and of all steps since the start (path_error).
 module path_record
-  use effects, only: find_effect
   use kinds, only: wp
   use scene, only: scene_t
   implicit none
   private
   public :: path_record_t, path_step_t
-  public :: follows_path, mean_square, motion_error, note_path_step, start_path, stress_error, stress_scale
+  public :: mean_square, motion_error, note_path_step, start_path, stress_error, stress_scale
 
   type :: path_step_t
     !> Its errors were estimated; one is above what the deck allows.
@@ -40,24 +39,12 @@ module path_record
 
 contains
 
-  !> Errors of steps are estimated: they are bounded, and a law flows, so that stresses depend on the path.
-  pure function follows_path(scene) result(yes)
-    type(scene_t), intent(in) :: scene
-    logical :: yes
-    integer :: k
-
-    yes = .false.
-    if (.not. (scene%strategy%path_bound > 0 .or. scene%strategy%rate_bound > 0) .or. .not. allocated(scene%effects)) return
-    k = find_effect(scene%effects, 'plasticity')
-    if (k > 0) yes = scene%effects(k)%on
-  end function follows_path
-
   !> No step has been made on the mesh.
   pure subroutine start_path(scene, record)
     type(scene_t), intent(in) :: scene
     type(path_record_t), intent(inout) :: record
 
-    allocate (record%error(2, merge(size(scene%mesh%coordinates, 2), 0, follows_path(scene))), source=0.0_wp)
+    allocate (record%error(2, merge(size(scene%mesh%coordinates, 2), 0, scene%follows_path)), source=0.0_wp)
   end subroutine start_path
 
   !> Root of the mean square over the nodes.

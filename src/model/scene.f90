@@ -93,6 +93,8 @@ module scene
     integer :: kinematics_id = 0
     !> The geometry follows the displacements.
     logical :: finite = .true.
+    !> Errors that come of the path within steps are estimated: a law flows, and the deck bounds them.
+    logical :: follows_path = .false.
     type(mesh_t) :: mesh
     type(material_t), allocatable :: materials(:)
     type(group_t), allocatable :: groups(:)

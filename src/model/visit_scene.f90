@@ -26,6 +26,7 @@ contains
     call visitor%enter('scene')
     call visitor%member('plane_state', self%plane_state, kept, low=1, high=size(plane_state_names))
     call visitor%member('finite', self%finite, kept)
+    call visitor%member('follows_path', self%follows_path, kept)
     call visitor%member('generation', self%generation, recomputed, low=1)
     call visitor%leave('scene')
     call visitor%enter('mesh')

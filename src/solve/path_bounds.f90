@@ -8,7 +8,7 @@ module path_bounds
   use kinds, only: wp
   use newton, only: outcome_t
   use path_error, only: estimate_path
-  use path_record, only: follows_path, stress_scale
+  use path_record, only: stress_scale
   use scene, only: scene_t
   use solution, only: solution_t
   use text, only: to_text
@@ -34,7 +34,7 @@ contains
     logical :: done
     integer :: timer
 
-    if (.not. (outcome%converged .and. follows_path(scene))) return
+    if (.not. (outcome%converged .and. scene%follows_path)) return
     call equations%timers%add('path error', timer)
     call equations%timers%start(timer)
     call estimate_path(scene, equations, solution, dt, at_hand, outcome, done)
