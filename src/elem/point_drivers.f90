@@ -291,8 +291,8 @@ contains
     end do
   end subroutine advance_drivers
 
-  !> Drivers of the first or the second half of a step: what changes goes straight, and states of the formulation itself are those in
-  !> the middle, which the first half has left as the trial state. They hold as they are: nothing advances them.
+  !> Drivers of the first or the second half of a step: what changes goes straight, and states of the formulation itself are those
+  !> in the middle, which the first half has left as the trial state. They hold as they are: nothing advances them.
   pure subroutine drivers_of_half(whole, groups, second, half)
     type(drivers_t), intent(in) :: whole(:)                  !! (ngroup) of the step
     type(group_state_t), intent(in) :: groups(:)             !! (ngroup) states

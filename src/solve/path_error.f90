@@ -1,10 +1,10 @@
 !> Error of a step that comes of the path within it: of the rates of the laws, and of a strain path that bends.
 !>
-!> A law advances its points by the motion of the whole step, as if it went straight and as if rates were those of the end. Once the
-!> step has converged the laws make the same motion again in two halves, along the path that bends as the motions of the step before
-!> and of this one tell (velocities linear in time). Backward Euler errs twice as much in the step as in its two halves, in the rates
-!> as in the direction of flow, so that the error of the stresses is twice the difference (step doubling: E. Hairer, S.P. Norsett,
-!> G. Wanner, Solving Ordinary Differential Equations I, 1993, II.4).
+!> A law advances its points by the motion of the whole step, as if it went straight and as if rates were those of the end. Once
+!> the step has converged the laws make the same motion again in two halves, along the path that bends as the motions of the step
+!> before and of this one tell (velocities linear in time). Backward Euler errs twice as much in the step as in its two halves, in
+!> the rates as in the direction of flow, so that the error of the stresses is twice the difference (step doubling: E. Hairer,
+!> S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 1993, II.4).
 !>
 !> Forces of this difference are no longer in balance. The motion that balances them, by the last factors of the matrix, is the error
 !> of the motion: where a part is about to give way a small force makes much of it, as at the begin of a neck. The error of the
@@ -67,7 +67,7 @@ contains
     type(solution_t) :: other
     type(drivers_t), allocatable :: drivers(:)
     real(wp), dimension(equations%dofs%ndof) :: first, residual, error
-    real(wp) :: element_force(size(equations%buffers%force)), before
+    real(wp) :: element_force(size(equations%buffers%force)), before, after
     logical :: active(size(scene%groups))
     integer :: g
 
@@ -93,7 +93,7 @@ contains
         call unbalanced_forces(scene, equations, solution, outcome%du, residual)
         call solve_correction(equations, 2*residual, error, outcome%error, at_hand=at_hand)
         step%motion = mean_square(on_nodes(equations, outcome%du))
-        step%error = on_nodes(equations, error)
+        allocate (step%error, source=on_nodes(equations, error))
         step%motion_error = mean_square(step%error)
         if (max(abs(step%stress_error), abs(solution%path%stress_error)) &
             > negligible*stress_scale(solution%path, step%stress, solution%time)) then
@@ -103,13 +103,15 @@ contains
             if (active(g)) other%groups(g)%committed(:first_history - 1, :, :) &
               = (1 + enlarged)*other%groups(g)%committed(:first_history - 1, :, :)
           end do
-          drivers = equations%drivers
+          deallocate (drivers)
+          allocate (drivers, source=equations%drivers)
           drivers%vary = .false.
           call advance(outcome%du, dt)
-          if (done .and. before > 0) &
-            step%left = (root_energy(scene, equations, active, other, other%groups) - step%stress)/(enlarged*before)
-          ! laws that forget nothing, or gain, are no matter of their rates
-          step%left = min(max(step%left, 0.0_wp), 1.0_wp)
+          if (done .and. before > 0) then
+            after = root_energy(scene, equations, active, other, other%groups)
+            ! loads that go on do not make more of it
+            step%left = min(max((after - step%stress)/(enlarged*before), 0.0_wp), 1.0_wp)
+          end if
           done = .true.
         end if
       end associate
