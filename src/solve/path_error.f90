@@ -6,10 +6,10 @@
 !> the rates as in the direction of flow, so that the error of the stresses is twice the difference (step doubling: E. Hairer,
 !> S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 1993, II.4).
 !>
-!> Forces of this difference are no longer in balance. The motion that balances them, by the last factors of the matrix, is the error
-!> of the motion: where a part is about to give way a small force makes much of it, as at the begin of a neck. The error of the
-!> stress is counted as that of the root of the elastic energy. What becomes in a step of an error at its start is found by the
-!> laws, from a state with elastic strains a little larger: creep forgets it, elastic unloading does not.
+!> Forces of this difference are no longer in balance. The motion that balances them, by the last factors of the matrix, is the
+!> error of the motion: where a part is about to give way a small force makes much of it, as at the begin of a neck. The error of
+!> the stress is counted as that of the root of the elastic energy. What becomes in a step of an error at its start is found by
+!> the laws, from a state with elastic strains a little larger: creep forgets it, elastic unloading does not.
 module path_error
   use axis_wall, only: press_on_axis
   use dofs, only: move_fields

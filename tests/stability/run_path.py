@@ -2,7 +2,7 @@
 """Errors that come of the path within steps: bounded by default, and estimated as large as they are.
 
 usage: run_path.py [-v] [-k] [--cost]       -v prints every check, -k keeps the results; --cost times shipped decks with the bounds
-                                            and without
+                                            and without (seconds of the processor)
 
 `bounded`: a necking bar and the relaxation of a held bar, with long steps allowed. Errors against the bar's converged force and
 against the law's own differential equation (Runge and Kutta), of the code before steps were bounded by them (`before`: PATH 0 RATE
@@ -16,7 +16,6 @@ import os
 import re
 import subprocess
 import sys
-import time
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "patch"))
@@ -220,7 +219,7 @@ COST = ("upsetting/upsetting", "ring/ring", "forging_rib/forging_rib", "stamping
 
 
 def cost(checks):
-    """Seconds of shipped decks with the bounds and without, the least of three runs each."""
+    """Seconds of the processor for shipped decks with the bounds and without, the least of three runs each."""
     print(f"{'deck':26s} {'steps':>6s} {'without':>8s} {'s':>8s} {'without':>8s} {'ratio':>6s} {'motion':>8s} {'stress':>8s}")
     for deck in COST:
         path = os.path.join(SOURCE, "decks", deck + ".lag")
@@ -236,10 +235,11 @@ def cost(checks):
             for _ in range(3):
                 for which in (path, off):
                     out = os.path.join(checks.folder, "cost")
-                    start = time.perf_counter()
+                    start = os.times()
                     code = subprocess.run([LAGAMINE, which, "--out", out, "--threads", "1", "--quiet"], check=False,
                                           stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode
-                    seconds[which].append(time.perf_counter() - start)
+                    end = os.times()
+                    seconds[which].append(end.children_user + end.children_system - start.children_user - start.children_system)
                     checks.that(code in (0, 4), f"{deck}: exit code", code)
                     with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
                         found[which] = json.load(file)
