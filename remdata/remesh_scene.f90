@@ -31,7 +31,7 @@ module remesh_scene
   use part_contour, only: build_contours, contour_options_t, contour_t
   use remesh_facts, only: begin_task, end_task, remesh_facts_t
   use remesh_options, only: remesh_options_t
-  use remesher_options, only: as_it_comes, by_free, by_gmsh, has_zones, remesher_options_t
+  use remesher_options, only: as_it_comes, by_free, by_gmsh, elements_allowed, has_zones, remesher_options_t
   use scene, only: axisymmetric, is_solid, lacks_mesh, scene_t
   use size_field, only: need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t
   use solution, only: present_coordinates, solution_t, start_solution
@@ -291,7 +291,7 @@ contains
       boundaries(c) = contours(c)%boundary
     end do
     settings%division%refine = finer
-    if (scene%remesher%most_elements > 0) settings%division%most_elements = scene%remesher%most_elements
+    settings%division%most_elements = min(settings%division%most_elements, elements_allowed(scene%remesher, finer))
     do attempt = 1, attempts
       if (allocated(error)) deallocate (error)
       if (attempt == 2) settings%passes = 4*settings%passes

@@ -7,13 +7,13 @@ module cycle_table
   implicit none
   private
   public :: try_row_t, table_heading, number_of_columns, parse_table, line_of_cells
-  public :: way_deck, way_transfer, way_finer, way_earlier, way_old_mesh
+  public :: way_deck, way_transfer, way_finer, way_coarser, way_earlier, way_old_mesh
   public :: first_step_of, number_refused, was_refused, has_new_mesh, keeps_old_mesh, transfer_is_responsible, took_earlier
 
-  !> What is done for a new mesh, as the column `action` names it: as the deck says, another state transfer, finer elements, from
-  !> the checkpoint one save earlier; or the old mesh goes on for a while.
+  !> What is done for a new mesh, as the column `action` names it: as the deck says, another state transfer, finer or coarser
+  !> elements, from the checkpoint one save earlier; or the old mesh goes on for a while.
   character(len=*), parameter :: way_deck = 'as the deck says', way_transfer = 'other transfer', way_finer = 'finer', &
-                                 way_earlier = 'earlier', way_old_mesh = 'old mesh'
+                                 way_coarser = 'coarser', way_earlier = 'earlier', way_old_mesh = 'old mesh'
 
   character(len=*), parameter :: table_heading = &
     'generation [-],try [-],stop_step [-],stop_time [time],step [-],trigger,action,result,accepted,stage,'// &

@@ -2,7 +2,7 @@
 module cycle_ways
   use cycle_situation, only: checkpoint_file_t, is_first_mesh, is_in_distress, is_read, situation_t
   use cycle_table, only: keeps_old_mesh, number_refused, took_earlier, transfer_is_responsible, was_refused, way_deck, &
-                         way_earlier, way_finer, way_old_mesh, way_transfer
+                         way_coarser, way_earlier, way_finer, way_old_mesh, way_transfer
   implicit none
   private
   public :: next_way, old_state, old_mesh_goes_on, is_whole
@@ -13,7 +13,8 @@ contains
   pure function next_way(s) result(way)
     type(situation_t), intent(in) :: s
     character(len=:), allocatable :: way
-    character(len=*), parameter :: ways(*) = [character(len=16) :: way_deck, way_transfer, way_finer, way_earlier, way_old_mesh]
+    character(len=*), parameter :: ways(*) = [character(len=16) :: way_deck, way_transfer, way_finer, way_earlier, &
+                                                                way_coarser, way_old_mesh]
     integer :: k, most
 
     associate (generation => s%new%generation, stop_step => s%new%old_end%facts%step)

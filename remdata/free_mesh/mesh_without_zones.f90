@@ -8,6 +8,7 @@ module mesh_without_zones
   use new_mesh_check, only: check_new_mesh, mesh_check_t
   use outline_mesh, only: mesh_outlines, mesher_t
   use part_contour, only: contour_t
+  use remesher_options, only: elements_allowed
   use scene, only: scene_t
   use size_field, only: size_field_t
   use zone_mesh, only: mesh_settings_t, new_mesh_t
@@ -48,7 +49,7 @@ contains
       boundaries(c) = contours(c)%boundary
     end do
     settings%least_sine = least_sine
-    if (scene%remesher%most_elements > 0) settings%division%most_elements = scene%remesher%most_elements
+    settings%division%most_elements = min(settings%division%most_elements, elements_allowed(scene%remesher, finer))
     do attempt = 1, size(finer_by)
       if (allocated(error)) deallocate (error)
       settings%division%refine = finer*finer_by(attempt)

@@ -1,12 +1,13 @@
 !> Acceptance of a step: the trial state becomes the state, and every check is made.
 module accept_step
-  use bookkeeping, only: book_reactions, book_deformable_dies, measure_scene, book_spurious_mode, sample_contacts
+  use bookkeeping, only: book_reactions, book_deformable_dies, measure_scene, book_spurious_mode, pressed_on, sample_contacts
+  use dies, only: is_deformable
   use dofs, only: move_fields
   use elem_api, only: totals_t
   use energy_books, only: book_stored, book_work
   use equations, only: equations_t
   use errors, only: error_t, exit_bug, fail
-  use fields, only: field_t, fill_middle_nodes, has_corners_only
+  use fields, only: field_t, fill_middle_nodes, has_corners_only, pilot_field
   use friction_heat, only: keep_friction_work
   use heat_books, only: book_heat
   use heat_record, only: note_heat_step
@@ -17,6 +18,7 @@ module accept_step
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use text, only: to_text
+  use vectors, only: length_of
   use work_books, only: work_t
   implicit none
   private
@@ -62,10 +64,29 @@ contains
     call book_stored(scene, equations, outcome%du, totals, friction_before, solution)
     call book_spurious_mode(scene, equations, solution)
     call sample_contacts(scene, solution)
+    if (scene%remesh%on) call note_force(scene, equations, solution)
     call keep_friction_work(scene, solution)
     call check(solution, totals, error)
     call commit(scene, equations, solution)
   end subroutine accept
+
+  !> Changes of forces at a new mesh are measured by the largest so far: at lift-off those of now are nothing.
+  subroutine note_force(scene, equations, solution)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp) :: force
+    integer :: k
+
+    do k = 1, size(scene%dies)
+      if (is_deformable(scene%dies(k))) then
+        force = pressed_on(scene, equations, k)
+      else
+        force = length_of(solution%fields(pilot_field)%applied(1:2, k))
+      end if
+      solution%largest_force = max(solution%largest_force, force)
+    end do
+  end subroutine note_force
 
   !> Commit an equilibrium restored at fixed time on a new mesh: no work is added, no step counted, and the motion of the step
   !> before stays the one to go on with.

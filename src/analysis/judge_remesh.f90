@@ -19,6 +19,10 @@ module judge_remesh
   !> a point in a corner carried much of the force; Newton's method finds the rest.)
   real(wp), parameter :: lost_pressure = 0.5_wp
 
+  !> Changes are over the force of now, or over this share of the largest so far where the load is light: the tenth part of nothing
+  !> says nothing about a mesh.
+  real(wp), parameter :: light_load = 0.2_wp
+
   character(len=*), parameter :: advice_after_refusal = &
     'remesh again from the checkpoint of the old mesh with another transfer or finer elements'
 
@@ -48,7 +52,7 @@ contains
     integer :: k
 
     change = 0
-    largest = maxval([0.0_wp, balance%pressed])
+    largest = maxval([light_load*balance%largest_force, balance%pressed])
     do k = 1, size(after, 2)
       largest = max(largest, length_of(balance%pilot_before(1:2, k)))
       change = max(change, length_of(after(1:2, k) - balance%pilot_before(1:2, k)))
@@ -74,8 +78,8 @@ contains
 
     associate (accept => scene%remesher%accept)
       lines(1)%s = '  first residual '//held(balance%first_residual, accept%first_residual)//', iterations ' &
-                   //to_text(balance%iterations)//' (limit '//to_text(accept%iterations)//')'
-      lines(2)%s = '  equilibrium is not restored; change'
+                   //to_text(balance%first_iterations)//' (limit '//to_text(accept%iterations)//')'
+      lines(2)%s = '  equilibrium is left to the first step; change'
       if (balance%restored) lines(2)%s = '  change of die force '//held(force_change(balance), accept%force_change) &
                                          //', of elastic energy '//held(energy_change(balance), accept%energy_change)//','
       lines(2)%s = lines(2)%s//' of depth '//held(balance%depth_change, accept%depth_change)
@@ -119,10 +123,9 @@ contains
     else if (carried_change(balance) > lost_pressure) then
       what = 'the pressures carried over miss the force of a die by '//percent(carried_change(balance), lost_pressure)
     else if (.not. balance%restored) then
-      what = 'equilibrium is not restored'
-      if (allocated(balance%reason)) what = what//' ('//balance%reason//')'
-    else if (balance%iterations > accept%iterations) then
-      what = to_text(balance%iterations)//' iterations to equilibrium, at most '//to_text(accept%iterations)
+      return   ! the first step finds it, or the mesh is refused on probation
+    else if (balance%first_iterations > accept%iterations) then
+      what = to_text(balance%first_iterations)//' iterations to equilibrium, at most '//to_text(accept%iterations)
     else if (force_change(balance) > accept%force_change) then
       what = 'the force of a die changes by '//percent(force_change(balance), accept%force_change)
     else if (energy_change(balance) > accept%energy_change) then

@@ -53,6 +53,8 @@ contains
     if (allocated(balance%stage)) call json%add('stage', balance%stage)
     call json%add('first_residual', balance%first_residual)
     call json%add('iterations', balance%iterations)
+    call json%add('first_iterations', balance%first_iterations)
+    call json%add('restored', balance%restored)
     ! what restoring it changes is known when it is restored
     if (balance%restored) then
       call json%add('force_change', force_change(balance))

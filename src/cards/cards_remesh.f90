@@ -8,6 +8,7 @@ module cards_remesh
   use kinds, only: wp
   use remeshing, only: aspect_ratio, jacobian_ratio, largest_angle, least_angle, middle_share, never, remesh_rules_t, &
                        scaled_jacobian, stroke_t
+  use remesh_defaults, only: set_default_limits, set_default_sizes
   use remesher_options, only: has_contours
   use remesher_rows, only: complete_options, read_remesher_row, remesher_words
   use scene_draft, only: close_card, draft_t, only_card, words_of
@@ -50,6 +51,7 @@ contains
       end if
       call read_rows(cursor, draft)
       call close_card(draft, cursor, deck%cards(k))
+      if (has_contours(draft%scene%remesher)) call set_default_sizes(draft%scene%remesher)
     end if
     call complete_options(draft%scene%remesher)
     if (draft%groups_sound .and. draft%scene%remesh%on) call keep_volume_ratios(draft)
@@ -73,7 +75,8 @@ contains
     end do
   end subroutine keep_volume_ratios
 
-  !> Each row once, but STROKE, and at least one with a limit.
+  !> Each row once, but STROKE. Without a limit among them the default ones hold, except where rows ask for nothing but the first
+  !> mesh of contours.
   subroutine read_rows(cursor, draft)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
@@ -86,7 +89,7 @@ contains
     given = spread(.false., 1, size(words))
     asked = .false.
     call cursor%end_row()
-    do
+    do while (cursor%more_rows())
       call cursor%next_row('one of '//rows)
       call cursor%name('one of '//rows, words, k)
       if (k == 0) return
@@ -94,15 +97,25 @@ contains
       given(k) = .true.
       asked = asked .or. index(' '//limit_rows//' ', ' '//words(k)%s//' ') > 0
       call read_row(cursor, draft, words(k)%s)
-      if (.not. cursor%more_rows()) exit
     end do
-    call cursor%end_row()
+    if (any(given)) call cursor%end_row()
     associate (rules => draft%scene%remesh)
-      if (.not. asked .and. .not. has_contours(draft%scene%remesher)) &
-        call cursor%fail('no row here has a limit for a new mesh: expected one of '//limit_rows)
+      if (.not. asked .and. .not. (any(given) .and. has_contours(draft%scene%remesher))) &
+        call set_default_limits(rules, is_given('LEAST'), size(draft%scene%dies) > 0)
       if (rules%bad_share > 0 .and. .not. any(abs(rules%shape) < never)) &
         call cursor%fail('BAD counts elements by their shape: expected one of ANGLE MIDDLE JACOB SCALED ASPECT too')
     end associate
+
+  contains
+
+    pure function is_given(word) result(yes)
+      character(len=*), intent(in) :: word
+      logical :: yes
+      integer :: i
+
+      yes = any([(words(i)%s == word .and. given(i), i=1, size(words))])
+    end function is_given
+
   end subroutine read_rows
 
   subroutine read_row(cursor, draft, word)

@@ -8,7 +8,7 @@ module triggers
   use fields, only: displacement_field, pilot_field
   use kinds, only: eps, wp
   use mesh_quality, only: element_shape, is_bad, shape_places, shape_places_t
-  use remeshing, only: criterion_names, is_upper, ncriteria, never, stroke_t, trigger_t
+  use remeshing, only: criterion_names, is_upper, ncriteria, never, scaled_jacobian, stroke_t, trigger_t
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   implicit none
@@ -91,7 +91,7 @@ contains
     type(shape_places_t) :: places
     real(wp) :: measures(ncriteria), worst(ncriteria), x(2, size(scene%mesh%coordinates, 2)), share, first, limit
     integer :: group(ncriteria), element(ncriteria), g, e, k, n, nbad, nfirst
-    logical :: bad(ncriteria)
+    logical :: bad(ncriteria), turned_over
 
     x = scene%mesh%coordinates
     if (scene%finite) x = x + solution%fields(displacement_field)%value
@@ -102,6 +102,7 @@ contains
     n = 0
     nbad = 0
     nfirst = 0
+    turned_over = .false.
     do g = 1, size(scene%groups)
       if (.not. is_solid(scene%groups(g))) cycle
       do e = 1, size(scene%groups(g)%connectivity, 2)
@@ -113,6 +114,7 @@ contains
           if (any(is_bad(element_shape(places, scene%mesh%coordinates(:, scene%groups(g)%connectivity(:, e))), &
                          scene%remesh%shape))) nfirst = nfirst + 1
         end if
+        turned_over = turned_over .or. .not. measures(scaled_jacobian) > 0
         bad = is_bad(measures, worst)
         where (bad)
           worst = measures
@@ -125,11 +127,12 @@ contains
     first = real(nfirst, wp)/max(n, 1)
     limit = scene%remesh%bad_share
     if (first > limit) limit = worse*first
-    if (.not. share > limit) return
+    ! an element turned over is bad whatever share may be
+    if (.not. (share > limit .or. turned_over)) return
     do k = 1, ncriteria
       if (group(k) > 0) call add(found, trim(criterion_names(k)), worst(k), scene%remesh%shape(k), group(k), element(k))
     end do
-    if (limit > 0) call add(found, 'bad_share', share, limit)
+    if (limit > 0 .and. share > limit) call add(found, 'bad_share', share, limit)
   end subroutine find_bad_shapes
 
   !> Sides that do not fit their die.

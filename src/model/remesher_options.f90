@@ -5,7 +5,7 @@ module remesher_options
   use zone_marks, only: contour_card_t, zone_card_t, zone_mark_t
   implicit none
   private
-  public :: own_mesh_t, remesher_options_t, has_zones, has_contours
+  public :: own_mesh_t, remesher_options_t, has_zones, has_contours, elements_allowed
   public :: as_it_comes, by_zones, by_gmsh, by_free
 
   !> Mesher: zones, and where they fail the free mesher, then Gmsh; zones alone; Gmsh alone; the free mesher alone.
@@ -37,7 +37,7 @@ module remesher_options
     integer :: mesher = as_it_comes
     !> When a mesh is refused, and other ways tried then.
     type(acceptance_t) :: accept
-    integer :: tries = 4
+    integer :: tries = 5
     !> Sizes of the deck's own mesh, for values that the deck does not give.
     type(own_mesh_t) :: own_mesh
     !> Zones that cards give, and the points they name; without them blocks are zones.
@@ -56,6 +56,16 @@ contains
     yes = allocated(options%zones)
     if (yes) yes = size(options%zones) > 0
   end function has_zones
+
+  !> Elements of a mesh whose sizes are divided by `finer`: where they are to be finer, the limit must not keep them from it.
+  pure function elements_allowed(options, finer) result(most)
+    type(remesher_options_t), intent(in) :: options
+    real(wp), intent(in) :: finer
+    integer :: most
+
+    most = huge(most)
+    if (options%most_elements > 0) most = int(min(options%most_elements*max(1.0_wp, finer)**2, real(huge(most), wp)))
+  end function elements_allowed
 
   pure function has_contours(options) result(yes)
     type(remesher_options_t), intent(in) :: options

@@ -62,6 +62,8 @@ module solution
     integer :: spurious_group = 0, spurious_element = 0
     !> Largest depth of a side in a die anywhere along it, and over what the side allows.
     real(wp) :: worst_sample = 0.0_wp, worst_sample_ratio = 0.0_wp
+    !> Largest force on a die so far where meshes are replaced, or on one made of sides; per radian when axisymmetric.
+    real(wp) :: largest_force = 0.0_wp
     !> Errors of the mesh; of no elements where they are not needed.
     type(estimate_t) :: estimate
   end type solution_t

@@ -47,6 +47,7 @@ contains
     call visitor%member('spurious_element', self%spurious_element, of_the_mesh, low=0)
     call visitor%member('worst_sample', self%worst_sample, kept, 'length')
     call visitor%member('worst_sample_ratio', self%worst_sample_ratio, kept, '-')
+    call visitor%member('largest_force', self%largest_force, kept, 'force', low=0.0_wp)
     call visitor%leave('progress')
     call visitor%enter('work')
     call visit_work_members(visitor, self%work)

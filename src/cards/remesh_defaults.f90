@@ -1,0 +1,94 @@
+!> What a REMSH card means where it does not say: limits at which a new mesh is due, and sizes of elements of bodies that are given by
+!> their contours. `--check` prints them with those that are given.
+module remesh_defaults
+  use kinds, only: wp
+  use plane_vectors, only: cross
+  use remesher_options, only: remesher_options_t
+  use remeshing, only: aspect_ratio, largest_angle, least_angle, middle_share, remesh_rules_t, scaled_jacobian
+  use vectors, only: length_of
+  use zone_marks, only: contour_card_t
+  implicit none
+  private
+  public :: area_in, set_default_limits, set_default_sizes
+
+  !> Shapes at which an element does its work badly but does it still, for every single element: a new mesh has none like these
+  !> (scaled Jacobians from 0.2 and middle nodes in the middle third), and each is some steps of distortion away from failing.
+  real(wp), parameter :: angles(2) = [15.0_wp, 165.0_wp], least_scaled = 0.2_wp, middle = 0.4_wp, aspect = 10.0_wp
+  !> Depth of sides between their points over what the law allows: 5 % of a side where PENETR is 1e-3. What a finer mesh can mend begins
+  !> there; sides that roll onto a die are as deep as 1 % on any mesh.
+  real(wp), parameter :: depth = 50.0_wp
+  !> Cuts in a row; steps between two meshes.
+  integer, parameter :: cuts = 4, steps = 5
+
+  !> Elements of a first mesh, and across a slender body: a strip of thickness t has area/perimeter = t/2.
+  integer, parameter :: elements_of_body = 150, elements_across = 4
+  !> The smallest element over the largest, and elements of later meshes over those of the first.
+  real(wp), parameter :: smallest_share = 0.2_wp
+  integer, parameter :: growth = 3
+
+contains
+
+  !> Limits of a card that has none; its own least number of steps stays.
+  pure subroutine set_default_limits(rules, has_steps, has_dies)
+    type(remesh_rules_t), intent(inout) :: rules
+    logical, intent(in) :: has_steps, has_dies
+
+    rules%shape(least_angle) = angles(1)
+    rules%shape(largest_angle) = angles(2)
+    rules%shape(middle_share) = middle
+    rules%shape(scaled_jacobian) = least_scaled
+    rules%shape(aspect_ratio) = aspect
+    if (.not. has_steps) rules%least_steps = steps
+    rules%distress = cuts
+    if (has_dies) rules%contact = depth
+  end subroutine set_default_limits
+
+  !> Sizes and number of elements of bodies that are given by their contours: squares, so many to a body and across it where it is
+  !> slender; of several bodies those of the one that needs the smallest.
+  pure subroutine set_default_sizes(options)
+    type(remesher_options_t), intent(inout) :: options
+    real(wp) :: area, size_of, all
+    integer :: k
+
+    if (options%largest > 0) return
+    size_of = huge(size_of)
+    all = 0
+    do k = 1, size(options%contours)
+      area = area_in(options%contours(k)%pieces)
+      if (.not. area > 0) return
+      all = all + area
+      size_of = min(size_of, sqrt(area/elements_of_body), 2*area/(elements_across*perimeter_of(options%contours(k)%pieces)))
+    end do
+    options%largest = size_of
+    options%smallest = smallest_share*size_of
+    if (options%most_elements == 0) options%most_elements = growth*ceiling(all/size_of**2)
+  end subroutine set_default_sizes
+
+  !> Area on the left of closed parabolas: half the integral of x dy - y dx, exact for each [length^2].
+  pure function area_in(pieces) result(area)
+    real(wp), intent(in) :: pieces(:, :, :)   !! (2, 3, npiece) [length]
+    real(wp) :: area
+    integer :: k
+
+    area = 0
+    do k = 1, size(pieces, 3)
+      associate (a => pieces(:, 1, k) - pieces(:, 1, 1), m => pieces(:, 2, k) - pieces(:, 1, 1), &
+                 b => pieces(:, 3, k) - pieces(:, 1, 1))
+        area = area + 0.5_wp*cross(a, b) + 2*cross(m - a, b - a)/3
+      end associate
+    end do
+  end function area_in
+
+  !> Length of the chords of parabolas, two to each: a size, not a measure [length].
+  pure function perimeter_of(pieces) result(length)
+    real(wp), intent(in) :: pieces(:, :, :)   !! (2, 3, npiece) [length]
+    real(wp) :: length
+    integer :: k
+
+    length = 0
+    do k = 1, size(pieces, 3)
+      length = length + length_of(pieces(:, 2, k) - pieces(:, 1, k)) + length_of(pieces(:, 3, k) - pieces(:, 2, k))
+    end do
+  end function perimeter_of
+
+end module remesh_defaults
