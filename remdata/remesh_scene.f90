@@ -367,6 +367,7 @@ contains
     memory%gives = .true.
     call visit_solution_members(memory, after)
     after%estimate%last_stop = before%step
+    after%estimate%previous_stress = before%estimate%stress
     after%unbalanced = .true.
   end subroutine carry_progress
 

@@ -3,7 +3,7 @@ module restart_report
   use errors, only: error_t
   use history, only: circumference
   use dies, only: is_deformable
-  use judge_remesh, only: bad_shape, carried_change, energy_change, force_change
+  use judge_remesh, only: bad_shape, carried_change, energy_change, force_change, force_limit
   use json_writer, only: json_t
   use restore_balance, only: balance_t
   use scene, only: scene_t
@@ -53,7 +53,7 @@ contains
     if (allocated(balance%stage)) call json%add('stage', balance%stage)
     call json%add('first_residual', balance%first_residual)
     call json%add('iterations', balance%iterations)
-    call json%add('first_iterations', balance%first_iterations)
+    call json%add('iterations_in_all', balance%iterations_in_all)
     call json%add('restored', balance%restored)
     ! what restoring it changes is known when it is restored
     if (balance%restored) then
@@ -65,7 +65,7 @@ contains
     associate (accept => scene%remesher%accept)
       call json%add('first_residual_limit', accept%first_residual)
       call json%add('iterations_limit', accept%iterations)
-      call json%add('force_change_limit', accept%force_change)
+      call json%add('force_change_limit', force_limit(accept, balance))
       call json%add('energy_change_limit', accept%energy_change)
       call json%add('depth_change_limit', accept%depth_change)
       call json%add('least_scaled_jacobian_limit', bad_shape)

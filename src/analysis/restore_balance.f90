@@ -40,10 +40,12 @@ module restore_balance
     type(residual_place_t) :: place
     !> Least scaled Jacobian of an element of the mesh.
     real(wp) :: shape = 1.0_wp
-    !> Iterations in all, those before pressures were augmented (which is what is judged), parts it took.
-    integer :: iterations = 0, first_iterations = 0, parts = 0
+    !> Iterations before pressures were augmented: the difficulty of finding equilibrium; iterations in all, and parts it took.
+    integer :: iterations = 0, iterations_in_all = 0, parts = 0
     !> Largest force on a die in the run so far [force].
     real(wp) :: largest_force = 0.0_wp
+    !> Error of the stress on the old mesh.
+    real(wp) :: old_error = 0.0_wp
     !> Largest motion of a node over the size of the mesh.
     real(wp) :: motion = 0.0_wp
     !> Volume, elastic energy and plastic work before and after.
@@ -104,9 +106,9 @@ contains
     do while (left > 0)
       call solve_step(scene, equations, solution, 0.0_wp, outcome, (left - part)*rest)
       if (allocated(outcome%error)) return
-      balance%iterations = balance%iterations + outcome%iterations
-      balance%first_iterations = balance%first_iterations + merge(outcome%first_iterations, outcome%iterations, &
-                                                                  outcome%augmentations > 0 .or. outcome%converged)
+      balance%iterations_in_all = balance%iterations_in_all + outcome%iterations
+      balance%iterations = balance%iterations + merge(outcome%first_iterations, outcome%iterations, &
+                                                      outcome%augmentations > 0 .or. outcome%converged)
       if (outcome%converged) then
         call accept_balance(scene, equations, outcome, solution, balance%after, outcome%error)
         if (allocated(outcome%error)) return
@@ -120,6 +122,7 @@ contains
     end do
     balance%restored = .not. left > 0
     balance%largest_force = solution%largest_force
+    balance%old_error = solution%estimate%previous_stress
     balance%first_residual = relative_distance(work, max(balance%before%elastic_energy, balance%after%elastic_energy))
     if (allocated(outcome%reason)) balance%reason = outcome%reason
     balance%motion = maxval(abs(solution%fields(displacement_field)%value))/equations%size

@@ -2,7 +2,8 @@
 module cards_heat_contact
   use card_places, only: read_sides
   use cards_die_heat, only: find_die, read_die
-  use cards_sides, only: append_group, chosen_rule, refuse_inner_sides, start_group
+  use cards_sides, only: append_group, refuse_inner_sides, start_group
+  use contact_rule, only: chosen_rule
   use deck_cursor, only: cursor_t
   use deck_reader, only: card_t, deck_t
   use diagnostics, only: diagnostics_t, location_t
@@ -123,7 +124,10 @@ contains
       else if (draft%scene%fields(displacement_field)%declared) then
         call cursor%fail('expected a CNT2D card of the same place and die, found none')
       else
-        if (group%pairs > 0) group%rule = chosen_rule(draft%scene, group)
+        if (group%pairs > 0) then
+          group%rule = chosen_rule(draft%scene, group)
+          group%rule_is_chosen = .true.
+        end if
         if (any(draft%scene%die_motions%die == group%die)) &
           call cursor%fail('in a scene of heat alone dies stand still, and a MOVE card moves this one')
       end if

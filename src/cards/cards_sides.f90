@@ -2,6 +2,7 @@
 module cards_sides
   use card_places, only: numbers_after_name, read_sides
   use cards_laws, only: read_material
+  use contact_rule, only: chosen_rule
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
@@ -10,13 +11,12 @@ module cards_sides
   use law_api, only: contact_law, find_parameter, is_complete, law_of_material
   use bodies, only: in_one_body
   use quadrature, only: rule_of_number, rule_t
-  use scene, only: group_t, scene_t
+  use scene, only: group_t
   use scene_draft, only: close_card, draft_t, find_elem
   use text, only: to_text
-  use vectors, only: length_of
   implicit none
   private
-  public :: chosen_rule, read_contacts, read_pressures, refuse_inner_sides, start_group, append_group
+  public :: read_contacts, read_pressures, refuse_inner_sides, start_group, append_group
 
   !> Points of a side: Gauss, or at equal distances with the ends (negative).
   integer, parameter :: rules(10) = [2, 3, 4, -3, -5, -9, -17, -33, -65, -129]
@@ -51,6 +51,7 @@ contains
         call read_rule(cursor, group%rule)
       else if (.not. cursor%failed()) then
         group%rule = chosen_rule(draft%scene, group)
+        group%rule_is_chosen = .true.
       end if
       call read_material(cursor, draft, contact_law, group%material)
       if (.not. cursor%failed()) call refuse_second_contact(cursor, draft, group, diagnostics)
@@ -156,42 +157,6 @@ contains
                                                //'distances, found '//to_text(npoint))
     rule = rule_of_number(npoint)
   end subroutine read_rule
-
-  !> The points of a contact whose card does not say how many. Against a rigid die the nodes (-3), and places between them see to
-  !> the rest (contact_between). Against a body so many that its sides, where they are the shorter ones, have a dozen points each:
-  !> the forces of these are shared among its nodes by functions with kinks at the ends of its sides.
-  pure function chosen_rule(scene, group) result(rule)
-    type(scene_t), intent(in) :: scene
-    type(group_t), intent(in) :: group
-    type(rule_t) :: rule
-    real(wp) :: longest, shortest
-    integer :: k
-    integer, parameter :: numbers(3) = [-33, -65, -129], points_per_side = 12
-
-    rule = rule_of_number(-3)
-    if (group%pairs == 0) return
-    longest = 0
-    shortest = huge(shortest)
-    do k = 1, size(group%connectivity, 2)
-      longest = max(longest, chord(scene, group%connectivity(:, k)))
-    end do
-    do k = 1, size(scene%dies(group%die)%nodes, 2)
-      shortest = min(shortest, chord(scene, scene%dies(group%die)%nodes(:, k)))
-    end do
-    do k = 1, size(numbers)
-      rule = rule_of_number(numbers(k))
-      if (.not. points_per_side*longest > (rule%n - 1)*shortest) exit
-    end do
-  end function chosen_rule
-
-  !> Distance between the ends of a side [length].
-  pure function chord(scene, nodes) result(length)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: nodes(3)
-    real(wp) :: length
-
-    length = length_of(scene%mesh%coordinates(:, nodes(3)) - scene%mesh%coordinates(:, nodes(1)))
-  end function chord
 
   !> Nothing from outside can act on a side between two elements.
   subroutine refuse_inner_sides(cursor, draft, sides)

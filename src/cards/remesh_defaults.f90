@@ -20,8 +20,8 @@ module remesh_defaults
   !> Cuts in a row; steps between two meshes.
   integer, parameter :: cuts = 4, steps = 5
 
-  !> Elements of a first mesh, and across a slender body: a strip of thickness t has area/perimeter = t/2.
-  integer, parameter :: elements_of_body = 150, elements_across = 4
+  !> Elements of a first mesh, and across its most slender body: a strip of thickness t has area/perimeter = t/2.
+  integer, parameter :: elements_at_first = 150, elements_across = 4
   !> The smallest element over the largest, and elements of later meshes over those of the first.
   real(wp), parameter :: smallest_share = 0.2_wp
   integer, parameter :: growth = 3
@@ -43,8 +43,8 @@ contains
     if (has_dies) rules%contact = depth
   end subroutine set_default_limits
 
-  !> Sizes and number of elements of bodies that are given by their contours: squares, so many to a body and across it where it is
-  !> slender; of several bodies those of the one that needs the smallest.
+  !> Sizes and number of elements of bodies that are given by their contours: squares, so many in all and across the most slender
+  !> body.
   pure subroutine set_default_sizes(options)
     type(remesher_options_t), intent(inout) :: options
     real(wp) :: area, size_of, all
@@ -57,8 +57,9 @@ contains
       area = area_in(options%contours(k)%pieces)
       if (.not. area > 0) return
       all = all + area
-      size_of = min(size_of, sqrt(area/elements_of_body), 2*area/(elements_across*perimeter_of(options%contours(k)%pieces)))
+      size_of = min(size_of, 2*area/(elements_across*perimeter_of(options%contours(k)%pieces)))
     end do
+    size_of = min(size_of, sqrt(all/elements_at_first))
     options%largest = size_of
     options%smallest = smallest_share*size_of
     if (options%most_elements == 0) options%most_elements = growth*ceiling(all/size_of**2)

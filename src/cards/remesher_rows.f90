@@ -90,6 +90,7 @@ contains
         call cursor%integer('the largest number of iterations to equilibrium', accept%iterations, lower=1)
       case ('FORCE')
         call positive('the largest change of the force of a die', accept%force_change)
+        accept%force_is_given = .true.
       case ('ENERGY')
         call positive('the largest change of the elastic energy', accept%energy_change)
       case ('DEPTH')

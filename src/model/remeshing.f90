@@ -57,6 +57,8 @@ module remeshing
     real(wp), allocatable :: strain_sums(:, :)
     !> Step at which the mesh began, or at which a new one was due last.
     integer :: last_stop = 0
+    !> Error of the stress on the mesh before, when it was replaced; 0 for the deck's own mesh.
+    real(wp) :: previous_stress = 0.0_wp
     !> Error of the stress with which a new mesh began; 0 for the deck's own mesh.
     real(wp) :: first_stress = 0.0_wp
     !> Why a new mesh is due; none while the present one is good.

@@ -49,6 +49,8 @@ module scene
     integer :: material = 0
     !> Integration points of an element: of the square for bodies, of the line for sides.
     type(rule_t) :: rule
+    !> Points on sides whose number is chosen by the lengths of sides, anew on every mesh.
+    logical :: rule_is_chosen = .false.
     !> Option of the ELEM that the card asks for (position in the row's list), 0 for none.
     integer :: option = 0
     !> Nodes (nnode, nelem).

@@ -25,6 +25,7 @@ contains
     call visitor%member('strain_sums', self%strain_sums, of_the_mesh, '2, element', '-', low=0.0_wp)
     call visitor%member('last_stop', self%last_stop, recomputed, low=0)
     call visitor%member('first_stress', self%first_stress, recomputed, '-', low=0.0_wp)
+    call visitor%member('previous_stress', self%previous_stress, recomputed, '-', low=0.0_wp)
     n = size(self%triggers)
     call visitor%list('triggers', n, most_triggers)
     if (n /= size(self%triggers)) then

@@ -9,7 +9,7 @@ module visit_group
   public :: visit_group_members
 
   !> Points of an element, and variables of a point, at most.
-  integer, parameter :: most_points = 64, most_variables = 10000
+  integer, parameter :: most_points = 129, most_variables = 10000
   character(len=*), parameter :: of_the_deck = 'the solver reads it from the deck'
 
 contains
@@ -25,6 +25,7 @@ contains
     call visitor%member('elem', self%elem, kept)
     call visitor%member('material', self%material, kept, low=0)
     call visit_rule(visitor, self%rule)
+    call visitor%member('rule_is_chosen', self%rule_is_chosen, kept)
     call visitor%member('connectivity', self%connectivity, of_the_mesh, 'node, element', low=1)
     call visitor%member('die', self%die, kept, low=0)
     call visitor%derived('pairs', 'counted: groups that face deformable dies, in their order')

@@ -105,7 +105,7 @@ contains
     file%facts%elements = 12*generation
     file%facts%time = step/60.0_wp
     file%facts%transfer = 1
-    file%facts%tries = 4
+    file%facts%tries = 5
   end function whole
 
   function broken(name) result(file)

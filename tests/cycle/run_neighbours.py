@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+"""Neighbours of the scenes with REMSH alone, drawn at random: radii, heights, friction and hardening within ranges (scenes.py).
+
+usage: run_neighbours.py [--seed S] [--number N] [--first K] [-v] [-k]     default: seed 1, the first 2 of them
+
+Neighbour K of a seed is the same whatever N is. Ends with 0 or 3, where 3 comes with a reason; at least 57 of 60 with 0. Prints a table.
+"""
+import os
+import random
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from scenes import HEAD, SCENES, line, run_scene  # noqa: E402
+from support import DONE, NO_CONVERGENCE, Checks  # noqa: E402
+
+FAILED = 3 / 60
+# Quick scenes come first in the draw, so that the first ones are a test.
+ORDER = ("bimetal", "side_pressing", "can", "teeth", "two_strokes", "h_section", "indentation", "piercing", "ring_70", "springback",
+         "deformable_punch", "extrusion_long")
+
+
+def draw(seed, number):
+    """Scene and parameters of a neighbour, four digits each."""
+    chance = random.Random(1000003 * seed + number)
+    name = ORDER[number % len(ORDER)]
+    return name, {key: float(f"{chance.uniform(*bounds):.4g}") for key, bounds in SCENES[name][1].items()}
+
+
+def value_of(option, default):
+    return int(sys.argv[sys.argv.index(option) + 1]) if option in sys.argv else default
+
+
+def main():
+    checks = Checks()
+    seed, number, first = value_of("--seed", 1), value_of("--number", 2), value_of("--first", 0)
+    failed = 0
+    print("\n".join(HEAD))
+    for k in range(first, first + number):
+        name, parameters = draw(seed, k)
+        found = run_scene(name, checks.path(f"{k}"), parameters)
+        failed += found["code"] != DONE
+        said = ", ".join(f"{key} {value:g}" for key, value in parameters.items())
+        reason = found["said"].splitlines()[0] if found["code"] != DONE and found["said"] else ""
+        print(line(found, f"{seed}/{k}: {said} {reason}"), flush=True)
+        checks.that(found["code"] == DONE or (found["code"] == NO_CONVERGENCE and reason), f"{name} {seed}/{k}: 0, or 3 with a reason",
+                    (found["code"], found["said"]))
+    checks.that(failed <= max(FAILED * number, 0), "neighbours that end with 3", f"{failed} of {number}")
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""Forming scenes whose decks say REMSH and nothing else of meshes: the cycle goes to the end of the stroke.
+
+usage: run_scenes.py [NAME... | all] [--finer] [-v] [-k]     without names: the quick ones
+
+Every scene ends with 0, its die has made its stroke, the volume without elastic strain stays within 0.1 %, no single step but the shortest 2
+in a hundred is shorter than a thousandth of the mean one, and refused tries are at most 5 in a hundred (or one). --finer runs each a second
+time with elements of half the size and compares forces. Prints a table.
+"""
+import os
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from scenes import HEAD, SCENES, asks_by_remsh_alone, checked, deck_of, finer_deck, line, run_scene  # noqa: E402
+from support import DONE, Checks  # noqa: E402
+
+QUICK = ("bimetal", "side_pressing", "teeth")
+DRIFT, SMALLEST, REFUSED = 0.1, 1e-3, 0.05
+LIMITS = ("least_angle", "largest_angle", "middle_share", "scaled_jacobian", "aspect_ratio", "contact", "distress", "new mesh   elements of")
+
+
+def force(found, share):
+    """Largest die force near a share of the time, the mean of three steps."""
+    rows, name = found["history"], "force_y_" + SCENES[found["name"]][0]
+    if name not in rows:
+        return float("nan")
+    at = share * rows["time"][-1]
+    k = min(range(len(rows["time"])), key=lambda i: abs(rows["time"][i] - at))
+    near = rows[name][max(0, k - 1):k + 2]
+    return sum(near) / len(near)
+
+
+def main():
+    checks = Checks()
+    names = [word for word in sys.argv[1:] if not word.startswith("-")] or list(QUICK)
+    names = list(SCENES) if names == ["all"] else names
+    print("\n".join(HEAD))
+    for name in names:
+        checks.that(asks_by_remsh_alone(deck_of(name)), f"{name}: REMSH alone")
+        text = checked(name)
+        for word in LIMITS:
+            checks.that(word in text, f"{name}: --check states {word}")
+        found = run_scene(name, checks.path(name))
+        print(line(found), flush=True)
+        if not checks.that(found["code"] == DONE, f"{name}: the cycle ends with 0", found["said"]):
+            continue
+        checks.that(abs(found["drift"]) < DRIFT, f"{name}: volume", found["drift"])
+        checks.that(found["smallest"] > SMALLEST, f"{name}: steps", found["smallest"])
+        checks.that(found["refused"] <= max(1, REFUSED * found["meshes"]), f"{name}: tries refused", found["refused"])
+        if "--finer" not in sys.argv[1:]:
+            continue
+        fine = run_scene(name, checks.path(name + ".finer"), deck=finer_deck(name, checks.folder))
+        words = "half the size"
+        if fine["code"] == DONE:
+            words += ": force of the deck " + ", ".join(
+                f"{100 * (force(found, share) / force(fine, share) - 1):+.2f} % at {share:g}" for share in (0.25, 0.5, 0.75, 1.0))
+        print(line(fine, words), flush=True)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,87 @@
+"""Scenes of decks with REMSH alone: which they are, how they are run, and the table of what came of it."""
+import glob
+import json
+import os
+import re
+import time
+
+from remeshed import ROOT, cycle, tries
+from support import DONE, history, run, said, summary, write
+
+# Each with its die and the parameters that may be drawn, (least, largest).
+SCENES = {
+    "can": ("punch", {"edge": (0.8, 2.5), "height": (8.0, 14.0), "mu": (0.02, 0.1), "harden": (20.0, 300.0)}),
+    "extrusion_long": ("punch", {"angle": (30.0, 50.0), "exit": (4.5, 7.0), "mu": (0.02, 0.08), "harden": (20.0, 200.0)}),
+    "h_section": ("upper", {"fillet": (1.2, 2.5), "height": (6.5, 7.5), "mu": (0.05, 0.2), "harden": (20.0, 300.0)}),
+    "ring_70": ("upper", {"inner": (5.0, 8.0), "height": (3.0, 5.0), "mu": (0.05, 0.25), "harden": (20.0, 300.0)}),
+    "side_pressing": ("upper", {"radius": (5.0, 20.0), "mu": (0.02, 0.3), "harden": (20.0, 400.0)}),
+    "indentation": ("punch", {"edge": (0.5, 2.0), "height": (12.0, 20.0), "mu": (0.02, 0.3), "harden": (20.0, 300.0)}),
+    "piercing": ("punch", {"slope": (20.0, 45.0), "edge": (0.4, 1.2), "mu": (0.05, 0.2), "harden": (20.0, 300.0)}),
+    "two_strokes": ("first", {"edge": (1.0, 2.5), "height": (8.0, 14.0), "mu": (0.05, 0.2), "harden": (20.0, 300.0)}),
+    "teeth": ("toothed", {"round": (0.4, 0.7), "draft": (15.0, 30.0), "mu": (0.05, 0.2), "harden": (20.0, 300.0)}),
+    "springback": ("wiper", {"round": (4.0, 8.0), "thick": (0.7, 1.3), "mu": (0.02, 0.1), "harden": (200.0, 2000.0)}),
+    "bimetal": ("upper", {"height": (8.0, 14.0), "core": (4.0, 7.0), "soft": (60.0, 200.0), "mu": (0.05, 0.3)}),
+    "deformable_punch": ("", {"edge": (1.0, 2.0), "height": (10.0, 14.0), "mu": (0.05, 0.2), "harden": (20.0, 300.0)}),
+}
+
+HEAD = ["| scene | code | meshes | tries refused | steps | smallest step / mean | volume drift % | seconds | |", "|---|---|---|---|---|---|---|---|---|"]
+
+
+def deck_of(name):
+    return os.path.join(ROOT, "decks", name, name + ".lag")
+
+
+def asks_by_remsh_alone(path):
+    """The deck gives REMSH without a row, and no zones."""
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    return bool(re.search(r"^REMSH[ \t]*(!.*)?\n(?=[A-Z])", text, re.MULTILINE)) and not re.search(r"^(ZONE|ZPNT)", text, re.MULTILINE)
+
+
+def run_scene(name, out, parameters=None, deck=None):
+    """One scene by lagacycle: what came of it."""
+    words = [word for key, value in (parameters or {}).items() for word in ("-p", f"{key}={value!r}")]
+    begun = time.monotonic()
+    result = cycle(deck or deck_of(name), out, "--fresh", "--quiet", *words)
+    found = {"name": name, "code": result.returncode, "seconds": time.monotonic() - begun, "said": said(result).strip(), "out": out}
+    rows = tries(out)
+    found["meshes"] = sum(row["accepted"] == "y" and row["action"] != "old mesh" for row in rows)
+    found["refused"] = sum(row["accepted"] == "n" for row in rows)
+    found.update(steps=0, drift=float("nan"), smallest=float("nan"))
+    if os.path.exists(os.path.join(out, "history.csv")):
+        found["history"] = history(out)
+        times = found["history"]["time"]
+        lengths = [b - a for a, b in zip([0.0] + times, times) if b > a]
+        found["steps"] = len(lengths)
+        # the shortest step of the run but for the shortest 2 in a hundred
+        if lengths:
+            found["smallest"] = sorted(lengths)[len(lengths) // 50] / (sum(lengths) / len(lengths))
+    if glob.glob(os.path.join(out, "summary.json")):
+        found["drift"] = 100 * drift_of(summary(out))
+    return found
+
+
+def drift_of(told):
+    """Change of the volume without elastic strain, a share."""
+    match = re.search(r'"volume_drift_unloaded": ([-+.eE0-9]+)', json.dumps(told))
+    return float(match.group(1)) if match else float("nan")
+
+
+def checked(name):
+    """What --check says of a scene."""
+    return run(["--check", deck_of(name)]).stdout
+
+
+def finer_deck(name, folder):
+    """The scene with elements of half the size, and the limits that REMSH alone has, as --check prints sizes and numbers."""
+    text = checked(name)
+    sizes = re.search(r"elements of ([-+.eE0-9]+) to ([-+.eE0-9]+), at most (\d+)", text)
+    rows = (f"REMSH\n   ANGLE 15. 165.\n   MIDDLE 0.4\n   SCALED 0.2\n   ASPECT 10.\n   CONTACT 50.\n   DISTRESS 4\n   LEAST 5\n"
+            f"   SIZE {float(sizes[1]) / 2} {float(sizes[2]) / 2}\n   COUNT {4 * int(sizes[3])}\n")
+    with open(deck_of(name), encoding="utf-8") as file:
+        return write(os.path.join(folder, name + ".lag"), re.sub(r"^REMSH.*\n", rows, file.read(), flags=re.MULTILINE))
+
+
+def line(found, words=""):
+    return (f"| {found['name']} | {found['code']} | {found['meshes']} | {found['refused']} | {found['steps']} | {found['smallest']:.3g} | "
+            f"{found['drift']:+.4f} | {found['seconds']:.0f} | {words or (found['said'].splitlines() or [''])[0][:160] * (found['code'] != DONE)} |")
