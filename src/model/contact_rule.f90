@@ -16,7 +16,8 @@ contains
     integer :: g
 
     do g = 1, size(scene%groups)
-      if (scene%groups(g)%rule_is_chosen) scene%groups(g)%rule = chosen_rule(scene, scene%groups(g))
+      if (scene%groups(g)%pairs == 0 .or. .not. scene%groups(g)%rule_is_chosen) cycle
+      scene%groups(g)%rule = chosen_rule(scene, scene%groups(g))
     end do
     do g = 1, size(scene%groups)
       associate (host => scene%groups(g)%host)

@@ -25,7 +25,7 @@ from support import (BIN, DONE, INPUT, LONGEST_RUN, MACHINE, NO_CONVERGENCE, SIG
 REMDATA = os.path.join(os.path.abspath(BIN), "remdata")
 LAGAMINE = os.path.join(os.path.abspath(BIN), "lagamine")
 REMESH = 4
-ACTIONS = ["as the deck says", "other transfer", "finer", "earlier", "old mesh"]
+ACTIONS = ["as the deck says", "other transfer", "finer", "earlier", "coarser", "old mesh"]
 STOPS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 # What is measured in seconds differs from run to run.
 CLOCKS = ("remdata [s]", "restart [s]")
@@ -386,11 +386,11 @@ def all_ways_fail(checks, deck):
     first = [row["action"] for row in rows if row["stop_step [-]"] == rows[0]["stop_step [-]"]]
     second = [row["action"] for row in rows if row["stop_step [-]"] != rows[0]["stop_step [-]"]]
     # a failure in making the mesh is not mended by another transfer
-    checks.that(first == ["as the deck says", "finer", "earlier", "old mesh"], "the ways at the first stop", first)
-    checks.that(second == ["as the deck says", "finer", "earlier"], "the ways at the second stop", second)
+    checks.that(first == ["as the deck says", "finer", "earlier", "coarser", "old mesh"], "the ways at the first stop", first)
+    checks.that(second == ["as the deck says", "finer", "earlier", "coarser"], "the ways at the second stop", second)
     with open(environment["CALLS"], encoding="utf-8") as file:
         calls = [line.split() for line in file]
-    checks.that(["--finer" in call for call in calls[:3]] == [False, True, False] and calls[2][0].endswith("end.1.h5"),
+    checks.that(["--finer" in call for call in calls[:4]] == [False, True, False, True] and calls[2][0].endswith("end.1.h5"),
                 "the arguments of remdata", calls)
     again = cycle(deck, out, **environment)
     checks.that(again.returncode == NO_CONVERGENCE and tries(out) == rows, "the same command: the same stop", said(again))
@@ -419,7 +419,7 @@ def solver_refuses(checks):
     result = cycle(deck, out)
     rows = tries(out)
     checks.that(result.returncode == NO_CONVERGENCE, "every mesh refused at restart: exit code 3", said(result))
-    checks.that([row["action"] for row in rows] == ACTIONS + ACTIONS[:4], "every way is tried at both stops, the old mesh goes on once",
+    checks.that([row["action"] for row in rows] == ACTIONS + ACTIONS[:5], "every way is tried at both stops, the old mesh goes on once",
                 [row["action"] for row in rows])
     checks.that(all(row["stage"] in ("contact", "transfer") and "at restart" in row["result"] and float(row["first_residual [-]"]) > 0
                     and "refused at step" in row["reason"] for row in rows if row["action"] != "old mesh"),

@@ -133,6 +133,7 @@ contains
     call add_die(scene, sides)
     call add_contact(scene, 1, 1, 2)
     call add_contact(scene, 3, 2, -3)
+    scene%groups(3)%rule_is_chosen = .true.
     second = scene%groups(1)
     second%role = role_second
     second%host = 1
