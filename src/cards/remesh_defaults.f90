@@ -1,5 +1,5 @@
-!> What a REMSH card means where it does not say: limits at which a new mesh is due, and sizes of elements of bodies that are given by
-!> their contours. `--check` prints them with those that are given.
+!> What a REMSH card means where it does not say: limits at which a new mesh is due, and sizes of elements of bodies that are given
+!> by their contours. `--check` prints them with those that are given.
 module remesh_defaults
   use kinds, only: wp
   use plane_vectors, only: cross
@@ -14,8 +14,8 @@ module remesh_defaults
   !> Shapes at which an element does its work badly but does it still, for every single element: a new mesh has none like these
   !> (scaled Jacobians from 0.2 and middle nodes in the middle third), and each is some steps of distortion away from failing.
   real(wp), parameter :: angles(2) = [15.0_wp, 165.0_wp], least_scaled = 0.2_wp, middle = 0.4_wp, aspect = 10.0_wp
-  !> Depth of sides between their points over what the law allows: 5 % of a side where PENETR is 1e-3. What a finer mesh can mend begins
-  !> there; sides that roll onto a die are as deep as 1 % on any mesh.
+  !> Depth of sides between their points over what the law allows: 5 % of a side where PENETR is 1e-3. What a finer mesh can mend
+  !> begins there; sides that roll onto a die are as deep as 1 % on any mesh.
   real(wp), parameter :: depth = 50.0_wp
   !> Cuts in a row; steps between two meshes.
   integer, parameter :: cuts = 4, steps = 5
