@@ -3,15 +3,17 @@
 !> At a point: the penalty made from PENETR gives a pressure p the depth PENETR side p/(E/100), so depth over allowed is 100 p/E,
 !> whatever PENETR and the length of the side are. A multiplier takes that depth away (AUGMENT), or a larger penalty (AKP).
 !> Between points: the side is as deep as its parabola differs from the die, which no pressure at its points corrects, but more
-!> points and shorter sides do.
+!> points and shorter sides do. A side that is seen along its whole length spans the bend instead: a new mesh is due.
 module penetration_advice
+  use contact_quality, only: measure_misfit, misfit_t
   use kinds, only: wp
-  use quadrature, only: rule_gauss
+  use quadrature, only: rule_along, rule_gauss
   use scene, only: group_t, scene_t
   use solution, only: solution_t
+  use text, only: to_text
   implicit none
   private
-  public :: advice_at_points, advice_between_points, states_penetration
+  public :: advice_at_points, advice_between_points, sides_that_span, states_penetration
 
   !> Numbers among the values of every contact law (contact_penalties).
   integer, parameter :: at_penetr = 1, at_akp = 2, at_augment = 4
@@ -19,6 +21,9 @@ module penetration_advice
   real(wp), parameter :: slack = 1.0e-6_wp
   !> Most integration points that a side may have.
   integer, parameter :: most_points = 17
+  !> Between points that see the whole side it may be so much deeper than allowed; and a side that is farther from its die between
+  !> two places in contact, over the depth allowed, does not follow the die.
+  real(wp), parameter :: between_along = 2.0_wp, far_apart = 10.0_wp
 
 contains
 
@@ -48,26 +53,53 @@ contains
     type(solution_t), intent(in) :: solution
     character(len=:), allocatable :: advice
     integer :: g
+    real(wp) :: bound
     logical :: gauss, few
     character(len=*), parameter :: shorter = 'shorter sides where the die bends'
 
     advice = ''
-    if (solution%worst_sample_ratio <= max(1.0_wp, solution%worst_penetration_ratio) + slack) return
     gauss = .false.
     few = .false.
+    bound = between_along
     do g = 1, size(scene%groups)
       if (.not. is_contact(scene%groups(g))) cycle
       gauss = gauss .or. scene%groups(g)%rule%family == rule_gauss
-      few = few .or. scene%groups(g)%rule%n < most_points
+      few = few .or. (scene%groups(g)%rule%n < most_points .and. scene%groups(g)%rule%family /= rule_along)
+      if (scene%groups(g)%rule%family /= rule_along) bound = 1
     end do
+    if (solution%worst_sample_ratio <= max(bound, solution%worst_penetration_ratio) + slack) return
     if (gauss) then
-      advice = 'CNT2D with -3 points, which are the nodes, or where the die bends within a side with -9 or -17; '
+      advice = 'CNT2D with ALONG, or with -3 points, which are the nodes; '
     else if (few) then
-      advice = 'CNT2D with -9 or -17 points; '
+      advice = 'CNT2D with ALONG, or with -9 or -17 points; '
     end if
     if (any_law(scene, at_augment, without=.true.)) advice = advice//'AUGMENT 20 in the contact law; '
     advice = advice//shorter
   end function advice_between_points
+
+  !> What is told of a side that spans a bend of its die at the end of a run; empty where none does.
+  function sides_that_span(scene, solution) result(words)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    character(len=:), allocatable :: words
+    type(misfit_t) :: misfit, one
+    integer :: g, worst
+
+    words = ''
+    worst = 0
+    misfit%between = far_apart
+    do g = 1, size(scene%groups)
+      if (.not. is_contact(scene%groups(g)) .or. scene%groups(g)%rule%family /= rule_along) cycle
+      one = measure_misfit(scene, g, solution)
+      if (.not. one%between > misfit%between) cycle
+      misfit = one
+      worst = g
+    end do
+    if (worst == 0) return
+    words = 'side '//to_text(misfit%between_side)//' of '//scene%groups(worst)%name//' spans a bend of its die, ' &
+            //to_text(misfit%between, 3)//' times the allowed penetration away from it between two places in contact: a new mesh ' &
+            //'is due, with shorter sides there'
+  end function sides_that_span
 
   !> A contact law of the scene limits the depth of the part.
   pure function states_penetration(scene) result(states)

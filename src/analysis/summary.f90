@@ -15,7 +15,7 @@ module summary
   use law_api, only: find_parameter
   use path_advice, only: motion_advice, stress_advice
   use path_record, only: motion_error, stress_error
-  use penetration_advice, only: advice_at_points, advice_between_points, states_penetration
+  use penetration_advice, only: advice_at_points, advice_between_points, sides_that_span, states_penetration
   use restart_report, only: add_restart
   use restore_balance, only: balance_t
   use scene, only: is_solid, scene_t
@@ -390,6 +390,7 @@ contains
                //'; between them too '//depth(solution%worst_sample, solution%worst_sample_ratio))
       call warn('points of contact are deeper in a die than allowed', advice_at_points(scene, solution))
       call warn('sides between points of contact are deeper in a die than allowed', advice_between_points(scene, solution))
+      if (len(sides_that_span(scene, solution)) > 0) call put('  '//sides_that_span(scene, solution))
     end if
     call put('  '//to_text(sum(equations%solves%neq))//' equations, '//to_text(solid_elements(scene))//' elements, ' &
              //to_text(facts%threads)//' threads, '//to_text(facts%wall, 4)//' s on the wall, ' &

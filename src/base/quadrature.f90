@@ -4,11 +4,14 @@ module quadrature
   use kinds, only: wp
   implicit none
   private
-  public :: rule_t, rule_gauss, rule_equidistant
+  public :: rule_t, rule_gauss, rule_equidistant, rule_along
   public :: line_rule, gauss_line, square_rule, rule_number, rule_of_number
 
-  !> Families of rules: Gauss; points at equal distances, the ends among them (Lobatto's with 3, then Simpson's on equal parts).
-  integer, parameter :: rule_gauss = 1, rule_equidistant = 2
+  !> Families of rules: Gauss; points at equal distances, the ends among them (Lobatto's with 3, then Simpson's on equal parts);
+  !> the same of so many points that contact is seen along the whole side (ALONG).
+  integer, parameter :: rule_gauss = 1, rule_equidistant = 2, rule_along = 3
+  !> More points than these are no rule of Gauss here.
+  integer, parameter :: most_gauss = 4
 
   !> A rule: family, and number of points in all.
   type :: rule_t
@@ -18,7 +21,7 @@ module quadrature
 
 contains
 
-  !> A rule as cards and files have it: the number of points, negative for points at equal distances.
+  !> A rule as cards and files have it: the number of points, negative for points at equal distances that a card asked for.
   elemental function rule_number(rule) result(number)
     type(rule_t), intent(in) :: rule
     integer :: number
@@ -30,11 +33,11 @@ contains
     integer, intent(in) :: number
     type(rule_t) :: rule
 
-    rule = rule_t(merge(rule_equidistant, rule_gauss, number < 0), abs(number))
+    rule = rule_t(merge(rule_equidistant, merge(rule_along, rule_gauss, number > most_gauss), number < 0), abs(number))
   end function rule_of_number
 
-  !> Gauss points (1 to 4), or points at equal distances: 3 (Lobatto), or 5, 9, 17 (Simpson's rule on 2, 4, 8 equal parts), or 33,
-  !> 65, 129 (Gregory's rule, for functions with kinks anywhere); weights sum to 2.
+  !> Gauss points (1 to 4), or points at equal distances: 3 (Lobatto), or 5, 9, 13, 17 (Simpson's rule on 2, 4, 6, 8 equal
+  !> parts), or 33, 65, 129 (Gregory's rule, for functions with kinks anywhere); weights sum to 2.
   pure subroutine line_rule(rule, xi, weight)
     type(rule_t), intent(in) :: rule
     real(wp), allocatable, intent(out) :: xi(:)       !! (rule%n) parent coordinates [-]
@@ -52,7 +55,7 @@ contains
       case (3)
         xi = [-1.0_wp, 0.0_wp, 1.0_wp]
         weight = [1.0_wp, 4.0_wp, 1.0_wp]/3
-      case (5, 9, 17)
+      case (5, 9, 13, 17)
         allocate (xi(n), weight(n))
         do i = 1, n
           xi(i) = -1 + 2*real(i - 1, wp)/(n - 1)

@@ -10,7 +10,7 @@ module cards_sides
   use kinds, only: wp
   use law_api, only: contact_law, find_parameter, is_complete, law_of_material
   use bodies, only: in_one_body
-  use quadrature, only: rule_of_number, rule_t
+  use quadrature, only: rule_along, rule_of_number, rule_t
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, find_elem
   use text, only: to_text
@@ -49,6 +49,8 @@ contains
       if (.not. cursor%failed() .and. draft%mesh_sound) call face_sides(cursor, draft, group)
       if (cursor%next_is_number()) then
         call read_rule(cursor, group%rule)
+      else if (cursor%peek_word() == 'ALONG') then
+        call read_along(cursor, group)
       else if (.not. cursor%failed()) then
         group%rule = chosen_rule(draft%scene, group)
         group%rule_is_chosen = .true.
@@ -146,6 +148,21 @@ contains
     draft%scene%groups = [draft%scene%groups, group]
     draft%group_where = [draft%group_where, where]
   end subroutine append_group
+
+  !> The word for points along the whole side. So many that neither a fillet of one and a half sides nor a side that folds comes
+  !> deeper between them than the penetration usually allowed, a thousandth of the side: an arc of radius r dips by h**2/(8 r)
+  !> between points at a distance h, which is 6e-4 of a side at r = 1.5 sides, and a parabola that bulges by a tenth of its length
+  !> by 7e-4.
+  subroutine read_along(cursor, group)
+    type(cursor_t), intent(inout) :: cursor
+    type(group_t), intent(inout) :: group
+    character(len=:), allocatable :: word
+    integer, parameter :: along = 13
+
+    call cursor%word('ALONG', word)
+    if (group%pairs > 0) call cursor%fail('ALONG is for rigid dies; against a body the points are chosen without it')
+    group%rule = rule_t(rule_along, along)
+  end subroutine read_along
 
   subroutine read_rule(cursor, rule)
     type(cursor_t), intent(inout) :: cursor

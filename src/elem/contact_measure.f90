@@ -9,9 +9,10 @@ module contact_measure
   use contact_work, only: kept_work
   use corner_contact, only: interval_before
   use elem_api, only: totals_t
+  use held_depth, only: soft_depth
   use kinds, only: wp
   use law_api, only: contact_open, contact_slip, contact_stick, law_t
-  use quadrature, only: line_rule, rule_equidistant, rule_t
+  use quadrature, only: line_rule, rule_along, rule_equidistant, rule_t
   use scene, only: group_t, scene_t
   use state_variables, only: find_variable
   implicit none
@@ -45,7 +46,7 @@ contains
     do e = 1, size(trial, 3)
       allowed = given%allowed*side_length(scene, group%connectivity(:, e))
       do k = 0, last, n
-        changed = changed .or. any(abs(trial(k + at_penetration, :, e)) > allowed &
+        changed = changed .or. any(deep(trial(k + 1:k + n, :, e), group%rule) > allowed &
                                    .and. nint(trial(k + at_status, :, e)) /= contact_open)
       end do
       changed = changed .or. any(peaks(trial(:, :, e), group%rule, worth_augmenting*allowed) > allowed)
@@ -55,6 +56,17 @@ contains
       committed(k + at_augmentation, :, :) = trial(k + at_pressure, :, :)
     end do
   end subroutine augment
+
+  !> Depth of points, and height of those that their multipliers hold over the die. Where the depth is held (held_depth) the
+  !> multipliers give way by themselves.
+  pure function deep(state, rule) result(depth)
+    real(wp), intent(in) :: state(:, :)   !! (nstate, npoint) [unit of each component]
+    type(rule_t), intent(in) :: rule
+    real(wp) :: depth(size(state, 2))     !! [length]
+
+    depth = abs(state(at_penetration, :))
+    if (rule%family == rule_along) depth = sign(state(at_penetration, :), state(at_penetration, :)*state(at_pressure, :))
+  end function deep
 
   !> Corners of the die are points of contact of their own.
   pure function has_corners(group) result(yes)
@@ -97,6 +109,7 @@ contains
     type(totals_t), intent(out) :: totals
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: side, penalty(2), from, to
+    logical :: held
     integer :: e, p, n
     logical :: corners
 
@@ -106,6 +119,7 @@ contains
     do e = 1, size(x, 3)
       side = side_length(scene, group%connectivity(:, e))
       penalty = penalties(scene%materials(group%material), group%modulus, side)
+      held = soft_depth(group%rule, scene%materials(group%material), side) > 0
       do p = 1, size(xi)
         select case (nint(state(at_status, p, e)))
         case (contact_stick)
@@ -137,7 +151,7 @@ contains
       area = area_at(place, section, x(:, :, e))*share
       lost = dissipated(old, now, penalty(2))
       totals%friction_work = totals%friction_work + area*now(at_work)
-      totals%contact_work = totals%contact_work + area*kept_work(old, now, penalty)
+      totals%contact_work = totals%contact_work + area*kept_work(old, now, penalty, held)
       totals%least_dissipation = min(totals%least_dissipation, lost)
     end subroutine add_point
 

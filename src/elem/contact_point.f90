@@ -6,6 +6,7 @@
 !> alone: depth, slip, and the turn of the normal.
 module contact_point
   use contact_penalties, only: penalties_of_card, penalties_t
+  use held_depth, only: next_multiplier, stiffened
   use kinds, only: wp
   use law_api, only: contact_open, contact_slip, law_t
   use materials, only: material_t
@@ -54,6 +55,8 @@ module contact_point
     real(wp) :: d, slip, normal(2)
     !> Depth that needs no pressure [length].
     real(wp) :: allowed = 0.0_wp
+    !> Depth up to which the penalty is that of the card (held_depth) [length].
+    real(wp) :: soft = 0.0_wp
     real(wp), dimension(most_unknowns) :: dd, dslip, turn
   end type meeting_t
 
@@ -138,7 +141,7 @@ contains
     real(wp), intent(inout) :: trial(:)             !! (nstate) [unit of each component]
     real(wp), intent(out) :: q(2)                   !! per radian when axisymmetric [force]
     real(wp), intent(out) :: dq(2, most_unknowns)   !! set where the tangent is wanted and there is contact [force/unknown]
-    real(wp) :: dslip(most_unknowns), t(2), slip, depth, gap, share, pressure, stress(2), law_tangent(3, 3), area
+    real(wp) :: dslip(most_unknowns), t(2), slip, depth, slope, gap, share, pressure, stress(2), law_tangent(3, 3), area
     real(wp) :: traction(2), dp, dtau
     integer :: status, j
 
@@ -153,6 +156,7 @@ contains
       slip = share*slip
     end if
 
+    call stiffened(meeting%d - meeting%allowed, meeting%soft, depth, slope)
     ! nothing moves across the plane: the second tangential component stays at rest
     call law%slide(material, dt, drivers, penalty, committed(at_augmentation), depth, [slip, 0.0_wp], [committed(at_tau), 0.0_wp], &
                    committed(npoint_state + 1:), pressure, stress, trial(npoint_state + 1:), law_tangent, status)
@@ -160,7 +164,7 @@ contains
     trial(at_tau) = stress(1)
     trial(at_status) = status
     if (status == contact_open) return
-    trial(at_augmentation) = committed(at_augmentation)
+    trial(at_augmentation) = next_multiplier(committed(at_augmentation), penalty(1), depth, meeting%soft)
     trial(at_slip) = committed(at_slip) + slip
     trial(at_work) = trial(at_work) + dissipated(committed, trial, penalty(2))
 
@@ -170,8 +174,8 @@ contains
     q = traction*area
     if (.not. tangent_wanted) return
     do j = 1, most_unknowns
-      dp = law_tangent(1, 1)*meeting%dd(j) + law_tangent(1, 2)*dslip(j)
-      dtau = law_tangent(2, 1)*meeting%dd(j) + law_tangent(2, 2)*dslip(j)
+      dp = law_tangent(1, 1)*slope*meeting%dd(j) + law_tangent(1, 2)*dslip(j)
+      dtau = law_tangent(2, 1)*slope*meeting%dd(j) + law_tangent(2, 2)*dslip(j)
       dq(:, j) = -(dp*meeting%normal + dtau*t + meeting%turn(j)*(pressure*t - stress(1)*meeting%normal))*area &
                  + traction*weight*(point%dlength(j)*point%thickness + point%length*point%dthickness(j))
     end do

@@ -17,17 +17,23 @@ module contact_work
 contains
 
   !> Work per present area of the side.
-  pure function kept_work(before, after, penalty) result(work)
+  pure function kept_work(before, after, penalty, held) result(work)
     real(wp), intent(in) :: before(:), after(:)   !! (nstate) state of the point [unit of each component]
     real(wp), intent(in) :: penalty(2)            !! normal and tangential [stress/length]
+    logical, intent(in), optional :: held         !! the depth is held (held_depth): it is no longer the pressure over the penalty
     real(wp) :: work                              !! [stress*length]
-    logical :: was, is
+    logical :: was, is, by_depth
 
     was = nint(before(at_status)) /= contact_open
     is = nint(after(at_status)) /= contact_open
+    by_depth = .false.
+    if (present(held)) by_depth = held
     work = 0
     if (was .and. is) then
       work = 0.5_wp*(before(at_pressure) + after(at_pressure))*(after(at_penetration) - before(at_penetration))
+    else if (by_depth) then
+      if (is) work = 0.5_wp*after(at_pressure)*after(at_penetration)
+      if (was) work = -0.5_wp*before(at_pressure)*before(at_penetration)
     else if (is) then
       work = 0.5_wp*after(at_pressure)*(after(at_pressure) - after(at_augmentation))/penalty(1)
     else if (was) then

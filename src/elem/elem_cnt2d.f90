@@ -26,6 +26,7 @@ module elem_cnt2d
   use corner_release, only: motion_past_corner, release_t, slide_past_corner
   use curve_search, only: box_distance
   use die_sweep, only: share_to_pass
+  use held_depth, only: soft_depth
   use dies, only: die_t
   use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_pilot, of_section, report_t, section_motion
   use kinds, only: wp
@@ -151,6 +152,7 @@ contains
     if (scene%finite) side%section = instant%section + side%thickening
     side%length = side_length(scene, group%connectivity(:, element))
     side%penalty = penalties(scene%materials(group%material), group%modulus, side%length)
+    side%soft = soft_depth(group%rule, scene%materials(group%material), side%length)
     side%pilot(:, 1) = instant%pilots(:, group%die)
     side%pilot(:, 2) = side%pilot(:, 1) + du(7:9)
     side%dt = instant%dt

@@ -34,6 +34,8 @@ module rigid_contact
     real(wp) :: section(3) = 0.0_wp, thickening(3) = 0.0_wp
     !> Chord in the mesh as it began: the distance within which the side searches [length].
     real(wp) :: length = 0.0_wp
+    !> Depth up to which the penalty is that of the card (held_depth) [length].
+    real(wp) :: soft = 0.0_wp
     !> Normal and tangential penalty [stress/length].
     real(wp) :: penalty(2) = 0.0_wp
     !> Length of the step [time].
@@ -91,6 +93,7 @@ contains
     dlever(2, 8) = dlever(2, 8) - 1
     call meet(side, phi, dphi, closest, lever, dlever, meeting, drift)
     meeting%allowed = allowed
+    meeting%soft = side%soft
     call act(law, material, side%dt, drivers, side%penalty, point, meeting, weight, side%tangent, committed, trial, q, dq)
     if (nint(trial(at_status)) == contact_open) return
 

@@ -26,9 +26,9 @@ contains
     end do
   end subroutine choose_rules
 
-  !> The points of a contact whose card does not say how many. Against a rigid die the nodes (-3), and places between them see to
-  !> the rest (contact_between). Against a body so many that its sides, where they are the shorter ones, have a dozen points each:
-  !> the forces of these are shared among its nodes by functions with kinks at the ends of its sides.
+  !> The points of a contact whose card does not say how many. Against a rigid die the nodes (-3). Against a body so many that its
+  !> sides, where they are the shorter ones, have a dozen points each: the forces of these are shared among its nodes by functions
+  !> with kinks at the ends of its sides.
   pure function chosen_rule(scene, group) result(rule)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group

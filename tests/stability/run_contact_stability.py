@@ -11,6 +11,10 @@ measured by this script; the upper block faces the lower one with -3 points ther
 - `corner`: a flat punch without friction whose corner stands on a node, pressed into a block. `lateral`: its lateral force over the
   vertical one where it is pressed in by less than the allowed depth. `moved`: its force beside that with the corner 1e-4 further out or
   further in.
+- `along`: sides that do not follow their die, with ALONG: a billet whose side folds onto a flat die under glue and friction, and one
+  pressed over a shoulder, whose sides span its fillet. `depth`: the largest depth of 65 places of each side in all saved steps, over
+  the penetration allowed, found from nodes and die alone (tests/runs/die_depth.py). `flat`: a ring under friction whose sides follow
+  their die; the force on it beside that of -3 points, in all steps.
 - `augmented`: a billet between dies with much friction and a small allowed depth, whose multipliers are carried forward up to 20 or 50
   times a step. `cuts`: steps that were cut though they had been in equilibrium, for an augmentation after it had none.
 """
@@ -19,10 +23,12 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "patch"))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "runs"))
+from die_depth import sampled  # noqa: E402
 from patch_support import STRESS, Checks, Run, np, num  # noqa: E402
 from run_contact_pair import PRESSURE, stacked  # noqa: E402
 
-BOUND = {"unlike": 0.01, "lateral": 1.0e-12, "moved": 0.002, "cuts": 0.5}
+BOUND = {"unlike": 0.01, "lateral": 1.0e-12, "moved": 0.002, "cuts": 0.5, "depth": 2.0, "flat": 0.002}
 # Sides of the lower and of the upper block; before: plane strain, axisymmetric.
 UNLIKE = {(4, 5): (0.095, 0.118), (5, 4): (0.166, 0.331), (7, 4): (0.225, 0.506), (4, 7): (0.056, 0.063), (10, 3): (0.776, 1.107),
           (3, 10): (0.001, 0.004), (20, 2): (np.inf, np.inf), (2, 20): (0.001, 0.001)}
@@ -33,6 +39,11 @@ PUNCHES = {"elastic": ("ELA", 0.02, -3, "", 5, (0.021, 0.040)), "elastic AUGMENT
            "plastic -5": ("PLASTIC", 0.02, -5, "", 5, (0.012, 0.0001))}
 # PENETR, PHI, AUGMENT; before.
 AUGMENTED = {"1e-4 phi .2": ("1.E-4", 0.2, 20, 1), "1e-5 phi .3": ("1.E-5", 0.3, 50, 1)}
+# Elements along radius and height, radius, height, law, die, contact, travel; before: with -3 points.
+FOLD = ("DIE d PILOT 0. 15.\n   SEGM 30. 15. -1. 15.\n", "CNT2D b 3 d {points} glue\nCNT2D b 2 d {points} film\n")
+SHOULDER = ("DIE d PILOT 0. 10.\n   SEGM 30. 10. 7. 10.\n   FILLT 2. 1.E-3\n   SEGM 7. 10. 7. 20.\n", "CNT2D b 2 3 d {points} film\n")
+RING = ("DIE d PILOT 0. 7.\n   SEGM 30. 7. -1. 7.\n", "CNT2D b 2 3 4 d {points} film\n")
+ALONG = {"fold 6x9": ("6 1. 9 1.", 0, 10, 15, FOLD, -9, 23.1), "shoulder": ("8 1. 6 1.", 0, 14, 10, SHOULDER, -3, 76.3)}
 MATERIALS = {"ELA": "LAW m ELA\n   200000. 0.3\n", "HARD": "LAW m EPLA\n   200000. 0.3\n   LINEAR 300. 500.\n",
              "PLASTIC": "LAW m EPLA\n   200000. 0.3\n   LINEAR 300. 0.\n"}
 
@@ -88,6 +99,33 @@ def augmented(checks):
     return rows
 
 
+def billet(checks, name, points, mesh, inner, outer, height, parts, travel):
+    """A billet or ring pressed by a die; its run."""
+    die, contact = parts
+    text = (f"TITLE along\nSTATE AXISYM\nKINEM LOG\nBLOCK b PL8LS 4 m\n   {inner}. 0. {outer}. 0. {outer}. {height}. {inner}. {height}.\n   {mesh}\n"
+            "LAW m EPLA\n   200000. 0.3\n   LINEAR 700. 300.\nLAW film COUL2D\n   PENETR 1.E-3 PHI 0.3 AUGMENT 10\n"
+            + ("LAW glue GLUE2D\n   PENETR 1.E-3 AUGMENT 10\n" if "glue" in contact else "")
+            + die + contact.format(points=points) + "FIXED b 1 Y\n" + ("" if inner else "FIXED b 4 X\n")
+            + f"LIC t\n   0. 0. 1. {travel}.\nMOVE d Y t\nSTRAT 0.01 1.E-5 0.05 5 3\nSAVE 2\nEND\n")
+    return Run(checks, name, text)
+
+
+def along(checks):
+    """Rows of the table: sides that do not follow their die, and sides that do."""
+    rows = []
+    for name, (*setting, before) in ALONG.items():
+        run = billet(checks, name.replace(" ", "-"), "ALONG", *setting)
+        if run.ok:
+            deepest = max(row["share"] for row in sampled(os.path.join(run.out, run.name + ".g01.h5"), 65))
+            rows.append((f"along {name}", "depth", before, deepest/1.0e-3))
+    flat = [billet(checks, f"flat-{kind}", points, "6 1. 6 1.", 6, 12, 7, RING, -2) for kind, points in (("along", "ALONG"), ("nodes", "-3"))]
+    if all(run.ok for run in flat):
+        new, old = (run.history for run in flat)
+        force = np.interp(-old["displacement_y_d"], -new["displacement_y_d"], new["force_y_d"])
+        rows.append(("along ring", "flat", 0.0, np.abs(force/old["force_y_d"] - 1)[old["displacement_y_d"] < -0.2].max()))
+    return rows
+
+
 def cuts_after_equilibrium(listing):
     """Cut steps with a residual below the norm among their iterations."""
     cuts, within = 0, False
@@ -104,7 +142,7 @@ def cuts_after_equilibrium(listing):
 def main():
     checks = Checks()
     print(f"{'case':24s} {'number':8s} {'before':>9s} {'now':>9s} {'bound':>9s} {'margin':>7s}")
-    for part in (unlike_sides, corners, augmented):
+    for part in (unlike_sides, corners, along, augmented):
         for case, what, before, now in part(checks):
             bound = BOUND[what]
             print(f"{case:24s} {what:8s} {before:9.2g} {now:9.2g} {bound:9.2g} {1 - now/bound:7.2f}", flush=True)
