@@ -24,7 +24,7 @@ from lagamine_report.words import field_title  # noqa: E402
 
 MARK = "<!-- pictures -->"
 FIELDS = ("plastic_strain", "martensite", "bainite", "temperature", "mises")       # the first that varies
-CHOSEN = {"residual_stress": "stress_zz", "quench_bar_trip": "stress_zz", "hot_cylinder": "stress_zz"}
+CHOSEN = {"residual_stress": "stress_zz", "cooling_gps": "stress_zz", "tempering": "stress_yy", "quench_bar_trip": "stress_zz", "hot_cylinder": "stress_zz"}
 # What is to be seen is in a corner: the share of the whole that is shown, about the largest value.
 NEAR = {"punch": 0.16, "punch_die": 0.16, "hertz": 0.16, "plate_with_hole": 0.35}
 MOST_BYTES = 100_000
