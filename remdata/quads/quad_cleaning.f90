@@ -21,7 +21,7 @@ module quad_cleaning
   integer, parameter :: passes = 30
   !> First what costs less, then what is of better shape even if it costs more.
   type(change_rule_t), parameter :: rules(2) = [change_rule_t(), &
-                                                change_rule_t(gain=-4.0_wp, good=2.0_wp, better=0.03_wp, below=0.75_wp)]
+                                                change_rule_t(gain=-8.0_wp, good=2.0_wp, better=0.01_wp, below=0.8_wp)]
 
 contains
 

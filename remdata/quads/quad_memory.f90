@@ -8,7 +8,7 @@ module quad_memory
   public :: change_rule_t, memory_t, remember, judge, restore
 
   !> Sweeps over the surroundings of a change, and quadrilaterals there at most.
-  integer, parameter :: sweeps = 6, most_touched = 6*most_around
+  integer, parameter :: sweeps = 10, most_touched = 6*most_around
 
   !> Which changes are made: each lowers the charges by more than `gain`, and leaves around it no worse corner than was there, or a
   !> good one; or one that is better by `better`.

@@ -79,7 +79,6 @@ program mesher_bench
     call mesh_outlines(boundaries, outlines, sizes, settings, attempt > 2, mesher, mesh, error)
     call system_clock(finish)
     if (.not. allocated(error)) exit
-    print "(a)", error%message
   end do
   if (allocated(error)) then
     print '(a)', error%message

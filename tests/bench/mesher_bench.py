@@ -110,7 +110,7 @@ def outlines():
         "worn billet": ([worn], .1, .55, [], 80),
         "star": ([line(*[((4 if k % 2 else 8) * math.cos(math.pi * k / 6), (4 if k % 2 else 8) * math.sin(math.pi * k / 6))
                          for k in range(12)])], .1, .6, [], 60),
-        "large": ([line((0., 0.), (100., 0.), (100., 40.), (60., 40.), (60., 70.), (0., 70.)), circle_hole(30, 35, 12, 16)], .1, .34,
+        "large": ([line((0., 0.), (100., 0.), (100., 40.), (60., 40.), (60., 70.), (0., 70.)), circle_hole(30, 35, 12, 16)], .1, .32,
                   [], 90),
     }
 
