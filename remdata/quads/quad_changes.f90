@@ -27,6 +27,10 @@ contains
     k = findloc(mesh%corner(:, f), point, 1)
     quad = mesh%corner(:, e)
     if (any(quad == mesh%corner(mod(k + 1, 4) + 1, f))) return
+    ! the two points between the sides that go have one less
+    associate (ends => mesh%corner([modulo(k - 2, 4) + 1, mod(k, 4) + 1], f))
+      if (.not. charge(mesh, point, 0) + saved(mesh, ends, [-1, -1]) > rule%gain) return
+    end associate
     call remember(mesh, [quad, mesh%corner(:, f)], memory)
     quad(findloc(quad, point, 1)) = mesh%corner(mod(k + 1, 4) + 1, f)
     call remove_quad(mesh, f)

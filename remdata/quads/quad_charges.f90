@@ -30,9 +30,9 @@ contains
     real(wp) :: cost
 
     cost = (number - ideal)**2
-    if (fixed) cost = on_contour*cost
     if (number < 1) cost = huge(cost)/100
     if (ideal > widest*number .or. (number > 1 .and. ideal < narrowest*number)) cost = cost + cost_of_flat
+    if (fixed) cost = on_contour*cost
   end function charge_of
 
   !> What the points cost less than before when their numbers change.
