@@ -8,8 +8,8 @@ module quad_charges
   private
   public :: charge, charge_of, saved, is_flat
 
-  !> A charge at a contour counts so many times; corners wider than 1.6 right angles, as at an inner point with two quadrilaterals, and
-  !> several narrower than 0.4, cost this.
+  !> A charge at a contour counts so many times; corners wider than 1.6 right angles, as at an inner point with two
+  !> quadrilaterals, and several narrower than 0.4, cost this.
   real(wp), parameter :: on_contour = 2.0_wp, widest = 1.6_wp, narrowest = 0.4_wp, cost_of_flat = 10.0_wp
 
 contains

@@ -112,8 +112,8 @@ contains
     quality = max(1 - 2/pi*worst, -1.0_wp)
   end function quality_of
 
-  !> At a corner of a contour that one quadrilateral fills, its triangle is paired with the neighbour, or two with each other. No path
-  !> takes them apart.
+  !> At a corner of a contour that one quadrilateral fills, its triangle is paired with the neighbour, or two with each other.
+  !> No path takes them apart.
   pure subroutine fill_corners(mesh, quality, partner)
     type(triangulation_t), intent(in) :: mesh
     real(wp), intent(inout) :: quality(:, :)
