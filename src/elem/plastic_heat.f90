@@ -8,8 +8,8 @@ module plastic_heat
   use elem_api, only: instant_t, layout_t, mode_advance
   use elem_pl8tm, only: functions_of, functions_t
   use fields, only: displacement_field
+  use heat_sources, only: share_of_work
   use kinds, only: wp
-  use law_heat, only: share_of_work
   use point_temperatures, only: nodal_temperatures, projected_functions, temperature_place
   use quad8_geometry, only: derivatives, quad8_rule_t
   use scene, only: group_t, role_second, scene_t

@@ -7,16 +7,17 @@
 !> SOURCE is the heat that a change of volume takes up, per volume and unit of volume strain: 3 K ALPHA T of thermoelasticity
 !> (W. Thomson 1855; J.M.C. Duhamel). QUINNEY turns plastic work of the body into heat.
 module law_heat
+  use heat_sources, only: heat_source_parameters, place_share, share_of_work, source_of_volume
   use kinds, only: wp
-  use law_api, only: driver_temperature, heat_law, law_line, law_t, parameter, parameter_t
-  use materials, only: bracket_temperature, integral_over_temperature, material_t, values_at
+  use law_api, only: driver_temperature, heat_law, law_line, law_t, parameter
+  use materials, only: bracket_temperature, integral_over_temperature, material_t
   use state_variables, only: state_variable, transfer_scalar
   implicit none
   private
-  public :: law_heat_row, law_heath_row, share_of_work
+  public :: law_heat_row, law_heath_row
 
   !> Places among the values of a material; the second is RHOC or H. Places of the drivers.
-  integer, parameter :: place_conductivity = 1, place_content = 2, place_source = 3, place_share = 4, driver_work = 2
+  integer, parameter :: place_conductivity = 1, place_content = 2, driver_work = 2
 
 contains
 
@@ -29,7 +30,7 @@ contains
     allocate (row%lines, source=[law_line([parameter('LAMBDA', 'power/length/temperature', 'conductivity', above=0.0_wp), &
                                            parameter('RHOC', 'energy/length^3/temperature', 'heat capacity per volume', &
                                                      above=0.0_wp)]), &
-                                 law_line(sources(), pairs=.true.)])
+                                 law_line(heat_source_parameters(), pairs=.true.)])
     row%store => store_by_capacity
     call common_parts(row)
   end function law_heat_row
@@ -42,7 +43,7 @@ contains
     row%purpose = 'isotropic conduction of heat, by heat content'
     allocate (row%lines, source=[law_line([parameter('LAMBDA', 'power/length/temperature', 'conductivity', above=0.0_wp), &
                                            parameter('H', 'energy/length^3', 'heat content per volume', rises=.true.)]), &
-                                 law_line(sources(), pairs=.true.)])
+                                 law_line(heat_source_parameters(), pairs=.true.)])
     row%store => store_by_content
     call common_parts(row)
   end function law_heath_row
@@ -59,19 +60,9 @@ contains
     row%drivers(driver_work - 1)%name = 'plastic_work'
     row%drivers(driver_work - 1)%needs = place_share
     row%conduct => conduct
-    row%swell => swell
+    row%swell => source_of_volume
     row%release => release
   end subroutine common_parts
-
-  !> SOURCE and QUINNEY.
-  function sources() result(list)
-    type(parameter_t), allocatable :: list(:)
-
-    allocate (list(2))
-    list(1) = parameter('SOURCE', 'energy/length^3', 'heat taken up by a change of volume, per volume strain', default=0.0_wp)
-    list(2) = parameter('QUINNEY', '-', 'share of the plastic work that becomes heat', lower=0.0_wp, upper=1.0_wp, default=0.0_wp, &
-                        turns_on=.true.)
-  end function sources
 
   !> Conductivity, linear between the temperatures of the card, constant outside.
   pure subroutine conduct(material, drivers, conductivity, slope)
@@ -162,27 +153,5 @@ contains
     history(1) = drivers(driver_work, 2)
     released = share_of_work(material, drivers(driver_temperature, 1))*(drivers(driver_work, 2) - committed(1))
   end subroutine release
-
-  !> QUINNEY: it changes little with the temperature, that of the start of the step.
-  pure function share_of_work(material, temperature) result(share)
-    type(material_t), intent(in) :: material
-    real(wp), intent(in) :: temperature   !! at the start of the step [temperature]
-    real(wp) :: share                     !! [-]
-    real(wp) :: values(size(material%values))
-
-    call values_at(material, temperature, values)
-    share = values(place_share)
-  end function share_of_work
-
-  !> SOURCE, at the temperature of the start of the step.
-  pure function swell(material, temperature) result(heat)
-    type(material_t), intent(in) :: material
-    real(wp), intent(in) :: temperature
-    real(wp) :: heat
-    real(wp) :: values(size(material%values))
-
-    call values_at(material, temperature, values)
-    heat = values(place_source)
-  end function swell
 
 end module law_heat

@@ -28,7 +28,7 @@ FORBIDDEN = {
 
 # Where a folder may reach another one only through these modules.
 ONLY_THROUGH = {
-    ("elem", "law"): {"contact_penalties", "law_api"},
+    ("elem", "law"): {"contact_penalties", "heat_sources", "law_api"},
     ("kinematics", "law"): {"law_api"},
     ("cards", "linear"): {"linear_api", "linear_registry"},
     ("solve", "linear"): {"linear_solver", "matrix_pattern"},
@@ -289,7 +289,7 @@ CASES = [
     ("law on an element", {"src/law/bad.f90": module("bad", "cells")}, "law may not use cells of elem: elem is above law"),
     ("law on kinematics", {"src/law/bad.f90": module("bad", "large")}, "law may not use large of kinematics"),
     ("element on a law", {"src/elem/bad.f90": module("bad", "law_epla")},
-     "elem may not use law_epla of law: only through contact_penalties, law_api"),
+     "elem may not use law_epla of law: only through contact_penalties, heat_sources, law_api"),
     ("kinematics on a law", {"src/kinematics/bad.f90": module("bad", "law_epla")}, "only through law_api"),
     ("solve on a linear solver", {"src/solve/bad.f90": module("bad", "linear_mumps")},
      "solve may not use linear_mumps of linear: only through linear_solver, matrix_pattern"),
