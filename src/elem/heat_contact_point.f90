@@ -25,8 +25,6 @@ module heat_contact_point
   !> What a point faces.
   type :: facing_t
     logical :: found = .false., closed = .false.
-    !> The contact of the side has found it; otherwise a search.
-    logical :: by_contact = .false.
     integer :: piece = 0
     real(wp) :: xi = 0.0_wp, pressure(2) = 0.0_wp, gap = 0.0_wp
     !> Unit tangent of the die, in the sense in which the side is walked.
@@ -37,9 +35,6 @@ module heat_contact_point
   type :: shares_t
     integer :: nside = 0, ndie = 0, place(6) = 0
     real(wp) :: side(3) = 0.0_wp, die(3) = 0.0_wp
-    !> Place of the facing side among those that a deformable die has here, 0 for a rigid one; and functions of its nodes.
-    integer :: piece = 0
-    real(wp) :: psi(3) = 0.0_wp
   end type shares_t
 
 contains
@@ -64,7 +59,6 @@ contains
       facing%xi = drivers(at_die_xi, 2)
       facing%gap = -drivers(at_gap, 2)
       facing%closed = nint(drivers(at_status, 2)) /= contact_open
-      facing%by_contact = facing%piece > 0 .and. group%host > 0
     end if
     if (facing%piece == 0) then
       reach = max(group%heat_contact%reach, searched*side)
@@ -119,9 +113,8 @@ contains
     if (at == 0) return
     shares%ndie = n
     shares%place(n + 1:2*n) = layout%first(1, temperature) + n*at + [(k - 1, k=1, n)]
-    shares%piece = at
-    call line3(facing%xi, shares%psi, dpsi)
-    shares%die(:n) = values_on_side(n, facing%xi, shares%psi)
+    call line3(facing%xi, shares%die, dpsi)
+    shares%die(:n) = values_on_side(n, facing%xi, shares%die)
   end subroutine share_out
 
   !> Functions of the temperature on a side: of its nodes, or of its ends.

@@ -11,7 +11,7 @@ module heat_contacts
   use radiation, only: fourth_powers
   implicit none
   private
-  public :: die_heat_t, heat_contact_t, conductance_slope, flow_from_die, share_by_effusivity
+  public :: die_heat_t, heat_contact_t, flow_from_die, share_by_effusivity
 
   !> Numbers of the exchange of heat between sides and a die.
   type :: heat_contact_t
@@ -66,22 +66,6 @@ contains
     slope = slope + contact%radiation*by_body
     slope_die = slope_die + contact%radiation*by_die
   end subroutine flow_from_die
-
-  !> Derivative of the conductance: by the pressure where it is closed [power/force/temperature], by the gap where it is open
-  !> [power/area/temperature/length].
-  pure function conductance_slope(contact, closed, pressure, gap) result(slope)
-    type(heat_contact_t), intent(in) :: contact
-    logical, intent(in) :: closed
-    real(wp), intent(in) :: pressure   !! [stress]
-    real(wp), intent(in) :: gap        !! [length]
-    real(wp) :: slope
-    real(wp) :: factor
-
-    slope = 0
-    if (closed .and. allocated(contact%by_pressure)) call value_in_table(contact%by_pressure, pressure, factor, slope)
-    if (.not. closed .and. allocated(contact%by_gap)) call value_in_table(contact%by_gap, gap, factor, slope)
-    slope = contact%conductance*slope
-  end function conductance_slope
 
   !> Share of friction heat that goes into a body: its effusivity over the sum of both (half spaces that rub have one temperature
   !> where they touch; H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, sec. 2.15).

