@@ -260,8 +260,8 @@ contains
     end subroutine update_at
 
     !> d(heat)/d(motion) and d(heat)/d(temperature) of the plastic work, by differences of the whole update. The work of the step
-    !> alone is looked at, so that what was done before costs no digits; it bends over elastic strains, some 1e-3, of which a step of
-    !> 1e-10 is 1e-7.
+    !> alone is looked at, so that what was done before costs no digits; it bends over elastic strains, some 1e-3, of which a step
+    !> of 1e-10 is 1e-7.
     subroutine add_rows_of_heat()
       real(wp), parameter :: step = 1.0e-10_wp
       real(wp) :: slopes(ncomponent + 1, group%rule%n, nb)
