@@ -35,7 +35,7 @@ module path_error
   !> Elastic strains are enlarged by this share; what is left of an error is found to about as much.
   real(wp), parameter :: enlarged = 1.0e-3_wp
   !> An error of the stress below this share is carried on as it is.
-  real(wp), parameter :: negligible = 1.0e-4_wp
+  real(wp), parameter :: negligible = 3.0e-4_wp
 
 contains
 
