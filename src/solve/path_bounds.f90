@@ -17,7 +17,7 @@ module path_bounds
   public :: judge_path
 
   !> Steps aim at this share of what is allowed, so that few are made in vain.
-  real(wp), parameter :: aim = 0.5_wp
+  real(wp), parameter :: aim = 0.7_wp
   !> A step is shortened to no less than this share at once; to this one where the two halves cannot be made.
   real(wp), parameter :: least_factor = 0.2_wp, without_halves = 0.5_wp
 
