@@ -123,6 +123,7 @@ contains
     call add_block(scene, 'lower', box([1.0_wp, 0.0_wp], [3.0_wp, 1.0_wp], [2, 1]))
     call add_block(scene, 'upper', box([1.0_wp, 2.0_wp], [3.0_wp, 3.0_wp], [2, 1]))
     scene%finite = .false.
+    scene%follows_path = .true.
     scene%generation = 3
     scene%mesh%origin = scene%mesh%coordinates + 0.1_wp
     call add_die(scene, polyline(reshape([0.5_wp, 0.0_wp, 4.0_wp, 0.0_wp], [2, 2]), [0.5_wp, -1.0_wp, 0.25_wp]))
