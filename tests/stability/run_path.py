@@ -5,9 +5,9 @@ usage: run_path.py [-v] [-k] [--cost]       -v prints every check, -k keeps the 
                                             and without (seconds of the processor)
 
 `bounded`: a necking bar and the relaxation of a held bar, with long steps allowed. Errors against the bar's converged force and
-against the law's own differential equation (Runge and Kutta), of the code before steps were bounded by them (`before`: PATH 0 RATE
-0), and now. `estimated`: the same and an upset billet with steps of one length, PATH and RATE being wide: what the run tells over the
-error against a run of short steps (`effectivity`), of the motion in the mean square over the nodes, of the stress as its own.
+against the law's own differential equation (Runge and Kutta), of the code before steps were bounded by them (`before`: PATH 0
+RATE 0), and now. `estimated`: the same and an upset billet with steps of one length, PATH and RATE being wide: what the run tells
+over the error against a run of short steps (`effectivity`), of the motion in the mean square over the nodes, of the stress as its own.
 `free`: elastic and uniform plastic bars take the steps they took before. Long steps that a deck allows end with a warning.
 """
 import csv
