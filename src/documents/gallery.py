@@ -86,7 +86,7 @@ def draw(folder, name):
 def save(picture, path):
     """As PNG of few colours, as sharp as the size allows."""
     for dpi in (110, 90, 70, 55):
-        data = in_few_colours(picture.png(dpi))
+        data = in_few_colours(picture.image(dpi))
         if len(data) <= MOST_BYTES:
             break
     picture.close()

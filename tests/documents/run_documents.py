@@ -54,6 +54,14 @@ class Pages(unittest.TestCase):
             self.assertIn("EXIT STATUS", done.stdout)
 
 
+class Citation(unittest.TestCase):
+    def test_version(self):
+        """CITATION.cff is for forges and has the version once more: that of the programs."""
+        version = call(os.path.join(BIN, "lagamine"), "--version").split()[1]
+        with open(os.path.join(SOURCE, ".github", "CITATION.cff"), encoding="utf-8") as file:
+            self.assertIn(f"\nversion: {version}\n", file.read())
+
+
 def page_of(program):
     with open(os.path.join(MADE, "man", program + ".1"), encoding="utf-8") as file:
         return file.read()

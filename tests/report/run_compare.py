@@ -10,6 +10,7 @@ import tempfile
 import unittest
 
 import numpy as np
+from matplotlib import pyplot
 from PIL import Image
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -21,7 +22,8 @@ from lagamine_report import Run  # noqa: E402
 from lagamine_report.compare import compare_pictures, forces_picture, labels_of  # noqa: E402
 from lagamine_report.contact import contact_groups  # noqa: E402
 from lagamine_report.contact_map import pressure_bars, pressure_picture  # noqa: E402
-from lagamine_report.picture import rounded  # noqa: E402
+from lagamine_report.picture import Picture, rounded  # noqa: E402
+from lagamine_report.rates import strain_rate, strain_rate_picture  # noqa: E402
 from lagamine_report.scene_view import SceneView  # noqa: E402
 from lagamine_report.tractions import recovered_tractions  # noqa: E402
 from lagamine_report.words import brief  # noqa: E402
@@ -125,6 +127,33 @@ class Compare(unittest.TestCase):
         pressed = max(values.max() for values in [pressure_bars(view, group)[2] for group in contact_groups(run, run.steps[-1])])
         picture = pressure_picture(view)
         self.assertTrue(f"largest {brief(float(pressed))}" in picture.caption)
+        picture.close()
+
+    def test_strain_rate_of_a_uniform_compression(self):
+        """Plates without friction at constant speed: the mean rate between two instants is ln(h1/h2)/(t2 - t1), but for the elastic strain."""
+        deck = os.path.join(SOURCE, "decks", "upsetting_frictionless", "upsetting_frictionless.lag")
+        out = os.path.join(self.folder, "uniform")
+        subprocess.run([os.path.join(BIN, "lagamine"), deck, "--out", out, "--quiet"], check=True)
+        run = Run(out)
+        before, last, rate = strain_rate(run)
+        heights = [np.ptp(run.coordinates(step)[:, 1]) for step in (before, last)]
+        elastic = [run.nodal(step, "elastic_strain_yy").mean() for step in (before, last)]
+        wanted = (np.log(heights[0] / heights[1]) + elastic[1] - elastic[0]) / (last.time - before.time)
+        np.testing.assert_allclose(rate, wanted, rtol=2e-3)
+        picture = strain_rate_picture(SceneView(run))
+        self.assertIn(f"mean since the instant saved before, time {brief(before.time)}", picture.caption)
+        picture.close()
+
+    def test_pictures_have_no_empty_margins(self):
+        """Pixels up to the margin on every side, whatever the figure leaves free."""
+        fig, axes = pyplot.subplots(figsize=(4, 2))
+        axes.set_axis_off()
+        fig.text(0.5, 0.5, "x")
+        picture = Picture("x", "", fig)
+        pixels = np.asarray(picture.image(100).convert("L"))
+        dark = np.argwhere(pixels < 250)
+        self.assertEqual([8, 8], dark.min(axis=0).tolist())
+        self.assertEqual([n - 9 for n in pixels.shape], dark.max(axis=0).tolist())
         picture.close()
 
     def test_rounded_drawings(self):

@@ -9,6 +9,7 @@ from .errors import ReportError
 from .picture import Picture
 from .pictures import MAIN_FIELDS, fields_of, fields_picture, generations_picture, known_field, mesh_picture, series_picture
 from .reader import Run
+from .rates import strain_rate_picture
 from .remeshes import remesh_pictures
 from .scene_view import SceneView
 from .steel_diagram import run_diagrams
@@ -33,4 +34,5 @@ def shapes(run: Run, fields: Sequence[str], mirror: bool) -> List[Optional[Pictu
     over_time = chosen if fields else [name for name in ("plastic_strain", "temperature") if name in names] or chosen[:1]
     pictures = [mesh_picture(view), generations_picture(view), *remesh_pictures(view), fields_picture(view, chosen),
                 fields_picture(view, [name for name in names if name not in chosen], "more", small=True)]
-    return pictures + [series_picture(view, name) for name in over_time] + [pressure_picture(view), contact_picture(run)]
+    series = [series_picture(view, name) for name in over_time]
+    return pictures + series + [strain_rate_picture(view), pressure_picture(view), contact_picture(run)]

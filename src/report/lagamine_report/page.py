@@ -17,7 +17,7 @@ from .words import brief
 SECTIONS: List[Tuple[str, str, Sequence[str]]] = [
     ("shape", "Shape and mesh", ("mesh", "meshes")),
     ("fields", "Fields", ("fields", "more")),
-    ("series", "Fields over time", ("series",)),
+    ("series", "Fields over time", ("series", "strain_rate")),
     ("profiles", "Profiles", ("profiles",)),
     ("forces", "Forces on the dies", ("force",)),
     ("contact", "Contact", ("pressure", "contact")),

@@ -4,15 +4,19 @@ import io
 import re
 from dataclasses import dataclass
 
+import numpy as np
 from matplotlib import pyplot
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from PIL import Image
+from PIL import Image, ImageChops
 
 from .reader import Run, Step
 from .words import brief
 
 
 PAGE_DPI = 130      # of pictures of pixels in the page
+MARGIN = 0.08       # around a picture [inch]
+ROOM = 1.5          # for what is wider than its panel [inch]
 
 
 def numbered_clips(svg: bytes) -> bytes:
@@ -30,12 +34,16 @@ def rounded(svg: bytes) -> bytes:
     return re.sub(rb' d="[^"]*"', lambda path: re.sub(rb"(\d+\.\d\d)\d+", rb"\1", path.group()), svg)
 
 
-def in_few_colours(png: bytes) -> bytes:
-    """The same picture with a table of 256 colours."""
+def png_bytes(image: Image.Image, **options) -> bytes:
+    """A picture of pixels as a file."""
     buffer = io.BytesIO()
-    with Image.open(io.BytesIO(png)) as image:
-        image.convert("RGB").quantize(256, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(buffer, format="png", optimize=True)
+    image.save(buffer, format="png", **options)
     return buffer.getvalue()
+
+
+def in_few_colours(image: Image.Image) -> bytes:
+    """The same picture as a file with a table of 256 colours."""
+    return png_bytes(image.quantize(256, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE), optimize=True)
 
 
 @dataclass
@@ -48,21 +56,43 @@ class Picture:
     vector: bool = False
     heading: str = ""
 
+    def image(self, dpi: int) -> Image.Image:
+        """The picture in pixels without its empty margins. The figure is drawn once, with room around it for titles that are wider than their
+        panel; savefig's tight box would ask for it twice."""
+        width, height = self.figure.get_size_inches()
+        engine = self.figure.get_layout_engine()
+        if engine is not None:
+            whole = width + 2 * ROOM, height + 2 * ROOM
+            self.figure.set_size_inches(whole)
+            engine.set(rect=(ROOM / whole[0], ROOM / whole[1], width / whole[0], height / whole[1]))
+        self.figure.set_dpi(dpi)
+        canvas = FigureCanvasAgg(self.figure)
+        canvas.draw()
+        if engine is not None:
+            self.figure.set_size_inches(width, height)
+            engine.set(rect=(0, 0, 1, 1))
+        drawn = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
+        box = ImageChops.difference(drawn, Image.new("RGB", drawn.size, "white")).getbbox() or (0, 0, *drawn.size)
+        margin = round(MARGIN * dpi)
+        cut = Image.new("RGB", (box[2] - box[0] + 2 * margin, box[3] - box[1] + 2 * margin), "white")
+        cut.paste(drawn.crop(box), (margin, margin))
+        return cut
+
     def png(self, dpi: int = 150) -> bytes:
-        buffer = io.BytesIO()
-        self.figure.savefig(buffer, format="png", dpi=dpi, bbox_inches="tight", pad_inches=0.08, metadata={"Software": None})
-        return buffer.getvalue()
+        return png_bytes(self.image(dpi), dpi=(dpi, dpi))
 
     def data_uri(self) -> str:
         """The picture as it stands in the page; of pixels in 256 colours, a third of the size."""
         if not self.vector:
-            return "data:image/png;base64," + base64.b64encode(in_few_colours(self.png(PAGE_DPI))).decode()
+            return "data:image/png;base64," + base64.b64encode(in_few_colours(self.image(PAGE_DPI))).decode()
         return "data:image/svg+xml;base64," + base64.b64encode(self.svg()).decode()
 
     def svg(self) -> bytes:
         """The picture as a file of its own."""
         buffer = io.BytesIO()
-        self.figure.savefig(buffer, format="svg", bbox_inches="tight", pad_inches=0.08, metadata={"Date": None})
+        engine = self.figure.get_layout_engine()
+        self.figure.savefig(buffer, format="svg", bbox_inches="tight", pad_inches=MARGIN, metadata={"Date": None})
+        self.figure.set_layout_engine(engine)       # savefig leaves none
         return rounded(numbered_clips(buffer.getvalue()))
 
     def close(self) -> None:

@@ -18,7 +18,7 @@ matplotlib.rcParams.update({
     "axes.titlesize": 10.5, "axes.titleweight": "bold", "axes.titlelocation": "left", "axes.titlecolor": INK,
     "axes.labelsize": 9.5, "axes.labelcolor": INK, "axes.edgecolor": SOFT, "axes.linewidth": 0.8, "axes.axisbelow": True,
     "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.formatter.useoffset": False,
-    "axes.formatter.limits": (-4, 5), "axes.formatter.use_mathtext": True, "axes.unicode_minus": True,
+    "axes.formatter.limits": (-4, 5), "axes.unicode_minus": True,
     "grid.color": FAINT, "grid.linewidth": 0.7, "xtick.color": SOFT, "ytick.color": SOFT,
     "xtick.labelsize": 8.5, "ytick.labelsize": 8.5, "text.color": INK, "legend.frameon": False, "legend.fontsize": 8.5,
     "lines.linewidth": 1.7, "lines.solid_capstyle": "round", "figure.facecolor": "white", "savefig.facecolor": "white",
