@@ -14,6 +14,7 @@ module march
   use listing, only: list_balance, list_cut, list_event, list_lines, list_note, list_step, show_progress
   use memory_limits, only: require_memory
   use newton, only: outcome_t
+  use path_record, only: note_attempt
   use point_drivers, only: start_drivers
   use probation, only: is_too_short, pass_probation, refuse_after_all
   use restart_report, only: write_restart
@@ -59,10 +60,10 @@ contains
 
       call solve_fields(scene, run%equations, solution, dt, outcome)
       do while (outcome%event < 1)
+        call note_attempt(outcome%path, dt, solution%path)
         dt = max(min(outcome%event, largest_event)*dt, scene%strategy%least_step)
         call list_event(run%listing, solution, dt, outcome%event_reason)
         if (outcome%heat%too_long) solution%heat%shortened = solution%heat%shortened + 1
-        if (outcome%path%too_long) solution%path%shortened = solution%path%shortened + 1
         call solve_fields(scene, run%equations, solution, dt, outcome)
       end do
       if (allocated(outcome%error)) then

@@ -40,7 +40,8 @@ contains
     character(len=:), allocatable :: words
 
     words = ''
-    if (path%above > 0) words = '; '//to_text(path%above)//' steps of the least length are above what NORMS allows'
+    if (path%above > 0) words = '; '//to_text(path%above)// &
+            ' steps are above what NORMS allows (of the least length, or shortened in vain)'
   end function least_steps
 
 end module path_advice

@@ -204,7 +204,7 @@ contains
     call json%add('path_error_stress', stress_error(solution%path, solution%time))
     call json%add('path_error_stress_worst', solution%path%stress_worst)
     call json%add('steps_shortened_by_path', solution%path%shortened)
-    call json%add('least_steps_above_path', solution%path%above)
+    call json%add('steps_above_path', solution%path%above)
   end subroutine add_path
 
   !> What to do about the checks that do not hold, by their names.

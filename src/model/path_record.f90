@@ -5,7 +5,7 @@ module path_record
   implicit none
   private
   public :: path_record_t, path_step_t
-  public :: mean_square, motion_error, note_path_step, start_path, stress_error, stress_scale
+  public :: mean_square, motion_error, note_attempt, note_path_step, start_path, stress_error, stress_scale
 
   type :: path_step_t
     !> Its errors were estimated; one is above what the deck allows.
@@ -16,8 +16,12 @@ module path_record
     real(wp), allocatable :: error(:, :)
     !> Root of the elastic energy, its error by this step, and how much is left at the end of the step of an error at its start.
     real(wp) :: stress = 0.0_wp, stress_error = 0.0_wp, left = 1.0_wp
-    !> It must be shortened by its errors; largest factor for the step that follows.
+    !> It must be shortened by an error (of motion or of stress, `which`) of this size; largest factor for the step that follows.
     logical :: too_long = .false.
+    integer :: which = 0
+    real(wp) :: size = 0.0_wp
+    !> It is above what the deck allows, and a shorter step was no better.
+    logical :: no_better = .false.
     real(wp) :: growth = huge(1.0_wp)
   end type path_step_t
 
@@ -32,7 +36,15 @@ module path_record
     real(wp) :: stress = 0.0_wp
     !> Steps with an estimate, attempts shortened by it, and steps of the least length above what is allowed.
     integer :: estimated = 0, shortened = 0, above = 0
+    !> Steps still to come whose lengths are not bounded by their errors.
+    integer :: unbounded = 0
+    !> The last attempt at the present step that was shortened: its length, the error, and of what.
+    real(wp) :: tried_length = 0.0_wp, tried_size = 0.0_wp
+    integer :: tried_which = 0
   end type path_record_t
+
+  !> Steps that are left alone after one whose error a shorter step did not lower.
+  integer, parameter :: left_alone = 20
 
   !> Share of the mean stress below which stresses are small.
   real(wp), parameter :: least_share = 0.1_wp
@@ -55,6 +67,19 @@ contains
     root = sqrt(sum(displacement**2)/max(size(displacement, 2), 1))
   end function mean_square
 
+  !> Remember an attempt that must be shortened.
+  pure subroutine note_attempt(step, dt, record)
+    type(path_step_t), intent(in) :: step
+    real(wp), intent(in) :: dt   !! [time]
+    type(path_record_t), intent(inout) :: record
+
+    if (.not. step%too_long) return
+    record%shortened = record%shortened + 1
+    record%tried_length = dt
+    record%tried_size = step%size
+    record%tried_which = step%which
+  end subroutine note_attempt
+
   !> Add an accepted step.
   pure subroutine note_path_step(step, dt, time, record)
     type(path_step_t), intent(in) :: step
@@ -63,6 +88,9 @@ contains
     type(path_record_t), intent(inout) :: record
     real(wp) :: before
 
+    record%unbounded = max(record%unbounded - 1, 0)
+    if (step%no_better) record%unbounded = left_alone
+    record%tried_length = 0
     if (.not. step%estimated) return
     record%estimated = record%estimated + 1
     record%moved = record%moved + step%motion

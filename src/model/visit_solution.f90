@@ -111,6 +111,10 @@ contains
     call visitor%member('estimated', self%estimated, kept, low=0)
     call visitor%member('shortened', self%shortened, kept, low=0)
     call visitor%member('above', self%above, kept, low=0)
+    call visitor%member('unbounded', self%unbounded, kept, low=0)
+    call visitor%derived('tried_length', 'of an attempt at a step')
+    call visitor%derived('tried_size', 'of an attempt at a step')
+    call visitor%derived('tried_which', 'of an attempt at a step')
   end subroutine visit_path_record
 
   subroutine visit_probation(visitor, self)

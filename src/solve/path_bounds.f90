@@ -3,6 +3,9 @@
 !> The error of the motion is bounded for each step, over its motion: in sum it is no more of the whole way then. The error of the
 !> stress is bounded as what has come of all steps so far, for creep forgets what was before and elastic unloading keeps it. Where
 !> that is used up a step may add its share of the time to it, so that the run goes on.
+!>
+!> Where a part hangs on single points of contact that change, errors do not come of the path, and do not fall with the step: a
+!> step that was shortened in vain is accepted, counted as above the bound, and the steps after it are left alone for a while.
 module path_bounds
   use equations, only: equations_t
   use kinds, only: wp
@@ -20,6 +23,10 @@ module path_bounds
   real(wp), parameter :: aim = 0.7_wp
   !> A step is shortened to no less than this share at once; to this one where the two halves cannot be made.
   real(wp), parameter :: least_factor = 0.2_wp, without_halves = 0.5_wp
+
+  !> Errors of a path fall with at least this power of the step's length (with the first, or the second).
+  real(wp), parameter :: least_order = 0.5_wp
+  integer, parameter :: of_motion = 1, of_stress = 2
 
 contains
 
@@ -41,6 +48,7 @@ contains
     call equations%timers%stop(timer)
     if (.not. outcome%converged) return
     outcome%path%estimated = done
+    if (solution%path%unbounded > 0) return
     if (done) then
       call bound_motion()
       if (outcome%converged) call bound_stress()
@@ -58,7 +66,7 @@ contains
         scale = step%motion
         if (solution%time > 0) scale = max(scale, solution%path%moved/solution%time*dt)
         if (.not. (allowed > 0 .and. step%motion_error > 0)) return
-        call bound(step%motion_error/scale, allowed, aim*allowed*scale/step%motion_error, 'motion')
+        call bound(step%motion_error/scale, allowed, aim*allowed*scale/step%motion_error, of_motion, 'motion')
       end associate
     end subroutine bound_motion
 
@@ -73,19 +81,27 @@ contains
         room = max(allowed - abs(before), allowed*dt/(solution%time + dt))
         next = max(allowed - step%left*abs(before + step%stress_error), allowed*dt/(solution%time + dt))
         if (abs(step%stress_error) > room) next = room
-        call bound(abs(step%stress_error)/allowed, room/allowed, sqrt(aim*next/abs(step%stress_error)), 'stress')
+        call bound(abs(step%stress_error)/allowed, room/allowed, sqrt(aim*next/abs(step%stress_error)), of_stress, &
+                   'stress')
       end associate
     end subroutine bound_stress
 
-    subroutine bound(error, allowed, factor, name)
+    subroutine bound(error, allowed, factor, which, name)
       real(wp), intent(in) :: error, allowed
       real(wp), intent(in) :: factor   !! of the length, for the error aimed at
+      integer, intent(in) :: which
       character(len=*), intent(in) :: name
 
       associate (step => outcome%path)
         if (error <= allowed) then
           step%growth = min(step%growth, max(factor, least_factor))
+        else if (is_in_vain(error, which)) then
+          step%above = .true.
+          step%no_better = .true.
+          step%growth = min(step%growth, 1.0_wp)
         else if (dt > scene%strategy%least_step) then
+          step%which = which
+          step%size = error
           call shorten(max(factor, least_factor), 'error of the '//name//' by the path within the step '//to_text(error, 3) &
                        //' above '//to_text(allowed, 3))
         else
@@ -94,6 +110,18 @@ contains
         end if
       end associate
     end subroutine bound
+
+    !> The attempt before was longer, and its error hardly larger.
+    pure function is_in_vain(error, which) result(yes)
+      real(wp), intent(in) :: error
+      integer, intent(in) :: which
+      logical :: yes
+
+      associate (record => solution%path)
+        yes = record%tried_length > dt .and. record%tried_which == which
+        if (yes) yes = error > record%tried_size*(dt/record%tried_length)**least_order
+      end associate
+    end function is_in_vain
 
     subroutine shorten(factor, reason)
       real(wp), intent(in) :: factor
