@@ -7,7 +7,7 @@ module path_advice
   private
   public :: motion_advice, stress_advice
 
-  !> The run warns above this share: twice what runs have whose steps are bounded as by default.
+  !> The run warns above this share: what runs have whose steps are bounded as the manual advises is half of it or less.
   real(wp), parameter :: largest_path_error = 0.02_wp
 
 contains
