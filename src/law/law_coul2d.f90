@@ -1,7 +1,9 @@
 !> COUL2D (94): unilateral contact with Coulomb friction by penalties (annex 3, eqs. 2-7).
 !>
 !> p = augmentation + AKP d where positive; stick dtau = AKTAU ds; slip |tau| = min(PHI p + PBOUE, TAUMAX,
-!> M flow_stress/sqrt3), each limit where it is given (M: constant-factor law, Tresca's friction);
+!> M flow_stress/sqrt3), each limit where it is given (M: constant-factor law, Tresca's friction). Where M stands without PHI, PHI
+!> is `steepest`: a point that just touches would have all of its friction at once, and a step in which its pressure goes to zero
+!> need not have an equilibrium;
 !> non-associated: no opening by slip. The slip tangent dtau = PHI AKP sign(tau) dd is unsymmetric.
 module law_coul2d
   use contact_penalties, only: penalty_parameters, penalty_problems
@@ -15,6 +17,9 @@ module law_coul2d
 
   !> Numbers among the values of a material, after the penalties; and that of the flow stress among the drivers.
   integer, parameter :: place_phi = 5, place_cohesion = 6, place_largest = 7, place_factor = 8, driver_flow = 2
+
+  !> Coefficient of friction up to the limit M where PHI is not given: friction is the limit from a pressure of M flow_stress/3.5 on.
+  real(wp), parameter :: steepest = 2.0_wp
 
 contains
 
@@ -75,6 +80,7 @@ contains
       return
     end if
     phi = material%values(place_phi)
+    if (.not. phi < huge(1.0_wp)) phi = steepest
     cohesion = material%values(place_cohesion)
     tau_max = material%values(place_largest)
     if (material%values(place_factor) < huge(1.0_wp)) &
@@ -84,7 +90,7 @@ contains
     size_of_trial = sqrt(dot_product(trial, trial))
     limit = tau_max
     by_pressure = .false.
-    if (phi < huge(1.0_wp)) by_pressure = phi*pressure + cohesion < tau_max
+    by_pressure = phi*pressure + cohesion < tau_max
     if (by_pressure) limit = phi*pressure + cohesion
     if (size_of_trial <= limit) then
       status = contact_stick
