@@ -306,9 +306,11 @@ class ReportTest(unittest.TestCase):
         refused = [row for row in rows if row["accepted"] == "n"]
         self.assertGreater(len(made), 6)
         self.assertGreater(len(refused), 1)
+        later = [row for row in made if row["try"] != "1"]
+        self.assertTrue(later)
         shown = [int(row["generation"]) for row in made[:1] + made[-3:]]
         for words in (f"New meshes: {len(made)}; tries refused: {len(refused)}.", "<b>refused</b> (as the deck says; stage mesh): an &lt;angle&gt; of 3",
-                      "try 3: earlier", f"Pictures of 4 of {len(made)} new meshes", "every mesh", f"billet.g{shown[-1]:02d}.h5"):
+                      f"try {later[0]['try']}: {later[0]['action']}", f"Pictures of 4 of {len(made)} new meshes", "every mesh", f"billet.g{shown[-1]:02d}.h5"):
             self.assertIn(words, text)
         for row in made:
             self.assertIn(f"<td>{row['old_elements']} → {row['new_elements']}</td>", text)
