@@ -18,7 +18,7 @@ module law_coul2d
   !> Numbers among the values of a material, after the penalties; and that of the flow stress among the drivers.
   integer, parameter :: place_phi = 5, place_cohesion = 6, place_largest = 7, place_factor = 8, driver_flow = 2
 
-  !> Coefficient of friction up to the limit M where PHI is not given: friction is the limit from a pressure of M flow_stress/8.7 on.
+  !> Coefficient of friction up to the limit M where PHI is not given: friction is the limit from M flow_stress/8.7 of pressure on.
   real(wp), parameter :: steepest = 5.0_wp
 
 contains
