@@ -19,6 +19,8 @@ module judge_remesh
   !> a point in a corner carried much of the force; Newton's method finds the rest.)
   real(wp), parameter :: lost_pressure = 0.5_wp
 
+  !> Largest limit of the change of a force where the deck gives none, over the default.
+  real(wp), parameter :: most_wrong = 2.0_wp
   !> Changes are over the force of now, or over this share of the largest so far where the load is light: the tenth part of nothing
   !> says nothing about a mesh.
   real(wp), parameter :: light_load = 0.2_wp
@@ -61,14 +63,15 @@ contains
   end function worst_change
 
   !> Limit of the change of a force. Where the deck gives none an old mesh whose stress was wrong by more than the default may have
-  !> had a force as wrong: it is the new one that is right then.
+  !> had a force as wrong, and it is the new one that is right then; up to `most_wrong` times the default: a larger change may as well
+  !> come of a bad new mesh.
   pure function force_limit(accept, balance) result(limit)
     type(acceptance_t), intent(in) :: accept
     type(balance_t), intent(in) :: balance
     real(wp) :: limit
 
     limit = accept%force_change
-    if (.not. accept%force_is_given) limit = max(limit, balance%old_error)
+    if (.not. accept%force_is_given) limit = max(limit, min(balance%old_error, most_wrong*limit))
   end function force_limit
 
   !> Change of the elastic energy over what was carried.

@@ -13,7 +13,7 @@ CODES = "Exit codes:"
 
 @dataclass
 class Option:
-    """`names` as they are typed, `value` the placeholder of what follows them (empty: nothing), what it does."""
+    """`names` as on the command line, `value` the placeholder of what follows them (empty: nothing), what it does."""
 
     names: List[str]
     value: str

@@ -32,7 +32,8 @@ contains
     row%purpose = 'contact with Coulomb friction'
     row%source = 'Charlier; seed, annex 3'
     allocate (row%lines, source=[law_line([penalty_parameters(), &
-                                           parameter('PHI', '-', 'friction coefficient', lower=0.0_wp, default=huge(1.0_wp)), &
+                                           parameter('PHI', '-', 'friction coefficient (5 where M stands alone)', lower=0.0_wp, &
+                                                     default=huge(1.0_wp)), &
                                            parameter('PBOUE', 'stress', 'cohesion', lower=0.0_wp, default=0.0_wp), &
                                            parameter('TAUMAX', 'stress', 'largest friction stress', &
                                                      above=0.0_wp, default=huge(1.0_wp)), &
