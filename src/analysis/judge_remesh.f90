@@ -63,8 +63,8 @@ contains
   end function worst_change
 
   !> Limit of the change of a force. Where the deck gives none an old mesh whose stress was wrong by more than the default may have
-  !> had a force as wrong, and it is the new one that is right then; up to `most_wrong` times the default: a larger change may as well
-  !> come of a bad new mesh.
+  !> had a force as wrong, and it is the new one that is right then; up to `most_wrong` times the default: a larger change
+  !> may as well come of a bad new mesh.
   pure function force_limit(accept, balance) result(limit)
     type(acceptance_t), intent(in) :: accept
     type(balance_t), intent(in) :: balance
