@@ -22,7 +22,8 @@ module elem_cntdf
                            most_unknowns, no_surface, penalties, point_variables, rest, share_to_contact, &
                            show_on_axis, side_length, side_point, thinning
   use closest_point, only: closest_point_t
-  use curve_search, only: box_distance, closest_facing_point, closest_on_piece
+  use corner_faces, only: closest_on_piece
+  use curve_search, only: box_distance, closest_facing_point
   use dies, only: die_t
   use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
   use elem_cnt2d, only: elem_cnt2d_row

@@ -10,7 +10,8 @@ module closest_point
   use vectors, only: length_of
   implicit none
   private
-  public :: closest_point_t, stationary_points, closest_within_piece, closest_at_vertex, distance_slope, whole_piece, end_slack
+  public :: closest_point_t, stationary_points, closest_within_piece, closest_at_vertex, distance_slope, sense_of_turn, &
+            whole_piece, end_slack
 
   !> Closest point on a curve; on a die, in the pilot's axes.
   type :: closest_point_t

@@ -18,18 +18,15 @@
 module curve_search
   use closest_point, only: closest_at_vertex, closest_point_t, closest_within_piece, distance_slope, end_slack, stationary_points, &
                            whole_piece
+  use corner_faces, only: keep_to_face, leave_beside
   use kinds, only: eps, wp
   use piecewise_curves, only: adjacent_piece, box_gap, box_of_node, piecewise_curve_t
   implicit none
   private
-  public :: closest_facing_point, closest_on_pieces, closest_on_piece, follow_closest_point, box_distance
+  public :: closest_facing_point, closest_on_pieces, follow_closest_point, box_distance
 
   !> A side that faces away by less than this cosine may still lie on the die: a side that folds.
   real(wp), parameter :: facing = 0.9_wp
-  !> A side whose normal meets a face at less than this cosine hardly lies on it.
-  real(wp), parameter :: beside = 0.7_wp
-  !> That face may be deeper by so much of the reach: a part that has risen along the other face belongs to that one.
-  real(wp), parameter :: at_corner = 0.01_wp
   !> Nodes waiting in a search are one for each row of the tree at most: pieces are counted by 32 bits.
   integer, parameter :: most_waiting = 40
 
@@ -70,34 +67,10 @@ contains
       end if
     end if
     closest = search%closest
-    if (closest%piece > 0 .and. closest%d > -end_slack*reach) call leave_beside(curve, point, e_r, reach, closest)
+    if (closest%piece == 0) return
+    call keep_to_face(curve, point, e_r, reach, closest)
+    if (closest%d > -end_slack*reach) call leave_beside(curve, point, e_r, reach, closest)
   end subroutine closest_facing_point
-
-  !> A point inside, beside a corner that points to the part, leaves through the face that its own normal meets: the nearest
-  !> face may be the other one, on which its side does not lie. Depths along the part's normal, d/(-e_R.n), are compared.
-  pure subroutine leave_beside(curve, point, e_r, reach, closest)
-    class(piecewise_curve_t), intent(in) :: curve
-    real(wp), intent(in) :: point(2), e_r(2), reach
-    type(closest_point_t), intent(inout) :: closest
-    type(closest_point_t) :: other
-    real(wp) :: along, along_other
-    integer :: next, piece, way
-
-    piece = closest%piece
-    along = -dot_product(e_r, closest%normal)
-    if (along > beside) return
-    do way = -1, 1, 2
-      next = adjacent_piece(curve, piece, way)
-      if (next == 0) cycle
-      call closest_on_piece(curve, next, point, -real(way, wp), 0.0_wp, other)
-      if (other%piece == 0) cycle
-      if (.not. (other%d > 0 .and. other%d < at_corner*reach)) cycle
-      along_other = -dot_product(e_r, other%normal)
-      if (along_other*max(closest%d, 0.0_wp) < along*other%d .or. .not. along_other > along) cycle
-      closest = other
-      along = along_other
-    end do
-  end subroutine leave_beside
 
   !> Closest point of all on adjacent pieces and the vertices between them, whichever way it faces.
   pure subroutine closest_on_pieces(curve, point, first, count, closest)
@@ -261,25 +234,9 @@ contains
     if (.not. faces(found, e_r)) return
     closest = found
     closest%piece = k
+    call keep_to_face(curve, point, e_r, reach, closest)
     if (closest%d > -end_slack*reach) call leave_beside(curve, point, e_r, reach, closest)
   end subroutine follow_closest_point
-
-  !> Closest point on one piece, or up to `beyond` outside its ends; of several the one nearest to `from`.
-  pure subroutine closest_on_piece(curve, piece, point, from, beyond, closest)
-    class(piecewise_curve_t), intent(in) :: curve
-    integer, intent(in) :: piece
-    real(wp), intent(in) :: point(2)       !! in the pilot's axes [length]
-    real(wp), intent(in) :: from, beyond   !! parent coordinates [-]
-    type(closest_point_t), intent(out) :: closest
-    real(wp) :: roots(3), limit
-    integer :: n
-
-    limit = whole_piece(2) + beyond
-    call stationary_points(curve%pieces(:, :, piece), point, [-limit, limit], n, roots)
-    if (n == 0) return
-    call closest_within_piece(curve%pieces(:, :, piece), point, roots(minloc(abs(roots(:n) - from), 1)), closest)
-    if (closest%piece > 0) closest%piece = piece
-  end subroutine closest_on_piece
 
   !> Distance from a box (xmin, ymin, xmax, ymax) to the boxes of a curve; 0 when they meet [length].
   pure function box_distance(curve, box) result(distance)

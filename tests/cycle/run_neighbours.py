@@ -17,7 +17,7 @@ from support import DONE, NO_CONVERGENCE, Checks  # noqa: E402
 FAILED = 3 / 60
 # Quick scenes come first in the draw, so that the first ones are a test.
 ORDER = ("bimetal", "side_pressing", "can", "teeth", "two_strokes", "h_section", "indentation", "piercing", "ring_70", "springback",
-         "extrusion_long")
+         "extrusion_long", "heading")
 
 
 def draw(seed, number):

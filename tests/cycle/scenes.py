@@ -20,6 +20,7 @@ SCENES = {
     "two_strokes": ("first", {"edge": (1.0, 2.5), "height": (8.0, 14.0), "mu": (0.05, 0.2), "harden": (20.0, 300.0)}),
     "teeth": ("toothed", {"round": (0.4, 0.7), "draft": (15.0, 30.0), "mu": (0.05, 0.2), "harden": (20.0, 300.0)}),
     "springback": ("wiper", {"round": (4.0, 8.0), "thick": (0.7, 1.3), "mu": (0.02, 0.1), "harden": (200.0, 2000.0)}),
+    "heading": ("punch", {"free": (14.0, 24.0), "edge": (0.3, 1.5), "mu": (0.05, 0.4), "harden": (20.0, 400.0)}),
     "bimetal": ("upper", {"height": (8.0, 14.0), "core": (4.0, 7.0), "soft": (60.0, 200.0), "mu": (0.05, 0.3)}),
 }
 

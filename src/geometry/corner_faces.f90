@@ -1,0 +1,138 @@
+!> Which of the two faces that meet in a corner of a die a side of the part lies on.
+!>
+!> The closest point of all is right where the side faces it. Beside a corner it may be on the face that the side does not lie on:
+!> - a point inside, beside a corner that points to the part, leaves through the face that its own normal meets;
+!> - in a corner that the part fills, as that of a container's floor and wall, the end of a side is near both faces, and the signs
+!>   of its depths are those of round-off and of the last correction. It keeps to the face that its side lies on, which goes on
+!>   beyond the vertex where it has to: multipliers hold the pressure there, along the normal of that face. The other face is that
+!>   of the other side which ends there.
+module corner_faces
+  use closest_point, only: closest_point_t, closest_within_piece, sense_of_turn, stationary_points, whole_piece
+  use kinds, only: wp
+  use parabolas, only: tangent_on
+  use piecewise_curves, only: adjacent_piece, piecewise_curve_t
+  use plane_vectors, only: right_of
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: leave_beside, keep_to_face, closest_on_piece
+
+  !> A side whose normal meets a face at less than this cosine hardly lies on it.
+  real(wp), parameter :: beside = 0.7_wp
+  !> At less than this cosine it does not.
+  real(wp), parameter :: across = 0.5_wp
+  !> A face may be deeper by so much of the reach: a part that has risen along the other face belongs to that one.
+  real(wp), parameter :: at_corner = 0.01_wp
+  !> A point is in a corner that the part fills within so much of the reach, as deep and as far beyond the vertex.
+  real(wp), parameter :: in_corner = 0.25_wp
+
+contains
+
+  !> The face that the side of a point inside lies on, beside a corner that points to the part. Depths along the part's normal,
+  !> d/(-e_R.n), are compared.
+  pure subroutine leave_beside(curve, point, e_r, reach, closest)
+    class(piecewise_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: point(2)                  !! in the pilot's axes [length]
+    real(wp), intent(in) :: e_r(2)                    !! inner normal of the part, in the pilot's axes [-]
+    real(wp), intent(in) :: reach                     !! [length]
+    type(closest_point_t), intent(inout) :: closest   !! of all, on a piece
+    type(closest_point_t) :: other
+    real(wp) :: along, along_other
+    integer :: next, piece, way
+
+    piece = closest%piece
+    along = -dot_product(e_r, closest%normal)
+    if (along > beside) return
+    do way = -1, 1, 2
+      next = adjacent_piece(curve, piece, way)
+      if (next == 0) cycle
+      call closest_on_piece(curve, next, point, -real(way, wp), 0.0_wp, other)
+      if (other%piece == 0) cycle
+      if (.not. (other%d > 0 .and. other%d < at_corner*reach)) cycle
+      along_other = -dot_product(e_r, other%normal)
+      if (along_other*max(closest%d, 0.0_wp) < along*other%d .or. .not. along_other > along) cycle
+      closest = other
+      along = along_other
+    end do
+  end subroutine leave_beside
+
+  !> In a corner that the part fills, the face that the side of a point lies on.
+  pure subroutine keep_to_face(curve, point, e_r, reach, closest)
+    class(piecewise_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: point(2)                  !! in the pilot's axes [length]
+    real(wp), intent(in) :: e_r(2)                    !! inner normal of the part, in the pilot's axes [-]
+    real(wp), intent(in) :: reach                     !! [length]
+    type(closest_point_t), intent(inout) :: closest   !! of all, on a piece or the vertex behind it
+    integer :: piece, way, own
+
+    piece = closest%piece
+    if (closest%at_vertex) then
+      if (.not. closest%d > 0) return
+      call try_face(curve, point, e_r, reach, 1, piece, closest)
+      if (closest%at_vertex) call try_face(curve, point, e_r, reach, -1, adjacent_piece(curve, piece, 1), closest)
+      return
+    end if
+    if (-dot_product(e_r, closest%normal) > across) return
+    do way = -1, 1, 2
+      own = adjacent_piece(curve, piece, way)
+      if (own > 0) call try_face(curve, point, e_r, reach, -way, own, closest)
+    end do
+  end subroutine keep_to_face
+
+  !> Take a face that ends (1) or begins (-1) in such a corner, if the side lies on it and not on the other one.
+  pure subroutine try_face(curve, point, e_r, reach, end, face, closest)
+    class(piecewise_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: point(2), e_r(2), reach
+    integer, intent(in) :: end, face
+    type(closest_point_t), intent(inout) :: closest
+    type(closest_point_t) :: found
+    real(wp) :: beyond, turn
+    integer :: other
+
+    other = adjacent_piece(curve, face, end)
+    associate (own => curve%pieces(:, :, face), opposite => curve%pieces(:, :, other))
+      if (end > 0) then
+        turn = sense_of_turn(own, opposite)
+      else
+        turn = sense_of_turn(opposite, own)
+      end if
+      if (.not. turn > 0) return
+      if (meets(tangent_on(opposite, -real(end, wp))) > across .or. .not. meets(tangent_on(own, real(end, wp))) > beside) return
+      beyond = in_corner*reach/length_of(tangent_on(own, real(end, wp)))
+    end associate
+    call closest_on_piece(curve, face, point, real(end, wp), beyond, found)
+    if (found%piece == 0) return
+    if (.not. (-dot_product(e_r, found%normal) > beside .and. abs(found%d) < in_corner*reach)) return
+    if (closest%d > 0 .and. .not. (closest%at_vertex .or. found%d > -at_corner*reach)) return
+    closest = found
+    closest%xi = min(1.0_wp, max(-1.0_wp, found%xi))
+
+  contains
+
+    !> Cosine between the part's normal and that of a face with this tangent, 1 where the side lies on it.
+    pure function meets(tangent) result(cosine)
+      real(wp), intent(in) :: tangent(2)
+      real(wp) :: cosine
+
+      cosine = -dot_product(e_r, right_of(tangent))
+    end function meets
+  end subroutine try_face
+
+  !> Closest point on one piece, or up to `beyond` outside its ends; of several the one nearest to `from`.
+  pure subroutine closest_on_piece(curve, piece, point, from, beyond, closest)
+    class(piecewise_curve_t), intent(in) :: curve
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: point(2)       !! in the pilot's axes [length]
+    real(wp), intent(in) :: from, beyond   !! parent coordinates [-]
+    type(closest_point_t), intent(out) :: closest
+    real(wp) :: roots(3), limit
+    integer :: n
+
+    limit = whole_piece(2) + beyond
+    call stationary_points(curve%pieces(:, :, piece), point, [-limit, limit], n, roots)
+    if (n == 0) return
+    call closest_within_piece(curve%pieces(:, :, piece), point, roots(minloc(abs(roots(:n) - from), 1)), closest)
+    if (closest%piece > 0) closest%piece = piece
+  end subroutine closest_on_piece
+
+end module corner_faces

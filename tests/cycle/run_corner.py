@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""A part that fills a corner of a die, through new meshes: floor and wall as one curve, and as two dies.
+
+usage: run_corner.py [-v] [-k]
+
+The ends of both sides lie in the corner, a little in the die or out of it. Each keeps to the face that its side lies on, so that both ways of
+saying it give the same force, and no new mesh is refused.
+"""
+import os
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from scenes import deck_of, run_scene  # noqa: E402
+from support import DONE, Checks, write  # noqa: E402
+
+CORNER = """   SEGM   -1. -20.   5. -20.
+   SEGM   5. -20.   5. 0.
+"""
+WALL = """   SEGM   5. -22.   5. 0.
+"""
+FLOOR = """DIE    floor
+   SEGM   -1. -20.   9. -20.
+CNT2D  rod 1 floor film
+"""
+SAME = 1e-3
+
+
+def main():
+    checks = Checks()
+    with open(deck_of("heading"), encoding="utf-8") as file:
+        one = file.read()
+    two = one.replace(CORNER, WALL).replace("CNT2D  rod 1 2 matrix film\n", "CNT2D  rod 2 matrix film\n" + FLOOR)
+    checks.that(CORNER in one and FLOOR in two, "the deck has floor and wall in one curve")
+    forces = {}
+    for name, text in (("one curve", one), ("two dies", two)):
+        found = run_scene("heading", checks.path(name.replace(" ", "_")), deck=write(checks.path(name.replace(" ", "_") + ".lag"), text))
+        if not checks.that(found["code"] == DONE, f"{name}: the cycle ends with 0", found["said"]):
+            continue
+        checks.that(found["refused"] == 0, f"{name}: no try refused", found["refused"])
+        checks.that(found["meshes"] > 1, f"{name}: new meshes in the corner", found["meshes"])
+        forces[name] = found["history"]["force_y_punch"][-1]
+    if len(forces) == 2:
+        ratio = forces["one curve"] / forces["two dies"]
+        checks.that(abs(ratio - 1) < SAME, "the same force at the end", ratio)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
