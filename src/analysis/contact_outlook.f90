@@ -8,7 +8,8 @@ module contact_outlook
   use kinds, only: wp
   use loads, only: multiplier_at
   use plane_vectors, only: turned
-  use scene, only: group_t, is_solid, scene_t
+  use scene, only: group_t, scene_t
+  use starting_sides, only: extent_of, sides_at_start
   use vectors, only: length_of
   implicit none
   private
@@ -35,20 +36,23 @@ contains
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(outlook_t), intent(out) :: outlook
-    real(wp) :: depth, over_side, time
+    real(wp), allocatable :: sides(:, :, :), behind(:, :)
+    real(wp) :: depth, over_side, time, reach
     logical :: faces
     integer :: k
 
     associate (die => scene%dies(group%die))
       if (is_deformable(die)) return
-      call deepest(scene, group, die, pilot_at(scene, group%die, 0.0_wp), outlook%faces, outlook%depth, outlook%over_side)
-      call count_inside(scene, group, die, outlook)
+      call sides_at_start(scene, group, sides, behind)
+      reach = 4*extent_of(scene)
+      call deepest(sides, die, pilot_at(scene, group%die, 0.0_wp), reach, outlook%faces, outlook%depth, outlook%over_side)
+      call count_inside(behind, die, outlook)
       outlook%faces_at_end = outlook%faces
       if (outlook%faces .and. outlook%depth >= 0) outlook%first = 0
       if (.not. moves(scene, group%die)) return
       do k = 1, ninstant
         time = scene%strategy%end_time*k/ninstant
-        call deepest(scene, group, die, pilot_at(scene, group%die, time), faces, depth, over_side)
+        call deepest(sides, die, pilot_at(scene, group%die, time), reach, faces, depth, over_side)
         if (faces .and. depth >= 0 .and. outlook%first < 0) outlook%first = time
       end do
       outlook%faces_at_end = faces
@@ -92,23 +96,21 @@ contains
   end function pilot_at
 
   !> Depth of the deepest node of the sides, the largest gap closed first.
-  pure subroutine deepest(scene, group, die, pilot, faces, depth, over_side)
-    type(scene_t), intent(in) :: scene
-    type(group_t), intent(in) :: group
+  pure subroutine deepest(sides, die, pilot, reach, faces, depth, over_side)
+    real(wp), intent(in) :: sides(:, :, :)
     type(die_t), intent(in) :: die
-    real(wp), intent(in) :: pilot(3)
+    real(wp), intent(in) :: pilot(3), reach
     logical, intent(out) :: faces
     real(wp), intent(out) :: depth, over_side
     type(closest_point_t) :: closest
-    real(wp) :: nodes(2, 3), chord(2), side, reach
+    real(wp) :: nodes(2, 3), chord(2), side
     integer :: e, k
 
     faces = .false.
     depth = -huge(depth)
     over_side = 0
-    reach = 4*length_of(maxval(scene%mesh%coordinates, 2) - minval(scene%mesh%coordinates, 2))
-    do e = 1, size(group%connectivity, 2)
-      nodes = in_pilot_axes(scene%mesh%coordinates(:, group%connectivity(:, e)), pilot)
+    do e = 1, size(sides, 3)
+      nodes = in_pilot_axes(sides(:, :, e), pilot)
       chord = nodes(:, 3) - nodes(:, 1)
       side = length_of(chord)
       do k = 1, 3
@@ -123,29 +125,17 @@ contains
     if (.not. faces) depth = 0
   end subroutine deepest
 
-  !> Elements behind the sides that lie in the die's body: their centres are on the right of the curve.
-  pure subroutine count_inside(scene, group, die, outlook)
-    type(scene_t), intent(in) :: scene
-    type(group_t), intent(in) :: group
+  !> Points behind the sides that lie in the die's body: on the right of the curve.
+  pure subroutine count_inside(behind, die, outlook)
+    real(wp), intent(in) :: behind(:, :)
     type(die_t), intent(in) :: die
     type(outlook_t), intent(inout) :: outlook
     type(closest_point_t) :: closest
-    real(wp) :: centre(2, size(scene%mesh%coordinates, 2)), place(2)
-    integer :: g, e, k
+    real(wp) :: place(2)
+    integer :: e
 
-    centre = 0
-    do g = 1, size(scene%groups)
-      if (.not. is_solid(scene%groups(g))) cycle
-      do e = 1, size(scene%groups(g)%connectivity, 2)
-        associate (nodes => scene%groups(g)%connectivity(:, e))
-          do k = 5, 8
-            centre(:, nodes(k)) = sum(scene%mesh%coordinates(:, nodes(1:4)), 2)/4
-          end do
-        end associate
-      end do
-    end do
-    do e = 1, size(group%connectivity, 2)
-      place = turned(centre(:, group%connectivity(2, e)) - die%pilot(1:2), -die%pilot(3))
+    do e = 1, size(behind, 2)
+      place = turned(behind(:, e) - die%pilot(1:2), -die%pilot(3))
       call closest_on_pieces(die, place, 1, size(die%pieces, 3), closest)
       if (closest%piece == 0) cycle
       outlook%seen = outlook%seen + 1

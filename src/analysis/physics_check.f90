@@ -24,9 +24,10 @@ module physics_check
 
 contains
 
-  !> Lines of the table of places and dies; and warnings, one line each.
+  !> Lines of the table of places and dies; and warnings, one line each. Of bodies that have contours alone neither supports nor
+  !> torches are looked at.
   subroutine check_physics(scene, laws, table, warnings)
-    type(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene                        !! as the deck gives it, before any new mesh
     type(law_t), intent(in) :: laws(:)                        !! (nlaw)
     type(string_t), allocatable, intent(out) :: table(:)      !! (nline)
     type(string_t), allocatable, intent(out) :: warnings(:)   !! (nwarning)
@@ -34,8 +35,7 @@ contains
     integer :: g
 
     allocate (table(0), warnings(0))
-    if (lacks_mesh(scene) .or. scene%generation > 1) return
-    if (allocated(scene%sources)) then
+    if (allocated(scene%sources) .and. .not. lacks_mesh(scene)) then
       do g = 1, size(scene%sources)
         call judge_torch(scene, g, warnings)
       end do
@@ -49,7 +49,7 @@ contains
         call judge_contact(scene, group, outlook(g), warnings)
       end associate
     end do
-    call free_motions(scene, outlook, warnings)
+    if (.not. lacks_mesh(scene)) call free_motions(scene, outlook, warnings)
     do g = 1, size(scene%materials)
       call judge_yield(scene, laws, g, warnings)
     end do

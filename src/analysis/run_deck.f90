@@ -82,7 +82,7 @@ contains
     call checkpoint%file%close(ignored)
     if (allocated(error)) return
     if (options%check) then
-      call print_check(scene, error)
+      call print_check(options, scene, error)
       if (allocated(error) .or. options%default_out) return
       call make_directory(options%out, error)
       if (.not. allocated(error)) call write_scene(join_path(options%out, stem_of(options%deck)//'.scene.json'), scene, error)
@@ -111,12 +111,17 @@ contains
     type(run_t), intent(inout) :: run
     type(error_t), allocatable, intent(out) :: error
     character(len=*), parameter :: reason = 'remesh: no mesh yet, the remesher makes it'
-    type(string_t), allocatable :: lines(:)
+    type(string_t), allocatable :: lines(:), warnings(:)
 
     call open_listing(run%stem//'.log', .false., options%quiet, options%progress, 0.0_wp, run%listing, error)
     if (allocated(error)) return
     call scene_lines(scene, lines)
     call list_lines(run%listing, lines)
+    call look_at_deck(options, scene, lines, warnings, error)
+    if (.not. (allocated(error) .or. options%quiet)) call print_lines(as_warnings(warnings), error)
+    if (allocated(error)) return
+    call list_lines(run%listing, lines)
+    call list_lines(run%listing, as_warnings(warnings))
     call list_note(run%listing, reason)
     call close_listing(run%listing)
     call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, [contact_end_t ::], error)
@@ -190,7 +195,6 @@ contains
     type(run_facts_t) :: facts
     type(error_t), allocatable :: late
     type(string_t), allocatable :: lines(:)
-    type(law_t), allocatable :: laws(:)
     real(wp) :: started
 
     started = wall_seconds()
@@ -208,8 +212,10 @@ contains
     if (run%resume) call list_resumed(run%listing, options%resume, solution)
     call scene_lines(scene, lines)
     call list_lines(run%listing, lines)
-    call list_laws(laws)
-    call check_physics(scene, laws, lines, facts%warnings)
+    call look_at_deck(options, scene, lines, facts%warnings, error)
+    if (options%progress .and. .not. (allocated(options%resume) .or. allocated(error))) &
+      call print_lines(as_warnings(facts%warnings), error)
+    if (allocated(error)) return
     call list_lines(run%listing, lines)
     call list_lines(run%listing, as_warnings(facts%warnings))
     call march_to_end(scene, solution, run, error)
@@ -240,23 +246,47 @@ contains
   end subroutine run_and_report
 
   !> --check: the scene in words.
-  subroutine print_check(scene, error)
+  subroutine print_check(options, scene, error)
+    type(run_options_t), intent(in) :: options
     type(scene_t), intent(in) :: scene
     type(error_t), allocatable, intent(out) :: error
     type(string_t), allocatable :: lines(:), more(:), table(:), warnings(:)
-    type(law_t), allocatable :: laws(:)
 
     call scene_lines(scene, lines)
     allocate (more(0))
-    call list_laws(laws)
-    call check_physics(scene, laws, table, warnings)
-    if (.not. lacks_mesh(scene)) call unknowns_lines(scene, more, error)
+    call look_at_deck(options, scene, table, warnings, error)
+    if (.not. (allocated(error) .or. lacks_mesh(scene))) call unknowns_lines(scene, more, error)
     if (allocated(error)) return
     call print_lines(lines, error)
     call print_lines(table, error)
     call print_lines(more, error)
     call print_lines(as_warnings(warnings), error)
   end subroutine print_check
+
+  !> What can be told of the deck before a run: of its own mesh or contours, whatever mesh the scene has now. The table of places and
+  !> dies is empty for a later mesh.
+  subroutine look_at_deck(options, scene, table, warnings, error)
+    type(run_options_t), intent(in) :: options
+    type(scene_t), intent(in) :: scene
+    type(string_t), allocatable, intent(out) :: table(:), warnings(:)
+    type(error_t), allocatable, intent(out) :: error
+    type(law_t), allocatable :: laws(:)
+    type(deck_t), target :: deck
+    type(diagnostics_t), target :: diagnostics
+    type(scene_t) :: own
+
+    call list_laws(laws)
+    if (scene%generation == 1) then
+      call check_physics(scene, laws, table, warnings)
+      return
+    end if
+    call read_deck(options%deck, options%overrides, deck, diagnostics)
+    call read_scene(deck, own, diagnostics)
+    call diagnostics%error(error)
+    if (.not. allocated(error)) call check_physics(own, laws, table, warnings)
+    if (allocated(table)) deallocate (table)
+    allocate (table(0))
+  end subroutine look_at_deck
 
   !> Lines that begin with what they are.
   pure function as_warnings(lines) result(marked)

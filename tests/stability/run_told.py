@@ -18,6 +18,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "patch"))
 from patch_support import LAGAMINE, NO_CONVERGENCE, SOURCE, Checks, Run, np  # noqa: E402
 
+LAGACYCLE = os.path.join(os.path.dirname(LAGAMINE), "lagacycle")
 BASE = """TITLE  A billet in the plane
 STATE  PLSTN
 KINEM  LOG
@@ -61,6 +62,13 @@ WRONG = {
     "E in GPa": ({"200000. 0.3": "200. 0.3"}, "in one unit?"),
     "nothing acts": ({"1. -2.": "1. 0."}, "nothing moves and no load acts"),
 }
+# The same as a contour, of which the remesher makes the first mesh.
+BODY = {"BLOCK  billet PL8LS 4 steel\n   0. 0.   10. 0.   10. 15.   0. 15.\n   2 1.   3 1.\n":
+        "BODY   billet PL8LS 4 steel\n   SEGM  0. 0.   10. 0.\n   SEGM  10. 0.   10. 15.\n   SEGM  10. 15.   0. 15.\n   SEGM  0. 15.   0. 0.\n",
+        "END\n": "REMSH\nEND\n"}
+WRONG["contour in a die"] = ({**BODY, "30. 15.   -5. 15.": "30. 14.   -5. 14."}, "begins 1 deep in die upper")
+WRONG["contour in a fillet"] = ({**WRONG["corner in a fillet"][0], **BODY}, "deep in die upper")
+WRONG["contour out of reach"] = ({**BODY, "30. 15.   -5. 15.": "30. 18.   -5. 18."}, "does not meet the part")
 # A thick tube of one element that locks, widened beyond its limit load.
 SPHERE = """TITLE  A thick tube beyond its limit load
 STATE  AXISYM
@@ -144,6 +152,21 @@ def warned_run(checks):
             checks.that("does not meet the part" in listing.read(), "so has the listing")
 
 
+def warned_cycle(checks):
+    """So has a cycle of contours, in what it prints first and in the summary at its end, which is that of a later mesh."""
+    path, out = os.path.join(checks.folder, "contour.lag"), os.path.join(checks.folder, "contour")
+    with open(path, "w", encoding="utf-8") as deck:
+        deck.write(changed(checks, WRONG["contour out of reach"][0]))
+    run = subprocess.run([LAGACYCLE, path, "--out", out], capture_output=True, text=True, check=False)
+    if not checks.that(run.returncode == 0, "a cycle: ends with 0", run.stderr):
+        return
+    said = [line for line in run.stdout.splitlines() if "WARNING" in line]
+    checks.that(len(said) == 1 and "does not meet the part" in said[0], "a cycle prints the warning once", run.stdout)
+    with open(os.path.join(out, "summary.json"), encoding="utf-8") as summary:
+        told = json.load(summary)["warnings"]
+    checks.that(len(told) == 1 and "does not meet the part" in told[0]["text"], "the summary of a later mesh has the warning", told)
+
+
 def small(checks):
     """SMALL ends where strains are large."""
     half = changed(checks, {"KINEM  LOG": "KINEM  SMALL", "1. -2.": "1. -9."})
@@ -179,6 +202,7 @@ def main():
     checks = Checks()
     decks(checks)
     warned_run(checks)
+    warned_cycle(checks)
     small(checks)
     probes(checks)
     checks.end()
