@@ -263,8 +263,8 @@ contains
     call print_lines(as_warnings(warnings), error)
   end subroutine print_check
 
-  !> What can be told of the deck before a run: of its own mesh or contours, whatever mesh the scene has now. The table of places and
-  !> dies is empty for a later mesh.
+  !> What can be told of the deck before a run: of its own mesh or contours, whatever mesh the scene has now. The table of places
+  !> and their dies is empty for a later mesh.
   subroutine look_at_deck(options, scene, table, warnings, error)
     type(run_options_t), intent(in) :: options
     type(scene_t), intent(in) :: scene
