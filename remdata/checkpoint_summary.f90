@@ -23,6 +23,7 @@ contains
     call read_facts(path, facts, error)
     if (allocated(error)) return
     call print_line('generation '//to_text(facts%generation), error)
+    if (facts%operation > 0) call print_line('operation '//to_text(facts%operation), error)
     call print_line('step '//to_text(facts%step), error)
     call print_line('time '//exact_text(facts%time), error)
     call print_line('unbalanced '//to_text(merge(1, 0, facts%unbalanced)), error)

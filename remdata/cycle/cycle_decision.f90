@@ -157,7 +157,7 @@ contains
     type(situation_t), intent(in) :: s
     logical :: is_to_be_entered
 
-    is_to_be_entered = s%current%facts%generation > 1 .and. s%current%facts%generation == s%new%generation &
+    is_to_be_entered = s%current%facts%generation > 1 .and. s%current%facts%generation >= s%new%generation &
                        .and. s%current%facts%probation == 0 .and. s%new%has_tries
   end function is_to_be_entered
 
@@ -225,8 +225,8 @@ contains
     character(len=:), allocatable :: words
 
     associate (facts => s%current%facts)
-      words = place_of(s%current)//', '//to_text(facts%generation - 1)//' new mesh'
-      if (facts%generation /= 2) words = words//'es'
+      words = place_of(s%current)//', '//to_text(facts%remeshings)//' new mesh'
+      if (facts%remeshings /= 1) words = words//'es'
     end associate
   end function where_it_stands
 

@@ -3,7 +3,7 @@ module cycle_folder
   use atomic, only: previous_name, read_text, write_text
   use cycle_options, only: cycle_options_t
   use cycle_situation, only: checkpoint_file_t, current_name, ended_lagamine, ended_nothing, ended_remdata, ended_t, first_line, &
-    is_due, is_read, mesh_name, made_mesh_t, situation_t, try_name
+    is_due, is_first_mesh, is_read, mesh_name, made_mesh_t, situation_t, try_name
   use cycle_table, only: number_refused, parse_table, try_row_t
   use errors, only: error_t, exit_machine, exit_no_convergence
   use exchange, only: read_facts
@@ -73,11 +73,11 @@ contains
     associate (generation => s%current%facts%generation, new => s%new)
       judged = s%current%facts%probation == 0 .or. failed(s%ended)
       has_tries = generation > 1 .and. judged
-      if (has_tries) has_tries = any_try(s, generation)
+      new%generation = generation
+      if (has_tries) call find_tries(s, new%generation, has_tries)
       new%has_tries = has_tries
       if (has_tries) then
-        new%generation = generation
-        call look(s%stem//'.'//mesh_name(generation - 1, 'end.h5'), new%old_end)
+        call look(s%stem//'.'//mesh_name(new%generation - 1, 'end.h5'), new%old_end)
       else
         new%generation = generation + 1
         if (due) s%end_is_kept = is_same(s%stem//'.'//current_name, s%stem//'.'//mesh_name(generation, 'end.h5'))
@@ -86,6 +86,30 @@ contains
       if (is_read(new%old_end)) call read_try(s%stem, s%rows, new)
     end associate
   end subroutine read_new_mesh
+
+  !> The mesh whose tries are still there: that of the run; or, where an operation has begun since, one of an operation before.
+  !> Tries that were refused before an operation began are none of its mesh, on which no run was restarted.
+  subroutine find_tries(s, generation, found)
+    type(situation_t), intent(in) :: s
+    integer, intent(inout) :: generation   !! that of the run on entry
+    logical, intent(out) :: found
+    type(checkpoint_file_t) :: old_end
+    integer :: g, least
+
+    least = generation
+    if (s%current%facts%operation > 1) least = 2
+    do g = generation, least, -1
+      found = any_try(s, g)
+      if (found .and. s%current%facts%operation > 1 .and. .not. file_exists(s%stem//'.'//mesh_name(g, 'restart.json'))) then
+        call look(s%stem//'.'//mesh_name(g - 1, 'end.h5'), old_end)
+        found = is_read(old_end)
+        if (found) found = is_first_mesh(old_end%facts)
+      end if
+      if (.not. found) cycle
+      generation = g
+      return
+    end do
+  end subroutine find_tries
 
   !> The try at hand: the one after those that were refused at this stop.
   subroutine read_try(stem, rows, new)
@@ -171,7 +195,7 @@ contains
 
     call read_json(join_path(s%folder, 'summary.json'), json)
     associate (facts => s%current%facts)
-      finished = number('exit_code') == 0 .and. number('steps') == facts%step .and. number('remeshings') == facts%generation - 1
+      finished = number('exit_code') == 0 .and. number('steps') == facts%step .and. number('remeshings') == facts%remeshings
     end associate
 
   contains

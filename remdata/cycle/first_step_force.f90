@@ -3,7 +3,7 @@
 !> The die is the one with the largest force at the last step of the old mesh. Its force in the last four steps is fitted by a
 !> straight line in time (least squares). The first full step is the first one that ends half a step of the old mesh, or more, after
 !> the remesh: what is shorter has hardly left the equilibrium of the restart. tests/cycle/force_changes.py does the same for all
-!> steps of a run.
+!> steps of a run. Steps of several operations foretell nothing: each has forces of its own.
 module first_step_force
   use kinds, only: wp
   implicit none
@@ -29,6 +29,7 @@ contains
     real(wp) :: time(-steps_before:steps_after), forces(-steps_before:steps_after), now, largest, foretold
     integer, allocatable :: columns(:)
     integer :: line, next, step, die, after, k
+    character(len=:), allocatable :: operation
     logical :: good
 
     change = 0
@@ -60,6 +61,11 @@ contains
       k = step - last
       ! steps up to the last are numbered -3 to 0
       if (k <= -steps_before .or. k > steps_after) cycle
+      if (.not. allocated(operation)) operation = operation_of(table, table(line:next - 2))
+      if (operation_of(table, table(line:next - 2)) /= operation) then
+        if (k <= 0) return
+        exit
+      end if
       time(k) = now
       forces(k) = force(die)
       after = k
@@ -113,6 +119,15 @@ contains
     end do
   end subroutine find_columns
 
+  !> What stands in the column of the operation, if there is one.
+  pure function operation_of(table, row) result(text)
+    character(len=*), intent(in) :: table, row
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (index(cell(table(:index(table, new_line('a')) - 1), 3), 'operation ') == 1) text = cell(row, 3)
+  end function operation_of
+
   !> Time, step and the size of the force on each die.
   pure subroutine read_row(row, columns, step, time, force, good)
     character(len=*), intent(in) :: row
@@ -144,6 +159,8 @@ contains
         good = good .and. status == 0
       end do
       if (good) force(k) = norm2(parts)
+      ! nan: a die of another operation
+      if (.not. force(k) >= 0) force(k) = 0
     end do
   end subroutine read_row
 

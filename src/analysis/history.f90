@@ -19,7 +19,7 @@ module history
   use text, only: string_t
   implicit none
   private
-  public :: open_history, write_row, circumference
+  public :: open_history, write_row, circumference, add_columns
 
 contains
 
@@ -31,30 +31,62 @@ contains
     factor = merge(2*pi, 1.0_wp, scene%plane_state == axisymmetric)
   end function circumference
 
-  !> Begin the table, or take it up again after the step of a checkpoint.
-  subroutine open_history(scene, solution, path, resume, table, error)
+  !> Begin the table, or take it up again after the step of a checkpoint. With operations it has the columns of all of them.
+  subroutine open_history(scene, solution, path, resume, all_columns, table, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     character(len=*), intent(in) :: path
     logical, intent(in) :: resume
+    type(string_t), allocatable, intent(in) :: all_columns(:)   !! (n) of a deck with operations
     type(csv_t), intent(inout) :: table
     type(error_t), allocatable, intent(out) :: error
-    type(string_t), allocatable :: columns(:)
+    type(string_t), allocatable :: columns(:), own(:)
+    integer :: k
 
     call name_columns(scene, columns)
+    if (allocated(all_columns)) then
+      call move_alloc(columns, own)
+      allocate (columns, source=all_columns)
+    end if
     if (resume) then
       call table%resume(path, columns, solution%step, error)
     else
       call table%create(path, columns, error)
     end if
+    if (allocated(own)) call table%take_columns([(place_among(columns, own(k)%s), k=1, size(own))])
   end subroutine open_history
+
+  !> Columns of a scene that the list does not have yet are added to it.
+  subroutine add_columns(scene, columns)
+    type(scene_t), intent(in) :: scene
+    type(string_t), allocatable, intent(inout) :: columns(:)   !! (n)
+    type(string_t), allocatable :: own(:)
+    integer :: k
+
+    call name_columns(scene, own)
+    if (.not. allocated(columns)) allocate (columns(0))
+    do k = 1, size(own)
+      if (place_among(columns, own(k)%s) == 0) columns = [columns, own(k:k)]
+    end do
+  end subroutine add_columns
+
+  !> Place of a name in a list, 0 where it is not.
+  pure function place_among(names, name) result(k)
+    type(string_t), intent(in) :: names(:)   !! (n)
+    character(len=*), intent(in) :: name
+    integer :: k
+
+    do k = size(names), 1, -1
+      if (names(k)%s == name) return
+    end do
+  end function place_among
 
   subroutine name_columns(scene, columns)
     type(scene_t), intent(in) :: scene
     type(string_t), allocatable, intent(out) :: columns(:)
     integer :: k, n
 
-    allocate (columns(14 + 6*size(scene%dies) - 3*count(is_deformable(scene%dies)) &
+    allocate (columns(14 + merge(1, 0, scene%operation > 0) + 6*size(scene%dies) - 3*count(is_deformable(scene%dies)) &
                       + merge(6, 0, scene%plane_state == generalised_plane_strain) &
                       + merge(2, 0, scene%follows_path) + merge(2, 0, scene%remesh%estimate) &
                       + merge(4, 0, has_heat(scene)) + 2*size(scene%die_heats) &
@@ -62,6 +94,7 @@ contains
     n = 0
     call add('time [time]')
     call add('step [-]')
+    if (scene%operation > 0) call add('operation [-]')
     call add('step_length [time]')
     call add('iterations [-]')
     call add('cutbacks [-]')
@@ -138,6 +171,7 @@ contains
     factor = circumference(scene)
     call table%put(solution%time)
     call table%put([solution%step])
+    if (scene%operation > 0) call table%put([scene%operation])
     call table%put(solution%last_step)
     call table%put([outcome%iterations, solution%cutbacks])
     call table%put(outcome%strain)

@@ -6,7 +6,8 @@ module march
   use bookkeeping, only: measure_scene
   use energy_books, only: start_stored
   use equations, only: set_up
-  use errors, only: error_t
+  use errors, only: error_t, exit_no_convergence, fail
+  use fields, only: displacement_field
   use estimator, only: set_up_estimator
   use history, only: open_history
   use judge_remesh, only: limit_lines, refuse_remesh
@@ -18,7 +19,7 @@ module march
   use point_drivers, only: start_drivers
   use probation, only: is_too_short, pass_probation, refuse_after_all
   use restart_report, only: write_restart
-  use restore_balance, only: restore_equilibrium
+  use restore_balance, only: balance_t, restore_equilibrium
   use results, only: open_results, save_fields
   use run_record, only: run_t, record, save_all, at_end
   use run_stop, only: stop_here, finish
@@ -149,10 +150,14 @@ contains
     if (.not. run%estimator%elastic) call list_note(run%listing, 'note: a law has no elastic moduli, so error_stress is in the ' &
                                                     //'norm of the deviator, not of the energy')
     if (.not. solution%initial_volume > 0) solution%initial_volume = run%totals%volume
-    if (new_mesh) call balance_new_mesh(scene, solution, run, error)
+    if (new_mesh .and. .not. run%begins_operation) then
+      call balance_new_mesh(scene, solution, run, error)
+    else if (new_mesh) then
+      call release_part(scene, solution, run, error)
+    end if
     if (allocated(error)) return
     call start_stored(run%totals, solution)
-    call open_history(scene, solution, join_path(run%folder, 'history.csv'), run%resume, run%table, error)
+    call open_history(scene, solution, join_path(run%folder, 'history.csv'), run%resume, run%columns, run%table, error)
     if (allocated(error)) return
     call open_results(scene, solution, run%stem, merge(solution%step, -1, run%resume), new_mesh, run%results, error)
     if (allocated(error)) return
@@ -163,6 +168,38 @@ contains
       call save_fields(scene, solution, run%results, error)
     end if
   end subroutine start
+
+  !> An operation begins: what the dies of the one before and its supports carried is taken off the part, at fixed time. What this
+  !> changes of the elastic energy is told apart, as on a new mesh.
+  subroutine release_part(scene, solution, run, error)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+    type(balance_t) :: balance
+    type(outcome_t) :: outcome
+
+    solution%friction_apart = solution%friction_work - run%totals%friction_work
+    run%totals%friction_work = solution%friction_work
+    solution%unbalanced = .false.
+    if (.not. scene%fields(displacement_field)%declared) return
+    balance%before = run%totals
+    call restore_equilibrium(scene, run%equations, solution, balance, outcome)
+    if (allocated(outcome%error)) then
+      call move_alloc(outcome%error, error)
+      return
+    end if
+    call list_balance(run%listing, scene, solution, balance, outcome)
+    if (.not. balance%restored) then
+      call fail(error, exit_no_convergence, 'operation '//scene%operation_name//': the part, released from the operation before, ' &
+                //'finds no equilibrium at time '//to_text(solution%time)//': '//balance%reason, &
+                'hold it by supports (FIXED) or by a die that it lies on, or lift the dies at the end of the operation before')
+      return
+    end if
+    run%totals = balance%after
+    call estimate_stress(scene, run%estimator, solution)
+    solution%estimate%first_stress = solution%estimate%stress
+  end subroutine release_part
 
   !> Equilibrium on a new mesh, judged; later steps begin from it.
   subroutine balance_new_mesh(scene, solution, run, error)

@@ -2,13 +2,15 @@
 module run_deck
   use atomic, only: refuse_place
   use blas, only: blas_buffer, blas_build, blas_core_name, keep_blas_to_one_thread
+  use cards_operations, only: list_operations, operations_t, read_operation
   use contact_ends, only: contact_end_t
   use deck_reader, only: deck_t, read_deck
   use diagnostics, only: diagnostics_t
   use equations, only: equations_t
-  use errors, only: error_t, exit_done, exit_input, exit_machine, exit_remesh, fail
+  use errors, only: error_t, exit_done, exit_input, exit_remesh, exit_signal, fail
   use exchange, only: open_checkpoint, read_deck_of_checkpoint, read_remesh, read_state, write_checkpoint
   use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
+  use history, only: add_columns
   use kinds, only: wp
   use law_api, only: law_t
   use law_manual, only: law_card, law_list
@@ -20,19 +22,19 @@ module run_deck
   use run_record, only: run_t
   use run_options, only: run_options_t, stem_of
   use run_version, only: blas_words, version_text
+  use next_operation, only: begin_operation, mesh_for_operation
   use physics_check, only: check_physics
   use remesh, only: remesh_t
   use remeshing, only: drop_triggers
   use scene, only: lacks_mesh, scene_t
   use scene_file, only: write_scene
-  use scene_reader, only: read_scene
   use scene_summary, only: scene_lines
   use solution, only: solution_t, start_solution
-  use standard_streams, only: print_lines
+  use standard_streams, only: print_line, print_lines
   use steel_files, only: fingerprint_with_files
   use summary, only: run_facts_t, summary_lines, write_summary
-  use system, only: catch_signals, directory_exists, join_path, make_directory, remove_file, wall_seconds
-  use text, only: join, nearest_word, string_t
+  use system, only: catch_signals, caught_signal, directory_exists, join_path, make_directory, remove_file, wall_seconds
+  use text, only: join, nearest_word, string_t, to_text
   use threads, only: start_team
   use unknowns_summary, only: unknowns_lines
   implicit none
@@ -62,6 +64,8 @@ contains
     integer, intent(out) :: code
     type(error_t), allocatable, intent(out) :: error
     type(deck_t), target :: deck
+    type(diagnostics_t), target :: diagnostics
+    type(operations_t) :: operations
     type(scene_t) :: scene
     type(solution_t) :: solution
     type(run_t) :: run
@@ -71,7 +75,7 @@ contains
 
     code = exit_done
     call keep_blas_to_one_thread()
-    call read_input(options, deck, scene, run%deck_text, at_rest, checkpoint, error)
+    call read_input(options, deck, diagnostics, operations, scene, run%deck_text, at_rest, checkpoint, error)
     run%resume = allocated(options%resume) .and. .not. at_rest
     if (.not. (allocated(error) .or. options%check)) then
       call start_solution(scene, solution)
@@ -82,10 +86,7 @@ contains
     call checkpoint%file%close(ignored)
     if (allocated(error)) return
     if (options%check) then
-      call print_check(options, scene, error)
-      if (allocated(error) .or. options%default_out) return
-      call make_directory(options%out, error)
-      if (.not. allocated(error)) call write_scene(join_path(options%out, stem_of(options%deck)//'.scene.json'), scene, error)
+      call check_deck(options, deck, diagnostics, operations, scene, error)
       return
     end if
     call make_directory(options%out, error)
@@ -98,10 +99,100 @@ contains
       call ask_for_mesh(options, scene, solution, run, error)
       code = exit_remesh
     else
+      if (operations%count > 0) allocate (run%columns, source=operations%columns)
       call run_and_report(options, scene, solution, run, error)
       code = run%exit_code
+      if (operations%count > 0) call go_on(options, deck, diagnostics, operations, scene, solution, run, &
+                                             code, error)
     end if
   end subroutine read_and_run
+
+  !> The operations that follow one that has come to its end, one after the other.
+  subroutine go_on(options, deck, diagnostics, operations, scene, solution, first, code, error)
+    type(run_options_t), intent(in) :: options
+    type(deck_t), intent(inout), target :: deck
+    type(diagnostics_t), intent(inout), target :: diagnostics   !! without mistakes so far
+    type(operations_t), intent(inout) :: operations
+    type(scene_t), intent(inout) :: scene
+    type(solution_t), intent(inout) :: solution
+    type(run_t), intent(in) :: first   !! of the operation that has ended
+    integer, intent(inout) :: code
+    type(error_t), allocatable, intent(inout) :: error
+    type(run_t), allocatable :: run
+    type(scene_t), allocatable :: next
+    type(solution_t), allocatable :: after
+
+    do while (.not. allocated(error) .and. code == exit_done .and. scene%operation < operations%count)
+      if (caught_signal() /= 0) then
+        code = exit_signal + caught_signal()
+        return
+      end if
+      allocate (run, next, after)
+      call read_next_operation(deck, diagnostics, operations, scene, solution%step, next, error)
+      if (allocated(error)) return
+      call begin_operation(scene, solution, next, after)
+      run%deck_path = first%deck_path
+      run%deck_text = first%deck_text
+      run%folder = first%folder
+      run%stem = first%stem
+      allocate (run%columns, source=first%columns)
+      run%resume = .true.
+      run%begins_operation = .true.
+      call run_and_report(options, next, after, run, error)
+      code = run%exit_code
+      scene = next
+      solution = after
+      deallocate (run, next, after)
+    end do
+  end subroutine go_on
+
+  !> The scene of the operation after that of a scene, on its mesh.
+  subroutine read_next_operation(deck, diagnostics, operations, scene, step, next, error)
+    type(deck_t), intent(inout), target :: deck
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(operations_t), intent(inout) :: operations
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: step
+    type(scene_t), intent(out) :: next
+    type(error_t), allocatable, intent(out) :: error
+    type(remesh_t) :: remesh
+
+    call mesh_for_operation(scene, step, remesh)
+    call read_operation(deck, operations, scene%operation + 1, next, diagnostics, remesh)
+    call diagnostics%error(error)
+  end subroutine read_next_operation
+
+  !> --check: every operation in words; for scripts where a folder is given.
+  subroutine check_deck(options, deck, diagnostics, operations, scene, error)
+    type(run_options_t), intent(in) :: options
+    type(deck_t), intent(inout), target :: deck
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(operations_t), intent(inout) :: operations
+    type(scene_t), intent(in) :: scene
+    type(error_t), allocatable, intent(out) :: error
+    type(scene_t), allocatable :: one
+    character(len=:), allocatable :: ending
+    integer :: k
+
+    if (.not. options%default_out) call make_directory(options%out, error)
+    do k = 1, max(operations%count, 1)
+      if (allocated(error)) return
+      allocate (one)
+      ending = '.scene.json'
+      if (k == max(scene%operation, 1)) then
+        one = scene
+      else
+        call read_operation(deck, operations, k, one, diagnostics)
+        call diagnostics%error(error)
+        if (allocated(error)) return
+      end if
+      if (operations%count > 0) ending = '.'//one%operation_name//ending
+      call print_check(options, one, error)
+      if (.not. (allocated(error) .or. options%default_out)) &
+        call write_scene(join_path(options%out, stem_of(options%deck)//ending), one, error)
+      deallocate (one)
+    end do
+  end subroutine check_deck
 
   !> Bodies that have contours alone: a checkpoint for the remesher, which makes the first mesh.
   subroutine ask_for_mesh(options, scene, solution, run, error)
@@ -128,18 +219,20 @@ contains
   end subroutine ask_for_mesh
 
   !> Deck and scene, with all mistakes at once.
-  subroutine read_input(options, deck, scene, text, at_rest, checkpoint, error)
+  subroutine read_input(options, deck, diagnostics, operations, scene, text, at_rest, checkpoint, error)
     type(run_options_t), intent(in) :: options
     type(deck_t), intent(out), target :: deck
+    type(diagnostics_t), intent(inout), target :: diagnostics   !! without mistakes
+    type(operations_t), intent(out) :: operations
     type(scene_t), intent(out) :: scene
     character(len=:), allocatable, intent(out) :: text
     logical, intent(out) :: at_rest   !! there is a new mesh, but no step has been made
     type(member_reader_t), intent(inout) :: checkpoint   !! open afterwards, where one is resumed
     type(error_t), allocatable, intent(out) :: error
-    type(diagnostics_t), target :: diagnostics
     type(remesh_t), allocatable :: remesh
     type(error_t), allocatable :: unfit
     logical :: sound
+    integer :: operation
 
     call read_deck(options%deck, options%overrides, deck, diagnostics)
     sound = diagnostics%count() == 0
@@ -148,8 +241,17 @@ contains
       call open_checkpoint(options%resume, checkpoint, unfit)
       if (.not. allocated(unfit)) call read_mesh_of(checkpoint, text, remesh, unfit)
     end if
+    call list_operations(deck, operations, diagnostics)
+    operation = 1
+    if (operations%count > 0) call read_all(deck, operations, diagnostics, scene)
+    if (allocated(remesh)) operation = max(remesh%operation, 1)
     ! A deck that could not be opened has no other mistakes.
-    if (sound .or. size(deck%cards) > 0) call read_scene(deck, scene, diagnostics, remesh)
+    if (operations%count > 0) then
+      if (allocated(remesh) .and. diagnostics%count() == 0 .and. operation <= operations%count) &
+        call read_operation(deck, operations, operation, scene, diagnostics, remesh)
+    else if (sound .or. size(deck%cards) > 0) then
+      call read_operation(deck, operations, operation, scene, diagnostics, remesh)
+    end if
     call diagnostics%error(error)
     if (allocated(remesh)) then
       if (scene%generation /= remesh%generation) then
@@ -164,6 +266,24 @@ contains
     if (at_rest) at_rest = remesh%step == 0
     if (.not. allocated(remesh)) at_rest = lacks_mesh(scene)
   end subroutine read_input
+
+  !> All operations on the deck's own mesh, for their mistakes, their times and the columns of the history; the first one's scene.
+  subroutine read_all(deck, operations, diagnostics, scene)
+    type(deck_t), intent(inout), target :: deck
+    type(operations_t), intent(inout) :: operations
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(scene_t), intent(out) :: scene
+    type(scene_t), allocatable :: one
+    integer :: k
+
+    do k = 1, operations%count
+      allocate (one)
+      call read_operation(deck, operations, k, one, diagnostics)
+      if (k == 1) scene = one
+      if (diagnostics%count() == 0) call add_columns(one, operations%columns)
+      deallocate (one)
+    end do
+  end subroutine read_all
 
   !> The mesh of a checkpoint, which must come from the same deck; not allocated when it is the deck's own.
   subroutine read_mesh_of(checkpoint, text, remesh, error)
@@ -206,10 +326,17 @@ contains
     if (allocated(error)) return
     ! the result of an earlier call is not that of this one: its summary and end are removed
     call remove_file(join_path(run%folder, 'summary.json'), error)
+    if (.not. allocated(error) .and. scene%operation > 0) &
+      call remove_file(join_path(run%folder, 'summary.'//scene%operation_name//'.json'), error)
     ! written only after a while
     if (.not. allocated(error)) call refuse_place(run%stem//'.ckp.h5', error)
     if (allocated(error)) return
-    if (run%resume) call list_resumed(run%listing, options%resume, solution)
+    if (run%begins_operation) then
+      call list_lines(run%listing, [string_t('operation '//scene%operation_name//' begins after step ' &
+                                             //to_text(solution%step)//', time '//to_text(solution%time))])
+    else if (run%resume) then
+      call list_resumed(run%listing, options%resume, solution)
+    end if
     call scene_lines(scene, lines)
     call list_lines(run%listing, lines)
     call look_at_deck(options, scene, lines, facts%warnings, error)
@@ -235,15 +362,26 @@ contains
     call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
     call list_lines(run%listing, lines)
     call close_listing(run%listing)
-    call write_summary(join_path(run%folder, 'summary.json'), facts, scene, run%equations, solution, run%totals, &
+    call write_summary(join_path(run%folder, summary_name(scene, run)), facts, scene, run%equations, solution, run%totals, &
                        run%balance, late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
     if (.not. (options%quiet .or. options%progress .or. allocated(error))) then
+      if (scene%operation > 0) call print_line('operation '//scene%operation_name, late)
       call print_lines(lines, late)
       ! scripts read first why a run has stopped
       if (allocated(late) .and. run%exit_code == exit_done) call move_alloc(late, error)
     end if
   end subroutine run_and_report
+
+  !> The summary of an operation that others follow has a name of its own.
+  pure function summary_name(scene, run) result(name)
+    type(scene_t), intent(in) :: scene
+    type(run_t), intent(in) :: run
+    character(len=:), allocatable :: name
+
+    name = 'summary.json'
+    if (run%exit_code == exit_done .and. scene%operation < scene%operations) name = 'summary.'//scene%operation_name//'.json'
+  end function summary_name
 
   !> --check: the scene in words.
   subroutine print_check(options, scene, error)
@@ -254,7 +392,9 @@ contains
 
     call scene_lines(scene, lines)
     allocate (more(0))
-    call look_at_deck(options, scene, table, warnings, error)
+    allocate (table(0), warnings(0))
+    ! the part with which a later operation begins is not known yet
+    if (scene%operation <= 1) call look_at_deck(options, scene, table, warnings, error)
     if (.not. (allocated(error) .or. lacks_mesh(scene))) call unknowns_lines(scene, more, error)
     if (allocated(error)) return
     call print_lines(lines, error)
@@ -273,6 +413,7 @@ contains
     type(law_t), allocatable :: laws(:)
     type(deck_t), target :: deck
     type(diagnostics_t), target :: diagnostics
+    type(operations_t) :: operations
     type(scene_t) :: own
 
     call list_laws(laws)
@@ -281,7 +422,8 @@ contains
       return
     end if
     call read_deck(options%deck, options%overrides, deck, diagnostics)
-    call read_scene(deck, own, diagnostics)
+    call list_operations(deck, operations, diagnostics)
+    call read_operation(deck, operations, 1, own, diagnostics)
     call diagnostics%error(error)
     if (.not. allocated(error)) call check_physics(own, laws, table, warnings)
     if (allocated(table)) deallocate (table)

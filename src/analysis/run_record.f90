@@ -20,6 +20,7 @@ module run_record
   use solution, only: present_coordinates, solution_t
   use state_variables, only: find_variable
   use system, only: caught_signal
+  use text, only: string_t
   use watch_mesh, only: mesh_is_due
   implicit none
   private
@@ -30,6 +31,10 @@ module run_record
     !> Folder of the results, path of the run's own files without endings; the deck's path and canonical text.
     character(len=:), allocatable :: folder, stem, deck_path, deck_text
     logical :: resume = .false.
+    !> An operation begins with the state that the one before has left.
+    logical :: begins_operation = .false.
+    !> Columns of the history of all operations; not allocated for a deck without any.
+    type(string_t), allocatable :: columns(:)
     type(equations_t) :: equations
     !> Set up where errors are estimated.
     type(estimator_t) :: estimator

@@ -57,6 +57,11 @@ contains
     call json%add('version', facts%version)
     call json%add('deck', facts%deck)
     call json%add('title', scene%title)
+    if (scene%operation > 0) then
+      call json%add('operation', scene%operation_name)
+      call json%add('operation_number', scene%operation)
+      call json%add('operations', scene%operations)
+    end if
     call json%begin_object('parameters')
     do k = 1, size(facts%overrides)
       associate (word => facts%overrides(k)%s)
@@ -73,7 +78,7 @@ contains
     call json%add('steps', solution%step)
     call json%add('iterations', solution%iterations)
     call json%add('cutbacks', solution%cutbacks)
-    call json%add('remeshings', scene%generation - 1)
+    call json%add('remeshings', scene%generation - max(scene%operation, 1))
     call json%add('initial_volume', circumference(scene)*solution%initial_volume)
     call json%add('wall_s', facts%wall)
     call json%add('cpu_s', cpu_seconds())

@@ -23,7 +23,7 @@ module scene_reader
   use cards_tractions, only: read_tractions
   use cards_weld, only: read_torches
   use cards_zones, only: read_zones
-  use deck_reader, only: deck_t, refuse_unknown
+  use deck_reader, only: deck_t, refuse_unknown, row_t
   use diagnostics, only: diagnostics_t, location_t
   use elem_api, only: declare_fields, elem_t
   use elem_registry, only: list_elems
@@ -129,7 +129,7 @@ contains
 
     call list_elems(elems)
     call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE START ' &
-                  //'FLUX CONVE RADIA HEATS GOLDAK COU2DC TDIE THETA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG LIC STRAT ' &
+                  //'OPERA FLUX CONVE RADIA HEATS GOLDAK COU2DC TDIE THETA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG LIC STRAT ' &
                   //'NORMS SOLVR STOP SAVE CKPT PROBE ESTIM REMSH ZPNT ZONE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
@@ -193,13 +193,7 @@ contains
         if (keywords(k)%s == deck%cards(i)%keyword) exit
       end do
       if (k <= size(keywords)) cycle
-      do k = 1, size(deck%cards(i)%head%fields)
-        associate (word => deck%cards(i)%head%fields(k)%text)
-          call draft%materials%mention(word)
-          call draft%multipliers%mention(word)
-          call draft%places%mention(word)
-        end associate
-      end do
+      call mention_words(deck%cards(i)%head, draft)
     end do
     call draft%materials%refuse_unused('LAW', '', diagnostics)
     call draft%multipliers%refuse_unused('LIC', '', diagnostics)
@@ -208,6 +202,7 @@ contains
     if (.not. draft%groups_sound) return
     do k = 1, size(draft%places%words)
       if (draft%places%keywords(k)%s /= 'DIE' .or. .not. draft%places%used(k)) cycle
+      if (is_named_elsewhere(deck, draft%places%words(k)%s)) cycle
       do g = 1, size(draft%scene%groups)
         if (draft%scene%groups(g)%die == draft%places%item(k) .and. draft%scene%groups(g)%role /= role_die_heat) exit
       end do
@@ -215,5 +210,34 @@ contains
                                                                //''' touches nothing: a CNT2D card must name it')
     end do
   end subroutine refuse_unused_names
+
+  !> Words of a card that is not read count as uses.
+  subroutine mention_words(row, draft)
+    type(row_t), intent(in) :: row
+    type(draft_t), intent(inout) :: draft
+    integer :: k
+
+    do k = 1, size(row%fields)
+      call draft%materials%mention(row%fields(k)%text)
+      call draft%multipliers%mention(row%fields(k)%text)
+      call draft%places%mention(row%fields(k)%text)
+    end do
+  end subroutine mention_words
+
+  !> Another operation names it.
+  pure function is_named_elsewhere(deck, word) result(yes)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: word
+    logical :: yes
+    integer :: i, k
+
+    yes = .false.
+    do i = 1, size(deck%cards)
+      if (.not. deck%cards(i)%elsewhere) cycle
+      do k = 1, size(deck%cards(i)%head%fields)
+        yes = yes .or. deck%cards(i)%head%fields(k)%text == word
+      end do
+    end do
+  end function is_named_elsewhere
 
 end module scene_reader

@@ -30,6 +30,8 @@ contains
     call list_elems(elems)
     call list_solvers(solvers)
     allocate (lines(0))
+    if (scene%operation > 0) call put('operation  '//to_text(scene%operation)//' of '//to_text(scene%operations)//': ' &
+                                      //scene%operation_name)
     call put('scene      '//scene%title)
     call put('           '//trim(plane_state_names(scene%plane_state))//thickness()//', kinematics '//scene%kinematics &
              //', until time '//to_text(scene%strategy%end_time))

@@ -22,6 +22,8 @@ module deck_card
     type(row_t), allocatable :: rows(:)
     !> A cursor has been opened on it.
     logical :: taken = .false.
+    !> It belongs to another operation than the one that is read, and has no keyword here.
+    logical :: elsewhere = .false.
   end type card_t
 
   !> A deck: its cards, and the text from which the same cards can be read again.
@@ -43,6 +45,7 @@ contains
     integer :: i, k
 
     do i = 1, size(deck%cards)
+      if (deck%cards(i)%elsewhere) cycle
       do k = 1, size(known_keywords)
         if (known_keywords(k)%s == deck%cards(i)%keyword) exit
       end do

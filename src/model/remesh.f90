@@ -17,8 +17,10 @@ module remesh
   end type elements_t
 
   type :: remesh_t
-    !> 1 for the deck's own mesh; nothing else is filled then.
+    !> 1 for the deck's own mesh; nothing but the operation is filled then.
     integer :: generation = 1
+    !> Operation that goes on, or begins, on it; 0 for a deck without any.
+    integer :: operation = 0
     !> Steps before this mesh; 0: the bodies are at rest on it, as the cards have them.
     integer :: step = 0
     !> Where the nodes are at the start of this mesh, and where their material was at the start of the first (2, nnode) [length].

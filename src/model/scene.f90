@@ -120,8 +120,11 @@ module scene
     type(remesher_options_t) :: remesher
     type(remesh_rules_t) :: remesh
     type(effect_t), allocatable :: effects(:)
-    !> Mesh generation, 1 for the deck's own mesh.
+    !> Mesh generation, 1 for the deck's own mesh; an operation begins one, whose elements are those of the one before.
     integer :: generation = 1
+    !> Place among the operations of the deck, how many there are, and its name; 0 and no name for a deck without any.
+    integer :: operation = 0, operations = 0
+    character(len=:), allocatable :: operation_name
   end type scene_t
 
 contains

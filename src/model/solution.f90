@@ -71,12 +71,14 @@ module solution
 contains
 
   !> Everything at rest: no displacement, pilots at their start, states at their declared values.
-  pure subroutine start_solution(scene, solution)
+  pure subroutine start_solution(scene, solution, time)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(out) :: solution
+    real(wp), intent(in), optional :: time   !! at which the scene begins, 0 where it is not given [time]
     integer :: g, v, c, npoint, nsolid
 
-    call start_fields(scene, solution%fields)
+    if (present(time)) solution%time = time
+    call start_fields(scene, solution%time, solution%fields)
     solution%next_step = scene%strategy%first_step
     call start_pairs(scene, solution%pairs)
     call start_path(scene, solution%path)
@@ -104,8 +106,9 @@ contains
 
   !> All fields at rest: zero, the pilots and the section where the scene has them. A field on nodes that no element declares has
   !> no values; pilots and section have theirs in any case, since they place the dies and give the third direction.
-  pure subroutine start_fields(scene, fields)
+  pure subroutine start_fields(scene, time, fields)
     type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: time   !! [time]
     type(field_t), allocatable, intent(out) :: fields(:)
     integer :: k, d
 
@@ -135,7 +138,7 @@ contains
       associate (heat => scene%die_heats(d))
         fields(k)%value(1, heat%die) = heat%temperature
         if (heat%multiplier > 0) fields(k)%value(1, heat%die) = heat%temperature*multiplier_at(scene%multipliers(heat%multiplier), &
-                                                                                              0.0_wp)
+                                                                                              time)
       end associate
     end do
   end subroutine start_fields

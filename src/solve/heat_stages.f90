@@ -72,7 +72,7 @@ contains
     logical :: bounded
 
     bounded = has_bounds(scene, equations)
-    if (scene%strategy%scheme == scheme_tr_bdf2 .and. solution%step > 0) then
+    if (scene%strategy%scheme == scheme_tr_bdf2 .and. solution%last_step > 0) then
       call solve_two_stages(scene, equations, solution, dt, outcome, given)
       if (outcome%converged .and. bounded) outcome%heat%excess = excess_of_temperature(scene, equations, solution, dt, outcome%du)
       if (outcome%heat%excess > 0 .and. on_corners_alone(scene)) then
@@ -244,7 +244,7 @@ contains
     logical :: two_stages
 
     if (.not. (outcome%heat%estimated .and. scene%strategy%time_tolerance > 0)) return
-    two_stages = scene%strategy%scheme == scheme_tr_bdf2 .and. solution%step > 0 .and. .not. outcome%heat%fell_back
+    two_stages = scene%strategy%scheme == scheme_tr_bdf2 .and. solution%last_step > 0 .and. .not. outcome%heat%fell_back
     order = merge(2.0_wp, 1.0_wp, two_stages)
     factor = huge(factor)
     if (outcome%heat%error > 0) factor = safety*(scene%strategy%time_tolerance/outcome%heat%error)**(1/(order + 1))

@@ -39,7 +39,8 @@ contains
     real(wp) :: ratio
     integer :: k
 
-    call prescribed_motion(scene, equations%dofs, solution%fields, solution%step == 0, solution%time, solution%time + dt, motion)
+    call prescribed_motion(scene, equations%dofs, solution%fields,.not. solution%last_step > 0, solution%time, &
+                           solution%time + dt, motion)
     fixed = .not. equations%solves(equations%now)%is_own
     if (present(go_on)) fixed = fixed .or. go_on
     ratio = 0

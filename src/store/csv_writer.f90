@@ -17,6 +17,8 @@ module csv_writer
 
   !> The column of the step, which `resume` reads; the first one is the time.
   integer, parameter :: step_column = 2
+  !> In columns that a row has no value for: readers of numbers take it.
+  character(len=*), parameter :: empty_cell = 'nan'
 
   !> A table open for writing. It keeps its first error; later calls then do nothing.
   type :: csv_t
@@ -25,12 +27,15 @@ module csv_writer
     character(len=:), allocatable :: row   !! the cells of the row in the making
     integer :: ncolumn = 0
     integer :: ncell = 0
+    !> Columns of the cells of a row where others stay empty; not allocated where rows have all cells.
+    integer, allocatable :: places(:)
     integer(i8) :: length = 0   !! of the file so far, in bytes
     logical :: ready = .false.
     type(error_t), allocatable :: first_error
   contains
     procedure :: create
     procedure :: resume
+    procedure :: take_columns
     procedure :: end_row
     procedure :: flush_rows
     procedure :: status
@@ -180,6 +185,7 @@ contains
     class(csv_t), intent(inout) :: self
 
     if (.not. self%ready .or. allocated(self%first_error)) return
+    if (allocated(self%places)) call spread_cells(self)
     if (self%ncell == self%ncolumn) then
       call self%append(self%row//new_line('a'))
     else
@@ -188,6 +194,34 @@ contains
     self%row = ''
     self%ncell = 0
   end subroutine end_row
+
+  !> Rows that follow have cells for these columns of the table, in this order; the other cells are `nan`.
+  subroutine take_columns(self, places)
+    class(csv_t), intent(inout) :: self
+    integer, intent(in) :: places(:)   !! (n) numbers of columns
+
+    self%places = places
+  end subroutine take_columns
+
+  !> Put the cells of the row into their columns.
+  subroutine spread_cells(self)
+    class(csv_t), intent(inout) :: self
+    type(string_t) :: cells(self%ncolumn)
+    integer :: k, first, length
+
+    if (self%ncell /= size(self%places)) return
+    do k = 1, self%ncolumn
+      cells(k)%s = empty_cell
+    end do
+    first = 1
+    do k = 1, self%ncell
+      length = index(self%row(first:)//',', ',') - 1
+      cells(self%places(k))%s = self%row(first:first + length - 1)
+      first = first + length + 1
+    end do
+    self%row = join(cells, ',')
+    self%ncell = self%ncolumn
+  end subroutine spread_cells
 
   !> Add a line to the file. gfortran's flush and close do not report a full disk, its `inquire` of
   !> the length of a closed file shows it.
@@ -250,6 +284,7 @@ contains
     self%row = ''
     self%ncolumn = size(columns)
     self%ncell = 0
+    if (allocated(self%places)) deallocate (self%places)
   end subroutine begin
 
   !> The table is open for rows, unless there was an error.

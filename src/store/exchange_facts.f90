@@ -15,6 +15,8 @@ module exchange_facts
   !> A checkpoint in short: where the run stands, on which mesh, and why a new one is due (no triggers: it is not).
   type :: checkpoint_facts_t
     integer :: generation = 1, step = 0, elements = 0
+    !> Operation, 0 in a deck without any; and new meshes so far: a generation that only begins an operation is none.
+    integer :: operation = 0, remeshings = 0
     real(wp) :: time = 0.0_wp
     !> State carried over to a new mesh, not yet in equilibrium.
     logical :: unbalanced = .false.
@@ -49,6 +51,8 @@ contains
     call reader%file%close(ignored)
     if (allocated(error)) return
     facts%generation = scene%generation
+    facts%operation = scene%operation
+    facts%remeshings = scene%generation - max(scene%operation, 1)
     do g = 1, size(scene%groups)
       if (is_solid(scene%groups(g))) facts%elements = facts%elements + size(scene%groups(g)%connectivity, 2)
     end do

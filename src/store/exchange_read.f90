@@ -8,6 +8,7 @@ module exchange_read
   use exchange_schema, only: deck_source_t, visit_deck_source
   use hash, only: sha256
   use member_reader, only: member_reader_t
+  use next_operation, only: remesh_of
   use remesh, only: remesh_t
   use scene, only: scene_t
   use solution, only: solution_t, start_solution
@@ -67,32 +68,21 @@ contains
     call reader%file%status(error)
   end subroutine read_state
 
-  !> The mesh of a checkpoint, when it is not the deck's own: then only `generation` is filled, and it is 1.
+  !> The mesh of a checkpoint, when it is not the deck's own: then only generation, which is 1, and operation are filled.
   subroutine read_remesh(reader, remesh, error)
     type(member_reader_t), intent(inout) :: reader
     type(remesh_t), intent(out) :: remesh
     type(error_t), allocatable, intent(out) :: error
     type(scene_t) :: scene
     type(solution_t) :: solution
-    integer :: g
 
     call read_bare_scene(reader, scene, error)
-    if (allocated(error) .or. scene%generation == 1) return
+    if (allocated(error)) return
+    remesh%operation = scene%operation
+    if (scene%generation == 1) return
     call start_solution(scene, solution)
     call read_state(reader, scene, solution, error)
-    if (allocated(error)) return
-    remesh%generation = scene%generation
-    remesh%step = solution%step
-    remesh%coordinates = scene%mesh%coordinates
-    remesh%origin = scene%mesh%origin
-    remesh%own_mesh = scene%remesher%own_mesh
-    allocate (remesh%sides, source=scene%mesh%sides)
-    allocate (remesh%groups(size(scene%groups)))
-    do g = 1, size(scene%groups)
-      remesh%groups(g)%name = scene%groups(g)%name
-      remesh%groups(g)%role = scene%groups(g)%role
-      remesh%groups(g)%connectivity = scene%groups(g)%connectivity
-    end do
+    if (.not. allocated(error)) call remesh_of(scene, solution%step, remesh)
   end subroutine read_remesh
 
   !> Where contact begins and ends at the instant of a checkpoint.

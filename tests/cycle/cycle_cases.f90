@@ -101,6 +101,7 @@ contains
 
     file%found = .true.
     file%facts%generation = generation
+    file%facts%remeshings = generation - 1
     file%facts%step = step
     file%facts%elements = 12*generation
     file%facts%time = step/60.0_wp

@@ -146,9 +146,9 @@ def history(folder):
     return {name: [float(row[k]) for row in rows[1:]] for k, name in enumerate(names)}
 
 
-def summary(folder):
-    """summary.json."""
-    with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
+def summary(folder, name="summary.json"):
+    """summary.json, or that of an operation."""
+    with open(os.path.join(folder, name), encoding="utf-8") as file:
         return json.load(file)
 
 
@@ -202,7 +202,7 @@ def result_differences(first, second):
              for path in glob.glob(os.path.join(folder, "**"), recursive=True) if os.path.isfile(path)}
     for name in sorted(names):
         one, two = os.path.join(first, name), os.path.join(second, name)
-        if name.endswith((".log", ".1.h5")) or name == "summary.json":
+        if name.endswith((".log", ".1.h5")) or (name.startswith("summary.") and name.endswith(".json")):
             continue
         if not (os.path.isfile(one) and os.path.isfile(two)):
             wrong.append(f"{name} is not in both folders")

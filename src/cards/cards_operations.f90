@@ -1,0 +1,160 @@
+!> OPERA: operations in a chain, one after the other on the same bodies.
+!>
+!> Cards before the first OPERA card belong to all operations, those behind an OPERA card to its operation alone. Every operation is
+!> read as a deck of its own, from the common cards and its own; names on cards of the others count as used there.
+module cards_operations
+  use card_names, only: names_t
+  use cards_mesh, only: is_body_elem
+  use deck_cursor, only: cursor_t
+  use deck_reader, only: deck_t
+  use diagnostics, only: diagnostics_t, location_t
+  use elem_api, only: elem_t
+  use elem_registry, only: list_elems
+  use kinds, only: wp
+  use remesh, only: remesh_t
+  use scene, only: scene_t
+  use scene_draft, only: head_location, words_of
+  use scene_reader, only: read_scene
+  use text, only: string_t
+  implicit none
+  private
+  public :: operations_t, list_operations, read_operation
+
+  character(len=*), parameter :: keyword = 'OPERA'
+
+  !> The operations of a deck.
+  type :: operations_t
+    !> How many there are; 0 for a deck without any.
+    integer :: count = 0
+    type(string_t), allocatable :: names(:)
+    !> First and last card of each, its own OPERA card among them.
+    integer, allocatable :: first(:), last(:)
+    !> Time at which each ends, all clocks added up (n) [time]: known once the operation has been read.
+    real(wp), allocatable :: ends(:)
+    !> Columns of the history of all of them.
+    type(string_t), allocatable :: columns(:)
+  end type operations_t
+
+contains
+
+  !> The OPERA cards of a deck, and what must not stand behind them.
+  subroutine list_operations(deck, operations, diagnostics)
+    type(deck_t), intent(inout), target :: deck
+    type(operations_t), intent(out) :: operations
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(string_t), allocatable :: refused(:)
+    type(names_t) :: names
+    type(cursor_t) :: cursor
+    type(string_t) :: word(1)
+    integer :: i
+
+    call names%clear()
+    call list_refused(refused)
+    allocate (operations%names(0), operations%first(0), operations%last(0))
+    do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword == keyword) then
+        call cursor%open(deck%cards(i), diagnostics)
+        call names%define(cursor, 'the name of the operation', keyword, i, diagnostics, word(1)%s)
+        call cursor%end_card()
+        operations%count = operations%count + 1
+        operations%names = [operations%names, word]
+        operations%first = [operations%first, i]
+        operations%last = [operations%last, i]
+      else if (operations%count > 0) then
+        operations%last(operations%count) = i
+        call refuse_shared(deck, i, refused, diagnostics)
+      end if
+    end do
+    allocate (operations%ends(operations%count), source=0.0_wp)
+    if (operations%count == 0) return
+    do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword == 'TEMPE') call diagnostics%add(head_location(deck%cards(i)), 'TEMPE', &
+        'temperatures of a deck with operations are computed: expected ADDEL and START in its place')
+    end do
+  end subroutine list_operations
+
+  !> What all operations share stands before the first of them.
+  subroutine refuse_shared(deck, i, refused, diagnostics)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: i   !! number of the card
+    type(string_t), intent(in) :: refused(:)   !! (nkeyword)
+    type(diagnostics_t), intent(inout) :: diagnostics
+    integer :: k
+
+    do k = 1, size(refused)
+      if (deck%cards(i)%keyword == refused(k)%s) call diagnostics%add(head_location(deck%cards(i)), refused(k)%s, &
+        'all operations share it: expected before the first OPERA card')
+    end do
+  end subroutine refuse_shared
+
+  !> Keywords of cards that make bodies, their laws' formulations and their state.
+  subroutine list_refused(keywords)
+    type(string_t), allocatable, intent(out) :: keywords(:)   !! (nkeyword)
+    type(elem_t), allocatable :: elems(:)
+    type(string_t) :: more(1)
+    integer :: k
+
+    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL START', keywords)
+    call list_elems(elems)
+    do k = 1, size(elems)
+      if (.not. is_body_elem(elems(k))) cycle
+      more(1)%s = elems(k)%name
+      keywords = [keywords, more]
+    end do
+  end subroutine list_refused
+
+  !> The scene of an operation, by its number; on another mesh where one is given. Its clock begins where that of the operation
+  !> before has ended: those before must have been read. A deck without operations is read as it is.
+  subroutine read_operation(deck, operations, k, scene, diagnostics, remesh)
+    type(deck_t), intent(inout), target :: deck
+    type(operations_t), intent(inout) :: operations
+    integer, intent(in) :: k
+    type(scene_t), intent(out) :: scene
+    type(diagnostics_t), intent(inout), target :: diagnostics
+    type(remesh_t), intent(in), optional :: remesh
+    type(deck_t), target :: part
+    real(wp) :: begins
+    integer :: i, mistakes
+
+    if (operations%count == 0) then
+      call read_scene(deck, scene, diagnostics, remesh)
+      return
+    end if
+    part = deck
+    do i = operations%first(1), size(part%cards)
+      if (i >= operations%first(k) .and. i <= operations%last(k)) cycle
+      part%cards(i)%elsewhere = .true.
+      part%cards(i)%keyword = ''
+    end do
+    mistakes = diagnostics%count()
+    call read_scene(part, scene, diagnostics, remesh)
+    scene%operation = k
+    scene%operations = operations%count
+    scene%operation_name = operations%names(k)%s
+    if (diagnostics%count() > mistakes) return
+    begins = 0
+    if (k > 1) begins = operations%ends(k - 1)
+    operations%ends(k) = begins + scene%strategy%end_time
+    if (k > 1) call delay(begins, scene)
+  end subroutine read_operation
+
+  !> Times of an operation count from its beginning; those of a run go on.
+  pure subroutine delay(begins, scene)
+    real(wp), intent(in) :: begins   !! [time]
+    type(scene_t), intent(inout) :: scene
+    integer :: i
+
+    scene%strategy%end_time = begins + scene%strategy%end_time
+    scene%strategy%save_times = begins + scene%strategy%save_times
+    do i = 1, size(scene%multipliers)
+      scene%multipliers(i)%time = begins + scene%multipliers(i)%time
+    end do
+    if (allocated(scene%remesh%times)) scene%remesh%times = begins + scene%remesh%times
+    if (.not. allocated(scene%sources)) return
+    do i = 1, size(scene%sources)
+      scene%sources(i)%crossing_time = begins + scene%sources(i)%crossing_time
+      if (allocated(scene%sources(i)%path)) scene%sources(i)%path(1, :) = begins + scene%sources(i)%path(1, :)
+    end do
+  end subroutine delay
+
+end module cards_operations

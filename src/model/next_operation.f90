@@ -1,0 +1,170 @@
+!> What an operation takes over from the one before: the bodies with their mesh, motion, temperatures and the state of their points.
+!>
+!> Dies, loads and contacts are those of the operation. A contact that both have, of the same sides with the same die at the same
+!> place, goes on. The mesh is that of the one before, as a generation of its own: files and remeshing know nothing of operations.
+module next_operation
+  use dies, only: die_t, is_deformable
+  use fields, only: find_field, on_nodes, on_section, pilot_field
+  use kinds, only: eps, wp
+  use remesh, only: remesh_t
+  use scene, only: group_t, scene_t
+  use solution, only: solution_t, start_solution
+  use state_variables, only: find_variable
+  implicit none
+  private
+  public :: begin_operation, mesh_for_operation, remesh_of
+
+  !> What many small motions leave of their sum, over the size of what moves.
+  real(wp), parameter :: round_off = 1.0e4_wp*eps
+
+contains
+
+  !> The mesh of a scene, for the cards.
+  pure subroutine remesh_of(scene, step, remesh)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: step   !! steps made so far
+    type(remesh_t), intent(inout) :: remesh
+    integer :: g
+
+    remesh%generation = scene%generation
+    remesh%operation = scene%operation
+    remesh%step = step
+    remesh%coordinates = scene%mesh%coordinates
+    remesh%origin = scene%mesh%origin
+    remesh%own_mesh = scene%remesher%own_mesh
+    allocate (remesh%sides, source=scene%mesh%sides)
+    allocate (remesh%groups(size(scene%groups)))
+    do g = 1, size(scene%groups)
+      remesh%groups(g)%name = scene%groups(g)%name
+      remesh%groups(g)%role = scene%groups(g)%role
+      remesh%groups(g)%connectivity = scene%groups(g)%connectivity
+    end do
+  end subroutine remesh_of
+
+  !> The same for the operation that follows.
+  pure subroutine mesh_for_operation(scene, step, remesh)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: step   !! steps made so far
+    type(remesh_t), intent(out) :: remesh
+
+    call remesh_of(scene, step, remesh)
+    remesh%generation = scene%generation + 1
+    remesh%operation = scene%operation + 1
+  end subroutine mesh_for_operation
+
+  !> The state with which an operation begins. The part is in equilibrium with the dies of the one before: it is `unbalanced`.
+  pure subroutine begin_operation(old, before, new, after)
+    type(scene_t), intent(in) :: old
+    type(solution_t), intent(in) :: before
+    type(scene_t), intent(in) :: new
+    type(solution_t), intent(out) :: after
+    type(solution_t) :: fresh
+    integer :: f, g, k
+
+    call start_solution(new, fresh, before%time)
+    after = before
+    after%unbalanced = .true.
+    after%next_step = fresh%next_step
+    after%last_step = 0
+    after%probation = fresh%probation
+    after%largest_force = 0
+    after%friction_apart = 0
+    after%path%error = fresh%path%error
+    after%estimate = fresh%estimate
+    after%estimate%last_stop = before%step
+    after%fields = fresh%fields
+    do f = 1, size(after%fields)
+      k = find_field(before%fields, after%fields(f)%name)
+      if (k == 0 .or. .not. any(after%fields(f)%place == [on_nodes, on_section])) cycle
+      if (all(shape(before%fields(k)%value) == shape(after%fields(f)%value))) after%fields(f)%value = before%fields(k)%value
+    end do
+    after%groups = fresh%groups
+    after%pairs = fresh%pairs
+    do g = 1, size(new%groups)
+      k = same_group(old, before, new, fresh, g)
+      if (k == 0) cycle
+      call take_state(old%groups(k), before%groups(k)%committed, new%groups(g), after%groups(g)%committed)
+      after%groups(g)%trial = after%groups(g)%committed
+      if (new%groups(g)%pairs == 0 .or. new%groups(g)%host > 0 .or. old%groups(k)%pairs == 0) cycle
+      if (all(shape(after%pairs(new%groups(g)%pairs)%piece) == shape(before%pairs(old%groups(k)%pairs)%piece))) &
+        after%pairs(new%groups(g)%pairs)%piece = before%pairs(old%groups(k)%pairs)%piece
+    end do
+  end subroutine begin_operation
+
+  !> The group of the operation before that goes on as this one, 0 where there is none.
+  pure function same_group(old, before, new, fresh, g) result(k)
+    type(scene_t), intent(in) :: old, new
+    type(solution_t), intent(in) :: before, fresh
+    integer, intent(in) :: g   !! place in the new list
+    integer :: k
+    logical :: same
+
+    associate (group => new%groups(g))
+      do k = 1, size(old%groups)
+        associate (other => old%groups(k))
+          same = other%name == group%name .and. other%role == group%role .and. other%elem == group%elem &
+                 .and. other%rule%n == group%rule%n .and. all(shape(other%connectivity) == shape(group%connectivity))
+          if (same) same = all(other%connectivity == group%connectivity) .and. (other%die > 0 .eqv. group%die > 0)
+          if (same .and. group%die > 0) same = same_die(old%dies(other%die), new%dies(group%die)) &
+            .and. same_place(old%dies(other%die), place_of(before, other%die), place_of(fresh, group%die))
+          if (same) return
+        end associate
+      end do
+    end associate
+    k = 0
+  end function same_group
+
+  !> Where a die stands (x, y, angle).
+  pure function place_of(solution, die) result(place)
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: die
+    real(wp) :: place(3)   !! [length], [length], [rad]
+
+    place = solution%fields(pilot_field)%value(:, die)
+  end function place_of
+
+  !> Does a die stand at one place, but for round-off of its motion?
+  pure function same_place(die, one, other) result(same)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: one(3), other(3)   !! x, y, angle [length], [length], [rad]
+    logical :: same
+    real(wp) :: size_of_die
+
+    size_of_die = max(maxval(abs(die%pieces)), maxval(abs(one(1:2))))
+    same = all(abs(one - other) <= round_off*[size_of_die, size_of_die, 1.0_wp])
+  end function same_place
+
+  !> Two dies of one name and one shape.
+  pure function same_die(a, b) result(same)
+    type(die_t), intent(in) :: a, b
+    logical :: same
+
+    same = a%name == b%name .and. (is_deformable(a) .eqv. is_deformable(b))
+    if (.not. same) return
+    if (is_deformable(a)) then
+      same = all(shape(a%nodes) == shape(b%nodes))
+      if (same) same = all(a%nodes == b%nodes)
+    else
+      same = all(shape(a%pieces) == shape(b%pieces))
+      if (same) same = all(a%pieces == b%pieces)
+    end if
+  end function same_die
+
+  !> The state of points, variable by variable; one that the operation before did not have begins at its declared value.
+  pure subroutine take_state(old, before, new, after)
+    type(group_t), intent(in) :: old, new
+    real(wp), intent(in) :: before(:, :, :)     !! (component, point, element) [unit of the variable]
+    real(wp), intent(inout) :: after(:, :, :)   !! (component, point, element) [unit of the variable]
+    integer :: v, k, n
+
+    do v = 1, size(new%variables)
+      k = find_variable(old%variables, new%variables(v)%name)
+      if (k == 0) cycle
+      n = new%variables(v)%ncomp
+      if (old%variables(k)%ncomp /= n) cycle
+      after(new%variables(v)%first:new%variables(v)%first + n - 1, :, :) = &
+        before(old%variables(k)%first:old%variables(k)%first + n - 1, :, :)
+    end do
+  end subroutine take_state
+
+end module next_operation

@@ -1,0 +1,170 @@
+#!/usr/bin/env python3
+"""Operations in a chain (OPERA): what the part takes from one to the next, meshes on the way, resumed runs.
+
+usage: run_operations.py [-v] [-k]
+
+- `split`: a stroke in two operations, the die of the second where that of the first has stopped, is the stroke in one.
+- `release`: an operation without dies leaves the part as a die that is lifted does.
+- `strokes`: press, release, press with another die; stopped anywhere and resumed to the same bits; with a new mesh in each
+  operation the same part, by one command, also where that is stopped.
+"""
+import os
+import signal
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "runs"))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "cycle"))
+from remeshed import cycle, tries, within_limits  # noqa: E402
+from support import DONE, SIGNAL, Checks, history, result_differences, run, said, start, stop_after, summary, with_h5py, write  # noqa: E402
+
+HEAD = """TITLE  Block pressed in operations
+STATE  PLSTN
+KINEM  LOG
+BLOCK  block PL8LS 4 metal
+   0. 0.   10. 0.   10. 10.   0. 10.
+   6 1.   6 1.
+LAW    metal EPLA
+   70000. 0.33
+   LINEAR 200. 200.
+LAW    film COUL2D
+   PENETR 1.E-3   PHI 0.1   AUGMENT 10
+FIXED  block 1 Y
+FIXED  block 4 X
+NORMS  FORCE 1.E-9 DISPL 1.E-8
+PROBE  corner NODE UY 10. 10.
+PROBE  width NODE UX 10. 0.
+PROBE  plastic MEAN plastic_strain block
+CKPT   1
+"""
+STEP = "STRAT  0.05 1.E-6 0.05   9 3\n"
+REMESH = "REMSH\n   SIZE 0.8 2.\n   TIMES "
+
+
+def flat(y, stroke, time=1.0, more=""):
+    """A flat die that goes down from y."""
+    return (f"DIE    upper PILOT 0. {y}\n   SEGM   40. {y}   -1. {y}\nCNT2D  block 3 upper -3 film\n"
+            f"LIC    press\n   0. 0.   {time} {-stroke}{more}\nMOVE   upper Y press\n")
+
+
+PUNCH = """DIE    punch PILOT 0. 9.2
+   SEGM   4. 20.   4. 9.2
+   FILLT  1. 1.E-3
+   SEGM   4. 9.2   -1. 9.2
+CNT2D  block 3 punch -3 film
+LIC    press
+   0. 0.   1. -0.6
+MOVE   punch Y press
+"""
+RELEASE = "OPERA  release\nSTOP   0.1\nSTRAT  0.05 1.E-6 0.1   6 3\n"
+STROKES = "OPERA  upset\n" + flat(10.0, 1.0) + STEP + RELEASE + "OPERA  indent\n" + PUNCH + STEP
+
+
+def done(checks, name, text):
+    """A deck run to its end: its path and its folder."""
+    deck, out = write(checks.path(name + ".lag"), text + "END\n"), checks.path(name)
+    result = run([deck, "--out", out, "--threads", "1"])
+    checks.that(result.returncode == DONE, f"{name} ends", said(result))
+    return deck, out
+
+
+def near(checks, what, one, two, columns, limit):
+    """The last rows agree."""
+    for column in columns:
+        a, b = one[column][-1], two[column][-1]
+        checks.that(abs(a - b) <= limit * abs(b), f"{what}: {column} within {limit:g}", (a, b))
+
+
+def split(checks):
+    """One stroke, whole and in two parts; then released, and with the die lifted."""
+    _, whole = done(checks, "whole", HEAD + STEP + flat(10.0, 1.0))
+    _, parts = done(checks, "parts", HEAD + STEP + "OPERA one\n" + flat(10.0, 0.5, 0.5) + "OPERA two\n" + flat(9.5, 0.5, 0.5))
+    one, two = history(parts), history(whole)
+    near(checks, "split", one, two, ("force_y_upper", "corner", "width", "plastic", "plastic_work", "friction_work"), 1e-8)
+    checks.that(list(one["operation"]) == sorted(one["operation"]) and set(one["operation"]) == {1, 2}, "split: column of operations")
+    checks.that(abs(one["time"][-1] - 1) < 1e-12, "split: the clock of the run goes on", one["time"][-1])
+    for name, place in (("summary.one.json", 1), ("summary.json", 2)):
+        told = summary(parts, name)
+        checks.that(told["operation_number"] == place and told["remeshings"] == 0, f"split: {name}", told["operation_number"])
+    _, lifted = done(checks, "lifted", HEAD + STEP + flat(10.0, 1.0, 1.0, "   1.1 -0.5"))
+    _, free = done(checks, "free", HEAD + "OPERA  press\n" + flat(10.0, 1.0) + STEP + RELEASE)
+    near(checks, "release", history(free), history(lifted), ("corner", "width", "plastic"), 2e-5)
+    checks.that(abs(summary(free)["checks"]["energy_imbalance"]) < 0.01, "release: energy", summary(free)["checks"]["energy_imbalance"])
+
+
+def strokes(checks):
+    """Three operations: bits after stops, and with meshes."""
+    deck, whole = done(checks, "strokes", HEAD + STROKES)
+    rows = history(whole)
+    checks.that(rows["operation"][-1] == 3 and rows["force_y_upper"][-1] != rows["force_y_upper"][-1], "no die, no force: nan")
+    drift = summary(whole)["checks"]["volume_drift_unloaded"]
+    checks.that(abs(drift) < 1e-9, "plastic flow keeps the volume through all operations", drift)
+    last = [list(rows["operation"]).index(k) for k in (2, 3)]
+    for k, row in enumerate((3, last[0] - 1, last[0], last[1] + 2)):
+        out = checks.path(f"stopped-{k}")
+        code, _, stderr = stop_after(start([deck, "--out", out, "--threads", "1"]), out, row, signal.SIGTERM, 0)
+        checks.that(code in (SIGNAL + signal.SIGTERM, DONE), f"stopped after {row} rows", f"{code} {stderr}")
+        if code != DONE:
+            result = run([deck, "--out", out, "--threads", "1", "--resume", os.path.join(out, "strokes.ckp.h5")])
+            checks.that(result.returncode == DONE, f"resumed after {row} rows", said(result))
+        wrong = result_differences(whole, out)
+        checks.that(not wrong, f"after {row} rows as in one go", "; ".join(wrong))
+    meshes(checks, rows)
+
+
+def meshes(checks, plain):
+    """A new mesh in each operation, by one command, and stopped on the way."""
+    text = HEAD.replace("CKPT   1\n", "") + STROKES.replace(STEP, STEP + REMESH + "0.05 0.5\n") + "END\n"
+    text = text.replace(RELEASE, RELEASE + REMESH + "0.05\n")
+    deck, out = write(checks.path("meshes.lag"), text), checks.path("meshes")
+    result = cycle(deck, out, "--quiet")
+    if not checks.that(result.returncode == DONE, "with new meshes", result.stdout + result.stderr):
+        return
+    made = [(int(t["generation [-]"]), t["accepted"]) for t in tries(out)]
+    checks.that(made == [(2, "y"), (3, "y"), (5, "y"), (7, "y"), (8, "y")], "meshes 4 and 6 begin operations, the others are new", made)
+    checks.that(summary(out)["remeshings"] == 5, "summary counts new meshes", summary(out)["remeshings"])
+    within_limits(checks, out)
+    near(checks, "with new meshes", history(out), plain, ("width", "plastic", "corner"), 0.03)
+    drift = summary(out)["checks"]["volume_drift_unloaded"]
+    checks.that(abs(drift) < 1e-3, "volume through operations and meshes", drift)
+    again = checks.path("again")
+    for row in (10, 25):
+        code, _, _ = stop_after(start_cycle(deck, again), again, row, signal.SIGTERM, 0)
+        checks.that(code in (SIGNAL + signal.SIGTERM, DONE), f"cycle stopped after {row} rows", code)
+    result = cycle(deck, again, "--quiet")
+    checks.that(result.returncode == DONE, "cycle resumed", result.stdout + result.stderr)
+    # tables and reports state seconds
+    wrong = [w for w in result_differences(out, again) if ".json" not in w and not w.startswith("cycle.csv")]
+    checks.that(not wrong, "stopped cycle as in one go", "; ".join(wrong))
+
+
+def start_cycle(deck, out):
+    """lagacycle, started."""
+    import subprocess
+    from remeshed import CYCLE
+    return subprocess.Popen([CYCLE, deck, "--out", out, "--threads", "1", "--quiet"], stdin=subprocess.DEVNULL,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def checked(checks):
+    """--check shows every operation."""
+    deck, folder = write(checks.path("checked.lag"), HEAD + STROKES + "END\n"), checks.path("scenes")
+    result = run([deck, "--check", "--out", folder])
+    told = [line for line in result.stdout.splitlines() if line.startswith("operation")]
+    checks.that(result.returncode == DONE and told == ["operation  1 of 3: upset", "operation  2 of 3: release", "operation  3 of 3: indent"],
+                "--check tells the operations", said(result))
+    files = sorted(os.listdir(folder))
+    checks.that(files == [f"checked.{name}.scene.json" for name in ("indent", "release", "upset")], "--check: a scene each", files)
+
+
+def main():
+    with_h5py()
+    checks = Checks()
+    split(checks)
+    strokes(checks)
+    checked(checks)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
