@@ -162,7 +162,7 @@ contains
     call diagnostics%error(error)
   end subroutine read_next_operation
 
-  !> --check: every operation in words; for scripts where a folder is given.
+  !> --check: every operation in words; where a folder is given also for scripts: the first one as a deck without any.
   subroutine check_deck(options, deck, diagnostics, operations, scene, error)
     type(run_options_t), intent(in) :: options
     type(deck_t), intent(inout), target :: deck
@@ -186,7 +186,7 @@ contains
         call diagnostics%error(error)
         if (allocated(error)) return
       end if
-      if (operations%count > 0) ending = '.'//one%operation_name//ending
+      if (k > 1) ending = '.'//one%operation_name//ending
       call print_check(options, one, error)
       if (.not. (allocated(error) .or. options%default_out)) &
         call write_scene(join_path(options%out, stem_of(options%deck)//ending), one, error)

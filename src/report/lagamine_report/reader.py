@@ -86,7 +86,8 @@ class Run:
         if not self.ended:
             self.summary = with_entries(unfinished_summary(folder, self.name, self.history, self._last_elements(),
                                                            max(len(self.generations) - 1, 0)))
-        self.die_names = self._order_dies()
+        # an operation has dies of its own
+        self.die_names = list(dict.fromkeys(name for generation in self.generations for name in self._order_dies(generation)))
 
     def _generation_files(self) -> List[str]:
         """NAME.g01.h5, NAME.g02.h5 ... without a gap."""
@@ -109,12 +110,10 @@ class Run:
         """Elements of the latest mesh; 0 where there is none yet."""
         return len(self.generations[-1].topology) if self.generations else 0
 
-    def _order_dies(self) -> List[str]:
+    def _order_dies(self, generation: Generation) -> List[str]:
         """Dies in the order of the pilots: the deck's, which the columns of the history keep (HDF5 sorts names)."""
-        if not self.generations:
-            return []
-        names = list(self.generations[-1].dies)
-        order = self.generations[-1].die_order
+        names = list(generation.dies)
+        order = generation.die_order
         if len(order) == len(names):
             return sorted(names, key=lambda name: order[name])
         columns = [column[len("force_x_"):] for column in self.history if column.startswith("force_x_")]
@@ -180,12 +179,13 @@ class Run:
 
     def pilots(self, step: Step) -> Dict[str, np.ndarray]:
         """Position (x, y, angle) of every die at a saved step."""
-        if not self.die_names:
+        names = self._order_dies(step.generation)
+        if not names:
             return {}
         pilots = self.read(step, "pilots")
-        if pilots.shape != (len(self.die_names), 3):
-            raise ReportError(f"{step.generation.path}: damaged: '{step.place}/pilots' does not fit {len(self.die_names)} dies")
-        return dict(zip(self.die_names, pilots))
+        if pilots.shape != (len(names), 3):
+            raise ReportError(f"{step.generation.path}: damaged: '{step.place}/pilots' does not fit {len(names)} dies")
+        return dict(zip(names, pilots))
 
 
 def read_generation(path: str) -> Generation:
