@@ -186,7 +186,7 @@ contains
       call table%put((solution%fields(section_field)%value(:, 1) - scene%section)/scene%section(1))
       call table%put(solution%fields(section_field)%applied(:, 1))
     end if
-    if (scene%follows_path) call table%put([motion_error(solution%path), stress_error(solution%path, solution%time)])
+    if (scene%follows_path) call table%put([motion_error(solution%path), stress_error(solution%path)])
     if (scene%remesh%estimate) call table%put([solution%estimate%stress, solution%estimate%strain])
     if (has_heat(scene)) then
       call table%put(factor*[solution%heat_stored, solution%heat_in, solution%heat_released])

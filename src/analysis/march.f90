@@ -126,6 +126,8 @@ contains
       if (on_probation) call pass_probation(scene, run%stem, run%listing, solution, error)
       if (.not. allocated(error)) call save_all(scene, solution, run, error)
     else if (give_up) then
+      ! resumed, it ends the same way
+      solution%next_step = dt
       call stop_here(scene, solution, dt, outcome, run, error)
       if (on_probation) call refuse_mesh(scene, solution, outcome, run, error)
     end if

@@ -7,7 +7,7 @@ module path_advice
   private
   public :: motion_advice, stress_advice
 
-  !> The run warns above this share: what runs have whose steps are bounded as the manual advises is half of it or less.
+  !> The run warns above this share: runs whose steps are bounded as by default have half of it or less.
   real(wp), parameter :: largest_path_error = 0.02_wp
 
 contains
@@ -24,13 +24,12 @@ contains
   end function motion_advice
 
   !> Empty where the error of the stress is small now.
-  pure function stress_advice(path, time) result(advice)
+  pure function stress_advice(path) result(advice)
     type(path_record_t), intent(in) :: path
-    real(wp), intent(in) :: time   !! [time]
     character(len=:), allocatable :: advice
 
     advice = ''
-    if (.not. stress_error(path, time) > largest_path_error) return
+    if (.not. stress_error(path) > largest_path_error) return
     advice = 'rates change within steps, half the step halves it: take a smaller RATE (NORMS) or step (STRAT) and compare' &
              //least_steps(path)
   end function stress_advice

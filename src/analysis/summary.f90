@@ -206,7 +206,7 @@ contains
     type(solution_t), intent(in) :: solution
 
     call json%add('path_error_motion', motion_error(solution%path))
-    call json%add('path_error_stress', stress_error(solution%path, solution%time))
+    call json%add('path_error_stress', stress_error(solution%path))
     call json%add('path_error_stress_worst', solution%path%stress_worst)
     call json%add('steps_shortened_by_path', solution%path%shortened)
     call json%add('steps_above_path', solution%path%above)
@@ -221,7 +221,7 @@ contains
     call json%begin_object('advice')
     call add('energy_imbalance', imbalance_advice(solution))
     call add('path_error_motion', motion_advice(solution%path))
-    call add('path_error_stress', stress_advice(solution%path, solution%time))
+    call add('path_error_stress', stress_advice(solution%path))
     call add('max_penetration_over_allowed', advice_at_points(scene, solution))
     call add('max_penetration_sampled_over_allowed', advice_between_points(scene, solution))
     call json%end_object()
@@ -377,13 +377,13 @@ contains
     if (has_heat(scene)) call put_heat(solution%heat)
     if (scene%follows_path) then
       call put('  errors of the path within steps: motion '//to_text(100*motion_error(solution%path), 3)//' % in sum, stress ' &
-               //to_text(100*stress_error(solution%path, solution%time), 3)//' % at the end, ' &
+               //to_text(100*stress_error(solution%path), 3)//' % at the end, ' &
                //to_text(100*solution%path%stress_worst, 3)//' % at worst; '//to_text(solution%path%shortened) &
-               //' attempts shortened for them')
+               //' attempts shortened for them, '//to_text(solution%path%above)//' steps above the bounds')
       call warn('error of the motion by the path within steps '//to_text(100*motion_error(solution%path), 3)//' %', &
                 motion_advice(solution%path))
       call warn('error of the stress by the path within steps ' &
-                //to_text(100*stress_error(solution%path, solution%time), 3)//' %', stress_advice(solution%path, solution%time))
+                //to_text(100*stress_error(solution%path), 3)//' %', stress_advice(solution%path))
     end if
     do t = 1, size(facts%warnings)
       call put('  WARNING: '//facts%warnings(t)%s)

@@ -5,11 +5,11 @@ module path_record
   implicit none
   private
   public :: path_record_t, path_step_t
-  public :: mean_square, motion_error, note_attempt, note_path_step, start_path, stress_error, stress_scale
+  public :: mean_square, motion_error, note_attempt, note_path_step, start_path, stress_before, stress_error, stress_scale
 
   type :: path_step_t
-    !> Its errors were estimated; one is above what the deck allows.
-    logical :: estimated = .false., above = .false.
+    !> Its errors were estimated, or are taken from those of steps before and after it; one is above what the deck allows.
+    logical :: estimated = .false., interpolated = .false., above = .false.
     !> Its motion, and the error of that, in the root mean square over the nodes [length].
     real(wp) :: motion = 0.0_wp, motion_error = 0.0_wp
     !> The latter, as the displacement of nodes (2, nnode) [length].
@@ -23,6 +23,10 @@ module path_record
     !> It is above what the deck allows, and a shorter step was no better.
     logical :: no_better = .false.
     real(wp) :: growth = huge(1.0_wp)
+    !> How many times as long the step could be, for errors that are no larger than by default.
+    real(wp) :: spare = huge(1.0_wp)
+    !> Share of its motion that is not in proportion to that of the step before.
+    real(wp) :: bend = 0.0_wp
   end type path_step_t
 
   type :: path_record_t
@@ -30,24 +34,43 @@ module path_record
     real(wp) :: moved = 0.0_wp, moved_error = 0.0_wp
     !> Sum of the errors on the present mesh (2, nnode); of no nodes where none is estimated [length].
     real(wp), allocatable :: error(:, :)
-    !> Root of the elastic energy: its integral over the time, its error now, and the largest that was of that over the scale.
-    real(wp) :: stress_integral = 0.0_wp, stress_error = 0.0_wp, stress_worst = 0.0_wp
+    !> Root of the elastic energy: its recent mean, its error now, and the largest that was of that over the scale.
+    real(wp) :: stress_recent = 0.0_wp, stress_error = 0.0_wp, stress_worst = 0.0_wp
     !> The last root itself.
     real(wp) :: stress = 0.0_wp
-    !> Steps with an estimate, attempts shortened by it, and steps of the least length above what is allowed.
+    !> Steps with an estimate, attempts shortened by it, and steps above what is allowed.
     integer :: estimated = 0, shortened = 0, above = 0
-    !> Steps still to come whose lengths are not bounded by their errors.
-    integer :: unbounded = 0
+    !> Steps still to come whose lengths are not bounded by their errors, and how many after the next that is shortened in vain.
+    integer :: unbounded = 0, patience = 1
+    !> Steps still to come that may do without an estimate, as long as they are no longer than this [time], and bend no more than
+    !> this share of their motion.
+    integer :: quiet = 0
+    real(wp) :: quiet_length = 0.0_wp, quiet_bend = 0.0_wp
+    !> Of the steps without one since the last estimate: sums of length, length squared, and length times motion.
+    real(wp) :: pending_time = 0.0_wp, pending_square = 0.0_wp, pending_motion = 0.0_wp
+    !> Of the last estimate: error of the motion over length times motion [1/time], of the stress over length squared.
+    real(wp) :: motion_rate = 0.0_wp, stress_rate = 0.0_wp
     !> The last attempt at the present step that was shortened: its length, the error, and of what.
     real(wp) :: tried_length = 0.0_wp, tried_size = 0.0_wp
     integer :: tried_which = 0
   end type path_record_t
 
-  !> Steps that are left alone after one whose error a shorter step did not lower.
-  integer, parameter :: left_alone = 20
+  !> Most steps that are left alone after one whose error a shorter step did not lower: once, twice as many each time that it
+  !> happens again, and half as many after each step that is bounded.
+  integer, parameter :: most_left_alone = 32
 
-  !> Share of the mean stress below which stresses are small.
-  real(wp), parameter :: least_share = 0.1_wp
+  !> Where a step could be so many times as long the next ones do without an estimate: one for each time this factor, and no more
+  !> than so many.
+  real(wp), parameter :: ample = 2.0_wp
+  integer, parameter :: most_quiet = 4
+  !> A motion that bends so many times as much as that of the last estimate, and more than this share, is estimated anew.
+  real(wp), parameter :: bends_more = 2.0_wp, least_bend = 0.01_wp
+
+  !> Share of their recent mean below which stresses are small: those that pass through zero, not those that creep has relaxed by
+  !> any power of the time down to -1.
+  real(wp), parameter :: least_share = 0.75_wp
+  !> The recent mean of s is k/t^k times the integral of s t^(k-1) dt with this k: that of about the last third of the time.
+  real(wp), parameter :: recent = 4.0_wp
 
 contains
 
@@ -86,24 +109,73 @@ contains
     real(wp), intent(in) :: dt     !! its length [time]
     real(wp), intent(in) :: time   !! its end [time]
     type(path_record_t), intent(inout) :: record
-    real(wp) :: before
+    real(wp) :: before, share, rate
 
-    record%unbounded = max(record%unbounded - 1, 0)
-    if (step%no_better) record%unbounded = left_alone
     record%tried_length = 0
+    if (step%interpolated) then
+      record%quiet = record%quiet - 1
+      record%pending_time = record%pending_time + dt
+      record%pending_square = record%pending_square + dt**2
+      record%pending_motion = record%pending_motion + step%motion*dt
+      record%moved = record%moved + step%motion
+      call remember(record%stress, dt, time, record%stress_recent)
+      return
+    end if
+    if (record%unbounded > 0) then
+      record%unbounded = record%unbounded - 1
+    else if (step%no_better) then
+      record%unbounded = record%patience
+      record%patience = min(2*record%patience, most_left_alone)
+    else
+      record%patience = max(record%patience/2, 1)
+    end if
+    record%quiet = 0
     if (.not. step%estimated) return
     record%estimated = record%estimated + 1
     record%moved = record%moved + step%motion
     ! what came on earlier meshes stays beside the sum of this one
     before = record%moved_error - mean_square(record%error)
-    record%error = record%error + step%error
+    share = 1
+    rate = 0
+    if (step%motion > 0) rate = step%motion_error/(step%motion*dt)
+    if (rate > 0) share = 1 + record%pending_motion/(step%motion*dt)*0.5_wp*(1 + record%motion_rate/rate)
+    record%error = record%error + share*step%error
     record%moved_error = max(before + mean_square(record%error), 0.0_wp)
+    record%stress_error = stress_before(step, dt, record) + step%stress_error
     record%stress = step%stress
-    record%stress_integral = record%stress_integral + step%stress*dt
-    record%stress_error = step%left*record%stress_error + step%stress_error
-    record%stress_worst = max(record%stress_worst, stress_error(record, time))
+    call remember(step%stress, dt, time, record%stress_recent)
+    record%stress_worst = max(record%stress_worst, stress_error(record))
     if (step%above) record%above = record%above + 1
+    record%motion_rate = rate
+    record%stress_rate = step%stress_error/dt**2
+    record%pending_time = 0
+    record%pending_square = 0
+    record%pending_motion = 0
+    record%quiet_length = min(step%spare/ample, most_quiet + 1.0_wp)*dt
+    record%quiet_bend = max(bends_more*step%bend, least_bend)
+    if (.not. step%above) record%quiet = int(min(step%spare/ample - 1, real(most_quiet, wp)))
   end subroutine note_path_step
+
+  !> Go on with the recent mean.
+  pure subroutine remember(stress, dt, time, mean)
+    real(wp), intent(in) :: stress      !! root of the elastic energy of the step [energy^0.5]
+    real(wp), intent(in) :: dt, time    !! of the step, and its end [time]
+    real(wp), intent(inout) :: mean     !! [energy^0.5]
+
+    mean = mean + (stress - mean)*(1 - (max(time - dt, 0.0_wp)/time)**recent)
+  end subroutine remember
+
+  !> What is left at the end of a step of the errors of the stress before it. Steps since the last estimate are taken to err
+  !> in the mean of that and this one, as the squares of their lengths.
+  pure function stress_before(step, dt, record) result(error)
+    type(path_step_t), intent(in) :: step
+    real(wp), intent(in) :: dt   !! its length [time]
+    type(path_record_t), intent(in) :: record
+    real(wp) :: error   !! [energy^0.5]
+
+    error = step%left*(step%left**(record%pending_time/dt)*record%stress_error &
+                       + 0.5_wp*(record%stress_rate + step%stress_error/dt**2)*record%pending_square)
+  end function stress_before
 
   !> Error of the motion since the start over the motion.
   pure function motion_error(record) result(share)
@@ -114,28 +186,25 @@ contains
     if (record%moved > 0) share = record%moved_error/record%moved
   end function motion_error
 
-  !> Error of the stress at this time over its scale.
-  pure function stress_error(record, time) result(share)
+  !> Error of the stress now over its scale.
+  pure function stress_error(record) result(share)
     type(path_record_t), intent(in) :: record
-    real(wp), intent(in) :: time   !! [time]
     real(wp) :: share
     real(wp) :: scale
 
-    scale = stress_scale(record, record%stress, time)
+    scale = stress_scale(record, record%stress)
     share = 0
     if (scale > 0) share = abs(record%stress_error)/scale
   end function stress_error
 
-  !> What an error of the stress is compared with: the stress now, or a share of its mean over the time where that is more, as when
-  !> a load passes through zero.
-  pure function stress_scale(record, stress, time) result(scale)
+  !> What an error of the stress is compared with: the stress now, or a share of its recent mean where that is more, as when a load
+  !> passes through zero.
+  pure function stress_scale(record, stress) result(scale)
     type(path_record_t), intent(in) :: record
     real(wp), intent(in) :: stress   !! root of the elastic energy now
-    real(wp), intent(in) :: time     !! [time]
     real(wp) :: scale
 
-    scale = stress
-    if (time > 0) scale = max(scale, least_share*record%stress_integral/time)
+    scale = max(stress, least_share*record%stress_recent)
   end function stress_scale
 
 end module path_record

@@ -2,18 +2,21 @@
 !>
 !> The error of the motion is bounded for each step, over its motion: in sum it is no more of the whole way then. The error of the
 !> stress is bounded as what has come of all steps so far, for creep forgets what was before and elastic unloading keeps it. Where
-!> that is used up a step may add its share of the time to it, so that the run goes on.
+!> that is used up a step may add its share of the time to it, or of the stress that it changes, so that the run goes on.
+!>
+!> Where a step could be many times as long, a few steps after it do without an estimate, unless one is longer or bends more.
 !>
 !> Where a part hangs on single points of contact that change, errors do not come of the path, and do not fall with the step: a
 !> step that was shortened in vain is accepted, counted as above the bound, and the steps after it are left alone for a while.
 module path_bounds
   use equations, only: equations_t
-  use kinds, only: wp
+  use kinds, only: eps, wp
   use newton, only: outcome_t
-  use path_error, only: estimate_path
-  use path_record, only: stress_scale
+  use path_error, only: at_corner, bend_of, estimate_path, on_nodes
+  use path_record, only: mean_square, stress_before, stress_scale
   use scene, only: scene_t
   use solution, only: solution_t
+  use strategy, only: strategy_t
   use text, only: to_text
   implicit none
   private
@@ -21,8 +24,12 @@ module path_bounds
 
   !> Steps aim at this share of what is allowed, so that few are made in vain.
   real(wp), parameter :: aim = 0.7_wp
-  !> A step is shortened to no less than this share at once; to this one where the two halves cannot be made.
-  real(wp), parameter :: least_factor = 0.2_wp, without_halves = 0.5_wp
+  !> A step is shortened to no less than this share at once, and to no more, so that its error is seen to fall; to this one where
+  !> the two halves cannot be made.
+  real(wp), parameter :: least_factor = 0.2_wp, most_factor = 0.7_wp, without_halves = 0.5_wp
+
+  !> Steps without an estimate grow to no more than this many times the length up to which they may do without.
+  real(wp), parameter :: growth_in_quiet = 2.0_wp
 
   !> Errors of a path fall with at least this power of the step's length (with the first, or the second).
   real(wp), parameter :: least_order = 0.5_wp
@@ -44,10 +51,19 @@ contains
     if (.not. (outcome%converged .and. scene%follows_path)) return
     call equations%timers%add('path error', timer)
     call equations%timers%start(timer)
+    outcome%path%bend = bend_of(equations, solution, dt, outcome%du)
+    if (is_quiet()) then
+      outcome%path%interpolated = .true.
+      outcome%path%motion = mean_square(on_nodes(equations, outcome%du))
+      outcome%path%growth = max(growth_in_quiet*solution%path%quiet_length/dt, 1.0_wp)
+      call equations%timers%stop(timer)
+      return
+    end if
     call estimate_path(scene, equations, solution, dt, at_hand, outcome, done)
     call equations%timers%stop(timer)
     if (.not. outcome%converged) return
     outcome%path%estimated = done
+    if (done) call find_spare()
     if (solution%path%unbounded > 0) return
     if (done) then
       call bound_motion()
@@ -57,6 +73,17 @@ contains
     end if
 
   contains
+
+    !> The step needs no estimate. The last one of the run has one, and those before and after a corner of a multiplier.
+    pure function is_quiet() result(yes)
+      logical :: yes
+
+      associate (record => solution%path)
+        yes = record%quiet > 0 .and. dt <= record%quiet_length .and. outcome%path%bend <= record%quiet_bend &
+              .and. .not. record%tried_length > 0 .and. solution%time + dt < scene%strategy%end_time*(1 - 64*eps)
+        if (yes) yes = .not. (at_corner(scene, solution%time) .or. at_corner(scene, solution%time + dt))
+      end associate
+    end function is_quiet
 
     !> Over the motion, or what it is in the mean of the time where that is more. The share goes with the length.
     subroutine bound_motion()
@@ -70,21 +97,36 @@ contains
       end associate
     end subroutine bound_motion
 
-    !> What a step adds goes with the square of its length.
+    !> What a step adds goes with the square of its length. An error against that of the steps before has all the room.
     subroutine bound_stress()
-      real(wp) :: allowed, before, room, next
+      real(wp) :: allowed, change, least, before, room, next
 
-      associate (step => outcome%path)
-        allowed = scene%strategy%rate_bound*stress_scale(solution%path, step%stress, solution%time)
+      associate (step => outcome%path, record => solution%path)
+        allowed = scene%strategy%rate_bound*stress_scale(record, step%stress)
         if (.not. (allowed > 0 .and. abs(step%stress_error) > 0)) return
-        before = step%left*solution%path%stress_error
-        room = max(allowed - abs(before), allowed*dt/(solution%time + dt))
-        next = max(allowed - step%left*abs(before + step%stress_error), allowed*dt/(solution%time + dt))
+        before = sign(1.0_wp, step%stress_error)*stress_before(step, dt, record)
+        change = abs(step%stress - record%stress)*dt/(record%pending_time + dt)
+        least = max(scene%strategy%rate_bound*min(change, step%stress), allowed*dt/(solution%time + dt))
+        room = max(allowed - max(before, 0.0_wp), least)
+        next = max(allowed - step%left*max(before + abs(step%stress_error), 0.0_wp), least)
         if (abs(step%stress_error) > room) next = room
         call bound(abs(step%stress_error)/allowed, room/allowed, sqrt(aim*next/abs(step%stress_error)), of_stress, &
                    'stress')
       end associate
     end subroutine bound_stress
+
+    !> How many times as long the step could be, for errors no larger than by default.
+    subroutine find_spare()
+      type(strategy_t) :: default
+      real(wp) :: room
+
+      associate (step => outcome%path)
+        if (step%motion_error > 0) step%spare = aim*default%path_bound*step%motion/step%motion_error
+        if (.not. abs(step%stress_error) > 0) return
+        room = default%rate_bound*stress_scale(solution%path, step%stress)
+        step%spare = min(step%spare, sqrt(aim*room/abs(step%stress_error)))
+      end associate
+    end subroutine find_spare
 
     subroutine bound(error, allowed, factor, which, name)
       real(wp), intent(in) :: error, allowed
@@ -102,8 +144,8 @@ contains
         else if (dt > scene%strategy%least_step) then
           step%which = which
           step%size = error
-          call shorten(max(factor, least_factor), 'error of the '//name//' by the path within the step '//to_text(error, 3) &
-                       //' above '//to_text(allowed, 3))
+          call shorten(min(max(factor, least_factor), most_factor), 'error of the '//name//' by the path within the step ' &
+                       //to_text(error, 3)//' above '//to_text(allowed, 3))
         else
           step%above = .true.
           step%growth = min(step%growth, 1.0_wp)

@@ -30,7 +30,7 @@ module path_error
   use timers, only: ledger_t
   implicit none
   private
-  public :: estimate_path
+  public :: at_corner, bend_of, estimate_path, on_nodes
 
   !> Elastic strains are enlarged by this share; what is left of an error is found to about as much.
   real(wp), parameter :: enlarged = 1.0e-3_wp
@@ -96,7 +96,7 @@ contains
         allocate (step%error, source=on_nodes(equations, error))
         step%motion_error = mean_square(step%error)
         if (max(abs(step%stress_error), abs(solution%path%stress_error)) &
-            > negligible*stress_scale(solution%path, step%stress, solution%time)) then
+            > negligible*stress_scale(solution%path, step%stress)) then
           before = root_energy(scene, equations, active, solution, solution%groups, committed=.true.)
           call begin(other)
           do g = 1, size(active)
@@ -182,6 +182,22 @@ contains
       end associate
     end do
   end subroutine motion_of_first_half
+
+  !> Share of a motion that is not in proportion to that of the step before, on the nodes.
+  pure function bend_of(equations, solution, dt, du) result(bend)
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt      !! [time]
+    real(wp), intent(in) :: du(:)   !! (ndof) [unknown]
+    real(wp) :: bend
+    real(wp) :: before(size(du)), motion
+
+    bend = 0
+    if (.not. solution%last_step > 0) return
+    call proportion(equations%dofs, solution%fields, dt/solution%last_step, before)
+    motion = mean_square(on_nodes(equations, du))
+    if (motion > 0) bend = mean_square(on_nodes(equations, du - before))/motion
+  end function bend_of
 
   !> A multiplier has a corner at this time.
   pure function at_corner(scene, time) result(yes)

@@ -62,6 +62,8 @@ def law_card(law):
 
 # Forces of a body at rest in itself are round-off: nothing finer than the program's own norms can be asked for.
 TIGHT, AT_REST = "NORMS FORCE 1.E-13 DISPL 1.E-11 STRAIN 1.\n", "NORMS STRAIN 1.\n"
+# Nodes that turn in so many steps go along chords, with strains that a shorter step would follow.
+IN_THESE_STEPS = "PATH 0 RATE 0\n"
 
 
 def deck(state, kinem, law, npoint, mesh, loads, step=1.0, end=1.0, norms=TIGHT):
@@ -231,7 +233,7 @@ def turning(checks, kinem, npoint, law, stretch):
             loads += f"LIC t{k}{name}\n" + "".join(f"   {time}. {num(place[c])}\n" for time, place in enumerate(places))
             loads += f"MOVE NODE {k + 1} {name} t{k}{name}\n"
     run = Run(checks, f"circle-{kinem}-{law}-{npoint}-{stretch}", deck("PLSTN", kinem, law, npoint, mesh, loads, 1.0, 25.0,
-                                                                          TIGHT if stretch else AT_REST))
+                                                                          (TIGHT if stretch else AT_REST).replace("\n", " " + IN_THESE_STEPS)))
     if not run.ok:
         return
     stress = exact_stress(kinem, law, u_matrix - np.eye(2), 0.0, [1.0])

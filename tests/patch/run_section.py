@@ -17,7 +17,8 @@ sys.dont_write_bytecode = True
 from patch_support import STRESS, Checks, Run, np, num  # noqa: E402
 from run_patch import HARDENING, NU, TOLERANCE, YIELD, YOUNG, deck, driven, exact_stress, law_card, patch  # noqa: E402
 
-TIGHT = "NORMS FORCE 1.E-12 DISPL 1.E-10 STRAIN 2.\n"
+# In one step: the stresses expected are those of a straight path of strain.
+TIGHT = "NORMS FORCE 1.E-12 DISPL 1.E-10 STRAIN 2. PATH 0 RATE 0\n"
 SECTION = ("E", "KX", "KY")
 
 

@@ -34,6 +34,7 @@ MOVE   block 3  Y press
 LIC    press
    0. 0.   1. -{travel}
 STRAT  0.02 1.E-6 0.04   5 3
+NORMS  PATH 0 RATE 0
 SAVE   1
 END
 """

@@ -135,7 +135,7 @@ def long_steps(checks):
 
 
 def mirrored(checks):
-    """A block pressed by a tilted die with friction, and its mirror image with elements in the other order."""
+    """A block pressed by a tilted die with friction, and its mirror image with elements in the other order, in the same steps."""
     runs = []
     for name, s in (("image", 1), ("mirror", -1)):
         left, right = (f"{s*-6.0!r}", f"{s*6.0!r}")
@@ -144,7 +144,7 @@ def mirrored(checks):
         piece = f" SEGM {a[0]!r} {a[1]!r} {b[0]!r} {b[1]!r}\n" if s > 0 else f" SEGM {-b[0]!r} {b[1]!r} {-a[0]!r} {a[1]!r}\n"
         runs.append(checks.run(name, deck(
             "PLSTN", "LOG", block(corners, "6 1. 4 1."), PLASTIC, f"FIXED b 1 XY\nDIE d PILOT 0. 9.\n{piece}CNT2D b 2 3 4 d -3 k\n"
-            f"MOVE d Y go\nLIC go\n 0. 0. 1. -2.5\nPROBE u NODE UY {s*6.0!r} 8.\n",
+            f"MOVE d Y go\nLIC go\n 0. 0. 1. -2.5\nPROBE u NODE UY {s*6.0!r} 8.\nNORMS PATH 0. RATE 0.\n",
             "STRAT 0.02 1.E-6 0.05 5 3")).history)
     one, other = runs
     if len(one["time"]) != len(other["time"]):

@@ -152,7 +152,8 @@ def die_on_the_axis(checks):
 def billet_without_support(checks):
     """The billet of upsetting_remesh whose axis no card holds, on several meshes, against the one with its support."""
     with open(os.path.join(SOURCE, "decks", "upsetting_remesh", "upsetting_remesh.lag"), encoding="utf-8") as file:
-        deck = file.read().replace("12.75 ", "7.5 ")
+        # both with the steps of the deck: it is the support that is compared
+        deck = file.read().replace("12.75 ", "7.5 ").replace("\nSTRAT ", "\nNORMS PATH 0 RATE 0\nSTRAT ")
     answers = []
     for name, text in (("supported", deck), ("free", deck.replace("FIXED  billet 4  X", ""))):
         path, out = (os.path.join(checks.folder, name + end) for end in (".lag", ""))
@@ -174,7 +175,7 @@ def billet_without_support(checks):
 
 def resumed(checks):
     """A run that goes on from a checkpoint in which the wall holds the bore ends with the same bits."""
-    run = ring(checks, "whole", dict(STICKING, more="CKPT 2\n"), (12, 6))
+    run = ring(checks, "whole", dict(STICKING, more="CKPT 2\nNORMS PATH 0 RATE 0\n"), (12, 6))
     if not run.ok:
         return
     checks.that(run.history["bore"][-4:].max() < 0, "resumed: the wall holds the bore at the checkpoint", run.history["bore"][-4:])
