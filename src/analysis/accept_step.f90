@@ -17,6 +17,7 @@ module accept_step
   use point_drivers, only: start_drivers
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
+  use spring_check, only: has_body_springs
   use text, only: to_text
   use vectors, only: length_of
   use work_books, only: work_t
@@ -64,13 +65,14 @@ contains
     call book_stored(scene, equations, outcome%du, totals, friction_before, solution)
     call book_spurious_mode(scene, equations, solution)
     call sample_contacts(scene, solution)
-    if (scene%remesh%on) call note_force(scene, equations, solution)
+    if (scene%remesh%on .or. has_body_springs(scene)) call note_force(scene, equations, solution)
     call keep_friction_work(scene, solution)
     call check(solution, totals, error)
     call commit(scene, equations, solution)
   end subroutine accept
 
-  !> Changes of forces at a new mesh are measured by the largest so far: at lift-off those of now are nothing.
+  !> Changes of forces at a new mesh, and forces of weak springs, are measured by the largest so far: at lift-off those of now are
+  !> nothing.
   subroutine note_force(scene, equations, solution)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations

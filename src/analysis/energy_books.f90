@@ -10,6 +10,7 @@
 module energy_books
   use contact_contour, only: sample_depth
   use dies, only: present_die
+  use elem_body_springs, only: springs_of_body
   use elem_api, only: totals_t
   use element_loop, only: group_geometry
   use equations, only: equations_t
@@ -211,16 +212,22 @@ contains
       advice = 'motion and forces are not straight within a step: take smaller steps (STRAT) and compare, half the step halves it'
   end function imbalance_advice
 
-  !> Energy that springs of dies hold [energy]. They stand outside: what dies do to the part is the work of dies.
+  !> Energy that springs of dies and of bodies hold [energy]. They stand outside: what dies do to the part is the work of dies, what
+  !> springs of a body do that of loads.
   pure function spring_energy(scene, solution) result(energy)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     real(wp) :: energy
+    real(wp) :: force, of_body
     integer :: g
 
     energy = 0
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
+        if (group%elem == 'BSPRG') then
+          call springs_of_body(scene, group, solution%fields(displacement_field)%value, force, of_body)
+          energy = energy + of_body
+        end if
         if (group%role /= role_spring) cycle
         associate (c => group%component)
           energy = energy + 0.5_wp*group%stiffness*(solution%fields(pilot_field)%value(c, group%die) &

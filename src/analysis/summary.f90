@@ -20,6 +20,7 @@ module summary
   use restore_balance, only: balance_t
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
+  use spring_check, only: has_body_springs, spring_advice, spring_force, spring_share
   use steel_diagrams, only: add_diagrams
   use system, only: cpu_seconds, peak_memory_mb
   use text, only: string_t, to_text
@@ -116,6 +117,10 @@ contains
     if (has_heat(scene)) call json%add('heat_imbalance', heat_imbalance(solution))
     if (has_heat(scene)) call add_heat(json, solution%heat)
     if (scene%follows_path) call add_path(json, solution)
+    if (has_body_springs(scene)) then
+      call json%add('spring_force', circumference(scene)*spring_force(scene, solution))
+      call json%add('spring_share', spring_share(scene, solution))
+    end if
     call json%add('spurious_mode', solution%worst_spurious)
     call json%end_object()
     call add_advice(json, scene, solution)
@@ -222,6 +227,7 @@ contains
     call add('energy_imbalance', imbalance_advice(solution))
     call add('path_error_motion', motion_advice(solution%path))
     call add('path_error_stress', stress_advice(solution%path))
+    if (has_body_springs(scene)) call add('spring_share', spring_advice(scene, solution))
     call add('max_penetration_over_allowed', advice_at_points(scene, solution))
     call add('max_penetration_sampled_over_allowed', advice_between_points(scene, solution))
     call json%end_object()
@@ -384,6 +390,12 @@ contains
                 motion_advice(solution%path))
       call warn('error of the stress by the path within steps ' &
                 //to_text(100*stress_error(solution%path), 3)//' %', stress_advice(solution%path))
+    end if
+    if (has_body_springs(scene)) then
+      call put('  weak springs of bodies: force '//to_text(circumference(scene)*spring_force(scene, solution), 3) &
+               //' at the end, '//to_text(100*spring_share(scene, solution), 3)//' % of the largest force')
+      call warn('weak springs carry '//to_text(100*spring_share(scene, solution), 3)//' % of the largest force', &
+                spring_advice(scene, solution))
     end if
     do t = 1, size(facts%warnings)
       call put('  WARNING: '//facts%warnings(t)%s)

@@ -1,4 +1,4 @@
-!> Rigid motions of bodies that nothing holds, as far as supports and dies at the start tell.
+!> Rigid motions of bodies that nothing holds, as far as supports, springs and dies at the start tell.
 module supports
   use contact_outlook, only: outlook_t
   use fields, only: displacement_field
@@ -30,7 +30,7 @@ contains
         if (group%material == 0) cycle
         call contacts_of(scene, outlook, part, own, touched, near)
         do c = merge(2, 1, scene%plane_state == axisymmetric), 2
-          if (held(scene, part, own, c) .or. touched) cycle
+          if (held(scene, part, own, c) .or. touched .or. sprung(scene, part, own, c)) cycle
           if (near) then
             call add(group%name//': nothing holds it in '//directions(c:c)//' before it meets a die: contact alone does, and ' &
                      //'there is a gap')
@@ -39,6 +39,7 @@ contains
           end if
         end do
         if (scene%plane_state == axisymmetric .or. touched .or. near) cycle
+        if (any([(sprung(scene, part, own, c), c=1, 2)])) cycle
         if (held(scene, part, own, 1) .and. held(scene, part, own, 2) .and. .not. held_turning(scene, part, own)) &
           call add(group%name//': nothing keeps it from turning about what holds it')
       end associate
@@ -121,6 +122,21 @@ contains
       end associate
     end do
   end subroutine contacts_of
+
+  !> Weak springs hold the part in a direction, and with it against a turn.
+  pure function sprung(scene, part, own, component) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: part(:), own, component
+    logical :: yes
+    integer :: g
+
+    yes = .false.
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%elem == 'BSPRG' .and. group%direction == component) yes = yes .or. part(group%connectivity(1, 1)) == own
+      end associate
+    end do
+  end function sprung
 
   !> A support holds a node of the part in a direction.
   pure function held(scene, part, own, component) result(yes)

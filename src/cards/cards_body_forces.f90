@@ -1,25 +1,26 @@
-!> BFORC and CENTR: forces on the volume of bodies, a group of load elements each.
+!> BFORC, CENTR and SPRNG on bodies: forces on the volume of bodies, a group of load elements each.
 module cards_body_forces
   use cards_sides, only: append_group, start_group
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
+  use elem_body_springs, only: volume_of_body
   use field_places, only: refuse_without_field
   use fields, only: displacement_field
-  use kinds, only: wp
-  use scene, only: group_t
+  use kinds, only: pi, wp
+  use scene, only: axisymmetric, group_t
   use scene_draft, only: close_card, draft_t, words_of
   use text, only: string_t
   implicit none
   private
-  public :: read_body_forces
+  public :: names_body, read_body_forces
 
   !> Gauss points of an element: b dv is of the fifth degree along a side.
   integer, parameter :: npoint = 9
 
 contains
 
-  !> All cards `BFORC body X|Y amplitude lic` and `CENTR body density omega lic`.
+  !> All cards `BFORC body X|Y amplitude lic`, `CENTR body density omega lic`, and `SPRNG body X|Y stiffness`.
   subroutine read_body_forces(deck, draft, diagnostics)
     type(deck_t), intent(inout), target :: deck
     type(draft_t), intent(inout) :: draft
@@ -33,12 +34,15 @@ contains
     call words_of('X Y', directions)
     do i = 1, size(deck%cards)
       associate (keyword => deck%cards(i)%keyword)
-        if (keyword /= 'BFORC' .and. keyword /= 'CENTR') cycle
+        if (all(keyword /= ['BFORC', 'CENTR', 'SPRNG'])) cycle
+        if (keyword == 'SPRNG' .and. .not. names_body(deck, draft, i)) cycle
         call cursor%open(deck%cards(i), diagnostics)
-        call start_group(keyword, draft, group)
+        call start_group(merge('BSPRG', keyword(:5), keyword == 'SPRNG'), draft, group)
         group%rule%n = npoint
         call read_body(cursor, draft, group)
-        if (keyword == 'BFORC') then
+        if (keyword == 'SPRNG') then
+          call read_springs(cursor, draft, directions, group)
+        else if (keyword == 'BFORC') then
           call cursor%name('a direction', directions, group%direction)
           call cursor%real('the amplitude of the force per volume', group%amplitude, unit='force/length^3')
           if (group%direction > 0) group%name = group%name//'.'//directions(group%direction)%s
@@ -48,7 +52,8 @@ contains
           group%amplitude = group%amplitude*omega**2
         end if
       end associate
-      call draft%multipliers%find(cursor, 'the name of a LIC', k)
+      k = 0
+      if (group%elem /= 'BSPRG') call draft%multipliers%find(cursor, 'the name of a LIC', k)
       if (k > 0) then
         group%multiplier = draft%multipliers%item(k)
         group%name = group%name//'/'//draft%multipliers%words(k)%s
@@ -62,6 +67,42 @@ contains
       end if
     end do
   end subroutine read_body_forces
+
+  !> The card names a body, not a die: its first field is the name of one.
+  pure function names_body(deck, draft, card) result(yes)
+    type(deck_t), intent(in) :: deck
+    type(draft_t), intent(in) :: draft
+    integer, intent(in) :: card
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    if (size(deck%cards(card)%head%fields) == 0) return
+    do k = 1, size(draft%places%words)
+      if (draft%places%words(k)%s == deck%cards(card)%head%fields(1)%text) &
+        yes = all(draft%places%keywords(k)%s /= ['SIDES', 'DIE  '])
+    end do
+  end function names_body
+
+  !> Direction, and stiffness of all springs of a body together.
+  subroutine read_springs(cursor, draft, directions, group)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(string_t), intent(in) :: directions(:)
+    type(group_t), intent(inout) :: group
+    real(wp) :: volume
+
+    call cursor%name('a direction', directions, group%direction)
+    if (group%direction == 1 .and. draft%scene%plane_state == axisymmetric) &
+      call cursor%fail('the axis holds an axisymmetric body along X, expected Y')
+    call cursor%real('the stiffness of the body''s springs', group%stiffness, lower=0.0_wp, strict_lower=.true., &
+                     unit='force/length; of the full circumference')
+    if (cursor%failed() .or. .not. draft%mesh_sound) return
+    group%name = group%name//'/spring.'//directions(group%direction)%s
+    volume = volume_of_body(draft%scene, group%connectivity)
+    if (draft%scene%plane_state == axisymmetric) volume = 2*pi*volume
+    if (volume > 0) group%stiffness = group%stiffness/volume
+  end subroutine read_springs
 
   !> The body whose elements carry the load.
   subroutine read_body(cursor, draft, group)

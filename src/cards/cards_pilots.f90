@@ -1,6 +1,7 @@
 !> What drives the pilots of dies beside MOVE: FORCE and FREE release a component, SPRNG ties it to its position at the start.
 module cards_pilots
   use card_places, only: place_t, read_place
+  use cards_body_forces, only: names_body
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
@@ -15,7 +16,7 @@ module cards_pilots
 
 contains
 
-  !> All FORCE cards on dies, FREE and SPRNG cards.
+  !> All FORCE and SPRNG cards on dies, and FREE cards.
   subroutine read_pilots(deck, draft, diagnostics)
     type(deck_t), intent(inout), target :: deck
     type(draft_t), intent(inout) :: draft
@@ -32,6 +33,7 @@ contains
         call cursor%open(deck%cards(i), diagnostics)
         call read_load(cursor, draft, deck%cards(i)%keyword == 'FORCE', given, diagnostics)
       case ('SPRNG')
+        if (names_body(deck, draft, i)) cycle
         call cursor%open(deck%cards(i), diagnostics)
         call read_spring(cursor, draft, diagnostics)
       case default

@@ -32,7 +32,7 @@ contains
     call set(4, 'contact', 'no CNT2D card')
     call set(5, 'friction', 'no contact law with friction is used', 'contact')
     call set(6, 'pressure', 'no PRES2D card')
-    call set(7, 'body force', 'no BFORC or CENTR card')
+    call set(7, 'body force', 'no BFORC, CENTR or SPRNG of a body')
     call set(8, 'heat', 'no card asks for it')
     call set(9, 'phases', 'no LAW META, no ARBTHMET with TIME')
     call set(10, 'temperature', 'no TEMPE card', 'displacement')

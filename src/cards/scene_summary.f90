@@ -172,6 +172,7 @@ contains
       if (scene%groups(g)%multiplier > 0) s = ', '//to_text(scene%groups(g)%amplitude)//' x ' &
                                               //scene%multipliers(scene%groups(g)%multiplier)%name
       if (scene%groups(g)%elem == 'CENTR') s = s//'^2'
+      if (scene%groups(g)%elem == 'BSPRG') s = ', '//to_text(scene%groups(g)%stiffness, 3)//' per volume'
       if (any(scene%groups(g)%elem == [character(len=5) :: 'FLUX', 'CONVE', 'RADIA', 'HEATS'])) s = exchange_of(scene%groups(g))
       if (scene%groups(g)%source > 0) s = torch_of(scene%sources(scene%groups(g)%source))
       if (scene%groups(g)%temperature_history > 0) &

@@ -1,6 +1,7 @@
 !> Members of the ELEM family: a new element is one file and one line here.
 submodule(elem_registry) elem_members
   use elem_body_forces, only: elem_bforc_row, elem_centr_row
+  use elem_body_springs, only: elem_bsprg_row
   use elem_cnt2d, only: elem_cnt2d_row
   use elem_cntdf, only: elem_cntdf_row
   use elem_die_heat, only: elem_dietm_row
@@ -16,7 +17,7 @@ submodule(elem_registry) elem_members
 contains
 
   module procedure list_elems
-    allocate (elems(16))
+    allocate (elems(17))
     elems(1) = elem_pl8ls_row()
     elems(2) = elem_cnt2d_row()
     elems(3) = elem_cntdf_row()
@@ -33,6 +34,7 @@ contains
     elems(14) = elem_cnttm_row()
     elems(15) = elem_cndtm_row()
     elems(16) = elem_dietm_row()
+    elems(17) = elem_bsprg_row()
   end procedure list_elems
 
 end submodule elem_members

@@ -15,6 +15,7 @@ from .words import brief
 # solution leaves, the share of an element's strain that its points do not see, and what the books of heat lack of the heat that passed.
 ENERGY_IMBALANCE, VOLUME_DRIFT, VOLUME_BY_MESHES, LINEAR_RESIDUAL, SPURIOUS_MODE = 0.01, 0.01, 0.001, 1e-10, 0.9
 PATH_ERROR = 0.02
+SPRING_SHARE = 1e-3
 HEAT_IMBALANCE = 1e-6
 # Depths in summary.json, the share of the allowed beside them, and how far above 1 that is reported as too large, as in the listing.
 PENETRATIONS = {"max_penetration": "at points of contact", "max_penetration_sampled": "between points of contact too"}
@@ -59,6 +60,7 @@ def checks(run: Run) -> List[Check]:
     for name, title, norm in (("path_error_motion", "error of the motion by the path within steps, in sum", "PATH"),
                               ("path_error_stress", "error of the stress by the path within steps", "RATE")):
         within(name, title, PATH_ERROR, percent, f"take smaller steps ({norm} of NORMS, STRAT) and compare")
+    within("spring_share", "weak springs, of the largest force", SPRING_SHARE, percent, "take weaker springs (SPRNG) and compare")
     within("heat_imbalance", "heat imbalance", HEAT_IMBALANCE, percent, "solve steps more exactly (NORMS)")
     if "volume_drift_unloaded" in given:
         within("volume_drift_unloaded", "volume drift, without elastic strain", VOLUME_DRIFT, percent,
@@ -81,7 +83,7 @@ def checks(run: Run) -> List[Check]:
         result.append(Check("least friction work of a step", brief(values["least_dissipation"], 3), "not negative", good,
                             "" if good else "friction gave energy back: report it with the deck"))
     known = {*PENETRATIONS, *(name + OVER_ALLOWED for name in PENETRATIONS), "energy_imbalance", "heat_imbalance", "volume_drift",
-             "path_error_motion", "path_error_stress", "volume_drift_unloaded", "worst_linear_residual", "least_dissipation", "spurious_mode"}
+             "path_error_motion", "path_error_stress", "spring_share", "volume_drift_unloaded", "worst_linear_residual", "least_dissipation", "spurious_mode"}
     for name in given:
         if name not in known:
             result.append(Check(name.replace("_", " "), brief(values[name], 4), "–", None))
