@@ -1,14 +1,13 @@
 !> Laps: contours that cross themselves or each other, which a new mesh would close or separate.
 !>
-!> Arcs are approximated by chords; where chords cross, the crossing of the arcs is found by Newton's method. Two bodies in contact
-!> overlap by the depth of contact: arcs that follow a deformable die may cross that die, and so may sides that face it, where
-!> contact covers too little of a side to be a contact interval.
+!> Two bodies in contact overlap by the depth of contact: arcs that follow a deformable die may cross that die, and so may sides
+!> that face it, where contact covers too little of a side to be a contact interval.
 module contour_laps
+  use arc_crossings, only: box_of_chords, crossings_between, extent, most_crossings, touching
   use arcs, only: arc_t
   use boundary_curves, only: boundary_curve_t, joint_after, joint_point, kind_entry, kind_exit
-  use kinds, only: eps, wp
-  use offset_parabolas, only: point_at, tangent_at
-  use plane_vectors, only: cross
+  use kinds, only: wp
+  use offset_parabolas, only: point_at
   use vectors, only: length_of
   implicit none
   private
@@ -20,10 +19,6 @@ module contour_laps
     real(wp) :: point(2) = 0.0_wp   !! [length]
   end type lap_t
 
-  !> Chords of an arc.
-  integer, parameter :: nchord = 8
-  !> Ends of contact touch the die: crossings within this share of the arc from them are ignored.
-  real(wp), parameter :: touching = 1.0e-6_wp
   !> Distance, in depths, from a corner in contact to where its free side leaves the die: sides at 20 degrees or more to it.
   real(wp), parameter :: oblique = 3.0_wp
 
@@ -52,7 +47,7 @@ contains
         n = n + 1
         boundary_of(n) = c
         arc_of(n) = k
-        boxes(:, n) = box_of(boundaries(c)%arcs(k))
+        boxes(:, n) = box_of_chords(boundaries(c)%arcs(k))
       end do
     end do
     do i = 1, n
@@ -67,26 +62,6 @@ contains
       end do
     end do
   end subroutine find_laps
-
-  !> Box around the points that the chords join (xmin, ymin, xmax, ymax).
-  pure function box_of(arc) result(box)
-    type(arc_t), intent(in) :: arc
-    real(wp) :: box(4)
-    real(wp) :: p(2, 0:nchord)
-
-    p = chord_points(arc)
-    box = [minval(p, 2), maxval(p, 2)]
-  end function box_of
-
-  pure function chord_points(arc) result(p)
-    type(arc_t), intent(in) :: arc
-    real(wp) :: p(2, 0:nchord)
-    integer :: k
-
-    do k = 0, nchord
-      p(:, k) = point_at(arc, arc%range(1) + (arc%range(2) - arc%range(1))*k/nchord)
-    end do
-  end function chord_points
 
   !> One arc follows the deformable die that the other arc is a side of, or belongs to a side that faces it.
   pure function may_touch(boundaries, on_die, faces, lap) result(may)
@@ -138,28 +113,20 @@ contains
     type(boundary_curve_t), intent(in) :: boundary, other
     type(lap_t), intent(inout) :: lap
     logical, intent(out) :: crossed
-    real(wp) :: p(2, 0:nchord), q(2, 0:nchord), xi(2)
+    real(wp) :: xi(2, most_crossings)
     logical :: follow
-    integer :: i, k
+    integer :: i, n
 
     crossed = .false.
     follow = lap%boundaries(1) == lap%boundaries(2) .and. (joint_after(boundary, lap%arcs(1)) == lap%arcs(2) .or. &
                                                    joint_after(boundary, lap%arcs(2)) == lap%arcs(1))
     associate (one => boundary%arcs(lap%arcs(1)), two => other%arcs(lap%arcs(2)))
-      p = chord_points(one)
-      q = chord_points(two)
-      do i = 1, nchord
-        do k = 1, nchord
-          if (.not. chords_cross(p(:, i - 1:i), q(:, k - 1:k))) cycle
-          xi = [one%range(1) + (one%range(2) - one%range(1))*(i - 0.5_wp)/nchord, &
-                two%range(1) + (two%range(2) - two%range(1))*(k - 0.5_wp)/nchord]
-          call refine_crossing(one, two, xi, crossed)
-          if (.not. crossed) cycle
-          lap%point = point_at(one, xi(1))
-          crossed = .not. (is_shared(one, two, follow, lap%point) .or. is_end_of_contact(boundary, lap%arcs(1), lap%point) &
-                           .or. is_end_of_contact(other, lap%arcs(2), lap%point))
-          if (crossed) return
-        end do
+      call crossings_between(one, two, n, xi)
+      do i = 1, n
+        lap%point = point_at(one, xi(1, i))
+        crossed = .not. (is_shared(one, two, follow, lap%point) .or. is_end_of_contact(boundary, lap%arcs(1), lap%point) &
+                         .or. is_end_of_contact(other, lap%arcs(2), lap%point))
+        if (crossed) return
       end do
     end associate
   end subroutine find_crossing
@@ -203,49 +170,5 @@ contains
       yes = yes .or. length_of(joint_point(boundary, joint) - point) <= slack
     end do
   end function is_end_of_contact
-
-  pure function extent(arc) result(length)
-    type(arc_t), intent(in) :: arc
-    real(wp) :: length
-
-    length = length_of(arc%points(:, 3) - arc%points(:, 1))
-  end function extent
-
-  !> The ends of each chord lie on either side of the other one; points on a chord count as left of it.
-  pure function chords_cross(p, q) result(yes)
-    real(wp), intent(in) :: p(2, 2), q(2, 2)
-    logical :: yes
-    real(wp) :: a(2), b(2)
-
-    a = p(:, 2) - p(:, 1)
-    b = q(:, 2) - q(:, 1)
-    yes = (cross(a, q(:, 1) - p(:, 1)) < 0 .neqv. cross(a, q(:, 2) - p(:, 1)) < 0) .and. &
-          (cross(b, p(:, 1) - q(:, 1)) < 0 .neqv. cross(b, p(:, 2) - q(:, 1)) < 0)
-  end function chords_cross
-
-  !> Newton's method on X1(a) - X2(b) = 0 from where the chords cross.
-  pure subroutine refine_crossing(one, two, xi, met)
-    type(arc_t), intent(in) :: one, two
-    real(wp), intent(inout) :: xi(2)
-    logical, intent(out) :: met
-    real(wp) :: gap(2), a(2), b(2), det, step(2), slack(2)
-    integer :: iteration
-    integer, parameter :: most_iterations = 30
-
-    slack = touching*[one%range(2) - one%range(1), two%range(2) - two%range(1)]
-    met = .false.
-    do iteration = 1, most_iterations
-      gap = point_at(one, xi(1)) - point_at(two, xi(2))
-      a = tangent_at(one, xi(1))
-      b = tangent_at(two, xi(2))
-      det = cross(a, b)
-      if (.not. abs(det) > eps*length_of(a)*length_of(b)) return
-      step = [-cross(gap, b), -cross(gap, a)]/det
-      xi = min(max(xi + step, [one%range(1), two%range(1)]), [one%range(2), two%range(2)])
-      if (maxval(abs(step)) <= 64*eps) exit
-    end do
-    gap = point_at(one, xi(1)) - point_at(two, xi(2))
-    met = all(abs(step) <= slack) .and. length_of(gap) <= touching*min(extent(one), extent(two))
-  end subroutine refine_crossing
 
 end module contour_laps

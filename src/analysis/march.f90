@@ -38,6 +38,8 @@ module march
 
   !> A step shortened to an event is shortened by at least this much, so that the event is met in a few trials.
   real(wp), parameter :: largest_event = 0.95_wp
+  !> So many cuts in a row show that a body passes through itself in steps of any length.
+  integer, parameter :: most_cuts_for_crossing = 3
 
 contains
 
@@ -116,6 +118,7 @@ contains
     call after_failure(scene, dt, solution%next_step, give_up)
     call list_cut(run%listing, scene, solution, dt, solution%next_step, outcome)
     cuts = cuts + 1
+    if (outcome%passes_itself) give_up = give_up .or. cuts > most_cuts_for_crossing
     call note_cut(solution%probation, solution%next_step)
     if (on_probation .and. is_too_short(scene, solution)) then
       call refuse_mesh(scene, solution, outcome, run, error)

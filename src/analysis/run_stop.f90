@@ -29,7 +29,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: late
     real(wp), allocatable :: residual(:, :)
-    character(len=:), allocatable :: where_at, advice
+    character(len=:), allocatable :: where_at, advice, what
 
     where_at = ''
     if (outcome%group > 0) where_at = ', element '//to_text(outcome%element)//' of '//scene%groups(outcome%group)%name
@@ -43,8 +43,13 @@ contains
     if (size(scene%die_forces) > 0) advice = 'a die that is free and touches nothing needs a SPRNG card until it does; '//advice
     if (index(outcome%reason, 'singular') > 0 .and. any(may_stand_alone(scene%groups))) advice = advice//'; a body of few ' &
       //'elements with 4 integration points has a motion that nothing resists, 9 points with MEAN have none'
+    what = 'no convergence'
+    if (outcome%passes_itself) then
+      what = 'a body passes through itself'
+      advice = 'sides of one body that meet need contact as those of two bodies do, DIE name SIDES place and CNT2D place name law'
+    end if
     if (solution%step > 0) advice = 'the last good state is in '//run%stem//'.ckp.h5, '//advice
-    call fail(error, exit_no_convergence, 'no convergence: step '//to_text(solution%step + 1)//' from time ' &
+    call fail(error, exit_no_convergence, what//': step '//to_text(solution%step + 1)//' from time ' &
               //to_text(solution%time)//', length '//to_text(dt)//where_at//': '//outcome%reason, &
               advice)
     if (allocated(late)) error%advice = error%advice//' (and '//late%message//')'

@@ -1,4 +1,4 @@
-!> A tree of boxes to find the nearest of many to a point. Points are boxes of zero size.
+!> A tree of boxes to find the nearest of many to a point, or those that meet a box. Points are boxes of zero size.
 !>
 !> A k-d tree split at the median (J.L. Bentley, Commun. ACM 18 (1975) 509-517), each node with the box of all items below it: built
 !> in n log n, searched in log n, on graded meshes too. Ties are broken by the number of the item, so that results depend on the
@@ -7,7 +7,7 @@ module box_tree
   use kinds, only: wp
   implicit none
   private
-  public :: box_tree_t, build_tree, nearest_items, insert
+  public :: box_tree_t, build_tree, nearest_items, items_meeting, insert
 
   !> Largest number of items of a leaf, and largest depth of a tree (halves of 2^31 items).
   integer, parameter :: leaf = 8, deepest = 64
@@ -171,6 +171,44 @@ contains
     end do
     if (present(tried)) tried = visited
   end subroutine nearest_items
+
+  !> Items whose boxes meet a box, in the order of the leaves; those that do not fit into the list are counted only.
+  pure subroutine items_meeting(tree, box, found, items)
+    type(box_tree_t), intent(in) :: tree
+    real(wp), intent(in) :: box(4)   !! least x, y, largest x, y [length]
+    integer, intent(out) :: found
+    integer, intent(inout) :: items(:)   !! (n) the first `found`
+    integer :: waiting(deepest), top, node, i
+
+    found = 0
+    top = min(tree%n, 1)
+    waiting(1) = 1
+    do while (top > 0)
+      node = waiting(top)
+      top = top - 1
+      if (.not. meets(tree%node_boxes(:, node))) cycle
+      if (tree%nodes(3, node) > 0) then
+        waiting(top + 1:top + 2) = [tree%nodes(3, node), node + 1]
+        top = top + 2
+        cycle
+      end if
+      do i = tree%nodes(1, node), tree%nodes(2, node)
+        if (.not. meets(tree%boxes(:, i))) cycle
+        found = found + 1
+        if (found <= size(items)) items(found) = tree%items(i)
+      end do
+    end do
+
+  contains
+
+    pure function meets(other) result(yes)
+      real(wp), intent(in) :: other(4)
+      logical :: yes
+
+      yes = all(other(1:2) <= box(3:4)) .and. all(box(1:2) <= other(3:4))
+    end function meets
+
+  end subroutine items_meeting
 
   !> Insert an item into the list of the nearest, if it is nearer than the last one.
   pure subroutine insert(item, distance, found, items, distances)

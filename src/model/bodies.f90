@@ -3,7 +3,7 @@ module bodies
   use scene, only: scene_t
   implicit none
   private
-  public :: in_one_body
+  public :: in_one_body, bodies_of_nodes
 
 contains
 
@@ -12,30 +12,36 @@ contains
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: one(:, :), other(:, :)   !! (3, n)
     logical :: same
-    integer :: parent(size(scene%mesh%coordinates, 2))
-    logical :: of_one(size(parent))
+    integer :: body(size(scene%mesh%coordinates, 2))
+    logical :: of_one(size(body))
+
+    body = bodies_of_nodes(scene)
+    of_one = .false.
+    of_one(body(one(1, :))) = .true.
+    same = any(of_one(body(other(1, :))))
+  end function in_one_body
+
+  !> The body of every node (nnode): the lowest number of its nodes.
+  pure function bodies_of_nodes(scene) result(body)
+    type(scene_t), intent(in) :: scene
+    integer :: body(size(scene%mesh%coordinates, 2))
     integer :: g, e, i, k
 
-    parent = [(k, k=1, size(parent))]
+    body = [(k, k=1, size(body))]
     do g = 1, size(scene%groups)
       associate (nodes => scene%groups(g)%connectivity)
         if (scene%groups(g)%die > 0) cycle
         do e = 1, size(nodes, 2)
           do i = 2, size(nodes, 1)
-            call join(nodes(1, e), nodes(i, e), parent)
+            call join(nodes(1, e), nodes(i, e), body)
           end do
         end do
       end associate
     end do
-    of_one = .false.
-    do k = 1, size(one, 2)
-      of_one(root(parent, one(1, k))) = .true.
+    do k = 1, size(body)
+      body(k) = root(body, k)
     end do
-    same = .false.
-    do k = 1, size(other, 2)
-      same = same .or. of_one(root(parent, other(1, k)))
-    end do
-  end function in_one_body
+  end function bodies_of_nodes
 
   !> The lower root becomes the parent of the higher one.
   pure subroutine join(a, b, parent)

@@ -18,6 +18,7 @@ module equations
   use linear_solver, only: analyse, choose_solver, factorise, solve_linear
   use loads, only: multiplier_at
   use ordering, only: order_equations
+  use own_crossings, only: free_sides_t, list_free_sides
   use pairs, only: pairs_differ, pairs_t, start_pairs
   use point_drivers, only: drivers_t, find_drivers, is_scalar, nodal_values
   use scene, only: is_solid, role_body, role_second, role_side_load, role_spring, role_volume_load, scene_t
@@ -56,6 +57,8 @@ module equations
     type(element_buffers_t) :: buffers
     !> Sides that must not cross the axis, and what holds them.
     type(axis_wall_t) :: wall
+    !> Sides of bodies that may pass through one another.
+    type(free_sides_t) :: free_sides
     type(ledger_t) :: timers
     type(team_t) :: team
     !> Internal force (element forces summed) at the last evaluation, and the sum of their sizes (ndof).
@@ -102,6 +105,7 @@ contains
     equations%kinematics = rows(scene%kinematics_id)
     call number_dofs(scene, equations%elems, equations%dofs)
     call find_axis_wall(scene, equations%laws, equations%dofs, equations%wall)
+    call list_free_sides(scene, equations%free_sides)
     call list_solves(scene%fields, scene%strategy%coupling, equations%solves)
     do s = 1, size(equations%solves)
       call choose_solver(equations%solves(s)%solver, scene%strategy%linear_solver)

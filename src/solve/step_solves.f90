@@ -9,6 +9,7 @@ module step_solves
   use heat_stages, only: is_heat_alone, solve_heat
   use kinds, only: wp
   use newton, only: outcome_t, solve_step
+  use own_crossings, only: find_own_crossing, own_crossing_t
   use path_bounds, only: judge_path
   use predictor, only: proportion
   use scene, only: scene_t
@@ -36,8 +37,30 @@ contains
 
     solved = corrections_of_motion(equations)
     call take_turns(scene, equations, solution, dt, outcome)
+    call judge_contours(scene, equations, solution, outcome)
     call judge_path(scene, equations, solution, dt, corrections_of_motion(equations) > solved, outcome)
   end subroutine solve_fields
+
+  !> A step in which a body has passed through itself is none.
+  subroutine judge_contours(scene, equations, solution, outcome)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(in) :: solution
+    type(outcome_t), intent(inout) :: outcome
+    type(own_crossing_t) :: crossing
+    integer :: timer
+
+    if (.not. outcome%converged .or. size(equations%free_sides%body) == 0) return
+    call equations%timers%add('contours', timer)
+    call equations%timers%start(timer)
+    call find_own_crossing(scene, equations%dofs, solution, outcome%du, equations%free_sides, crossing)
+    call equations%timers%stop(timer)
+    if (.not. crossing%found) return
+    outcome%converged = .false.
+    outcome%passes_itself = .true.
+    outcome%reason = scene%groups(crossing%group)%name//' passes through itself at x = '//to_text(crossing%point(1), 5)//', y = ' &
+                     //to_text(crossing%point(2), 5)
+  end subroutine judge_contours
 
   !> Matrices factorised, or found so, for the motion since the start.
   pure function corrections_of_motion(equations) result(n)

@@ -1,0 +1,111 @@
+!> Crossings of two arcs.
+!>
+!> Arcs are approximated by chords; where chords cross, the crossing of the arcs is found by Newton's method.
+module arc_crossings
+  use kinds, only: eps, wp
+  use offset_parabolas, only: offset_parabola_t, point_at, tangent_at
+  use plane_vectors, only: cross
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: box_of_chords, crossings_between, extent, most_crossings, touching
+
+  !> Chords of an arc.
+  integer, parameter :: nchord = 8
+  !> Crossings that are listed: two parabolas have four.
+  integer, parameter :: most_crossings = 8
+  !> Round-off of a crossing, as a share of an arc.
+  real(wp), parameter :: touching = 1.0e-6_wp
+
+contains
+
+  !> Box around the points that the chords join (xmin, ymin, xmax, ymax) [length].
+  pure function box_of_chords(arc) result(box)
+    class(offset_parabola_t), intent(in) :: arc
+    real(wp) :: box(4)
+    real(wp) :: p(2, 0:nchord)
+
+    p = chord_points(arc)
+    box = [minval(p, 2), maxval(p, 2)]
+  end function box_of_chords
+
+  pure function chord_points(arc) result(p)
+    class(offset_parabola_t), intent(in) :: arc
+    real(wp) :: p(2, 0:nchord)
+    integer :: k
+
+    do k = 0, nchord
+      p(:, k) = point_at(arc, arc%range(1) + (arc%range(2) - arc%range(1))*k/nchord)
+    end do
+  end function chord_points
+
+  !> Parent coordinates at which two arcs cross, in the order of the first one's chords; a joint that they share may be among them.
+  pure subroutine crossings_between(one, two, n, xi)
+    class(offset_parabola_t), intent(in) :: one, two
+    integer, intent(out) :: n
+    real(wp), intent(out) :: xi(:, :)   !! (2, most_crossings) on the one and on the other, the first n [-]
+    real(wp) :: p(2, 0:nchord), q(2, 0:nchord)
+    logical :: crossed
+    integer :: i, k
+
+    n = 0
+    p = chord_points(one)
+    q = chord_points(two)
+    do i = 1, nchord
+      do k = 1, nchord
+        if (.not. chords_cross(p(:, i - 1:i), q(:, k - 1:k))) cycle
+        if (n == size(xi, 2)) return
+        xi(:, n + 1) = [one%range(1) + (one%range(2) - one%range(1))*(i - 0.5_wp)/nchord, &
+                        two%range(1) + (two%range(2) - two%range(1))*(k - 0.5_wp)/nchord]
+        call refine_crossing(one, two, xi(:, n + 1), crossed)
+        if (crossed) n = n + 1
+      end do
+    end do
+  end subroutine crossings_between
+
+  !> Chord of an arc's parabola [length].
+  pure function extent(arc) result(length)
+    class(offset_parabola_t), intent(in) :: arc
+    real(wp) :: length
+
+    length = length_of(arc%points(:, 3) - arc%points(:, 1))
+  end function extent
+
+  !> The ends of each chord lie on either side of the other one; points on a chord count as left of it.
+  pure function chords_cross(p, q) result(yes)
+    real(wp), intent(in) :: p(2, 2), q(2, 2)
+    logical :: yes
+    real(wp) :: a(2), b(2)
+
+    a = p(:, 2) - p(:, 1)
+    b = q(:, 2) - q(:, 1)
+    yes = (cross(a, q(:, 1) - p(:, 1)) < 0 .neqv. cross(a, q(:, 2) - p(:, 1)) < 0) .and. &
+          (cross(b, p(:, 1) - q(:, 1)) < 0 .neqv. cross(b, p(:, 2) - q(:, 1)) < 0)
+  end function chords_cross
+
+  !> Newton's method on X1(a) - X2(b) = 0 from where the chords cross.
+  pure subroutine refine_crossing(one, two, xi, met)
+    class(offset_parabola_t), intent(in) :: one, two
+    real(wp), intent(inout) :: xi(2)
+    logical, intent(out) :: met
+    real(wp) :: gap(2), a(2), b(2), det, step(2), slack(2)
+    integer :: iteration
+    integer, parameter :: most_iterations = 30
+
+    slack = touching*[one%range(2) - one%range(1), two%range(2) - two%range(1)]
+    met = .false.
+    do iteration = 1, most_iterations
+      gap = point_at(one, xi(1)) - point_at(two, xi(2))
+      a = tangent_at(one, xi(1))
+      b = tangent_at(two, xi(2))
+      det = cross(a, b)
+      if (.not. abs(det) > eps*length_of(a)*length_of(b)) return
+      step = [-cross(gap, b), -cross(gap, a)]/det
+      xi = min(max(xi + step, [one%range(1), two%range(1)]), [one%range(2), two%range(2)])
+      if (maxval(abs(step)) <= 64*eps) exit
+    end do
+    gap = point_at(one, xi(1)) - point_at(two, xi(2))
+    met = all(abs(step) <= slack) .and. length_of(gap) <= touching*min(extent(one), extent(two))
+  end subroutine refine_crossing
+
+end module arc_crossings

@@ -1,0 +1,224 @@
+!> Bodies that pass through themselves: free sides of one body that cross at the end of a step.
+!>
+!> Nothing but contact keeps the sides of a body apart, so a body without it may fold through itself in equilibrium. Sides that
+!> face each other in contact overlap by the depth of contact: where a point of either is in contact, they do not count.
+module own_crossings
+  use arc_crossings, only: box_of_chords, crossings_between, most_crossings
+  use bodies, only: bodies_of_nodes
+  use box_tree, only: box_tree_t, build_tree, items_meeting
+  use contact_point, only: at_piece, at_status
+  use dofs, only: dofs_t
+  use fields, only: displacement_field
+  use kinds, only: wp
+  use law_api, only: contact_open
+  use offset_parabolas, only: offset_parabola_t, point_at
+  use scene, only: is_solid, role_contact, scene_t
+  use solution, only: solution_t
+  implicit none
+  private
+  public :: free_sides_t, list_free_sides, find_own_crossing, own_crossing_t
+
+  !> Crossings this near to an end of both sides, in parent coordinates, are the node that they share.
+  real(wp), parameter :: at_node = 1.0e-3_wp
+
+  !> Free sides of all bodies.
+  type :: free_sides_t
+    !> Nodes, walked with the body on the left (3, nside); the body of each side, and the group of its element (nside).
+    integer, allocatable :: nodes(:, :), body(:), group(:)
+  end type free_sides_t
+
+  !> The first crossing found.
+  type :: own_crossing_t
+    logical :: found = .false.
+    !> The group of elements of one of the sides.
+    integer :: group = 0
+    real(wp) :: point(2) = 0.0_wp   !! [length]
+  end type own_crossing_t
+
+contains
+
+  !> Sides of bodies that belong to one element alone; none where nothing moves, or the geometry does not follow.
+  subroutine list_free_sides(scene, sides)
+    type(scene_t), intent(in) :: scene
+    type(free_sides_t), intent(out) :: sides
+    integer, parameter :: corners(3, 4) = reshape([1, 5, 2, 2, 6, 3, 3, 7, 4, 4, 8, 1], [3, 4])
+    integer :: sharing(size(scene%mesh%coordinates, 2)), body(size(sharing)), g, e, k, n, most
+    logical :: wanted
+
+    wanted = scene%finite .and. scene%fields(displacement_field)%declared
+    most = 0
+    sharing = 0
+    do g = 1, size(scene%groups)
+      if (.not. (wanted .and. is_solid(scene%groups(g)))) cycle
+      most = most + 4*size(scene%groups(g)%connectivity, 2)
+      do e = 1, size(scene%groups(g)%connectivity, 2)
+        associate (middle => scene%groups(g)%connectivity(5:8, e))
+          sharing(middle) = sharing(middle) + 1
+        end associate
+      end do
+    end do
+    allocate (sides%nodes(3, most), sides%group(most))
+    n = 0
+    do g = 1, size(scene%groups)
+      if (.not. (wanted .and. is_solid(scene%groups(g)))) cycle
+      do e = 1, size(scene%groups(g)%connectivity, 2)
+        do k = 1, 4
+          associate (nodes => scene%groups(g)%connectivity(corners(:, k), e))
+            if (sharing(nodes(2)) /= 1) cycle
+            n = n + 1
+            sides%nodes(:, n) = nodes
+            sides%group(n) = g
+          end associate
+        end do
+      end do
+    end do
+    sides%nodes = sides%nodes(:, :n)
+    sides%group = sides%group(:n)
+    allocate (sides%body(n))
+    if (n == 0) return
+    body = bodies_of_nodes(scene)
+    sides%body = body(sides%nodes(1, :))
+  end subroutine list_free_sides
+
+  !> A place where two sides of a body cross at the end of a step: the first one in the order of sides.
+  subroutine find_own_crossing(scene, dofs, solution, du, sides, crossing)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(in) :: dofs
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: du(:)   !! (ndof) motion of the step [unknown]
+    type(free_sides_t), intent(in) :: sides
+    type(own_crossing_t), intent(out) :: crossing
+    type(offset_parabola_t) :: arcs(size(sides%nodes, 2))
+    type(box_tree_t) :: tree
+    real(wp) :: boxes(4, size(arcs)), xi(2, most_crossings)
+    logical, allocatable :: held(:)
+    integer :: meeting(size(arcs)), number, found, i, k, m, r
+
+    if (size(arcs) == 0) return
+    do i = 1, size(arcs)
+      arcs(i)%points = present_nodes(scene, dofs, solution, du, sides%nodes(:, i))
+      boxes(:, i) = box_of_chords(arcs(i))
+    end do
+    call build_tree(boxes, [(i, i=1, size(arcs))], tree)
+    do i = 1, size(arcs)
+      call items_meeting(tree, boxes(:, i), found, meeting)
+      do m = 1, found
+        k = meeting(m)
+        if (k <= i .or. sides%body(k) /= sides%body(i)) cycle
+        if (part_at_node(sides%nodes([1, 3], i), sides%nodes([1, 3], k), arcs(i)%points, arcs(k)%points)) cycle
+        call crossings_between(arcs(i), arcs(k), number, xi)
+        do r = 1, number
+          if (at_shared_node(sides%nodes([1, 3], i), sides%nodes([1, 3], k), xi(:, r))) cycle
+          if (.not. allocated(held)) held = nodes_in_contact(scene, solution)
+          if (any(held(sides%nodes(:, i))) .or. any(held(sides%nodes(:, k)))) cycle
+          crossing%found = .true.
+          crossing%group = sides%group(i)
+          crossing%point = point_at(arcs(i), xi(1, r))
+          return
+        end do
+      end do
+    end do
+  end subroutine find_own_crossing
+
+  !> Nodes of a side at the end of the step [length].
+  pure function present_nodes(scene, dofs, solution, du, nodes) result(x)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(in) :: dofs
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: du(:)
+    integer, intent(in) :: nodes(3)
+    real(wp) :: x(2, 3)
+    integer :: i, c
+
+    x = scene%mesh%coordinates(:, nodes) + solution%fields(displacement_field)%value(:, nodes)
+    associate (number => dofs%fields(displacement_field)%number)
+      do i = 1, 3
+        do c = 1, 2
+          if (number(c, nodes(i)) > 0) x(c, i) = x(c, i) + du(number(c, nodes(i)))
+        end do
+      end do
+    end associate
+  end function present_nodes
+
+  !> Both sides end with one node and leave it in directions more than a right angle apart: they meet nowhere else. A parabola lies
+  !> in the triangle of its Bezier points.
+  pure function part_at_node(one, two, x, y) result(apart)
+    integer, intent(in) :: one(2), two(2)    !! first and last node
+    real(wp), intent(in) :: x(2, 3), y(2, 3)
+    logical :: apart
+    real(wp) :: a(2, 2), b(2, 2)
+    integer :: i, k
+
+    apart = .false.
+    do i = 1, 2
+      do k = 1, 2
+        if (one(i) /= two(k)) cycle
+        a = ways_from(x, i)
+        b = ways_from(y, k)
+        apart = all(matmul(transpose(a), b) < 0)
+        return
+      end do
+    end do
+
+  contains
+
+    !> From an end of a parabola to its other Bezier points.
+    pure function ways_from(x, i) result(ways)
+      real(wp), intent(in) :: x(2, 3)
+      integer, intent(in) :: i
+      real(wp) :: ways(2, 2)
+
+      ways(:, 1) = 2*x(:, 2) - 0.5_wp*(x(:, 1) + x(:, 3)) - x(:, 2*i - 1)
+      ways(:, 2) = x(:, 5 - 2*i) - x(:, 2*i - 1)
+    end function ways_from
+
+  end function part_at_node
+
+  !> The crossing is a node that both sides end with.
+  pure function at_shared_node(one, two, xi) result(shared)
+    integer, intent(in) :: one(2), two(2)   !! first and last node
+    real(wp), intent(in) :: xi(2)
+    logical :: shared
+    integer :: i, k
+
+    shared = .false.
+    do i = 1, 2
+      do k = 1, 2
+        shared = shared .or. (one(i) == two(k) .and. abs(xi(1) - end_of(i)) <= at_node .and. abs(xi(2) - end_of(k)) <= at_node)
+      end do
+    end do
+
+  contains
+
+    pure function end_of(i) result(xi)
+      integer, intent(in) :: i
+      real(wp) :: xi
+
+      xi = real(2*i - 3, wp)
+    end function end_of
+
+  end function at_shared_node
+
+  !> Nodes of sides that are in contact with sides of bodies now, of both (nnode).
+  pure function nodes_in_contact(scene, solution) result(held)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    logical :: held(size(scene%mesh%coordinates, 2))
+    integer :: g, e, p
+
+    held = .false.
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g), state => solution%groups(g)%trial)
+        if (group%pairs == 0 .or. group%role /= role_contact) cycle
+        do e = 1, size(group%connectivity, 2)
+          do p = 1, size(state, 2)
+            if (nint(state(at_status, p, e)) == contact_open) cycle
+            held(group%connectivity(:, e)) = .true.
+            held(scene%dies(group%die)%nodes(:, nint(state(at_piece, p, e)))) = .true.
+          end do
+        end do
+      end associate
+    end do
+  end function nodes_in_contact
+
+end module own_crossings
