@@ -2,6 +2,7 @@
 module bookkeeping
   use contact_contour, only: sample_depth
   use contact_penalties, only: allowed_penetration
+  use contact_point, only: at_penetration, at_status, side_length
   use dies, only: is_deformable, present_die
   use elem_api, only: add_totals, totals_t
   use element_loop, only: group_geometry
@@ -9,8 +10,10 @@ module bookkeeping
   use errors, only: error_t, exit_bug, fail
   use fields, only: displacement_field, field_t, on_nodes, pilot_field, section_field
   use kinds, only: wp
+  use law_api, only: contact_open
+  use own_contact, only: faces_itself
   use plane_vectors, only: cross
-  use scene, only: role_contact, scene_t
+  use scene, only: group_t, role_contact, scene_t
   use solution, only: present_coordinates, solution_t
   use spurious_mode, only: find_spurious_mode, has_spurious_mode
   use text, only: to_text
@@ -178,12 +181,37 @@ contains
         if (group%die == 0 .or. group%material == 0) cycle
         allowed = allowed_penetration(scene%materials(group%material))
         x = present_coordinates(scene, solution)
-        call sample_depth(group, present_die(scene%dies(group%die), x), solution%fields(pilot_field)%value(:, group%die), &
-                          scene%mesh%coordinates, x, allowed, depth, ratio)
+        if (faces_itself(scene, group)) then
+          call deepest_points(scene, group, solution%groups(g)%committed, allowed, depth, ratio)
+        else
+          call sample_depth(group, present_die(scene%dies(group%die), x), solution%fields(pilot_field)%value(:, group%die), &
+                            scene%mesh%coordinates, x, allowed, depth, ratio)
+        end if
       end associate
       solution%worst_sample = max(solution%worst_sample, depth)
       solution%worst_sample_ratio = max(solution%worst_sample_ratio, ratio)
     end do
   end subroutine sample_contacts
+
+  !> Depth of sides that face their own body: at the points in contact, which are many. Elsewhere nothing tells by its place
+  !> whether a point is in contact.
+  pure subroutine deepest_points(scene, group, state, allowed, depth, ratio)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: state(:, :, :)   !! (nstate, npoint, nside) [unit of each component]
+    real(wp), intent(in) :: allowed          !! penetration over the side, 0 when none is stated
+    real(wp), intent(out) :: depth           !! [length]
+    real(wp), intent(out) :: ratio           !! over what the side allows
+    real(wp) :: deepest
+    integer :: e
+
+    depth = 0
+    ratio = 0
+    do e = 1, size(state, 3)
+      deepest = max(0.0_wp, maxval(state(at_penetration, :, e), mask=nint(state(at_status, :, e)) /= contact_open))
+      depth = max(depth, deepest)
+      if (allowed > 0) ratio = max(ratio, deepest/(allowed*side_length(scene, group%connectivity(:, e))))
+    end do
+  end subroutine deepest_points
 
 end module bookkeeping

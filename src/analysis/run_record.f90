@@ -14,6 +14,7 @@ module run_record
   use kinds, only: eps, wp
   use listing, only: listing_t
   use newton, only: outcome_t
+  use own_contact, only: faces_itself
   use restore_balance, only: balance_t
   use results, only: results_t, save_fields
   use scene, only: scene_t
@@ -109,6 +110,7 @@ contains
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
         if (group%die == 0 .or. group%material == 0) cycle
+        if (faces_itself(scene, group)) cycle
         status = group%variables(find_variable(group%variables, 'contact_status'))%first
         penetration = group%variables(find_variable(group%variables, 'penetration'))%first
         x = present_coordinates(scene, solution)

@@ -13,6 +13,7 @@ module cards_heat_contact
   use fields, only: displacement_field, find_field
   use heat_contacts, only: heat_contact_t
   use kinds, only: wp
+  use own_contact, only: faces_itself
   use quadrature, only: rule_gauss, rule_t
   use scene, only: group_t, role_contact, role_heat_contact
   use scene_draft, only: close_card, draft_t, next_of_words, words_of
@@ -114,6 +115,7 @@ contains
         group%elem_id = findloc([(draft%elems(g)%name == group%elem, g=1, size(draft%elems))], .true., 1)
         group%pairs = maxval([0, groups%pairs]) + 1
         call refuse_without_field(cursor, draft, field, [die%nodes], 'DIE '''//die%name//'''', own=.true.)
+        if (faces_itself(draft%scene, group)) call cursor%fail('heat does not pass where a body faces itself')
       else if (dies_sound .and. .not. any(draft%scene%die_heats%die == group%die)) then
         call cursor%fail('the temperature of DIE '''//die%name//''' is not known: expected a TDIE card')
       end if

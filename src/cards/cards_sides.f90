@@ -9,11 +9,10 @@ module cards_sides
   use dies, only: is_deformable
   use kinds, only: wp
   use law_api, only: contact_law, find_parameter, is_complete, law_of_material
-  use bodies, only: in_one_body
   use quadrature, only: rule_along, rule_of_number, rule_t
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, find_elem
-  use text, only: to_text
+  use text, only: to_text, upper_case
   implicit none
   private
   public :: read_contacts, read_pressures, refuse_inner_sides, start_group, append_group
@@ -37,7 +36,11 @@ contains
       if (deck%cards(i)%keyword /= 'CNT2D') cycle
       call cursor%open(deck%cards(i), diagnostics)
       call start_group('CNT2D', draft, group)
-      call read_sides(cursor, draft, huge(k), label, group%connectivity)
+      if (is_side_die(draft, cursor%peek_word())) then
+        call read_own_sides(cursor, draft, label, group%connectivity)
+      else
+        call read_sides(cursor, draft, huge(k), label, group%connectivity)
+      end if
       call refuse_inner_sides(cursor, draft, group%connectivity)
       call draft%places%find(cursor, 'the name of a DIE', k)
       if (k > 0) then
@@ -73,19 +76,53 @@ contains
     end do
   end subroutine read_contacts
 
-  !> A die made of sides: another ELEM, and another body.
+  !> A word is the name of a die made of sides.
+  pure function is_side_die(draft, word) result(yes)
+    type(draft_t), intent(in) :: draft
+    character(len=*), intent(in) :: word
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    do k = 1, size(draft%scene%dies)
+      associate (die => draft%scene%dies(k))
+        if (is_deformable(die)) yes = yes .or. upper_case(die%name) == word
+      end associate
+    end do
+  end function is_side_die
+
+  !> The sides of a die, which face one another.
+  subroutine read_own_sides(cursor, draft, label, sides)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+    character(len=:), allocatable, intent(out) :: label
+    integer, allocatable, intent(out) :: sides(:, :)   !! (3, nside)
+    integer :: k
+
+    call draft%places%find(cursor, 'the name of a DIE', k)
+    allocate (sides(3, 0))
+    label = draft%places%words(k)%s
+    if (draft%mesh_sound) sides = draft%scene%dies(draft%places%item(k))%nodes([3, 2, 1], :)
+  end subroutine read_own_sides
+
+  !> A die made of sides: another ELEM. Sides that face sides of their own body are all among these, or none.
   subroutine face_sides(cursor, draft, group)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft
     type(group_t), intent(inout) :: group
+    integer :: k, own
 
     associate (die => draft%scene%dies(group%die))
       if (.not. is_deformable(die)) return
       group%elem = 'CNTDF'
       group%elem_id = find_elem(draft%elems, group%elem)
       group%pairs = maxval([0, draft%scene%groups%pairs]) + 1
-      if (in_one_body(draft%scene, die%nodes, group%connectivity)) &
-        call cursor%fail('a body cannot face itself: these sides and the DIE '''//die%name//''' belong to one')
+      own = 0
+      do k = 1, size(group%connectivity, 2)
+        if (any(die%nodes(2, :) == group%connectivity(2, k))) own = own + 1
+      end do
+      if (own > 0 .and. own < size(group%connectivity, 2)) &
+        call cursor%fail('some of these sides belong to the DIE '''//die%name//''' themselves: expected all of them, or none')
     end associate
   end subroutine face_sides
 

@@ -17,21 +17,28 @@
 !> The point gets the traction, the nodes of the side with the closest point psi_k of its opposite: what one body gains
 !> the other loses, point by point. Each side is coupled with a few pieces only (pairs): a closest point on
 !> another piece is reported, and the pairs are renewed before the result is used.
+!>
+!> A body may face itself (own_contact): nothing tells then by its place whether a point is behind the wall that it belongs to or in
+!> the side that it has met, both are a depth. So a point goes on from the closest point of the last accepted instant, or takes the
+!> nearest gap. Only where it had none in reach, as in a first step, a depth counts that was none on the mesh as it began.
 module elem_cntdf
   use contact_point, only: act, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, meeting_t, &
                            most_unknowns, no_surface, penalties, point_variables, rest, share_to_contact, &
                            show_on_axis, side_length, side_point, thinning
   use closest_point, only: closest_point_t
   use corner_faces, only: closest_on_piece
-  use curve_search, only: box_distance, closest_facing_point
+  use curve_search, only: box_distance, closest_facing_point, closest_opposed_point, follow_closest_point, looks_at
   use dies, only: die_t
   use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
   use elem_cnt2d, only: elem_cnt2d_row
   use kinds, only: eps, wp
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_open, law_t
+  use own_contact, only: faces_itself, pieces_to_meet
   use pairs, only: list_pieces, nodes_per_piece, pieces_in_reach, place_in_reach
-  use plane_vectors, only: cross
+  use parabolas, only: point_on, tangent_on
+  use piecewise_curves, only: adjacent_piece
+  use plane_vectors, only: cross, right_of
   use quadrature, only: line_rule
   use scene, only: axisymmetric, generalised_plane_strain, group_t, scene_t
   use shape_functions, only: line3
@@ -47,6 +54,11 @@ module elem_cntdf
   real(wp), parameter :: beyond = 0.2_wp, beyond_all = 0.05_wp
   !> Cosine of the largest turn at a vertex that is taken for one of a smooth curve, about 6 degrees.
   real(wp), parameter :: nearly_smooth = 0.995_wp
+  !> A point that was deeper behind a side of its body, on the mesh as it began, than this share of its own side is behind a wall: no
+  !> depth of contact is as large.
+  real(wp), parameter :: wall_thickness = 0.02_wp
+  !> A closest point as far along its side was at the end of it (parent coordinate).
+  real(wp), parameter :: at_corner = 0.999_wp
 
 contains
 
@@ -97,10 +109,15 @@ contains
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: side, section(3), phi(3), dphi(3), psi(3), dpsi(3), q(2), dq(2, most_unknowns), dxi(most_unknowns)
     integer :: e, p, n, j, k, at, nnode, npiece, place(most_unknowns), pieces(pieces_in_reach*group%rule%n)
+    logical, allocatable :: may(:, :)
     logical :: axisym
 
     axisym = scene%plane_state == axisymmetric
     nnode = size(x, 2)
+    if (faces_itself(scene, group)) then
+      allocate (may(size(scene%dies(group%die)%nodes, 2), size(x, 3)))
+      call pieces_to_meet(scene, group, first, may)
+    end if
     n = merge(most_unknowns, most_unknowns - 3, scene%plane_state == generalised_plane_strain)
     call line_rule(group%rule, xi, weight)
     associate (die => instant%dies(group%die), middle => instant%pairs(group%pairs)%piece(:, first:first + size(x, 3) - 1))
@@ -121,7 +138,14 @@ contains
         do p = 1, size(xi)
           call line3(xi(p), phi, dphi)
           call side_point(phi, dphi, section, x(:, 1:3, e), du(place(1:6), e), most_unknowns, point)
-          call find_kept_closest_point(die, point, side, committed(at_piece, p, e), middle(p, e), closest, nearest)
+          if (allocated(may)) then
+            call find_own_closest_point(scene, group, first + e - 1, die, may(:, e), point, phi, side, committed(:, p, e), nearest)
+          else
+            call closest_facing_point(die, point%x, point%e_r, side, nearest)
+          end if
+          ! a stale pair of a body's own side may be the far face of a wall
+          if (allocated(may) .and. nearest%piece == 0) cycle
+          call keep_closest_point(die, point, side, committed(at_piece, p, e), middle(p, e), nearest, closest)
           if (closest%piece == 0) cycle
           ! a point on the axis has no surface: nothing acts there, and no contact is evaluated
           if (axisym .and. point%x(1) <= no_surface*side) cycle
@@ -165,25 +189,107 @@ contains
     box = [minval(x(1, :) + du(1:3)), minval(x(2, :) + du(4:6)), maxval(x(1, :) + du(1:3)), maxval(x(2, :) + du(4:6))]
   end function box_of
 
+  !> Closest point of a body's own curve: what the point had at the start of the step, or the nearest gap.
+  pure subroutine find_own_closest_point(scene, group, element, die, may, point, phi, reach, committed, closest)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    integer, intent(in) :: element
+    type(die_t), intent(in) :: die
+    logical, intent(in) :: may(:)   !! (npiece)
+    type(contact_point_t), intent(in) :: point
+    real(wp), intent(in) :: phi(3), reach, committed(:)
+    type(closest_point_t), intent(out) :: closest
+    type(closest_point_t) :: same
+    integer :: piece, end
+
+    call closest_opposed_point(die, point%x, point%e_r, reach, may, -1.0_wp, closest)
+    piece = nint(committed(at_piece))
+    if (piece > 0) then
+      call follow_from(piece, committed(at_xi), same)
+    else
+      call closest_opposed_point(die, point%x, point%e_r, reach, may, 1.0_wp, same)
+    end if
+    call take(same, piece > 0, closest)
+    if (closest%piece > 0 .or. die%closed) return
+    ! flush with an open end of the curve, as on a line of symmetry
+    do end = 1, size(may), max(size(may) - 1, 1)
+      call closest_on_piece(die, end, point%x, merge(-1.0_wp, 1.0_wp, end == 1), beyond_all, same)
+      if (same%piece == 0) cycle
+      if (abs(same%d) < reach .and. looks_at(same, point%e_r)) call take(same, piece == end, closest)
+    end do
+
+  contains
+
+    !> The closest point from where it was. From a corner there are two ways, inside the body behind it: the side that is looked at.
+    pure subroutine follow_from(piece, xi, found)
+      integer, intent(in) :: piece
+      real(wp), intent(in) :: xi
+      type(closest_point_t), intent(out) :: found
+      type(closest_point_t) :: other
+      integer :: next
+
+      call follow_closest_point(die, point%x, point%e_r, reach, piece, xi, found)
+      if (.not. abs(xi) >= at_corner) return
+      next = adjacent_piece(die, piece, nint(xi))
+      if (next == 0) return
+      call follow_closest_point(die, point%x, point%e_r, reach, next, -anint(xi), other)
+      if (other%piece == 0 .or. .not. other%d > 0) return
+      if (found%piece > 0 .and. dot_product(found%normal, point%e_r) <= dot_product(other%normal, point%e_r)) return
+      found = other
+    end subroutine follow_from
+
+    !> What the point met before is nearer than a gap where it is a depth. A depth that was not met before may be a wall.
+    pure subroutine take(other, was_met, closest)
+      type(closest_point_t), intent(in) :: other
+      logical, intent(in) :: was_met
+      type(closest_point_t), intent(inout) :: closest
+
+      if (other%piece == 0) return
+      if (.not. may(other%piece)) return
+      if (closest%piece > 0 .and. other%d < 0 .and. other%d < closest%d) return
+      if (.not. was_met .and. other%d > 0) then
+        if (is_wall(other)) return
+      end if
+      closest = other
+    end subroutine take
+
+    !> Point and closest point are on two faces of one wall, or on two sides of one corner.
+    pure function is_wall(far) result(wall)
+      type(closest_point_t), intent(in) :: far
+      logical :: wall
+      real(wp) :: y(2, 3), apart(2), across
+
+      associate (side => group%connectivity(:, element), other => scene%dies(group%die)%nodes(:, far%piece), &
+                 first => scene%mesh%coordinates)
+        y = first(:, other)
+        apart = matmul(first(:, side), phi) - point_on(y, far%xi)
+        across = dot_product(apart, right_of(tangent_on(y, far%xi)))
+        if (far%at_vertex) across = sign(length_of(apart), across)
+        wall = across > wall_thickness*reach .or. side(1) == other(1) .or. side(3) == other(3)
+      end associate
+    end function is_wall
+
+  end subroutine find_own_closest_point
+
   !> Closest point to a point of contact; but for the length of a step a point inside keeps the side it began with, beyond its
   !> ends too.
   !>
   !> Sides of a bent mesh make slight corners, and the normal jumps there within a motion smaller than any iteration's: points
   !> at a corner would change sides without end. Likewise points at the open end of the curve, where two bodies are flush. True
   !> corners are left to the search.
-  pure subroutine find_kept_closest_point(die, point, reach, last, middle, closest, nearest)
+  pure subroutine keep_closest_point(die, point, reach, last, middle, nearest, closest)
     type(die_t), intent(in) :: die
     type(contact_point_t), intent(in) :: point
     real(wp), intent(in) :: reach
     real(wp), intent(in) :: last     !! piece at the start of the step, 0 where there was none
     integer, intent(in) :: middle    !! middle piece of the point's pairs, 0 for none
-    type(closest_point_t), intent(out) :: closest, nearest   !! of this step, and where the next one begins
+    type(closest_point_t), intent(inout) :: nearest   !! where the next step begins
+    type(closest_point_t), intent(out) :: closest     !! of this step
     type(closest_point_t) :: same
     real(wp) :: from
     integer :: piece
 
-    call closest_facing_point(die, point%x, point%e_r, reach, closest)
-    nearest = closest
+    closest = nearest
     piece = nint(last)
     if (piece == 0) piece = middle
     if (piece == 0 .or. closest%d < 0) return
@@ -199,7 +305,7 @@ contains
       if (place_in_reach(die, closest%piece, piece) == 0 .or. dot_product(same%normal, closest%normal) < nearly_smooth) return
     end if
     closest = same
-  end subroutine find_kept_closest_point
+  end subroutine keep_closest_point
 
   !> Depth, slip and turn of the normal where a point meets a side, with their derivatives, and the motion of the closest
   !> point along the side. Unknowns 7 to 12 are those of the side met.

@@ -23,10 +23,12 @@ module curve_search
   use piecewise_curves, only: adjacent_piece, box_gap, box_of_node, piecewise_curve_t
   implicit none
   private
-  public :: closest_facing_point, closest_on_pieces, follow_closest_point, box_distance
+  public :: closest_facing_point, closest_opposed_point, closest_on_pieces, follow_closest_point, looks_at, box_distance
 
   !> A side that faces away by less than this cosine may still lie on the die: a side that folds.
   real(wp), parameter :: facing = 0.9_wp
+  !> Sides of one curve look at each other when the product of their inner normals is below this.
+  real(wp), parameter :: opposed = -0.1_wp
   !> Nodes waiting in a search are one for each row of the tree at most: pieces are counted by 32 bits.
   integer, parameter :: most_waiting = 40
 
@@ -37,6 +39,8 @@ module curve_search
     real(wp) :: e_r(2)
     logical :: narrow = .false.
     real(wp) :: sense = 0.0_wp
+    !> Product of the normals up to which a point faces the part.
+    real(wp) :: limit = facing
     !> Distance of the best one so far [length].
     real(wp) :: best
     type(closest_point_t) :: closest
@@ -58,7 +62,7 @@ contains
     search%best = reach
     call search_tree(curve, search)
     if (search%closest%piece > 0) then
-      if (.not. faces(search%closest, e_r)) then
+      if (.not. faces(search%closest, e_r, facing)) then
         search%narrow = .true.
         search%sense = sign(1.0_wp, search%closest%d)
         search%best = reach
@@ -71,6 +75,36 @@ contains
     call keep_to_face(curve, point, e_r, reach, closest)
     if (closest%d > -end_slack*reach) call leave_beside(curve, point, e_r, reach, closest)
   end subroutine closest_facing_point
+
+  !> Closest point of a curve to a point of its own: on the given pieces, where they look at each other, as a gap or as a depth.
+  pure subroutine closest_opposed_point(curve, point, e_r, reach, may, sense, closest)
+    class(piecewise_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: point(2)   !! [length]
+    real(wp), intent(in) :: e_r(2)     !! inner normal of the part [-]
+    real(wp), intent(in) :: reach      !! [length]
+    logical, intent(in) :: may(:)      !! (npiece) that are looked at
+    real(wp), intent(in) :: sense      !! -1 for a gap, 1 for a depth
+    type(closest_point_t), intent(out) :: closest
+    type(search_t) :: search
+
+    search%point = point
+    search%e_r = e_r
+    search%best = reach
+    search%narrow = .true.
+    search%sense = sense
+    search%limit = opposed
+    call search_tree(curve, search, may)
+    closest = search%closest
+  end subroutine closest_opposed_point
+
+  !> A side of one curve and a closest point of the same look at each other.
+  pure function looks_at(closest, e_r) result(yes)
+    type(closest_point_t), intent(in) :: closest
+    real(wp), intent(in) :: e_r(2)   !! inner normal of the side [-]
+    logical :: yes
+
+    yes = faces(closest, e_r, opposed)
+  end function looks_at
 
   !> Closest point of all on adjacent pieces and the vertices between them, whichever way it faces.
   pure subroutine closest_on_pieces(curve, point, first, count, closest)
@@ -106,18 +140,19 @@ contains
     slack = 4*end_slack*(maxval(abs(box_of_node(curve, 1))) + maxval(abs(point)))
   end function slack_of
 
-  pure function faces(closest, e_r) result(seen)
+  pure function faces(closest, e_r, limit) result(seen)
     type(closest_point_t), intent(in) :: closest
-    real(wp), intent(in) :: e_r(2)
+    real(wp), intent(in) :: e_r(2), limit
     logical :: seen
 
-    seen = .not. dot_product(closest%normal, e_r) > facing
+    seen = .not. dot_product(closest%normal, e_r) > limit
   end function faces
 
   !> Try all pieces that may hold a closer point, those nearest first.
-  pure subroutine search_tree(curve, search)
+  pure subroutine search_tree(curve, search, may)
     class(piecewise_curve_t), intent(in) :: curve
     type(search_t), intent(inout) :: search
+    logical, intent(in), optional :: may(:)   !! (npiece) pieces that are tried
     integer :: waiting(most_waiting), n, node, near, far
     real(wp) :: gaps(most_waiting), gap(2), slack
 
@@ -130,8 +165,7 @@ contains
       n = n - 1
       if (gaps(n + 1) > (search%best + slack)**2) cycle
       if (node > size(curve%tree, 2)) then
-        call try_piece(curve, node - size(curve%tree, 2), search)
-        call try_vertex(curve, node - size(curve%tree, 2), search)
+        call try_leaf(curve, node - size(curve%tree, 2), search, may)
         cycle
       end if
       gap(1) = box_gap(box_of_node(curve, 2*node), [search%point, search%point])
@@ -143,6 +177,26 @@ contains
       n = n + 2
     end do
   end subroutine search_tree
+
+  !> A piece and the vertex that it ends with, which belongs to the next one too.
+  pure subroutine try_leaf(curve, piece, search, may)
+    class(piecewise_curve_t), intent(in) :: curve
+    integer, intent(in) :: piece
+    type(search_t), intent(inout) :: search
+    logical, intent(in), optional :: may(:)
+    integer :: next
+
+    if (present(may)) then
+      if (.not. may(piece)) return
+    end if
+    call try_piece(curve, piece, search)
+    if (present(may)) then
+      next = adjacent_piece(curve, piece, 1)
+      if (next == 0) return
+      if (.not. may(next)) return
+    end if
+    call try_vertex(curve, piece, search)
+  end subroutine try_leaf
 
   !> Closest points on a piece.
   pure subroutine try_piece(curve, k, search)
@@ -182,11 +236,11 @@ contains
     logical :: seen, seen_before
 
     if (candidate%piece == 0 .or. abs(candidate%d) > search%best) return
-    seen = faces(candidate, search%e_r)
+    seen = faces(candidate, search%e_r, search%limit)
     if (search%narrow .and. (candidate%d*search%sense < 0 .or. .not. seen)) return
     if (.not. abs(candidate%d) < search%best) then
       if (search%closest%piece == 0) return
-      seen_before = faces(search%closest, search%e_r)
+      seen_before = faces(search%closest, search%e_r, search%limit)
       if (seen_before .and. .not. seen) return
       if ((seen_before .eqv. seen) .and. piece >= search%closest%piece) return
     end if
@@ -231,7 +285,7 @@ contains
       here = -way
     end do
     if (found%piece == 0 .or. .not. abs(found%d) < reach) return
-    if (.not. faces(found, e_r)) return
+    if (.not. faces(found, e_r, facing)) return
     closest = found
     closest%piece = k
     call keep_to_face(curve, point, e_r, reach, closest)

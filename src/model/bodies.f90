@@ -3,23 +3,9 @@ module bodies
   use scene, only: scene_t
   implicit none
   private
-  public :: in_one_body, bodies_of_nodes
+  public :: bodies_of_nodes
 
 contains
-
-  !> Some side of one list belongs to the same body as some side of the other.
-  pure function in_one_body(scene, one, other) result(same)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: one(:, :), other(:, :)   !! (3, n)
-    logical :: same
-    integer :: body(size(scene%mesh%coordinates, 2))
-    logical :: of_one(size(body))
-
-    body = bodies_of_nodes(scene)
-    of_one = .false.
-    of_one(body(one(1, :))) = .true.
-    same = any(of_one(body(other(1, :))))
-  end function in_one_body
 
   !> The body of every node (nnode): the lowest number of its nodes.
   pure function bodies_of_nodes(scene) result(body)

@@ -1,0 +1,47 @@
+!> Contact of a body with itself: sides that face a die which they are pieces of.
+!>
+!> Where two sides of the curve meet, the points of the one that comes later along the die are pressed on the other, so that each
+!> contact acts once. A side meets no piece that it is itself.
+module own_contact
+  use scene, only: group_t, scene_t
+  use dies, only: is_deformable
+  implicit none
+  private
+  public :: faces_itself, pieces_to_meet
+
+contains
+
+  !> The sides of a group are pieces of their own die: all of them where the first one is.
+  pure function faces_itself(scene, group) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    logical :: yes
+
+    yes = .false.
+    if (group%die == 0 .or. size(group%connectivity, 2) == 0) return
+    if (.not. is_deformable(scene%dies(group%die))) return
+    yes = any(scene%dies(group%die)%nodes(2, :) == group%connectivity(2, 1))
+  end function faces_itself
+
+  !> Pieces of the die that sides of such a group may meet.
+  pure subroutine pieces_to_meet(scene, group, first, may)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    integer, intent(in) :: first          !! the sides follow this one in the group
+    logical, intent(out) :: may(:, :)   !! (npiece, nside)
+    logical :: is_of_group(size(scene%mesh%coordinates, 2))
+    integer :: e, k, own
+
+    is_of_group = .false.
+    is_of_group(group%connectivity(2, :)) = .true.
+    associate (nodes => scene%dies(group%die)%nodes)
+      do e = 1, size(may, 2)
+        own = findloc(nodes(2, :), group%connectivity(2, first + e - 1), 1)
+        do k = 1, size(may, 1)
+          may(k, e) = k < own .or. .not. is_of_group(nodes(2, k))
+        end do
+      end do
+    end associate
+  end subroutine pieces_to_meet
+
+end module own_contact
