@@ -21,6 +21,7 @@ module equations
   use own_crossings, only: free_sides_t, list_free_sides
   use pairs, only: pairs_differ, pairs_t, start_pairs
   use point_drivers, only: drivers_t, find_drivers, is_scalar, nodal_values
+  use resting_bodies, only: find_loose_bodies, hold_resting
   use scene, only: is_solid, role_body, role_second, role_side_load, role_spring, role_volume_load, scene_t
   use sections, only: section_forced
   use solution, only: present_coordinates, solution_t
@@ -59,6 +60,10 @@ module equations
     type(axis_wall_t) :: wall
     !> Sides of bodies that may pass through one another.
     type(free_sides_t) :: free_sides
+    !> Bodies of nodes that supports do not hold, of no size where there is none (resting_bodies).
+    integer, allocatable :: loose(:)
+    !> Unknowns at rest in the present step (ndof); of no size where no body is loose.
+    logical, allocatable :: resting(:)
     type(ledger_t) :: timers
     type(team_t) :: team
     !> Internal force (element forces summed) at the last evaluation, and the sum of their sizes (ndof).
@@ -106,6 +111,8 @@ contains
     call number_dofs(scene, equations%elems, equations%dofs)
     call find_axis_wall(scene, equations%laws, equations%dofs, equations%wall)
     call list_free_sides(scene, equations%free_sides)
+    call find_loose_bodies(scene, equations%dofs, equations%loose)
+    allocate (equations%resting(0))
     call list_solves(scene%fields, scene%strategy%coupling, equations%solves)
     do s = 1, size(equations%solves)
       call choose_solver(equations%solves(s)%solver, scene%strategy%linear_solver)
@@ -444,7 +451,10 @@ contains
         call press_on_axis(scene, equations%dofs, solve%pattern, solve%active, solution%fields(displacement_field)%value, du, &
                            tangent, equations%wall, equations%buffers%force, equations%buffers%matrix, report)
       call gather_forces(solve%pattern, equations%buffers, solve%is_own, equations%force, equations%magnitude)
-      if (tangent) call gather_matrix(solve%pattern, equations%buffers, solve%values)
+      if (tangent) then
+        call gather_matrix(solve%pattern, equations%buffers, solve%values)
+        call hold_resting(solve%pattern, solve%equation, equations%resting, solve%values)
+      end if
     end associate
     call equations%timers%stop(timer)
   end subroutine evaluate

@@ -2,13 +2,14 @@
 !>
 !> The proportion is kept while it changes no penetration much; otherwise contact has changed the
 !> motion, and only the onset of it is kept: the matrix there (loading, with the contacts of now)
-!> spreads the rest. What prescribed unknowns still miss is left for the first iteration to spread.
+!> spreads the rest. A body that nothing holds starts at rest (resting_bodies). What prescribed unknowns still miss is left for the first iteration to spread.
 module predictor
   use dofs, only: dofs_t, prescribed_motion
   use elem_api, only: block_done, report_t
   use equations, only: equations_t, evaluate
   use fields, only: field_t
   use kinds, only: wp
+  use resting_bodies, only: leave_at_rest
   use scene, only: scene_t
   use solution, only: solution_t
   implicit none
@@ -71,6 +72,8 @@ contains
       real(wp), intent(in) :: share
 
       call proportion(equations%dofs, solution%fields, share, du)
+      call leave_at_rest(scene, equations%dofs, equations%loose, solution, solution%time + dt, du, &
+                         equations%resting)
       if (present(given)) du = merge(given, du, fixed)
       do k = 1, size(motion)
         if (equations%dofs%prescribed(k)%history > 0) du(equations%dofs%prescribed(k)%dof) = motion(k)

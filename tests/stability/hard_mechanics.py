@@ -177,6 +177,23 @@ def contact_again(checks):
     return max(abs(again/first - 1), abs(gap/first))
 
 
+def released(checks):
+    """A billet pressed between two dies that then let it go, in the plane and round: it rests where it was, and is pressed again."""
+    worst = 0.0
+    for state, axis in (("PLSTN", ""), ("AXISYM", "FIXED b 4 X\n")):
+        run = checks.run("released-" + state.lower(), deck(
+            state, "LOG", block("0. 0. 10. 0. 10. 10. 0. 10.", "4 1. 4 1."), PLASTIC,
+            "DIE low\n SEGM -5. 0. 20. 0.\nDIE up PILOT 0. 10.\n SEGM 20. 10. -5. 10.\nCNT2D b 1 low k\nCNT2D b 3 up k\n"
+            "MOVE up Y go\nMOVE low Y lift\nLIC go\n 0. 0. 1. -2. 2. 3. 3. -2.\nLIC lift\n 0. 0. 1. 0. 2. -3. 3. 0.\n" + axis
+            + "PROBE x NODE X 10. 0.\nPROBE y NODE Y 10. 10.\n", "STRAT 0.02 1.E-6 0.1 5 3"))
+        time, force = run.history["time"], run.history["force_y_up"]
+        free = (time > 1.2) & (time < 2.8)
+        for name in ("x", "y"):
+            worst = max(worst, np.ptp(run.history[name][free])/10)
+        worst = max(worst, abs(force[free]).max()/abs(force).max(), 0.0 if force[-1] > 0.8*force.max() else 1.0)
+    return worst
+
+
 def past_the_end(checks):
     """A block under a weight dragged over the open end of its table and back: it stays whole, and the force is friction's."""
     run = checks.run("past-the-end", deck(
@@ -263,6 +280,7 @@ CASES = (
     Case("middle nodes off centre", off_centre, 1e-9), Case("change of units", units, 1e-9), Case("threads", threads, 0.0),
     Case("steps far too long", long_steps, 0.02), Case("mirror image", mirrored, 1e-7),
     Case("held by friction alone", friction_alone, 1e-2), Case("contact again", contact_again, 0.01),
-    Case("past a die's end", past_the_end, 1e-2), Case("stick-slip reversal", stick_slip, 1e-3),
+    Case("released and pressed again", released, 1e-9), Case("past a die's end", past_the_end, 1e-2),
+    Case("stick-slip reversal", stick_slip, 1e-3),
     Case("bent round a pin", round_a_pin, 0.25), Case("bent between three rollers", three_point_bending, 0.2),
     Case("rolling", rolling, 0.01, LONG), Case("S-shaped dies", s_shaped, 1e-3), Case("rib thinner than elements", thin_rib, 0.5, LONG))

@@ -1,0 +1,155 @@
+!> Bodies that nothing holds and nothing loads rest.
+!>
+!> A part that has lost all contact is in equilibrium wherever it is, and so also where the motion of its last step would take it.
+!> Without inertia it has no reason to go on: the prediction of a step leaves such a body where it is, and for the length of the step
+!> the diagonals of its equations are a little larger, as nothing else resists it and the matrix would be singular. That changes no
+!> force. Bodies that supports hold in X and in Y (axisymmetric ones in Y) have no such motion, and are not looked at.
+module resting_bodies
+  use bodies, only: bodies_of_nodes
+  use contact_point, only: at_piece, at_status
+  use dofs, only: dofs_t
+  use fields, only: displacement_field
+  use kinds, only: wp
+  use law_api, only: contact_open
+  use loads, only: multiplier_at
+  use matrix_pattern, only: matrix_pattern_t
+  use scene, only: axisymmetric, is_solid, role_contact, role_side_load, role_volume_load, scene_t
+  use solution, only: solution_t
+  implicit none
+  private
+  public :: find_loose_bodies, leave_at_rest, hold_resting
+
+  !> What is added to a diagonal, over it: hardly felt by motions that strain the body.
+  real(wp), parameter :: hold = 1.0e-6_wp
+
+contains
+
+  !> The body of every node that supports do not hold (nnode), 0 for other nodes; of no size where there is none.
+  subroutine find_loose_bodies(scene, dofs, loose)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(in) :: dofs
+    integer, allocatable, intent(out) :: loose(:)
+    integer :: body(size(scene%mesh%coordinates, 2)), g, k, c
+    logical :: held(2, size(body)), of_element(size(body))
+
+    allocate (loose(0))
+    if (.not. scene%fields(displacement_field)%declared) return
+    of_element = .false.
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      of_element(reshape(scene%groups(g)%connectivity, [size(scene%groups(g)%connectivity)])) = .true.
+    end do
+    body = bodies_of_nodes(scene)
+    held = .false.
+    associate (number => dofs%fields(displacement_field)%number)
+      do k = 1, size(body)
+        do c = 1, 2
+          if (number(c, k) == 0) cycle
+          if (.not. dofs%is_free(number(c, k))) held(c, body(k)) = .true.
+        end do
+      end do
+    end associate
+    ! no ring moves along r as a whole
+    if (scene%plane_state == axisymmetric) held(1, :) = .true.
+    body = merge(0, body, all(held(:, body), 1) .or. .not. of_element)
+    if (.not. any(body > 0)) return
+    deallocate (loose)
+    allocate (loose, source=body)
+  end subroutine find_loose_bodies
+
+  !> Take back the predicted motion of bodies that neither a contact nor a load acts on.
+  subroutine leave_at_rest(scene, dofs, loose, solution, time, du, resting)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(in) :: dofs
+    integer, intent(in) :: loose(:)   !! (nnode) of find_loose_bodies
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: time         !! at the end of the step
+    real(wp), intent(inout) :: du(:)                !! (ndof) motion of the step [unknown]
+    logical, allocatable, intent(inout) :: resting(:)   !! (ndof) unknowns of such bodies; of no size where no body is loose
+    logical :: acted_on(0:size(loose))
+    integer :: k, c
+
+    if (size(loose) == 0) return
+    acted_on = .false.
+    call mark_contacts(scene, solution, loose, acted_on)
+    call mark_loads(scene, loose, time, acted_on)
+    if (size(resting) /= dofs%ndof) deallocate (resting)
+    if (.not. allocated(resting)) allocate (resting(dofs%ndof))
+    resting = .false.
+    associate (number => dofs%fields(displacement_field)%number)
+      do k = 1, size(loose)
+        if (loose(k) == 0 .or. acted_on(loose(k))) cycle
+        do c = 1, 2
+          if (number(c, k) == 0) cycle
+          du(number(c, k)) = 0
+          resting(number(c, k)) = .true.
+        end do
+      end do
+    end associate
+  end subroutine leave_at_rest
+
+  !> Increase the diagonals of a matrix for unknowns at rest.
+  pure subroutine hold_resting(pattern, equation, resting, values)
+    class(matrix_pattern_t), intent(in) :: pattern
+    integer, intent(in) :: equation(:)       !! (ndof) of every unknown, 0 where it has none
+    logical, intent(in) :: resting(:)        !! (ndof) or of no size
+    real(wp), intent(inout) :: values(:)     !! (nnz) [residual/unknown]
+    logical :: held(pattern%neq)
+    integer :: d, k
+
+    if (.not. any(resting)) return
+    held = .false.
+    do d = 1, size(resting)
+      if (resting(d) .and. equation(d) > 0) held(equation(d)) = .true.
+    end do
+    do k = 1, pattern%nnz
+      if (pattern%row(k) == pattern%column(k) .and. held(pattern%row(k))) values(k) = (1 + hold)*values(k)
+    end do
+  end subroutine hold_resting
+
+  !> Bodies with a point in contact, on either side, at the start of the step.
+  pure subroutine mark_contacts(scene, solution, loose, acted_on)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: loose(:)
+    logical, intent(inout) :: acted_on(0:)
+    integer :: g, e, p
+
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g), state => solution%groups(g)%committed)
+        if (group%role /= role_contact) cycle
+        do e = 1, size(state, 3)
+          do p = 1, size(state, 2)
+            if (nint(state(at_status, p, e)) == contact_open) cycle
+            acted_on(loose(group%connectivity(1, e))) = .true.
+            if (group%pairs > 0) acted_on(loose(scene%dies(group%die)%nodes(1, nint(state(at_piece, p, e))))) = .true.
+          end do
+        end do
+      end associate
+    end do
+  end subroutine mark_contacts
+
+  !> Bodies with a pressure, a force on the volume or a nodal force that is not zero at the end of the step.
+  pure subroutine mark_loads(scene, loose, time, acted_on)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: loose(:)
+    real(wp), intent(in) :: time
+    logical, intent(inout) :: acted_on(0:)
+    integer :: g, k
+
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (all(group%role /= [role_side_load, role_volume_load]) .or. group%multiplier == 0) cycle
+        if (.not. abs(group%amplitude*multiplier_at(scene%multipliers(group%multiplier), time)) > 0) cycle
+        acted_on(loose(group%connectivity(1, :))) = .true.
+      end associate
+    end do
+    do k = 1, size(scene%forces)
+      associate (load => scene%forces(k))
+        if (load%field /= displacement_field) cycle
+        if (abs(load%amplitude*multiplier_at(scene%multipliers(load%multiplier), time)) > 0) acted_on(loose(load%node)) = .true.
+      end associate
+    end do
+  end subroutine mark_loads
+
+end module resting_bodies
