@@ -38,6 +38,14 @@ contains
           //to_text(limit%point(1))//', y = '//to_text(limit%point(2)), error)
       end associate
     end do
+    if (allocated(facts%contour%folds)) then
+      do k = 1, size(facts%contour%folds)
+        associate (fold => facts%contour%folds(k))
+          call print_line('  lap from x = '//to_text(fold%from(1))//', y = '//to_text(fold%from(2))//' to x = ' &
+            //to_text(fold%to(1))//', y = '//to_text(fold%to(2))//', '//to_text(fold%length, 3)//' deep', error)
+        end associate
+      end do
+    end if
     call print_line('  by '//facts%mesher//', shape: scaled Jacobian from '//to_text(facts%mesh%scaled_jacobian, 3)//', angles ' &
       //to_text(facts%mesh%least_angle, 3)//' to '//to_text(facts%mesh%largest_angle, 4)//' degrees', error)
     if (facts%mesh%off_ends > without_node) call print_line('  an end of contact has no node: the nearest one is ' &
@@ -83,6 +91,10 @@ contains
     call json%add('old_elements', facts%old_elements)
     call json%add('new_elements', facts%new_elements)
     call json%add('wall_s', seconds)
+    if (allocated(facts%contour%folds)) then
+      call json%add('laps', size(facts%contour%folds))
+      call json%add('lap_depth', maxval([0.0_wp, facts%contour%folds%length]))
+    end if
     call json%begin_object('seconds')
     do k = 1, facts%timers%size()
       call json%add(facts%timers%name(k), facts%timers%seconds(k))
@@ -94,6 +106,21 @@ contains
     call json%add('volume_error', facts%contour%volume_error)
     call json%add('off_ends', facts%contour%off_ends)
     call json%add('small_gaps', facts%contour%small_gaps)
+    call json%begin_array('laps')
+    if (allocated(facts%contour%folds)) then
+      do k = 1, size(facts%contour%folds)
+        associate (fold => facts%contour%folds(k))
+          call json%begin_object()
+          call json%add('x1', fold%from(1))
+          call json%add('y1', fold%from(2))
+          call json%add('x2', fold%to(1))
+          call json%add('y2', fold%to(2))
+          call json%add('depth', fold%length)
+          call json%end_object()
+        end associate
+      end do
+    end if
+    call json%end_array()
     call json%begin_array('limits')
     if (allocated(facts%contour%limits)) then
       do k = 1, size(facts%contour%limits)

@@ -24,6 +24,7 @@ module remesh_scene
   use member_reader, only: member_reader_t
   use mesh_prediction, only: predict
   use mesh_without_zones, only: make_mesh_without_zones
+  use fold_closing, only: close_folds
   use new_mesh_check, only: check_new_mesh, check_shape
   use new_scene, only: set_up_new_scene
   use pair_fit, only: fit_pairs, update_closest_points
@@ -109,7 +110,8 @@ contains
     call set_up_new_scene(old, contours, plan, mesh, new, error)
     if (allocated(error)) return
     call fit_pairs(contours, mesh, new, facts%fit)
-    if (facts%fit > 0) call check_shape(mesh, facts%mesh, error)
+    if (allocated(facts%contour%opened)) call close_folds(contours, facts%contour%opened, mesh, new)
+    if (facts%fit > 0 .or. allocated(facts%contour%opened)) call check_shape(mesh, facts%mesh, error)
     if (allocated(error)) return
     call start_solution(new, after)
     if (first) then

@@ -9,6 +9,7 @@ module contact_placement
   use dies, only: present_die
   use fields, only: pilot_field
   use kinds, only: pi, wp
+  use own_contact, only: faces_itself
   use scene, only: scene_t
   use side_tags, only: kept_corners, side_tags_t
   use solution, only: solution_t
@@ -84,7 +85,8 @@ contains
     allocate (contacts, source=list(:n))
   end subroutine place_contacts
 
-  !> Groups with points in contact: their status is zero when open.
+  !> Groups with points in contact: their status is zero when open. Sides that face their own body keep their contour
+  !> (folded_sides).
   pure function closed_groups(scene, solution) result(closed)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -94,7 +96,7 @@ contains
     closed = .false.
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
-        if (group%die == 0) cycle
+        if (group%die == 0 .or. faces_itself(scene, group)) cycle
         row = find_variable(group%variables, 'contact_status')
         if (row > 0) closed(g) = any(nint(solution%groups(g)%committed(group%variables(row)%first, :, :)) /= 0)
       end associate

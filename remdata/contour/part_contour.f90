@@ -14,6 +14,7 @@ module part_contour
   use contact_placement, only: contour_options_t, place_contacts
   use contour_assembly, only: assemble_boundary, contact_t
   use contour_laps, only: find_laps, lap_t
+  use folded_sides, only: fold_t, open_folds
   use contour_volume, only: shift_sides, volume_inside, volume_of_loop
   use die_closest_points, only: point_on_side
   use errors, only: error_t, exit_bug, exit_no_convergence, fail
@@ -63,6 +64,10 @@ module part_contour
   type :: contour_report_t
     type(contact_limit_t), allocatable :: limits(:)
     type(lap_t), allocatable :: laps(:)
+    !> Sides of a body that lie on other sides of it.
+    type(fold_t), allocatable :: folds(:)
+    !> Moves of the nodes of such sides (2, nnode), where there are any [length].
+    real(wp), allocatable :: opened(:, :)
     !> Largest shift and move of all contours; largest relative change of volume of one [length, length, -].
     real(wp) :: largest_shift = 0.0_wp, largest_move = 0.0_wp, volume_error = 0.0_wp
     !> Largest distance from the contours to a kept end of contact as the solver found it, as a share of the contour.
@@ -102,6 +107,7 @@ contains
     uncorrected = present_coordinates(scene, solution)
     x = uncorrected
     call limit_depths(scene, solution, x)
+    call open_folds(scene, solution, x, report%folds, report%opened)
     if (scene%plane_state == axisymmetric) call put_on_axis(x)
     call gather_solids(scene, connectivity)
     call find_loops(connectivity, size(x, 2), loops, status, node)

@@ -181,9 +181,11 @@ contains
     cells(20)%s = json_text(steps, 'least_step_ratio')
     cells(21)%s = ''
     if (judged .and. accepted == 'y') cells(21)%s = force_change_of(s, old%facts%step)
-    cells(22)%s = json_text(made, 'wall_s')
-    cells(23)%s = json_text(restart, 'wall_s')
-    cells(24)%s = action%reason
+    cells(22)%s = json_text(made, 'laps')
+    cells(23)%s = json_text(made, 'lap_depth')
+    cells(24)%s = json_text(made, 'wall_s')
+    cells(25)%s = json_text(restart, 'wall_s')
+    cells(26)%s = action%reason
     line = line_of_cells(cells)
   end function row_of
 

@@ -18,11 +18,12 @@ module cycle_table
   character(len=*), parameter :: table_heading = &
     'generation [-],try [-],stop_step [-],stop_time [time],step [-],trigger,action,result,accepted,stage,'// &
     'old_elements [-],new_elements [-],error_before [%],error_after [%],first_residual [-],iterations [-],force_change [%],'// &
-    'energy_change [%],depth_change [-],least_step_ratio [-],first_step_force_change [%],remdata [s],restart [s],reason'
+    'energy_change [%],depth_change [-],least_step_ratio [-],first_step_force_change [%],laps [-],'// &
+    'lap_depth [length],remdata [s],restart [s],reason'
   !> Numbers of columns in it.
   integer, parameter :: at_generation = 1, at_stop_step = 3, at_stop_time = 4, at_step = 5, at_action = 7, at_accepted = 9, &
                         at_stage = 10
-  integer, parameter :: number_of_columns = 24
+  integer, parameter :: number_of_columns = 26
 
   !> Times are the same up to this share: the table has all their digits.
   real(wp), parameter :: same_time = 1.0e-12_wp

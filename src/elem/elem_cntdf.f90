@@ -23,7 +23,7 @@
 !> nearest gap. Only where it had none in reach, as in a first step, a depth counts that was none on the mesh as it began.
 module elem_cntdf
   use contact_point, only: act, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, meeting_t, &
-                           most_unknowns, no_surface, penalties, point_variables, rest, share_to_contact, &
+                           most_unknowns, no_surface, penalties, point_variables, rest, share_to_contact, touching, &
                            show_on_axis, side_length, side_point, thinning
   use closest_point, only: closest_point_t
   use corner_faces, only: closest_on_piece
@@ -54,8 +54,8 @@ module elem_cntdf
   real(wp), parameter :: beyond = 0.2_wp, beyond_all = 0.05_wp
   !> Cosine of the largest turn at a vertex that is taken for one of a smooth curve, about 6 degrees.
   real(wp), parameter :: nearly_smooth = 0.995_wp
-  !> A point that was deeper behind a side of its body, on the mesh as it began, than this share of its own side is behind a wall: no
-  !> depth of contact is as large.
+  !> A point that was deeper behind a side of its body, on the mesh as it began, than this share of its own side is behind a wall:
+  !> no depth of contact is as large.
   real(wp), parameter :: wall_thickness = 0.02_wp
   !> A closest point as far along its side was at the end of it (parent coordinate).
   real(wp), parameter :: at_corner = 0.999_wp
@@ -203,6 +203,9 @@ contains
     integer :: piece, end
 
     call closest_opposed_point(die, point%x, point%e_r, reach, may, -1.0_wp, closest)
+    if (closest%piece > 0) then
+      if (is_own_node(closest)) closest%piece = 0
+    end if
     piece = nint(committed(at_piece))
     if (piece > 0) then
       call follow_from(piece, committed(at_xi), same)
@@ -246,6 +249,7 @@ contains
 
       if (other%piece == 0) return
       if (.not. may(other%piece)) return
+      if (is_own_node(other)) return
       if (closest%piece > 0 .and. other%d < 0 .and. other%d < closest%d) return
       if (.not. was_met .and. other%d > 0) then
         if (is_wall(other)) return
@@ -265,9 +269,27 @@ contains
         apart = matmul(first(:, side), phi) - point_on(y, far%xi)
         across = dot_product(apart, right_of(tangent_on(y, far%xi)))
         if (far%at_vertex) across = sign(length_of(apart), across)
-        wall = across > wall_thickness*reach .or. side(1) == other(1) .or. side(3) == other(3)
+        wall = across > wall_thickness*reach .or. is_next(far)
       end associate
     end function is_wall
+
+    !> The closest point is on a side that shares a node with that of the point.
+    pure function is_next(found) result(next)
+      type(closest_point_t), intent(in) :: found
+      logical :: next
+
+      associate (side => group%connectivity(:, element), other => scene%dies(group%die)%nodes(:, found%piece))
+        next = side(1) == other(1) .or. side(3) == other(3)
+      end associate
+    end function is_next
+
+    !> The point and its closest point are one node.
+    pure function is_own_node(found) result(own)
+      type(closest_point_t), intent(in) :: found
+      logical :: own
+
+      own = is_next(found) .and. abs(found%d) <= touching*reach
+    end function is_own_node
 
   end subroutine find_own_closest_point
 

@@ -7,13 +7,15 @@ References are exact: by symmetry a C or a ring that is pressed shut is its half
 two blocks joined far away by a link a hundred million times softer are the two blocks alone. Before, all of these ended with 0 and
 passed through themselves, or were refused.
 """
+import csv
 import json
 import os
+import subprocess
 import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "patch"))
-from patch_support import Checks, Run, np  # noqa: E402
+from patch_support import BIN, Checks, Run, np  # noqa: E402
 
 STEEL = "LAW m EPLA\n 200000. 0.3\n LINEAR 300. 500.\n"
 STRAT = "STRAT 0.02 1.E-6 0.05 5 3\nSAVE 5\nEND\n"
@@ -93,6 +95,31 @@ def linked(link, width, low, die, place, loads):
         + "FIXED low 1 XY\n" + loads + STRAT
 
 
+def remeshed(checks):
+    """A C that is shut gets a new mesh: the fold stays, its lap is told, and the force is that of the half on its own new mesh."""
+    found = []
+    for whole in (True, False):
+        contact = "DIE skin SIDES low 3 back 2 up 1\nCNT2D skin skin k\nLAW k COUL2D\n AKP 2.E7 PHI 0.3\n" if whole else \
+            "DIE line\n SEGM 9. 0. -1. 0.\nCNT2D low 3 line -33 k\nLAW k COUL2D\n AKP 4.E7 PHI 0.\n"
+        path, out = os.path.join(checks.folder, f"remeshed-{whole}.lag"), os.path.join(checks.folder, f"remeshed-{whole}")
+        with open(path, "w", encoding="utf-8") as deck:
+            deck.write(arms(0.0, "PLSTN", whole, contact, more="LIC press\n 0. 0. 1. 0.25\nREMSH\n TIMES 0.7\n") + STRAT)
+        done = subprocess.run([os.path.join(BIN, "lagacycle"), path, "--out", out, "--quiet"], check=False, stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True)
+        if not checks.that(done.returncode == 0, "remeshed: exit code 0", f"{done.returncode} {done.stderr[-300:]}"):
+            return
+        with open(os.path.join(out, "history.csv"), newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        found.append(float(rows[-1][[title.split(" [")[0] for title in rows[0]].index("force")]))
+        with open(os.path.join(out, "cycle.csv"), newline="", encoding="utf-8") as file:
+            tries = list(csv.DictReader(file))
+        checks.that([one["accepted"] for one in tries] == ["y"], f"remeshed: one new mesh at the first try ({len(tries)})")
+        laps, depth = int(tries[0]["laps [-]"]), float(tries[0]["lap_depth [length]"])
+        # the arms lie on each other from a tip to the ground of the slot, 3 long
+        checks.that((laps == 1 and 2.0 < depth < 3.2) if whole else laps == 0, "remeshed: laps", f"{laps}, {depth}")
+    checks.small(abs(found[0]/found[1] - 1), 0.02, "remeshed: force beside that of the half on a new mesh")
+
+
 def friction(checks):
     """A block dragged over another: friction of two bodies, of sides of one, and of all sides of one that face one another."""
     loads = "MOVE up 3 Y press\nMOVE up 3 X drag\nLIC press\n 0. 0. 0.2 -0.02 1. -0.02\nLIC drag\n 0. 0. 0.2 0. 1. -1.\nPROBE f REACT X up 3\n"
@@ -146,7 +173,7 @@ def crushed_ring(checks):
 
 def main():
     checks = Checks()
-    for case in (cees, open_walls, detection, friction, slot):
+    for case in (cees, open_walls, detection, remeshed, friction, slot):
         case(checks)
     if "-a" in sys.argv[1:]:
         crushed_ring(checks)

@@ -10,7 +10,8 @@ from .tables import number, read_object, read_text
 
 WHOLE = ("generation", "try", "step")
 NUMBERS = ("stop_time", "old_elements", "new_elements", "error_before", "error_after", "first_residual", "iterations",
-           "force_change", "energy_change", "depth_change", "least_step_ratio", "first_step_force_change", "remdata", "restart")
+           "force_change", "energy_change", "depth_change", "least_step_ratio", "first_step_force_change", "laps", "lap_depth", "remdata",
+           "restart")
 TEXTS = ("trigger", "action", "accepted", "stage", "reason")
 KEEPS_OLD = "old mesh"
 LIMIT = "_limit"
