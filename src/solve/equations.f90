@@ -453,7 +453,8 @@ contains
       call gather_forces(solve%pattern, equations%buffers, solve%is_own, equations%force, equations%magnitude)
       if (tangent) then
         call gather_matrix(solve%pattern, equations%buffers, solve%values)
-        call hold_resting(solve%pattern, solve%equation, equations%resting, solve%values)
+        call hold_resting(scene, equations%dofs, solution, equations%loose, solve%pattern, solve%equation, equations%resting, &
+                          solve%values)
       end if
     end associate
     call equations%timers%stop(timer)

@@ -1,9 +1,9 @@
 !> Bodies that nothing holds and nothing loads rest.
 !>
 !> A part that has lost all contact is in equilibrium wherever it is, and so also where the motion of its last step would take it.
-!> Without inertia it has no reason to go on: the prediction of a step leaves such a body where it is, and for the length of the step
-!> the diagonals of its equations are a little larger, as nothing else resists it and the matrix would be singular. That changes no
-!> force. Bodies that supports hold in X and in Y (axisymmetric ones in Y) have no such motion, and are not looked at.
+!> Without inertia it has no reason to go on: the prediction of a step leaves such a body where it is, and until a contact closes in
+!> the step the diagonals of its equations are a little larger, as nothing else resists it and the matrix would be singular. That
+!> changes no force. Bodies that supports hold in X and in Y (axisymmetric ones in Y) have no such motion, and are not looked at.
 module resting_bodies
   use bodies, only: bodies_of_nodes
   use contact_point, only: at_piece, at_status
@@ -13,7 +13,7 @@ module resting_bodies
   use law_api, only: contact_open
   use loads, only: multiplier_at
   use matrix_pattern, only: matrix_pattern_t
-  use scene, only: axisymmetric, is_solid, role_contact, role_side_load, role_volume_load, scene_t
+  use scene, only: axisymmetric, group_t, is_solid, role_contact, role_side_load, role_volume_load, scene_t
   use solution, only: solution_t
   implicit none
   private
@@ -71,7 +71,7 @@ contains
 
     if (size(loose) == 0) return
     acted_on = .false.
-    call mark_contacts(scene, solution, loose, acted_on)
+    call mark_contacts(scene, solution, .false., loose, acted_on)
     call mark_loads(scene, loose, time, acted_on)
     if (size(resting) /= dofs%ndof) deallocate (resting)
     if (.not. allocated(resting)) allocate (resting(dofs%ndof))
@@ -88,45 +88,71 @@ contains
     end associate
   end subroutine leave_at_rest
 
-  !> Increase the diagonals of a matrix for unknowns at rest.
-  pure subroutine hold_resting(pattern, equation, resting, values)
+  !> Increase the diagonals of a matrix for unknowns at rest, of bodies without a contact now: slender ones would feel it.
+  subroutine hold_resting(scene, dofs, solution, loose, pattern, equation, resting, values)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(in) :: dofs
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: loose(:)          !! (nnode) of find_loose_bodies
     class(matrix_pattern_t), intent(in) :: pattern
     integer, intent(in) :: equation(:)       !! (ndof) of every unknown, 0 where it has none
     logical, intent(in) :: resting(:)        !! (ndof) or of no size
     real(wp), intent(inout) :: values(:)     !! (nnz) [residual/unknown]
-    logical :: held(pattern%neq)
-    integer :: d, k
+    logical :: held(pattern%neq), acted_on(0:size(loose))
+    integer :: c, k
 
     if (.not. any(resting)) return
+    acted_on = .false.
+    call mark_contacts(scene, solution, .true., loose, acted_on)
     held = .false.
-    do d = 1, size(resting)
-      if (resting(d) .and. equation(d) > 0) held(equation(d)) = .true.
-    end do
+    associate (number => dofs%fields(displacement_field)%number)
+      do k = 1, size(loose)
+        if (loose(k) == 0 .or. acted_on(loose(k))) cycle
+        do c = 1, 2
+          if (number(c, k) == 0) cycle
+          if (resting(number(c, k)) .and. equation(number(c, k)) > 0) held(equation(number(c, k))) = .true.
+        end do
+      end do
+    end associate
     do k = 1, pattern%nnz
       if (pattern%row(k) == pattern%column(k) .and. held(pattern%row(k))) values(k) = (1 + hold)*values(k)
     end do
   end subroutine hold_resting
 
-  !> Bodies with a point in contact, on either side, at the start of the step.
-  pure subroutine mark_contacts(scene, solution, loose, acted_on)
+  !> Bodies with a point in contact, on either side, at the start of the step or in its trial state.
+  subroutine mark_contacts(scene, solution, trial, loose, acted_on)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
+    logical, intent(in) :: trial
     integer, intent(in) :: loose(:)
     logical, intent(inout) :: acted_on(0:)
-    integer :: g, e, p
+    integer :: g
 
     do g = 1, size(scene%groups)
-      associate (group => scene%groups(g), state => solution%groups(g)%committed)
-        if (group%role /= role_contact) cycle
-        do e = 1, size(state, 3)
-          do p = 1, size(state, 2)
-            if (nint(state(at_status, p, e)) == contact_open) cycle
-            acted_on(loose(group%connectivity(1, e))) = .true.
-            if (group%pairs > 0) acted_on(loose(scene%dies(group%die)%nodes(1, nint(state(at_piece, p, e))))) = .true.
-          end do
-        end do
-      end associate
+      if (scene%groups(g)%role /= role_contact) cycle
+      if (trial) then
+        call mark(scene%groups(g), solution%groups(g)%trial)
+      else
+        call mark(scene%groups(g), solution%groups(g)%committed)
+      end if
     end do
+
+  contains
+
+    subroutine mark(group, state)
+      type(group_t), intent(in) :: group
+      real(wp), intent(in) :: state(:, :, :)
+      integer :: e, p
+
+      do e = 1, size(state, 3)
+        do p = 1, size(state, 2)
+          if (nint(state(at_status, p, e)) == contact_open) cycle
+          acted_on(loose(group%connectivity(1, e))) = .true.
+          if (group%pairs > 0) acted_on(loose(scene%dies(group%die)%nodes(1, nint(state(at_piece, p, e))))) = .true.
+        end do
+      end do
+    end subroutine mark
+
   end subroutine mark_contacts
 
   !> Bodies with a pressure, a force on the volume or a nodal force that is not zero at the end of the step.
