@@ -11,12 +11,12 @@
 !> Pressure, gap and the facing point are those that the contact group of the same sides and points (its host) has reached, at the
 !> end of the step where it is solved for in turns or together with the temperature, else at the start. Where it knows none (first
 !> step, wide gaps), and in scenes of heat alone, the die is searched as it stands. Linearised exactly at given pressure, gap and
-!> facing point: along all temperatures, and along the displacements that change the area. (Along pressure and gap too Newton's
-!> method is quadratic where it converges, but on new meshes it did not: 289 cuts of steps in decks/hot_upsetting in place of 45.)
+!> facing point: along all temperatures, and along the displacements that change the area; how the rest follows the motion is added
+!> near the solution (contact_heat_tangent).
 module elem_heat_contact
   use contact_point, only: area_at, side_length
   use contact_work, only: friction_energy
-  use elem_api, only: elem_t, first_unknown, instant_t, layout_t, mode_advance, mode_error, report_t, unknown_t
+  use elem_api, only: elem_t, first_unknown, instant_t, layout_t, mode_advance, mode_error, of_pilot, report_t, unknown_t
   use elem_heat_sides, only: heat_side_row
   use fields, only: displacement_field, field_t, has_corners_only, on_pilots
   use heat_contact_point, only: facing_t, find_facing, share_out, shares_t
@@ -45,12 +45,15 @@ contains
 
   function elem_cnttm_row() result(row)
     type(elem_t) :: row
-    type(unknown_t) :: unknown
+    type(unknown_t) :: unknown, pilot
 
     row = common_row('CNTTM', 'heat between a side and a rigid die')
     unknown%field = field_t(name='die_temperature', unit='temperature', dual='die_heat', dual_unit='power', place=on_pilots, &
                             quantity='temperature', transfer='recompute', word='', imposed_as_value=.true.)
-    row%unknowns = [row%unknowns(1), unknown, row%unknowns(2)]
+    pilot = of_pilot()
+    pilot%optional = .true.
+    pilot%acts = .false.
+    row%unknowns = [row%unknowns(1), unknown, row%unknowns(2), pilot]
   end function elem_cnttm_row
 
   function elem_cndtm_row() result(row)

@@ -16,7 +16,7 @@ module element_loop
   use timers, only: ledger_t
   implicit none
   private
-  public :: element_buffers_t, run_elements, gather_forces, gather_matrix, add_prescribed, group_geometry
+  public :: element_buffers_t, run_elements, gather_forces, gather_geometry, gather_matrix, add_prescribed, group_geometry
 
   !> Elements per block: their arrays stay in the first-level caches.
   integer, parameter :: block_size = 16
@@ -133,9 +133,9 @@ contains
     type(scene_t), intent(in) :: scene
     type(elem_t), intent(in) :: row
     logical, intent(in) :: finite
-    integer, intent(in) :: connectivity(:, :)
-    real(wp), intent(in) :: displacement(:, :)
-    real(wp), intent(out) :: x(:, :, :)
+    integer, intent(in) :: connectivity(:, :)    !! (nnode of the element, nelem)
+    real(wp), intent(in) :: displacement(:, :)   !! (2, nnode), or none [length]
+    real(wp), intent(out) :: x(:, :, :)          !! (2, nnode of the element, nelem) [length]
     integer :: e
 
     do e = 1, size(connectivity, 2)
