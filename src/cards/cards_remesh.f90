@@ -46,9 +46,6 @@ contains
       draft%scene%remesh%on = .true.
       draft%scene%remesh%estimate = .true.
       draft%scene%remesher%wanted = .true.
-      if (allocated(draft%scene%histories)) then
-        if (size(draft%scene%histories) > 0) call cursor%fail('a scene on the temperatures of another run (TEMPE) keeps its mesh')
-      end if
       call read_rows(cursor, draft)
       call close_card(draft, cursor, deck%cards(k))
       if (has_contours(draft%scene%remesher)) call set_default_sizes(draft%scene%remesher)

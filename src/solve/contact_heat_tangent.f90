@@ -48,8 +48,8 @@ module contact_heat_tangent
 
 contains
 
-  !> Put the columns into the matrix of the last evaluation, which was at the motion `du`. Nothing is done where the present solve has
-  !> no heat through contact together with the motion.
+  !> Put the columns into the matrix of the last evaluation, which was at the motion `du`. Nothing is done where the present solve
+  !> has no heat through contact together with the motion.
   subroutine follow_contact(scene, equations, solution, dt, du)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations

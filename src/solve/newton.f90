@@ -221,9 +221,9 @@ contains
     end subroutine start_again
   end subroutine solve_step
 
-  !> Both norms are met. A motion that starts in equilibrium needs no correction; one that an earlier turn has found gets one, if its
-  !> residual is more than round-off: the last of all turns would else always leave just less than the norm, and with the same sign
-  !> (2.4e-8 of the heat that passed in decks/hot_upsetting).
+  !> Both norms are met. A motion that starts in equilibrium needs no correction; one that an earlier turn has found gets one, if
+  !> its residual is more than round-off: the last of all turns would else always leave just less than the norm, and with the same
+  !> sign (2.4e-8 of the heat that passed in decks/hot_upsetting).
   pure function has_converged(scene, history, again) result(converged)
     type(scene_t), intent(in) :: scene
     type(iteration_t), intent(in) :: history(:)

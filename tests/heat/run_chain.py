@@ -10,6 +10,7 @@ usage: run_chain.py [-v] [-k]
 - `between`: a bar held at its ends whose temperature grows linearly, saved twice: stress at all steps between.
 - `given`: a body with TEMPE keeps that temperature where another one conducts.
 - `go_on`: a scene of heat that starts from the end of another is the whole one; between two instants it is their mean; another mesh.
+- `remeshed`: a bar on two new meshes: its material has the temperatures that it has in the other run, and the bar gets as long as on one mesh.
 - `resume`: the same bits from a checkpoint on; refused where the other run has changed.
 - `refused`: files that are missing, cut, altered, of no heat, too short, of another place.
 """
@@ -21,10 +22,11 @@ import sys
 
 sys.dont_write_bytecode = True
 HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path[:0] = [HERE] + [os.path.join(os.path.dirname(HERE), folder) for folder in ("patch", "runs")]
-from patch_support import LAGAMINE, LONGEST_RUN, SOURCE, Checks, Run, np  # noqa: E402
+sys.path[:0] = [HERE] + [os.path.join(os.path.dirname(HERE), folder) for folder in ("patch", "runs", "cycle")]
+from patch_support import LAGAMINE, LONGEST_RUN, SOURCE, Checks, Run, h5py, np  # noqa: E402
+from remeshed import cycle, tries  # noqa: E402
 from run_heat import NORMS, temperatures  # noqa: E402
-from support import DONE, INPUT, result_differences  # noqa: E402
+from support import DONE, INPUT, history, result_differences, said  # noqa: E402
 
 TUBE = os.path.join(SOURCE, "decks", "hot_cylinder")
 
@@ -181,6 +183,70 @@ def call(*options):
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=LONGEST_RUN)
 
 
+LINEAR = """TITLE linear along a bar, growing in time
+STATE PLSTN
+KINEM SMALL
+BLOCK bar PL8TM 9 m
+   0. 0. 4. 0. 4. 1. 0. 1.
+   4 1. 2 1.
+LAW m HEAT
+   50. 1.E-9
+IMPOS bar 4 T cold 20.
+IMPOS bar 2 T hot 20.
+START T 20.
+LIC cold
+   0. 1. 1. 3.
+LIC hot
+   0. 1. 1. 21.
+STRAT 0.1 1.E-6 0.1 9 3
+STOP 1.
+SAVE 1
+""" + NORMS + "END\n"
+FREE = """TITLE bar on new meshes
+STATE PLSTS 1.
+KINEM LOG
+BLOCK bar PL8LS 9 m
+   0. 0. 4. 0. 4. 1. 0. 1.
+   8 1. 3 1.
+LAW m ELATH
+   200000. 0.3 1.2E-3
+TEMPE bar FROM linear/linear.g01.h5
+FIXED bar 4 X
+FIXED bar 1 Y
+STRAT 0.1 1.E-6 0.1 9 3
+STOP 1.
+{remesh}PROBE t NODE T 4. 1.
+PROBE ux NODE UX 4. 0.
+PROBE s MEAN mises bar
+""" + NORMS + "END\n"
+
+
+def remeshed(checks):
+    """T = 20 (1 + 2 t) at x = 0 to 20 (1 + 20 t) at x = 4, by matter: x is where a node was in the deck's own mesh."""
+    other, one = Run(checks, "linear", LINEAR), Run(checks, "one-mesh", FREE.format(remesh=""))
+    if not (other.ok and one.ok):
+        return
+    out = os.path.join(checks.folder, "meshes")
+    deck = os.path.join(checks.folder, "meshes.lag")
+    with open(deck, "w", encoding="utf-8") as file:
+        file.write(FREE.format(remesh="REMSH\n   TIMES 0.35 0.65\n   SIZE 0.3 0.4\n"))
+    result = cycle(deck, out)
+    if not checks.that(result.returncode == DONE, "remeshed: the cycle ends by itself", said(result)):
+        return
+    checks.that([row["accepted"] for row in tries(out)] == ["y", "y"], "remeshed: two new meshes", tries(out))
+    # the mesh of a remesh, before and after its steps: what is transferred, and what is read from the other run
+    for name, time, tolerance in (("g02.start", 0.35, 1e-8), ("g03.start", 0.65, 1e-8), ("g02.end", 0.65, 1e-8), ("ckp", 1.0, 1e-8)):
+        with h5py.File(os.path.join(out, f"meshes.{name}.h5")) as file:
+            x = file["mesh/origin"][:, 0]
+            values = file["fields/temperature/value"][:, 0]
+        exact = 20 + 40*time + 360*time*x/4
+        checks.small(np.max(np.abs(values - exact))/(360*time), tolerance, f"remeshed: temperatures of the material, {name}")
+    columns = history(out)
+    checks.small(abs(columns["ux"][-1]/one.history["ux"][-1] - 1), 2e-3, "remeshed: length of the bar as on one mesh")
+    checks.small(abs(columns["t"][-1]/one.history["t"][-1] - 1), 1e-6, "remeshed: temperature of a corner")
+    checks.small(abs(columns["s"][-1]/one.history["s"][-1] - 1), 0.05, "remeshed: thermal stress as on one mesh")
+
+
 def resume(checks):
     """From the older checkpoint; and with another run behind it."""
     name = "bar-PLSTN"
@@ -246,7 +312,7 @@ def refused(checks):
         "imposed": (of(more="IMPOS w 1 T lic\nLIC lic\n   0. 1.\n"), "nodes here are of a body without temperature"),
         "theta": (of(more="THETA 1.\n"), "no body of this scene has a temperature among its unknowns"),
         "solve": (of(more="SOLVE MONOLITHIC\n"), "there is nothing to couple"),
-        "remesh": (of(more="REMSH\n   TIMES 0.01\n"), "TEMPE"),
+        "remesh": (of(more="REMSH\n   TIMES 0.01\n"), None),
         "no instant": (heat.format("START T FROM ok/ok.g01.h5"), "expected AT"),
         "too late": (heat.format("START T FROM ok/ok.g01.h5 AT 0.03"), "0.03"),
         "no body": (heat.format("START T FROM ok/ok.g01.h5 AT 0.02 ww"), "expected the name of a body"),
@@ -272,6 +338,7 @@ def main():
     between(checks)
     given(checks)
     go_on(checks)
+    remeshed(checks)
     resume(checks)
     refused(checks)
     checks.end()
