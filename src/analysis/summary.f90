@@ -435,7 +435,7 @@ contains
                  //to_text(heat%above)//' steps of the least length above what is allowed')
       if (heat%outside + heat%fallbacks > 0) &
         call put('  temperatures beyond those around them in '//to_text(heat%outside)//' steps, by up to ' &
-                 //to_text(heat%excess, 3)//'; '//to_text(heat%fallbacks)//' steps made again by implicit Euler')
+                 //to_text(heat%excess, 3)//'; '//to_text(heat%fallbacks)//' steps made again to keep to them')
     end subroutine put_heat
 
     subroutine put(line)

@@ -103,6 +103,8 @@ module elem_api
     real(wp) :: share = 1.0_wp
     !> Share of the step after which the instant is, where the drivers that other formulations give have only come so far.
     real(wp) :: reach = 1.0_wp
+    !> Heat flows from warmer to colder nodes alone (PL8TM).
+    logical :: monotone = .false.
     !> Matrices are wanted.
     logical :: tangent = .true.
     integer :: mode = mode_advance

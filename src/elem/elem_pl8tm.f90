@@ -429,8 +429,44 @@ contains
           end do
         end associate
       end do
+      if (instant%monotone) call limit_flow(instant%tangent, share, weight*place%dv(:npoint)*lambda, &
+                                            weight*place%dv(:npoint)*by_temperature, own, place, t, force, stiffness)
     end associate
   end subroutine add_flow
+
+  !> Take out what flows between two nodes from the colder to the warmer one, as in elements far from rectangles: positive entries
+  !> beside the diagonal of the matrix of conduction. The rest is a matrix of which no temperature leaves those around it, by lumped
+  !> capacity and implicit Euler; what one node loses the other still gains. Source: D. Kuzmin, M.J. Shashkov, D. Svyatskiy,
+  !> J. Comput. Phys. 228 (2009) 3448-3463.
+  pure subroutine limit_flow(tangent, share, conduction, by_temperature, own, place, t, force, stiffness)
+    logical, intent(in) :: tangent
+    real(wp), intent(in) :: share               !! of the step after which the flow is [-]
+    real(wp), intent(in) :: conduction(:)       !! (npoint) conductivity times volume [power*length/temperature]
+    real(wp), intent(in) :: by_temperature(:)   !! (npoint) its derivative
+    type(functions_t), intent(in) :: own
+    type(heat_points_t), intent(in) :: place
+    real(wp), intent(in) :: t(:)                !! (n) temperatures [temperature]
+    real(wp), intent(inout) :: force(:), stiffness(:, :)
+    real(wp) :: product(size(conduction)), entry, slope
+    integer :: i, j, k, m
+
+    m = size(conduction)
+    do i = 1, own%n
+      do j = i + 1, own%n
+        product = place%gx(i, :m)*place%gx(j, :m) + place%gy(i, :m)*place%gy(j, :m)
+        entry = dot_product(conduction, product)
+        if (.not. entry > 0) cycle
+        force([i, j]) = force([i, j]) - entry*[t(j) - t(i), t(i) - t(j)]
+        if (.not. tangent) cycle
+        stiffness([i, j], i) = stiffness([i, j], i) + share*entry*[1, -1]
+        stiffness([i, j], j) = stiffness([i, j], j) + share*entry*[-1, 1]
+        do k = 1, own%n
+          slope = share*sum(by_temperature*own%phi(k, :m)*product)
+          stiffness([i, j], k) = stiffness([i, j], k) - slope*[t(j) - t(i), t(i) - t(j)]
+        end do
+      end do
+    end do
+  end subroutine limit_flow
 
   !> Volume, where no other formulation gives it.
   subroutine measure(scene, group, law, section, x, state, before, totals)

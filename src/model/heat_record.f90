@@ -14,7 +14,7 @@ module heat_record
     !> It must be shortened by its error; largest factor for the step that follows.
     logical :: too_long = .false.
     real(wp) :: growth = huge(1.0_wp)
-    !> How far temperatures are beyond those that can be there (heat_bounds); the step was made again by implicit Euler for that.
+    !> How far temperatures are beyond those that can be there (heat_bounds); the step was made again for that.
     real(wp) :: excess = 0.0_wp
     logical :: fell_back = .false.
   end type heat_step_t

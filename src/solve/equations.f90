@@ -33,7 +33,11 @@ module equations
   use vectors, only: length_of
   implicit none
   private
+  public :: remedy_none, remedy_euler, remedy_monotone
   public :: equations_t, stage_t, set_up, evaluate, make_instant, measure_error, solve_correction, external_forces, take_turn
+
+  !> How a step is made again that has left its bounds (heat_stages): by implicit Euler, and with flows that keep to them (PL8TM).
+  integer, parameter :: remedy_none = 0, remedy_euler = 1, remedy_monotone = 2
 
   !> A stage of a step that is made in several.
   type :: stage_t
@@ -55,6 +59,7 @@ module equations
     !> Mode of the elements (elem_api).
     integer :: mode = mode_advance
     type(stage_t) :: stage
+    integer :: remedy = remedy_none
     type(element_buffers_t) :: buffers
     !> Sides that must not cross the axis, and what holds them.
     type(axis_wall_t) :: wall
@@ -304,7 +309,8 @@ contains
       instant%multipliers_before(k) = multiplier_at(scene%multipliers(k), solution%time)
       instant%multipliers(k) = multiplier_at(scene%multipliers(k), instant%time)
     end do
-    call set_flow_rule(scene%strategy, instant%flow)
+    if (equations%remedy == remedy_none) call set_flow_rule(scene%strategy, instant%flow)
+    instant%monotone = equations%remedy == remedy_monotone
     allocate (instant%flow%multipliers(size(scene%multipliers), instant%flow%n))
     do c = 1, instant%flow%n
       do k = 1, size(scene%multipliers)

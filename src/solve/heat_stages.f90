@@ -11,7 +11,8 @@
 !> A first step is of implicit Euler: what was started with need not agree with what is imposed, which would cost TR-BDF2 an order.
 module heat_stages
   use elem_api, only: report_t
-  use equations, only: equations_t, evaluate, external_forces, measure_error, solve_correction, stage_t
+  use equations, only: equations_t, evaluate, external_forces, measure_error, remedy_euler, remedy_monotone, remedy_none, &
+                       solve_correction, stage_t
   use errors, only: error_t
   use fields, only: find_field
   use heat_bounds, only: excess_of_temperature, has_bounds, on_corners_alone
@@ -68,26 +69,52 @@ contains
     type(outcome_t), intent(out) :: outcome
     real(wp), intent(in), optional :: given(:)   !! (ndof) motion of other solves' unknowns; of all with go_on [unknown]
     logical, intent(in), optional :: go_on       !! from `given` for the own unknowns too
-    type(outcome_t) :: again
-    logical :: bounded
+    logical :: bounded, two_stages
 
     bounded = has_bounds(scene, equations)
-    if (scene%strategy%scheme == scheme_tr_bdf2 .and. solution%last_step > 0) then
+    two_stages = scene%strategy%scheme == scheme_tr_bdf2 .and. solution%last_step > 0
+    if (two_stages) then
       call solve_two_stages(scene, equations, solution, dt, outcome, given)
-      if (outcome%converged .and. bounded) outcome%heat%excess = excess_of_temperature(scene, equations, solution, dt, outcome%du)
-      if (outcome%heat%excess > 0 .and. on_corners_alone(scene)) then
-        call solve_one_stage(scene, equations, solution, dt, again, given, go_on)
-        again%heat%fell_back = .true.
-        call add_iterations(outcome, again)
-        outcome = again
-      end if
     else
       call solve_one_stage(scene, equations, solution, dt, outcome, given, go_on)
     end if
     if (.not. outcome%converged) return
-    if (bounded) outcome%heat%excess = excess_of_temperature(scene, equations, solution, dt, outcome%du)
+    if (bounded) then
+      outcome%heat%excess = excess_of_temperature(scene, equations, solution, dt, outcome%du)
+      call keep_to_bounds(scene, equations, solution, dt, two_stages, outcome, given, go_on)
+      if (.not. outcome%converged) return
+    end if
     call judge(scene, solution, dt, outcome)
   end subroutine solve_heat
+
+  !> Make a step that has left its bounds again, where temperatures stand on corners: by implicit Euler, which keeps to them on
+  !> rectangles; then without flows against the fall of the temperature, which keeps to them on any mesh.
+  subroutine keep_to_bounds(scene, equations, solution, dt, two_stages, outcome, given, go_on)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt
+    logical, intent(in) :: two_stages
+    type(outcome_t), intent(inout) :: outcome
+    real(wp), intent(in), optional :: given(:)
+    logical, intent(in), optional :: go_on
+    type(outcome_t) :: again
+    integer :: remedy
+
+    if (.not. on_corners_alone(scene)) return
+    do remedy = remedy_euler, remedy_monotone
+      if (.not. outcome%heat%excess > 0) exit
+      if (remedy == remedy_euler .and. .not. two_stages .and. scene%strategy%theta >= 1) cycle
+      equations%remedy = remedy
+      call solve_one_stage(scene, equations, solution, dt, again, given, go_on)
+      again%heat%fell_back = .true.
+      call add_iterations(outcome, again)
+      outcome = again
+      if (.not. outcome%converged) exit
+      outcome%heat%excess = excess_of_temperature(scene, equations, solution, dt, outcome%du)
+    end do
+    equations%remedy = remedy_none
+  end subroutine keep_to_bounds
 
   !> A step of the theta scheme; with its error where the deck states how large that may be, or the scheme is implicit Euler in the
   !> place of TR-BDF2.

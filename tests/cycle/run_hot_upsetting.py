@@ -73,7 +73,7 @@ def main():
         k = -2 if way == "ONCE" else -1
         share = rows["heat_released"][-1]/(0.9*rows["plastic_work"][k] + rows["friction_work"][k])
         checks.that(abs(energy) < BALANCE, f"{way}: energy", energy)
-        checks.that(abs(heat) < 1e-6, f"{way}: heat", heat)
+        checks.that(abs(heat) < 1e-8, f"{way}: heat", heat)
         checks.that(abs(share - 1) < BALANCE, f"{way}: heat of plastic work and friction", share)
         got = sum(flow*step for flow, step in zip(rows["heat_flow_upper"], rows["step_length"]))
         checks.that(abs(2e5*(rows["temperature_upper"][-1] - 250)/got - 1) < 1e-9, f"{way}: heat in the die", got)

@@ -10,7 +10,8 @@ usage: run_schemes.py [-v] [-k]
 - `error`: the estimate of a smooth problem falls with the third power of the step (second: implicit Euler), and the sum of all is no
   less than the error of the run; TOL is met, and the error falls with it.
 - `bounds`: a body of Biot number 1000 on a coarse mesh: with BILINEAR no temperature is outside at any step, TR-BDF2 falls back to
-  implicit Euler and says how often; with eight temperatures an element the steps outside are counted.
+  implicit Euler and says how often; with eight temperatures an element the steps outside are counted. On skew and on flat elements, with
+  numbers by temperature, every scheme makes steps again, in the end without flows against the fall of the temperature: none is outside.
 - `latent`: freezing of a half space (F. Neumann) by intervals of melting, meshes and steps that differ by 1000, 5 and 10: within 1 %
   and with one cut at most (68 of the first of them once); a corner that melts, in the plane.
 - `factors`: a linear problem factorises once for each length of a step; one by temperature at every iteration.
@@ -158,6 +159,32 @@ def bounds(checks):
                     checks.that(values["excess_of_bounds"] > 1, f"{run.name}: a shock is not resolved", told)
 
 
+SKEW = (("parallelograms", "0. 0. 1. 0. 3. 1. 2. 1."), ("flat", "0. 0. 4. 0. 4. 0.3 0. 0.3"), ("both", "0. 0. 1. 0. 2. 0.3 1. 0.3"))
+
+
+def bounds_of_any(checks):
+    """Skew and flat elements, two sides suddenly cooled. A step may miss the bounds by 1e-5 of the range (heat_bounds), ten of them by 0.08."""
+    for name, place in SKEW:
+        again = {}
+        for scheme in ("1.", "0.5", "TRBDF2"):
+            for step in (1e-5, 1e-3, 0.1):
+                run = Run(checks, f"any-{name}-{scheme[:2]}-{step}", HEAD.format(title="Biot 1000", state="AXISYM")
+                          + f"BLOCK wall PL8TM 9 m BILINEAR\n   {place}\n   3 1. 6 1.\nLAW m HEAT\n   TEMP 0.\n   1. 1.\n   TEMP 1000.\n   2. 1.5\n"
+                          f"START T 800.\nCONVE wall 2 3 H 1000. TS 20.\nSTRAT {step} {step} {step} 99 1\nSTOP {10*step!r}\nTHETA {scheme}\nSAVE 1\n"
+                          f"{TIGHT}END\n")
+                if not run.ok:
+                    continue
+                with run.open() as file:
+                    low, high = (function(function(file[f"steps/{s}/node/temperature"][()]) for s in file["steps"])
+                                 for function in (min, max))
+                values = checks_of(run)
+                checks.that(20 - 0.08 <= low and high <= 800 + 0.08 and values["steps_outside_bounds"] == 0, f"{run.name}: between 20 and 800",
+                            (low, high, values["steps_outside_bounds"]))
+                checks.small(abs(values["heat_imbalance"]), 1e-8, f"{run.name}: books of heat")
+                again[scheme] = again.get(scheme, 0) + values["steps_made_again_for_bounds"]
+        checks.that(again.get("1.", 0) > 0 and again.get("0.5", 0) > 0, f"any-{name}: steps made again are counted", again)
+
+
 def latent(checks):
     """Neumann's solution, and a corner."""
     exact = ((3.0, 672.55), (6.0, 651.83))
@@ -244,6 +271,7 @@ def main():
     t3(checks)
     error(checks)
     bounds(checks)
+    bounds_of_any(checks)
     latent(checks)
     factors(checks)
     phases(checks)
