@@ -8,11 +8,15 @@ module convergence
   use kinds, only: wp
   implicit none
   private
-  public :: relative_residual, relative_motion, free_force, pilots_in_equilibrium, slope_along, weigh_quantities
+  public :: relative_residual, relative_motion, free_force, pilots_in_equilibrium, heat_in_balance, slope_along, weigh_quantities
 
   !> Motions below this share of the mesh's size are round-off of coordinates; changes of another quantity below this share of its
   !> largest value likewise.
   real(wp), parameter :: least_motion = 1.0e-10_wp
+
+  !> Heat is in balance when what is missing in all is below this share of what is taken up, released or comes in where temperatures
+  !> are imposed.
+  real(wp), parameter :: balance_tolerance = 1.0e-9_wp
 
   !> A free pilot is in equilibrium when its residual is below this share of the forces that act on it.
   real(wp), parameter :: pilot_tolerance = 1.0e-8_wp
@@ -39,6 +43,32 @@ contains
       end do
     end do
   end function pilots_in_equilibrium
+
+  !> The heat that a step would leave out of its books, the sum of the residual heat flows, is small: residuals within their norm may
+  !> add up to more, and with the same sign in every step. True where no temperature is solved for.
+  pure function heat_in_balance(equations, residual, dt) result(in_balance)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: residual(:)   !! (ndof) [residual]
+    real(wp), intent(in) :: dt            !! [time]
+    logical :: in_balance
+    real(wp) :: missing, passed
+    integer :: d, q
+
+    missing = 0
+    passed = 0
+    do q = 1, size(equations%dofs%quantities)
+      if (equations%dofs%quantities(q)%s /= 'temperature' .or. .not. is_solved_for(equations, q)) cycle
+      associate (solve => equations%solves(equations%now))
+        do d = 1, size(residual)
+          if (equations%dofs%quantity(d) /= q .or. .not. solve%is_own(d)) cycle
+          if (solve%equation(d) > 0) missing = missing + residual(d)
+          if (solve%equation(d) == 0) passed = passed + abs(equations%force(d))
+        end do
+      end associate
+      passed = passed + max(abs(equations%heat_stored), abs(equations%heat_released))/(equations%stage%share*dt)
+    end do
+    in_balance = abs(missing) <= balance_tolerance*passed
+  end function heat_in_balance
 
   !> Residual of the free unknowns over the largest of external force, reactions and element forces; 0 when it is
   !> round-off. Moments on pilots depend on where the pilot stands: they are no measure of the forces.

@@ -7,7 +7,7 @@ module newton
   use augmentations, only: augment, augmentations_t, begin_augmentations, go_back, put_back
   use contact_changes, only: contact_set, note_contact
   use contact_heat_tangent, only: follow_contact
-  use convergence, only: pilots_in_equilibrium, relative_motion, relative_residual, weigh_quantities
+  use convergence, only: heat_in_balance, pilots_in_equilibrium, relative_motion, relative_residual, weigh_quantities
   use elem_api, only: block_done, block_inverted, block_without_source, report_t
   use element_loop, only: add_prescribed
   use equations, only: equations_t, evaluate, external_forces, solve_correction
@@ -73,6 +73,8 @@ module newton
   real(wp), parameter :: stagnant = 0.3_wp
   !> Corrections that follow the heat content go round in circles when the residual is above this share of the best so far.
   real(wp), parameter :: circling = 0.9_wp
+  !> So many more iterations are made for the balance of heat.
+  integer, parameter :: for_balance = 2
   !> Heat through contact is linearised along the motion where the residual is below this (contact_heat_tangent).
   real(wp), parameter :: near_force = 1.0e-2_wp
   !> After so many short searches one after the other the whole correction is taken.
@@ -132,7 +134,8 @@ contains
       outcome%iterations = size(outcome%history) - 1
       if (.not. any(abs(missing) > 0)) then
         if (has_converged(scene, outcome%history(first:), again) &
-            .and. pilots_in_equilibrium(equations, solution%fields, external, residual)) then
+            .and. pilots_in_equilibrium(equations, solution%fields, external, residual) &
+            .and. (heat_in_balance(equations, residual, dt) .or. was_given_time(scene, outcome%history(first:)))) then
           if (made%times == 0) outcome%first_iterations = outcome%iterations
           call augment(scene, equations, solution, outcome%du, made, changed)
           if (.not. changed) exit
@@ -240,6 +243,18 @@ contains
     if (history(n - 1)%force_norm > 0) to_come = to_come*min(1.0_wp, history(n)%force_norm/history(n - 1)%force_norm)
     converged = to_come <= scene%strategy%displacement_norm
   end function has_converged
+
+  !> Residuals have been within their norm for some iterations, or are round-off: heat does not get nearer to its balance.
+  pure function was_given_time(scene, history) result(was)
+    type(scene_t), intent(in) :: scene
+    type(iteration_t), intent(in) :: history(:)
+    logical :: was
+    integer :: n
+
+    n = size(history)
+    was = .not. history(n)%force_norm > 0
+    if (n > for_balance) was = was .or. all(history(n - for_balance:)%force_norm <= scene%strategy%force_norm)
+  end function was_given_time
 
   !> Near the solution: the residual has fallen below a small share of the forces, and the set of points in contact is settled.
   pure function is_near(history)
