@@ -49,7 +49,9 @@ contains
     call add_text(lines, law%name//' ('//to_text(law%number)//'): '//law%purpose)
     call add_text(lines, 'source: '//law%source)
     call add_text(lines, 'for: '//users(law))
-    if (law%symmetric .and. .not. law%symmetric_by_temperature) then
+    if (law%swells_with > 0) then
+      call add_text(lines, 'tangent: symmetric; unsymmetric'//only_with(law, law%swells_with))
+    else if (law%symmetric .and. .not. law%symmetric_by_temperature) then
       call add_text(lines, 'tangent: symmetric, but not at several temperatures')
     else
       call add_text(lines, 'tangent: '//trim(merge('symmetric  ', 'unsymmetric', law%symmetric)))
@@ -79,7 +81,7 @@ contains
     do i = 1, size(law%history)
       call add_text(lines, '  '//padded(law%history(i)%name, 18)//padded('['//law%history(i)%unit//']', 18) &
                //to_text(law%history(i)%ncomp)//' component(s), carried over as '//law%history(i)%transfer &
-               //only_with(law, law%history(i)%needs))
+               //only_with(law, law%history(i)%needs, law%history(i)%or_needs))
     end do
   end subroutine law_card
 
@@ -95,21 +97,35 @@ contains
     end do
   end function any_rises
 
-  !> The number of the card without which a part of the history is not there.
-  pure function only_with(law, place) result(s)
+  !> The number of the card, or the two, without which a part of the history is not there.
+  pure function only_with(law, place, or_place) result(s)
     type(law_t), intent(in) :: law
     integer, intent(in) :: place
+    integer, intent(in), optional :: or_place
     character(len=:), allocatable :: s
-    integer :: i, k
 
     s = ''
     if (place == 0) return
-    do i = 1, size(law%lines)
-      do k = 1, size(law%lines(i)%parameters)
-        if (find_parameter(law, law%lines(i)%parameters(k)%name, law%lines(i)%word) == place) &
-          s = ', only with '//law%lines(i)%parameters(k)%name
+    s = ', only with '//name_of(place)
+    if (.not. present(or_place)) return
+    if (or_place > 0) s = s//' or '//name_of(or_place)
+
+  contains
+
+    pure function name_of(number) result(name)
+      integer, intent(in) :: number
+      character(len=:), allocatable :: name
+      integer :: i, k
+
+      name = ''
+      do i = 1, size(law%lines)
+        do k = 1, size(law%lines(i)%parameters)
+          if (find_parameter(law, law%lines(i)%parameters(k)%name, law%lines(i)%word) == number) &
+            name = law%lines(i)%parameters(k)%name
+        end do
       end do
-    end do
+    end function name_of
+
   end function only_with
 
   !> What a row of the card looks like.

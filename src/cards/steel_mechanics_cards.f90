@@ -3,9 +3,9 @@ module steel_mechanics_cards
   use deck_cursor, only: cursor_t
   use kinds, only: wp
   use steel_curves, only: read_curve
-  use steels, only: expansion_incremental, expansion_total, plasticity_names, prop_alpha, prop_hardness, prop_memory, &
-                    prop_modulus, prop_plasticity, prop_poisson, prop_rise, prop_saturation, prop_strain, prop_yield, prop_young, &
-                    property_names, steel_t
+  use steels, only: expansion_incremental, expansion_total, plasticity_names, prop_alpha, prop_consistency, prop_hardening, &
+                    prop_hardness, prop_memory, prop_modulus, prop_plasticity, prop_poisson, prop_rate, prop_rise, &
+                    prop_saturation, prop_softening, prop_strain, prop_yield, prop_young, property_names, steel_t
   use temperature_curves, only: curve_polynomial, curve_table, temperature_curve_t
   use text, only: string_t, to_text
   implicit none
@@ -71,7 +71,7 @@ contains
 
     if (cursor%failed() .or. curve%form == curve_polynomial) return
     select case (property)
-    case (prop_young, prop_yield)
+    case (prop_young, prop_yield, prop_consistency)
       worst = minval(curve%v)
       if (.not. worst > 0) call fail('must be above 0')
     case (prop_poisson)
@@ -79,10 +79,15 @@ contains
       if (worst < 0) call fail('must be at least 0')
       worst = maxval(curve%v)
       if (.not. worst < 0.5_wp) call fail('must be below 0.5')
-    case (prop_alpha, prop_modulus, prop_plasticity, prop_rise, prop_saturation, prop_hardness)
+    case (prop_alpha, prop_modulus, prop_plasticity, prop_rise, prop_saturation, prop_hardness, prop_softening)
       worst = minval(curve%v)
       if (worst < 0) call fail('must be at least 0')
-    case (prop_memory)
+    case (prop_rate)
+      worst = minval(curve%v)
+      if (worst < 0.001_wp) call fail('must be at least 0.001')
+      worst = maxval(curve%v)
+      if (worst > 1) call fail('must be at most 1')
+    case (prop_memory, prop_hardening)
       worst = minval(curve%v)
       if (worst < 0) call fail('must be at least 0')
       worst = maxval(curve%v)

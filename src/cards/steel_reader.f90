@@ -10,18 +10,19 @@ module steel_reader
                               read_temperatures, read_tempering
   use steel_kinetics_cards, only: read_avrami, read_cct, read_li, read_ttt
   use steel_mechanics_cards, only: read_expansion, read_transformation_plasticity, read_weight
+  use steel_stress_cards, only: read_isig
   use steels, only: steel_t
   use text, only: string_t
   implicit none
   private
   public :: read_steels
 
-  character(len=6), parameter :: keywords(18) = ['STEEL ', 'SOURCE', 'COMPO ', 'TEMPS ', 'MARTEN', 'TTT   ', 'AVRAMI', 'LI    ', &
+  character(len=6), parameter :: keywords(19) = ['STEEL ', 'SOURCE', 'COMPO ', 'TEMPS ', 'MARTEN', 'TTT   ', 'AVRAMI', 'LI    ', &
                                                  'CCT   ', 'AUSTEN', 'GRAIN ', 'TEMPER', 'HARDN ', 'PHASE ', 'GRID  ', 'EXPAND', &
-                                                 'TRIP  ', 'WEIGHT']
+                                                 'TRIP  ', 'WEIGHT', 'ISIG  ']
   !> Cards of which a section has one at most: those of one phase are checked where they are read.
-  logical, parameter :: once(18) = [.true., .true., .true., .true., .true., .false., .false., .true., .true., .true., .true., &
-                                    .true., .true., .false., .true., .true., .true., .true.]
+  logical, parameter :: once(19) = [.true., .true., .true., .true., .true., .false., .false., .true., .true., .true., .true., &
+                                    .true., .true., .false., .true., .true., .true., .true., .true.]
 
 contains
 
@@ -173,6 +174,8 @@ contains
       call read_transformation_plasticity(cursor, steel)
     case ('WEIGHT')
       call read_weight(cursor, steel)
+    case ('ISIG')
+      call read_isig(cursor, steel)
     case ('GRID')
       call cursor%real('the width of sub-steps', steel%substep, lower=0.0_wp, upper=100.0_wp, strict_lower=.true., unit='K')
     end select

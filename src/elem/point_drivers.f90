@@ -22,6 +22,7 @@ module point_drivers
   use shape_functions, only: line3, quad8
   use solution, only: group_state_t, solution_t
   use state_variables, only: find_variable
+  use stress_measures, only: measure_names, nmeasure, stress_measure
   implicit none
   private
   public :: at_status, at_pressure, at_gap, at_die_piece, at_die_xi, at_friction_work, at_corner_work, at_corner_place, &
@@ -30,7 +31,8 @@ module point_drivers
             own_states_at_end, nodal_values, is_scalar
 
   !> Where a driver comes from. A state variable of the formulation itself is that at the start of the step.
-  integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3, from_itself = 4, from_effusivity = 5
+  integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3, from_itself = 4, from_effusivity = 5, &
+                        from_stress = 6
   !> Name of the flow stress of the body behind a side.
   character(len=*), parameter :: flow_name = 'flow_stress'
 
@@ -45,6 +47,8 @@ module point_drivers
     integer :: kind = from_nothing
     !> Field of the scene; or group and row of its state, for contact by the groups of bodies (ngroup).
     integer :: field = 0
+    !> Measure of the stress there (stress_measures).
+    integer :: measure = 0
     integer, allocatable :: group(:), row(:)
   end type driver_source_t
 
@@ -96,7 +100,8 @@ contains
           if (is_asked_for(scene, g, laws(law)%drivers(k - 1))) &
             drivers(g)%source(k) = source_of(scene, g, laws(law)%drivers(k - 1)%name)
         end do
-        drivers(g)%vary = any(drivers(g)%source%kind == from_field .or. drivers(g)%source%kind == from_state)
+        drivers(g)%vary = any(drivers(g)%source%kind == from_field .or. drivers(g)%source%kind == from_state &
+                               .or. drivers(g)%source%kind == from_stress)
         if (allocated(drivers(g)%body)) &
           drivers(g)%vary = drivers(g)%vary .or. any(scene%groups(drivers(g)%body)%temperature_multiplier > 0)
       end associate
@@ -235,8 +240,17 @@ contains
       source%row(g) = scene%groups(g)%variables(v)%first
       return
     end if
+    source%measure = place_of_measure(name)
     do k = 1, size(scene%groups)
       if (k == g .or. scene%groups(k)%role == role_contact) cycle
+      if (source%measure > 0 .and. scene%groups(g)%role /= role_contact .and. host_of(scene, k) == host_of(scene, g)) then
+        v = find_variable(scene%groups(k)%variables, 'stress')
+        if (v == 0) cycle
+        source%kind = from_stress
+        source%group(host_of(scene, k)) = k
+        source%row(host_of(scene, k)) = scene%groups(k)%variables(v)%first
+        return
+      end if
       v = find_variable(scene%groups(k)%variables, name)
       if (v == 0) cycle
       if (scene%groups(k)%variables(v)%ncomp > 1) cycle
@@ -246,6 +260,16 @@ contains
       source%row(host_of(scene, k)) = scene%groups(k)%variables(v)%first
     end do
   end function source_of
+
+  !> Place of a name among the measures of a stress, 0 where it is none.
+  pure function place_of_measure(name) result(place)
+    character(len=*), intent(in) :: name
+    integer :: place
+
+    do place = nmeasure, 1, -1
+      if (trim(measure_names(place)) == name) return
+    end do
+  end function place_of_measure
 
   !> All drivers at the accepted state, for the step that begins there.
   subroutine start_drivers(scene, laws, solution, drivers)
@@ -284,7 +308,7 @@ contains
     ! between one facing point and the next there is none
     if (reach >= 1 .or. scene%groups(g)%role == role_heat_contact) return
     do k = 1, size(drivers(g)%source)
-      if (drivers(g)%source(k)%kind /= from_state) cycle
+      if (.not. any(drivers(g)%source(k)%kind == [from_state, from_stress])) cycle
       associate (value => drivers(g)%value(k, :, :, :))
         value(2, :, :) = (1 - reach)*value(1, :, :) + reach*value(2, :, :)
       end associate
@@ -371,6 +395,10 @@ contains
           do e = 1, size(own%value, 4)
             own%value(k, at, :, e) = state_at_points(scene, solution, g, own, k, at, e)
           end do
+        case (from_stress)
+          do e = 1, size(own%value, 4)
+            own%value(k, at, :, e) = stress_at_points(scene, solution, g, own%source(k), at, e)
+          end do
         case (from_itself)
           if (at == 1) own%value(k, at, :, :) = solution%groups(g)%committed(own%source(k)%row(g), :, :)
         case (from_flow)
@@ -451,6 +479,24 @@ contains
       end if
     end associate
   end function state_at_points
+
+  !> A measure of the stress of the mechanics on the same points.
+  pure function stress_at_points(scene, solution, g, source, at, e) result(values)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: g, at, e   !! group, end of the step, element
+    type(driver_source_t), intent(in) :: source
+    real(wp) :: values(scene%groups(g)%rule%n)   !! [stress]
+    integer :: p, body
+
+    body = host_of(scene, g)
+    associate (state => solution%groups(source%group(body)), row => source%row(body))
+      do p = 1, size(values)
+        if (at == 1) values(p) = stress_measure(source%measure, state%committed(row:row + 3, p, e))
+        if (at == 2) values(p) = stress_measure(source%measure, state%trial(row:row + 3, p, e))
+      end do
+    end associate
+  end function stress_at_points
 
   !> Flow stress of the body behind a side, 0 where its law does not flow.
   pure function flow_behind(scene, laws, solution, own, drivers, e) result(flow)

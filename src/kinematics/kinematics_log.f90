@@ -7,7 +7,7 @@
 module kinematics_log
   use kinds, only: wp
   use kinematics_api, only: first_history, kinematics_t
-  use law_api, only: law_t
+  use law_api, only: law_t, tangent_rows
   use materials, only: material_t
   use plane_tensors, only: exp_twice, half_log
   use step_frame, only: frame_of_step, frame_t, has_tensors, turn_answer, turn_history, turned
@@ -34,7 +34,8 @@ contains
     real(wp), intent(in) :: drivers(:, :, :), f(5, n), committed(nstate, n)
     real(wp), intent(out) :: trial(nstate, n), tangent(4, 5, n)
     integer, intent(out) :: status(n)
-    real(wp) :: e(4, n), de(4, 5, n), tau(4, n), elastic(4, n), history(nstate - first_history + 1, n), law_tangent(4, 4, n)
+    real(wp) :: e(4, n), de(4, 5, n), tau(4, n), elastic(4, n), history(nstate - first_history + 1, n)
+    real(wp) :: law_tangent(tangent_rows(law, material), 4, n)
     type(frame_t) :: frame(n)
     real(wp) :: fixed(4, n), volume
     logical :: turning
@@ -57,7 +58,7 @@ contains
       if (turning) then
         call turn_history(law, material, frame(i), history(:, i))
         call turn_answer(frame(i), fixed(:, i), de(:, 1:4, i), law_tangent(:, :, i), tau(:, i), elastic(:, i), tangent(:, 1:4, i))
-        law_tangent(:, 4, i) = turned(frame(i), law_tangent(:, 4, i))
+        law_tangent(:4, 4, i) = turned(frame(i), law_tangent(:4, 4, i))
       end if
       volume = exp(elastic(1, i) + elastic(2, i) + elastic(4, i))
       trial(1:4, i) = tau(:, i)/volume
@@ -67,11 +68,20 @@ contains
         tangent(:, 1:4, i) = tangent(:, 1:4, i)/volume
       else
         do j = 1, 4
-          tangent(:, j, i) = (law_tangent(:, 1, i)*de(1, j, i) + law_tangent(:, 2, i)*de(2, j, i) &
-                              + law_tangent(:, 3, i)*de(3, j, i))/volume
+          tangent(:, j, i) = (law_tangent(:4, 1, i)*de(1, j, i) + law_tangent(:4, 2, i)*de(2, j, i) &
+                              + law_tangent(:4, 3, i)*de(3, j, i))/volume
         end do
       end if
-      tangent(:, 5, i) = law_tangent(:, 4, i)/volume - trial(1:4, i)
+      tangent(:, 5, i) = law_tangent(:4, 4, i)/volume
+      if (size(law_tangent, 1) > 4) then
+        ! the elastic volume depends on the stress
+        do j = 1, 4
+          tangent(:, j, i) = tangent(:, j, i) - trial(1:4, i)*dot_product(law_tangent(5, 1:3, i), de(1:3, j, i))
+        end do
+        tangent(:, 5, i) = tangent(:, 5, i) - trial(1:4, i)*law_tangent(5, 4, i)
+        cycle
+      end if
+      tangent(:, 5, i) = tangent(:, 5, i) - trial(1:4, i)
       tangent(:, 1, i) = tangent(:, 1, i) - trial(1:4, i)
       tangent(:, 4, i) = tangent(:, 4, i) - trial(1:4, i)
     end do

@@ -6,8 +6,8 @@
 !> In the plane R turns by the angle atan2(f_yx - f_xy, f_xx + f_yy). In small steps a tensor turns with Jaumann's spin.
 module step_frame
   use kinds, only: wp
-  use law_api, only: law_t
-  use materials, only: has_number, material_t
+  use law_api, only: is_needed, law_t
+  use materials, only: material_t
   implicit none
   private
   public :: frame_t, frame_of_step, has_tensors, turned, turn_history, turn_answer
@@ -42,8 +42,7 @@ contains
     yes = .false.
     do k = 1, size(law%history)
       if (law%history(k)%ncomp == 1) cycle
-      yes = law%history(k)%needs == 0
-      if (.not. yes) yes = has_number(material, law%history(k)%needs)
+      yes = is_needed(law%history(k), material)
       if (yes) return
     end do
   end function has_tensors
@@ -83,9 +82,7 @@ contains
 
     row = 1
     do k = 1, size(law%history)
-      if (law%history(k)%needs > 0) then
-        if (.not. has_number(material, law%history(k)%needs)) cycle
-      end if
+      if (.not. is_needed(law%history(k), material)) cycle
       if (law%history(k)%ncomp == 4) history(row:row + 3) = turned(frame, history(row:row + 3))
       row = row + law%history(k)%ncomp
     end do

@@ -18,7 +18,8 @@ module law_api
   public :: law_t, law_line_t, parameter_t, driver_t
   public :: law_update_i, law_slide_i, law_flow_i, law_check_i, law_elastic_i, law_conduct_i
   public :: law_store_i, law_swell_i, law_release_i
-  public :: parameter, law_line, find_parameter, law_of_material, asks_for, is_complete
+  public :: parameter, law_line, find_parameter, law_of_material, asks_for, is_complete, is_needed, has_symmetric_tangent, &
+            tangent_rows
   public :: driver_count, driver_temperature
   public :: law_done, law_not_converged
   public :: contact_open, contact_stick, contact_slip
@@ -100,6 +101,9 @@ module law_api
     type(driver_t), allocatable :: drivers(:)
     !> Its tangent is symmetric.
     logical :: symmetric = .true.
+    !> Index of the number of a material with which the volume free of stress depends on the stress: the tangent is not symmetric
+    !> then and has a fifth row where there is room, d tr(elastic strain)/d trial strain; 0: none. Its history holds no tensors.
+    integer :: swells_with = 0
     !> It is so also where its numbers depend on the temperature and that is an unknown.
     logical :: symmetric_by_temperature = .true.
     !> Effects it needs, names separated by blanks (page 6).
@@ -138,7 +142,7 @@ module law_api
       real(wp), intent(out) :: stress(:, :)           !! (4, n) [stress]
       real(wp), intent(out) :: elastic_strain(:, :)   !! (4, n) [-]
       real(wp), intent(out) :: history(:, :)          !! (nhistory, n) [unit of each component]
-      real(wp), intent(out) :: tangent(:, :, :)       !! (4, 4, n) [stress]
+      real(wp), intent(out) :: tangent(:, :, :)       !! (4, 4, n) [stress]; (5, 4, n): `swells_with`
       integer, intent(out) :: status(:)               !! (n) law_done or another answer
     end subroutine law_update_i
 
@@ -348,12 +352,42 @@ contains
     integer :: k
 
     do k = 1, size(law%history)
-      there(k) = law%history(k)%needs == 0
-      if (.not. there(k)) there(k) = has_number(material, law%history(k)%needs)
+      there(k) = is_needed(law%history(k), material)
     end do
     own = law
     deallocate (own%history)
     allocate (own%history, source=pack(law%history, there))
   end function law_of_material
+
+  !> The points of a material have this part of its law's history.
+  pure function is_needed(variable, material) result(yes)
+    type(state_variable_t), intent(in) :: variable
+    type(material_t), intent(in) :: material
+    logical :: yes
+
+    yes = variable%needs == 0
+    if (.not. yes) yes = has_number(material, variable%needs)
+    if (.not. yes .and. variable%or_needs > 0) yes = has_number(material, variable%or_needs)
+  end function is_needed
+
+  !> Rows of the tangent of a law with the numbers of a material: 4, or 5 (`swells_with`).
+  pure function tangent_rows(law, material) result(rows)
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    integer :: rows
+
+    rows = 4
+    if (law%swells_with > 0) rows = merge(5, 4, has_number(material, law%swells_with))
+  end function tangent_rows
+
+  !> The tangent of a law with the numbers of a material is symmetric.
+  pure function has_symmetric_tangent(law, material) result(yes)
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    logical :: yes
+
+    yes = law%symmetric .and. (law%symmetric_by_temperature .or. .not. allocated(material%temperatures))
+    if (yes) yes = tangent_rows(law, material) == 4
+  end function has_symmetric_tangent
 
 end module law_api

@@ -1,4 +1,4 @@
-!> META: conduction of heat in a steel whose phases change.
+!> META (312), and METAMEC (313), whose phases form under the stress of the body: conduction of heat in a steel whose phases change.
 !>
 !> The points of the body hold the fractions of the phases and what their kinetics remember (src/phases). Heat flow
 !> -LAMBDA(T, z) grad T, LAMBDA that of the mixture at the start of the step. The heat taken up is that of austenite, exact between
@@ -11,19 +11,21 @@
 module law_meta
   use heat_of_phases, only: heat_taken, lacking_heat_data, mixture_conductivity
   use kinds, only: wp
-  use law_api, only: driver_temperature, heat_law, law_line, law_t, parameter, parameter_t
-  use materials, only: material_t
+  use law_api, only: driver_t, driver_temperature, heat_law, law_line, law_t, parameter, parameter_t
+  use materials, only: has_number, material_t
   use phase_state, only: at_coldest, at_grain, first_fraction, never_cold, state_names, state_size, state_units
   use phase_step, only: advance_phases
   use state_variables, only: state_variable, transfer_fraction, transfer_scalar
   use steels, only: austenite, phase_count
-  use text, only: string_t
+  use text, only: add_text, string_t
   implicit none
   private
-  public :: law_meta_row
+  public :: law_meta_row, law_metamec_row
 
   !> Places among the values of a material; place of the first fraction among the drivers.
   integer, parameter :: place_energy = 1, place_conduct = 2, place_time = 3, place_zero = 4, place_source = 5, driver_fraction = 2
+  !> Those of METAMEC alone, and its first driver by stress.
+  integer, parameter :: place_stress = 6, place_isig = 7, driver_stress = driver_fraction + phase_count
 
 contains
 
@@ -58,6 +60,21 @@ contains
     row%check => check
   end function law_meta_row
 
+  !> META, with the mean and von Mises' stress of the mechanics on the same body among its drivers.
+  function law_metamec_row() result(row)
+    type(law_t) :: row
+
+    row = law_meta_row()
+    row%name = 'METAMEC'
+    row%number = 313
+    row%purpose = 'conduction of heat in a steel whose phases form under stress'
+    row%lines(1)%parameters = [row%lines(1)%parameters, &
+        parameter('STRESS', 'stress', 'that of 1 MPa in units of the deck', above=0.0_wp), &
+        parameter('ISIG', '-', '1: stress acts on the kinetics, 0: it does not', lower=0.0_wp, upper=1.0_wp, whole=.true.)]
+    row%drivers = [row%drivers, driver_t('mean_stress', place_isig), driver_t('mises', place_isig)]
+    row%check => check_stress
+  end function law_metamec_row
+
   !> Units of the steel's file in those of the deck, and SOURCE.
   function units() result(list)
     type(parameter_t), allocatable :: list(:)
@@ -79,7 +96,7 @@ contains
     integer :: n
 
     do n = 1, size(conductivity)
-      call mixture_conductivity(material%steel, drivers(driver_fraction:, n), &
+      call mixture_conductivity(material%steel, drivers(driver_fraction:driver_fraction + phase_count - 1, n), &
                                 drivers(driver_temperature, n) + material%values(place_zero), conductivity(n), slope(n))
     end do
     conductivity = conductivity*material%values(place_conduct)
@@ -106,13 +123,18 @@ contains
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt, drivers(:, :), committed(:)
     real(wp), intent(out) :: released, slope, history(:)
-    real(wp) :: start(state_size), changes(state_size), t(2), taken, capacity, own(2), mean
+    real(wp) :: start(state_size), changes(state_size), t(2), taken, capacity, own(2), mean, stresses(2, 2)
     integer :: i
 
     start = committed
     if (.not. start(at_grain) > 0) start(at_grain) = material%steel%grain
     t = drivers(driver_temperature, :) + material%values(place_zero)
-    call advance_phases(material%steel, dt*material%values(place_time), t(1), t(2), start, history, changes, released, slope)
+    stresses = 0
+    if (size(drivers, 1) > driver_stress) then
+      if (has_number(material, place_isig)) stresses = drivers(driver_stress:driver_stress + 1, :)/material%values(place_stress)
+    end if
+    call advance_phases(material%steel, dt*material%values(place_time), t(1), t(2), start, history, changes, released, slope, &
+                        stresses)
     if (.not. material%steel%one_heat) then
       call heat_taken(material%steel, austenite, t(1), t(2), taken, capacity)
       do i = 1, phase_count
@@ -144,5 +166,15 @@ contains
 
     call lacking_heat_data(material%steel, problems)
   end subroutine check
+
+  !> The same of METAMEC, whose steel says how stress acts.
+  pure subroutine check_stress(material, problems)
+    type(material_t), intent(in) :: material
+    type(string_t), allocatable, intent(out) :: problems(:)
+
+    call lacking_heat_data(material%steel, problems)
+    if (has_number(material, place_isig) .and. .not. material%steel%isig%given) &
+      call add_text(problems, 'the steel '''//material%steel%name//''' has no card ISIG, the effect of stress on its kinetics')
+  end subroutine check_stress
 
 end module law_meta

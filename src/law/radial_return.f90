@@ -11,7 +11,7 @@ module radial_return
   use hardening, only: most_numbers, yield_between, yield_i, yield_linear
   use kinds, only: eps, wp
   use law_api, only: law_done, law_not_converged
-  use rate_dependence, only: rate_factor, rate_none, rate_power
+  use rate_dependence, only: rate_factor, rate_none, rate_power, rate_within
   implicit none
   private
   public :: flow_t, return_point, flow_stress_at
@@ -32,6 +32,9 @@ module radial_return
     !> Modulus of linear kinematic hardening [stress].
     real(wp) :: kinematic = 0.0_wp
     integer :: rate_form = rate_none
+    !> Stress below which nothing flows, where the form of hardening holds the rate (rate_within): at no growth of the plastic
+    !> strain it answers the stress at the rate of the start.
+    real(wp) :: threshold = 0.0_wp
     real(wp) :: rate(2) = 0.0_wp
     !> Rows of the history: back strain (4 rows, then the stored work), plastic rate; 0 where they are not there.
     integer :: back_row = 0, rate_row = 0
@@ -75,6 +78,7 @@ contains
     call yield_between(flow%yield, flow%below, flow%above, flow%share, below, above, committed(1), sy, slope)
     limit = sy
     if (flow%rate_form == rate_power) limit = 0
+    if (flow%rate_form == rate_within) limit = flow%threshold
     ! in zero time (equilibrium restored on a new mesh) nothing flows
     if (q <= limit + yield_tolerance*(limit + start) .or. .not. dt > 0) then
       tangent = hooke_tangent(flow%bulk, flow%shear)

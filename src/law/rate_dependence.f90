@@ -3,17 +3,19 @@
 !> COWPER 1 + (rate/r0)**(1/P): G.R. Cowper, P.S. Symonds, Brown University, Applied Mathematics Report 28 (1957).
 !> JOHNSON 1 + C ln(rate/r0), never below 1: G.R. Johnson, W.H. Cook, 7th Int. Symp. Ballistics (1983) 541-547.
 !> POWER rate**m: the Norton-Hoff family, without an elastic domain.
+!> Where the form of hardening holds the rate itself (rate_within) the factor is 1.
 module rate_dependence
   use kinds, only: wp
   implicit none
   private
   public :: rate_factor
-  public :: rate_none, rate_cowper, rate_johnson, rate_power
+  public :: rate_none, rate_cowper, rate_johnson, rate_power, rate_within
 
   integer, parameter :: rate_none = 0
   integer, parameter :: rate_cowper = 1
   integer, parameter :: rate_johnson = 2
   integer, parameter :: rate_power = 3
+  integer, parameter :: rate_within = 4
 
 contains
 

@@ -31,14 +31,16 @@ module state_variables
     real(wp) :: initial = 0.0_wp
     !> Index of the number of a material without which this part of a law's history is not there; 0: always there.
     integer :: needs = 0
+    !> Index of another number that asks for it as well; 0: none.
+    integer :: or_needs = 0
   end type state_variable_t
 
 contains
 
   !> A declaration in one line.
-  pure function state_variable(name, unit, transfer, ncomp, needs) result(variable)
+  pure function state_variable(name, unit, transfer, ncomp, needs, or_needs) result(variable)
     character(len=*), intent(in) :: name, unit, transfer
-    integer, intent(in), optional :: ncomp, needs
+    integer, intent(in), optional :: ncomp, needs, or_needs
     type(state_variable_t) :: variable
 
     variable%name = name
@@ -46,6 +48,7 @@ contains
     variable%transfer = transfer
     if (present(ncomp)) variable%ncomp = ncomp
     if (present(needs)) variable%needs = needs
+    if (present(or_needs)) variable%or_needs = or_needs
   end function state_variable
 
   !> Components of all variables together.

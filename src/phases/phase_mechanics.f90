@@ -6,6 +6,7 @@
 !> those in the middle of the step.
 !> Yield stress (1 - f(Z)) y_g + f(Z) sum_i z_i y_i/Z, y = SY + ET r + QV (1 - exp(-BV r)), r the hardening of each phase: all grow
 !> by dp, and what forms brings THETA times that of what it forms from, so that r_i = (z_i r_i + dz_i THETA_i r)/(z_i + dz_i).
+!> Stress by the rate r', of Norton and Hoff's form, added to it with the same weights: P2 sqrt3^(1+P3) r^P4 exp(-P1 r) r'^P3.
 !> Transformation plasticity d eps = 3/2 s dG, dG = sum K_i (F(Z_end) - F(Z_start)) dz_i/dZ where phases form from austenite: exact
 !> in F; of one phase K (F(z_end) - F(z_start)). F is z (2 - z), z (1 - ln z) above z = .03, or z.
 !> Sources: J.-B. Leblond, G. Mottet, J.-C. Devaux, J. Mech. Phys. Solids 34 (1986) 395-432; J.-B. Leblond, Int. J. Plasticity 5
@@ -15,14 +16,15 @@ module phase_mechanics
   use kinds, only: wp
   use phases_there, only: phases_that_form
   use steels, only: austenite, expansion_none, expansion_total, phase_count, phase_names, plasticity_desalos, plasticity_leblond, &
-                    plasticity_none, prop_alpha, prop_memory, prop_modulus, prop_plasticity, prop_poisson, prop_rise, &
-                    prop_saturation, prop_strain, prop_yield, prop_young, steel_t
+                    plasticity_none, prop_alpha, prop_consistency, prop_hardening, prop_memory, prop_modulus, &
+                    prop_plasticity, prop_poisson, prop_rate, prop_rise, prop_saturation, prop_softening, prop_strain, &
+                    prop_yield, prop_young, steel_t
   use temperature_curves, only: curve_at, curve_integral, is_given
   use text, only: add_text, string_t
   implicit none
   private
   public :: mixture_moduli, strain_of_phases, weights_of_yield, mixture_yield, carry_hardening, plasticity_of_transformation, &
-            lacking_mechanical_data, has_yield
+            lacking_mechanical_data, has_yield, mixture_viscosity, lacking_viscosity
 
   !> Leblond's F counts from this fraction on (1989, sec. 4).
   real(wp), parameter :: leblond_threshold = 0.03_wp
@@ -130,6 +132,28 @@ contains
     end do
   end subroutine mixture_yield
 
+  !> Stress by the rate of a mixture, of each phase: weight times P2 sqrt3^(1+P3), P4, P1, P3.
+  pure subroutine mixture_viscosity(steel, z, temperature, numbers)
+    type(steel_t), intent(in) :: steel
+    real(wp), intent(in) :: z(:)             !! (phase_count) [-]
+    real(wp), intent(in) :: temperature      !! [degC]
+    real(wp), intent(out) :: numbers(:, :)   !! (4, phase_count) [MPa s^P3], [-], [-], [-]
+    real(wp) :: weights(phase_count)
+    integer :: i
+
+    weights = weights_of_yield(steel, z)
+    numbers = 0
+    do i = 1, phase_count
+      if (.not. weights(i) > 0) cycle
+      associate (own => steel%properties(:, i))
+        numbers(2, i) = curve_at(own(prop_hardening), temperature)
+        numbers(3, i) = curve_at(own(prop_softening), temperature)
+        numbers(4, i) = curve_at(own(prop_rate), temperature)
+        numbers(1, i) = weights(i)*curve_at(own(prop_consistency), temperature)*sqrt(3.0_wp)**(1 + numbers(4, i))
+      end associate
+    end do
+  end subroutine mixture_viscosity
+
   !> Hardening of the phases after they have changed, before anything flows.
   pure subroutine carry_hardening(steel, before, now, temperature, hardening)
     type(steel_t), intent(in) :: steel
@@ -226,6 +250,21 @@ contains
       if (z(i) > 0) value = value + z(i)*curve_at(steel%properties(property, i), temperature)
     end do
   end function mixture_of
+
+  !> What the phases that may be there lack for their flow by the rate, a line each.
+  pure subroutine lacking_viscosity(steel, problems)
+    type(steel_t), intent(in) :: steel
+    type(string_t), allocatable, intent(inout) :: problems(:)   !! (nproblem) those found are added
+    logical :: there(phase_count)
+    integer :: i
+
+    there = phases_that_form(steel)
+    do i = 1, phase_count
+      if (.not. there(i)) cycle
+      if (is_given(steel%properties(prop_consistency, i)) .and. is_given(steel%properties(prop_rate, i))) cycle
+      call add_text(problems, 'the steel '''//steel%name//''' has no P2 and P3 of '//trim(phase_names(i)))
+    end do
+  end subroutine lacking_viscosity
 
   !> What the phases that may be there lack for their mechanics, a line each.
   pure subroutine lacking_mechanical_data(steel, problems)

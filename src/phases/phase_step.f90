@@ -5,6 +5,7 @@
 !> numbers). In a sub-step the temperature of kinetics is that in its middle: order 2 in the width of the sub-steps. Each phase
 !> answers the logarithm w_i by which it alone would divide the austenite; together they divide it by exp(sum w_i) and share what
 !> forms in proportion: exact for one phase, order 2 for several. Fractions stay in [0, 1]; austenite is what is left.
+!> Where stress acts on the kinetics (stress_kinetics), it is linear in time between both ends of the step.
 module phase_step
   use austenite_kinetics, only: form_austenite, grow_grains
   use avrami, only: grow_avrami
@@ -17,6 +18,7 @@ module phase_step
                          never_cold, set_hardness, state_size
   use steels, only: austenite, bainite, ferrite, first_diffusive, kinetics_avrami, kinetics_li, kinetics_none, last_diffusive, &
                     martensite, pearlite, phase_count, prop_latent, steel_t, tempered, unknown_temperature
+  use stress_kinetics, only: hastened, shift_of_phase, stressed_span
   use temperature_curves, only: dual_curve_at, is_given
   use tempering, only: add_hollomon_jaffe, temper
   implicit none
@@ -33,7 +35,8 @@ module phase_step
 contains
 
   !> From the committed state to the state at the end of a step, its derivative by the temperature there, and the heat released.
-  pure subroutine advance_phases(steel, dt, before, now, committed, state, slope, heat, heat_slope)
+  !> Stresses count for a steel whose kinetics depend on them; without them there is none.
+  pure subroutine advance_phases(steel, dt, before, now, committed, state, slope, heat, heat_slope, stresses)
     type(steel_t), intent(in) :: steel
     real(wp), intent(in) :: dt              !! length of the step [s]
     real(wp), intent(in) :: before, now     !! temperatures at both ends of it [degC]
@@ -42,16 +45,23 @@ contains
     real(wp), intent(out) :: slope(:)       !! (state_size) d state/d now [state_units/K]
     real(wp), intent(out) :: heat           !! [MJ/m3]
     real(wp), intent(out) :: heat_slope     !! d heat/d now [MJ/m3/K]
-    type(dual_t) :: s(state_size), released, a, b, time, finish, part
+    real(wp), intent(in), optional :: stresses(2, 2)   !! mean and von Mises' stress at both ends of the step [MPa]
+    type(dual_t) :: s(state_size), released, a, b, time, finish, part, gone, stress(2, 2)
+    real(wp) :: load(2, 2)
     integer :: k, last, direction, parts, p
 
+    load = 0
+    if (present(stresses) .and. steel%isig%given) load = stresses
     s%value = committed
     released = dual_t()
     finish = dual_t(now, 1.0_wp)
-    parts = parts_of(steel, dt, before, committed)
+    parts = parts_of(steel, dt, before, load(:, 1), committed)
     direction = merge(1, -1, now >= before)
     call find_nodes(steel%nodes, before, now, k, last)
     a = dual_t(before)
+    gone = dual_t()
+    stress = dual_t()
+    stress(:, 2)%value = load(:, 1)
     do
       b = finish
       time = dual_t(dt)
@@ -60,7 +70,12 @@ contains
       if (direction*(last - k) >= 0 .or. abs(a%value - before) > 0) time = dt*(b - a)/(finish - before)
       part = (b - a)/real(parts, wp)
       do p = 1, parts
-        call sub_step(steel, time/real(parts, wp), a + real(p - 1, wp)*part, a + real(p, wp)*part, s, released)
+        if (steel%isig%given .and. dt > 0) then
+          gone = gone + time/real(parts, wp)
+          stress(:, 1) = stress(:, 2)
+          stress(:, 2) = load(:, 1) + (load(:, 2) - load(:, 1))*(gone/dt)
+        end if
+        call sub_step(steel, time/real(parts, wp), a + real(p - 1, wp)*part, a + real(p, wp)*part, stress, s, released)
       end do
       if (direction*(last - k) < 0) exit
       a = b
@@ -91,21 +106,24 @@ contains
 
   !> Parts into which sub-steps are divided: a function of the state at the start and of the length of the step alone, so that it
   !> stands still while the end temperature is iterated.
-  pure function parts_of(steel, dt, before, committed) result(parts)
+  pure function parts_of(steel, dt, before, load, committed) result(parts)
     type(steel_t), intent(in) :: steel
-    real(wp), intent(in) :: dt, before, committed(:)
+    real(wp), intent(in) :: dt, before, load(2), committed(:)
     integer :: parts
-    type(dual_t) :: incubation, growth, w
+    type(dual_t) :: incubation, growth, w, stress(2), temperature
     real(wp) :: most
     integer :: i, active
 
     active = 0
     most = 0
+    stress = dual_t()
+    stress%value = load
     do i = first_diffusive, last_diffusive
-      if (.not. forms(steel, i, before)) cycle
+      temperature = before - shift_of_phase(steel%isig, i, stress)
+      if (.not. forms(steel, i, temperature%value)) cycle
       incubation = dual_t(committed(first_incubation + i - first_diffusive))
       growth = dual_t(committed(first_growth + i - first_diffusive))
-      call grow(steel, i, dual_t(dt), dual_t(before), incubation, growth, w)
+      call grow(steel, i, hastened(steel%isig, i, stress, dual_t(dt)), temperature, incubation, growth, w)
       active = active + 1
       most = most + w%value
     end do
@@ -146,9 +164,9 @@ contains
   end subroutine grow
 
   !> All that happens between two temperatures of one sub-step.
-  pure subroutine sub_step(steel, time, from, to, s, heat)
+  pure subroutine sub_step(steel, time, from, to, stress, s, heat)
     type(steel_t), intent(in) :: steel
-    type(dual_t), intent(in) :: time, from, to
+    type(dual_t), intent(in) :: time, from, to, stress(2, 2)
     type(dual_t), intent(inout) :: s(:), heat
     type(dual_t) :: middle
 
@@ -156,8 +174,8 @@ contains
     if (steel%ac1 > unknown_temperature) then
       if (middle%value > steel%ac1) call heat_up(steel, time, middle, s, heat)
     end if
-    if (steel%cct%n > 0 .and. s(austenite)%value > 0) call cool_by_histories(steel, time, from, to, s, heat)
-    call transform(steel, time, middle, to, s, heat)
+    if (steel%cct%n > 0 .and. s(austenite)%value > 0) call cool_by_histories(steel, time, from, to, stress(:, 2), s, heat)
+    call transform(steel, time, from, to, stress, s, heat)
     if (any(steel%temper_rate > 0)) call temper_phases(steel, time, middle, s)
     call settle(s)
   end subroutine sub_step
@@ -192,14 +210,14 @@ contains
   end subroutine heat_up
 
   !> What the histories of a CCT diagram give down to Ms, as far as there is austenite.
-  pure subroutine cool_by_histories(steel, time, from, to, s, heat)
+  pure subroutine cool_by_histories(steel, time, from, to, stress, s, heat)
     type(steel_t), intent(in) :: steel
-    type(dual_t), intent(in) :: time, from, to
+    type(dual_t), intent(in) :: time, from, to, stress(2)
     type(dual_t), intent(inout) :: s(:), heat
     type(dual_t) :: dz(3), total, ms, finish, share
     integer :: i
 
-    ms = martensite_start(steel, s(ferrite) + s(pearlite) + s(bainite))
+    ms = martensite_start(steel, s(ferrite) + s(pearlite) + s(bainite)) + shift_of_phase(steel%isig, martensite, stress)
     if (from%value <= ms%value) return
     finish = to
     share = dual_t(1.0_wp)
@@ -224,26 +242,31 @@ contains
   end subroutine cool_by_histories
 
   !> Ferrite, pearlite, bainite and martensite from austenite.
-  pure subroutine transform(steel, time, middle, to, s, heat)
+  pure subroutine transform(steel, time, from, to, stress, s, heat)
     type(steel_t), intent(in) :: steel
-    type(dual_t), intent(in) :: time, middle, to
+    type(dual_t), intent(in) :: time, from, to, stress(2, 2)
     type(dual_t), intent(inout) :: s(:), heat
-    type(dual_t) :: w(ferrite:martensite), total, formed, dz
+    type(dual_t) :: w(ferrite:martensite), total, formed, dz, middle, own, span
     integer :: i
 
+    middle = 0.5_wp*(from + to)
     total = dual_t()
     do i = ferrite, bainite
       w(i) = dual_t()
-      if (forms(steel, i, middle%value)) then
-        call grow(steel, i, time, middle, s(first_incubation + i - ferrite), s(first_growth + i - ferrite), w(i))
-        call limit_growth(steel, i, middle, s, w(i))
-      else if (middle%value >= steel%kinetics(i)%high) then
+      own = middle
+      span = time
+      call stressed_span(steel, i, from, to, stress, own, span)
+      if (forms(steel, i, own%value)) then
+        call grow(steel, i, span, own, s(first_incubation + i - ferrite), s(first_growth + i - ferrite), w(i))
+        call limit_growth(steel, i, own, s, w(i))
+      else if (own%value >= steel%kinetics(i)%high) then
         s(first_incubation + i - ferrite) = dual_t()
         s(first_growth + i - ferrite) = dual_t()
       end if
       total = total + w(i)
     end do
-    call grow_martensite(steel, s(ferrite) + s(pearlite) + s(bainite), to, s(at_coldest), w(martensite))
+    call grow_martensite(steel, s(ferrite) + s(pearlite) + s(bainite), to - shift_of_phase(steel%isig, martensite, stress(:, 2)), &
+                         s(at_coldest), w(martensite))
     total = total + w(martensite)
     if (.not. (total%value > 0 .and. s(austenite)%value > 0)) return
     formed = s(austenite)*(1.0_wp - exp(-total))

@@ -4,9 +4,9 @@ module steel_build
   use kinds, only: wp
   use li_kinetics, only: li_power, li_speed, li_table
   use phases_there, only: phases_that_form
-  use steels, only: bainite, expansion_none, ferrite, first_diffusive, kinetics_li, kinetics_none, last_diffusive, pearlite, &
-                    phase_count, plasticity_none, prop_plasticity, prop_rise, prop_saturation, property_count, steel_t, &
-                    unknown_temperature
+  use steels, only: bainite, expansion_none, ferrite, first_diffusive, kinetics_li, kinetics_none, last_diffusive, martensite, &
+                    pearlite, phase_count, phase_names, plasticity_none, prop_plasticity, prop_rise, prop_saturation, &
+                    property_count, steel_t, unknown_temperature
   use temperature_curves, only: curve_table, is_given, temperature_curve_t
   use text, only: add_text, string_t
   implicit none
@@ -138,6 +138,7 @@ contains
     type(steel_t), intent(in) :: steel
     type(string_t), allocatable, intent(out) :: problems(:)   !! (nproblem)
     logical, parameter :: not_austenite(phase_count) = [.false., .true., .true., .true., .true., .true.]
+    integer :: i
 
     allocate (problems(0))
     if (steel%ms > unknown_temperature .and. .not. steel%beta > 0) &
@@ -158,6 +159,12 @@ contains
       call add_text(problems, 'QV and BV of a phase go together')
     if (any(is_given(steel%properties(prop_plasticity, :))) .and. steel%plasticity == plasticity_none) &
       call add_text(problems, 'KTP needs a card TRIP, the form of transformation plasticity')
+    do i = first_diffusive, last_diffusive
+      if (.not. any(abs([steel%isig%shift(:, i), steel%isig%haste(:, i)]) > 0) .or. steel%kinetics(i)%kind /= kinetics_none) cycle
+      call add_text(problems, 'ISIG of '//trim(phase_names(i))//' needs its TTT, AVRAMI or LI')
+    end do
+    if (any(abs(steel%isig%shift(:, martensite)) > 0) .and. .not. steel%ms > unknown_temperature) &
+      call add_text(problems, 'ISIG of MARTENSITE needs MS')
     ! what has mechanics may stay as it is
     if (steel%expansion /= expansion_none .and. .not. any(phases_that_form(steel) .and. not_austenite)) return
     if (all(steel%kinetics%kind == kinetics_none) .and. steel%cct%n == 0 .and. .not. steel%ms > unknown_temperature) &

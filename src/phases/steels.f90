@@ -7,12 +7,13 @@ module steels
   use temperature_curves, only: temperature_curve_t
   implicit none
   private
-  public :: steel_t, kinetics_t, histories_t, composition_t
+  public :: steel_t, kinetics_t, histories_t, composition_t, stress_effect_t
   public :: austenite, ferrite, pearlite, bainite, martensite, tempered, phase_count, phase_names, first_diffusive, last_diffusive
   public :: kinetics_none, kinetics_avrami, kinetics_li
   public :: property_count, property_names, property_units
   public :: prop_lambda, prop_rhoc, prop_latent, prop_hardness, prop_content, prop_young, prop_poisson, prop_alpha, prop_strain, &
-            prop_yield, prop_modulus, prop_plasticity, prop_rise, prop_saturation, prop_memory
+            prop_yield, prop_modulus, prop_plasticity, prop_rise, prop_saturation, prop_memory, prop_softening, prop_consistency, &
+            prop_rate, prop_hardening
   public :: expansion_none, expansion_total, expansion_incremental
   public :: plasticity_none, plasticity_desalos, plasticity_leblond, plasticity_tanaka, plasticity_names
   public :: element_names, celsius_zero, gas_constant, unknown_temperature, default_substep
@@ -31,13 +32,14 @@ module steels
   !> Properties of a phase by temperature, their names on cards and their units.
   integer, parameter :: prop_lambda = 1, prop_rhoc = 2, prop_latent = 3, prop_hardness = 4, prop_content = 5, &
                         prop_young = 6, prop_poisson = 7, prop_alpha = 8, prop_strain = 9, prop_yield = 10, prop_modulus = 11, &
-                        prop_plasticity = 12, prop_rise = 13, prop_saturation = 14, prop_memory = 15, property_count = 15
+                        prop_plasticity = 12, prop_rise = 13, prop_saturation = 14, prop_memory = 15, prop_softening = 16, &
+                        prop_consistency = 17, prop_rate = 18, prop_hardening = 19, property_count = 19
   character(len=6), parameter :: property_names(property_count) = [character(len=6) :: 'LAMBDA', 'RHOC', 'LATENT', 'HV', &
                                                                    'H', 'E', 'NU', 'ALPHA', 'DEPS', 'SY', 'ET', 'KTP', &
-                                                                   'QV', 'BV', 'THETA']
+                                                                   'QV', 'BV', 'THETA', 'P1', 'P2', 'P3', 'P4']
   character(len=9), parameter :: property_units(property_count) = [character(len=9) :: 'W/m/K', 'MJ/m3/K', 'MJ/m3', 'HV', &
                                                                    'MJ/m3', 'MPa', '-', '1/K', '-', 'MPa', 'MPa', '1/MPa', &
-                                                                   'MPa', '-', '-']
+                                                                   'MPa', '-', '-', '-', 'MPa s^P3', '-', '-']
 
   !> Form of the strains by temperature and phases: a function of both, or summed up step by step.
   integer, parameter :: expansion_none = 0, expansion_total = 1, expansion_incremental = 2
@@ -96,6 +98,14 @@ module steels
     real(wp) :: grain_factor = 0.0_wp, grain_reference = 0.0_wp
   end type histories_t
 
+  !> Effect of the mean and of von Mises' stress on kinetics: a phase forms at a temperature T as without stress at
+  !> T - shift . (mean, mises), in times divided by exp(haste . (mean, mises)).
+  type :: stress_effect_t
+    logical :: given = .false.
+    real(wp) :: shift(2, first_diffusive:martensite) = 0.0_wp      !! [K/MPa]
+    real(wp) :: haste(2, first_diffusive:last_diffusive) = 0.0_wp  !! [1/MPa]
+  end type stress_effect_t
+
   type :: steel_t
     character(len=:), allocatable :: name, source
     !> Where the file defines it, for messages.
@@ -108,6 +118,7 @@ module steels
     type(histories_t) :: cct
     !> Martensite: beta [1/K]; Ms moves by min(0, shift_slope*z + shift_offset) where z, formed before, exceeds shift_from.
     real(wp) :: beta = 0.0_wp, shift_from = 1.0_wp, shift_slope = 0.0_wp, shift_offset = 0.0_wp
+    type(stress_effect_t) :: isig
     !> Austenite on heating: time constants at ac1 and ac3 [s]; 0: none forms.
     real(wp) :: tau1 = 0.0_wp, tau3 = 0.0_wp
     !> Grain [um]: first size; 1/lambda = exp(-lambda_energy/T)/lambda0, limit = limit0 exp(-limit_energy/T); energies in K,

@@ -13,7 +13,7 @@ module equations
   use kinds, only: eps, wp
   use kinematics_api, only: kinematics_t
   use kinematics_registry, only: list_kinematics
-  use law_api, only: law_t, solid_law
+  use law_api, only: has_symmetric_tangent, law_t, solid_law
   use law_registry, only: list_laws
   use linear_solver, only: analyse, choose_solver, factorise, solve_linear
   use loads, only: multiplier_at
@@ -274,8 +274,7 @@ contains
         symmetric = symmetric .and. .not. (scene%finite .and. scene%groups(g)%option == row%unsymmetric_option)
         if (m == 0) cycle
         associate (law => equations%laws(scene%materials(m)%law_id))
-          symmetric = symmetric .and. law%symmetric &
-                      .and. (law%symmetric_by_temperature .or. .not. allocated(scene%materials(m)%temperatures))
+          symmetric = symmetric .and. has_symmetric_tangent(law, scene%materials(m))
         end associate
         if (row%law_kind == solid_law) symmetric = symmetric .and. equations%kinematics%symmetric
       end associate

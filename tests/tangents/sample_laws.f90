@@ -6,7 +6,7 @@ module sample_laws
   use materials, only: material_t
   use steel_materials, only: polynomial, steel_alpha, steel_beta, steel_deps, steel_k, steel_material, steel_modulus, steel_ms, &
                              steel_of_tests, steel_poisson, steel_yield, steel_young
-  use steels, only: austenite, martensite, prop_rise, prop_saturation
+  use steels, only: austenite, martensite, prop_consistency, prop_hardening, prop_rate, prop_rise, prop_saturation, prop_softening
   implicit none
   private
   public :: sample_law_t, list_samples, flow_stress, young_at, poisson_of, thermal_strain, plasticity_of_step
@@ -16,6 +16,8 @@ module sample_laws
     type(material_t) :: material
     !> Temperatures at the start, and at the end of the first and of the second step.
     real(wp) :: temperatures(0:2) = 0.0_wp
+    !> Its stress under monotonic flow is written below.
+    logical :: closed_form = .true.
   end type sample_law_t
 
   real(wp), parameter :: expansion = 1.2e-5_wp
@@ -28,6 +30,8 @@ module sample_laws
   real(wp), parameter :: hot_modulus = 0.7_wp, hot_yield = 0.5_wp
   !> QV and BV of austenite and martensite; RATE0 and COWPER of the steel with phases.
   real(wp), parameter :: rise(2) = [60.0_wp, 150.0_wp], saturation(2) = [20.0_wp, 35.0_wp], viscous(2) = [5.0_wp, 3.0_wp]
+  !> P1 P2 P3 P4 of its phases.
+  real(wp), parameter :: by_rate(4, 2) = reshape([0.5_wp, 90.0_wp, 0.12_wp, 0.2_wp, 0.2_wp, 400.0_wp, 0.05_wp, 0.1_wp], [4, 2])
 
 contains
 
@@ -38,7 +42,7 @@ contains
     type(material_t) :: hot
     integer :: k
 
-    allocate (samples(18))
+    allocate (samples(21))
     samples(1) = sample_law_t('ELA', elastic_material())
     samples(2) = sample_law_t('ELATH', material_of('ELATH', [200000.0_wp, 0.3_wp, expansion]), [20.0_wp, 220.0_wp, 320.0_wp])
     do k = 1, 6
@@ -73,6 +77,29 @@ contains
         samples(18)%material%steel%properties(prop_saturation, phase) = polynomial([saturation(k)])
       end associate
     end do
+    samples(19) = samples(16)
+    samples(19)%name = 'ARBTHMET VISCO'
+    samples(19)%material%values(7) = 1
+    do k = 1, 2
+      associate (own => samples(19)%material%steel%properties(:, merge(austenite, martensite, k == 1)))
+        own(prop_softening) = polynomial([by_rate(1, k)])
+        own(prop_consistency) = polynomial([by_rate(2, k)])
+        own(prop_rate) = polynomial([by_rate(3, k)])
+        own(prop_hardening) = polynomial([by_rate(4, k)])
+      end associate
+    end do
+    ! stress on the kinetics: its closed form is in tests/law
+    samples(20) = samples(16)
+    samples(20)%name = 'ARBTHMET ISIG'
+    samples(20)%material%values(8) = 1
+    samples(20)%material%steel%isig%given = .true.
+    samples(20)%material%steel%isig%shift(:, martensite) = [0.05_wp, 0.03_wp]
+    samples(20)%closed_form = .false.
+    samples(21) = samples(19)
+    samples(21)%name = 'ARBTHMET both'
+    samples(21)%material%values(8) = 1
+    samples(21)%material%steel%isig = samples(20)%material%steel%isig
+    samples(21)%closed_form = .false.
   end subroutine list_samples
 
   !> Von Mises stress of monotonic flow at plastic strain p, rate and temperature; 0 for laws that do not flow.
@@ -111,11 +138,22 @@ contains
       stress = gsell(3)*exp(gsell(7)/(temperature + gsell(8)))*(1 - exp(-gsell(4)*p))*exp(gsell(5)*p**2)*rate**gsell(6)
     case ('ARBTHMET total', 'ARBTHMET increm')
       stress = mixture_yield(p, temperature)
+    case ('ARBTHMET VISCO')
+      stress = mixture_yield(p, temperature) + viscosity(p, rate, temperature)
     case ('ARBTHMET viscous')
       stress = mixture_yield(p, temperature) + dot_product(mixture(temperature), rise*(1 - exp(-saturation*p)))
       stress = stress*(1 + (rate/viscous(1))**(1/viscous(2)))
     end select
   end function flow_stress
+
+  !> Stress by the rate of the mixture: P2 sqrt3^(1+P3) p^P4 exp(-P1 p) rate^P3 of each phase.
+  pure function viscosity(p, rate, temperature) result(stress)
+    real(wp), intent(in) :: p, rate, temperature
+    real(wp) :: stress
+
+    stress = dot_product(mixture(temperature), by_rate(2, :)*sqrt(3.0_wp)**(1 + by_rate(3, :))*p**by_rate(4, :) &
+                         *exp(-by_rate(1, :)*p)*rate**by_rate(3, :))
+  end function viscosity
 
   !> Austenite and martensite after cooling to a temperature (Koistinen and Marburger).
   pure function mixture(temperature) result(z)
