@@ -117,7 +117,7 @@ def main():
     verbose = "-v" in sys.argv[1:]
     passed = failed = 0
     with tempfile.TemporaryDirectory() as folder:
-        for steel in ("steel.met", "whole.met"):
+        for steel in ("steel.met", "whole.met", "isig.met"):
             shutil.copy(os.path.join(HERE, steel), folder)
         for case, base, options in all_cases():
             try:
