@@ -113,7 +113,7 @@ contains
           given(driver_temperature, :, p + 1:p + n) = spread(group_temperature(group, instant), 2, n)
         end if
         if (size(given, 1) == 1) cycle
-        given(2:, :, p + 1:p + n) = equations%drivers(g)%value(2:, :, :, e)
+        given(2:, :, p + 1:p + n) = equations%drivers(g)%value(2:, :2, :, e)
         call own_states_at_end(equations%drivers(g), solution%groups(g), g, e, given(:, 2, p + 1:p + n))
       end do
     end associate

@@ -162,8 +162,8 @@ contains
       if (name /= '') call refuse(''': expected a field, or a state of another element, of that name on its body, found none')
       if (name /= '' .or. draft%scene%strategy%coupling /= coupling_monolithic) cycle
       name = driver_of_others(draft%scene, draft%laws, g)
-      if (name /= '') call refuse(''' of another element, which SOLVE MONOLITHIC cannot follow: expected SOLVE ONCE or '// &
-                                  'CONVERGE, or a law that finds it by itself (TIME)')
+      if (name /= '') call refuse(''' of another element, which forms under the stress that it drives: SOLVE MONOLITHIC cannot '// &
+                                  'follow both; expected SOLVE ONCE, or a law that finds it by itself (TIME)')
     end do
 
   contains

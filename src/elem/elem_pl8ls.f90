@@ -134,7 +134,7 @@ contains
       given(driver_temperature, :, :) = spread(group_temperature(group, instant), 2, group%rule%n*nb)
     end if
     do k = 2, size(given, 1)
-      given(k, :, :) = reshape(drivers(k, :, :, :), [2, group%rule%n*nb])
+      given(k, :, :) = reshape(drivers(k, :2, :, :), [2, group%rule%n*nb])
     end do
     if (scene%plane_state == plane_stress) then
       call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, given, &
@@ -246,10 +246,16 @@ contains
       real(wp), intent(inout) :: g(:, :, :)
       real(wp), intent(out) :: other(:, :, :)
       real(wp) :: shifted(size(given, 1), 2, group%rule%n*nb), unused(4, 5, group%rule%n, nb)
-      integer :: answers(group%rule%n, nb)
+      integer :: answers(group%rule%n, nb), k
 
       shifted = given
       shifted(driver_temperature, 2, :) = shifted(driver_temperature, 2, :) + change
+      if (size(drivers, 2) > 2) then
+        ! states that follow the temperature
+        do k = 2, size(given, 1)
+          shifted(k, 2, :) = shifted(k, 2, :) + change*reshape(drivers(k, 3, :, :), [group%rule%n*nb])
+        end do
+      end if
       if (scene%plane_state == plane_stress) then
         call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, shifted, &
                                  g, before, other, unused, answers)

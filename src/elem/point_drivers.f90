@@ -22,13 +22,14 @@ module point_drivers
   use shape_functions, only: line3, quad8
   use solution, only: group_state_t, solution_t
   use state_variables, only: find_variable
+  use strategy, only: coupling_monolithic
   use stress_measures, only: measure_names, nmeasure, stress_measure
   implicit none
   private
   public :: at_status, at_pressure, at_gap, at_die_piece, at_die_xi, at_friction_work, at_corner_work, at_corner_place, &
             at_body_effusivity, at_die_effusivity
   public :: drivers_t, find_drivers, missing_driver, driver_of_others, start_drivers, advance_drivers, drivers_of_half, &
-            own_states_at_end, nodal_values, is_scalar
+            own_states_at_end, nodal_values, is_scalar, field_at_points, with_slopes, from_state
 
   !> Where a driver comes from. A state variable of the formulation itself is that at the start of the step.
   integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3, from_itself = 4, from_effusivity = 5, &
@@ -55,7 +56,7 @@ module point_drivers
   !> Drivers of the points of a group.
   type :: drivers_t
     !> At the start and at the end of the step (ndriver, 2, npoint, nelem); no rows where the law has none but the temperature of
-    !> its body.
+    !> its body. With a third plane where states that follow an unknown temperature drive it (driver_slopes).
     real(wp), allocatable :: value(:, :, :, :)
     type(driver_source_t), allocatable :: source(:)
     !> They change within a step.
@@ -100,6 +101,10 @@ contains
           if (is_asked_for(scene, g, laws(law)%drivers(k - 1))) &
             drivers(g)%source(k) = source_of(scene, g, laws(law)%drivers(k - 1)%name)
         end do
+        if (follows_temperature(scene, laws, g, drivers(g)%source)) then
+          deallocate (drivers(g)%value)
+          allocate (drivers(g)%value(n, 3, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
+        end if
         drivers(g)%vary = any(drivers(g)%source%kind == from_field .or. drivers(g)%source%kind == from_state &
                                .or. drivers(g)%source%kind == from_stress)
         if (allocated(drivers(g)%body)) &
@@ -107,6 +112,33 @@ contains
       end associate
     end do
   end subroutine find_drivers
+
+  !> A body is driven by states of a formulation of heat that is solved together with it.
+  pure function follows_temperature(scene, laws, g, sources) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: g
+    type(driver_source_t), intent(in) :: sources(:)
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    if (scene%strategy%coupling /= coupling_monolithic .or. .not. is_solid(scene%groups(g))) return
+    do k = 1, size(sources)
+      if (sources(k)%kind /= from_state) cycle
+      associate (other => scene%groups(sources(k)%group(host_of(scene, g))))
+        yes = yes .or. associated(laws(scene%materials(other%material)%law_id)%release)
+      end associate
+    end do
+  end function follows_temperature
+
+  !> The drivers have a third plane: they are states that others find in the same iteration.
+  pure function with_slopes(drivers) result(yes)
+    type(drivers_t), intent(in) :: drivers
+    logical :: yes
+
+    yes = size(drivers%value, 2) > 2
+  end function with_slopes
 
   !> What drives the points of heat through a contact; nothing in scenes of heat alone.
   pure subroutine drive_heat_contact(scene, g, drivers)
@@ -159,7 +191,8 @@ contains
     end associate
   end function missing_driver
 
-  !> The first driver of a law for solids that is a state of another formulation, '' where there is none.
+  !> The first driver of a law for solids that is a state of another formulation whose law is driven by the stress of this one, ''
+  !> where there is none.
   pure function driver_of_others(scene, laws, g) result(name)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)   !! (nlaw)
@@ -175,11 +208,28 @@ contains
       do k = 1, driver_count(law) - 1
         source = source_of(scene, g, law%drivers(k)%name)
         if (source%kind /= from_state) cycle
+        if (.not. is_stressed(scene, laws, source%group(host_of(scene, g)))) cycle
         name = law%drivers(k)%name
         return
       end do
     end associate
   end function driver_of_others
+
+  !> The law of a group is driven by stress.
+  pure function is_stressed(scene, laws, g) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: g
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    associate (law => laws(scene%materials(scene%groups(g)%material)%law_id))
+      do k = 1, driver_count(law) - 1
+        if (is_asked_for(scene, g, law%drivers(k))) yes = yes .or. place_of_measure(law%drivers(k)%name) > 0
+      end do
+    end associate
+  end function is_stressed
 
   !> The material of a group has the number for which its law needs a driver.
   pure function is_asked_for(scene, g, driver) result(yes)

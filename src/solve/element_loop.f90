@@ -9,7 +9,8 @@ module element_loop
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
-  use point_drivers, only: advance_drivers, drivers_t
+  use driver_slopes, only: fill_slopes
+  use point_drivers, only: advance_drivers, drivers_t, with_slopes
   use scene, only: group_t, scene_t
   use solution, only: solution_t
   use sparsity, only: pattern_t
@@ -50,14 +51,17 @@ contains
     type(ledger_t), intent(inout) :: timers
     type(report_t), intent(out) :: report
     type(report_t), allocatable :: reports(:)
-    integer :: g, b, nelem, ndof, first, last, f, m, timer
+    integer :: g, k, b, nelem, ndof, first, last, f, m, timer
 
-    do g = 1, size(scene%groups)
-      if (.not. active(g)) cycle
+    ! groups that are driven by what others find in this iteration come after them
+    do k = 1, 2*size(scene%groups)
+      g = 1 + mod(k - 1, size(scene%groups))
+      if (.not. active(g) .or. (with_slopes(drivers(g)) .neqv. k > size(scene%groups))) cycle
       associate (group => scene%groups(g), row => elems(scene%groups(g)%elem_id), state => solution%groups(g))
         call timers%add(row%effect, timer)
         call timers%start(timer)
         call advance_drivers(scene, laws, solution, now, instant%time, instant%reach, g, drivers)
+        if (instant%tangent) call fill_slopes(scene, laws, solution, now, instant%dt/instant%share, g, drivers)
         nelem = size(group%connectivity, 2)
         ndof = size(dofs%groups(g)%dof, 1)
         allocate (reports((nelem + block_size - 1)/block_size))

@@ -8,6 +8,8 @@ usage: run_stress_phases.py [-v] [-k]
   the kinetics in the mechanics), with the stress a step behind by ONCE. The same by the laws alone (TEMPE, TIME).
 - `quench`: a bar cooled on its side: ONCE with half the step is near MONOLITHIC; stress moves the mean of martensite.
 - With ISIG 0 METAMEC is META, to the bit.
+- Without stress on the kinetics MONOLITHIC is the same, in as many iterations, with the fractions of META and with those of the law (TIME):
+  the cross derivatives are exact.
 """
 import math
 import sys
@@ -178,8 +180,22 @@ def quench(checks):
         checks.that(abs(moved) > 5e-4, "quench: stress moves the mean of martensite", moved)
 
 
+def fractions(checks):
+    """One system with the fractions of the heat, and with those of the mechanics."""
+    rows = {own: done(checks, f"fractions_{bool(own)}", QUENCH.format(own=own, law="META", isig="", solve="MONOLITHIC", step=0.5))
+            for own in ("", "TIME 1.")}
+    if not all(rows.values()):
+        return
+    for column in ("z", "bain", "side", "core"):
+        one, other = (r[column][-1] for r in rows.values())
+        checks.that(abs(one - other) < 1e-7*abs(one), f"fractions: {column}", (one, other))
+    counts = [sum(r["iterations"]) for r in rows.values()]
+    checks.that(counts[0] <= counts[1], "fractions: iterations", counts)
+
+
 def main():
     checks = Checks()
+    fractions(checks)
     element(checks, "tension", 400, 0)
     element(checks, "pressure", -300, -300)
     quench(checks)

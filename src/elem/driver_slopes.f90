@@ -1,0 +1,78 @@
+!> Derivatives of drivers by the temperature, where states of a formulation of heat drive mechanics solved together with it.
+!>
+!> In one system for all fields (SOLVE MONOLITHIC) the fractions that PL8TM holds change with the unknown temperature, and the
+!> mechanics with them. Such groups have a third plane of drivers: d(driver at the end)/d(temperature at the point at the end), by
+!> central differences of what the law of heat releases; error eps**(2/3). Where temperatures stand on all nodes, PL8LS takes
+!> them projected (point_temperatures) and PL8TM as they are: the derivative goes along the projected ones.
+module driver_slopes
+  use fields, only: find_field
+  use kinds, only: wp
+  use law_api, only: driver_temperature, law_t
+  use point_drivers, only: drivers_t, field_at_points, from_state, with_slopes
+  use point_temperatures, only: temperature_field
+  use scene, only: host_of, scene_t
+  use solution, only: solution_t
+  use state_variables, only: total_components
+  implicit none
+  private
+  public :: fill_slopes
+
+contains
+
+  !> The third plane of a group's drivers.
+  subroutine fill_slopes(scene, laws, solution, now, dt, g, drivers)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: now(:, :)    !! (nnode, nfield) trial values of the nodal fields of one component [unit of each field]
+    real(wp), intent(in) :: dt           !! length of the step [time]
+    integer, intent(in) :: g             !! number of the group
+    type(drivers_t), intent(inout) :: drivers(:)   !! (ngroup)
+    real(wp), allocatable :: high(:), low(:)   ! state of a point at a higher and at a lower temperature
+    integer :: k, body, other, e, f, n
+
+    if (.not. with_slopes(drivers(g))) return
+    drivers(g)%value(:, 3, :, :) = 0
+    if (.not. dt > 0) return   ! on a new mesh nothing forms
+    body = host_of(scene, g)
+    f = find_field(scene%fields, temperature_field)
+    other = 0
+    do k = 1, size(drivers(g)%source)
+      if (drivers(g)%source(k)%kind == from_state) other = drivers(g)%source(k)%group(body)
+    end do
+    n = total_components(laws(scene%materials(scene%groups(other)%material)%law_id)%history)
+    allocate (high(n), low(n))
+    do e = 1, size(drivers(g)%value, 4)
+      call slopes_of_element(field_at_points(scene%fields(f), solution%fields(f)%value(1, :), scene%groups(other), e), &
+                             field_at_points(scene%fields(f), now(:, f), scene%groups(other), e))
+    end do
+
+  contains
+
+    !> At the points of an element, from the temperatures there at both ends of the step.
+    subroutine slopes_of_element(before, after)
+      real(wp), intent(in) :: before(:), after(:)
+      real(wp) :: given(size(drivers(other)%value, 1), 2), change, heat, slope
+      integer :: p, row
+
+      associate (material => scene%materials(scene%groups(other)%material), committed => solution%groups(other)%committed)
+        do p = 1, size(before)
+          given = drivers(other)%value(:, :2, p, e)
+          change = epsilon(1.0_wp)**(1.0_wp/3)*max(abs(before(p)), abs(after(p)))
+          if (.not. change > 0) change = epsilon(1.0_wp)**(1.0_wp/3)
+          given(driver_temperature, :) = [before(p), after(p) + change]
+          call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), heat, slope, high)
+          given(driver_temperature, 2) = after(p) - change
+          call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), heat, slope, low)
+          do k = 1, size(drivers(g)%source)
+            if (drivers(g)%source(k)%kind /= from_state) cycle
+            row = drivers(g)%source(k)%row(body)
+            if (row <= n) drivers(g)%value(k, 3, p, e) = (high(row) - low(row))/(2*change)
+          end do
+        end do
+      end associate
+    end subroutine slopes_of_element
+
+  end subroutine fill_slopes
+
+end module driver_slopes
