@@ -1,4 +1,5 @@
 """`lagareport DIR`, `lagareport DIR DIR ...`, `lagareport DECK`, `lagareport FILE.met`: arguments -> page -> exit code."""
+import gc
 import os
 import sys
 from typing import TYPE_CHECKING, Dict, Sequence
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 
 EXIT_CODES = "Exit codes: 0 done, 2 no results or a damaged file, 5 the page cannot be written."
 MODULES = ("numpy", "h5py", "matplotlib")
+COLLECT_AFTER = 200_000     # new objects: figures have many that live as long as the page is made
 
 
 def main(arguments: Sequence[str], version: str) -> int:
@@ -23,6 +25,7 @@ def main(arguments: Sequence[str], version: str) -> int:
 
 def run_program(arguments: Sequence[str], version: str) -> int:
     """Read the arguments, make the page, print the short result."""
+    gc.set_threshold(COLLECT_AFTER)
     parser = Parser("lagareport", description="The results of a run as one self-contained HTML page with pictures.",
                     epilog=EXIT_CODES)
     parser.add_argument("folders", metavar="DIR", nargs="+", help="folder of the results: what `lagamine DECK --out DIR` wrote; two or more "
@@ -62,8 +65,10 @@ def run_program(arguments: Sequence[str], version: str) -> int:
         # Only now: matplotlib takes its time, and what is refused is refused at once.
         from .album import make_pictures
         from .page import page
+        from .side_by_side import draw_side_by_side
         profiles = take_profiles(run, options)
         pictures = make_pictures(run, options.field, options.mirror) + picture_of(run, options, profiles)
+        draw_side_by_side(pictures)
         write(target, page(run, pictures, version).encode("utf-8"))
         tables = write_profiles(os.path.dirname(target), profiles)
         if options.png:

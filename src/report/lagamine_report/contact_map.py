@@ -55,6 +55,6 @@ def pressure_picture(view: SceneView) -> Optional[Picture]:
         drawn = LineCollection(bars * np.array([sign, 1]), array=values[pressed], cmap=POSITIVE, linewidths=2.0, zorder=5, capstyle="butt")
         drawn.set_clim(scale.levels[0], scale.levels[-1])
         drawn.levels = scale.levels
-        panel.add_collection(drawn)
+        panel.add_collection(drawn, autolim=False)
     colour_bar(fig, drawn, panel, "contact pressure [stress]")
     return Picture("pressure", f"{when(run, step)}; largest {brief(float(values.max()))}; recovered from the stresses in the body; bars stand on the points of contact, towards the inside of the part", fig)

@@ -43,7 +43,7 @@ def png_bytes(image: Image.Image, **options) -> bytes:
 
 def in_few_colours(image: Image.Image) -> bytes:
     """The same picture as a file with a table of 256 colours."""
-    return png_bytes(image.quantize(256, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE), optimize=True)
+    return png_bytes(image.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE))
 
 
 @dataclass
@@ -55,6 +55,7 @@ class Picture:
     figure: Figure
     vector: bool = False
     heading: str = ""
+    drawn: str = ""     # as it stands in the page, once that has been made
 
     def image(self, dpi: int) -> Image.Image:
         """The picture in pixels without its empty margins. The figure is drawn once, with room around it for titles that are wider than their
@@ -83,16 +84,21 @@ class Picture:
 
     def data_uri(self) -> str:
         """The picture as it stands in the page; of pixels in 256 colours, a third of the size."""
-        if not self.vector:
-            return "data:image/png;base64," + base64.b64encode(in_few_colours(self.image(PAGE_DPI))).decode()
-        return "data:image/svg+xml;base64," + base64.b64encode(self.svg()).decode()
+        if not self.drawn:
+            kind, data = ("svg+xml", self.svg()) if self.vector else ("png", in_few_colours(self.image(PAGE_DPI)))
+            self.drawn = f"data:image/{kind};base64," + base64.b64encode(data).decode()
+        return self.drawn
 
     def svg(self) -> bytes:
-        """The picture as a file of its own."""
+        """The picture as a file of its own. It is laid out and its box found here: savefig would draw it once more for either."""
         buffer = io.BytesIO()
         engine = self.figure.get_layout_engine()
-        self.figure.savefig(buffer, format="svg", bbox_inches="tight", pad_inches=MARGIN, metadata={"Date": None})
-        self.figure.set_layout_engine(engine)       # savefig leaves none
+        if engine is not None:
+            engine.execute(self.figure)
+            self.figure.set_layout_engine("none")
+        box = self.figure.get_tightbbox(FigureCanvasAgg(self.figure).get_renderer()).padded(MARGIN)
+        self.figure.savefig(buffer, format="svg", bbox_inches=box, metadata={"Date": None})
+        self.figure.set_layout_engine(engine)
         return rounded(numbered_clips(buffer.getvalue()))
 
     def close(self) -> None:

@@ -79,7 +79,7 @@ def shade(axes, view: SceneView, curves: np.ndarray, values: np.ndarray, norm: L
     for sign in (1, -1) if view.mirror else (1,):
         drawn = PolyCollection(curves * np.array([sign, 1]), array=values, cmap=POSITIVE, norm=norm, edgecolors="white",
                                linewidths=0.3, zorder=1.5)
-        axes.add_collection(drawn)
+        axes.add_collection(drawn, autolim=False)
     return drawn
 
 

@@ -74,7 +74,7 @@ class SceneView:
             curve = die_curve(pieces, pilots[name])
             for sign in (1, -1) if self.mirror else (1,):
                 flip = np.array([sign, 1])
-                axes.fill(*(die_body(curve, thickness) * flip).T, color=DIE_FILL, lw=0, zorder=0.8)
+                axes.add_collection(PolyCollection([die_body(curve, thickness) * flip], facecolors=DIE_FILL, edgecolors="none", zorder=0.8), autolim=False)
                 axes.plot(*(curve * flip).T, color=DIE_LINE, lw=1.4, zorder=4, solid_joinstyle="round")
 
     def outline(self, axes: Axes, generation: Generation, x: np.ndarray, **look) -> None:
@@ -91,14 +91,14 @@ class SceneView:
                 curved = element_curves(x, group.connectivity)
                 for sign in (1, -1) if self.mirror else (1,):
                     axes.add_collection(PolyCollection(curved * np.array([sign, 1]), facecolors=BODIES[k % len(BODIES)],
-                                                       edgecolors="none", zorder=1))
+                                                       edgecolors="none", zorder=1), autolim=False)
         width = 0.7 if len(generation.topology) < 1500 else 0.4 if len(generation.topology) < 6000 else 0.2
         self._lines(axes, side_curves(x, self.sides(generation)[0]),
                     **{"colors": "#46627c", "linewidths": width, "zorder": 2, **look})
 
     def _lines(self, axes: Axes, curves: np.ndarray, **look) -> None:
         for sign in (1, -1) if self.mirror else (1,):
-            axes.add_collection(LineCollection(curves * np.array([sign, 1]), capstyle="round", **look))
+            axes.add_collection(LineCollection(curves * np.array([sign, 1]), capstyle="round", **look), autolim=False)
 
     def field(self, axes: Axes, step: Step, values: np.ndarray, scale: "Scale", edges: bool = True):
         """Filled contours of nodal values on the deformed shape; returns what a colour bar wants."""
