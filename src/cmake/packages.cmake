@@ -3,7 +3,15 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME lagamine)
 set(CPACK_PACKAGE_VENDOR "the LAGAMINE 2D developers")
-set(CPACK_PACKAGE_CONTACT "the LAGAMINE 2D developers <lagamine@example.org>" CACHE STRING "Name and address of who makes the packages")
+# Debian's Maintainer is who makes the package and must have an address: that of DEBFULLNAME and DEBEMAIL, as Debian's own tools take it. The
+# project has none: where nobody is named, the address is one that cannot exist (RFC 2606) and is seen to be so.
+if(DEFINED ENV{DEBEMAIL})
+  set(packager "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
+  string(STRIP "${packager}" packager)
+else()
+  set(packager "LAGAMINE 2D developers <no-address@lagamine.invalid>")
+endif()
+set(CPACK_PACKAGE_CONTACT "${packager}" CACHE STRING "Name and address of who makes the packages")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)

@@ -3,6 +3,7 @@
 
 usage: site.py --root PROJECT --programs BIN --out DIR [--pages-only]
 DIR/pages are the texts, made of those of the project; DIR/html the site. Any link that leads nowhere, and any warning of MkDocs, is an error.
+Pages of the code are in it where FORD is installed (`pip install FORD==6.2.5`).
 """
 import argparse
 import glob
@@ -16,6 +17,7 @@ from html.parser import HTMLParser
 from urllib.parse import unquote, urlparse
 
 sys.dont_write_bytecode = True
+from code_pages import code_pages, ford  # noqa: E402
 from help_text import ask  # noqa: E402
 from site_text import Links, Page, finished, split_manual  # noqa: E402
 
@@ -24,6 +26,7 @@ TEXTS = [("README.md", "index.md", "LAGAMINE 2D"), ("decks/SCOPE.md", "scope.md"
          ("decks/RESULTS.md", "results.md", "Files of results, Python"), ("src/README.md", "inside/library.md", "The library"),
          ("remdata/README.md", "inside/remdata.md", "The remesher"), ("tests/README.md", "inside/tests.md", "Tests"),
          ("tests/bench/README.md", "inside/measured.md", "Measured"), (".github/CONTRIBUTING.md", "inside/contributing.md", "Contributing")]
+CODE = "code/index.html"
 PROGRAMS = ("lagamine", "lagacycle", "remdata", "lagareport", "lagaimport", "lagastudy")
 
 
@@ -51,7 +54,7 @@ def block_page(name, title, text):
     return Page(name, name, title, [f"# {title}", "", "```", *text.splitlines(), "```"])
 
 
-def pages_of(root, programs):
+def pages_of(root, programs, with_code):
     """All pages, by sections."""
     texts = {source: Page(name, source, title, read(root, source).splitlines()) for source, name, title in TEXTS}
     manual = split_manual("decks/README.md", read(root, "decks/README.md"))
@@ -63,9 +66,11 @@ def pages_of(root, programs):
     called = [block_page(f"programs/{one}.md", one, ask(os.path.join(programs, one), "--help")) for one in PROGRAMS
               if os.path.exists(os.path.join(programs, one))]
     order = [source for source, _, _ in TEXTS]
+    code = [Page("inside/code.md", "CODE", "The code", ["# The code", "", f'<a href="../{CODE}">Modules, types and procedures</a>, from the comments in the source.'])] \
+        if with_code else []
     return {"": [texts[source] for source in order[:5]], "Decks": deck_pages(root),
             "Manual": [page for page in manual if page.name.startswith("manual/")], "Cards": [page for page in manual if page.name.startswith("cards/")],
-            "Laws": laws, "Programs": [*called, texts["decks/RESULTS.md"]], "Inside": [texts[source] for source in order[6:]]}
+            "Laws": laws, "Programs": [*called, texts["decks/RESULTS.md"]], "Inside": [*(texts[source] for source in order[6:]), *code]}
 
 
 def write_pages(root, sections, out):
@@ -127,7 +132,7 @@ def dead_links(folder):
                 target = os.path.join(target, "index.html")
             if not os.path.isfile(target):
                 yield f"{os.path.relpath(path, folder)}: {aim}: no such file"
-            elif url.fragment and target in parsed and unquote(url.fragment) not in parsed[target].anchors:
+            elif url.fragment and target in parsed and not {url.fragment, unquote(url.fragment)} & parsed[target].anchors:
                 yield f"{os.path.relpath(path, folder)}: {aim}: no such place"
 
 
@@ -140,7 +145,11 @@ def main():
     out = os.path.abspath(options.out)
     for part in ("pages", "html"):
         shutil.rmtree(os.path.join(out, part), ignore_errors=True)
-    sections = pages_of(options.root, options.programs)
+    with_code = None if options.pages_only else ford()
+    if with_code and not code_pages(options.root, os.path.join(out, "pages", os.path.dirname(CODE)), with_code):
+        print("FORD has not made the pages of the code", file=sys.stderr)
+        return 1
+    sections = pages_of(options.root, options.programs, with_code)
     lost = write_pages(options.root, sections, os.path.join(out, "pages"))
     with open(os.path.join(out, "mkdocs.yml"), "w", encoding="utf-8") as file:
         file.write(configuration(sections, out))
@@ -155,7 +164,8 @@ def main():
     for line in lost:
         print(line, file=sys.stderr)
     if not lost:
-        print(f"{count} pages in {os.path.join(out, 'pages' if options.pages_only else 'html')}")
+        code = "" if options.pages_only else ", those of the code beside them" if with_code else "; none of the code: FORD 6.2 is not installed"
+        print(f"{count} pages in {os.path.join(out, 'pages' if options.pages_only else 'html')}{code}")
     return 1 if lost else 0
 
 

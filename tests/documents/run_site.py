@@ -14,6 +14,7 @@ SOURCE = os.path.abspath(os.environ.get("LAGAMINE_SOURCE") or os.path.dirname(os
 BIN = os.path.abspath(os.environ.get("LAGAMINE_BIN") or os.path.join(SOURCE, "build", "bin"))
 sys.path.insert(0, os.path.join(SOURCE, "src", "documents"))
 sys.dont_write_bytecode = True
+from code_pages import ford, offline  # noqa: E402
 from site_text import Links, Page, finished, split_manual  # noqa: E402
 
 
@@ -39,6 +40,29 @@ class Texts(unittest.TestCase):
         text = finished(page("a.md", "a.md", "words\n- item\n  more\n- item\n\nwords\n| a |\n|---|\n| `x\\|y` |\n```lag skeleton\n- no item\n[no](link)\n```"),
                         Links([]), SOURCE)
         self.assertEqual("words\n\n- item\n  more\n- item\n\nwords\n\n| a |\n|---|\n| `x|y` |\n\n```lag\n- no item\n[no](link)\n```\n", text)
+
+
+class Code(unittest.TestCase):
+    def test_pages_of_ford_fetch_nothing(self):
+        """What FORD 6.2 writes: scripts from a network, for old browsers and not; a link in a link; places that its pages of interfaces have not."""
+        text = """<!--[if lt IE 9]><script src="https://a.b/old.js"></script><![endif]--><script src="./js/own.js"></script>
+<script type="text/x" async src='https://c.d/x.js?y=Z'></script><a href='<a href="http://e.f/iso">iso</a>'>iso</a>
+<a href="../interface/exp.html#moduleprocedure-exponential">e</a><a href="#variable-a">a</a>"""
+        self.assertEqual("""<script src="./js/own.js"></script>
+<a href="http://e.f/iso">iso</a>
+<a href="../interface/exp.html">e</a><a href="#variable-a">a</a>""", offline(text).replace("\n\n", "\n"))
+
+    def test_other_versions_are_not_asked(self):
+        folder = tempfile.mkdtemp(prefix="lagamine-ford-")
+        self.addCleanup(shutil.rmtree, folder, True)
+        program, path = os.path.join(folder, "ford"), os.environ["PATH"]
+        self.addCleanup(os.environ.update, PATH=path)
+        os.environ["PATH"] = folder + os.pathsep + path
+        for version, found in (("6.2.5", program), ("7.0.13", None)):
+            with open(program, "w", encoding="ascii") as file:
+                file.write(f"#!/bin/sh\necho 'FORD, version {version}'\n")
+            os.chmod(program, 0o755)
+            self.assertEqual(found, ford())
 
 
 class Gallery(unittest.TestCase):
