@@ -27,6 +27,7 @@ FIELDS = ("plastic_strain", "martensite", "bainite", "temperature", "mises")    
 CHOSEN = {"residual_stress": "stress_zz", "cooling_gps": "stress_zz", "tempering": "stress_yy", "quench_bar_trip": "stress_zz", "hot_cylinder": "stress_zz"}
 # What is to be seen is in a corner: the share of the whole that is shown, about the largest value.
 NEAR = {"punch": 0.16, "punch_die": 0.16, "hertz": 0.16, "plate_with_hole": 0.35}
+FAR = 0.35          # a part smaller than this share of the way it goes has a window of its own at each end
 MOST_BYTES = 100_000
 
 
@@ -53,22 +54,31 @@ def near(box, place, share):
     return tuple(window)
 
 
+def windows(view, steps):
+    """The same window for both instants, or one each where the part would be small in it."""
+    both, each = view.box(steps), [view.box([step]) for step in steps]
+
+    def extent(box):
+        return max(box[1] - box[0], box[3] - box[2])
+    return each if max(map(extent, each)) < FAR * extent(both) else [both, both]
+
+
 def draw(folder, name):
     """The picture of a run."""
     run = Run(folder)
     view = SceneView(run)
     first, last = run.steps[0], run.steps[-1]
     field, values, span = field_of(run, name)
-    box = view.box([first, last])
+    boxes = windows(view, [first, last])
     if name in NEAR:
-        box = near(box, run.coordinates(last)[values.argmax()], NEAR[name])
-    width, height = box[1] - box[0], box[3] - box[2]
+        boxes = [near(boxes[0], run.coordinates(last)[values.argmax()], NEAR[name])] * 2
+    width, height = (max(box[k + 1] - box[k] for box in boxes) for k in (0, 2))
     beside = width < 2.0 * height
     inches = panel_size(width, height, 3.4 if beside else 7.0, 3.6 if beside else 2.6)
     rows, columns = (1, 2) if beside else (2, 1)
     fig, axes = figure(rows, columns, (columns * (inches[0] + 0.3) + 0.9, rows * (inches[1] + 0.35)))
     start, end = axes.flat
-    for panel, step in ((start, first), (end, last)):
+    for panel, step, box in zip((start, end), (first, last), boxes):
         view.frame(panel, box, bare=True)
         view.dies(panel, step, box)
     view.mesh(start, first.generation, run.coordinates(first))

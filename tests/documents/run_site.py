@@ -82,6 +82,20 @@ class Gallery(unittest.TestCase):
         for path in shown:
             self.assertIn(re.sub(r"picture_(.*)[.]png$", r"\1.lag", path), decks, "a picture of no deck")
 
+    def test_figures_of_the_cards(self):
+        """Each is drawn from the manual's example, and shown by the manual."""
+        folder = tempfile.mkdtemp(prefix="lagamine-figures-")
+        self.addCleanup(shutil.rmtree, folder, True)
+        subprocess.run([sys.executable, os.path.join(SOURCE, "src", "documents", "card_figures.py"), "--programs", BIN, "--out", folder], check=True,
+                       stdout=subprocess.DEVNULL)
+        with open(os.path.join(SOURCE, "decks", "README.md"), encoding="utf-8") as file:
+            shown = set(re.findall(r"\]\(figures/([^)]*)\)", file.read()))
+        self.assertEqual(shown, set(os.listdir(folder)))
+        self.assertEqual(shown, set(os.listdir(os.path.join(SOURCE, "decks", "figures"))))
+        for name in shown:
+            for place in (folder, os.path.join(SOURCE, "decks", "figures")):
+                self.assertTrue(2000 < os.path.getsize(os.path.join(place, name)) < 100_000, name)
+
     def test_the_command_draws(self):
         """A run and its picture: of a deck with a field, and of one whose fields are the same everywhere."""
         import gallery

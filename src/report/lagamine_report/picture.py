@@ -42,8 +42,10 @@ def png_bytes(image: Image.Image, **options) -> bytes:
 
 
 def in_few_colours(image: Image.Image) -> bytes:
-    """The same picture as a file with a table of 256 colours."""
-    return png_bytes(image.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE))
+    """The same picture as a file with a table of 256 colours. White stays white: the table's means are rounded down."""
+    few = image.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    few.putpalette([255 if level == 254 else level for level in few.getpalette()])
+    return png_bytes(few)
 
 
 @dataclass
