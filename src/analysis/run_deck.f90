@@ -3,6 +3,7 @@ module run_deck
   use atomic, only: refuse_place
   use blas, only: blas_buffer, blas_build, blas_core_name, keep_blas_to_one_thread
   use cards_operations, only: list_operations, operations_t, read_operation
+  use closing_table, only: close_run
   use contact_ends, only: contact_end_t
   use deck_reader, only: deck_t, read_deck
   use diagnostics, only: diagnostics_t
@@ -359,6 +360,7 @@ contains
     facts%threads = run%equations%team%most
     facts%blas = blas_words(blas_build(), blas_core_name())
     facts%wall = wall_seconds() - started
+    call close_run(scene, run%equations, solution, facts%closing)
     call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
     call list_lines(run%listing, lines)
     call close_listing(run%listing)

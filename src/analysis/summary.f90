@@ -1,5 +1,6 @@
 !> `summary.json` for scripts, and the table a run ends with.
 module summary
+  use closing_table, only: add_closing, closing_lines, closing_t
   use effects, only: effect_t
   use elem_api, only: totals_t
   use energy_books, only: energy_imbalance, imbalance_advice, missing_energy, spring_energy
@@ -37,6 +38,8 @@ module summary
     type(string_t), allocatable :: warnings(:)
     integer :: exit_code = 0, threads = 1
     real(wp) :: wall = 0.0_wp
+    !> Errors that are estimated, and what half of them costs.
+    type(closing_t) :: closing
   end type run_facts_t
 
 contains
@@ -102,6 +105,7 @@ contains
     call add_steels(json, scene, equations)
     call add_effects(json, scene, equations)
     call add_seconds(json, equations)
+    call add_closing(json, facts%closing)
     if (scene%remesh%estimate) call add_estimate(json, scene, solution)
     if (allocated(balance)) call add_restart(json, scene, solution, balance)
     call json%begin_object('checks')
@@ -363,6 +367,7 @@ contains
     type(solution_t), intent(in) :: solution
     type(totals_t), intent(in) :: totals
     type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
+    type(string_t), allocatable :: table(:)
     integer :: t
 
     allocate (lines(0))
@@ -412,10 +417,8 @@ contains
     call put('  '//to_text(sum(equations%solves%neq))//' equations, '//to_text(solid_elements(scene))//' elements, ' &
              //to_text(facts%threads)//' threads, '//to_text(facts%wall, 4)//' s on the wall, ' &
              //to_text(cpu_seconds(), 4)//' s of processor, '//to_text(peak_memory_mb(), 4)//' MB')
-    if (scene%remesh%estimate) then
-      call put('  estimated error: stress '//to_text(100*solution%estimate%stress, 3)//' %, strain ' &
-               //to_text(100*solution%estimate%strain, 3)//' %')
-    end if
+    call closing_lines(facts%closing, table)
+    lines = [lines, table]
     call put('  seconds by effect and task:')
     do t = 1, equations%timers%size()
       call put('    '//equations%timers%name(t)//'  '//to_text(equations%timers%seconds(t), 4)//' s in ' &

@@ -19,7 +19,7 @@ module estimator
   use solution, only: solution_t
   implicit none
   private
-  public :: estimator_t, set_up_estimator, estimate_errors
+  public :: estimator_t, set_up_estimator, estimate_errors, stress_error_now
 
   !> Elements of one material.
   type :: part_t
@@ -125,7 +125,45 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
     real(wp), dimension(2, size(solution%estimate%stress_of)) :: missing, whole
-    real(wp) :: volume(size(missing, 2)), x(2, size(scene%mesh%coordinates, 2)), section(3), stiffness
+    real(wp) :: volume(size(missing, 2)), stiffness
+
+    call gather_squares(self, scene, solution, missing, whole, volume, stiffness)
+    associate (estimate => solution%estimate)
+      call relate(missing(1, :), whole(1, :), volume, sum(whole(1, :)) > at_rest**2*stiffness, estimate%stress, estimate%stress_of)
+      estimate%strain_sums = estimate%strain_sums + sqrt(reshape([missing(2, :)/volume, whole(2, :)/volume], &
+                                                                 [2, size(volume)], order=[2, 1]))
+      missing(2, :) = volume*estimate%strain_sums(1, :)**2
+      whole(2, :) = volume*estimate%strain_sums(2, :)**2
+      call relate(missing(2, :), whole(2, :), volume, sum(whole(2, :)) > at_rest**2*sum(volume), estimate%strain, &
+                  estimate%strain_of)
+    end associate
+  end subroutine estimate_errors
+
+  !> Error of the stress at an instant, where no step before it was followed.
+  pure subroutine stress_error_now(self, scene, solution, error)
+    type(estimator_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(out) :: error   !! share of the stress, in its norm
+    real(wp), allocatable :: missing(:, :), whole(:, :), volume(:), error_of(:)
+    real(wp) :: stiffness
+    integer :: n, k
+
+    n = sum([(size(self%parts(k)%place), k=1, size(self%parts))])
+    allocate (missing(2, n), whole(2, n), volume(n), error_of(n))
+    call gather_squares(self, scene, solution, missing, whole, volume, stiffness)
+    call relate(missing(1, :), whole(1, :), volume, sum(whole(1, :)) > at_rest**2*stiffness, error, error_of)
+  end subroutine stress_error_now
+
+  !> Squares of the errors (missing) of stress and strain increments and of these themselves (whole), and volumes, of all elements.
+  pure subroutine gather_squares(self, scene, solution, missing, whole, volume, stiffness)
+    type(estimator_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(out) :: missing(:, :), whole(:, :)   !! stress and strain of each element (2, nelem)
+    real(wp), intent(out) :: volume(:)                    !! (nelem) [volume]
+    real(wp), intent(out) :: stiffness                    !! sum of G V [energy], or of the largest stress squared
+    real(wp) :: x(2, size(scene%mesh%coordinates, 2)), section(3)
     integer :: k
 
     x = scene%mesh%coordinates
@@ -138,16 +176,7 @@ contains
     do k = 1, size(self%parts)
       call of_part(self, self%parts(k), scene, solution, x, section, missing, whole, volume, stiffness)
     end do
-    associate (estimate => solution%estimate)
-      call relate(missing(1, :), whole(1, :), volume, sum(whole(1, :)) > at_rest**2*stiffness, estimate%stress, estimate%stress_of)
-      estimate%strain_sums = estimate%strain_sums + sqrt(reshape([missing(2, :)/volume, whole(2, :)/volume], &
-                                                                 [2, size(volume)], order=[2, 1]))
-      missing(2, :) = volume*estimate%strain_sums(1, :)**2
-      whole(2, :) = volume*estimate%strain_sums(2, :)**2
-      call relate(missing(2, :), whole(2, :), volume, sum(whole(2, :)) > at_rest**2*sum(volume), estimate%strain, &
-                  estimate%strain_of)
-    end associate
-  end subroutine estimate_errors
+  end subroutine gather_squares
 
   !> The error of the whole, and that of elements as densities over the density of the whole; zero at rest.
   pure subroutine relate(missing, whole, volume, moved, error, error_of)

@@ -3,6 +3,7 @@ import math
 import os
 from typing import Dict, Iterable, List, Sequence, Tuple
 
+from .accuracy import accuracy_section
 from .cooling import cooling_table
 from .markup import Sections, document, escape, figure, joined, table
 from .picture import Picture
@@ -39,7 +40,7 @@ def page(run: Run, pictures: Sequence[Picture], version: str) -> str:
     judged = checks(run)
     body = [_with_table(run, section) for section in _sections(pictures)]
     body[1:1] = remesh_section(run, pictures)       # next to the shape, which is always there
-    body += _checks(judged) + _effects(run) + _notes(run) + _origin(run)
+    body += accuracy_section(run) + _checks(judged) + _effects(run) + _notes(run) + _origin(run)
     links = "".join(f'<a href="#{anchor}">{escape(heading)}</a>' for anchor, heading, _ in body)
     sections = joined(body)
     header = f"""<h1>{escape(run.title)}</h1>

@@ -1,0 +1,227 @@
+!> The table a run ends with: the errors that are estimated of it, in space, in time and at contact, and what half of each
+!> would cost.
+!>
+!> The forecast is made of the seconds of this run by tasks, and of how tasks and errors go with the mesh and the steps:
+!> - Space: the error of the stress of elements of 8 nodes is of order 2 in their size (O.C. Zienkiewicz, J.Z. Zhu, Int. J.
+!>   Num. Meth. Engng 33 (1992) 1331-1364; tests/estimate), so twice as many elements halve it. Loops over elements take twice the
+!>   time then, those over sides of contact sqrt(2), a factorisation 2^(3/2) (nested dissection: A. George, SIAM J. Num. Anal. 10
+!>   (1973) 345-363). Where a corner is singular the order is less and uniform elements cost more.
+!> - Time: errors that come of the path within steps are of order 1 in sum; those of heat of order 1, or 2 (TR-BDF2, and
+!>   theta = 1/2). Seconds go with the number of steps, at the same iterations a step.
+module closing_table
+  use equations, only: equations_t
+  use estimator, only: estimator_t, set_up_estimator, stress_error_now
+  use fields, only: displacement_field
+  use heat_books, only: has_heat
+  use json_writer, only: json_t
+  use kinds, only: wp
+  use path_record, only: motion_error, stress_error
+  use scene, only: is_solid, scene_t
+  use solution, only: solution_t
+  use strategy, only: scheme_tr_bdf2
+  use text, only: string_t, to_text
+  use timers, only: ledger_t
+  implicit none
+  private
+  public :: closing_t, add_closing, close_run, closing_lines, cost_of_elements
+
+  !> Shares, unless a unit is given; a cost is the time over that of this run.
+  type :: closing_t
+    !> Errors of the stress and of the strain by patch recovery; the latter is a sum over the steps, where ESTIM or REMSH asks.
+    logical :: space = .false., strain_known = .false.
+    real(wp) :: stress = 0.0_wp, strain = 0.0_wp, space_cost = 1.0_wp
+    !> A law flows. Errors of the path within steps, where estimated (NORMS): of the motion in sum, of the stress at the end.
+    logical :: flows = .false., path = .false.
+    real(wp) :: motion = 0.0_wp, path_stress = 0.0_wp, path_cost = 2.0_wp
+    !> There is heat. Its errors in time, where they are estimated (THETA): sum over the steps [temperature], and how many have one.
+    logical :: warm = .false.
+    integer :: heat_steps = 0
+    real(wp) :: heat = 0.0_wp, heat_cost = 2.0_wp
+    !> Depth of the part in its dies, at points of contact and between them [length], over what is allowed (0: nothing states that).
+    logical :: contact = .false.
+    real(wp) :: depth = 0.0_wp, depth_share = 0.0_wp
+  end type closing_t
+
+contains
+
+  !> What is known at the end of a run. The error of the stress is estimated now where the deck did not ask for it.
+  subroutine close_run(scene, equations, solution, closing)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    type(closing_t), intent(out) :: closing
+    integer :: k
+
+    call close_space(scene, equations, solution, closing)
+    closing%flows = any([(scene%effects(k)%on .and. scene%effects(k)%name == 'plasticity', k=1, size(scene%effects))])
+    closing%path = solution%path%estimated > 0
+    closing%motion = motion_error(solution%path)
+    closing%path_stress = stress_error(solution%path, solution%time)
+    closing%warm = has_heat(scene)
+    closing%heat_steps = solution%heat%estimated
+    closing%heat = solution%heat%error_sum
+    closing%heat_cost = 2.0_wp**(1.0_wp/order_in_time(scene))
+    closing%contact = size(scene%dies) > 0 .and. closing%space
+    closing%depth = max(solution%worst_penetration, solution%worst_sample)
+    closing%depth_share = max(solution%worst_penetration_ratio, solution%worst_sample_ratio)
+  end subroutine close_run
+
+  !> Error of the stress, and of the strain where the steps were followed.
+  subroutine close_space(scene, equations, solution, closing)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    type(closing_t), intent(inout) :: closing
+    type(estimator_t) :: estimator
+    integer :: g
+
+    if (.not. scene%fields(displacement_field)%declared) return
+    if (.not. any([(is_solid(scene%groups(g)), g=1, size(scene%groups))])) return
+    closing%space = .true.
+    closing%strain_known = scene%remesh%estimate
+    closing%space_cost = cost_of_elements(equations%timers, 2.0_wp)
+    closing%stress = solution%estimate%stress
+    closing%strain = solution%estimate%strain
+    if (scene%remesh%estimate) return
+    call set_up_estimator(scene, equations%laws, estimator)
+    call stress_error_now(estimator, scene, solution, closing%stress)
+  end subroutine close_space
+
+  !> Order of the scheme of heat in the length of the step.
+  pure function order_in_time(scene) result(order)
+    type(scene_t), intent(in) :: scene
+    integer :: order
+
+    order = 1
+    if (scene%strategy%scheme == scheme_tr_bdf2 .or. abs(scene%strategy%theta - 0.5_wp) < epsilon(1.0_wp)) order = 2
+  end function order_in_time
+
+  !> Time over that of the run with so many times its elements, in as many steps and iterations; 1 where no seconds are known.
+  function cost_of_elements(timers, factor) result(cost)
+    type(ledger_t), intent(in) :: timers
+    real(wp), intent(in) :: factor
+    real(wp) :: cost
+    real(wp) :: seconds, exponent, now, later
+    integer :: t
+
+    now = 0
+    later = 0
+    do t = 1, timers%size()
+      seconds = timers%seconds(t)
+      exponent = 1
+      select case (timers%name(t))
+      case ('factorisation')
+        exponent = 1.5_wp
+      case ('contact')
+        exponent = 0.5_wp
+      end select
+      now = now + seconds
+      later = later + seconds*factor**exponent
+    end do
+    cost = 1
+    if (now > 0) cost = later/now
+  end function cost_of_elements
+
+  !> The table in the listing and on the screen.
+  subroutine closing_lines(closing, lines)
+    type(closing_t), intent(in) :: closing
+    type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
+    character(len=:), allocatable :: words
+
+    allocate (lines(0))
+    call put('  accuracy (estimates)                            half of it costs')
+    if (closing%space) then
+      words = 'stress '//percent(closing%stress)
+      if (closing%strain_known) words = words//', strain '//percent(closing%strain)
+      call row('in space', words, times(closing%space_cost)//' the time: twice the elements')
+    end if
+    if (closing%flows .and. .not. closing%path) call row('in time', 'path within steps: not estimated (NORMS)', '')
+    if (closing%path) &
+      call row('in time', 'path: motion '//percent(closing%motion)//', stress '//percent(closing%path_stress), &
+               times(closing%path_cost)//' the time: half the steps'' length')
+    if (closing%warm .and. closing%heat_steps == 0) call row('in time', 'heat: not estimated (TOL of THETA)', '')
+    if (closing%heat_steps > 0) &
+      call row('in time', 'heat: '//to_text(closing%heat, 3)//' [temperature] in sum', &
+               times(closing%heat_cost)//' the time: shorter steps')
+    if (closing%contact) then
+      words = 'depth '//to_text(closing%depth, 3)
+      if (closing%depth_share > 0) words = words//', '//to_text(closing%depth_share, 3)//' of the allowed'
+      call row('at contact', words, '')
+    end if
+    if (size(lines) == 1) deallocate (lines)
+    if (.not. allocated(lines)) allocate (lines(0))
+
+  contains
+
+    subroutine put(line)
+      character(len=*), intent(in) :: line
+
+      lines = [lines, string_t(line)]
+    end subroutine put
+
+    subroutine row(where, what, cost)
+      character(len=*), intent(in) :: where, what, cost
+      character(len=12) :: first
+      character(len=36) :: second
+
+      first = where
+      second = what
+      if (len(what) > len(second)) then
+        call put(trim('    '//first//what//'  '//cost))
+      else
+        call put(trim('    '//first//second//cost))
+      end if
+    end subroutine row
+
+  end subroutine closing_lines
+
+  pure function percent(share) result(words)
+    real(wp), intent(in) :: share
+    character(len=:), allocatable :: words
+
+    words = to_text(100*share, 3)//' %'
+  end function percent
+
+  pure function times(cost) result(words)
+    real(wp), intent(in) :: cost
+    character(len=:), allocatable :: words
+
+    words = to_text(cost, 2)//' times'
+  end function times
+
+  !> The same in summary.json.
+  subroutine add_closing(json, closing)
+    type(json_t), intent(inout) :: json
+    type(closing_t), intent(in) :: closing
+
+    call json%begin_object('accuracy')
+    if (closing%space) then
+      call json%begin_object('space')
+      call json%add('stress_pct', 100*closing%stress)
+      if (closing%strain_known) call json%add('strain_pct', 100*closing%strain)
+      call json%add('half_costs', closing%space_cost)
+      call json%end_object()
+    end if
+    if (closing%path) then
+      call json%begin_object('path')
+      call json%add('motion_pct', 100*closing%motion)
+      call json%add('stress_pct', 100*closing%path_stress)
+      call json%add('half_costs', closing%path_cost)
+      call json%end_object()
+    end if
+    if (closing%heat_steps > 0) then
+      call json%begin_object('heat')
+      call json%add('sum', closing%heat)
+      call json%add('half_costs', closing%heat_cost)
+      call json%end_object()
+    end if
+    if (closing%contact) then
+      call json%begin_object('contact')
+      call json%add('depth', closing%depth)
+      if (closing%depth_share > 0) call json%add('over_allowed', closing%depth_share)
+      call json%end_object()
+    end if
+    call json%end_object()
+  end subroutine add_closing
+
+end module closing_table

@@ -1,0 +1,32 @@
+"""What accuracy a run has had, by its own estimates, and what half of each error would cost."""
+from typing import Dict, List, Tuple
+
+from .markup import Sections, escape, table
+from .reader import Run
+from .tables import number
+from .words import brief
+
+# Of `accuracy` in summary.json: entry, where, numbers with their words.
+ROWS: List[Tuple[str, str, Dict[str, str]]] = [
+    ("space", "in space", {"stress_pct": "stress {} %", "strain_pct": "strain {} %"}),
+    ("path", "in time, by the path within steps", {"motion_pct": "motion {} % in sum", "stress_pct": "stress {} % at the end"}),
+    ("heat", "in time, of heat", {"sum": "{} [temperature], sum of all steps"}),
+    ("contact", "at contact", {"depth": "depth {} [length]", "over_allowed": "{} of the allowed"}),
+]
+HOW = {"space": "twice the elements", "path": "shorter steps", "heat": "shorter steps"}
+
+
+def accuracy_section(run: Run) -> Sections:
+    """The table; nothing of runs that have not ended or have no estimate."""
+    given = run.summary.get("accuracy")
+    if not isinstance(given, dict) or not given:
+        return []
+    rows = []
+    for name, where, words in ROWS:
+        entry = given.get(name)
+        if not isinstance(entry, dict):
+            continue
+        found = ", ".join(text.format(brief(number(entry[key]), 3)) for key, text in words.items() if key in entry)
+        cost = f"about {brief(number(entry['half_costs']), 2)} times the time ({HOW[name]})" if "half_costs" in entry else "\N{EN DASH}"
+        rows.append(("", (escape(where), escape(found), escape(cost))))
+    return [("accuracy", "Accuracy", table(("", "estimated error", "half of it costs"), rows))]

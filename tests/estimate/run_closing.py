@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""The table a run ends with: its estimates are those that cards ask for step by step, its forecast that of the run's own seconds."""
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SOURCE = os.path.abspath(os.environ.get("LAGAMINE_SOURCE") or os.path.dirname(os.path.dirname(HERE)))
+BIN = os.path.abspath(os.environ.get("LAGAMINE_BIN") or os.path.join(SOURCE, "build", "bin"))
+EXPONENTS = {"factorisation": 1.5, "contact": 0.5}
+NORMS = "NORMS  PATH 0.04 RATE 0.008\n"
+
+
+class Closing(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="lagamine-closing-")
+        cls.addClassCleanup(shutil.rmtree, cls.folder, True)
+
+    def run_deck(self, deck, *options, card=""):
+        """Summary, listing and history of a shipped deck, with a card more; the folder."""
+        name = os.path.basename(deck) + ("_card" if card else "") + "_".join(options).replace("=", "")
+        out = os.path.join(self.folder, "out", name)
+        folder = os.path.join(self.folder, os.path.dirname(deck))
+        shutil.copytree(os.path.join(SOURCE, "decks", os.path.dirname(deck)), folder, dirs_exist_ok=True)
+        own = os.path.join(folder, os.path.basename(deck) + ".lag")
+        with open(os.path.join(SOURCE, "decks", deck + ".lag"), encoding="utf-8") as file:
+            text = file.read()
+        with open(own, "w", encoding="utf-8") as file:
+            file.write(re.sub(r"^END", card + "END", text, flags=re.M))
+        subprocess.run([os.path.join(BIN, "lagamine"), own, "--out", out, "--quiet", *(word for one in options for word in ("-p", one))], check=True,
+                       env=dict(os.environ, OMP_NUM_THREADS="1"))
+        with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        with open(os.path.join(out, os.path.basename(deck) + ".log"), encoding="utf-8") as file:
+            listing = file.read()
+        with open(os.path.join(out, "history.csv"), encoding="utf-8") as file:
+            return summary, listing, file.read(), out
+
+    def test_space_as_with_estim(self):
+        """The last instant alone has the error of the stress that ESTIM finds step by step; nothing else changes."""
+        for deck in ("cook/cook", "press_fit/press_fit"):
+            plain, listing, history, _ = self.run_deck(deck)
+            asked, _, longer, _ = self.run_deck(deck, card="ESTIM\n")
+            self.assertEqual(asked["error"]["stress_pct"], plain["accuracy"]["space"]["stress_pct"])
+            self.assertGreater(plain["accuracy"]["space"]["stress_pct"], 0.1)
+            self.assertEqual(asked["error"]["strain_pct"], asked["accuracy"]["space"]["strain_pct"])
+            self.assertNotIn("strain_pct", plain["accuracy"]["space"])
+            self.assertNotIn("error", plain)
+            self.assertNotIn("error_stress", history)
+            self.assertIn("error_stress", longer)
+            self.assertEqual(0, plain["effects"]["error estimates"]["calls"])
+            self.assertIn("in space    stress ", listing)
+
+    def test_forecast_of_its_own_seconds(self):
+        summary = self.run_deck("press_fit/press_fit")[0]
+        seconds = summary["seconds"]
+        cost = sum(s * 2**EXPONENTS.get(name, 1.0) for name, s in seconds.items()) / sum(seconds.values())
+        self.assertAlmostEqual(cost, summary["accuracy"]["space"]["half_costs"], places=9)
+        depth = summary["accuracy"]["contact"]
+        self.assertEqual(max(summary["checks"]["max_penetration"], summary["checks"]["max_penetration_sampled"]), depth["depth"])
+        self.assertEqual(max(summary["checks"]["max_penetration_over_allowed"], summary["checks"]["max_penetration_sampled_over_allowed"]),
+                         depth["over_allowed"])
+
+    def test_a_quarter_of_the_error_with_four_times_the_elements(self):
+        """Smooth stress: the elliptic membrane, whose meshes are graded so that it falls a little faster."""
+        coarse, fine = (self.run_deck("elliptic_membrane/elliptic_membrane", f"n={4*k}", f"k={k}")[0] for k in (2, 4))
+        share = fine["accuracy"]["space"]["stress_pct"] / coarse["accuracy"]["space"]["stress_pct"]
+        self.assertEqual(4, fine["elements"] / coarse["elements"])
+        self.assertTrue(0.16 < share < 0.26, share)
+
+    def test_heat(self):
+        """Where its steps are not chosen by their errors nothing is known; otherwise the sum of them."""
+        summary, listing, _, _ = self.run_deck("heat_wall/heat_wall", "step=0.8")
+        self.assertEqual({}, summary["accuracy"])
+        self.assertIn("heat: not estimated (TOL of THETA)", listing)
+        summary, listing, _, out = self.run_deck("radiation/radiation_cooling")
+        heat = summary["accuracy"]["heat"]
+        self.assertEqual(summary["checks"]["error_in_time_sum"], heat["sum"])
+        self.assertGreater(heat["sum"], 0)
+        self.assertAlmostEqual(2**0.5, heat["half_costs"], places=12)
+        self.assertNotIn("space", summary["accuracy"])
+        page = os.path.join(out, "report.html")
+        subprocess.run([os.path.join(BIN, "lagareport"), out, "--quiet"], check=True)
+        with open(page, encoding="utf-8") as file:
+            self.assertIn("<td>about 1.4 times the time (shorter steps)</td>", file.read())
+
+    def test_path(self):
+        summary, listing, _, _ = self.run_deck("thick_cylinder/thick_cylinder_plastic", card=NORMS)
+        self.assertEqual(100 * summary["checks"]["path_error_motion"], summary["accuracy"]["path"]["motion_pct"])
+        self.assertEqual(100 * summary["checks"]["path_error_stress"], summary["accuracy"]["path"]["stress_pct"])
+        self.assertIn("path: motion ", listing)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
