@@ -56,7 +56,7 @@ contains
     closing%flows = any([(scene%effects(k)%on .and. scene%effects(k)%name == 'plasticity', k=1, size(scene%effects))])
     closing%path = solution%path%estimated > 0
     closing%motion = motion_error(solution%path)
-    closing%path_stress = stress_error(solution%path, solution%time)
+    closing%path_stress = stress_error(solution%path)
     closing%warm = has_heat(scene)
     closing%heat_steps = solution%heat%estimated
     closing%heat = solution%heat%error_sum
