@@ -2,7 +2,8 @@
 !>
 !> The proportion is kept while it changes no penetration much; otherwise contact has changed the
 !> motion, and only the onset of it is kept: the matrix there (loading, with the contacts of now)
-!> spreads the rest. A body that nothing holds starts at rest (resting_bodies). What prescribed unknowns still miss is left for the first iteration to spread.
+!> spreads the rest. A body that nothing holds starts at rest (resting_bodies). What prescribed unknowns
+!> still miss is left for the first iteration to spread.
 module predictor
   use dofs, only: dofs_t, prescribed_motion
   use elem_api, only: block_done, report_t
