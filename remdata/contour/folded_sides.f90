@@ -5,15 +5,14 @@
 !> (fold_closing). Nodes move against the sides' normals, along what their supports leave free; at the ground of a fold, where
 !> normals face each other, they stay.
 module folded_sides
-  use contact_point, only: at_penetration, at_piece, at_status
   use fields, only: displacement_field
   use kinds, only: wp
-  use law_api, only: contact_open
   use own_contact, only: faces_itself
   use quadrature, only: line_rule
   use scene, only: axisymmetric, scene_t
   use shape_functions, only: line3
   use solution, only: solution_t
+  use state_variables, only: find_variable
   use vectors, only: length_of
   implicit none
   private
@@ -83,18 +82,22 @@ contains
     real(wp) :: phi(3), dphi(3), point(2), beside
     logical :: goes_on
     type(fold_t) :: fold
-    integer :: e, p, k
+    integer :: e, p, k, status, penetration, piece
 
     call line_rule(scene%groups(g)%rule, xi, weight)
     goes_on = .false.
     beside = 0
     associate (group => scene%groups(g), nodes => scene%dies(scene%groups(g)%die)%nodes)
+      status = group%variables(find_variable(group%variables, 'contact_status'))%first
+      penetration = group%variables(find_variable(group%variables, 'penetration'))%first
+      piece = group%variables(find_variable(group%variables, 'die_piece'))%first
       allocate (depth(size(nodes, 2)), source=0.0_wp)
       allocate (touches(size(nodes, 2)), source=.false.)
       do k = 1, size(nodes, 2)
         e = findloc(group%connectivity(2, :), nodes(2, k), 1)
         if (e > 0) then
-          if (all(nint(state(at_status, :, e)) == contact_open)) e = 0
+          ! zero when open
+          if (all(nint(state(status, :, e)) == 0)) e = 0
         end if
         if (e == 0) then
           call end_fold()
@@ -104,9 +107,9 @@ contains
         do p = size(xi), 1, -1
           call line3(xi(p), phi, dphi)
           beside = beside + weight(p)*length_of(matmul(x(:, group%connectivity(:, e)), dphi))
-          if (nint(state(at_status, p, e)) == contact_open) cycle
-          call note(k, state(at_penetration, p, e))
-          call note(nint(state(at_piece, p, e)), state(at_penetration, p, e))
+          if (nint(state(status, p, e)) == 0) cycle
+          call note(k, state(penetration, p, e))
+          call note(nint(state(piece, p, e)), state(penetration, p, e))
           point = matmul(x(:, group%connectivity(:, e)), phi)
           if (.not. goes_on) fold = fold_t(from=point)
           if (goes_on) fold%length = fold%length + beside
