@@ -102,6 +102,7 @@ START  T 700.
 IMPOS  billet 2 T way 1.
 LIC    way
    0. 700.   0.15 450.   0.4 380.   0.55 900.   0.65 950.   0.75 60.   0.85 60.   0.95 500.   1. 550.
+NORMS  PATH 0. RATE 0.
 """ + TAIL + "".join(f"PROBE  {name} MEAN {of} billet/PL8TM\n" for name, of in (
     ("z", "martensite"), ("b", "bainite"), ("t", "tempered"), ("s", "incubation_bainite"), ("g", "growth_bainite"), ("grain", "grain_size"),
     ("hv", "hardness"), ("hj", "hollomon_jaffe"), ("a", "austenite")))
