@@ -75,10 +75,10 @@ contains
     type(cursor_t), intent(inout) :: cursor
     type(strategy_t), intent(inout) :: strategy
     type(string_t), allocatable :: names(:)
-    logical :: given(6)
+    logical :: given(7)
     integer :: k
 
-    call words_of('FORCE DISPL ITMAX STRAIN PATH RATE', names)
+    call words_of('FORCE DISPL ITMAX STRAIN PATH RATE TRAVEL', names)
     given = .false.
     do
       call cursor%name('the name of a norm', names, k)
@@ -102,6 +102,9 @@ contains
       case (6)
         call cursor%real('the largest error of the stress over the stress, or 0', strategy%rate_bound, &
                          lower=0.0_wp, upper=1.0_wp, strict_upper=.true.)
+      case (7)
+        call cursor%real('the longest way of a die in a step', strategy%travel_bound, lower=0.0_wp, strict_lower=.true., &
+                         unit='length')
       end select
       if (.not. cursor%more()) exit
     end do

@@ -30,6 +30,8 @@ module strategy
     real(wp) :: force_norm = 1.0e-6_wp, displacement_norm = 1.0e-5_wp
     !> Largest strain increment of a step at any point (norm of the logarithmic strain).
     real(wp) :: strain_bound = 0.4_wp
+    !> Longest way of a rigid die that is driven in a step [length]; 0: not bounded.
+    real(wp) :: travel_bound = 0.0_wp
     !> Largest errors that come of the path within steps: of the motion of a step over the motion, and of the stress over the
     !> stress; 0: not bounded, and where both are, none is estimated (path_error).
     real(wp) :: path_bound = 0.04_wp, rate_bound = 0.008_wp

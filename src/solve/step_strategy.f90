@@ -3,7 +3,9 @@
 !> of new meshes, and the end are hit exactly.
 module step_strategy
   use kinds, only: eps, wp
+  use loads, only: multiplier_at
   use scene, only: scene_t
+  use vectors, only: length_of
   use weld_sources, only: times_to_hit
   implicit none
   private
@@ -18,7 +20,7 @@ module step_strategy
 
 contains
 
-  !> Length of the next step: what was proposed, no more than the largest, and no further than the
+  !> Length of the next step: what was proposed, no more than the largest and than dies may go, and no further than the
   !> next time to hit. Two equal steps rather than a long and a tiny one before such a time.
   pure function choose_step(scene, time, proposed) result(dt)
     type(scene_t), intent(in) :: scene
@@ -28,12 +30,40 @@ contains
 
     dt = min(proposed, scene%strategy%largest_step)
     left = next_time(scene, time) - time
+    dt = min(dt, max(step_of_dies(scene, time, left), scene%strategy%least_step))
     if (left <= dt*(1 + reached)) then
       dt = left
     else if (left < 2*dt) then
       dt = 0.5_wp*left
     end if
   end function choose_step
+
+  !> Length of a step in which the driven die that goes fastest goes as far as it may. Dies go evenly to the next corner.
+  pure function step_of_dies(scene, time, left) result(dt)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: time, left   !! now, and to the next time to hit [time]
+    real(wp) :: dt
+    real(wp) :: speed(2), fastest
+    integer :: k, j
+
+    dt = huge(dt)
+    if (.not. scene%strategy%travel_bound > 0) return
+    fastest = 0
+    do k = 1, size(scene%die_motions)
+      speed = 0
+      do j = 1, size(scene%die_motions)
+        associate (motion => scene%die_motions(j))
+          if (motion%die /= scene%die_motions(k)%die .or. motion%component > 2) cycle
+          associate (multiplier => scene%multipliers(motion%multiplier))
+            speed(motion%component) = motion%amplitude*(multiplier_at(multiplier, time + left) - multiplier_at(multiplier, time)) &
+                                      /left
+          end associate
+        end associate
+      end do
+      fastest = max(fastest, length_of(speed))
+    end do
+    if (fastest > 0) dt = scene%strategy%travel_bound/fastest
+  end function step_of_dies
 
   !> The first time after `time` that must be hit.
   pure function next_time(scene, time) result(next)
