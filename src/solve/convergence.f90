@@ -44,8 +44,8 @@ contains
     end do
   end function pilots_in_equilibrium
 
-  !> The heat that a step would leave out of its books, the sum of the residual heat flows, is small: residuals within their norm may
-  !> add up to more, and with the same sign in every step. True where no temperature is solved for.
+  !> The heat that a step would leave out of its books, the sum of the residual heat flows, is small: residuals within their norm
+  !> may add up to more, and with the same sign in every step. True where no temperature is solved for.
   pure function heat_in_balance(equations, residual, dt) result(in_balance)
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: residual(:)   !! (ndof) [residual]
