@@ -158,8 +158,14 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(remesh_t) :: remesh
 
-    call mesh_for_operation(scene, step, remesh)
-    call read_operation(deck, operations, scene%operation + 1, next, diagnostics, remesh)
+    if (scene%generation == scene%operation) then
+      ! no mesh but the deck's own so far
+      call read_operation(deck, operations, scene%operation + 1, next, diagnostics)
+      next%generation = scene%generation + 1
+    else
+      call mesh_for_operation(scene, step, remesh)
+      call read_operation(deck, operations, scene%operation + 1, next, diagnostics, remesh)
+    end if
     call diagnostics%error(error)
   end subroutine read_next_operation
 
@@ -233,7 +239,7 @@ contains
     type(remesh_t), allocatable :: remesh
     type(error_t), allocatable :: unfit
     logical :: sound
-    integer :: operation
+    integer :: operation, generation
 
     call read_deck(options%deck, options%overrides, deck, diagnostics)
     sound = diagnostics%count() == 0
@@ -245,11 +251,19 @@ contains
     call list_operations(deck, operations, diagnostics)
     operation = 1
     if (operations%count > 0) call read_all(deck, operations, diagnostics, scene)
-    if (allocated(remesh)) operation = max(remesh%operation, 1)
+    generation = 1
+    if (allocated(remesh)) then
+      operation = max(remesh%operation, 1)
+      generation = remesh%generation
+      ! the deck's own mesh
+      if (generation == operation) deallocate (remesh)
+    end if
     ! A deck that could not be opened has no other mistakes.
     if (operations%count > 0) then
-      if (allocated(remesh) .and. diagnostics%count() == 0 .and. operation <= operations%count) &
+      if (generation > 1 .and. diagnostics%count() == 0 .and. operation <= operations%count) then
         call read_operation(deck, operations, operation, scene, diagnostics, remesh)
+        if (.not. allocated(remesh)) scene%generation = generation
+      end if
     else if (sound .or. size(deck%cards) > 0) then
       call read_operation(deck, operations, operation, scene, diagnostics, remesh)
     end if
@@ -286,7 +300,7 @@ contains
     end do
   end subroutine read_all
 
-  !> The mesh of a checkpoint, which must come from the same deck; not allocated when it is the deck's own.
+  !> The mesh of a checkpoint, which must come from the same deck: of the deck's own only its generation and operation.
   subroutine read_mesh_of(checkpoint, text, remesh, error)
     type(member_reader_t), intent(inout) :: checkpoint
     character(len=*), intent(in) :: text
@@ -303,7 +317,6 @@ contains
     end if
     allocate (remesh)
     call read_remesh(checkpoint, remesh, error)
-    if (remesh%generation == 1) deallocate (remesh)
   end subroutine read_mesh_of
 
   !> March, then write summary and listing whatever happened.

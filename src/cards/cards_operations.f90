@@ -5,6 +5,7 @@
 module cards_operations
   use card_names, only: names_t
   use cards_mesh, only: is_body_elem
+  use cards_sleep, only: put_to_sleep, sleep_keyword
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
@@ -46,12 +47,23 @@ contains
     type(names_t) :: names
     type(cursor_t) :: cursor
     type(string_t) :: word(1)
+    logical :: remeshed
     integer :: i
 
+    remeshed = .false.
+    do i = 1, size(deck%cards)
+      remeshed = remeshed .or. any(deck%cards(i)%keyword == ['REMSH', 'BODY '])
+    end do
     call names%clear()
     call list_refused(refused)
     allocate (operations%names(0), operations%first(0), operations%last(0))
     do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword == sleep_keyword) then
+        if (operations%count == 0) call diagnostics%add(head_location(deck%cards(i)), sleep_keyword, &
+          'bodies sleep in an operation: expected behind an OPERA card')
+        if (remeshed) call diagnostics%add(head_location(deck%cards(i)), sleep_keyword, &
+          'a body that is asleep keeps the elements of the deck: expected no REMSH and no BODY card')
+      end if
       if (deck%cards(i)%keyword == keyword) then
         call cursor%open(deck%cards(i), diagnostics)
         call names%define(cursor, 'the name of the operation', keyword, i, diagnostics, word(1)%s)
@@ -124,10 +136,12 @@ contains
     do i = operations%first(1), size(part%cards)
       if (i >= operations%first(k) .and. i <= operations%last(k)) cycle
       part%cards(i)%elsewhere = .true.
-      part%cards(i)%keyword = ''
+      ! no reader finds it
+      part%cards(i)%keyword = '-'//part%cards(i)%keyword
     end do
     mistakes = diagnostics%count()
     call read_scene(part, scene, diagnostics, remesh)
+    if (diagnostics%count() == mistakes) call put_to_sleep(part, scene, diagnostics)
     scene%operation = k
     scene%operations = operations%count
     scene%operation_name = operations%names(k)%s

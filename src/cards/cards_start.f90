@@ -1,6 +1,7 @@
 !> START: values of fields at the start, as numbers, by formulas of the place, or the temperatures of another run.
 module cards_start
   use cards_fields, only: read_body, read_field
+  use cards_sleep, only: may_sleep
   use deck_cursor, only: cursor_t
   use deck_expression, only: evaluate
   use deck_parameters, only: parameters_t
@@ -80,7 +81,7 @@ contains
     if (draft%mesh_sound .and. draft%groups_sound .and. size(cards) == size(draft%scene%starts)) then
       do i = 1, size(cards)
         call cursor%open(deck%cards(cards(i)), diagnostics)
-        call refuse_two_starts(cursor, draft, everywhere, draft%scene%starts(i))
+        call refuse_two_starts(cursor, deck, draft, everywhere, draft%scene%starts(i))
       end do
     end if
     draft%scene%starts = [everywhere, draft%scene%starts]
@@ -190,9 +191,10 @@ contains
 
   end subroutine values_of_run
 
-  !> A node that two bodies share starts with one value.
-  subroutine refuse_two_starts(cursor, draft, everywhere, start)
+  !> A node that two bodies share starts with one value, unless one of them comes later (ASLEEP).
+  subroutine refuse_two_starts(cursor, deck, draft, everywhere, start)
     type(cursor_t), intent(inout) :: cursor
+    type(deck_t), intent(in) :: deck
     type(draft_t), intent(in) :: draft
     type(start_t), intent(in) :: everywhere(:)   !! formulas for all nodes
     type(start_t), intent(in) :: start
@@ -208,6 +210,7 @@ contains
     do g = 1, size(draft%scene%groups)
       associate (group => draft%scene%groups(g))
         if (.not. is_solid(group) .or. group%name == start%body) cycle
+        if (may_sleep(deck, group%name) .or. may_sleep(deck, start%body)) cycle
         if (.not. any(of_body([group%connectivity]))) cycle
         values = draft%scene%fields(start%field)%initial
         do k = 1, size(everywhere)

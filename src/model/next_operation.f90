@@ -4,10 +4,10 @@
 !> place, goes on. The mesh is that of the one before, as a generation of its own: files and remeshing know nothing of operations.
 module next_operation
   use dies, only: die_t, is_deformable
-  use fields, only: find_field, on_nodes, on_section, pilot_field
+  use fields, only: displacement_field, find_field, on_nodes, on_section, pilot_field
   use kinds, only: eps, wp
   use remesh, only: remesh_t
-  use scene, only: group_t, scene_t
+  use scene, only: group_t, is_solid, scene_t
   use solution, only: solution_t, start_solution
   use state_variables, only: find_variable
   implicit none
@@ -16,6 +16,10 @@ module next_operation
 
   !> What many small motions leave of their sum, over the size of what moves.
   real(wp), parameter :: round_off = 1.0e4_wp*eps
+
+  !> Sweeps over new nodes end where they change displacements by less than this share of the largest.
+  real(wp), parameter :: smooth = 1.0e-6_wp
+  integer, parameter :: most_sweeps = 1000
 
 contains
 
@@ -59,6 +63,7 @@ contains
     type(scene_t), intent(in) :: new
     type(solution_t), intent(out) :: after
     type(solution_t) :: fresh
+    logical :: was_there(size(new%mesh%coordinates, 2))
     integer :: f, g, k
 
     call start_solution(new, fresh, before%time)
@@ -73,11 +78,23 @@ contains
     after%estimate = fresh%estimate
     after%estimate%last_stop = before%step
     after%fields = fresh%fields
+    was_there = .false.
+    do g = 1, size(old%groups)
+      if (is_solid(old%groups(g))) was_there([old%groups(g)%connectivity]) = .true.
+    end do
+    ! bodies have come or gone: volumes are compared with that of now
+    if (count(is_body(old%groups)) /= count(is_body(new%groups))) after%initial_volume = 0
     do f = 1, size(after%fields)
       k = find_field(before%fields, after%fields(f)%name)
       if (k == 0 .or. .not. any(after%fields(f)%place == [on_nodes, on_section])) cycle
-      if (all(shape(before%fields(k)%value) == shape(after%fields(f)%value))) after%fields(f)%value = before%fields(k)%value
+      if (any(shape(before%fields(k)%value) /= shape(after%fields(f)%value))) cycle
+      if (after%fields(f)%place == on_section) then
+        after%fields(f)%value = before%fields(k)%value
+      else
+        where (spread(was_there, 1, after%fields(f)%ncomp)) after%fields(f)%value = before%fields(k)%value
+      end if
     end do
+    if (after%fields(displacement_field)%declared) call place_new_nodes(new, was_there, after%fields(displacement_field)%value)
     after%groups = fresh%groups
     after%pairs = fresh%pairs
     do g = 1, size(new%groups)
@@ -90,6 +107,54 @@ contains
         after%pairs(new%groups(g)%pairs)%piece = before%pairs(old%groups(k)%pairs)%piece
     end do
   end subroutine begin_operation
+
+  !> Bodies that come fit those that were there: displacements of their nodes are the means of their neighbours' (Laplace's equation on
+  !> the elements, by Jacobi's iterations), those of shared nodes and of supports are given.
+  pure subroutine place_new_nodes(scene, was_there, displacement)
+    type(scene_t), intent(in) :: scene
+    logical, intent(in) :: was_there(:)             !! (nnode)
+    real(wp), intent(inout) :: displacement(:, :)   !! (2, nnode) [length]
+    logical :: given(2, size(was_there)), comes(size(was_there))
+    real(wp) :: total(2, size(was_there)), mean(2), change
+    integer :: number(size(was_there)), g, e, k, sweep
+
+    comes = .false.
+    do g = 1, size(scene%groups)
+      if (is_solid(scene%groups(g))) comes([scene%groups(g)%connectivity]) = .true.
+    end do
+    comes = comes .and. .not. was_there
+    if (.not. any(comes)) return
+    given = spread(.not. comes, 1, 2)
+    do k = 1, size(scene%fixations)
+      if (scene%fixations(k)%field == displacement_field) given(scene%fixations(k)%component, scene%fixations(k)%nodes) = .true.
+    end do
+    do sweep = 1, most_sweeps
+      total = 0
+      number = 0
+      do g = 1, size(scene%groups)
+        if (.not. is_solid(scene%groups(g))) cycle
+        do e = 1, size(scene%groups(g)%connectivity, 2)
+          associate (nodes => scene%groups(g)%connectivity(:, e))
+            if (.not. any(comes(nodes))) cycle
+            mean = sum(displacement(:, nodes), 2)/size(nodes)
+            total(:, nodes) = total(:, nodes) + spread(mean, 2, size(nodes))
+            number(nodes) = number(nodes) + 1
+          end associate
+        end do
+      end do
+      total = merge(displacement, total/spread(max(number, 1), 1, 2), given)
+      change = maxval(abs(total - displacement))
+      displacement = total
+      if (.not. change > smooth*maxval(abs(displacement))) return
+    end do
+  end subroutine place_new_nodes
+
+  elemental function is_body(group) result(yes)
+    type(group_t), intent(in) :: group
+    logical :: yes
+
+    yes = is_solid(group)
+  end function is_body
 
   !> The group of the operation before that goes on as this one, 0 where there is none.
   pure function same_group(old, before, new, fresh, g) result(k)

@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""Bodies that are asleep until an operation has them (ASLEEP).
+
+usage: run_weld_pass.py [-v] [-k]
+
+- `bar`: between two walls a bar is laid at a high temperature beside another; both come to one temperature, then to that of the
+  start. Elastic: the mean temperature and the stress are the integrals of what was laid (closed form). Stopped and resumed: the same
+  bits. Put to sleep again, it leaves the other bar without stress.
+- `weld_pipe`: forces across the weld are in balance, the balance of heat closes, signs of a girth weld in a thin pipe.
+"""
+import os
+import signal
+import sys
+
+sys.dont_write_bytecode = True
+TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+sys.path[:0] = [os.path.join(TESTS, "runs")]
+from support import DONE, SIGNAL, SOURCE, Checks, history, result_differences, run, said, start, stop_after, summary, with_h5py, write  # noqa: E402
+
+PIPE = os.path.join(SOURCE, "decks", "weld_pipe", "weld_pipe.lag")
+E, ALPHA, LAID, N = 200000.0, 1e-5, 1020.0, 8
+BAR = f"""TITLE  A bar laid on hot beside another, between walls
+STATE  PLSTS
+KINEM  SMALL
+BLOCK  parent PL8LS 4 metal
+   0. 0.   10. 0.   10. 1.   0. 1.
+   {N} 1.   1 1.
+BLOCK  filler PL8LS 4 metal
+   10. 0.   20. 0.   20. 1.   10. 1.
+   {N} 1.   1 1.
+JOIN   parent 2 filler 4
+LAW    metal ELATH
+   {E} 0.3 {ALPHA}
+ADDEL  parent PL8TM heat BILINEAR
+ADDEL  filler PL8TM heat BILINEAR
+LAW    heat HEAT
+   20. 3.6
+START  T 20. parent
+START  T {LAID} filler
+FIXED  parent 1 Y
+FIXED  filler 1 Y
+FIXED  parent 4 X
+FIXED  filler 2 X
+NORMS  FORCE 1.E-9 DISPL 1.E-8
+PROBE  stress MEAN stress_xx parent filler
+PROBE  filler MEAN stress_xx filler
+PROBE  t_parent NODE T 0. 0.
+PROBE  t_filler NODE T 20. 0.
+CKPT   1
+OPERA  before
+ASLEEP filler
+STOP   1.
+STRAT  0.5 1.E-6 0.5   6 3
+OPERA  laid
+STOP   10000.
+STRAT  0.01 1.E-6 1000.   6 3  0.25 2.
+OPERA  cold
+CONVE  parent 3 H 0.1 TS 20.
+CONVE  filler 3 H 0.1 TS 20.
+STOP   10000.
+STRAT  0.01 1.E-6 1000.   6 3  0.25 2.
+"""
+
+
+def bar(checks):
+    """Closed forms, bits, and the filler taken away."""
+    deck, out = write(checks.path("bar.lag"), BAR + "END\n"), checks.path("bar")
+    result = run([deck, "--out", out, "--threads", "1"])
+    if not checks.that(result.returncode == DONE, "bar", said(result)):
+        return
+    rows = history(out)
+    ends = [k for k in range(len(rows["step"])) if k + 1 == len(rows["step"]) or rows["operation"][k + 1] != rows["operation"][k]]
+    checks.that(rows["filler"][ends[0]] != rows["filler"][ends[0]] and rows["stress"][ends[0]] == 0, "before: nothing is read of it",
+                (rows["filler"][ends[0]], rows["stress"][ends[0]]))
+    # the element beside the bar that was there is linear between both temperatures
+    laid = (LAID - 20)*(10 - 10/N/2)
+    for name in ("t_parent", "t_filler"):
+        checks.that(abs(rows[name][ends[1]]/(20 + laid/20) - 1) < 1e-9, f"laid: {name}", rows[name][ends[1]])
+    checks.that(abs(rows["stress"][ends[1]]) < 1e-6, "laid: what one bar has grown the other has shrunk", rows["stress"][ends[1]])
+    exact = E*ALPHA*laid/20
+    for name in ("stress", "filler"):
+        checks.that(abs(rows[name][ends[2]]/exact - 1) < 1e-8, f"cold: {name}, E alpha times the mean", (rows[name][ends[2]], exact))
+    checks.that(abs(rows["heat_imbalance"][-1]) < 1e-9, "balance of heat", rows["heat_imbalance"][-1])
+    for row in (1, ends[0] + 4):
+        again = checks.path(f"again-{row}")
+        code, _, stderr = stop_after(start([deck, "--out", again, "--threads", "1"]), again, row, signal.SIGTERM, 0)
+        checks.that(code in (SIGNAL + signal.SIGTERM, DONE), f"stopped after {row} rows", f"{code} {stderr}")
+        if code != DONE:
+            result = run([deck, "--out", again, "--threads", "1", "--resume", os.path.join(again, "bar.ckp.h5")])
+            checks.that(result.returncode == DONE, f"resumed after {row} rows", said(result))
+        wrong = result_differences(out, again)
+        checks.that(not wrong, f"after {row} rows as in one go", "; ".join(wrong))
+    # taken away again, the other bar is without stress
+    text = BAR + "OPERA  parted\nASLEEP filler\nCONVE  parent 3 H 0.1 TS 20.\nSTOP   1.\nSTRAT  0.5 1.E-6 0.5   6 3\nEND\n"
+    deck, out = write(checks.path("parted.lag"), text), checks.path("parted")
+    result = run([deck, "--out", out, "--threads", "1"])
+    if checks.that(result.returncode == DONE, "parted", said(result)):
+        checks.that(abs(history(out)["stress"][-1]) < 1e-6*exact, "parted: no stress is left", history(out)["stress"][-1])
+
+
+def pipe(checks):
+    """The deck that is shipped."""
+    import h5py
+    out = checks.path("weld_pipe")
+    result = run([PIPE, "--out", out, "--threads", "1"])
+    if not checks.that(result.returncode == DONE, "weld_pipe", said(result)):
+        return
+    with h5py.File(os.path.join(out, "weld_pipe.ckp.h5"), "r") as file:
+        reaction = file["fields/displacement/reaction"][()][:, 1]
+        checks.that(abs(reaction.sum()) < 1e-6*abs(reaction).sum(), "forces across the weld", (reaction.sum(), abs(reaction).sum()))
+    rows = history(out)
+    checks.that(abs(rows["heat_imbalance"][-1]) < 1e-6, "balance of heat", rows["heat_imbalance"][-1])
+    checks.that(abs(summary(out)["checks"]["energy_imbalance"]) < 0.01, "balance of energy", summary(out)["checks"]["energy_imbalance"])
+    checks.that(rows["axial_out"][-1] < -100 and rows["axial_in"][-1] > rows["axial_out"][-1] + 100, "axial: the wall is bent inwards",
+                (rows["axial_in"][-1], rows["axial_out"][-1]))
+    checks.that(rows["hoop_in"][-1] > 80 and rows["hoop_out"][-1] > 80, "hoop: tension in the weld", (rows["hoop_in"][-1], rows["hoop_out"][-1]))
+    checks.that(rows["bent"][-1] < -0.05 and rows["far"][-1] < -0.05, "the pipe is narrower at the weld, and shorter",
+                (rows["bent"][-1], rows["far"][-1]))
+
+
+def main():
+    with_h5py()
+    checks = Checks()
+    bar(checks)
+    pipe(checks)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
