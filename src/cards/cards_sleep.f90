@@ -1,8 +1,8 @@
 !> ASLEEP: bodies that are not there in an operation, such as the filler of a weld before it is laid down.
 !>
-!> What is asleep has no elements in the scene: no stiffness, no heat content, no unknowns of its own, no cost. Its nodes stay in the
-!> mesh, where they are, so that all operations have one mesh. An operation in which the body is awake for the first time has it
-!> without stress, at the temperature of its START card, but for nodes that it shares with bodies that were awake before.
+!> What is asleep has no elements in the scene: no stiffness, no heat content, no unknowns of its own, no cost. Its nodes stay in
+!> the mesh, where they are, so that all operations have one mesh. An operation in which the body is awake for the first time has
+!> it without stress, at the temperature of its START card, but for nodes that it shares with bodies that were awake before.
 module cards_sleep
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
@@ -167,7 +167,7 @@ contains
 
   !> Sides of bodies that are awake.
   pure subroutine keep_sides(awake, nodes)
-    logical, intent(in) :: awake(:)                 !! (nnode)
+    logical, intent(in) :: awake(:)                      !! (nnode)
     integer, allocatable, intent(inout) :: nodes(:, :)   !! (3, n)
     integer, allocatable :: stays(:)
     integer :: k

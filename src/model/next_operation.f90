@@ -108,8 +108,8 @@ contains
     end do
   end subroutine begin_operation
 
-  !> Bodies that come fit those that were there: displacements of their nodes are the means of their neighbours' (Laplace's equation on
-  !> the elements, by Jacobi's iterations), those of shared nodes and of supports are given.
+  !> Bodies that come fit those that were there: displacements of their nodes are the means of their neighbours' (Laplace's equation
+  !> on the elements, by Jacobi's iterations), those of shared nodes and of supports are given.
   pure subroutine place_new_nodes(scene, was_there, displacement)
     type(scene_t), intent(in) :: scene
     logical, intent(in) :: was_there(:)             !! (nnode)
