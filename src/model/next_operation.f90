@@ -90,7 +90,7 @@ contains
       if (any(shape(before%fields(k)%value) /= shape(after%fields(f)%value))) cycle
       if (after%fields(f)%place == on_section) then
         after%fields(f)%value = before%fields(k)%value
-      else
+      else if (size(after%fields(f)%value, 2) == size(was_there)) then
         where (spread(was_there, 1, after%fields(f)%ncomp)) after%fields(f)%value = before%fields(k)%value
       end if
     end do
