@@ -211,7 +211,7 @@ contains
       if (same) same = all(a%nodes == b%nodes)
     else
       same = all(shape(a%pieces) == shape(b%pieces))
-      if (same) same = all(a%pieces == b%pieces)
+      if (same) same = .not. any(abs(a%pieces - b%pieces) > 0)
     end if
   end function same_die
 
