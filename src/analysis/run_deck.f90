@@ -431,6 +431,11 @@ contains
     type(operations_t) :: operations
     type(scene_t) :: own
 
+    ! the part with which a later operation begins is not known to its deck
+    if (scene%operation > 1) then
+      allocate (table(0), warnings(0))
+      return
+    end if
     call list_laws(laws)
     if (scene%generation == 1) then
       call check_physics(scene, laws, table, warnings)
