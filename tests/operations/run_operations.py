@@ -32,7 +32,7 @@ LAW    film COUL2D
    PENETR 1.E-3   PHI 0.1   AUGMENT 10
 FIXED  block 1 Y
 FIXED  block 4 X
-NORMS  FORCE 1.E-9 DISPL 1.E-8
+NORMS  FORCE 1.E-9 DISPL 1.E-8 PATH 0 RATE 0
 PROBE  corner NODE UY 10. 10.
 PROBE  width NODE UX 10. 0.
 PROBE  plastic MEAN plastic_strain block
