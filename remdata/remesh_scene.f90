@@ -6,6 +6,7 @@
 module remesh_scene
   use arcs_on_die, only: placed_piece
   use axis_nodes, only: put_on_axis
+  use better_mesh, only: elements_at_limit, free_mesh_is_better
   use block_mesh, only: polygon_area
   use boundary_curves, only: boundary_curve_t
   use contact_carry, only: carry_contacts
@@ -22,10 +23,10 @@ module remesh_scene
   use material_interfaces, only: interface_t, interfaces_of
   use material_volumes, only: compare_materials
   use member_reader, only: member_reader_t
-  use mesh_prediction, only: predict
+  use mesh_prediction, only: predict, prediction_t
   use mesh_without_zones, only: make_mesh_without_zones
   use fold_closing, only: close_folds
-  use new_mesh_check, only: check_new_mesh, check_shape
+  use new_mesh_check, only: check_new_mesh, check_shape, mesh_check_t
   use new_scene, only: set_up_new_scene
   use pair_fit, only: fit_pairs, update_closest_points
   use outline_mesh, only: mesher_t
@@ -104,6 +105,8 @@ contains
     end if
     if (needs_free_mesh(old%remesher, size(interfaces) > 0, error)) then
       call make_free_mesh(old, before, contours, sizes, options, plan, mesh, facts, error)
+    else if (.not. allocated(error) .and. may_be_free(old%remesher, size(interfaces) > 0)) then
+      call take_better_mesh(old, before, contours, sizes, options%finer, plan, mesh, facts)
     end if
     if (allocated(error)) return
     if (old%plane_state == axisymmetric) call put_on_axis(mesh%coordinates)
@@ -315,9 +318,47 @@ contains
     type(error_t), allocatable, intent(in) :: error   !! of the mesh by zones
     logical :: yes
 
-    yes = any(remesher%mesher == [by_free, by_gmsh]) .or. &
-          (allocated(error) .and. remesher%mesher == as_it_comes .and. .not. (has_zones(remesher) .or. materials_share))
+    yes = any(remesher%mesher == [by_free, by_gmsh]) .or. (allocated(error) .and. may_be_free(remesher, materials_share))
   end function needs_free_mesh
+
+  !> May a mesh without zones take the place of one by zones?
+  pure function may_be_free(remesher, materials_share) result(yes)
+    type(remesher_options_t), intent(in) :: remesher
+    logical, intent(in) :: materials_share
+    logical :: yes
+
+    yes = remesher%mesher == as_it_comes .and. .not. (has_zones(remesher) .or. materials_share)
+  end function may_be_free
+
+  !> The mesh by derived zones is compared with that of the free mesher, and the better one taken.
+  subroutine take_better_mesh(old, before, contours, sizes, finer, plan, mesh, facts)
+    type(scene_t), intent(in) :: old
+    type(solution_t), intent(in) :: before
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
+    type(size_field_t), intent(in) :: sizes
+    real(wp), intent(in) :: finer                !! requested sizes are divided by this factor
+    type(plan_t), intent(inout) :: plan
+    type(new_mesh_t), intent(inout) :: mesh
+    type(remesh_facts_t), intent(inout) :: facts
+    type(plan_t) :: free_plan
+    type(new_mesh_t) :: free
+    type(mesh_check_t) :: check
+    type(prediction_t) :: expected
+    type(mesher_t) :: mesher
+    type(error_t), allocatable :: error
+
+    call begin_task(facts, 'mesh', 'free')
+    call make_mesh_without_zones(old, materials_of(old, before), contours, sizes, finer, mesher, free_plan, free, check, error)
+    if (allocated(error)) return
+    expected = predict(free, sizes, strain_order)
+    if (.not. free_mesh_is_better(facts%mesh, elements_at_limit(size(mesh%zone), facts%expected, strain_order), &
+                                  check, elements_at_limit(size(free%zone), expected, strain_order))) return
+    plan = free_plan
+    mesh = free
+    facts%mesher = 'free'
+    facts%mesh = check
+    call note_free_mesh(mesh, sizes, facts)
+  end subroutine take_better_mesh
 
   !> A mesh without zones: by the free mesher, or by Gmsh where it is requested or the free mesher failed. Where both fail, the
   !> error of the free mesher is the one to report.
@@ -339,7 +380,7 @@ contains
       call begin_task(facts, 'mesh', 'free')
       call make_mesh_without_zones(old, materials_of(old, before), contours, sizes, options%finer, mesher, plan, mesh, facts%mesh, &
                                    error)
-      if (allocated(mesh%zone)) facts%coarser = mesh%division%factor
+      call note_free_mesh(mesh, sizes, facts)
       if (.not. allocated(error) .or. old%remesher%mesher == by_free) return
       if (error%code == exit_input) return
       call move_alloc(error, first_error)
@@ -350,12 +391,23 @@ contains
     call find_gmsh(options%out, options%limit, mesher%gmsh)
     call make_mesh_without_zones(old, materials_of(old, before), contours, sizes, options%finer, mesher, plan, mesh, facts%mesh, &
                                  error)
-    if (allocated(mesh%zone)) facts%coarser = mesh%division%factor
+    call note_free_mesh(mesh, sizes, facts)
     if (allocated(error) .and. allocated(first_error)) then
       facts%mesher = 'free'
       call move_alloc(first_error, error)
     end if
   end subroutine make_free_mesh
+
+  !> How far sizes are above the requested ones, and the errors to expect.
+  subroutine note_free_mesh(mesh, sizes, facts)
+    type(new_mesh_t), intent(in) :: mesh
+    type(size_field_t), intent(in) :: sizes
+    type(remesh_facts_t), intent(inout) :: facts
+
+    if (.not. allocated(mesh%connectivity)) return
+    facts%coarser = mesh%division%factor
+    facts%expected = predict(mesh, sizes, strain_order)
+  end subroutine note_free_mesh
 
   !> Time, dies, work: what does not depend on the mesh (visit_solution says of each member how it is carried).
   subroutine carry_progress(before, after)

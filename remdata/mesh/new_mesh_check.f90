@@ -1,10 +1,14 @@
 !> Acceptance of a new mesh: shape of the elements, distance to the contour, nodes at the ends of contact.
+!>
+!> At a corner of the contour that is sharper than the limits no element can be better than the corner itself: there the limits are
+!> a share of its own angle and sine.
 module new_mesh_check
   use boundary_curves, only: closest_position, joint_point, kind_entry, kind_exit, point_on, size_of_boundary
   use errors, only: error_t, exit_no_convergence, fail
-  use kinds, only: wp
+  use kinds, only: pi, wp
   use mesh_quality, only: mesh_shape
   use part_contour, only: contour_t
+  use plane_vectors, only: cross
   use remeshing, only: largest_angle, least_angle, middle_share, ncriteria, scaled_jacobian
   use text, only: to_text
   use vectors, only: length_of
@@ -20,9 +24,14 @@ module new_mesh_check
     real(wp) :: off_contour = 0.0_wp
     !> Largest distance from an end of contact to a node that is an end of sides, a share of the contour.
     real(wp) :: off_ends = 0.0_wp
+    !> Angle between two sides of the sharpest corner of the contour [degree].
+    real(wp) :: sharpest_corner = 180.0_wp
   end type mesh_check_t
 
-  real(wp), parameter :: least_scaled_jacobian = 0.2_wp
+  !> Limits of every element; a new mesh stays some way from those at which another one is due (remesh_defaults).
+  real(wp), parameter :: least_scaled_jacobian = 0.25_wp, least_angle_allowed = 20.0_wp
+  !> The element in a sharp corner has at least this share of the corner's angle and sine: its sides are parabolas.
+  real(wp), parameter :: share_of_corner = 0.9_wp
   !> Middle nodes lie in the middle third.
   real(wp), parameter :: largest_middle_share = 1.0_wp/3
   !> Nodes lie on the contour within this share of their side.
@@ -82,18 +91,32 @@ contains
     type(new_mesh_t), intent(in) :: mesh
     type(mesh_check_t), intent(inout) :: check
     type(error_t), allocatable, intent(out) :: error
-    real(wp), allocatable :: measures(:, :)
-    integer :: worst
+    real(wp), allocatable :: measures(:, :), corner(:)
+    real(wp) :: jacobian_limit(size(mesh%connectivity, 2)), angle_limit(size(mesh%connectivity, 2)), angle
+    integer :: e, worst
 
-    allocate (measures(ncriteria, size(mesh%connectivity, 2)))
+    allocate (measures(ncriteria, size(mesh%connectivity, 2)), corner(size(mesh%coordinates, 2)))
     call mesh_shape(mesh%coordinates, mesh%connectivity, measures)
+    call contour_corners(mesh, corner)
     check%scaled_jacobian = minval(measures(scaled_jacobian, :))
     check%least_angle = minval(measures(least_angle, :))
     check%largest_angle = maxval(measures(largest_angle, :))
     check%middle_share = maxval(measures(middle_share, :))
-    if (check%scaled_jacobian < least_scaled_jacobian) then
-      worst = minloc(measures(scaled_jacobian, :), 1)
-      call refuse('scaled Jacobian '//to_text(check%scaled_jacobian, 3)//', at least '//to_text(least_scaled_jacobian), worst)
+    check%sharpest_corner = minval(corner)
+    do e = 1, size(angle_limit)
+      angle = share_of_corner*minval(corner(mesh%connectivity(1:4, e)))
+      angle_limit(e) = min(least_angle_allowed, angle)
+      jacobian_limit(e) = least_scaled_jacobian
+      if (angle < least_angle_allowed) jacobian_limit(e) = min(least_scaled_jacobian, sin(angle*pi/180))
+    end do
+    if (any(measures(scaled_jacobian, :) < jacobian_limit)) then
+      worst = minloc(measures(scaled_jacobian, :) - jacobian_limit, 1)
+      call refuse('scaled Jacobian '//to_text(measures(scaled_jacobian, worst), 3)//', at least ' &
+                  //to_text(jacobian_limit(worst), 3), worst)
+    else if (any(measures(least_angle, :) < angle_limit)) then
+      worst = minloc(measures(least_angle, :) - angle_limit, 1)
+      call refuse('an angle of '//to_text(measures(least_angle, worst), 3)//' degrees, at least ' &
+                  //to_text(angle_limit(worst), 3), worst)
     else if (check%middle_share > largest_middle_share) then
       worst = maxloc(measures(middle_share, :), 1)
       call refuse('a middle node outside the middle third of its side', worst)
@@ -113,5 +136,33 @@ contains
     end subroutine refuse
 
   end subroutine check_shape
+
+  !> Angle inside the part between the two sides of the contour that meet at a node; 180 at all other nodes.
+  pure subroutine contour_corners(mesh, angle)
+    type(new_mesh_t), intent(in) :: mesh
+    real(wp), intent(out) :: angle(:)   !! (nnode) [degree]
+    real(wp) :: leaving(2, size(angle)), arriving(2, size(angle))
+    logical, dimension(size(angle)) :: leaves, arrives
+    integer :: k, n
+
+    leaves = .false.
+    arrives = .false.
+    do k = 1, size(mesh%sides)
+      associate (nodes => mesh%sides(k)%nodes)
+        ! tangents of the parabola through three nodes at its ends
+        associate (x => mesh%coordinates(:, nodes))
+          leaving(:, nodes(1)) = 4*x(:, 2) - 3*x(:, 1) - x(:, 3)
+          arriving(:, nodes(3)) = 3*x(:, 3) + x(:, 1) - 4*x(:, 2)
+        end associate
+        leaves(nodes(1)) = .true.
+        arrives(nodes(3)) = .true.
+      end associate
+    end do
+    angle = 180
+    do n = 1, size(angle)
+      if (.not. (leaves(n) .and. arrives(n))) cycle
+      angle(n) = 180 - 180/pi*atan2(cross(arriving(:, n), leaving(:, n)), dot_product(arriving(:, n), leaving(:, n)))
+    end do
+  end subroutine contour_corners
 
 end module new_mesh_check
