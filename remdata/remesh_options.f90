@@ -15,6 +15,8 @@ module remesh_options
     integer :: transfer = -1
     !> The requested sizes are divided by this factor.
     real(wp) :: finer = 1.0_wp
+    !> The requested sizes are those of the old elements.
+    logical :: same_sizes = .false.
     !> Time limit for Gmsh to make a mesh [s].
     real(wp) :: limit = 300.0_wp
     !> Only print the contents of the checkpoint.
@@ -61,6 +63,8 @@ contains
         read (word, *, iostat=status) options%finer
         if (status /= 0 .or. .not. options%finer > 0) &
           call fail(error, exit_input, '--finer: expected a number above 0, found '''//word//'''')
+      case ('--same-sizes')
+        options%same_sizes = .true.
       case ('--limit')
         call value_of('--limit', k, word, error)
         if (allocated(error)) exit
@@ -70,7 +74,7 @@ contains
       case default
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
           call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--quiet'), string_t('--out'), &
-                                    string_t('--transfer'), string_t('--finer'), string_t('--limit'), &
+                                    string_t('--transfer'), string_t('--finer'), string_t('--same-sizes'), string_t('--limit'), &
                                     string_t('--about'), string_t('--schema')], 'remdata', error)
         else if (allocated(options%checkpoint)) then
           call fail(error, exit_input, 'one checkpoint at a time: found '''//options%checkpoint//''' and '''//word//'''')
@@ -97,7 +101,7 @@ contains
     character(len=*), parameter :: nl = new_line('a')
 
     text = 'remdata: a new mesh and the state on it, from a checkpoint of lagamine'//nl//nl// &
-           'remdata CHECKPOINT --out NEW [--transfer N] [--finer F] [--limit SECONDS] [--quiet]'//nl// &
+           'remdata CHECKPOINT --out NEW [--transfer N] [--finer F] [--same-sizes] [--limit SECONDS] [--quiet]'//nl// &
            'remdata --about CHECKPOINT'//nl// &
            'remdata --schema'//nl// &
            'remdata --next DIR/NAME [--tries N] [--fresh] [--ran WHAT --code N --said FILE [--from NAME] [--late S]]'//nl// &
@@ -105,6 +109,7 @@ contains
            '  --out NEW       checkpoint of the new mesh, for lagamine --resume; facts in NEW.json'//nl// &
            '  --transfer N    state transfer: 0 inverse distance, 1 moving least squares, 2 patches (default: the deck''s)'//nl// &
            '  --finer F       divide the wanted sizes of elements by F'//nl// &
+           '  --same-sizes    elements of the size of the old ones in each place, not as the error and the shape want them'//nl// &
            '  --limit SECONDS longest time for Gmsh, where it makes the mesh (default 300)'//nl// &
            '  --about         check the file and print what it holds, a word and its value a line'//nl// &
            '  --schema        print what is in a checkpoint: every member with unit, range, and what a remesh does with it'//nl// &

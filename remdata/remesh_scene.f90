@@ -6,7 +6,7 @@
 module remesh_scene
   use arcs_on_die, only: placed_piece
   use axis_nodes, only: put_on_axis
-  use better_mesh, only: elements_at_limit, free_mesh_is_better
+  use better_mesh, only: free_mesh_is_better
   use block_mesh, only: polygon_area
   use boundary_curves, only: boundary_curve_t
   use contact_carry, only: carry_contacts
@@ -23,7 +23,7 @@ module remesh_scene
   use material_interfaces, only: interface_t, interfaces_of
   use material_volumes, only: compare_materials
   use member_reader, only: member_reader_t
-  use mesh_prediction, only: predict, prediction_t
+  use mesh_prediction, only: predict
   use mesh_without_zones, only: make_mesh_without_zones
   use fold_closing, only: close_folds
   use new_mesh_check, only: check_new_mesh, check_shape, mesh_check_t
@@ -95,7 +95,7 @@ contains
     if (allocated(error)) return
     call begin_task(facts, 'mesh', 'sizes')
     call interfaces_of(old, before, contours, interfaces)
-    call requested_sizes(old, before, contours, first, sizes)
+    call requested_sizes(old, before, contours, first, options%same_sizes, sizes)
     if (all(old%remesher%mesher /= [by_free, by_gmsh])) then
       call begin_task(facts, 'mesh', 'zones')
       call plan_zones(old, present_coordinates(old, before), before%fields(pilot_field)%value, materials_of(old, before), &
@@ -223,11 +223,12 @@ contains
   end function materials_of
 
   !> Sizes by the error of the strains, by the curvature of the contour and of nearby dies, and by contact intervals.
-  subroutine requested_sizes(scene, solution, contours, first, sizes)
+  subroutine requested_sizes(scene, solution, contours, first, same, sizes)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(contour_t), intent(in) :: contours(:)
     logical, intent(in) :: first   !! there is no mesh yet: largest elements except where the geometry requires smaller ones
+    logical, intent(in) :: same    !! those of the old elements, whatever the error and the geometry ask for
     type(size_field_t), intent(out) :: sizes
     type(state_pieces_t) :: pieces
     type(transfer_mesh_t) :: mesh
@@ -268,6 +269,10 @@ contains
     do e = 1, size(old%requested)
       old%requested(e) = sqrt(polygon_area(old%nodes(:, old%connectivity(1:4, e))))
     end do
+    if (same) then
+      call set_up_sizes(size_limits_t(), [need_t ::], sizes, old)
+      return
+    end if
     if (scene%remesh%estimate) then
       do e = 1, size(old%requested)
         error = solution%estimate%strain_of(e)
@@ -343,16 +348,13 @@ contains
     type(plan_t) :: free_plan
     type(new_mesh_t) :: free
     type(mesh_check_t) :: check
-    type(prediction_t) :: expected
     type(mesher_t) :: mesher
     type(error_t), allocatable :: error
 
     call begin_task(facts, 'mesh', 'free')
     call make_mesh_without_zones(old, materials_of(old, before), contours, sizes, finer, mesher, free_plan, free, check, error)
     if (allocated(error)) return
-    expected = predict(free, sizes, strain_order)
-    if (.not. free_mesh_is_better(facts%mesh, elements_at_limit(size(mesh%zone), facts%expected, strain_order), &
-                                  check, elements_at_limit(size(free%zone), expected, strain_order))) return
+    if (.not. free_mesh_is_better(facts%mesh, facts%expected, check, predict(free, sizes, strain_order))) return
     plan = free_plan
     mesh = free
     facts%mesher = 'free'
@@ -404,9 +406,10 @@ contains
     type(size_field_t), intent(in) :: sizes
     type(remesh_facts_t), intent(inout) :: facts
 
-    if (.not. allocated(mesh%connectivity)) return
+    if (.not. allocated(mesh%zone)) return
     facts%coarser = mesh%division%factor
-    facts%expected = predict(mesh, sizes, strain_order)
+    ! a mesh that was refused may have no nodes
+    if (allocated(mesh%coordinates)) facts%expected = predict(mesh, sizes, strain_order)
   end subroutine note_free_mesh
 
   !> Time, dies, work: what does not depend on the mesh (visit_solution says of each member how it is carried).

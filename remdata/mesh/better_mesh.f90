@@ -1,43 +1,33 @@
 !> Which of two meshes of the same contours is taken: one by zones, or one without.
 !>
-!> Zones that the remesher derives by itself follow the contour well while the part is nearly a quadrilateral, and become slender or
-!> skewed where it is none any more. Both meshes are measured by their shape and by the elements they would need to have the error
-!> that the sizes were requested for.
+!> Zones that the remesher derives by itself lie well in a part that is nearly a quadrilateral, with rows of elements along its
+!> contacts; where it is none any more they become skewed, and cannot follow the requested sizes within the limit on elements.
 module better_mesh
   use kinds, only: wp
   use mesh_prediction, only: prediction_t
   use new_mesh_check, only: mesh_check_t
   implicit none
   private
-  public :: elements_at_limit, free_mesh_is_better
+  public :: free_mesh_is_better
 
-  !> A scaled Jacobian below this is poor: about what the free mesher reaches on contours with corners of 30 degrees.
-  real(wp), parameter :: good_shape = 0.5_wp
+  !> A scaled Jacobian below this is poor: an angle of 24 degrees. By default another mesh is due at 15 degrees.
+  real(wp), parameter :: good_shape = 0.4_wp
+  !> An expected error is worse that is larger by this factor; below it the rows of zones along the contacts count for more.
+  real(wp), parameter :: larger_error = 1.25_wp
 
 contains
 
-  !> Elements of a mesh with the same distribution of sizes whose mean error is at its limit: in the plane errors of order p go with
-  !> the number of elements to the power -p/2.
-  pure function elements_at_limit(nelem, expected, order) result(number)
-    integer, intent(in) :: nelem
-    type(prediction_t), intent(in) :: expected
-    real(wp), intent(in) :: order   !! p
-    real(wp) :: number
-
-    number = nelem*expected%mean**(2/order)
-  end function elements_at_limit
-
-  !> Where the mesh by zones is of poor shape: is the one without of better shape? Else: does it need fewer elements for the same
-  !> error?
-  pure function free_mesh_is_better(zones, zones_elements, free, free_elements) result(better)
+  !> Where a mesh is of poor shape: is the one without zones of better shape? Else: is that by zones expected to have the larger error?
+  !> Errors below the limit the sizes were requested for are all good.
+  pure function free_mesh_is_better(zones, zones_expected, free, free_expected) result(better)
     type(mesh_check_t), intent(in) :: zones, free
-    real(wp), intent(in) :: zones_elements, free_elements   !! at the limit of the error
+    type(prediction_t), intent(in) :: zones_expected, free_expected
     logical :: better
 
     if (min(zones%scaled_jacobian, free%scaled_jacobian) < good_shape) then
       better = free%scaled_jacobian > zones%scaled_jacobian
     else
-      better = free_elements < zones_elements
+      better = zones_expected%mean > larger_error*max(1.0_wp, free_expected%mean)
     end if
   end function free_mesh_is_better
 

@@ -13,7 +13,7 @@ from remdata_bench import exponent, measure  # noqa: E402
 from support import Checks  # noqa: E402
 
 MESHES = [(36, 54), (73, 110)]
-TASKS = ["read", "contour", "sizes", "zones", "mesh", "transfer", "contact", "write"]
+TASKS = ["read", "contour", "sizes", "zones", "mesh", "free", "transfer", "contact", "write"]
 LARGEST_EXPONENT = 1.5  # 1.0 measured; all pairs of elements would be 2
 
 
