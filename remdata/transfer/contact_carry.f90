@@ -29,6 +29,9 @@ module contact_carry
     integer, allocatable :: point(:), element(:)
   end type interval_points_t
 
+  !> Arc lengths from the start of an interval are equal to this share of it.
+  real(wp), parameter :: round_off = 1.0e-9_wp
+
 contains
 
   !> Contact variables and status of all groups of the new solution; open outside of contact intervals. Their integrals along all
@@ -163,10 +166,11 @@ contains
     type(interval_points_t), intent(inout) :: row
     real(wp), allocatable :: xi(:), weight(:)
     logical :: inside(size(scene%groups(g)%connectivity, 2))
-    real(wp) :: jacobian, at
+    real(wp) :: jacobian, at, limits(2)
     integer :: ends(2), k, e, p
 
     call line_rule(scene%groups(g)%rule, xi, weight)
+    limits = [minval(row%s), maxval(row%s)]
     associate (sides => scene%groups(g)%connectivity)
       ends(1) = sides(1, row%element(minloc(row%s, 1)))
       ends(2) = sides(3, row%element(maxloc(row%s, 1)))
@@ -179,7 +183,7 @@ contains
           jacobian = line_jacobian(scene%mesh%coordinates(:, sides(:, e)), at, scene%plane_state == axisymmetric)
           do p = 1, size(xi)
             if (abs(xi(p) - at) > 0) cycle
-            call add_point(merge(0.0_wp, row%length, k == 1), weight(p)*jacobian, p, e, row)
+            call add_point(limits(k), weight(p)*jacobian, p, e, row)
           end do
         end do
       end do
@@ -240,8 +244,10 @@ contains
         if (e == 0) cycle
         from = modulo(arc_length_at(boundary, mesh%sides(k)%from) - start, total)
         to = modulo(arc_length_at(boundary, mesh%sides(k)%to) - start, total)
-        if (from > row%length) from = 0
-        if (.not. to > from) to = row%length
+        if (from > row%length) from = from - total
+        if (.not. to > from) to = to + total
+        if (abs(from) <= round_off*row%length) from = 0
+        if (abs(to - row%length) <= round_off*row%length) to = row%length
         do p = 1, size(xi)
           call add_point(from + 0.5_wp*(1 + xi(p))*(to - from), &
                          weight(p)*line_jacobian(mesh%coordinates(:, mesh%sides(k)%nodes), xi(p), &
@@ -250,10 +256,12 @@ contains
       end do
     end associate
     if (size(unsorted%s) > 0) call add_neighbours(scene, g, unsorted)
-    allocate (order(size(unsorted%s)))
-    taken = .false.
+    ! a side may begin before the interval or end behind it, where an end of contact was too close to another end of sides
+    taken(:size(unsorted%s)) = unsorted%s < 0 .or. unsorted%s > row%length
+    if (all(taken(:size(unsorted%s)))) taken(:size(unsorted%s)) = .false.
+    allocate (order(count(.not. taken(:size(unsorted%s)))))
     do k = 1, size(order)
-      order(k) = minloc(unsorted%s, 1, mask=.not. taken(:size(order)))
+      order(k) = minloc(unsorted%s, 1, mask=.not. taken(:size(unsorted%s)))
       taken(order(k)) = .true.
     end do
     row%s = unsorted%s(order)

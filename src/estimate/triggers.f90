@@ -1,9 +1,10 @@
 !> Why a new mesh is due at an accepted instant: every limit of the card REMSH that is passed.
 !>
-!> Errors, shapes, contacts and distress wait until the mesh has made its least number of steps; times and strokes do not. Where a
-!> new mesh has itself an error or bad elements beyond the limit, another one would be no better: it is due when they are worse by
-!> half.
+!> Errors, shapes, contacts and distress wait until the mesh has made its least number of steps; times and strokes do not, nor an
+!> element of a new mesh that is turned over in its first steps: it takes its neighbours along, until the contour laps. Where a new
+!> mesh has itself an error or bad elements beyond the limit, another one would be no better: it is due when they are worse by half.
 module triggers
+  use acceptance, only: is_on_probation
   use contact_quality, only: measure_misfit, misfit_t
   use fields, only: displacement_field, pilot_field
   use kinds, only: eps, wp
@@ -35,6 +36,8 @@ contains
       if (solution%estimate%stress > limit) call add(found, 'stress_error', solution%estimate%stress, limit)
       if (any(abs(scene%remesh%shape) < never)) call find_bad_shapes(scene, solution, found)
       if (scene%remesh%contact < never) call find_misfits(scene, solution, found)
+    else if (any(abs(scene%remesh%shape) < never) .and. is_on_probation(solution%probation)) then
+      call find_bad_shapes(scene, solution, found, only_turned_over=.true.)
     end if
     do k = 1, size(scene%remesh%times)
       if (abs(scene%remesh%times(k) - solution%time) <= 64*eps*scene%strategy%end_time) &
@@ -84,10 +87,11 @@ contains
   end function has_passed
 
   !> Shapes beyond their limits, when more elements than allowed have one: each criterion with its worst element.
-  pure subroutine find_bad_shapes(scene, solution, found)
+  pure subroutine find_bad_shapes(scene, solution, found, only_turned_over)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(trigger_t), allocatable, intent(inout) :: found(:)
+    logical, intent(in), optional :: only_turned_over
     type(shape_places_t) :: places
     real(wp) :: measures(ncriteria), worst(ncriteria), x(2, size(scene%mesh%coordinates, 2)), share, first, limit
     integer :: group(ncriteria), element(ncriteria), g, e, k, n, nbad, nfirst
@@ -123,6 +127,9 @@ contains
         end where
       end do
     end do
+    if (present(only_turned_over)) then
+      if (only_turned_over .and. .not. turned_over) return
+    end if
     share = real(nbad, wp)/max(n, 1)
     first = real(nfirst, wp)/max(n, 1)
     limit = scene%remesh%bad_share
