@@ -54,6 +54,8 @@ module remesh_scene
 
   !> Errors of strain fall with the size to this power (8-node elements).
   real(wp), parameter :: strain_order = 2.0_wp
+  !> Free sides from a corner to contact that are shorter than this share of the smallest element are dropped.
+  real(wp), parameter :: least_free = 0.2_wp
   !> Attempts at a mesh of good shape: smoothing, then finer.
   integer, parameter :: attempts = 3
 
@@ -90,7 +92,8 @@ contains
     if (first) then
       call contours_of_cards(old, contours, facts%contour, error)
     else
-      call build_contours(old, before, ends, contour_options_t(), contours, facts%contour, error)
+      call build_contours(old, before, ends, contour_options_t(least_free=least_free*max(old%remesher%smallest, 0.0_wp)), &
+                          contours, facts%contour, error)
     end if
     if (allocated(error)) return
     call begin_task(facts, 'mesh', 'sizes')

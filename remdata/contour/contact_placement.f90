@@ -28,6 +28,8 @@ module contact_placement
     !> Gaps no wider than this share of a side, and no longer than some sides, are small gaps: their ends are not resolved by the
     !> mesh.
     real(wp) :: small_gap_width = 0.1_wp, small_gap_length = 2.0_wp
+    !> Free sides that lead from a corner to contact are dropped when they are shorter [length].
+    real(wp) :: least_free = 0.0_wp
   end type contour_options_t
 
   !> Old sides that turn by less than a corner may form one on the die: corners are kept, and sides are steep, from this share of

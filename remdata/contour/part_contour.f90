@@ -20,6 +20,7 @@ module part_contour
   use errors, only: error_t, exit_bug, exit_no_convergence, fail
   use kinds, only: wp
   use scene, only: axisymmetric, is_solid, scene_t
+  use short_free_sides, only: drop_short_sides
   use side_tags, only: find_tags, held_nodes, side_tags_t
   use solution, only: present_coordinates, solution_t
   use text, only: to_text
@@ -214,7 +215,7 @@ contains
 
     round = scene%plane_state == axisymmetric
     contour%volume_before = volume_of_loop(contour%loop, uncorrected, round)
-    call assemble_boundary(contour%loop, contour%tags, x, options%corner_turn, joints, contour%contacts, contour%boundary)
+    call draw_boundary(x, options, joints, contour)
     contour%volume_after = volume_inside(contour%boundary, round)
     if (size(contour%contacts) == 0) return
     moved = x
@@ -233,7 +234,7 @@ contains
       call shift_sides(contour%loop, may_move, held, round, gain, moved, shift, moves)
       if (.not. moves) exit
       contour%shift = contour%shift + shift
-      call assemble_boundary(contour%loop, contour%tags, moved, options%corner_turn, joints, contour%contacts, contour%boundary)
+      call draw_boundary(moved, options, joints, contour)
       contour%volume_after = volume_inside(contour%boundary, round)
     end do
     contour%restored = abs(contour%volume_before - contour%volume_after) <= kept_volume*abs(contour%volume_before)
@@ -245,6 +246,17 @@ contains
       end do
     end do
   end subroutine correct
+
+  !> The boundary curve of a contour with its nodes at x.
+  pure subroutine draw_boundary(x, options, joints, contour)
+    real(wp), intent(in) :: x(:, :)   !! (2, nnode) [length]
+    type(contour_options_t), intent(in) :: options
+    type(side_point_t), intent(in) :: joints(:)   !! (njoint) ends of contact with other bodies
+    type(contour_t), intent(inout) :: contour
+
+    call assemble_boundary(contour%loop, contour%tags, x, options%corner_turn, joints, contour%contacts, contour%boundary)
+    if (options%least_free > 0) call drop_short_sides(options%least_free, contour%tags, contour%contacts, contour%boundary)
+  end subroutine draw_boundary
 
   !> Largest distance from a contour to where the solver found ends of contact that are kept [length].
   pure function off_ends(contour, x) result(off)

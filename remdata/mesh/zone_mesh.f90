@@ -26,7 +26,7 @@ module zone_mesh
     !> Passes of smoothing, 0 for lines as they are interpolated.
     integer :: passes = 12
     !> Elements with a smaller sine between their lines are untangled, 0: none.
-    real(wp) :: least_sine = 0.3_wp
+    real(wp) :: least_sine = 0.4_wp
   end type mesh_settings_t
 
   !> A side of an element on the contour, the part on its left.

@@ -3,7 +3,7 @@
 
 usage: run_neighbours.py [--seed S] [--number N] [--first K] [-v] [-k]     default: seed 1, the first 2 of them
 
-Neighbour K of a seed is the same whatever N is. Ends with 0 or 3, where 3 comes with a reason; at least 57 of 60 with 0. Prints a table.
+Neighbour K of a seed is the same whatever N is. Ends with 0 or 3, where 3 comes with a reason; at least 57 of 60 with 0. Prints a table, and one of the changes of the die force at new meshes (force_changes.py).
 """
 import os
 import random
@@ -11,7 +11,7 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from scenes import HEAD, SCENES, line, run_scene  # noqa: E402
+from scenes import HEAD, SCENES, badly_shaped, force_table, line, run_scene  # noqa: E402
 from support import DONE, NO_CONVERGENCE, Checks  # noqa: E402
 
 FAILED = 3 / 60
@@ -34,17 +34,20 @@ def value_of(option, default):
 def main():
     checks = Checks()
     seed, number, first = value_of("--seed", 1), value_of("--number", 2), value_of("--first", 0)
-    failed = 0
+    failed, outs = 0, []
     print("\n".join(HEAD))
     for k in range(first, first + number):
         name, parameters = draw(seed, k)
         found = run_scene(name, checks.path(f"{k}"), parameters)
         failed += found["code"] != DONE
+        outs.append(found["out"])
+        checks.that(not badly_shaped(found), f"{name} {seed}/{k}: shape of the meshes", badly_shaped(found))
         said = ", ".join(f"{key} {value:g}" for key, value in parameters.items())
         reason = found["said"].splitlines()[0] if found["code"] != DONE and found["said"] else ""
         print(line(found, f"{seed}/{k}: {said} {reason}"), flush=True)
         checks.that(found["code"] == DONE or (found["code"] == NO_CONVERGENCE and reason), f"{name} {seed}/{k}: 0, or 3 with a reason",
                     (found["code"], found["said"]))
+    print("\n".join(["", *force_table(outs)]))
     checks.that(failed <= max(FAILED * number, 0), "neighbours that end with 3", f"{failed} of {number}")
     checks.end()
 

@@ -12,7 +12,7 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from scenes import HEAD, SCENES, asks_by_remsh_alone, checked, deck_of, finer_deck, line, run_scene  # noqa: E402
+from scenes import HEAD, SCENES, asks_by_remsh_alone, badly_shaped, checked, deck_of, finer_deck, force_table, line, run_scene  # noqa: E402
 from support import DONE, Checks  # noqa: E402
 
 QUICK = ("bimetal", "side_pressing", "teeth")
@@ -48,6 +48,7 @@ def main():
         checks.that(abs(found["drift"]) < DRIFT, f"{name}: volume", found["drift"])
         checks.that(found["smallest"] > SMALLEST, f"{name}: steps", found["smallest"])
         checks.that(found["refused"] <= max(1, REFUSED * found["meshes"]), f"{name}: tries refused", found["refused"])
+        checks.that(not badly_shaped(found), f"{name}: shape of the meshes", badly_shaped(found))
         if "--finer" not in sys.argv[1:]:
             continue
         fine = run_scene(name, checks.path(name + ".finer"), deck=finer_deck(name, checks.folder))
@@ -56,6 +57,7 @@ def main():
             words += ": force of the deck " + ", ".join(
                 f"{100 * (force(found, share) / force(fine, share) - 1):+.2f} % at {share:g}" for share in (0.25, 0.5, 0.75, 1.0))
         print(line(fine, words), flush=True)
+    print("\n".join(["", *force_table([checks.path(name) for name in names])]))
     checks.end()
 
 

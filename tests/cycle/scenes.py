@@ -5,7 +5,8 @@ import os
 import re
 import time
 
-from remeshed import ROOT, cycle, tries
+from force_changes import changes_at_ordinary_steps, changes_at_remeshes, described
+from remeshed import ROOT, cycle, facts, tries
 from support import DONE, history, run, said, summary, write
 
 # Each with its die and the parameters that may be drawn, (least, largest).
@@ -25,6 +26,12 @@ SCENES = {
 }
 
 HEAD = ["| scene | code | meshes | tries refused | steps | smallest step / mean | volume drift % | seconds | |", "|---|---|---|---|---|---|---|---|---|"]
+
+
+FORCE_HEAD = ["| change of the force | number | mean % | median % | below 0 % | mean size % | 95 % below % |", "|---|---|---|---|---|---|---|"]
+
+# Limits of every new mesh, and the angle of contour corners below which they do not hold [degrees].
+LEAST_ANGLE, LEAST_JACOBIAN = 20.0, 0.25
 
 
 def deck_of(name):
@@ -85,3 +92,26 @@ def finer_deck(name, folder):
 def line(found, words=""):
     return (f"| {found['name']} | {found['code']} | {found['meshes']} | {found['refused']} | {found['steps']} | {found['smallest']:.3g} | "
             f"{found['drift']:+.4f} | {found['seconds']:.0f} | {words or (found['said'].splitlines() or [''])[0][:160] * (found['code'] != DONE)} |")
+
+
+def badly_shaped(found):
+    """Accepted meshes of a run with a small angle or scaled Jacobian where the contour has no sharp corner: (mesh, angle, Jacobian)."""
+    bad = []
+    for row in tries(found["out"]):
+        if row["accepted"] != "y" or row["action"] == "old mesh":
+            continue
+        mesh = facts(found["out"], int(row["generation [-]"]), "start")["mesh"]
+        if mesh["sharpest_corner"] > LEAST_ANGLE and not (mesh["least_angle"] >= LEAST_ANGLE and mesh["scaled_jacobian"] >= LEAST_JACOBIAN):
+            bad.append((row["generation [-]"], mesh["least_angle"], mesh["scaled_jacobian"]))
+    return bad
+
+
+def force_table(outs):
+    """Changes of the largest die force at the first full steps on new meshes, and at ordinary steps, over all runs."""
+    at_remeshes, ordinary = [], []
+    for out in outs:
+        if os.path.exists(os.path.join(out, "history.csv")):
+            at_remeshes += changes_at_remeshes(out).values()
+            ordinary += changes_at_ordinary_steps(out)
+    rows = (("first full steps on new meshes", at_remeshes), ("ordinary steps", ordinary))
+    return FORCE_HEAD + ["| " + " | ".join([words] + described(values)) + " |" for words, values in rows]

@@ -1,0 +1,129 @@
+!> Short free sides between a corner and the beginning or end of contact beside it.
+!>
+!> A surface that folds onto a die leaves a corner just before the place where contact begins. No mesh resolves a side
+!> much shorter than its smallest element, nor has it good elements in both ends of such a side: the free contour goes
+!> straight to the end of contact instead, which stays where it is.
+module short_free_sides
+  use arcs, only: arc_t
+  use boundary_curves, only: boundary_curve_t, close_boundary, kind_corner, kind_end
+  use contour_assembly, only: contact_t
+  use kinds, only: wp
+  use offset_parabolas, only: point_at
+  use side_tags, only: same_tags, side_tags_t
+  implicit none
+  private
+  public :: drop_short_sides
+
+contains
+
+  !> Drop all runs of free arcs, shorter than `least`, from an end of contact to a corner that only bends: where another set of
+  !> sides, a support or a die begins the corner stays. The arcs of contacts are renumbered.
+  pure subroutine drop_short_sides(least, tags, contacts, boundary)
+    real(wp), intent(in) :: least   !! [length]
+    type(side_tags_t), intent(in) :: tags
+    type(contact_t), intent(inout) :: contacts(:)   !! (ncontact)
+    type(boundary_curve_t), intent(inout) :: boundary
+    logical :: dropped(size(boundary%arcs))
+    integer, allocatable :: kept(:)
+    integer :: k
+
+    dropped = .false.
+    do k = 1, size(contacts)
+      if (contacts(k)%ends) call drop_run(least, tags, contacts(k)%next, 1, boundary, dropped)
+      if (contacts(k)%begins) call drop_run(least, tags, neighbour(contacts(k)%first, -1, size(dropped)), -1, boundary, dropped)
+    end do
+    if (.not. any(dropped)) return
+    do k = 1, size(contacts)
+      contacts(k)%first = new_number(contacts(k)%first, dropped)
+      contacts(k)%next = new_number(contacts(k)%next, dropped)
+    end do
+    kept = pack([(k, k=1, size(dropped))], .not. dropped)
+    boundary%arcs = boundary%arcs(kept)
+    boundary%kinds = boundary%kinds(kept)
+    call close_boundary(boundary%corner_turn, boundary)
+  end subroutine drop_short_sides
+
+  !> Next arc of n along the curve (towards = 1), or the one before (-1).
+  pure function neighbour(k, towards, n) result(number)
+    integer, intent(in) :: k, towards, n
+    integer :: number
+
+    number = modulo(k + towards - 1, n) + 1
+  end function neighbour
+
+  !> Number of an arc, or of the first one after it that is kept, among those that are kept.
+  pure function new_number(k, dropped) result(number)
+    integer, intent(in) :: k
+    logical, intent(in) :: dropped(:)   !! (narc)
+    integer :: number
+    integer :: arc
+
+    arc = k
+    do while (dropped(arc))
+      arc = neighbour(arc, 1, size(dropped))
+    end do
+    number = count(.not. dropped(:arc))
+  end function new_number
+
+  !> The run from an arc at an end of contact on, away from it.
+  pure subroutine drop_run(least, tags, from, towards, boundary, dropped)
+    real(wp), intent(in) :: least   !! [length]
+    type(side_tags_t), intent(in) :: tags
+    integer, intent(in) :: from, towards
+    type(boundary_curve_t), intent(inout) :: boundary
+    logical, intent(inout) :: dropped(:)   !! (narc)
+    real(wp) :: length
+    logical :: run(size(dropped))
+    integer :: k, next, joint
+
+    run = .false.
+    length = 0
+    k = from
+    do
+      next = neighbour(k, towards, size(dropped))
+      ! the joint between both is where the later one begins
+      joint = merge(next, k, towards > 0)
+      if (.not. (is_free(boundary%arcs(k)) .and. is_free(boundary%arcs(next))) .or. dropped(k) .or. dropped(next)) return
+      if (.not. same_tags(tags, boundary%arcs(k)%side, boundary%arcs(next)%side)) return
+      length = length + boundary%arc_length(k) - boundary%arc_length(k - 1)
+      if (length > least) return
+      run(k) = .true.
+      if (boundary%kinds(joint) == kind_corner) exit
+      if (boundary%kinds(joint) /= kind_end) return
+      k = next
+    end do
+    associate (first => boundary%arcs(from))
+      if (towards > 0) then
+        boundary%arcs(next) = redrawn(boundary%arcs(next), point_at(first, first%range(1)), 1)
+        boundary%kinds(next) = boundary%kinds(from)
+      else
+        boundary%arcs(next) = redrawn(boundary%arcs(next), point_at(first, first%range(2)), 2)
+      end if
+    end associate
+    dropped = dropped .or. run
+  end subroutine drop_run
+
+  pure function is_free(arc) result(yes)
+    type(arc_t), intent(in) :: arc
+    logical :: yes
+
+    yes = arc%interval == 0 .and. arc%die == 0
+  end function is_free
+
+  !> The part's parabola with one of its ends at another point.
+  pure function redrawn(arc, point, which) result(one)
+    type(arc_t), intent(in) :: arc
+    real(wp), intent(in) :: point(2)   !! [length]
+    integer, intent(in) :: which       !! end: 1 or 2
+    type(arc_t) :: one
+    integer :: i
+
+    one = arc
+    do i = 1, 3
+      one%points(:, i) = point_at(arc, arc%range(1) + 0.5_wp*(i - 1)*(arc%range(2) - arc%range(1)))
+    end do
+    one%points(:, 2*which - 1) = point
+    one%range = [-1.0_wp, 1.0_wp]
+  end function redrawn
+
+end module short_free_sides
