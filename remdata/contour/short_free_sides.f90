@@ -37,7 +37,7 @@ contains
       contacts(k)%first = new_number(contacts(k)%first, dropped)
       contacts(k)%next = new_number(contacts(k)%next, dropped)
     end do
-    kept = pack([(k, k=1, size(dropped))], .not. dropped)
+    kept = pack([(k, k=1, size(dropped))],.not. dropped)
     boundary%arcs = boundary%arcs(kept)
     boundary%kinds = boundary%kinds(kept)
     call close_boundary(boundary%corner_turn, boundary)

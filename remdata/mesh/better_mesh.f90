@@ -17,8 +17,8 @@ module better_mesh
 
 contains
 
-  !> Where a mesh is of poor shape: is the one without zones of better shape? Else: is that by zones expected to have the larger error?
-  !> Errors below the limit the sizes were requested for are all good.
+  !> Where a mesh is of poor shape: is the one without zones of better shape? Else: is that by zones expected to have the larger
+  !> error? Errors below the limit the sizes were requested for are all good.
   pure function free_mesh_is_better(zones, zones_expected, free, free_expected) result(better)
     type(mesh_check_t), intent(in) :: zones, free
     type(prediction_t), intent(in) :: zones_expected, free_expected

@@ -12,8 +12,8 @@ module remesh_defaults
   public :: area_in, set_default_limits, set_default_sizes
 
   !> Shapes at which an element does its work badly but does it still, for every single element: a new mesh has none like these
-  !> (angles from 20 degrees, scaled Jacobians from 0.25, middle nodes in the middle third), and each is some steps of distortion away
-  !> from failing.
+  !> (angles from 20 degrees, scaled Jacobians from 0.25, middle nodes in the middle third), and each is some steps of distortion
+  !> away from failing.
   real(wp), parameter :: angles(2) = [15.0_wp, 165.0_wp], least_scaled = 0.2_wp, middle = 0.4_wp, aspect = 10.0_wp
   !> Depth of sides between their points over what the law allows: 5 % of a side where PENETR is 1e-3. What a finer mesh can mend
   !> begins there; sides that roll onto a die are as deep as 1 % on any mesh.
