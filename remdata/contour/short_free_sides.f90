@@ -25,12 +25,22 @@ contains
     type(boundary_curve_t), intent(inout) :: boundary
     logical :: dropped(size(boundary%arcs))
     integer, allocatable :: kept(:)
-    integer :: k
+    integer :: k, last
 
     dropped = .false.
     do k = 1, size(contacts)
-      if (contacts(k)%ends) call drop_run(least, tags, contacts(k)%next, 1, boundary, dropped)
-      if (contacts(k)%begins) call drop_run(least, tags, neighbour(contacts(k)%first, -1, size(dropped)), -1, boundary, dropped)
+      associate (interval => contacts(k)%interval)
+        ! the solver may have found the end on the sides that are dropped, a little off the node where it is kept
+        if (contacts(k)%ends) then
+          call drop_run(least, tags, contacts(k)%next, 1, boundary, dropped)
+          if (dropped(contacts(k)%next)) interval%found(2) = interval%to
+        end if
+        if (contacts(k)%begins) then
+          last = neighbour(contacts(k)%first, -1, size(dropped))
+          call drop_run(least, tags, last, -1, boundary, dropped)
+          if (dropped(last)) interval%found(1) = interval%from
+        end if
+      end associate
     end do
     if (.not. any(dropped)) return
     do k = 1, size(contacts)
