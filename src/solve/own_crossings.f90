@@ -1,7 +1,9 @@
 !> Bodies that pass through themselves: free sides of one body that cross at the end of a step.
 !>
 !> Nothing but contact keeps the sides of a body apart, so a body without it may fold through itself in equilibrium. Sides that
-!> face each other in contact overlap by the depth of contact: where a point of either is in contact, they do not count.
+!> face each other in contact overlap by the depth of contact: where a point of either is in contact, they do not count. Nor does a
+!> loop of few sides that encloses hardly anything, where a fold has used up a side; nor do neighbours, whose parabolas may cross
+!> beside their common node in a distorted mesh: the shape of elements is judged elsewhere.
 module own_crossings
   use arc_crossings, only: box_of_chords, crossings_between, most_crossings
   use bodies, only: bodies_of_nodes
@@ -12,14 +14,17 @@ module own_crossings
   use kinds, only: wp
   use law_api, only: contact_open
   use offset_parabolas, only: offset_parabola_t, point_at
+  use plane_vectors, only: cross
   use scene, only: is_solid, role_contact, scene_t
   use solution, only: solution_t
+  use vectors, only: length_of
   implicit none
   private
   public :: free_sides_t, list_free_sides, find_own_crossing, own_crossing_t
 
-  !> Crossings this near to an end of both sides, in parent coordinates, are the node that they share.
-  real(wp), parameter :: at_node = 1.0e-3_wp
+  !> A loop of at most so many sides counts when its area is above this share of the product of the lengths of both sides that cross.
+  integer, parameter :: few_sides = 4
+  real(wp), parameter :: small_area = 1.0e-2_wp
 
   !> Free sides of all bodies.
   type :: free_sides_t
@@ -105,12 +110,12 @@ contains
       do m = 1, found
         k = meeting(m)
         if (k <= i .or. sides%body(k) /= sides%body(i)) cycle
-        if (part_at_node(sides%nodes([1, 3], i), sides%nodes([1, 3], k), arcs(i)%points, arcs(k)%points)) cycle
+        if (are_neighbours(sides%nodes(:, i), sides%nodes(:, k))) cycle
         call crossings_between(arcs(i), arcs(k), number, xi)
         do r = 1, number
-          if (at_shared_node(sides%nodes([1, 3], i), sides%nodes([1, 3], k), xi(:, r))) cycle
           if (.not. allocated(held)) held = nodes_in_contact(scene, solution)
           if (any(held(sides%nodes(:, i))) .or. any(held(sides%nodes(:, k)))) cycle
+          if (is_small(sides%nodes, arcs, [i, k], xi(:, r)) .or. is_small(sides%nodes, arcs, [k, i], xi([2, 1], r))) cycle
           crossing%found = .true.
           crossing%group = sides%group(i)
           crossing%point = point_at(arcs(i), xi(1, r))
@@ -140,64 +145,57 @@ contains
     end associate
   end function present_nodes
 
-  !> Both sides end with one node and leave it in directions more than a right angle apart: they meet nowhere else. A parabola lies
-  !> in the triangle of its Bezier points.
-  pure function part_at_node(one, two, x, y) result(apart)
-    integer, intent(in) :: one(2), two(2)    !! first and last node
-    real(wp), intent(in) :: x(2, 3), y(2, 3)
-    logical :: apart
-    real(wp) :: a(2, 2), b(2, 2)
-    integer :: i, k
+  !> Sides with a node in common.
+  pure function are_neighbours(one, two) result(yes)
+    integer, intent(in) :: one(3), two(3)   !! nodes
+    logical :: yes
 
-    apart = .false.
-    do i = 1, 2
-      do k = 1, 2
-        if (one(i) /= two(k)) cycle
-        a = ways_from(x, i)
-        b = ways_from(y, k)
-        apart = all(matmul(transpose(a), b) < 0)
+    yes = any(one(1) == two([1, 3])) .or. any(one(3) == two([1, 3]))
+  end function are_neighbours
+
+  !> The contour goes from a place on one side to one on another within few sides, and the loop that closes there is small.
+  pure function is_small(nodes, arcs, pair, xi) result(small)
+    integer, intent(in) :: nodes(:, :)   !! (3, nside), walked with the body on the left
+    type(offset_parabola_t), intent(in) :: arcs(:)
+    integer, intent(in) :: pair(2)    !! sides
+    real(wp), intent(in) :: xi(2)     !! places on them
+    logical :: small
+    integer, parameter :: parts = 8
+    real(wp) :: area, origin(2), from(2), to(2), start
+    integer :: side, step, i
+
+    small = .false.
+    area = 0
+    side = pair(1)
+    start = xi(1)
+    origin = point_at(arcs(side), start)
+    do step = 1, few_sides
+      from = point_at(arcs(side), start)
+      do i = 1, parts
+        to = point_at(arcs(side), start + (merge(xi(2), 1.0_wp, side == pair(2)) - start)*i/parts)
+        area = area + 0.5_wp*cross(from - origin, to - origin)
+        from = to
+      end do
+      if (side == pair(2)) then
+        small = abs(area) <= small_area*length_of(chord(pair(1)))*length_of(chord(pair(2)))
         return
-      end do
+      end if
+      i = nodes(3, side)
+      side = findloc(nodes(1, :), i, dim=1)
+      if (side == 0) return
+      start = -1
     end do
 
   contains
 
-    !> From an end of a parabola to its other Bezier points.
-    pure function ways_from(x, i) result(ways)
-      real(wp), intent(in) :: x(2, 3)
-      integer, intent(in) :: i
-      real(wp) :: ways(2, 2)
+    pure function chord(side)
+      integer, intent(in) :: side
+      real(wp) :: chord(2)
 
-      ways(:, 1) = 2*x(:, 2) - 0.5_wp*(x(:, 1) + x(:, 3)) - x(:, 2*i - 1)
-      ways(:, 2) = x(:, 5 - 2*i) - x(:, 2*i - 1)
-    end function ways_from
+      chord = arcs(side)%points(:, 3) - arcs(side)%points(:, 1)
+    end function chord
 
-  end function part_at_node
-
-  !> The crossing is a node that both sides end with.
-  pure function at_shared_node(one, two, xi) result(shared)
-    integer, intent(in) :: one(2), two(2)   !! first and last node
-    real(wp), intent(in) :: xi(2)
-    logical :: shared
-    integer :: i, k
-
-    shared = .false.
-    do i = 1, 2
-      do k = 1, 2
-        shared = shared .or. (one(i) == two(k) .and. abs(xi(1) - end_of(i)) <= at_node .and. abs(xi(2) - end_of(k)) <= at_node)
-      end do
-    end do
-
-  contains
-
-    pure function end_of(i) result(xi)
-      integer, intent(in) :: i
-      real(wp) :: xi
-
-      xi = real(2*i - 3, wp)
-    end function end_of
-
-  end function at_shared_node
+  end function is_small
 
   !> Nodes of sides that are in contact with sides of bodies now, of both (nnode).
   pure function nodes_in_contact(scene, solution) result(held)
