@@ -19,6 +19,7 @@ module restore_balance
   use kinds, only: wp
   use linear_solver, only: return_to_chosen
   use newton, only: outcome_t, solve_step
+  use path_record, only: settle_path
   use residual_place, only: least_shape, place_residual, residual_place_t
   use scene, only: scene_t
   use solution, only: solution_t
@@ -133,6 +134,7 @@ contains
     end do
     ! what is left is found by the first step, as it finds what moves with the dies
     solution%unbalanced = .false.
+    call settle_path(solution%path)
     equations%mode = mode_advance
     balance%wall = wall_seconds() - started
   end subroutine restore_equilibrium

@@ -5,7 +5,8 @@ module path_record
   implicit none
   private
   public :: path_record_t, path_step_t
-  public :: mean_square, motion_error, note_attempt, note_path_step, start_path, stress_before, stress_error, stress_scale
+  public :: mean_square, motion_error, note_attempt, note_path_step, settle_path, start_path, &
+            stress_before, stress_error, stress_scale
 
   type :: path_step_t
     !> Its errors were estimated, or are taken from those of steps before and after it; one is above what the deck allows.
@@ -16,11 +17,10 @@ module path_record
     real(wp), allocatable :: error(:, :)
     !> Root of the elastic energy, its error by this step, and how much is left at the end of the step of an error at its start.
     real(wp) :: stress = 0.0_wp, stress_error = 0.0_wp, left = 1.0_wp
-    !> It must be shortened by an error (of motion or of stress, `which`) of this size; largest factor for the step that follows.
+    !> Its errors, of motion and of stress, as they are bounded; it must be shortened by them.
+    real(wp) :: sizes(2) = 0.0_wp
     logical :: too_long = .false.
-    integer :: which = 0
-    real(wp) :: size = 0.0_wp
-    !> It is above what the deck allows, and a shorter step was no better.
+    !> It is above what the deck allows, and a shorter step was no better; largest factor for the step that follows.
     logical :: no_better = .false.
     real(wp) :: growth = huge(1.0_wp)
     !> How many times as long the step could be, for errors that are no larger than by default.
@@ -50,9 +50,8 @@ module path_record
     real(wp) :: pending_time = 0.0_wp, pending_square = 0.0_wp, pending_motion = 0.0_wp
     !> Of the last estimate: error of the motion over length times motion [1/time], of the stress over length squared.
     real(wp) :: motion_rate = 0.0_wp, stress_rate = 0.0_wp
-    !> The last attempt at the present step that was shortened: its length, the error, and of what.
-    real(wp) :: tried_length = 0.0_wp, tried_size = 0.0_wp
-    integer :: tried_which = 0
+    !> The last attempt at the present step that was shortened: its length, and its errors of motion and of stress.
+    real(wp) :: tried_length = 0.0_wp, tried_sizes(2) = 0.0_wp
   end type path_record_t
 
   !> Most steps that are left alone after one whose error a shorter step did not lower: once, twice as many each time that it
@@ -65,6 +64,10 @@ module path_record
   integer, parameter :: most_quiet = 4
   !> A motion that bends so many times as much as that of the last estimate, and more than this share, is estimated anew.
   real(wp), parameter :: bends_more = 2.0_wp, least_bend = 0.01_wp
+
+  !> Steps on a new mesh that do without an estimate: what they change beside the motion of the dies, by the return to the yield
+  !> surface and contact found anew, does not fall with their length.
+  integer, parameter :: settling_steps = 2
 
   !> Share of their recent mean below which stresses are small: those that pass through zero, not those that creep has relaxed by
   !> any power of the time down to -1.
@@ -81,6 +84,15 @@ contains
 
     allocate (record%error(2, merge(size(scene%mesh%coordinates, 2), 0, scene%follows_path)), source=0.0_wp)
   end subroutine start_path
+
+  !> The first steps on a new mesh are to come.
+  pure subroutine settle_path(record)
+    type(path_record_t), intent(inout) :: record
+
+    record%quiet = settling_steps
+    record%quiet_length = huge(record%quiet_length)
+    record%quiet_bend = huge(record%quiet_bend)
+  end subroutine settle_path
 
   !> Root of the mean square over the nodes.
   pure function mean_square(displacement) result(root)
@@ -99,8 +111,7 @@ contains
     if (.not. step%too_long) return
     record%shortened = record%shortened + 1
     record%tried_length = dt
-    record%tried_size = step%size
-    record%tried_which = step%which
+    record%tried_sizes = step%sizes
   end subroutine note_attempt
 
   !> Add an accepted step.
@@ -109,7 +120,7 @@ contains
     real(wp), intent(in) :: dt     !! its length [time]
     real(wp), intent(in) :: time   !! its end [time]
     type(path_record_t), intent(inout) :: record
-    real(wp) :: before, share, rate
+    real(wp) :: before, share, rate, least
 
     record%tried_length = 0
     if (step%interpolated) then
@@ -138,7 +149,10 @@ contains
     share = 1
     rate = 0
     if (step%motion > 0) rate = step%motion_error/(step%motion*dt)
-    if (rate > 0) share = 1 + record%pending_motion/(step%motion*dt)*0.5_wp*(1 + record%motion_rate/rate)
+    ! a step much shorter than those without an estimate says no more of each than what it errs itself
+    least = step%motion*dt
+    if (record%pending_time > 0) least = max(least, record%pending_motion*record%pending_square/record%pending_time**2)
+    if (rate > 0) share = 1 + record%pending_motion*0.5_wp*(1/least + record%motion_rate/(rate*step%motion*dt))
     record%error = record%error + share*step%error
     record%moved_error = max(before + mean_square(record%error), 0.0_wp)
     record%stress_error = stress_before(step, dt, record) + step%stress_error
@@ -166,15 +180,19 @@ contains
   end subroutine remember
 
   !> What is left at the end of a step of the errors of the stress before it. Steps since the last estimate are taken to err
-  !> in the mean of that and this one, as the squares of their lengths.
+  !> in the mean of that and this one, as the squares of their lengths, but by no more than this one where it is shorter.
   pure function stress_before(step, dt, record) result(error)
     type(path_step_t), intent(in) :: step
     real(wp), intent(in) :: dt   !! its length [time]
     type(path_record_t), intent(in) :: record
     real(wp) :: error   !! [energy^0.5]
 
+    real(wp) :: length
+
+    length = dt
+    if (record%pending_time > 0) length = max(dt, record%pending_square/record%pending_time)
     error = step%left*(step%left**(record%pending_time/dt)*record%stress_error &
-                       + 0.5_wp*(record%stress_rate + step%stress_error/dt**2)*record%pending_square)
+                       + 0.5_wp*(record%stress_rate + step%stress_error/length**2)*record%pending_square)
   end function stress_before
 
   !> Error of the motion since the start over the motion.

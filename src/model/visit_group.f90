@@ -73,6 +73,7 @@ contains
     call visitor%member('initial', self%initial, kept)
     call visitor%derived('first', 'counted: variables stand one after the other')
     call visitor%derived('needs', 'the law declares only what its material asks for')
+    call visitor%derived('or_needs', 'the law declares only what its material asks for')
   end subroutine visit_state_variable
 
 end module visit_group

@@ -122,8 +122,7 @@ contains
     call visitor%member('motion_rate', self%motion_rate, kept, '1/time', low=0.0_wp)
     call visitor%member('stress_rate', self%stress_rate, kept, 'energy^0.5/time^2')
     call visitor%derived('tried_length', 'of an attempt at a step')
-    call visitor%derived('tried_size', 'of an attempt at a step')
-    call visitor%derived('tried_which', 'of an attempt at a step')
+    call visitor%derived('tried_sizes', 'of an attempt at a step')
   end subroutine visit_path_record
 
   subroutine visit_probation(visitor, self)

@@ -31,7 +31,7 @@ module contact_heat_tangent
   real(wp), parameter :: little = 1.0e-7_wp
 
   !> One element of a group, as the element loop calls it.
-  type :: side_t
+  type :: evaluated_side_t
     integer :: g = 0, e = 0, law = 1
     type(layout_t) :: layout
     !> (ndof) unknowns; (nnode) nodes.
@@ -44,7 +44,7 @@ module contact_heat_tangent
     real(wp), allocatable :: drivers(:, :, :, :)
     !> (ndof, 1) [residual]
     real(wp), allocatable :: force(:, :)
-  end type side_t
+  end type evaluated_side_t
 
 contains
 
@@ -85,7 +85,7 @@ contains
     real(wp), intent(in) :: du(:)
     integer, intent(in) :: g, e
     integer, parameter :: moved(2) = [displacement_field, pilot_field]
-    type(side_t) :: heat, contact
+    type(evaluated_side_t) :: heat, contact
     real(wp) :: length, step
     integer :: k, c, i, field, node, d
 
@@ -121,7 +121,7 @@ contains
     type(instant_t), intent(inout) :: instant
     integer, intent(in) :: d, node, component   !! the unknown; of a node, which, and along which axis
     real(wp), intent(in) :: step                !! [unknown]
-    type(side_t), intent(inout) :: heat, contact
+    type(evaluated_side_t), intent(inout) :: heat, contact
     real(wp) :: force(size(heat%dof), -1:1)
     integer :: ends(2), s, f, m, j, own
 
@@ -193,8 +193,8 @@ contains
   !> What contact has reached drives heat at the end of the step.
   pure subroutine drive(equations, contact, heat)
     type(equations_t), intent(in) :: equations
-    type(side_t), intent(in) :: contact
-    type(side_t), intent(inout) :: heat
+    type(evaluated_side_t), intent(in) :: contact
+    type(evaluated_side_t), intent(inout) :: heat
     integer :: k
 
     associate (source => equations%drivers(heat%g)%source)
@@ -209,7 +209,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(instant_t), intent(in) :: instant
-    type(side_t), intent(inout) :: side
+    type(evaluated_side_t), intent(inout) :: side
     real(wp) :: unused(size(side%dof), size(side%dof), 1)
     type(report_t) :: report
 
@@ -227,7 +227,7 @@ contains
     type(instant_t), intent(in) :: instant
     real(wp), intent(in) :: du(:)
     integer, intent(in) :: g, e
-    type(side_t), intent(out) :: side
+    type(evaluated_side_t), intent(out) :: side
 
     side%g = g
     side%e = e

@@ -8,7 +8,7 @@ module equations
   use elem_registry, only: list_elems
   use elem_weld_source, only: source_factors
   use element_loop, only: element_buffers_t, gather_forces, gather_matrix, run_elements
-  use errors, only: error_t
+  use errors, only: error_t, exit_no_convergence
   use fields, only: displacement_field, field_t, find_field, mechanical_fields, on_nodes, pilot_field, section_field
   use kinds, only: eps, wp
   use kinematics_api, only: kinematics_t
@@ -21,7 +21,7 @@ module equations
   use own_crossings, only: free_sides_t, list_free_sides
   use pairs, only: pairs_differ, pairs_t, start_pairs
   use point_drivers, only: drivers_t, find_drivers, is_scalar, nodal_values
-  use resting_bodies, only: find_loose_bodies, hold_resting
+  use resting_bodies, only: find_loose_bodies, hold_loose, hold_resting, motion_of_loose
   use scene, only: is_solid, role_body, role_second, role_side_load, role_spring, role_volume_load, scene_t
   use sections, only: section_forced
   use solution, only: present_coordinates, solution_t
@@ -96,6 +96,8 @@ module equations
 
   !> Motions below this share of the mesh's size are round-off of coordinates: some eps.
   real(wp), parameter :: round_off_motion = 16*eps
+  !> A body that nothing holds may be carried off where a correction is above this share of the size of the scene.
+  real(wp), parameter :: carried_off = 0.1_wp
 
 contains
 
@@ -639,11 +641,32 @@ contains
       call equations%timers%add('solution', timer)
       call equations%timers%start(timer)
       call solve_linear(solve%solver, solve%pattern, rhs, x, error)
+      if (size(equations%loose) > 0 .and. solve%own(displacement_field)) call solve_held(solve, rhs, x, error)
       call equations%timers%stop(timer)
       do d = 1, equations%dofs%ndof
         if (solve%equation(d) > 0) correction(d) = x(solve%equation(d))
       end do
     end associate
+
+  contains
+
+    !> Bodies that nothing holds have been carried off, or cannot be found: by a matrix that holds them.
+    subroutine solve_held(solve, rhs, x, error)
+      type(solve_t), intent(inout) :: solve
+      real(wp), intent(in) :: rhs(:)
+      real(wp), intent(inout) :: x(:)
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (allocated(error)) then
+        if (error%code /= exit_no_convergence) return
+        deallocate (error)
+      else if (motion_of_loose(equations%dofs, equations%loose, solve%equation, x) <= carried_off*equations%size) then
+        return
+      end if
+      call hold_loose(equations%dofs, equations%loose, solve%pattern, solve%equation, solve%values)
+      call factorise(solve%solver, solve%values, error)
+      if (.not. allocated(error)) call solve_linear(solve%solver, solve%pattern, rhs, x, error)
+    end subroutine solve_held
   end subroutine solve_correction
 
 end module equations

@@ -22,7 +22,7 @@ module own_crossings
   private
   public :: free_sides_t, list_free_sides, find_own_crossing, own_crossing_t
 
-  !> A loop of at most so many sides counts when its area is above this share of the product of the lengths of both sides that cross.
+  !> A loop of at most so many sides counts when its area is above this share of the product of the lengths of the sides that cross.
   integer, parameter :: few_sides = 4
   real(wp), parameter :: small_area = 1.0e-2_wp
 

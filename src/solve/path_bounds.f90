@@ -55,7 +55,8 @@ contains
     if (is_quiet()) then
       outcome%path%interpolated = .true.
       outcome%path%motion = mean_square(on_nodes(equations, outcome%du))
-      outcome%path%growth = max(growth_in_quiet*solution%path%quiet_length/dt, 1.0_wp)
+      if (solution%path%quiet_bend < huge(solution%path%quiet_bend)) &
+        outcome%path%growth = max(growth_in_quiet*solution%path%quiet_length/dt, 1.0_wp)
       call equations%timers%stop(timer)
       return
     end if
@@ -66,6 +67,7 @@ contains
     if (done) call find_spare()
     if (solution%path%unbounded > 0) return
     if (done) then
+      call find_sizes()
       call bound_motion()
       if (outcome%converged) call bound_stress()
     else if (dt > scene%strategy%least_step) then
@@ -81,19 +83,39 @@ contains
       associate (record => solution%path)
         yes = record%quiet > 0 .and. dt <= record%quiet_length .and. outcome%path%bend <= record%quiet_bend &
               .and. .not. record%tried_length > 0 .and. solution%time + dt < scene%strategy%end_time*(1 - 64*eps)
-        if (yes) yes = .not. (at_corner(scene, solution%time) .or. at_corner(scene, solution%time + dt))
+        ! on a new mesh in any case
+        if (yes .and. record%quiet_bend < huge(record%quiet_bend)) &
+          yes = .not. (at_corner(scene, solution%time) .or. at_corner(scene, solution%time + dt))
       end associate
     end function is_quiet
 
-    !> Over the motion, or what it is in the mean of the time where that is more. The share goes with the length.
-    subroutine bound_motion()
+    !> Error of the motion over the motion, or over what it is in the mean of the time where that is more; error of the stress over
+    !> what the deck allows.
+    subroutine find_sizes()
+      associate (step => outcome%path, allowed => allowed_stress())
+        if (step%motion_error > 0) step%sizes(of_motion) = step%motion_error/scale_of_motion()
+        if (allowed > 0) step%sizes(of_stress) = abs(step%stress_error)/allowed
+      end associate
+    end subroutine find_sizes
+
+    pure function scale_of_motion() result(scale)
       real(wp) :: scale
 
+      scale = outcome%path%motion
+      if (solution%time > 0) scale = max(scale, solution%path%moved/solution%time*dt)
+    end function scale_of_motion
+
+    pure function allowed_stress() result(allowed)
+      real(wp) :: allowed
+
+      allowed = scene%strategy%rate_bound*stress_scale(solution%path, outcome%path%stress)
+    end function allowed_stress
+
+    !> The share goes with the length.
+    subroutine bound_motion()
       associate (step => outcome%path, allowed => scene%strategy%path_bound)
-        scale = step%motion
-        if (solution%time > 0) scale = max(scale, solution%path%moved/solution%time*dt)
         if (.not. (allowed > 0 .and. step%motion_error > 0)) return
-        call bound(step%motion_error/scale, allowed, aim*allowed*scale/step%motion_error, of_motion, 'motion')
+        call bound(allowed, aim*allowed/step%sizes(of_motion), of_motion, 'motion')
       end associate
     end subroutine bound_motion
 
@@ -102,7 +124,7 @@ contains
       real(wp) :: allowed, change, least, before, room, next
 
       associate (step => outcome%path, record => solution%path)
-        allowed = scene%strategy%rate_bound*stress_scale(record, step%stress)
+        allowed = allowed_stress()
         if (.not. (allowed > 0 .and. abs(step%stress_error) > 0)) return
         before = sign(1.0_wp, step%stress_error)*stress_before(step, dt, record)
         change = abs(step%stress - record%stress)*dt/(record%pending_time + dt)
@@ -110,8 +132,7 @@ contains
         room = max(allowed - max(before, 0.0_wp), least)
         next = max(allowed - step%left*max(before + abs(step%stress_error), 0.0_wp), least)
         if (abs(step%stress_error) > room) next = room
-        call bound(abs(step%stress_error)/allowed, room/allowed, sqrt(aim*next/abs(step%stress_error)), of_stress, &
-                   'stress')
+        call bound(room/allowed, sqrt(aim*next/abs(step%stress_error)), of_stress, 'stress')
       end associate
     end subroutine bound_stress
 
@@ -128,22 +149,20 @@ contains
       end associate
     end subroutine find_spare
 
-    subroutine bound(error, allowed, factor, which, name)
-      real(wp), intent(in) :: error, allowed
+    subroutine bound(allowed, factor, which, name)
+      real(wp), intent(in) :: allowed
       real(wp), intent(in) :: factor   !! of the length, for the error aimed at
       integer, intent(in) :: which
       character(len=*), intent(in) :: name
 
-      associate (step => outcome%path)
+      associate (step => outcome%path, error => outcome%path%sizes(which))
         if (error <= allowed) then
           step%growth = min(step%growth, max(factor, least_factor))
-        else if (is_in_vain(error, which)) then
+        else if (is_in_vain(which)) then
           step%above = .true.
           step%no_better = .true.
           step%growth = min(step%growth, 1.0_wp)
         else if (dt > scene%strategy%least_step) then
-          step%which = which
-          step%size = error
           call shorten(min(max(factor, least_factor), most_factor), 'error of the '//name//' by the path within the step ' &
                        //to_text(error, 3)//' above '//to_text(allowed, 3))
         else
@@ -154,14 +173,13 @@ contains
     end subroutine bound
 
     !> The attempt before was longer, and its error hardly larger.
-    pure function is_in_vain(error, which) result(yes)
-      real(wp), intent(in) :: error
+    pure function is_in_vain(which) result(yes)
       integer, intent(in) :: which
       logical :: yes
 
       associate (record => solution%path)
-        yes = record%tried_length > dt .and. record%tried_which == which
-        if (yes) yes = error > record%tried_size*(dt/record%tried_length)**least_order
+        yes = record%tried_length > dt
+        if (yes) yes = outcome%path%sizes(which) > record%tried_sizes(which)*(dt/record%tried_length)**least_order
       end associate
     end function is_in_vain
 

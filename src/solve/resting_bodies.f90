@@ -3,7 +3,9 @@
 !> A part that has lost all contact is in equilibrium wherever it is, and so also where the motion of its last step would take it.
 !> Without inertia it has no reason to go on: the prediction of a step leaves such a body where it is, and until a contact closes in
 !> the step the diagonals of its equations are a little larger, as nothing else resists it and the matrix would be singular. That
-!> changes no force. Bodies that supports hold in X and in Y (axisymmetric ones in Y) have no such motion, and are not looked at.
+!> changes no force. One that loses its contact within a step may be carried off by round-off of the forces: where a correction is
+!> large beside the whole scene, or the matrix is singular, it is found again with such diagonals. Bodies that supports hold in X
+!> and in Y (axisymmetric ones in Y) have no such motion, and are not looked at.
 module resting_bodies
   use bodies, only: bodies_of_nodes
   use contact_point, only: at_piece, at_status
@@ -17,7 +19,7 @@ module resting_bodies
   use solution, only: solution_t
   implicit none
   private
-  public :: find_loose_bodies, leave_at_rest, hold_resting
+  public :: find_loose_bodies, leave_at_rest, hold_resting, hold_loose, motion_of_loose
 
   !> What is added to a diagonal, over it: hardly felt by motions that strain the body.
   real(wp), parameter :: hold = 1.0e-6_wp
@@ -118,6 +120,51 @@ contains
       if (pattern%row(k) == pattern%column(k) .and. held(pattern%row(k))) values(k) = (1 + hold)*values(k)
     end do
   end subroutine hold_resting
+
+  !> Increase the diagonals of a matrix for all bodies that supports do not hold.
+  pure subroutine hold_loose(dofs, loose, pattern, equation, values)
+    type(dofs_t), intent(in) :: dofs
+    integer, intent(in) :: loose(:)          !! (nnode) of find_loose_bodies
+    class(matrix_pattern_t), intent(in) :: pattern
+    integer, intent(in) :: equation(:)       !! (ndof) of every unknown, 0 where it has none
+    real(wp), intent(inout) :: values(:)     !! (nnz) [residual/unknown]
+    logical :: held(0:pattern%neq)
+    integer :: c, k
+
+    held = .false.
+    associate (number => dofs%fields(displacement_field)%number)
+      do k = 1, size(loose)
+        if (loose(k) == 0) cycle
+        do c = 1, 2
+          if (number(c, k) > 0) held(equation(number(c, k))) = .true.
+        end do
+      end do
+    end associate
+    do k = 1, pattern%nnz
+      if (pattern%row(k) == pattern%column(k) .and. held(pattern%row(k))) values(k) = (1 + hold)*values(k)
+    end do
+  end subroutine hold_loose
+
+  !> Largest component of a correction of bodies that supports do not hold [length].
+  pure function motion_of_loose(dofs, loose, equation, correction) result(largest)
+    type(dofs_t), intent(in) :: dofs
+    integer, intent(in) :: loose(:)           !! (nnode) of find_loose_bodies
+    integer, intent(in) :: equation(:)        !! (ndof) of every unknown, 0 where it has none
+    real(wp), intent(in) :: correction(:)     !! (neq) [unknown]
+    real(wp) :: largest
+    integer :: c, k
+
+    largest = 0
+    associate (number => dofs%fields(displacement_field)%number)
+      do k = 1, size(loose)
+        if (loose(k) == 0) cycle
+        do c = 1, 2
+          if (number(c, k) == 0) cycle
+          if (equation(number(c, k)) > 0) largest = max(largest, abs(correction(equation(number(c, k)))))
+        end do
+      end do
+    end associate
+  end function motion_of_loose
 
   !> Bodies with a point in contact, on either side, at the start of the step or in its trial state.
   subroutine mark_contacts(scene, solution, trial, loose, acted_on)

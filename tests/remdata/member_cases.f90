@@ -125,6 +125,7 @@ contains
     scene%finite = .false.
     scene%follows_path = .true.
     scene%generation = 3
+    scene%operation = 2
     scene%mesh%origin = scene%mesh%coordinates + 0.1_wp
     call add_die(scene, polyline(reshape([0.5_wp, 0.0_wp, 4.0_wp, 0.0_wp], [2, 2]), [0.5_wp, -1.0_wp, 0.25_wp]))
     sides%name = 'above'
