@@ -172,7 +172,7 @@ contains
     integer, allocatable :: stays(:)
     integer :: k
 
-    stays = pack([(k, k=1, size(nodes, 2))], awake(nodes(2, :)))
+    allocate (stays, source=pack([(k, k=1, size(nodes, 2))], awake(nodes(2, :))))
     if (size(stays) < size(nodes, 2)) nodes = nodes(:, stays)
   end subroutine keep_sides
 

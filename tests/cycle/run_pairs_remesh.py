@@ -161,7 +161,7 @@ def tool(checks):
                 "LAW    c COUL2D\n   PENETR 1.E-3   PHI 0.2\nDIE    top PILOT 0. 25.\n   SEGM 30. 25.   -1. 25.\nDIE    bed SIDES tool 3\n"
                 "CNT2D  billet 2 3 top -3 c\nCNT2D  billet 1 2 bed -3 c\nFIXED  tool 1 Y\nFIXED  tool 4 X\nFIXED  billet 4 X\n"
                 "LIC    press\n   0. 0.   1. -6.\nMOVE   top Y press\nPROBE  below REACT Y tool 1\nSTRAT  0.01 1.E-5 0.02   8 3\nEND\n")
-    rows = remeshed(checks, "tool", add_cards(text(1), remesh("0.3 0.5 0.7 0.85", "1. 3.")), 4)
+    rows = remeshed(checks, "tool", add_cards(text(1), remesh("0.3 0.5 0.7 0.85", "1. 2.")), 4)
     one = plain(checks, "tool", text(2))
     if rows is None or one is None:
         return

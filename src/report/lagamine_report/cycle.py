@@ -10,8 +10,9 @@ from .tables import number, read_object, read_text
 
 WHOLE = ("generation", "try", "step")
 NUMBERS = ("stop_time", "old_elements", "new_elements", "error_before", "error_after", "first_residual", "iterations",
-           "force_change", "energy_change", "depth_change", "least_step_ratio", "first_step_force_change", "laps", "lap_depth", "remdata",
-           "restart")
+           "force_change", "energy_change", "depth_change", "least_step_ratio", "first_step_force_change", "remdata", "restart")
+# Columns that older tables do not have.
+LATER = ("laps", "lap_depth")
 TEXTS = ("trigger", "action", "accepted", "stage", "reason")
 KEEPS_OLD = "old mesh"
 LIMIT = "_limit"
@@ -77,7 +78,7 @@ def read_cycle(folder: str, name: str) -> List[Try]:
         cells = dict(zip(titles, row))
         try:
             whole = [int(cells[title]) for title in WHOLE]
-            numbers = {title: float(cells[title] or "nan") for title in NUMBERS}
+            numbers = {title: float(cells.get(title) or "nan") for title in NUMBERS + LATER}
         except ValueError as error:
             raise ReportError(f"{path}:{line}: damaged: {error}") from error
         tries.append(Try(*whole, numbers, {title: cells[title] for title in TEXTS}))
