@@ -95,12 +95,14 @@ contains
     logical, intent(out) :: found
     type(checkpoint_file_t) :: old_end
     integer :: g, least
+    logical :: restarted
 
     least = generation
     if (s%current%facts%operation > 1) least = 2
     do g = generation, least, -1
       found = any_try(s, g)
-      if (found .and. s%current%facts%operation > 1 .and. .not. file_exists(s%stem//'.'//mesh_name(g, 'restart.json'))) then
+      restarted = file_exists(s%stem//'.'//mesh_name(g, 'restart.json'))
+      if (found .and. s%current%facts%operation > 1 .and. .not. restarted) then
         call look(s%stem//'.'//mesh_name(g - 1, 'end.h5'), old_end)
         found = is_read(old_end)
         if (found) found = is_first_mesh(old_end%facts)
