@@ -155,12 +155,12 @@ contains
     do k = 1, size(force)
       do c = 1, 2
         text = cell(row, columns(2*k + c))
+        ! a die of another operation
+        if (text == 'nan') text = '0'
         read (text, *, iostat=status) parts(c)
         good = good .and. status == 0
       end do
       if (good) force(k) = norm2(parts)
-      ! nan: a die of another operation
-      if (.not. force(k) >= 0) force(k) = 0
     end do
   end subroutine read_row
 

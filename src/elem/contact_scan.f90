@@ -33,24 +33,14 @@ contains
     real(wp), intent(in) :: side(2, 3)   !! nodes in the pilot's axes [length]
     real(wp), intent(in) :: reach        !! [length]
     real(wp) :: depth
-    real(wp) :: depths(nsample), bend, top
     type(closest_point_t) :: closest
     integer :: k
-    real(wp), parameter :: apart = 2.0_wp/(nsample - 1)
 
+    depth = -reach
     do k = 1, nsample
-      call closest_to_side_point(die, side, -1 + apart*(k - 1), reach, closest)
-      depths(k) = merge(closest%d, -reach, closest%piece > 0)
+      call closest_to_side_point(die, side, -1 + 2*real(k - 1, wp)/(nsample - 1), reach, closest)
+      if (closest%piece > 0) depth = max(depth, closest%d)
     end do
-    depth = maxval(depths)
-    k = maxloc(depths, 1)
-    if (.not. depth > 0 .or. k == 1 .or. k == nsample) return
-    ! deeper between them: at the top of the parabola through three
-    bend = depths(k - 1) - 2*depth + depths(k + 1)
-    if (.not. bend < 0) return
-    top = 0.5_wp*(depths(k - 1) - depths(k + 1))/bend
-    call closest_to_side_point(die, side, -1 + apart*(k - 1 + top), reach, closest)
-    if (closest%piece > 0) depth = max(depth, closest%d)
   end function deepest_sample
 
   !> Where contact ends between a position on a side in contact and an open one: a linear guess from the penetrations there, then
