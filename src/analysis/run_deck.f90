@@ -2,16 +2,15 @@
 module run_deck
   use atomic, only: refuse_place
   use blas, only: blas_buffer, blas_build, blas_core_name, keep_blas_to_one_thread
-  use cards_operations, only: list_operations, operations_t, read_operation
+  use cards_operations, only: operations_t
   use closing_table, only: close_run
   use contact_ends, only: contact_end_t
-  use deck_reader, only: deck_t, read_deck
+  use deck_check, only: as_warnings, check_deck, look_at_deck
+  use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use equations, only: equations_t
   use errors, only: error_t, exit_done, exit_input, exit_remesh, exit_signal, fail
-  use exchange, only: open_checkpoint, read_deck_of_checkpoint, read_remesh, read_state, write_checkpoint
+  use exchange, only: read_state, write_checkpoint
   use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
-  use history, only: add_columns
   use kinds, only: wp
   use law_api, only: law_t
   use law_manual, only: law_card, law_list
@@ -20,24 +19,20 @@ module run_deck
   use march, only: march_to_end
   use member_reader, only: member_reader_t
   use memory_limits, only: require_memory
-  use run_record, only: run_t
-  use run_options, only: run_options_t, stem_of
-  use run_version, only: blas_words, version_text
-  use next_operation, only: begin_operation, mesh_for_operation
-  use physics_check, only: check_physics
-  use remesh, only: remesh_t
+  use next_operation, only: begin_operation
   use remeshing, only: drop_triggers
+  use run_input, only: read_input, read_next_operation
+  use run_options, only: run_options_t, stem_of
+  use run_record, only: run_t
+  use run_version, only: blas_words, version_text
   use scene, only: lacks_mesh, scene_t
-  use scene_file, only: write_scene
   use scene_summary, only: scene_lines
   use solution, only: solution_t, start_solution
   use standard_streams, only: print_line, print_lines
-  use steel_files, only: fingerprint_with_files
   use summary, only: run_facts_t, summary_lines, write_summary
   use system, only: catch_signals, caught_signal, directory_exists, join_path, make_directory, remove_file, wall_seconds
   use text, only: join, nearest_word, string_t, to_text
   use threads, only: start_team
-  use unknowns_summary, only: unknowns_lines
   implicit none
   private
   public :: run_options_on_deck, print_law
@@ -147,60 +142,6 @@ contains
     end do
   end subroutine go_on
 
-  !> The scene of the operation after that of a scene, on its mesh.
-  subroutine read_next_operation(deck, diagnostics, operations, scene, step, next, error)
-    type(deck_t), intent(inout), target :: deck
-    type(diagnostics_t), intent(inout), target :: diagnostics
-    type(operations_t), intent(inout) :: operations
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: step
-    type(scene_t), intent(out) :: next
-    type(error_t), allocatable, intent(out) :: error
-    type(remesh_t) :: remesh
-
-    if (scene%generation == scene%operation) then
-      ! no mesh but the deck's own so far
-      call read_operation(deck, operations, scene%operation + 1, next, diagnostics)
-      next%generation = scene%generation + 1
-    else
-      call mesh_for_operation(scene, step, remesh)
-      call read_operation(deck, operations, scene%operation + 1, next, diagnostics, remesh)
-    end if
-    call diagnostics%error(error)
-  end subroutine read_next_operation
-
-  !> --check: every operation in words; where a folder is given also for scripts: the first one as a deck without any.
-  subroutine check_deck(options, deck, diagnostics, operations, scene, error)
-    type(run_options_t), intent(in) :: options
-    type(deck_t), intent(inout), target :: deck
-    type(diagnostics_t), intent(inout), target :: diagnostics
-    type(operations_t), intent(inout) :: operations
-    type(scene_t), intent(in) :: scene
-    type(error_t), allocatable, intent(out) :: error
-    type(scene_t), allocatable :: one
-    character(len=:), allocatable :: ending
-    integer :: k
-
-    if (.not. options%default_out) call make_directory(options%out, error)
-    do k = 1, max(operations%count, 1)
-      if (allocated(error)) return
-      allocate (one)
-      ending = '.scene.json'
-      if (k == max(scene%operation, 1)) then
-        one = scene
-      else
-        call read_operation(deck, operations, k, one, diagnostics)
-        call diagnostics%error(error)
-        if (allocated(error)) return
-      end if
-      if (k > 1) ending = '.'//one%operation_name//ending
-      call print_check(options, one, error)
-      if (.not. (allocated(error) .or. options%default_out)) &
-        call write_scene(join_path(options%out, stem_of(options%deck)//ending), one, error)
-      deallocate (one)
-    end do
-  end subroutine check_deck
-
   !> Bodies that have contours alone: a checkpoint for the remesher, which makes the first mesh.
   subroutine ask_for_mesh(options, scene, solution, run, error)
     type(run_options_t), intent(in) :: options
@@ -224,100 +165,6 @@ contains
     call close_listing(run%listing)
     call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, [contact_end_t ::], error)
   end subroutine ask_for_mesh
-
-  !> Deck and scene, with all mistakes at once.
-  subroutine read_input(options, deck, diagnostics, operations, scene, text, at_rest, checkpoint, error)
-    type(run_options_t), intent(in) :: options
-    type(deck_t), intent(out), target :: deck
-    type(diagnostics_t), intent(inout), target :: diagnostics   !! without mistakes
-    type(operations_t), intent(out) :: operations
-    type(scene_t), intent(out) :: scene
-    character(len=:), allocatable, intent(out) :: text
-    logical, intent(out) :: at_rest   !! there is a new mesh, but no step has been made
-    type(member_reader_t), intent(inout) :: checkpoint   !! open afterwards, where one is resumed
-    type(error_t), allocatable, intent(out) :: error
-    type(remesh_t), allocatable :: remesh
-    type(error_t), allocatable :: unfit
-    logical :: sound
-    integer :: operation, generation
-
-    call read_deck(options%deck, options%overrides, deck, diagnostics)
-    sound = diagnostics%count() == 0
-    if (sound .and. allocated(options%resume)) then
-      call fingerprint_with_files(deck, text)
-      call open_checkpoint(options%resume, checkpoint, unfit)
-      if (.not. allocated(unfit)) call read_mesh_of(checkpoint, text, remesh, unfit)
-    end if
-    call list_operations(deck, operations, diagnostics)
-    operation = 1
-    if (operations%count > 0) call read_all(deck, operations, diagnostics, scene)
-    generation = 1
-    if (allocated(remesh)) then
-      operation = max(remesh%operation, 1)
-      generation = remesh%generation
-      ! the deck's own mesh
-      if (generation == operation) deallocate (remesh)
-    end if
-    ! A deck that could not be opened has no other mistakes.
-    if (operations%count > 0) then
-      if (generation > 1 .and. diagnostics%count() == 0 .and. operation <= operations%count) then
-        call read_operation(deck, operations, operation, scene, diagnostics, remesh)
-        if (.not. allocated(remesh)) scene%generation = generation
-      end if
-    else if (sound .or. size(deck%cards) > 0) then
-      call read_operation(deck, operations, operation, scene, diagnostics, remesh)
-    end if
-    call diagnostics%error(error)
-    if (allocated(remesh)) then
-      if (scene%generation /= remesh%generation) then
-        ! the deck was read without elements of blocks: its errors do not count
-        if (allocated(error)) deallocate (error)
-        call fail(unfit, exit_input, options%resume//': its groups or sides are not those of the deck')
-      end if
-    end if
-    if (.not. allocated(error) .and. allocated(unfit)) call move_alloc(unfit, error)
-    if (.not. allocated(error)) call fingerprint_with_files(deck, text)
-    at_rest = allocated(remesh)
-    if (at_rest) at_rest = remesh%step == 0
-    if (.not. allocated(remesh)) at_rest = lacks_mesh(scene)
-  end subroutine read_input
-
-  !> All operations on the deck's own mesh, for their mistakes, their times and the columns of the history; the first one's scene.
-  subroutine read_all(deck, operations, diagnostics, scene)
-    type(deck_t), intent(inout), target :: deck
-    type(operations_t), intent(inout) :: operations
-    type(diagnostics_t), intent(inout), target :: diagnostics
-    type(scene_t), intent(out) :: scene
-    type(scene_t), allocatable :: one
-    integer :: k
-
-    do k = 1, operations%count
-      allocate (one)
-      call read_operation(deck, operations, k, one, diagnostics)
-      if (k == 1) scene = one
-      if (diagnostics%count() == 0) call add_columns(one, operations%columns)
-      deallocate (one)
-    end do
-  end subroutine read_all
-
-  !> The mesh of a checkpoint, which must come from the same deck: of the deck's own only its generation and operation.
-  subroutine read_mesh_of(checkpoint, text, remesh, error)
-    type(member_reader_t), intent(inout) :: checkpoint
-    character(len=*), intent(in) :: text
-    type(remesh_t), allocatable, intent(out) :: remesh
-    type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: old_path, old_text
-
-    call read_deck_of_checkpoint(checkpoint, old_path, old_text, error)
-    if (allocated(error)) return
-    if (old_text /= text) then
-      call fail(error, exit_input, checkpoint%file%path()//': made from another deck than the one given (it was '//old_path//')', &
-                'resume with the same deck and the same -p options')
-      return
-    end if
-    allocate (remesh)
-    call read_remesh(checkpoint, remesh, error)
-  end subroutine read_mesh_of
 
   !> March, then write summary and listing whatever happened.
   subroutine run_and_report(options, scene, solution, run, error)
@@ -397,69 +244,6 @@ contains
     name = 'summary.json'
     if (run%exit_code == exit_done .and. scene%operation < scene%operations) name = 'summary.'//scene%operation_name//'.json'
   end function summary_name
-
-  !> --check: the scene in words.
-  subroutine print_check(options, scene, error)
-    type(run_options_t), intent(in) :: options
-    type(scene_t), intent(in) :: scene
-    type(error_t), allocatable, intent(out) :: error
-    type(string_t), allocatable :: lines(:), more(:), table(:), warnings(:)
-
-    call scene_lines(scene, lines)
-    allocate (more(0))
-    allocate (table(0), warnings(0))
-    ! the part with which a later operation begins is not known yet
-    if (scene%operation <= 1) call look_at_deck(options, scene, table, warnings, error)
-    if (.not. (allocated(error) .or. lacks_mesh(scene))) call unknowns_lines(scene, more, error)
-    if (allocated(error)) return
-    call print_lines(lines, error)
-    call print_lines(table, error)
-    call print_lines(more, error)
-    call print_lines(as_warnings(warnings), error)
-  end subroutine print_check
-
-  !> What can be told of the deck before a run: of its own mesh or contours, whatever mesh the scene has now. The table of places
-  !> and their dies is empty for a later mesh.
-  subroutine look_at_deck(options, scene, table, warnings, error)
-    type(run_options_t), intent(in) :: options
-    type(scene_t), intent(in) :: scene
-    type(string_t), allocatable, intent(out) :: table(:), warnings(:)
-    type(error_t), allocatable, intent(out) :: error
-    type(law_t), allocatable :: laws(:)
-    type(deck_t), target :: deck
-    type(diagnostics_t), target :: diagnostics
-    type(operations_t) :: operations
-    type(scene_t) :: own
-
-    ! the part with which a later operation begins is not known to its deck
-    if (scene%operation > 1) then
-      allocate (table(0), warnings(0))
-      return
-    end if
-    call list_laws(laws)
-    if (scene%generation == 1) then
-      call check_physics(scene, laws, table, warnings)
-      return
-    end if
-    call read_deck(options%deck, options%overrides, deck, diagnostics)
-    call list_operations(deck, operations, diagnostics)
-    call read_operation(deck, operations, 1, own, diagnostics)
-    call diagnostics%error(error)
-    if (.not. allocated(error)) call check_physics(own, laws, table, warnings)
-    if (allocated(table)) deallocate (table)
-    allocate (table(0))
-  end subroutine look_at_deck
-
-  !> Lines that begin with what they are.
-  pure function as_warnings(lines) result(marked)
-    type(string_t), intent(in) :: lines(:)
-    type(string_t) :: marked(size(lines))
-    integer :: k
-
-    do k = 1, size(lines)
-      marked(k)%s = 'WARNING: '//lines(k)%s
-    end do
-  end function as_warnings
 
   !> --law: the card of a law, or all laws in a list where no name is given.
   subroutine print_law(name, error)

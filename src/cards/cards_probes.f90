@@ -127,7 +127,7 @@ contains
       call cursor%word('the name of a body', unread)
       return
     end if
-    groups = pack([(k, k=1, size(draft%scene%groups))], is_body(draft%scene%groups))
+    groups = pack([(k, k=1, size(draft%scene%groups))], is_solid(draft%scene%groups))
     allocate (names(size(groups)))
     do k = 1, size(groups)
       names(k)%s = draft%scene%groups(groups(k))%name
@@ -135,13 +135,6 @@ contains
     call cursor%name('the name of a body', names, k)
     if (k > 0) body = groups(k)
   end subroutine read_body
-
-  elemental function is_body(group) result(yes)
-    type(group_t), intent(in) :: group
-    logical :: yes
-
-    yes = is_solid(group)
-  end function is_body
 
   !> The node of a body that is nearest to a point.
   pure function nearest_of_body(coordinates, body, x) result(node)

@@ -49,7 +49,7 @@ contains
     integer :: g, i, k
 
     asleep = .false.
-    bodies = pack([(g, g=1, size(scene%groups))], is_body(scene%groups))
+    bodies = pack([(g, g=1, size(scene%groups))], is_solid(scene%groups))
     allocate (names(size(bodies)))
     do k = 1, size(bodies)
       names(k)%s = scene%groups(bodies(k))%name
@@ -74,13 +74,6 @@ contains
     end do
     if (any(asleep)) call take_out(asleep, awake, scene)
   end subroutine put_to_sleep
-
-  elemental function is_body(group) result(yes)
-    type(group_t), intent(in) :: group
-    logical :: yes
-
-    yes = is_solid(group)
-  end function is_body
 
   !> Nodes of bodies that are awake.
   pure subroutine list_awake(scene, asleep, awake)

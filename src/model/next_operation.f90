@@ -83,7 +83,7 @@ contains
       if (is_solid(old%groups(g))) was_there([old%groups(g)%connectivity]) = .true.
     end do
     ! bodies have come or gone: volumes are compared with that of now
-    if (count(is_body(old%groups)) /= count(is_body(new%groups))) after%initial_volume = 0
+    if (count(is_solid(old%groups)) /= count(is_solid(new%groups))) after%initial_volume = 0
     do f = 1, size(after%fields)
       k = find_field(before%fields, after%fields(f)%name)
       if (k == 0 .or. .not. any(after%fields(f)%place == [on_nodes, on_section])) cycle
@@ -148,13 +148,6 @@ contains
       if (.not. change > smooth*maxval(abs(displacement))) return
     end do
   end subroutine place_new_nodes
-
-  elemental function is_body(group) result(yes)
-    type(group_t), intent(in) :: group
-    logical :: yes
-
-    yes = is_solid(group)
-  end function is_body
 
   !> The group of the operation before that goes on as this one, 0 where there is none.
   pure function same_group(old, before, new, fresh, g) result(k)

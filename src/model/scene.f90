@@ -130,7 +130,7 @@ module scene
 contains
 
   !> A body: it has elements of its own, and counts once for contours, errors, results and remeshing.
-  pure function is_solid(group) result(yes)
+  elemental function is_solid(group) result(yes)
     type(group_t), intent(in) :: group
     logical :: yes
 

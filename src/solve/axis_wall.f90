@@ -11,6 +11,7 @@
 !> The force is added to that of the element the side belongs to, before it is gathered: pattern and order of sums stay what they
 !> are, and where no point is below 0 so do all bits. The wall stands still and does no work.
 module axis_wall
+  use bodies, only: corners_of_sides, elements_at_middles
   use contact_point, only: share_of_way
   use dofs, only: dofs_t
   use elem_api, only: report_t
@@ -53,7 +54,6 @@ contains
     type(law_t), intent(in) :: laws(:)   !! (nlaw)
     type(dofs_t), intent(in) :: dofs
     type(axis_wall_t), intent(out) :: wall
-    integer, parameter :: sides(3, 4) = reshape([1, 5, 2, 2, 6, 3, 3, 7, 4, 4, 8, 1], [3, 4])
     integer :: sharing(size(scene%mesh%coordinates, 2)), g, e, k, n, mover
     logical :: wanted
 
@@ -61,15 +61,7 @@ contains
     if (scene%plane_state == axisymmetric) n = 4*sum([(size(scene%groups(g)%connectivity, 2), g=1, size(scene%groups))])
     allocate (wall%group(n), wall%element(n), wall%local(3, n), wall%stiffness(n), wall%length(n))
     allocate (wall%force(size(sharing)), source=0.0_wp)
-    sharing = 0
-    do g = 1, size(scene%groups)
-      if (.not. is_solid(scene%groups(g))) cycle
-      do e = 1, size(scene%groups(g)%connectivity, 2)
-        associate (middle => scene%groups(g)%connectivity(5:8, e))
-          sharing(middle) = sharing(middle) + 1
-        end associate
-      end do
-    end do
+    sharing = elements_at_middles(scene)
     n = 0
     do g = 1, size(scene%groups)
       if (size(wall%group) == 0) exit
@@ -78,13 +70,13 @@ contains
       if (mover == 0) cycle
       do e = 1, size(scene%groups(g)%connectivity, 2)
         do k = 1, 4
-          associate (nodes => scene%groups(g)%connectivity(sides(:, k), e))
+          associate (nodes => scene%groups(g)%connectivity(corners_of_sides(:, k), e))
             wanted = sharing(nodes(2)) == 1 .and. any(dofs%is_free(dofs%fields(displacement_field)%number(1, nodes)))
             if (.not. wanted) cycle
             n = n + 1
             wall%group(n) = mover
             wall%element(n) = e
-            wall%local(:, n) = sides(:, k)
+            wall%local(:, n) = corners_of_sides(:, k)
             wall%length(n) = length_of(scene%mesh%coordinates(:, nodes(3)) - scene%mesh%coordinates(:, nodes(1)))
             wall%stiffness(n) = hardness*modulus_of(scene, laws, mover)*wall%length(n)
           end associate

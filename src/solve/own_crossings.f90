@@ -6,7 +6,7 @@
 !> beside their common node in a distorted mesh: the shape of elements is judged elsewhere.
 module own_crossings
   use arc_crossings, only: box_of_chords, crossings_between, most_crossings
-  use bodies, only: bodies_of_nodes
+  use bodies, only: bodies_of_nodes, corners_of_sides, elements_at_middles
   use box_tree, only: box_tree_t, build_tree, items_meeting
   use contact_point, only: at_piece, at_status
   use dofs, only: dofs_t
@@ -46,29 +46,20 @@ contains
   subroutine list_free_sides(scene, sides)
     type(scene_t), intent(in) :: scene
     type(free_sides_t), intent(out) :: sides
-    integer, parameter :: corners(3, 4) = reshape([1, 5, 2, 2, 6, 3, 3, 7, 4, 4, 8, 1], [3, 4])
     integer :: sharing(size(scene%mesh%coordinates, 2)), body(size(sharing)), g, e, k, n, most
     logical :: wanted
 
     wanted = scene%finite .and. scene%fields(displacement_field)%declared
     most = 0
-    sharing = 0
-    do g = 1, size(scene%groups)
-      if (.not. (wanted .and. is_solid(scene%groups(g)))) cycle
-      most = most + 4*size(scene%groups(g)%connectivity, 2)
-      do e = 1, size(scene%groups(g)%connectivity, 2)
-        associate (middle => scene%groups(g)%connectivity(5:8, e))
-          sharing(middle) = sharing(middle) + 1
-        end associate
-      end do
-    end do
+    if (wanted) most = 4*sum([(size(scene%groups(g)%connectivity, 2), g=1, size(scene%groups))], mask=is_solid(scene%groups))
+    sharing = elements_at_middles(scene)
     allocate (sides%nodes(3, most), sides%group(most))
     n = 0
     do g = 1, size(scene%groups)
       if (.not. (wanted .and. is_solid(scene%groups(g)))) cycle
       do e = 1, size(scene%groups(g)%connectivity, 2)
         do k = 1, 4
-          associate (nodes => scene%groups(g)%connectivity(corners(:, k), e))
+          associate (nodes => scene%groups(g)%connectivity(corners_of_sides(:, k), e))
             if (sharing(nodes(2)) /= 1) cycle
             n = n + 1
             sides%nodes(:, n) = nodes

@@ -100,25 +100,17 @@ contains
     integer, intent(in) :: equation(:)       !! (ndof) of every unknown, 0 where it has none
     logical, intent(in) :: resting(:)        !! (ndof) or of no size
     real(wp), intent(inout) :: values(:)     !! (nnz) [residual/unknown]
-    logical :: held(pattern%neq), acted_on(0:size(loose))
-    integer :: c, k
+    logical :: held(0:pattern%neq), acted_on(0:size(loose))
+    integer :: k
 
     if (.not. any(resting)) return
     acted_on = .false.
     call mark_contacts(scene, solution, .true., loose, acted_on)
-    held = .false.
-    associate (number => dofs%fields(displacement_field)%number)
-      do k = 1, size(loose)
-        if (loose(k) == 0 .or. acted_on(loose(k))) cycle
-        do c = 1, 2
-          if (number(c, k) == 0) cycle
-          if (resting(number(c, k)) .and. equation(number(c, k)) > 0) held(equation(number(c, k))) = .true.
-        end do
-      end do
-    end associate
-    do k = 1, pattern%nnz
-      if (pattern%row(k) == pattern%column(k) .and. held(pattern%row(k))) values(k) = (1 + hold)*values(k)
+    call find_equations(dofs, merge(0, loose, acted_on(loose)), equation, held)
+    do k = 1, size(resting)
+      if (.not. resting(k)) held(equation(k)) = .false.
     end do
+    call enlarge(pattern, held, values)
   end subroutine hold_resting
 
   !> Increase the diagonals of a matrix for all bodies that supports do not hold.
@@ -129,20 +121,9 @@ contains
     integer, intent(in) :: equation(:)       !! (ndof) of every unknown, 0 where it has none
     real(wp), intent(inout) :: values(:)     !! (nnz) [residual/unknown]
     logical :: held(0:pattern%neq)
-    integer :: c, k
 
-    held = .false.
-    associate (number => dofs%fields(displacement_field)%number)
-      do k = 1, size(loose)
-        if (loose(k) == 0) cycle
-        do c = 1, 2
-          if (number(c, k) > 0) held(equation(number(c, k))) = .true.
-        end do
-      end do
-    end associate
-    do k = 1, pattern%nnz
-      if (pattern%row(k) == pattern%column(k) .and. held(pattern%row(k))) values(k) = (1 + hold)*values(k)
-    end do
+    call find_equations(dofs, loose, equation, held)
+    call enlarge(pattern, held, values)
   end subroutine hold_loose
 
   !> Largest component of a correction of bodies that supports do not hold [length].
@@ -152,19 +133,42 @@ contains
     integer, intent(in) :: equation(:)        !! (ndof) of every unknown, 0 where it has none
     real(wp), intent(in) :: correction(:)     !! (neq) [unknown]
     real(wp) :: largest
+    logical :: found(0:size(correction))
+
+    call find_equations(dofs, loose, equation, found)
+    largest = max(0.0_wp, maxval(abs(correction), mask=found(1:)))
+  end function motion_of_loose
+
+  !> Equations of the nodes of some bodies.
+  pure subroutine find_equations(dofs, body, equation, found)
+    type(dofs_t), intent(in) :: dofs
+    integer, intent(in) :: body(:)        !! (nnode), 0 for nodes that are not wanted
+    integer, intent(in) :: equation(:)
+    logical, intent(out) :: found(0:)     !! (0:neq); that of 0 means nothing
     integer :: c, k
 
-    largest = 0
+    found = .false.
     associate (number => dofs%fields(displacement_field)%number)
-      do k = 1, size(loose)
-        if (loose(k) == 0) cycle
+      do k = 1, size(body)
+        if (body(k) == 0) cycle
         do c = 1, 2
-          if (number(c, k) == 0) cycle
-          if (equation(number(c, k)) > 0) largest = max(largest, abs(correction(equation(number(c, k)))))
+          if (number(c, k) > 0) found(equation(number(c, k))) = .true.
         end do
       end do
     end associate
-  end function motion_of_loose
+  end subroutine find_equations
+
+  !> Make the diagonals of some equations a little larger.
+  pure subroutine enlarge(pattern, held, values)
+    class(matrix_pattern_t), intent(in) :: pattern
+    logical, intent(in) :: held(0:)
+    real(wp), intent(inout) :: values(:)
+    integer :: k
+
+    do k = 1, pattern%nnz
+      if (pattern%row(k) == pattern%column(k) .and. held(pattern%row(k))) values(k) = (1 + hold)*values(k)
+    end do
+  end subroutine enlarge
 
   !> Bodies with a point in contact, on either side, at the start of the step or in its trial state.
   subroutine mark_contacts(scene, solution, trial, loose, acted_on)

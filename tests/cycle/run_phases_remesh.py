@@ -122,9 +122,8 @@ def steel_of(kinetics):
     return text
 
 
-def remeshed(checks, name, text, steel=STEEL, times="0.45 0.75", limits=None):
+def remeshed(checks, name, text, steel=STEEL, times="0.45 0.75", kept=None):
     """The deck with new meshes, and on its own."""
-    limits = limits or LIMITS
     write(checks.path(name, "trip.met"), steel)
     own = write(checks.path(name, "own.lag"), text + "END\n")
     deck = write(checks.path(name, "new.lag"), text + f"REMSH\n   TIMES {times}\nEND\n")
@@ -138,10 +137,12 @@ def remeshed(checks, name, text, steel=STEEL, times="0.45 0.75", limits=None):
     checks.that([t["accepted"] for t in made] == ["y"]*len(times.split()), f"{name}: {len(times.split())} new meshes, each at the first try", [t["reason"] for t in made])
     within_limits(checks, checks.path(name, "new"))
     rows, plain = history(checks.path(name, "new")), history(checks.path(name, "own"))
-    for column, limit in limits.items():
-        if not any(plain[column]):
-            continue
-        off = (rows[column][-1] - plain[column][-1])/max(abs(v) for v in plain[column])
+    for column, limit in (kept or LIMITS).items():
+        # what is used up on the way is compared with what there was of it
+        scale = max(abs(v) for v in plain[column]) if kept else abs(plain[column][-1])
+        off = rows[column][-1] - plain[column][-1]
+        if abs(scale) > 0:
+            off /= scale
         checks.that(abs(off) < limit, f"{name}: {column} within {100*limit:g} %", f"{100*off:+.3f} %")
     return rows
 
