@@ -129,7 +129,7 @@ contains
     character(len=:), allocatable :: words
 
     allocate (lines(0))
-    call put('  accuracy (estimates)                            half of it costs')
+    call put('  accuracy (estimates)                                    half of it costs')
     if (closing%space) then
       words = 'stress '//percent(closing%stress)
       if (closing%strain_known) words = words//', strain '//percent(closing%strain)
@@ -162,11 +162,11 @@ contains
     subroutine row(where, what, cost)
       character(len=*), intent(in) :: where, what, cost
       character(len=12) :: first
-      character(len=36) :: second
+      character(len=44) :: second
 
       first = where
       second = what
-      if (len(what) > len(second)) then
+      if (len(what) >= len(second)) then
         call put(trim('    '//first//what//'  '//cost))
       else
         call put(trim('    '//first//second//cost))

@@ -73,6 +73,11 @@ module newton
   real(wp), parameter :: stagnant = 0.3_wp
   !> Corrections that follow the heat content go round in circles when the residual is above this share of the best so far.
   real(wp), parameter :: circling = 0.9_wp
+  !> Beyond the largest number of iterations the residual falls on when the best of the last `patience` is below this share of the
+  !> best before.
+  real(wp), parameter :: falling = 0.7_wp
+  !> Residuals of one state that comes again differ by this share at most.
+  real(wp), parameter :: same_state = 2.0e-3_wp
   !> So many more iterations are made for the balance of heat.
   integer, parameter :: for_balance = 2
   !> Heat through contact is linearised along the motion where the residual is below this (contact_heat_tangent).
@@ -171,6 +176,8 @@ contains
         manner%whole = .true.
         if (in_circles(outcome%history(first:))) correction = 0.5_wp*correction
       end if
+      ! between the two states contact may be as in neither
+      if (goes_to_and_fro(outcome%history(first:))) correction = 0.5_wp*correction
       call search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, outcome%du, &
                         line%line_search, report)
       if (.not. abs(line%line_search) > 0) then
@@ -324,6 +331,33 @@ contains
     is_under_way = line%contact_changed .or. line%line_search < 0
   end function is_under_way
 
+  !> Contact still changes and the residual falls with it: a thin sheet between dies opens and closes point by point, whatever the
+  !> length of the step.
+  pure function falls_on(history)
+    type(iteration_t), intent(in) :: history(:)
+    logical :: falls_on
+    integer :: n
+
+    n = size(history)
+    falls_on = n > 2*patience
+    if (falls_on) falls_on = any(history(n - patience + 1:)%contact_changed) &
+                             .and. minval(history(n - patience + 1:)%force_norm) &
+                             < falling*minval(history(2:n - patience)%force_norm)
+  end function falls_on
+
+  !> Contact changes to and fro between two states, and whole corrections lead from each to the other.
+  pure function goes_to_and_fro(history)
+    type(iteration_t), intent(in) :: history(:)
+    logical :: goes_to_and_fro
+    integer :: n
+
+    n = size(history)
+    goes_to_and_fro = n > 5
+    if (goes_to_and_fro) goes_to_and_fro = all(history(n - 3:)%contact_changed) &
+                                           .and. all(abs(history(n - 2:n)%force_norm - history(n - 4:n - 2)%force_norm) &
+                                                     <= same_state*history(n - 2:n)%force_norm)
+  end function goes_to_and_fro
+
   !> Reason to stop the iterations, if there is one.
   pure subroutine judge(scene, history, reason)
     type(scene_t), intent(in) :: scene
@@ -335,7 +369,7 @@ contains
     associate (norms => history%force_norm)
       if (.not. norms(n + 1) <= huge(1.0_wp)) then
         reason = 'not a number in the forces'
-      else if (n >= scene%strategy%max_iterations) then
+      else if (n >= scene%strategy%max_iterations .and. .not. falls_on(history)) then
         reason = to_text(n)//' iterations without convergence (residual '//to_text(norms(n + 1), 3)//')'
       else if (n > patience .and. norms(n + 1) > hopeless*norms(min(2, n + 1))) then
         reason = 'diverged: residual '//to_text(norms(n + 1), 3)

@@ -99,6 +99,21 @@ def off_centre(checks):
     return max(abs(a/z - 1), abs(s)/a)
 
 
+def under_a_holder(checks):
+    """A blank held by a force on its holder from the first step on, while the punch bends it: contact opens and closes point by
+    point however short the step is (no first step converged within 20 iterations). The dies' forces are in balance."""
+    run = checks.run("holder", deck(
+        "AXISYM", "LOG", block("0. 0. 50. 0. 50. 1. 0. 1.", "60 1. 2 1."),
+        "LAW m EPLA\n 200000. 0.3\n SWIFT 600. 0.01 0.2\nLAW k COUL2D\n PENETR 0.01 PHI 0.1 AUGMENT 10\n",
+        "DIE punch\n SEGM 25. 60. 25. 1.\n FILLT 5. 1.E-3\n SEGM 25. 1. -1. 1.\n"
+        "DIE ring\n SEGM 26.4 -60. 26.4 0.\n FILLT 6. 1.E-3\n SEGM 26.4 0. 80. 0.\n"
+        "DIE holder PILOT 40. 1.\n SEGM 80. 1. 27. 1.\nCNT2D b 3 punch k\nCNT2D b 1 ring k\nCNT2D b 3 holder k\nFIXED b 4 X\n"
+        "LIC go\n 0. 0. 1. -5.\nLIC on\n 0. 0. 0.04 1.\nMOVE punch Y go\nFORCE holder Y -8000. on\nSPRNG holder Y 1.\n",
+        "STRAT 0.008 1.E-6 0.04 6 3"))
+    forces = [run.history[f"force_y_{die}"] for die in ("punch", "holder", "ring")]
+    return (abs(sum(forces))/abs(forces[2])).max()
+
+
 UPSET = ("BLOCK b PL8LS 4 m\n 0. 0. {r} 0. {r} {h} 0. {h}\n 6 1. 8 1.\n",
          "LAW m EPLA\n {e} 0.3\n LINEAR {y} {t}\nLAW k COUL2D\n PENETR 1.E-3 PHI 0.3\n",
          "FIXED b 1 Y\nFIXED b 4 X\nDIE d PILOT 0. {h}\n SEGM {w} {h} {l} {h}\nCNT2D b 2 3 d -3 k\nMOVE d Y go\nLIC go\n 0. 0. 1. {way}\n"
@@ -283,4 +298,5 @@ CASES = (
     Case("released and pressed again", released, 1e-9), Case("past a die's end", past_the_end, 1e-2),
     Case("stick-slip reversal", stick_slip, 1e-3),
     Case("bent round a pin", round_a_pin, 0.25), Case("bent between three rollers", three_point_bending, 0.2),
+    Case("blank under a holder", under_a_holder, 1e-4),
     Case("rolling", rolling, 0.01, LONG), Case("S-shaped dies", s_shaped, 1e-3), Case("rib thinner than elements", thin_rib, 0.5, LONG))
