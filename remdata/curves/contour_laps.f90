@@ -8,6 +8,7 @@ module contour_laps
   use boundary_curves, only: boundary_curve_t, joint_after, joint_point, kind_entry, kind_exit
   use kinds, only: wp
   use offset_parabolas, only: point_at
+  use touching_sectors, only: sectors_overlap
   use vectors, only: length_of
   implicit none
   private
@@ -108,7 +109,7 @@ contains
     end do
   end function is_end_of_die
 
-  !> The first crossing of two arcs, other than a joint that they share.
+  !> The first crossing of two arcs, other than a joint that they share, or a point in which two bodies only touch.
   pure subroutine find_crossing(boundary, other, lap, crossed)
     type(boundary_curve_t), intent(in) :: boundary, other
     type(lap_t), intent(inout) :: lap
@@ -126,6 +127,8 @@ contains
         lap%point = point_at(one, xi(1, i))
         crossed = .not. (is_shared(one, two, follow, lap%point) .or. is_end_of_contact(boundary, lap%arcs(1), lap%point) &
                          .or. is_end_of_contact(other, lap%arcs(2), lap%point))
+        if (crossed .and. lap%boundaries(1) /= lap%boundaries(2)) &
+          crossed = sectors_overlap(boundary, lap%arcs(1), xi(1, i), other, lap%arcs(2), xi(2, i))
         if (crossed) return
       end do
     end associate
