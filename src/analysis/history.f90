@@ -86,7 +86,8 @@ contains
     type(string_t), allocatable, intent(out) :: columns(:)
     integer :: k, n
 
-    allocate (columns(14 + merge(1, 0, scene%operation > 0) + 6*size(scene%dies) - 3*count(is_deformable(scene%dies)) &
+    allocate (columns(14 + merge(1, 0, scene%operation > 0) + merge(1, 0, scene%load_factor%multiplier > 0) &
+                      + 6*size(scene%dies) - 3*count(is_deformable(scene%dies)) &
                       + merge(6, 0, scene%plane_state == generalised_plane_strain) &
                       + merge(2, 0, scene%follows_path) + merge(2, 0, scene%remesh%estimate) &
                       + merge(4, 0, has_heat(scene)) + 2*size(scene%die_heats) &
@@ -107,6 +108,7 @@ contains
     call add('max_penetration [length]')
     call add('points_sticking [-]')
     call add('points_slipping [-]')
+    if (scene%load_factor%multiplier > 0) call add(scene%multipliers(scene%load_factor%multiplier)%name//' [-]')
     do k = 1, size(scene%dies)
       call add('force_x_'//scene%dies(k)%name//' [force]')
       call add('force_y_'//scene%dies(k)%name//' [force]')
@@ -178,6 +180,8 @@ contains
     call table%put(factor*[solution%external_work, totals%elastic_energy, totals%plastic_work, totals%friction_work])
     call table%put([totals%volume/solution%initial_volume - 1, totals%max_penetration])
     call table%put([totals%stick, totals%slip])
+    if (scene%load_factor%multiplier > 0) &
+      call table%put(solution%fields(find_field(solution%fields, 'load_factor'))%value(1, 1))
     do k = 1, size(scene%dies)
       call table%put(-factor*solution%fields(pilot_field)%applied(:, k))
       if (.not. is_deformable(scene%dies(k))) call table%put(solution%fields(pilot_field)%value(:, k) - scene%dies(k)%pilot)

@@ -6,16 +6,16 @@ module scene_file
   use json_writer, only: json_t
   use kinds, only: wp
   use remesher_options, only: has_contours
-  use scene, only: plane_state_names, role_body, role_contact, role_die_heat, role_heat_contact, role_second, role_side_load, &
-                   role_spring, role_volume_load, scene_t
+  use scene, only: plane_state_names, role_body, role_contact, role_die_heat, role_heat_contact, role_load_factor, role_second, &
+                   role_side_load, role_spring, role_volume_load, scene_t
   use zone_marks, only: mark_corner, mark_crossing, mark_inside, mark_matter
   implicit none
   private
   public :: write_scene
 
-  character(len=11), parameter :: role_names(role_die_heat) = ['body       ', 'formulation', 'contact    ', 'side load  ', &
+  character(len=11), parameter :: role_names(role_load_factor) = ['body       ', 'formulation', 'contact    ', 'side load  ', &
                                                              'volume load', 'spring     ', &
-                                                             'contact    ', 'die heat   ']
+                                                             'contact    ', 'die heat   ', 'load factor']
   character(len=8), parameter :: mark_names(mark_inside) = ['CORNER  ', 'MATTER  ', 'CROSSING', 'AT      ']
 
 contains

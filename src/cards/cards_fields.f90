@@ -10,7 +10,7 @@ module cards_fields
   use diagnostics, only: diagnostics_t
   use elem_api, only: declare_fields
   use field_places, only: refuse_unlike_nodes, refuse_without_field
-  use fields, only: field_t
+  use fields, only: field_t, solved_with
   use law_api, only: law_of_material
   use loads, only: fixation_t
   use scene, only: group_t, is_solid, role_second
@@ -242,7 +242,7 @@ contains
     do i = 1, size(fields)
       do j = 1, i - 1
         if (any(fields([i, j])%given)) cycle
-        if (fields(i)%declared .and. fields(j)%declared) yes = yes .or. fields(i)%quantity /= fields(j)%quantity
+        if (fields(i)%declared .and. fields(j)%declared) yes = yes .or. solved_with(fields(i)) /= solved_with(fields(j))
       end do
     end do
   end function several_quantities

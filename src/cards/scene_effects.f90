@@ -25,7 +25,7 @@ contains
     type(scene_t), intent(inout) :: scene
     integer :: g, k
 
-    allocate (scene%effects(12))
+    allocate (scene%effects(13))
     call set(1, 'displacement', 'no body')
     call set(2, 'large strain', 'KINEM '//scene%kinematics, 'displacement')
     call set(3, 'plasticity', 'no LAW with a yield stress is used', 'displacement')
@@ -38,6 +38,7 @@ contains
     call set(10, 'temperature', 'no TEMPE card', 'displacement')
     call set(11, 'error estimates', 'no ESTIM or REMSH card')
     call set(12, 'remeshing', 'no REMSH card')
+    call set(13, 'load factor', 'no LOADF card')
 
     call switch_on(2, scene%finite, 'KINEM', scene%kinematics, 'geometry that follows, geometric matrix')
     call switch_on(11, scene%remesh%estimate, trim(merge('REMSH', 'ESTIM', scene%remesh%on)), '', &
@@ -58,6 +59,8 @@ contains
         case ('heat')
           call switch_on(8, .true., merge('ADDEL', 'BLOCK', group%host > 0), before_slash(group%name), &
                          'a temperature on every node or corner, a solve of its own')
+        case ('load factor')
+          call switch_on(13, .true., group%elem, before_slash(group%name), 'an unknown, a row and a column of the matrix')
         case ('pressure')
           call switch_on(6, .true., group%elem, before_slash(group%name), 'forces and matrix of the loaded sides')
         end select

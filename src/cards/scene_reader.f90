@@ -9,6 +9,7 @@ module scene_reader
   use cards_heat, only: read_exchanges, read_time_scheme
   use cards_heat_contact, only: read_heat_contacts
   use cards_laws, only: read_laws
+  use cards_load_factor, only: name_load_factor, read_load_factor
   use cards_loads, only: read_loads, read_multipliers
   use cards_pilots, only: read_pilots
   use cards_mesh, only: is_body_elem, read_elements, read_nodes, read_side_sets
@@ -67,6 +68,7 @@ contains
     call read_state(deck, draft, diagnostics)
     call read_kinematics(deck, draft, diagnostics)
     call read_multipliers(deck, draft, diagnostics)
+    call name_load_factor(deck, draft, diagnostics)
     call read_section(deck, draft, diagnostics)
     call read_laws(deck, draft, diagnostics)
     call read_dies(deck, draft, diagnostics)
@@ -109,6 +111,7 @@ contains
     call read_coupling(deck, draft, diagnostics)
     call read_time_scheme(deck, draft, diagnostics)
     call read_remesh(deck, draft, diagnostics)
+    call read_load_factor(deck, draft, diagnostics)
     call refuse_half_contours(deck, draft, parts, diagnostics)
     call read_probes(deck, draft, diagnostics)
     call refuse_unused_names(deck, draft, keywords, diagnostics)
@@ -129,8 +132,8 @@ contains
 
     call list_elems(elems)
     call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE START ' &
-                  //'OPERA ASLEEP FLUX CONVE RADIA HEATS GOLDAK COU2DC TDIE THETA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG LIC ' &
-                  //'STRAT NORMS SOLVR STOP SAVE CKPT PROBE ESTIM REMSH ZPNT ZONE', keywords)
+                  //'OPERA ASLEEP FLUX CONVE RADIA HEATS GOLDAK COU2DC TDIE THETA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG ' &
+                  //'LIC LOADF STRAT NORMS SOLVR STOP SAVE CKPT PROBE ESTIM REMSH ZPNT ZONE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle

@@ -172,6 +172,7 @@ contains
       if (scene%groups(g)%multiplier > 0) s = ', '//to_text(scene%groups(g)%amplitude)//' x ' &
                                               //scene%multipliers(scene%groups(g)%multiplier)%name
       if (scene%groups(g)%elem == 'CENTR') s = s//'^2'
+      if (scene%groups(g)%elem == 'LOADF') s = found_by()
       if (scene%groups(g)%elem == 'BSPRG') s = ', '//to_text(scene%groups(g)%stiffness, 3)//' per volume'
       if (any(scene%groups(g)%elem == [character(len=5) :: 'FLUX', 'CONVE', 'RADIA', 'HEATS'])) s = exchange_of(scene%groups(g))
       if (scene%groups(g)%source > 0) s = torch_of(scene%sources(scene%groups(g)%source))
@@ -181,6 +182,17 @@ contains
         s = s//', temperature '//to_text(scene%groups(g)%temperature_amplitude)//' x ' &
             //scene%multipliers(scene%groups(g)%temperature_multiplier)%name
     end function driven_by
+
+    !> What the multiplier that is found makes follow what.
+    pure function found_by() result(s)
+      character(len=:), allocatable :: s
+
+      associate (factor => scene%load_factor)
+        s = ', so that the work of its loads, at a multiplier of 1,'
+        if (factor%node > 0) s = ', so that node '//to_text(scene%mesh%labels(factor%node))//' '//directions(factor%component)
+        s = s//' follows '//to_text(factor%amplitude)//' x '//scene%multipliers(factor%curve)%name
+      end associate
+    end function found_by
 
     !> Heat that passes sides or comes from a volume, in numbers.
     pure function exchange_of(group) result(s)

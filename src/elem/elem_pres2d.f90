@@ -3,8 +3,11 @@
 !> Walking 1 -> 2 -> 3 the part is on the left; a positive pressure pushes into the part along its
 !> inner normal: F_i = integral phi_i p (-y', x') t dxi, linearised exactly (unsymmetric matrix). The
 !> thickness t of the section is the radius in an axisymmetric scene; in plane stress it is that of the start.
+!> Where p is found (LOADF) the derivative by it is a column of the matrix, and its row f.du, with f as at the start of the step, is
+!> the volume that the side sweeps, over p = 1.
 module elem_pres2d
-  use elem_api, only: elem_t, instant_t, layout_t, no_variables, of_displacement, of_section, report_t, section_motion
+  use elem_api, only: elem_t, instant_t, layout_t, mode_advance, no_variables, of_displacement, of_section, report_t, section_motion
+  use elem_load_factor, only: load_factor_place, of_load_factor
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
@@ -25,7 +28,8 @@ contains
     row%purpose = 'pressure that follows a side'
     row%nnode = 3
     row%role = role_side_load
-    allocate (row%unknowns, source=[of_displacement(), of_section()])
+    allocate (row%unknowns, source=[of_displacement(), of_section(), of_load_factor()])
+    row%unknowns(3)%optional = .true.
     row%symmetric = .false.
     row%effect = 'pressure'
     allocate (row%options(0))
@@ -50,8 +54,9 @@ contains
     type(report_t), intent(out) :: report  !! a load never fails
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: pressure, y(2, 3), phi(3), dphi(3), normal(2), section(3), pull
-    integer :: e, p, j
+    integer :: e, p, j, factor
 
+    factor = load_factor_place(scene, group, layout)
     call line_rule(group%rule, xi, weight)
     pressure = group%amplitude*instant%multipliers(group%multiplier)
     do e = 1, size(x, 3)
@@ -82,9 +87,35 @@ contains
         call add_column(8, dot_product(y(1, :), phi))
         call add_column(9, dot_product(y(2, :), phi))
       end do
+      if (factor > 0) call add_load_factor(unit_force(y, section), unit_force(x(:, :, e), instant%section))
     end do
 
   contains
+
+    !> The forces of the side at a multiplier of 1.
+    pure function unit_force(places, thickness) result(unit)
+      real(wp), intent(in) :: places(2, 3), thickness(3)
+      real(wp) :: unit(6)
+      real(wp) :: n(2), shape(3), slope(3)
+      integer :: k
+
+      unit = 0
+      do k = 1, size(xi)
+        call line3(xi(k), shape, slope)
+        n = matmul(places, slope)*group%amplitude*weight(k)*thickness_at(thickness, matmul(places, shape))
+        unit = unit + [shape*n(2), -shape*n(1)]
+      end do
+    end function unit_force
+
+    !> Column and row of the load factor.
+    subroutine add_load_factor(now, before)
+      real(wp), intent(in) :: now(6), before(6)
+
+      if (instant%tangent) stiffness(1:6, factor, e) = now
+      if (scene%load_factor%node > 0 .or. instant%mode /= mode_advance) return
+      force(factor, e) = dot_product(before, du(1:6, e))
+      if (instant%tangent) stiffness(factor, 1:6, e) = before
+    end subroutine add_load_factor
 
     !> What a change of thickness along a local unknown does to the forces.
     subroutine add_column(column, thickening)

@@ -8,7 +8,8 @@ module fields
   use state_variables, only: transfer_recompute
   implicit none
   private
-  public :: field_t, fill_middle_nodes, find_field, has_corners_only, mechanical_fields, start_field
+  public :: field_t, fill_middle_nodes, find_field, has_corners_only, load_factor_field, mechanical_fields, solved_with, &
+            start_field
   public :: on_nodes, on_pilots, on_section
   public :: displacement_field, pilot_field, section_field, transfer_nodal
 
@@ -65,6 +66,23 @@ contains
                                   ncomp=3, first_angle=2, quantity='motion', transfer=transfer_recompute, word='', &
                                   declared=.true.)
   end function mechanical_fields
+
+  !> The value of a multiplier that is found, so that the motion follows what the deck gives.
+  pure function load_factor_field() result(field)
+    type(field_t) :: field
+
+    field = field_t(name='load_factor', unit='-', dual='load_measure', dual_unit='-', place=on_section, ncomp=1, &
+                    quantity='load', transfer=transfer_recompute, word='')
+  end function load_factor_field
+
+  !> The quantity whose solve finds a field: a load factor has norms of its own, and is found with the motion.
+  pure function solved_with(field) result(quantity)
+    type(field_t), intent(in) :: field
+    character(len=:), allocatable :: quantity
+
+    quantity = field%quantity
+    if (quantity == 'load') quantity = 'motion'
+  end function solved_with
 
   !> Position of a field in a list, 0 where it is not.
   pure function find_field(list, name) result(k)

@@ -4,7 +4,7 @@ module loads
   use kinds, only: wp
   implicit none
   private
-  public :: start_t, field_history_t, multiplier_t, fixation_t, die_motion_t, die_force_t, nodal_force_t, exchange_t
+  public :: load_factor_t, start_t, field_history_t, multiplier_t, fixation_t, die_motion_t, die_force_t, nodal_force_t, exchange_t
   public :: by_flux, by_convection, by_radiation
   public :: instants_around, multiplier_at, value_in_table
 
@@ -74,6 +74,17 @@ module loads
     !> Place in the scene's list of fields.
     integer :: field = displacement_field
   end type nodal_force_t
+
+  !> A multiplier that is found, so that a measure of the motion follows another one.
+  type :: load_factor_t
+    !> The multiplier found, 0 for none, and the one that the measure follows, times the amplitude.
+    integer :: multiplier = 0, curve = 0
+    real(wp) :: amplitude = 1.0_wp
+    !> The measure: displacement of a node in a direction; of node 0 the work of the loads over the multiplier.
+    integer :: node = 0, component = 0
+    !> Forces on nodes that it multiplies (places in the scene's list).
+    integer, allocatable :: forces(:)
+  end type load_factor_t
 
   !> Kinds of heat exchange: a given flow, convection, radiation.
   integer, parameter :: by_flux = 1, by_convection = 2, by_radiation = 3

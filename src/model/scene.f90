@@ -5,7 +5,7 @@ module scene
   use fields, only: field_t
   use heat_contacts, only: die_heat_t, heat_contact_t
   use kinds, only: wp
-  use loads, only: die_force_t, die_motion_t, exchange_t, field_history_t, fixation_t, multiplier_t, nodal_force_t, &
+  use loads, only: die_force_t, die_motion_t, exchange_t, field_history_t, fixation_t, load_factor_t, multiplier_t, nodal_force_t, &
                    start_t
   use materials, only: material_t
   use mesh, only: mesh_t
@@ -21,6 +21,7 @@ module scene
   private
   public :: scene_t, group_t, plane_state_names, host_of, is_solid, lacks_mesh
   public :: role_body, role_second, role_contact, role_side_load, role_volume_load, role_spring, role_heat_contact, role_die_heat
+  public :: role_load_factor
   public :: plane_strain, axisymmetric, plane_stress, generalised_plane_strain
 
   !> Plane states.
@@ -31,9 +32,10 @@ module scene
   character(len=6), parameter :: plane_state_names(4) = ['PLSTN ', 'AXISYM', 'PLSTS ', 'GPLSTN']
 
   !> What a group is: a body with its first formulation, a further formulation on a body's elements and points, contact of sides,
-  !> a load on sides or on the volume of a body, the spring of a die, heat between sides and a die, the heat capacity of a die.
+  !> a load on sides or on the volume of a body, the spring of a die, heat between sides and a die, the heat capacity of a die,
+  !> forces whose size is found.
   integer, parameter :: role_body = 1, role_second = 2, role_contact = 3, role_side_load = 4, role_volume_load = 5, &
-                        role_spring = 6, role_heat_contact = 7, role_die_heat = 8
+                        role_spring = 6, role_heat_contact = 7, role_die_heat = 8, role_load_factor = 9
 
   !> Elements of one ELEM and one LAW with their state: the unit of the element loop.
   type :: group_t
@@ -113,6 +115,7 @@ module scene
     type(die_force_t), allocatable :: die_forces(:)
     type(die_heat_t), allocatable :: die_heats(:)
     type(nodal_force_t), allocatable :: forces(:)
+    type(load_factor_t) :: load_factor
     type(probe_t), allocatable :: probes(:)
     !> Heat of welding torches.
     type(weld_source_t), allocatable :: sources(:)

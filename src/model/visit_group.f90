@@ -1,7 +1,7 @@
 !> The members of a group of elements and of the declared state of its points (visitors).
 module visit_group
   use quadrature, only: rule_along, rule_gauss, rule_t
-  use scene, only: group_t, role_body, role_die_heat
+  use scene, only: group_t, role_body, role_load_factor
   use state_variables, only: state_variable_t
   use visitors, only: kept, of_the_mesh, visitor_t
   implicit none
@@ -20,7 +20,7 @@ contains
     integer :: k, n
 
     call visitor%member('name', self%name, kept)
-    call visitor%member('role', self%role, kept, low=role_body, high=role_die_heat)
+    call visitor%member('role', self%role, kept, low=role_body, high=role_load_factor)
     call visitor%member('host', self%host, kept, low=0)
     call visitor%member('elem', self%elem, kept)
     call visitor%member('material', self%material, kept, low=0)

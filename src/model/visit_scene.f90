@@ -54,6 +54,7 @@ contains
     call visitor%derived('die_forces', of_the_deck)
     call visitor%derived('die_heats', of_the_deck)
     call visitor%derived('forces', of_the_deck)
+    call visitor%derived('load_factor', of_the_deck)
     call visitor%derived('probes', of_the_deck)
     call visitor%derived('sources', of_the_deck)
     call visitor%derived('strategy', of_the_deck)

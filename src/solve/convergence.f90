@@ -13,6 +13,8 @@ module convergence
   !> Motions below this share of the mesh's size are round-off of coordinates; changes of another quantity below this share of its
   !> largest value likewise.
   real(wp), parameter :: least_motion = 1.0e-10_wp
+  !> At a limit point a load factor does not change: corrections are compared with this share of its value at least.
+  real(wp), parameter :: least_change_of_load = 1.0e-3_wp
 
   !> Heat is in balance when what is missing in all is below this share of what is taken up, released or comes in where temperatures
   !> are imposed.
@@ -229,7 +231,8 @@ contains
     end if
     do f = 1, size(fields)
       if (fields(f)%quantity == equations%dofs%quantities(q)%s .and. size(fields(f)%value) > 0) &
-        change = max(change, least_motion*maxval(abs(fields(f)%value)))
+        change = max(change, merge(least_change_of_load, least_motion, fields(f)%quantity == 'load') &
+                     *maxval(abs(fields(f)%value)))
     end do
   end function least_change
 

@@ -3,7 +3,7 @@ module equations
   use axis_wall, only: axis_wall_t, find_axis_wall, press_on_axis
   use dies, only: is_deformable, place_on_nodes
   use dofs, only: dofs_t, number_dofs, number_pairs
-  use elem_api, only: block_done, elem_t, flow_rule_t, instant_t, mode_advance, mode_error, report_t
+  use elem_api, only: block_done, elem_t, first_unknown, flow_rule_t, instant_t, mode_advance, mode_error, report_t
   use elem_heat_contact, only: name_of_piece
   use elem_registry, only: list_elems
   use elem_weld_source, only: source_factors
@@ -22,7 +22,7 @@ module equations
   use pairs, only: pairs_differ, pairs_t, start_pairs
   use point_drivers, only: drivers_t, find_drivers, is_scalar, nodal_values
   use resting_bodies, only: find_loose_bodies, hold_loose, hold_resting, motion_of_loose
-  use scene, only: is_solid, role_body, role_second, role_side_load, role_spring, role_volume_load, scene_t
+  use scene, only: is_solid, role_body, role_load_factor, role_second, role_side_load, role_spring, role_volume_load, scene_t
   use sections, only: section_forced
   use solution, only: present_coordinates, solution_t
   use solves, only: list_solves, number_equations, quantities_of, set_up_pattern, solve_t
@@ -140,7 +140,7 @@ contains
     call find_drivers(scene, equations%laws, equations%drivers)
     allocate (equations%is_load(size(scene%groups)))
     do g = 1, size(scene%groups)
-      equations%is_load(g) = any(scene%groups(g)%role == [role_side_load, role_volume_load, role_spring])
+      equations%is_load(g) = any(scene%groups(g)%role == [role_side_load, role_volume_load, role_spring, role_load_factor])
     end do
 
     allocate (equations%solids(8, 0), equations%links(8, 0))
@@ -310,6 +310,7 @@ contains
       instant%multipliers_before(k) = multiplier_at(scene%multipliers(k), solution%time)
       instant%multipliers(k) = multiplier_at(scene%multipliers(k), instant%time)
     end do
+    if (scene%load_factor%multiplier > 0) call set_load_factor(scene, equations%dofs, solution%fields, du, instant)
     if (equations%remedy == remedy_none) call set_flow_rule(scene%strategy, instant%flow)
     instant%monotone = equations%remedy == remedy_monotone
     allocate (instant%flow%multipliers(size(scene%multipliers), instant%flow%n))
@@ -334,6 +335,22 @@ contains
       if (is_deformable(instant%dies(k))) call place_on_nodes(coordinates, instant%dies(k))
     end do
   end subroutine make_instant
+
+  !> The multiplier that is an unknown.
+  pure subroutine set_load_factor(scene, dofs, fields, du, instant)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(in) :: dofs
+    type(field_t), intent(in) :: fields(:)   !! (nfield)
+    real(wp), intent(in) :: du(:)            !! (ndof) [unknown]
+    type(instant_t), intent(inout) :: instant
+    integer :: f
+
+    f = find_field(fields, 'load_factor')
+    associate (k => scene%load_factor%multiplier)
+      instant%multipliers_before(k) = fields(f)%value(1, 1)
+      instant%multipliers(k) = fields(f)%value(1, 1) + du(dofs%fields(f)%number(1, 1))
+    end associate
+  end subroutine set_load_factor
 
   !> Factors of the sources of torches at the instants at which heat flows, on the places of the start of the step.
   subroutine set_sources(scene, solution, dt, instant)
@@ -539,6 +556,7 @@ contains
 
     do f = 1, size(fields)
       if (.not. (fields(f)%declared .and. equations%solves(equations%now)%own(f))) cycle
+      if (fields(f)%name == 'load_factor') fields(f)%floor = round_off_motion*equations%size*sqrt(sum_of_rows(scene, equations, f))
       if (fields(f)%place /= on_nodes) cycle
       if (f == displacement_field) then
         if (fields(f)%floor > 0) cycle
@@ -548,6 +566,28 @@ contains
       end if
     end do
   end subroutine set_floors
+
+  !> Squares of the rows of a field that has one unknown in all, along the unknowns of other fields.
+  pure function sum_of_rows(scene, equations, field) result(sum)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: field
+    real(wp) :: sum
+    integer :: g, e, i, j, n, m
+
+    sum = 0
+    do g = 1, size(scene%groups)
+      i = first_unknown(equations%dofs%groups(g)%layout, field)
+      if (i == 0) cycle
+      n = equations%dofs%groups(g)%layout%ndof
+      do e = 1, size(equations%dofs%groups(g)%dof, 2)
+        m = equations%solves(1)%pattern%matrix_start(g) + (e - 1)*n*n
+        do j = 1, n
+          if (j /= i) sum = sum + equations%buffers%matrix(m + (j - 1)*n + i)**2
+        end do
+      end do
+    end do
+  end function sum_of_rows
 
   !> Squares of the diagonals of the matrices of all bodies, and of loads where they are no forces, of the unknowns of one field.
   pure function sum_of_diagonals(scene, equations, field) result(sum)
@@ -589,6 +629,8 @@ contains
     force = 0
     do k = 1, size(scene%forces)
       associate (load => scene%forces(k))
+        ! those over a multiplier that is found are elements (LOADF)
+        if (load%multiplier == scene%load_factor%multiplier) cycle
         d = dofs%fields(load%field)%number(load%component, load%node)
         force(d) = force(d) + load%amplitude*multiplier_at(scene%multipliers(load%multiplier), time)
       end associate

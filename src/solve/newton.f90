@@ -172,6 +172,8 @@ contains
       call follow_content(scene, equations, solution, outcome%du, correction, followed)
       manner = manner_t(whole=caught(outcome%history(first:)), &
                         closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
+      ! past a limit point the way to equilibrium leads up and down
+      if (scene%load_factor%multiplier > 0) manner%whole = .true.
       if (followed) then
         manner%whole = .true.
         if (in_circles(outcome%history(first:))) correction = 0.5_wp*correction

@@ -6,7 +6,7 @@
 !> Source of the split: C.A. Felippa, K.C. Park, Comput. Meth. Appl. Mech. Eng. 24 (1980) 61-111.
 module solves
   use dofs, only: dofs_t
-  use fields, only: field_t
+  use fields, only: field_t, solved_with
   use kinds, only: wp
   use linear_solver, only: linear_solver_t
   use sparsity, only: build_pattern, pattern_t
@@ -59,13 +59,13 @@ contains
     do f = size(fields), 1, -1
       if (.not. left(f)) cycle
       n = n + 1
-      solves(n)%name = fields(f)%quantity
-      allocate (solves(n)%own(size(fields)), source=is_of(fields, fields(f)%quantity) .and. .not. fields%given)
+      solves(n)%name = solved_with(fields(f))
+      allocate (solves(n)%own(size(fields)), source=is_of(fields, solved_with(fields(f))) .and. .not. fields%given)
       left = left .and. .not. solves(n)%own
     end do
   end subroutine list_solves
 
-  !> Fields of a quantity.
+  !> Fields that are solved for with a quantity.
   pure function is_of(fields, quantity) result(yes)
     type(field_t), intent(in) :: fields(:)
     character(len=*), intent(in) :: quantity
@@ -73,7 +73,7 @@ contains
     integer :: f
 
     do f = 1, size(fields)
-      yes(f) = fields(f)%quantity == quantity
+      yes(f) = solved_with(fields(f)) == quantity
     end do
   end function is_of
 
@@ -86,7 +86,7 @@ contains
     n = 0
     do f = 1, size(fields)
       if (.not. fields(f)%declared .or. fields(f)%given) cycle
-      if (any(is_of(fields(:f - 1), fields(f)%quantity) .and. fields(:f - 1)%declared)) cycle
+      if (any(is_of(fields(:f - 1), solved_with(fields(f))) .and. fields(:f - 1)%declared)) cycle
       n = n + 1
     end do
   end function count_quantities

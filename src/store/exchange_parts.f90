@@ -11,7 +11,8 @@ module exchange_parts
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use mesh, only: side_set_t
-  use scene, only: axisymmetric, group_t, is_solid, role_contact, role_heat_contact, role_second, role_volume_load, scene_t
+  use scene, only: axisymmetric, group_t, is_solid, role_contact, role_heat_contact, role_load_factor, role_second, &
+                   role_volume_load, scene_t
   use shape_functions, only: quad8, quad8_side
   use quadrature, only: rule_number, square_rule
   use solution, only: solution_t
@@ -186,6 +187,13 @@ contains
                                                     'die_xi         ']
     integer :: k
 
+    if (group%role == role_load_factor) then
+      call require(file, place//'/connectivity', size(group%connectivity, 1) == 1, 'has '// &
+                   to_text(size(group%connectivity, 1))//' nodes an element, where 1 is wanted')
+      call require(file, place//'/connectivity', all(group%connectivity <= size(scene%mesh%coordinates, 2)), &
+                   'has a node that the mesh has not')
+      return
+    end if
     call require(file, place//'/connectivity', any(size(group%connectivity, 1) == [0, 3, 8]), 'has '// &
                  to_text(size(group%connectivity, 1))//' nodes an element, where 0, 3 or 8 are wanted')
     if (size(group%connectivity, 1) == 3) call check_sides(file, place//'/connectivity', group%connectivity, known)

@@ -72,14 +72,15 @@ class Checks:
 class Run:
     """A deck that ran: exit code, history by column, fields of the last saved step."""
 
-    def __init__(self, checks, name, text, code=DONE, threads=1):
+    def __init__(self, checks, name, text, code=DONE, threads=1, options=()):
         self.name = name
         path = os.path.join(checks.folder, name + ".lag")
         self.out = os.path.join(checks.folder, name)
         with open(path, "w", encoding="utf-8") as deck:
             deck.write(text)
-        result = subprocess.run([LAGAMINE, path, "--out", self.out, "--threads", str(threads), "--quiet"], text=True, check=False,
-                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=LONGEST_RUN)
+        result = subprocess.run([LAGAMINE, path, "--out", self.out, "--threads", str(threads), "--quiet", *options], text=True,
+                                check=False, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                timeout=LONGEST_RUN)
         self.code, self.said = result.returncode, result.stderr.strip()
         self.ok = checks.that(self.code == code, f"{name}: exit code {code}", f"{self.code} {self.said[:400]}")
         self.history = self.read_history() if self.code in (DONE, NO_CONVERGENCE) else {}

@@ -12,7 +12,7 @@ sys.dont_write_bytecode = True
 from support import DONE, LAGAMINE, SOURCE, UPSETTING, Checks, mesh, run, said, summary, write  # noqa: E402
 
 EFFECTS = ("displacement", "large strain", "plasticity", "contact", "friction", "pressure", "body force", "heat", "phases",
-           "temperature", "error estimates", "remeshing")
+           "temperature", "error estimates", "remeshing", "load factor")
 OPTIONS = ("--out", "--check", "--resume", "-p", "--threads", "--progress", "--quiet", "--law", "--point", "--help", "--version")
 
 # One effect each, and nothing else.
