@@ -179,7 +179,7 @@ contains
     call print_error(note)
   end subroutine list_note
 
-  !> One line: step, time, iterations, share done, time left.
+  !> One line: step, time, iterations, share done, time left; of several operations, of the present one.
   subroutine show_progress(listing, scene, solution, iterations)
     type(listing_t), intent(inout) :: listing
     type(scene_t), intent(in) :: scene
@@ -198,6 +198,7 @@ contains
     line = 'step '//to_text(solution%step)//'  time '//to_text(solution%time, 4)//'  iterations '//to_text(iterations) &
            //'  '//to_text(100*share, 3)//' %  '//to_text(now - listing%started, 3)//' s, left ' &
            //to_text(min(left, 1.0e9_wp), 3)//' s'
+    if (scene%operations > 1) line = trim(line)//' of operation '//to_text(scene%operation)//'/'//to_text(scene%operations)
     if (listing%terminal) then
       call print_part(achar(13)//line(:79), unseen)
     else

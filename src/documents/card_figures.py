@@ -282,7 +282,6 @@ def main():
     for name, draw in FIGURES.items():
         picture = Picture(name, "", draw(examples))
         data = in_few_colours(picture.image(DPI))
-        picture.close()
         with open(os.path.join(options.out, name + ".png"), "wb") as file:
             file.write(data)
         print(f"{name}.png: {len(data) // 1000} kB")

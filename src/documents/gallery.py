@@ -76,7 +76,7 @@ def draw(folder, name):
     beside = width < 2.0 * height
     inches = panel_size(width, height, 3.4 if beside else 7.0, 3.6 if beside else 2.6)
     rows, columns = (1, 2) if beside else (2, 1)
-    fig, axes = figure(rows, columns, (columns * (inches[0] + 0.3) + 0.9, rows * (inches[1] + 0.35)))
+    fig, axes = figure(rows, columns, (columns * (inches[0] + 0.3) + 0.9, rows * (inches[1] + 0.35)), grid=False)
     start, end = axes.flat
     for panel, step, box in zip((start, end), (first, last), boxes):
         view.frame(panel, box, bare=True)
@@ -99,7 +99,6 @@ def save(picture, path):
         data = in_few_colours(picture.image(dpi))
         if len(data) <= MOST_BYTES:
             break
-    picture.close()
     with open(path, "wb") as file:
         file.write(data)
     return len(data)

@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 import numpy as np
-from matplotlib import pyplot
+from matplotlib.figure import Figure
 from PIL import Image
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -22,9 +22,11 @@ from lagamine_report import Run  # noqa: E402
 from lagamine_report.compare import compare_pictures, forces_picture, labels_of  # noqa: E402
 from lagamine_report.contact import contact_groups  # noqa: E402
 from lagamine_report.contact_map import pressure_bars, pressure_picture  # noqa: E402
-from lagamine_report.picture import Picture, rounded  # noqa: E402
+from lagamine_report.geometry import SIDES  # noqa: E402
+from lagamine_report.parabolas import elements_patch, sides_patch  # noqa: E402
+from lagamine_report.picture import MARGIN, Picture, rounded, svg_bytes  # noqa: E402
 from lagamine_report.rates import strain_rate, strain_rate_picture  # noqa: E402
-from lagamine_report.scene_view import SceneView  # noqa: E402
+from lagamine_report.scene_view import SceneView, is_uniform, scale_for  # noqa: E402
 from lagamine_report.tractions import recovered_tractions  # noqa: E402
 from lagamine_report.words import brief  # noqa: E402
 
@@ -127,7 +129,6 @@ class Compare(unittest.TestCase):
         pressed = max(values.max() for values in [pressure_bars(view, group)[2] for group in contact_groups(run, run.steps[-1])])
         picture = pressure_picture(view)
         self.assertTrue(f"largest {brief(float(pressed))}" in picture.caption)
-        picture.close()
 
     def test_strain_rate_of_a_uniform_compression(self):
         """Plates without friction at constant speed: the mean rate between two instants is ln(h1/h2)/(t2 - t1), but for the elastic strain."""
@@ -142,11 +143,11 @@ class Compare(unittest.TestCase):
         np.testing.assert_allclose(rate, wanted, rtol=2e-3)
         picture = strain_rate_picture(SceneView(run))
         self.assertIn(f"mean since the instant saved before, time {brief(before.time)}", picture.caption)
-        picture.close()
 
     def test_pictures_have_no_empty_margins(self):
         """Pixels up to the margin on every side, whatever the figure leaves free."""
-        fig, axes = pyplot.subplots(figsize=(4, 2))
+        fig = Figure(figsize=(4, 2))
+        axes = fig.subplots()
         axes.set_axis_off()
         fig.text(0.5, 0.5, "x")
         picture = Picture("x", "", fig)
@@ -154,7 +155,35 @@ class Compare(unittest.TestCase):
         dark = np.argwhere(pixels < 250)
         self.assertEqual([8, 8], dark.min(axis=0).tolist())
         self.assertEqual([n - 9 for n in pixels.shape], dark.max(axis=0).tolist())
-        picture.close()
+
+    def test_drawings_have_no_empty_margins(self):
+        """What is seen of a drawing is its box and the margin, here a square of an inch inside of a larger figure, on white."""
+        fig = Figure(figsize=(4, 2))
+        axes = fig.add_axes((0.25, 0.25, 0.25, 0.5))
+        axes.set_axis_off()
+        head = svg_bytes(fig).decode().split("<metadata")[0]
+        seen = (1 - MARGIN)*72, (0.5 - MARGIN)*72, (1 + 2*MARGIN)*72, (1 + 2*MARGIN)*72
+        found = [float(number) for number in re.search(r'viewBox="([^"]*)"', head).group(1).split()]
+        np.testing.assert_allclose(found, seen, atol=0.006)
+        self.assertEqual((4, 2), tuple(fig.get_size_inches()))
+
+    def test_sides_are_parabolas(self):
+        """The quadratic curve of a side meets its middle node halfway, and an element is closed."""
+        x = np.array([[0, 0], [2, 0], [2, 1], [0, 1], [1, -0.2], [2.3, 0.4], [1, 1.1], [0.1, 0.5]])
+        nodes = np.arange(8)[None, :]
+        for patch, ends in ((sides_patch(x[SIDES]), x[SIDES]), (elements_patch(x, nodes), x[nodes[:, SIDES]][0])):
+            points = patch.get_path().vertices.reshape(-1, 3, 2) if len(patch.get_path().vertices) == 12 else \
+                np.stack([patch.get_path().vertices[k:k + 3] for k in range(0, 8, 2)])
+            np.testing.assert_allclose(0.25*points[:, 0] + 0.5*points[:, 1] + 0.25*points[:, 2], ends[:, 1], rtol=0, atol=1e-14)
+            np.testing.assert_array_equal(points[:, [0, 2]], ends[:, [0, 2]])
+
+    def test_a_field_without_differences_is_told_in_words(self):
+        """What differs in digits that nobody is shown is the same everywhere; levels of it can be read."""
+        self.assertTrue(is_uniform(20.0, 20.000003) and is_uniform(0, 0) and not is_uniform(0, 1e-30) and not is_uniform(20.0, 20.01))
+        for low, high in ((20.0, 20.000003), (0.0, 0.0), (-5e-7, -5e-7)):
+            levels = scale_for(low, high).levels
+            self.assertTrue(levels[0] <= low <= high <= levels[-1])
+            self.assertLess(max(len(brief(level, 6)) for level in levels), 12)
 
     def test_rounded_drawings(self):
         """Coordinates of lines lose digits, factors of scale and places do not."""

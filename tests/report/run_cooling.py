@@ -80,7 +80,6 @@ class Cooling(unittest.TestCase):
         self.check(out)
         picture = cooling_picture(Run(out))
         self.assertEqual({"fast", "mild"}, {line.get_label() for line in picture.figure.axes[0].lines if not line.get_label().startswith("_")})
-        picture.close()
         self.check_diagram(Run(out))
         subprocess.run([os.path.join(BIN, "lagareport"), out, "--quiet"], check=True)
         with open(os.path.join(out, "report.html"), encoding="utf-8") as file:
@@ -105,7 +104,6 @@ class Cooling(unittest.TestCase):
         time, temperature = begin.get_data()
         self.assertAlmostEqual(415 + math.log(0.99) / 0.0249, temperature[-1], delta=1.0)      # linear within 2 K
         self.assertAlmostEqual((846 - temperature[-1]) / 1000, time[-1], places=9)
-        picture.close()
 
     def test_kelvin_and_minutes(self):
         self.check(self.run_plate("kelvin", 273.15, 60.0))

@@ -103,7 +103,6 @@ class DeckPicture(unittest.TestCase):
                     for item in scene.held["die_motions"]:
                         if scene.driven(item).value != 0:
                             self.assertRegex(words, "[XYA] ")
-                    picture.close()
 
     def test_hatching_is_on_the_right(self):
         """A die above the part is walked to the left: its body, and the strokes, are above."""

@@ -66,7 +66,7 @@ class Results:
 
     def field_names(self, k: int = -1) -> List[str]:
         """Fields at the nodes at an instant."""
-        return self._run.names(self._step(k), "node")
+        return list(self._run.names(self._step(k), "node"))
 
     def field(self, name: str, k: int = -1) -> np.ndarray:
         """A field at the nodes: (node,), of a vector (node, 3)."""

@@ -1,14 +1,13 @@
 """The picture of what was imported: bodies, sets, dies with their bodies hatched, numbers of rows, the way the curves are walked."""
-import io
 from typing import List
 
 import numpy as np
-from matplotlib import pyplot
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection
 
-from lagamine_report.geometry import SIDES, all_sides, element_curves, hatching, side_curves
-from lagamine_report.picture import numbered_clips
-from lagamine_report.style import BODIES, DIE_LINE, INK, LINES, SOFT
+from lagamine_report.geometry import SIDES, all_sides, hatching, side_curves
+from lagamine_report.parabolas import elements_patch, sides_patch
+from lagamine_report.picture import svg_bytes
+from lagamine_report.style import BODIES, DIE_LINE, INK, LINES, SOFT, figure
 
 from .chains import Contour
 from .mesh_build import Mesh
@@ -21,39 +20,31 @@ def _axes(low: np.ndarray, high: np.ndarray, title: str):
     more = 0.07 * (high - low).max()
     width, height = high - low + 2 * more
     scale = min(9.0 / width, 7.0 / height)
-    fig, axes = pyplot.subplots(figsize=(max(width * scale, 3.5) + 0.6, max(height * scale, 2.0) + 0.9), layout="constrained")
+    fig, panels = figure(1, 1, (max(width * scale, 3.5) + 0.6, max(height * scale, 2.0) + 0.9), grid=False)
+    axes = panels[0, 0]
     axes.set_aspect("equal")
     axes.set_xlim(low[0] - more, high[0] + more)
     axes.set_ylim(low[1] - more, high[1] + more)
-    axes.grid(False)
     axes.set_title(title)
     return fig, axes
-
-
-def _svg(fig) -> bytes:
-    buffer = io.BytesIO()
-    fig.savefig(buffer, format="svg", bbox_inches="tight", pad_inches=0.08, metadata={"Date": None})
-    pyplot.close(fig)
-    return numbered_clips(buffer.getvalue())
 
 
 def mesh_sketch(mesh: Mesh, title: str) -> bytes:
     """Bodies in colours, sets of sides as thick lines with their names, as SVG."""
     fig, axes = _axes(mesh.points.min(axis=0), mesh.points.max(axis=0), title)
     for k, body in enumerate(mesh.bodies):
-        axes.add_collection(PolyCollection(element_curves(mesh.points, body.nodes), facecolors=BODIES[k % len(BODIES)], edgecolors="none",
-                                           label=f"body {body.name}: {len(body.nodes)} elements"))
+        axes.add_artist(elements_patch(mesh.points, body.nodes, facecolor=BODIES[k % len(BODIES)], label=f"body {body.name}: {len(body.nodes)} elements"))
     nodes = np.concatenate([body.nodes for body in mesh.bodies])
     every, outline = all_sides(nodes)
-    axes.add_collection(LineCollection(side_curves(mesh.points, every), colors="#46627c", linewidths=0.5 if len(nodes) < 2000 else 0.25))
-    axes.add_collection(LineCollection(side_curves(mesh.points, outline), colors=INK, linewidths=1.1))
+    axes.add_artist(sides_patch(mesh.points[every], edgecolor="#46627c", linewidth=0.5 if len(nodes) < 2000 else 0.25, zorder=2))
+    axes.add_artist(sides_patch(mesh.points[outline], edgecolor=INK, linewidth=1.1, zorder=2))
     row_of = {int(label): row for body in mesh.bodies for label, row in zip(body.labels, body.nodes)}
     for k, (name, sides) in enumerate(mesh.sides.items()):
         curves = side_curves(mesh.points, np.array([row_of[element][SIDES[side - 1]] for element, side in sides]))
         axes.add_collection(LineCollection(curves, colors=LINES[k % len(LINES)], linewidths=3.2, alpha=0.75, zorder=4,
                                            label=f"sides {name}: {len(sides)}"))
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    return _svg(fig)
+    return svg_bytes(fig)
 
 
 def contour_sketch(contours: List[Contour], title: str) -> bytes:
@@ -74,7 +65,7 @@ def contour_sketch(contours: List[Contour], title: str) -> bytes:
         axes.plot(*ends.T, ls="none", marker="o", ms=2.6, color=colour)
         _numbers(axes, contour, size)
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.06), ncols=1)
-    return _svg(fig)
+    return svg_bytes(fig)
 
 
 def _words(contour: Contour) -> str:

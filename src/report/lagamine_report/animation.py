@@ -4,14 +4,13 @@ import os
 from typing import List
 
 import numpy as np
-from matplotlib import pyplot
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
 from .errors import ReportError
 from .reader import Run, Step
 from .scene_view import SceneView, colour_bar, scale_for, value_range
-from .style import panel_size
+from .style import figure, panel_size
 from .words import brief, field_title
 
 MOST_FRAMES = 48
@@ -57,7 +56,8 @@ def _drawn(view: SceneView, steps: List[Step], field: str, scale) -> List[Image.
     """A picture an instant, all of one size: the layout of the first is kept."""
     box = view.box(steps, 0.1)
     inches = panel_size(box[1] - box[0], box[3] - box[2], 6.6, 5.6)
-    fig, axes = pyplot.subplots(figsize=(inches[0] + 1.5, inches[1] + 0.7), layout="constrained")
+    fig, panels = figure(1, 1, (inches[0] + 1.5, inches[1] + 0.7), grid=False)
+    axes = panels[0, 0]
     canvas = FigureCanvasAgg(fig)
     fig.set_dpi(DPI)
     images = []
@@ -73,5 +73,4 @@ def _drawn(view: SceneView, steps: List[Step], field: str, scale) -> List[Image.
             fig.set_layout_engine("none")
         canvas.draw()
         images.append(Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy()))
-    pyplot.close(fig)
     return images

@@ -73,8 +73,6 @@ def run_program(arguments: Sequence[str], version: str) -> int:
         tables = write_profiles(os.path.dirname(target), profiles)
         if options.png:
             write_pngs(options.png, pictures)
-        for picture in pictures:
-            picture.close()
         if options.animation:
             animate(run, options)
     except ReportError as error:
@@ -152,8 +150,6 @@ def compare_runs(options, version: str) -> int:
     write(target, compare_page(runs, labels, pictures, version).encode("utf-8"))
     if options.png:
         write_pngs(options.png, pictures)
-    for picture in pictures:
-        picture.close()
     if not options.quiet:
         print(f"{len(runs)} runs: {', '.join(labels)}\n  page: {target}")
     return EXIT_DONE
@@ -178,8 +174,6 @@ def draw_steels(options, version: str) -> int:
     write(target, steel_page(steels, words, pictures, options.folder, version).encode("utf-8"))
     if options.png:
         write_pngs(options.png, pictures)
-    for picture in pictures:
-        picture.close()
     if not options.quiet:
         print(f"steels: {', '.join(steel['name'] for steel in steels)}\n  page: {target}")
     return EXIT_DONE
@@ -201,7 +195,6 @@ def draw_deck(options, version: str) -> int:
     write(drawing, picture.svg())
     if options.png:
         write_pngs(options.png, [picture])
-    picture.close()
     if not options.quiet:
         print(f"{scene.title}\n  page: {target}\n  picture: {drawing}")
     return EXIT_DONE

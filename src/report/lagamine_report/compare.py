@@ -116,10 +116,9 @@ def profiles_picture(runs: Sequence[Run], labels: Sequence[str]) -> Optional[Pic
     low, high = every.min(axis=0), every.max(axis=0)
     more = 0.06 * (high - low).max()
     inches = panel_size(*(high - low + 2 * more), 8.6, 6.0)
-    fig, axes = figure(1, 1, (inches[0] + 0.7, inches[1] + 0.5))
+    fig, axes = figure(1, 1, (inches[0] + 0.7, inches[1] + 0.5), grid=False)
     panel = axes[0, 0]
     panel.set_aspect("equal")
-    panel.grid(False)
     panel.set_xlim(low[0] - more, high[0] + more)
     panel.set_ylim(low[1] - more, high[1] + more)
     for k, curves, step in outlines:

@@ -21,7 +21,7 @@ def pressure_bars(view: SceneView, group: Group) -> Tuple[np.ndarray, np.ndarray
     run, step = view.run, view.run.steps[-1]
     names, state = run.points(step, group)
     xi = side_points(group.npoint, state.shape[1])
-    ends = run.coordinates(step)[group.connectivity]
+    ends = view.coordinates(step)[group.connectivity]
     feet = np.einsum("pk,skd->spd", line3(xi), ends)
     slopes = np.stack([xi - 0.5, -2 * xi, xi + 0.5], axis=1)        # of line3
     tangent = np.einsum("pk,skd->spd", slopes, ends)
@@ -40,12 +40,12 @@ def pressure_picture(view: SceneView) -> Optional[Picture]:
     feet, inward, values = (np.concatenate(parts) for parts in zip(*held))
     box = view.box([step])
     inches = panel_size(box[1] - box[0], box[3] - box[2], 7.4, 5.0)
-    fig, axes = figure(1, 1, (inches[0] + 1.4, inches[1] + 0.5))
+    fig, axes = figure(1, 1, (inches[0] + 1.4, inches[1] + 0.5), grid=False)
     panel = axes[0, 0]
     view.frame(panel, box)
     view.dies(panel, step, box)
-    view.mesh(panel, step.generation, run.coordinates(step), colors="#b9c6d2")
-    view.outline(panel, step.generation, run.coordinates(step))
+    view.mesh(panel, step.generation, view.coordinates(step), edgecolor="#b9c6d2")
+    view.outline(panel, step.generation, view.coordinates(step))
     pressed = values > 0
     length = LONGEST * max(box[1] - box[0], box[3] - box[2]) * values[pressed] / values.max()
     bars = np.stack([feet[pressed], feet[pressed] + length[:, None] * inward[pressed]], axis=1)

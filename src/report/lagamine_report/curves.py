@@ -2,7 +2,6 @@
 from typing import Dict, List, Optional
 
 import numpy as np
-from matplotlib import pyplot
 from matplotlib.ticker import MaxNLocator
 
 from .picture import Picture
@@ -83,6 +82,8 @@ def probes_picture(run: Run) -> Optional[Picture]:
         panel.plot(run.history["time"].values, probe.values, color=colour)
         panel.set_title(probe.title)
         panel.set_xlabel("time")
+        panel.xaxis.set_major_locator(MaxNLocator(5))
+        panel.yaxis.set_major_locator(MaxNLocator(6))
     for panel in axes.flat[len(probes):]:
         panel.set_visible(False)
     return Picture("probes", "what the deck's PROBE cards ask for", fig, vector=True)
@@ -101,7 +102,7 @@ def steps_picture(run: Run) -> Optional[Picture]:
     if positive.size and positive.max() > 20 * positive.min():
         length.set_yscale("log")
     length.set_title("length of the step")
-    iterations.bar(step, history["iterations"].values, width=0.9, color="#9db8d1")
+    iterations.stairs(history["iterations"].values, np.append(step - 0.5, step[-1] + 0.5), fill=True, color="#9db8d1")
     iterations.set_title("iterations")
     cuts.step(step, history["cutbacks"].values, where="mid", color=WARN)
     cuts.set_title("cutbacks so far")
@@ -179,7 +180,8 @@ def seconds_picture(run: Run) -> Optional[Picture]:
     if not seconds:
         return None
     names = sorted(seconds, key=lambda name: seconds[name])
-    fig, axes = pyplot.subplots(figsize=(9.2, 0.55 + 0.3 * len(names)), layout="constrained")
+    fig, panels = figure(1, 1, (9.2, 0.55 + 0.3 * len(names)))
+    axes = panels[0, 0]
     effects = run.summary["effects"]
     colours = [LINES[0] if name in effects else "#9fb0bf" for name in names]
     axes.barh(names, [seconds[name] for name in names], color=colours, height=0.66)

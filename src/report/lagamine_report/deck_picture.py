@@ -2,16 +2,16 @@
 from typing import List, Tuple
 
 import numpy as np
-from matplotlib import pyplot
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from .deck_scene import COMPONENTS, DISPLACEMENT, Driven, Scene, side_label
-from .geometry import all_sides, die_curve, element_curves, hatching, line3, side_curves
+from .geometry import all_sides, die_curve, hatching, line3, side_curves
+from .parabolas import elements_patch, sides_patch
 from .picture import Picture
-from .style import BODIES, DIE_LINE, INK, LINES, SOFT
+from .style import BODIES, DIE_LINE, INK, LINES, SOFT, figure
 from .words import brief
 
 MOTION, SUPPORT, LOAD, HEAT, CONTACT, ZONE = LINES[1], LINES[2], LINES[6], LINES[4], LINES[0], LINES[3]
@@ -44,11 +44,11 @@ class DeckView:
             low[0] = max(low[0], -0.12 * self.size)
         width, height = high - low
         scale = min(9.2 / width, 7.2 / height)
-        fig, axes = pyplot.subplots(figsize=(max(width * scale, 3.2) + 0.7, max(height * scale, 1.6) + 0.6), layout="constrained")
+        fig, panels = figure(1, 1, (max(width * scale, 3.2) + 0.7, max(height * scale, 1.6) + 0.6), grid=False)
+        axes = panels[0, 0]
         axes.set_aspect("equal")
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
-        axes.grid(False)
         if self.scene.axisymmetric:
             axes.axvline(0, color=SOFT, lw=0.8, dashes=(9, 3, 2, 3), zorder=0.5)
         self.box = low, high
@@ -78,15 +78,15 @@ class DeckView:
                     self._number(str(row), pieces[rows == row])
                 words = f"{group['name']}: by its contour, no mesh yet{law}"
             else:
-                self.axes.add_collection(PolyCollection(element_curves(self.scene.x, group["nodes"]), facecolors=colour, edgecolors="none"))
+                self.axes.add_artist(elements_patch(self.scene.x, group["nodes"], facecolor=colour))
                 words = f"{group['name']}: {len(group['nodes'])} {group['elem']}{law}"
             self.legend.append(Patch(color=colour, label=words))
         nodes = [group["nodes"] for group in self.scene.bodies() if len(group["nodes"])]
         if nodes:
             every, outline = all_sides(np.concatenate(nodes))
             width = 0.5 if len(every) < 3000 else 0.2
-            self.axes.add_collection(LineCollection(side_curves(self.scene.x, every), colors="#8aa0b5", linewidths=width, zorder=1.5))
-            self.axes.add_collection(LineCollection(side_curves(self.scene.x, outline), colors=INK, linewidths=1.1, zorder=3))
+            self.axes.add_artist(sides_patch(self.scene.x[every], edgecolor="#8aa0b5", linewidth=width, zorder=1.5))
+            self.axes.add_artist(sides_patch(self.scene.x[outline], edgecolor=INK, linewidth=1.1, zorder=3))
             ends = {tuple(side) for side in np.sort(outline[:, [0, 2]], axis=1).tolist()}
             for name, sides in self.scene.sides.items():
                 free = [tuple(sorted((int(side[0]), int(side[2])))) in ends for side in sides]

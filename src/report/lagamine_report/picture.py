@@ -5,8 +5,8 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib import pyplot
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from PIL import Image, ImageChops
 
@@ -16,6 +16,7 @@ from .words import brief
 
 PAGE_DPI = 130      # of pictures of pixels in the page
 MARGIN = 0.08       # around a picture [inch]
+POINTS = 72         # of an inch, the unit of drawings
 ROOM = 1.5          # for what is wider than its panel [inch]
 
 
@@ -32,6 +33,25 @@ def numbered_clips(svg: bytes) -> bytes:
 def rounded(svg: bytes) -> bytes:
     """The same drawing with the coordinates of its lines to a hundredth of a point; factors of scale stay as they are."""
     return re.sub(rb' d="[^"]*"', lambda path: re.sub(rb"(\d+\.\d\d)\d+", rb"\1", path.group()), svg)
+
+
+def svg_bytes(figure: Figure) -> bytes:
+    """A figure as a drawing without its empty margins, on white."""
+    engine, patch = figure.get_layout_engine(), figure.patch
+    if engine is not None:
+        engine.execute(figure)
+        figure.set_layout_engine("none")
+    box = figure.get_tightbbox(FigureCanvasAgg(figure).get_renderer()).padded(MARGIN)
+    width, height = figure.get_size_inches()
+    patch.set_bounds(box.x0 / width, box.y0 / height, box.width / width, box.height / height)
+    buffer = io.BytesIO()
+    FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None})
+    patch.set_bounds(0, 0, 1, 1)
+    figure.set_layout_engine(engine)
+    size = f'{box.width * POINTS:.2f}', f'{box.height * POINTS:.2f}'
+    seen = f'width="{size[0]}pt" height="{size[1]}pt" viewBox="{box.x0 * POINTS:.2f} {(height - box.y1) * POINTS:.2f} {size[0]} {size[1]}"'
+    whole = re.sub(rb'width="[^"]*" height="[^"]*" viewBox="[^"]*"', seen.encode(), buffer.getvalue(), count=1)
+    return rounded(numbered_clips(whole))
 
 
 def png_bytes(image: Image.Image, **options) -> bytes:
@@ -75,7 +95,7 @@ class Picture:
             self.figure.set_size_inches(width, height)
             engine.set(rect=(0, 0, 1, 1))
         drawn = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
-        box = ImageChops.difference(drawn, Image.new("RGB", drawn.size, "white")).getbbox() or (0, 0, *drawn.size)
+        box = ImageChops.invert(drawn).getbbox() or (0, 0, *drawn.size)
         margin = round(MARGIN * dpi)
         cut = Image.new("RGB", (box[2] - box[0] + 2 * margin, box[3] - box[1] + 2 * margin), "white")
         cut.paste(drawn.crop(box), (margin, margin))
@@ -92,19 +112,9 @@ class Picture:
         return self.drawn
 
     def svg(self) -> bytes:
-        """The picture as a file of its own. It is laid out and its box found here: savefig would draw it once more for either."""
-        buffer = io.BytesIO()
-        engine = self.figure.get_layout_engine()
-        if engine is not None:
-            engine.execute(self.figure)
-            self.figure.set_layout_engine("none")
-        box = self.figure.get_tightbbox(FigureCanvasAgg(self.figure).get_renderer()).padded(MARGIN)
-        self.figure.savefig(buffer, format="svg", bbox_inches=box, metadata={"Date": None})
-        self.figure.set_layout_engine(engine)
-        return rounded(numbered_clips(buffer.getvalue()))
-
-    def close(self) -> None:
-        pyplot.close(self.figure)
+        """The picture as a file of its own, without its empty margins. Layout, box and drawing are asked for once each: savefig draws the whole
+        twice."""
+        return svg_bytes(self.figure)
 
 
 def when(run: Run, step: Step) -> str:

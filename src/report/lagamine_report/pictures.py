@@ -6,7 +6,7 @@ import numpy as np
 from .errors import ReportError
 from .picture import Picture, when
 from .reader import Run, Step
-from .scene_view import SceneView, colour_bar, scale_for, value_range
+from .scene_view import SceneView, colour_bar, is_uniform, scale_for, value_range
 from .style import INK, SOFT, figure, panel_size
 from .words import DIRECTIONS, brief, field_title
 
@@ -22,15 +22,15 @@ def mesh_picture(view: SceneView) -> Picture:
     beside = (box[1] - box[0]) < 2.2 * (box[3] - box[2])
     wide = panel_size(box[1] - box[0], box[3] - box[2], 4.6 if beside else 8.6, 4.8)
     rows, columns = (1, 2) if beside else (2, 1)
-    fig, axes = figure(rows, columns, (columns * (wide[0] + 0.6), rows * (wide[1] + 0.6)))
+    fig, axes = figure(rows, columns, (columns * (wide[0] + 0.6), rows * (wide[1] + 0.6)), grid=False)
     for panel, step, word in zip(axes.flat, (first, last), ("start", "end")):
         view.frame(panel, box)
         view.dies(panel, step, box)
-        x = run.coordinates(step)
+        x = view.coordinates(step)
         view.mesh(panel, step.generation, x)
         view.outline(panel, step.generation, x)
         if word == "end":
-            view.outline(panel, first.generation, run.coordinates(first), colors=SOFT, linewidths=0.9, linestyles=(0, (4, 3)),
+            view.outline(panel, first.generation, view.coordinates(first), edgecolor=SOFT, linewidth=0.9, linestyle=(0, (4, 3)),
                          zorder=3.5)
         panel.set_title(f"{word}: {when(run, step)}")
     caption = (f"{len(first.generation.topology)} elements at the start, {len(last.generation.topology)} at the end; "
@@ -49,7 +49,7 @@ def generations_picture(view: SceneView) -> Optional[Picture]:
     fig, panels = _grid(view, [generation.steps[0] for generation in generations], 3.0, 3.0)
     for panel, generation in zip(panels, generations):
         step = generation.steps[0]
-        x = view.run.coordinates(step)
+        x = view.coordinates(step)
         view.mesh(panel, generation, x)
         view.outline(panel, generation, x)
         panel.set_title(f"mesh {generation.number}, time {brief(step.time, 3)}\n{len(generation.topology)} elements", fontsize=8.5)
@@ -88,7 +88,7 @@ def fields_picture(view: SceneView, names: Sequence[str], name: str = "fields", 
     for field in names:
         values = run.nodal(step, field)
         span = value_range(values)
-        if span is None or span[1] - span[0] <= 1e-12 * max(abs(span[0]), abs(span[1]), 1e-300):
+        if span is None or is_uniform(*span):
             uniform.append(f"{field_title(field, run.axisymmetric)} = {'no number' if span is None else brief(span[0])}")
         else:
             shown.append((field, values))
@@ -99,7 +99,9 @@ def fields_picture(view: SceneView, names: Sequence[str], name: str = "fields", 
     columns = max(1, min(len(shown), 3 if small else 2, int((3.2 if small else 2.2) * 2.2 * height / width) or 1))
     rows = -(-len(shown) // columns)
     inches = panel_size(width, height, 9.2 / columns - 1.1, 2.9 if small else 4.6)
-    fig, axes = figure(rows, columns, (columns * (inches[0] + 1.1), rows * (inches[1] + 0.55)))
+    fig, axes = figure(rows, columns, (columns * (inches[0] + 1.1), rows * (inches[1] + 0.55)), grid=False)
+    if small:
+        fig.get_layout_engine().set(h_pad=0.08)     # inch: ranges stand between the rows
     for panel, (field, values) in zip(axes.flat, shown):
         low, high = value_range(values)
         scale = scale_for(low, high)
@@ -107,12 +109,16 @@ def fields_picture(view: SceneView, names: Sequence[str], name: str = "fields", 
         view.dies(panel, step, box)
         if not small:
             first = run.steps[0]
-            view.outline(panel, first.generation, run.coordinates(first), colors=SOFT, linewidths=0.8, linestyles=(0, (4, 3)),
+            view.outline(panel, first.generation, view.coordinates(first), edgecolor=SOFT, linewidth=0.8, linestyle=(0, (4, 3)),
                          zorder=1.2)
         drawn = view.field(panel, step, values, scale, edges=not small)
         colour_bar(fig, drawn, panel)
         panel.set_title(field_title(field, run.axisymmetric), fontsize=9.5 if small else 10.5)
-        panel.set_xlabel(f"{brief(low)} … {brief(high)}", fontsize=8.5, color=SOFT)
+        between = {"s": f"{brief(low)} … {brief(high)}", "fontsize": 8.5, "color": SOFT}
+        if small:       # without axes
+            panel.text(0.5, -0.02, transform=panel.transAxes, ha="center", va="top", **between)
+        else:
+            panel.set_xlabel(between.pop("s"), **between)
     for panel in axes.flat[len(shown):]:
         panel.set_visible(False)
     caption = when(run, step) + (". The same everywhere: " + "; ".join(uniform) if uniform else "")
@@ -152,7 +158,7 @@ def _grid(view: SceneView, steps: Sequence[Step], widest: float, highest: float)
     columns = min(len(steps), max(1, int(9.2 / (inches[0] + 0.2))))
     rows = -(-len(steps) // columns)
     columns = -(-len(steps) // rows)
-    fig, axes = figure(rows, columns, (columns * (inches[0] + 0.25) + 0.9, rows * (inches[1] + 0.4)))
+    fig, axes = figure(rows, columns, (columns * (inches[0] + 0.25) + 0.9, rows * (inches[1] + 0.4)), grid=False)
     for panel, step in zip(axes.flat, steps):
         view.frame(panel, box, bare=True)
         view.dies(panel, step, box)

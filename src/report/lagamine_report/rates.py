@@ -34,7 +34,7 @@ def strain_rate_picture(view: SceneView) -> Optional[Picture]:
     low, high = value_range(rate)
     box = view.box([last])
     inches = panel_size(box[1] - box[0], box[3] - box[2], 7.4, 4.2)
-    fig, axes = figure(1, 1, (inches[0] + 1.4, inches[1] + 0.5))
+    fig, axes = figure(1, 1, (inches[0] + 1.4, inches[1] + 0.5), grid=False)
     panel = axes[0, 0]
     view.frame(panel, box)
     view.dies(panel, last, box)

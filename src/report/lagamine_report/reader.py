@@ -63,6 +63,7 @@ class Run:
         if not os.path.isdir(folder):
             raise ReportError(f"{folder}: no such folder")
         self.folder = folder
+        self._names: Dict[Tuple[str, str], Tuple[str, ...]] = {}        # of groups in files, once they have been asked for
         summary, history = os.path.join(folder, "summary.json"), os.path.join(folder, "history.csv")
         self.ended = os.path.exists(summary)
         if self.ended:
@@ -131,10 +132,12 @@ class Run:
         """A dataset of a saved step."""
         return _in_file(step.generation.path, lambda file: _dataset(file, f"{step.place}/{dataset}"))
 
-    def names(self, step: Step, group: str) -> List[str]:
+    def names(self, step: Step, group: str) -> Tuple[str, ...]:
         """Names of what a group of a saved step holds; empty when there is none."""
-        return _in_file(step.generation.path, lambda file: list(file[f"{step.place}/{group}"])
-                        if f"{step.place}/{group}" in file else [])
+        place = step.generation.path, f"{step.place}/{group}"
+        if place not in self._names:
+            self._names[place] = _in_file(place[0], lambda file: tuple(file[place[1]]) if place[1] in file else ())
+        return self._names[place]
 
     def coordinates(self, step: Step) -> np.ndarray:
         """Where the nodes are at a saved step (node, 2)."""

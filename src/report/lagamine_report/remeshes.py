@@ -9,7 +9,7 @@ from .cycle import Try, new_meshes
 from .geometry import element_curves, element_sizes
 from .picture import Picture
 from .reader import Run, Step
-from .scene_view import SceneView
+from .scene_view import ABOVE, SceneView
 from .style import POSITIVE, figure, panel_size
 from .words import brief
 
@@ -39,7 +39,7 @@ def remesh_picture(view: SceneView, row: Try) -> Picture:
     """Old and new mesh, by the size of their elements and, where it is saved, by the error of each."""
     run, steps = view.run, instants(view.run, row)
     box = view.box(steps, 0.05)
-    curves = [element_curves(run.coordinates(step), step.generation.topology) for step in steps]
+    curves = [element_curves(view.coordinates(step), step.generation.topology) for step in steps]
     shades = [("size of elements [length]", [element_sizes(curve) for curve in curves])]
     errors = [element_field(run, step, ERROR) for step in steps]
     if all(error is not None and error.max() > 0 for error in errors):
@@ -48,7 +48,7 @@ def remesh_picture(view: SceneView, row: Try) -> Picture:
     beside = (box[1] - box[0]) < 2.2 * (box[3] - box[2])
     inches = panel_size(box[1] - box[0], box[3] - box[2], 3.9 if beside else 7.8, 3.6)
     rows, columns = (len(shades), 2) if beside else (2 * len(shades), 1)
-    fig, axes = figure(rows, columns, (columns * (inches[0] + 0.3) + 1.1, rows * (inches[1] + 0.35)))
+    fig, axes = figure(rows, columns, (columns * (inches[0] + 0.3) + 1.1, rows * (inches[1] + 0.35)), grid=False)
     for k, (title, values) in enumerate(shades):
         panels = axes.flat[2 * k:2 * k + 2]
         both = np.concatenate(values)
@@ -58,10 +58,12 @@ def remesh_picture(view: SceneView, row: Try) -> Picture:
             view.frame(panel, box, bare=True)
             view.dies(panel, step, box)
             drawn = shade(panel, view, curve, value, norm)
-            view.outline(panel, step.generation, run.coordinates(step), linewidths=0.8)
+            view.outline(panel, step.generation, view.coordinates(step), linewidth=0.8)
             panel.set_title(f"{word} mesh: {len(value)} elements", fontsize=9)
         bar = fig.colorbar(drawn, ax=list(panels), shrink=0.86, aspect=18, pad=0.02)
         ticks = np.geomspace(low, high, 5) if high > low * (1 + 1e-6) else [low]
+        bar.ax.set_title("", y=ABOVE)
+        bar.ax.xaxis.set_visible(False)
         bar.minorticks_off()
         bar.set_ticks(ticks, labels=[brief(float(tick), 3) for tick in ticks])
         bar.outline.set_visible(False)

@@ -4,16 +4,19 @@ from typing import Dict, Optional, Tuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
 
-from .geometry import Triangles, all_sides, die_body, die_curve, element_curves, side_curves
+from .geometry import Triangles, all_sides, die_body, die_curve
+from .parabolas import elements_patch, sides_patch
 from .reader import Generation, Run, Step
 from .style import BODIES, DIE_FILL, DIE_LINE, INK, POSITIVE, SIGNED, SOFT
 
+UNIFORM = 1e-5  # share of a value below which differences are not drawn: they would be all digits and no picture
+ABOVE = 1.0     # where titles stand when no ticks are above: matplotlib looks for them otherwise, at the cost of a layout
 Box = Tuple[float, float, float, float]
 
 
@@ -25,6 +28,7 @@ class SceneView:
         self.mirror = mirror and run.axisymmetric
         self._triangles: Dict[int, Triangles] = {}
         self._sides: Dict[int, Tuple[np.ndarray, np.ndarray]] = {}
+        self._places: Dict[Tuple[str, str], np.ndarray] = {}
 
     def triangles(self, generation: Generation) -> Triangles:
         if generation.number not in self._triangles:
@@ -36,9 +40,16 @@ class SceneView:
             self._sides[generation.number] = all_sides(generation.topology)
         return self._sides[generation.number]
 
+    def coordinates(self, step: Step) -> np.ndarray:
+        """Where the nodes are at a saved step: every picture of it asks."""
+        key = step.generation.path, step.place
+        if key not in self._places:
+            self._places[key] = self.run.coordinates(step)
+        return self._places[key]
+
     def box(self, steps, margin: float = 0.08) -> Box:
         """A box around the part at all these steps, with a margin."""
-        x = np.vstack([self.run.coordinates(step) for step in steps])
+        x = np.vstack([self.coordinates(step) for step in steps])
         low, high = x.min(axis=0), x.max(axis=0)
         if self.mirror:
             low[0] = -high[0]
@@ -53,13 +64,12 @@ class SceneView:
         axes.set_aspect("equal")
         axes.set_xlim(box[0], box[1])
         axes.set_ylim(box[2], box[3])
-        axes.grid(False)
-        for spine in axes.spines.values():
-            spine.set_visible(False)
         if bare:
-            axes.set_xticks([])
-            axes.set_yticks([])
+            axes.set_axis_off()
+            axes.set_title("", y=ABOVE)
         else:
+            for spine in axes.spines.values():
+                spine.set_visible(False)
             axes.xaxis.set_major_locator(MaxNLocator(5))
             axes.yaxis.set_major_locator(MaxNLocator(6))
             axes.tick_params(length=2.5)
@@ -81,29 +91,27 @@ class SceneView:
         sides = self.sides(generation)[1]
         if self.mirror:     # the axis is no side of the whole
             sides = sides[(np.abs(x[sides, 0]) > 1e-9 * np.abs(x).max()).any(axis=1)]
-        self._lines(axes, side_curves(x, sides), **{"colors": INK, "linewidths": 1.0, "zorder": 3, **look})
+        self._lines(axes, x[sides], **{"edgecolor": INK, "linewidth": 1.0, "zorder": 3, **look})
 
     def mesh(self, axes: Axes, generation: Generation, x: np.ndarray, fill: bool = True, **look) -> None:
         """All sides as curves, bodies in pale colours."""
         if fill:
             bodies = [group for group in generation.groups if group.connectivity.shape[1] == 8 and group.elem not in ("BFORC", "CENTR")]
             for k, group in enumerate(bodies):
-                curved = element_curves(x, group.connectivity)
                 for sign in (1, -1) if self.mirror else (1,):
-                    axes.add_collection(PolyCollection(curved * np.array([sign, 1]), facecolors=BODIES[k % len(BODIES)],
-                                                       edgecolors="none", zorder=1), autolim=False)
+                    axes.add_artist(elements_patch(x * np.array([sign, 1]), group.connectivity, facecolor=BODIES[k % len(BODIES)], zorder=1))
         width = 0.7 if len(generation.topology) < 1500 else 0.4 if len(generation.topology) < 6000 else 0.2
-        self._lines(axes, side_curves(x, self.sides(generation)[0]),
-                    **{"colors": "#46627c", "linewidths": width, "zorder": 2, **look})
+        self._lines(axes, x[self.sides(generation)[0]], **{"edgecolor": "#46627c", "linewidth": width, "zorder": 2, **look})
 
-    def _lines(self, axes: Axes, curves: np.ndarray, **look) -> None:
+    def _lines(self, axes: Axes, sides: np.ndarray, **look) -> None:
+        """Sides (side, 3, 2); an artist and not a patch of the axes, whose limits are set."""
         for sign in (1, -1) if self.mirror else (1,):
-            axes.add_collection(LineCollection(curves * np.array([sign, 1]), capstyle="round", **look), autolim=False)
+            axes.add_artist(sides_patch(sides * np.array([sign, 1]), **look))
 
     def field(self, axes: Axes, step: Step, values: np.ndarray, scale: "Scale", edges: bool = True):
         """Filled contours of nodal values on the deformed shape; returns what a colour bar wants."""
         triangles = self.triangles(step.generation)
-        x = self.run.coordinates(step)
+        x = self.coordinates(step)
         at, fine, levels = triangles.at(x), triangles.bounded(values), scale.levels
         fine = np.clip(np.nan_to_num(fine, nan=levels[0]), levels[0], levels[-1])
         norm = BoundaryNorm(levels, 256)
@@ -112,8 +120,8 @@ class SceneView:
             mesh = Triangulation(at[:, 0] * sign, at[:, 1], triangles.cells)
             drawn = axes.tricontourf(mesh, fine, levels=levels, cmap=scale.colours, norm=norm, zorder=1.5, antialiased=False)
         if edges:
-            self.mesh(axes, step.generation, x, fill=False, colors="black", linewidths=0.35, alpha=0.22)
-        self.outline(axes, step.generation, x, linewidths=0.8)
+            self.mesh(axes, step.generation, x, fill=False, edgecolor="black", linewidth=0.35, alpha=0.22)
+        self.outline(axes, step.generation, x, linewidth=0.8)
         return drawn
 
 
@@ -125,14 +133,19 @@ class Scale:
     colours: str
 
 
+def is_uniform(low: float, high: float) -> bool:
+    """Whether two values are the same to a reader: no difference in the digits that are shown of them."""
+    return high - low <= UNIFORM * max(abs(low), abs(high))
+
+
 def scale_for(low: float, high: float, count: int = 16) -> Scale:
     """Levels between two values; a field of both signs is centred on 0."""
     signed = low < 0 < high and min(-low, high) > 0.1 * max(-low, high)
     if signed:
         high = max(-low, high)
         low = -high
-    if not high > low:
-        high = low + max(abs(low), 1.0) * 1e-3
+    if is_uniform(low, high):       # levels that can be read
+        high = low + 1e-3 * (max(abs(low), abs(high)) or 1.0)
     return Scale(MaxNLocator(count, steps=[1, 2, 2.5, 4, 5, 10]).tick_values(low, high), SIGNED if signed else POSITIVE)
 
 
@@ -142,6 +155,8 @@ def colour_bar(fig: Figure, drawn, panels, title: str = "", shrink: float = 0.86
     levels = np.asarray(drawn.levels)
     stride = max(1, -(-len(levels) // 7))
     bar.set_ticks(levels[int(np.abs(levels).argmin()) % stride::stride])     # 0 is among them
+    bar.ax.set_title("", y=ABOVE)
+    bar.ax.xaxis.set_visible(False)
     bar.ax.minorticks_off()
     bar.outline.set_visible(False)
     bar.ax.tick_params(length=0, labelsize=8)

@@ -82,7 +82,6 @@ def hardness_picture(steel: dict, name: str = "mixtures") -> Optional[Picture]:
         right = panel.twinx()
         right.plot(held["rate"], held["hardness"], color=INK, dashes=(4, 2))
         right.set_ylabel("hardness [HV], dashed")
-        right.grid(False)
         right.spines["right"].set_visible(True)
     return Picture(name, f"{steel['name']}: what is there after cooling at constant rates", fig, vector=True, heading=f"Steel {steel['name']}, coolings")
 

@@ -2,9 +2,7 @@
 from typing import Tuple
 
 import matplotlib
-
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402  (the backend comes first)
+from matplotlib.figure import Figure
 
 INK, SOFT, FAINT = "#22303c", "#6b7a88", "#d5dce2"
 BODIES = ["#dbe6f0", "#efe4d4", "#dfeadb", "#eadfec"]
@@ -17,19 +15,23 @@ matplotlib.rcParams.update({
     "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 9.5,
     "axes.titlesize": 10.5, "axes.titleweight": "bold", "axes.titlelocation": "left", "axes.titlecolor": INK,
     "axes.labelsize": 9.5, "axes.labelcolor": INK, "axes.edgecolor": SOFT, "axes.linewidth": 0.8, "axes.axisbelow": True,
-    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.formatter.useoffset": False,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.formatter.useoffset": False,
     "axes.formatter.limits": (-4, 5), "axes.unicode_minus": True,
     "grid.color": FAINT, "grid.linewidth": 0.7, "xtick.color": SOFT, "ytick.color": SOFT,
     "xtick.labelsize": 8.5, "ytick.labelsize": 8.5, "text.color": INK, "legend.frameon": False, "legend.fontsize": 8.5,
     "lines.linewidth": 1.7, "lines.solid_capstyle": "round", "figure.facecolor": "white", "savefig.facecolor": "white",
     "axes.prop_cycle": matplotlib.cycler(color=LINES), "svg.hashsalt": "lagareport", "svg.fonttype": "path",
-    "figure.max_open_warning": 0,
 })
 
 
-def figure(rows: int, columns: int, size: Tuple[float, float], **options):
-    """A figure with axes (rows, columns) that leaves no holes."""
-    fig, axes = pyplot.subplots(rows, columns, figsize=size, squeeze=False, layout="constrained", **options)
+def figure(rows: int, columns: int, size: Tuple[float, float], grid: bool = True, **options):
+    """A figure with axes (rows, columns) that leaves no holes; `grid`: with lines at the ticks."""
+    fig = Figure(figsize=size, layout="constrained")
+    with matplotlib.rc_context({"axes.grid": grid}):        # asked for later, every tick is made twice
+        axes = fig.subplots(rows, columns, squeeze=False, **options)
+    for panel in axes.flat:
+        for axis in (panel.xaxis, panel.yaxis):
+            axis.remove_overlapping_locs = False    # minor ticks, which there are none of, compared with the others at every layout
     return fig, axes
 
 
