@@ -2,7 +2,8 @@
 """A run stopped or killed at any moment and resumed ends as the run in one go, bit by bit; a checkpoint that is not this run's,
 or not whole, is refused by name.
 
-usage: run_resume.py [-v] [-k] [SEED]       -v prints every check, -k keeps the results, SEED draws other moments (default 1)
+usage: run_resume.py [-v] [-k] [SEED [KILLS]]       -v prints every check, -k keeps the results, SEED draws other moments (default 1),
+KILLS without warning (default 8)
 """
 import os
 import random
@@ -165,8 +166,8 @@ def refusals(checks, draw, deck, text, options, whole):
 def main():
     with_h5py()
     checks = Checks()
-    numbers = [word for word in sys.argv[1:] if word.isdigit()]
-    draw = random.Random(int(numbers[0]) if numbers else 1)
+    seed, number, *_ = [int(word) for word in sys.argv[1:] if word.isdigit()] + [1, 8][sum(word.isdigit() for word in sys.argv[1:]):]
+    draw = random.Random(seed)
     text = deck_text(UPSETTING).replace("SAVE   20", "SAVE   7")
     deck = write(checks.path("billet.lag"), text)
     often = write(checks.path("often", "billet.lag"), add_cards(text, "CKPT   3"))
@@ -178,7 +179,7 @@ def main():
         checks.that(result.returncode == DONE, f"{name}: in one go", said(result))
     stops(checks, draw, deck, "6x9", small, wholes["small"], 8)
     stops(checks, draw, deck, "12x18", middle, wholes["middle"], 3)
-    kills(checks, draw, often, small, wholes["often"], 8)
+    kills(checks, draw, often, small, wholes["often"], number)
     older_checkpoint(checks, often, small, wholes["often"])
     at_the_end(checks, deck, small, wholes["small"])
     refusals(checks, draw, deck, text, small, wholes["small"])
