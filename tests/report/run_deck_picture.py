@@ -104,6 +104,27 @@ class DeckPicture(unittest.TestCase):
                         if scene.driven(item).value != 0:
                             self.assertRegex(words, "[XYA] ")
 
+    def test_what_check_has_left(self):
+        """`--check --out DIR`, then `lagareport DIR`: the picture of the deck itself, without the words of --check."""
+        subprocess.run([os.path.join(BIN, "lagamine"), deck("upsetting"), "--check", "--out", self.folder], stdout=subprocess.DEVNULL, check=True)
+        for place in (".", "upsetting.scene.json"):
+            done = self.report(place, "--quiet")
+            self.assertEqual((0, "", ""), (done.returncode, done.stdout, done.stderr))
+        with open(os.path.join(self.folder, "upsetting.svg"), "rb") as file:
+            self.assertEqual(deck_picture(read_scene(deck("upsetting"))).svg(), file.read())
+        with open(os.path.join(self.folder, "upsetting.html"), encoding="utf-8") as file:
+            page = file.read()
+        self.assertIn("motion of upper", page)
+        self.assertNotIn("What the solver reads", page)
+        shutil.copy(os.path.join(self.folder, "upsetting.scene.json"), os.path.join(self.folder, "other.scene.json"))
+        with open(os.path.join(self.folder, "broken.scene.json"), "w", encoding="utf-8") as file:
+            file.write("[1]")
+        for arguments, words in ((("other.scene.json", "-p", "nx=3"), "-p: for a deck"), (("other.scene.json", "--mirror"), "--mirror: for the results of a run"),
+                                 ((".",), "holds 3 scenes"), (("broken.scene.json",), "holds no scene that can be read")):
+            done = self.report(*arguments)
+            self.assertEqual((2, "", 1), (done.returncode, done.stdout, len(done.stderr.splitlines())), done.stderr)
+            self.assertIn(words, done.stderr)
+
     def test_hatching_is_on_the_right(self):
         """A die above the part is walked to the left: its body, and the strokes, are above."""
         strokes = hatching(np.array([(10.0, 5.0), (0.0, 5.0)]), 1.0, 0.5)

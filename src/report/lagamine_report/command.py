@@ -2,8 +2,9 @@
 import gc
 import os
 import sys
-from typing import TYPE_CHECKING, Dict, Sequence
+from typing import TYPE_CHECKING, Dict, Optional, Sequence
 
+from .deck_scene import ENDING, Scene, checked_scene, deck_name, read_scene, read_scene_file
 from .errors import EXIT_DONE, EXIT_MACHINE, ReportError
 from .program import Parser, Version, print_failure, refuse_to_replace, run_to_code, write
 from .reader import Run
@@ -29,7 +30,7 @@ def run_program(arguments: Sequence[str], version: str) -> int:
     parser = Parser("lagareport", description="The results of a run as one self-contained HTML page with pictures.",
                     epilog=EXIT_CODES)
     parser.add_argument("folders", metavar="DIR", nargs="+", help="folder of the results: what `lagamine DECK --out DIR` wrote; two or more "
-                        "are compared; or a deck, which is drawn before any run; or a .met file, whose steels are drawn")
+                        "are compared; or a deck, or what its --check left, which is drawn before any run; or a .met file, whose steels are drawn")
     parser.add_argument("--out", metavar="FILE", help="the page (default: DIR/report.html; of several runs compare.html, of a deck NAME.html and "
                         "NAME.svg, of a .met file NAME.html, in the present folder)")
     parser.add_argument("-p", metavar="NAME=VALUE", dest="parameters", action="append", default=[], help="of a deck: set a parameter of it")
@@ -55,6 +56,9 @@ def run_program(arguments: Sequence[str], version: str) -> int:
             return compare_runs(options, version)
         if os.path.isfile(options.folder) and options.folder.lower().endswith(".met"):
             return draw_steels(options, version)
+        checked = checked_scene(options.folder)
+        if checked:
+            return draw_deck(options, version, read_scene_file(checked), checked[:-len(ENDING)])
         if os.path.isfile(options.folder):
             return draw_deck(options, version)
         if options.parameters:
@@ -164,7 +168,6 @@ def refuse_of_runs(options, why: str) -> None:
 
 def draw_steels(options, version: str) -> int:
     """The page of the steels of a .met file."""
-    from .deck_scene import deck_name
     refuse_of_runs(options, "a .met file has none")
     target = options.out or deck_name(options.folder) + ".html"
     refuse_to_replace(target)
@@ -179,15 +182,16 @@ def draw_steels(options, version: str) -> int:
     return EXIT_DONE
 
 
-def draw_deck(options, version: str) -> int:
-    """The page and the picture of a deck before any run."""
-    from .deck_scene import deck_name, read_scene
+def draw_deck(options, version: str, checked: Optional[Scene] = None, beside: str = "") -> int:
+    """The page and the picture of a deck before any run, or of the scene `checked` that --check has left: then they are put beside it."""
     refuse_of_runs(options, "a deck has none yet")
-    target = options.out or deck_name(options.folder) + ".html"
+    if checked and options.parameters:
+        raise ReportError("-p: for a deck; what --check has left has its parameters")
+    target = options.out or (beside or deck_name(options.folder)) + ".html"
     drawing = os.path.splitext(target)[0] + ".svg"
     for path in (target, drawing):
         refuse_to_replace(path)
-    scene = read_scene(options.folder, options.parameters)
+    scene = checked or read_scene(options.folder, options.parameters)
     from .deck_page import deck_page
     from .deck_picture import deck_picture
     picture = deck_picture(scene)

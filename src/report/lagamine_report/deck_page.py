@@ -13,8 +13,7 @@ def deck_page(scene: Scene, picture: Picture, deck: str, version: str) -> str:
     body: Sections = [("deck", "The scene at the start", figure(picture, "Deck")),
                       ("drives", "Motions and loads", table(("what", "component", "farthest", "at time", "multiplier"), _drives(scene))),
                       ("check", "What the solver reads", f"<pre>{escape(scene.words)}</pre>")]
-    if not _drives(scene):
-        del body[1]
+    body = [part for part, there in zip(body, (True, _drives(scene), scene.words)) if there]
     header = (f"<h1>{escape(scene.title)}</h1>\n"
               '<p class="reason"><span class="status open">not run</span><span>a deck as it is read, before any run</span></p>')
     footer = f"lagareport {escape(version)}, from {escape(os.path.basename(deck))}. Lengths, forces and stresses are in the units of the deck."

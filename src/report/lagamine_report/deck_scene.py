@@ -5,13 +5,14 @@ import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass
-from typing import Dict, List, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from .errors import EXIT_MACHINE, ReportError
+from .errors import EXIT_INPUT, EXIT_MACHINE, ReportError
 
 VERSION = 1
+ENDING = ".scene.json"
 COMPONENTS = {1: "X", 2: "Y", 3: "A"}
 DISPLACEMENT = 1         # place of the field among those of a scene
 
@@ -120,12 +121,30 @@ def read_scene(deck: str, parameters: Sequence[str] = ()) -> Scene:
     """The scene of a deck, by the solver beside this program; a deck that it refuses is refused in its words."""
     with tempfile.TemporaryDirectory(prefix="lagareport-") as folder:
         words = ask_solver([deck, "--check", "--out", folder], parameters)
-        path = os.path.join(folder, deck_name(deck) + ".scene.json")
-        try:
-            with open(path, encoding="utf-8") as file:
-                return Scene(json.load(file), words)
-        except (OSError, ValueError, KeyError) as error:
-            raise ReportError(f"{solver_program()}: wrote no scene that can be read ({error}): is it of the same version?", EXIT_MACHINE) from error
+        return read_scene_file(os.path.join(folder, deck_name(deck) + ENDING), words)
+
+
+def read_scene_file(path: str, words: str = "") -> Scene:
+    """The scene in a file of the solver, with the words of its --check where they are known."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            return Scene(json.load(file), words)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise ReportError(f"{path}: holds no scene that can be read ({error}): is {solver_program()} of the same version?",
+                          EXIT_MACHINE if words else EXIT_INPUT) from error
+
+
+def checked_scene(place: str) -> Optional[str]:
+    """The scene that `--check --out DIR` has left: the file itself, or the only one of a folder without results; None where there is none."""
+    if os.path.isfile(place):
+        return place if place.endswith(ENDING) else None
+    names = os.listdir(place) if os.path.isdir(place) else []
+    scenes = sorted(name for name in names if name.endswith(ENDING))
+    if not scenes or any(name == "summary.json" or name.endswith((".log", ".h5")) for name in names):
+        return None
+    if len(scenes) > 1:
+        raise ReportError(f"{place}: holds {len(scenes)} scenes: give one of them, {', '.join(scenes)}")
+    return os.path.join(place, scenes[0])
 
 
 def deck_name(deck: str) -> str:

@@ -36,7 +36,7 @@ def rounded(svg: bytes) -> bytes:
 
 
 def svg_bytes(figure: Figure) -> bytes:
-    """A figure as a drawing without its empty margins, on white."""
+    """A figure as a drawing without its empty margins, on white. Layout, box and drawing are asked for once each: savefig draws all of it twice."""
     engine, patch = figure.get_layout_engine(), figure.patch
     if engine is not None:
         engine.execute(figure)
@@ -78,6 +78,7 @@ class Picture:
     vector: bool = False
     heading: str = ""
     drawn: str = ""     # as it stands in the page, once that has been made
+    vector_file: bytes = b""    # as SVG, once that has been made: laid out a second time it would differ in its last digits
 
     def image(self, dpi: int) -> Image.Image:
         """The picture in pixels without its empty margins. The figure is drawn once, with room around it for titles that are wider than their
@@ -112,9 +113,10 @@ class Picture:
         return self.drawn
 
     def svg(self) -> bytes:
-        """The picture as a file of its own, without its empty margins. Layout, box and drawing are asked for once each: savefig draws the whole
-        twice."""
-        return svg_bytes(self.figure)
+        """The picture as a file of its own."""
+        if not self.vector_file:
+            self.vector_file = svg_bytes(self.figure)
+        return self.vector_file
 
 
 def when(run: Run, step: Step) -> str:
