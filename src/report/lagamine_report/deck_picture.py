@@ -94,8 +94,10 @@ class DeckView:
                     self._number(side_label(name, names)[0], self.scene.x[sides[free]])
 
     def _number(self, text: str, sides: np.ndarray) -> None:
-        """Number or name of a set of sides (side, 3, 2), inside of its middle."""
-        side = sides[len(sides) // 2]
+        """Number or name of a set of sides (side, 3, 2), inside of its middle, or of the side next to it that has no point of a zone with its name."""
+        taken = np.array(list(self.scene.zone_places().values())).reshape(-1, 2)
+        clear = [np.hypot(*(taken - side[1]).T).min(initial=np.inf) > 0.08 * self.size for side in sides]
+        side = sides[min(range(len(sides)), key=lambda k: (not clear[k], abs(k - len(sides) // 2)))]
         way = side[2] - side[0]
         left = np.array([-way[1], way[0]]) / max(np.hypot(*way), 1e-300)
         self.axes.text(*(side[1] + 0.022 * self.size * left), text, fontsize=8.5, ha="center", va="center", color=LINES[0], zorder=6, fontweight="bold",
