@@ -33,10 +33,10 @@ def side_points(npoint: int, found: int) -> np.ndarray:
 
 
 class Triangles:
-    """Elements cut into small triangles on which the 8-node shape functions are followed."""
+    """Elements cut into small triangles on which the 8-node shape functions are followed; half as many along a side where the picture is small."""
 
-    def __init__(self, topology: np.ndarray, nodes: int) -> None:
-        n = 6 if len(topology) < 800 else 4 if len(topology) < 4000 else 2
+    def __init__(self, topology: np.ndarray, nodes: int, small: bool = False) -> None:
+        n = (6 if len(topology) < 800 else 4 if len(topology) < 4000 else 2) // (2 if small else 1)
         i, j = np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="xy")
         i, j = i.ravel(), j.ravel()
         self.topology = topology

@@ -99,9 +99,9 @@ def fields_picture(view: SceneView, names: Sequence[str], name: str = "fields", 
     columns = max(1, min(len(shown), 3 if small else 2, int((3.2 if small else 2.2) * 2.2 * height / width) or 1))
     rows = -(-len(shown) // columns)
     inches = panel_size(width, height, 9.2 / columns - 1.1, 2.9 if small else 4.6)
-    fig, axes = figure(rows, columns, (columns * (inches[0] + 1.1), rows * (inches[1] + 0.55)), grid=False)
+    fig, axes = figure(rows, columns, (columns * (inches[0] + 1.1), rows * (inches[1] + (0.75 if small else 0.55))), grid=False)
     if small:
-        fig.get_layout_engine().set(h_pad=0.08)     # inch: ranges stand between the rows
+        fig.get_layout_engine().set(h_pad=0.1)      # inch: titles under the ranges of the row above
     for panel, (field, values) in zip(axes.flat, shown):
         low, high = value_range(values)
         scale = scale_for(low, high)
@@ -111,7 +111,7 @@ def fields_picture(view: SceneView, names: Sequence[str], name: str = "fields", 
             first = run.steps[0]
             view.outline(panel, first.generation, view.coordinates(first), edgecolor=SOFT, linewidth=0.8, linestyle=(0, (4, 3)),
                          zorder=1.2)
-        drawn = view.field(panel, step, values, scale, edges=not small)
+        drawn = view.field(panel, step, values, scale, small)
         colour_bar(fig, drawn, panel)
         panel.set_title(field_title(field, run.axisymmetric), fontsize=9.5 if small else 10.5)
         between = {"s": f"{brief(low)} … {brief(high)}", "fontsize": 8.5, "color": SOFT}
@@ -142,7 +142,7 @@ def series_picture(view: SceneView, field: str, most: int = 8) -> Optional[Pictu
     fig, panels = _grid(view, steps, 2.05, 2.3)
     drawn = None
     for panel, step, value in zip(panels, steps, values):
-        drawn = view.field(panel, step, value, scale, edges=False)
+        drawn = view.field(panel, step, value, scale, small=True)
         panel.set_title(f"time {brief(step.time, 3)}", fontsize=9, fontweight="normal", color=INK)
     colour_bar(fig, drawn, panels, field_title(field, run.axisymmetric), 0.8)
     return Picture("series" if field == "plastic_strain" else f"series_{field}",

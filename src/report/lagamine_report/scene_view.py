@@ -26,14 +26,15 @@ class SceneView:
     def __init__(self, run: Run, mirror: bool = False) -> None:
         self.run = run
         self.mirror = mirror and run.axisymmetric
-        self._triangles: Dict[int, Triangles] = {}
+        self._triangles: Dict[Tuple[int, bool], Triangles] = {}
         self._sides: Dict[int, Tuple[np.ndarray, np.ndarray]] = {}
         self._places: Dict[Tuple[str, str], np.ndarray] = {}
 
-    def triangles(self, generation: Generation) -> Triangles:
-        if generation.number not in self._triangles:
-            self._triangles[generation.number] = Triangles(generation.topology, len(generation.coordinates))
-        return self._triangles[generation.number]
+    def triangles(self, generation: Generation, small: bool = False) -> Triangles:
+        key = generation.number, small
+        if key not in self._triangles:
+            self._triangles[key] = Triangles(generation.topology, len(generation.coordinates), small)
+        return self._triangles[key]
 
     def sides(self, generation: Generation) -> Tuple[np.ndarray, np.ndarray]:
         if generation.number not in self._sides:
@@ -108,9 +109,9 @@ class SceneView:
         for sign in (1, -1) if self.mirror else (1,):
             axes.add_artist(sides_patch(sides * np.array([sign, 1]), **look))
 
-    def field(self, axes: Axes, step: Step, values: np.ndarray, scale: "Scale", edges: bool = True):
-        """Filled contours of nodal values on the deformed shape; returns what a colour bar wants."""
-        triangles = self.triangles(step.generation)
+    def field(self, axes: Axes, step: Step, values: np.ndarray, scale: "Scale", small: bool = False):
+        """Filled contours of nodal values on the deformed shape, with the mesh unless the picture is small; returns what a colour bar wants."""
+        triangles = self.triangles(step.generation, small)
         x = self.coordinates(step)
         at, fine, levels = triangles.at(x), triangles.bounded(values), scale.levels
         fine = np.clip(np.nan_to_num(fine, nan=levels[0]), levels[0], levels[-1])
@@ -119,7 +120,7 @@ class SceneView:
         for sign in (1, -1) if self.mirror else (1,):
             mesh = Triangulation(at[:, 0] * sign, at[:, 1], triangles.cells)
             drawn = axes.tricontourf(mesh, fine, levels=levels, cmap=scale.colours, norm=norm, zorder=1.5, antialiased=False)
-        if edges:
+        if not small:
             self.mesh(axes, step.generation, x, fill=False, edgecolor="black", linewidth=0.35, alpha=0.22)
         self.outline(axes, step.generation, x, linewidth=0.8)
         return drawn
