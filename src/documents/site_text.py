@@ -111,7 +111,7 @@ class Links:
         elif source in self.files:
             name, place = self.files[source], ""
         elif os.path.isfile(os.path.join(root, source)):
-            name, place = self.copies.setdefault(source, "project/" + source), ""
+            name, place = self.copies.setdefault(source, "project/" + source.lstrip(".")), ""      # MkDocs leaves out what is hidden
         else:
             self.lost.append(f"{page.source}: {target}: no such file")
             return target
