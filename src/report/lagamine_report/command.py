@@ -30,7 +30,7 @@ def run_program(arguments: Sequence[str], version: str) -> int:
     parser = Parser("lagareport", description="The results of a run as one self-contained HTML page with pictures.",
                     epilog=EXIT_CODES)
     parser.add_argument("folders", metavar="DIR", nargs="+", help="folder of the results: what `lagamine DECK --out DIR` wrote; two or more "
-                        "are compared; or a deck, or what its --check left, which is drawn before any run; or a .met file, whose steels are drawn")
+                        "are compared; or a deck, or the folder with its scene, which is drawn before any run; or a .met file, whose steels are drawn")
     parser.add_argument("--out", metavar="FILE", help="the page (default: DIR/report.html; of several runs compare.html, of a deck NAME.html and "
                         "NAME.svg, of a .met file NAME.html, in the present folder)")
     parser.add_argument("-p", metavar="NAME=VALUE", dest="parameters", action="append", default=[], help="of a deck: set a parameter of it")

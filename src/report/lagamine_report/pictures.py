@@ -3,6 +3,7 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from .cells import GAP, TITLE, cells
 from .errors import ReportError
 from .picture import Picture, when
 from .reader import Run, Step
@@ -144,13 +145,13 @@ def series_picture(view: SceneView, field: str, most: int = 8) -> Optional[Pictu
     for panel, step, value in zip(panels, steps, values):
         drawn = view.field(panel, step, value, scale, small=True)
         panel.set_title(f"time {brief(step.time, 3)}", fontsize=9, fontweight="normal", color=INK)
-    colour_bar(fig, drawn, panels, field_title(field, run.axisymmetric), 0.8)
+    colour_bar(fig, drawn, panels[0].axes, field_title(field, run.axisymmetric), 0.8)
     return Picture("series" if field == "plastic_strain" else f"series_{field}",
                    f"{field_title(field, run.axisymmetric)} at saved steps, one scale for all", fig)
 
 
 def _grid(view: SceneView, steps: Sequence[Step], widest: float, highest: float):
-    """Small panels with one frame for all steps, dies drawn; returns figure and panels."""
+    """Small panels with one frame for all steps, dies drawn; returns figure and cells."""
     box = view.box(steps, 0.1)
     if len(steps) < 5:      # these few stand in one row
         widest = min(widest, 9.2 / len(steps) - 0.25)
@@ -158,10 +159,9 @@ def _grid(view: SceneView, steps: Sequence[Step], widest: float, highest: float)
     columns = min(len(steps), max(1, int(9.2 / (inches[0] + 0.2))))
     rows = -(-len(steps) // columns)
     columns = -(-len(steps) // rows)
-    fig, axes = figure(rows, columns, (columns * (inches[0] + 0.25) + 0.9, rows * (inches[1] + 0.4)), grid=False)
-    for panel, step in zip(axes.flat, steps):
-        view.frame(panel, box, bare=True)
+    fig, axes = figure(1, 1, (columns * (inches[0] + GAP) + 0.9, rows * (inches[1] + TITLE)), grid=False)
+    panels = cells(axes[0, 0], box, inches[0], rows, columns)[:len(steps)]
+    for panel, step in zip(panels, steps):
+        view.axis(panel, box)
         view.dies(panel, step, box)
-    for panel in axes.flat[len(steps):]:
-        panel.set_visible(False)
-    return fig, list(axes.flat[:len(steps)])
+    return fig, panels

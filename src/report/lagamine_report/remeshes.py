@@ -5,6 +5,7 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import LogNorm
 
+from .cells import GAP, TITLE, cells
 from .cycle import Try, new_meshes
 from .geometry import element_curves, element_sizes
 from .picture import Picture
@@ -47,20 +48,20 @@ def remesh_picture(view: SceneView, row: Try) -> Picture:
         shades.append(("error of the stress [%]", [100 * np.maximum(error, largest * 10.0**-DECADES) for error in errors]))
     beside = (box[1] - box[0]) < 2.2 * (box[3] - box[2])
     inches = panel_size(box[1] - box[0], box[3] - box[2], 3.9 if beside else 7.8, 3.6)
-    rows, columns = (len(shades), 2) if beside else (2 * len(shades), 1)
-    fig, axes = figure(rows, columns, (columns * (inches[0] + 0.3) + 1.1, rows * (inches[1] + 0.35)), grid=False)
-    for k, (title, values) in enumerate(shades):
-        panels = axes.flat[2 * k:2 * k + 2]
+    rows, columns = (1, 2) if beside else (2, 1)
+    fig, axes = figure(len(shades), 1, (columns * (inches[0] + GAP) + 1.2, len(shades) * rows * (inches[1] + TITLE)), grid=False)
+    for shared, (title, values) in zip(axes.flat, shades):
+        panels = cells(shared, box, inches[0], rows, columns)
         both = np.concatenate(values)
         low, high = max(both.min(), both.max() * 10.0**-6), both.max()
         norm = LogNorm(low, max(high, low * (1 + 1e-6)))
         for panel, step, curve, value, word in zip(panels, steps, curves, values, ("old", "new")):
-            view.frame(panel, box, bare=True)
+            view.axis(panel, box)
             view.dies(panel, step, box)
             drawn = shade(panel, view, curve, value, norm)
             view.outline(panel, step.generation, view.coordinates(step), linewidth=0.8)
             panel.set_title(f"{word} mesh: {len(value)} elements", fontsize=9)
-        bar = fig.colorbar(drawn, ax=list(panels), shrink=0.86, aspect=18, pad=0.02)
+        bar = fig.colorbar(drawn, ax=shared, shrink=0.86, aspect=18, pad=0.02)
         ticks = np.geomspace(low, high, 5) if high > low * (1 + 1e-6) else [low]
         bar.ax.set_title("", y=ABOVE)
         bar.ax.xaxis.set_visible(False)

@@ -74,8 +74,12 @@ class SceneView:
             axes.xaxis.set_major_locator(MaxNLocator(5))
             axes.yaxis.set_major_locator(MaxNLocator(6))
             axes.tick_params(length=2.5)
+        self.axis(axes, box)
+
+    def axis(self, axes, box: Box) -> None:
+        """The axis of revolution, where there is one."""
         if self.run.axisymmetric:
-            axes.axvline(0, color=SOFT, lw=0.8, dashes=(9, 3, 2, 3), zorder=0.5)
+            axes.plot([0, 0], box[2:], color=SOFT, lw=0.8, dashes=(9, 3, 2, 3), zorder=0.5)
 
     def dies(self, axes: Axes, step: Step, box: Box) -> None:
         """Dies where their pilots stand, a band of their body in grey."""
