@@ -15,6 +15,7 @@ module energy_books
   use element_loop, only: group_geometry
   use equations, only: equations_t
   use fields, only: displacement_field, field_t, on_nodes, on_pilots, pilot_field, section_field
+  use gap_work, only: work_across_gaps
   use kinds, only: eps, wp
   use scene, only: role_spring, scene_t
   use solution, only: present_coordinates, solution_t
@@ -110,14 +111,18 @@ contains
     real(wp), intent(in) :: friction_before   !! work of friction up to the step, per radian when axisymmetric [energy]
     type(solution_t), intent(inout) :: solution
     type(heat_work_t) :: heat
-    real(wp) :: friction, overlap, taken
+    real(wp) :: friction, overlap, taken, of_dies, of_supports
 
     if (.not. scene%fields(displacement_field)%declared) return
+    call work_across_gaps(scene, equations, solution, of_dies, of_supports)
+    solution%external_work = solution%external_work + (of_dies + of_supports)
     call book_heat_work(scene, equations, solution, heat)
     friction = solution%friction_work - friction_before
     overlap = 0
     if (solution%step == 1) overlap = work_of_overlap(scene, equations, du, solution)
     associate (work => solution%work, u => solution%fields(displacement_field))
+      work%dies = work%dies + of_dies
+      work%supports = work%supports + of_supports
       work%heat = work%heat + heat%work
       work%grown = work%grown + heat%grown
       work%flow = work%flow + totals%dissipated

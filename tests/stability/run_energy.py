@@ -8,8 +8,10 @@ is stored and dissipated is the error of the path within the steps: of first ord
 that passed (`energy_imbalance`), and by how much the second and the third run are better than the one before.
 
 Then runs that other books cannot close: bars heated with moduli and expansion by temperature, held and free (no work from outside,
-none at all; no drift of volume either), a block under stress that a die turns by two radians (a rotation makes no work), and one
-loaded and unloaded.
+none at all; no drift of volume either), and a block under stress that a die turns by two radians (a rotation makes no work).
+
+Last a block pressed and left by its die, a rigid one and a body, in steps of which the die leaves it in the first tenth or less: what is
+missing is that of the pressing, however far the die goes in them.
 """
 import json
 import os
@@ -118,9 +120,53 @@ def others(checks):
         books(checks, f"turned-{kinematics}", TURNED.format(kinematics=kinematics))
 
 
+LIFTED = """TITLE  A block pressed, and left by the die
+STATE  {state}
+KINEM  LOG
+BLOCK  b PL8LS 4 steel
+   0. 0.   10. 0.   10. 10.   0. 10.
+   5 1.   5 1.
+LAW    steel EPLA
+   200000. 0.3
+   LINEAR 300. 500.
+LAW    rough COUL2D
+   PENETR 1.E-3   PHI 0.2
+{die}
+FIXED  b 1 Y
+FIXED  b 4 X
+LIC    way
+   0. 0.   1. -1.   1.05 {up}
+STRAT  0.02 1.E-6 0.05   9 3
+STOP   1.05
+END
+"""
+LEAVING = {"rigid": "DIE    d PILOT 0. 10.\n   SEGM  30. 10.   -5. 10.\nCNT2D  b 3 d -3 rough\nMOVE   d Y way",
+           "body": "BLOCK  t PL8LS 4 tool\n   0. 10.   20. 10.   20. 15.   0. 15.\n   7 1.   2 1.\nLAW    tool ELA\n   200000. 0.3\n"
+                   "DIE    d SIDES t 1\nCNT2D  b 3 d rough\nFIXED  t 4 X\nMOVE   t 3 Y way"}
+
+
+def lifted(checks):
+    """What is missing is the same for dies that leave by a tenth, by half, and by twenty times the height of the block."""
+    for state in ("AXISYM", "PLSTN"):
+        for kind, die in LEAVING.items():
+            missing, passed = [], 0.0
+            for up in (-0.9, -0.5, 20.0):
+                run = Run(checks, f"lifted-{state}-{kind}-{up}", LIFTED.format(state=state, die=die, up=up))
+                if not run.ok:
+                    return
+                with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+                    summary = json.load(file)
+                missing.append(summary["energy"]["missing"])
+                passed = summary["energy"]["external_work"]
+            print(f"lifted-{state}-{kind:6s} missing", " ".join(f"{100*one/passed:.4f}" for one in missing), "% of the work")
+            checks.small(max(map(abs, missing))/passed, 3e-3, f"lifted-{state}-{kind}: missing")
+            checks.small((max(missing) - min(missing))/passed, 1e-5, f"lifted-{state}-{kind}: however far the die goes")
+
+
 def main():
     checks = Checks()
     others(checks)
+    lifted(checks)
     print(f"{'deck':12s} {'step':>7s} {'missing %':>10s} {'half':>9s} {'better':>7s} {'quarter':>9s} {'better':>7s}")
     for name, (deck, step) in DECKS.items():
         found = [imbalance(checks, deck, step/division) for division in (1, 2, 4)]

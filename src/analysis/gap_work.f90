@@ -1,0 +1,143 @@
+!> Work that the trapezoidal rule sees across gaps that open in a step, where there is none.
+!>
+!> By that rule a force f(n) that is gone at the end does f(n).du/2 on the whole motion of the step. Where a side leaves what it
+!> lay on, the motion du of the die goes on without it: on the motion of the die against the side contact took
+!> -f(n).(du_die - du_side)/2 by the rule, and in truth what its penalties gave back (contact_work). The difference belongs to
+!> neither the part nor its contact. Without it the work of a die that lifts off grows with the length of the step.
+module gap_work
+  use contact_point, only: area_at, at_piece, at_pressure, at_status, at_tau, at_xi, contact_block, penalties, side_length
+  use contact_work, only: kept_work
+  use corner_contact, only: interval_before
+  use dies, only: is_deformable
+  use element_loop, only: group_geometry
+  use equations, only: equations_t
+  use fields, only: displacement_field, pilot_field, section_field
+  use held_depth, only: soft_depth
+  use kinds, only: wp
+  use law_api, only: contact_open
+  use plane_vectors, only: turned
+  use quadrature, only: line_rule
+  use scene, only: group_t, role_contact, scene_t
+  use shape_functions, only: line3
+  use solution, only: solution_t
+  use state_variables, only: find_variable
+  implicit none
+  private
+  public :: work_across_gaps
+
+contains
+
+  !> To be added to the work from outside: of rigid dies, and of supports where the die is of sides; before the state is committed,
+  !> after fields have moved.
+  subroutine work_across_gaps(scene, equations, solution, of_dies, of_supports)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(out) :: of_dies, of_supports   !! per radian when axisymmetric [energy]
+    real(wp) :: work
+    integer :: g
+
+    of_dies = 0
+    of_supports = 0
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%role /= role_contact .or. scene%groups(g)%material == 0) cycle
+      if (.not. any(opens(solution%groups(g)%committed(at_status, :, :), solution%groups(g)%trial(at_status, :, :)))) cycle
+      call work_of_group(scene, equations, solution, g, work)
+      if (is_deformable(scene%dies(scene%groups(g)%die))) then
+        of_supports = of_supports + work
+      else
+        of_dies = of_dies + work
+      end if
+    end do
+  end subroutine work_across_gaps
+
+  !> In contact at the start of the step, and no longer at its end.
+  elemental function opens(before, after) result(yes)
+    real(wp), intent(in) :: before, after   !! status
+    logical :: yes
+
+    yes = nint(before) /= contact_open .and. nint(after) == contact_open
+  end function opens
+
+  subroutine work_of_group(scene, equations, solution, g, work)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: g           !! place of the group
+    real(wp), intent(out) :: work      !! per radian when axisymmetric [energy]
+    real(wp), allocatable :: xi(:), weight(:), x(:, :, :)
+    real(wp) :: du(2, 3), from, to
+    integer :: e, p, n
+    logical :: corners
+
+    work = 0
+    associate (group => scene%groups(g), u => solution%fields(displacement_field), before => solution%groups(g)%committed, &
+               after => solution%groups(g)%trial)
+      call line_rule(group%rule, xi, weight)
+      call group_geometry(scene, group, equations%elems(group%elem_id), u%value, x)
+      corners = find_variable(group%variables, 'corner_place') > 0
+      n = contact_block(corners, size(before, 1))
+      do e = 1, size(x, 3)
+        du = u%last_increment(:, group%connectivity(1:3, e))
+        if (scene%finite) x(:, :3, e) = x(:, :3, e) - du
+        do p = 1, size(xi)
+          call add_point(before(:n, p, e), after(:n, p, e), xi(p), weight(p))
+          if (.not. corners) cycle
+          call interval_before(xi, p, from, to)
+          call add_point(before(n + 1:2*n, p, e), after(n + 1:2*n, p, e), before(2*n + 1, p, e), to - from)
+        end do
+      end do
+    end associate
+
+  contains
+
+    subroutine add_point(old, now, place, share)
+      real(wp), intent(in) :: old(:), now(:), place, share
+      real(wp) :: phi(3), dphi(3), tangent(2), traction(2), penalty(2), side
+      logical :: held
+
+      if (.not. opens(old(at_status), now(at_status))) return
+      associate (group => scene%groups(g), side_of => x(:, :3, e))
+        call line3(place, phi, dphi)
+        tangent = matmul(side_of, dphi)
+        tangent = tangent/norm2(tangent)
+        ! walking along the side the part is on the left: the inner normal of the die is on the right, its tangent goes the same way
+        traction = old(at_pressure)*[tangent(2), -tangent(1)] + old(at_tau)*tangent
+        side = side_length(scene, group%connectivity(:, e))
+        penalty = penalties(scene%materials(group%material), group%modulus, side)
+        held = soft_depth(group%rule, scene%materials(group%material), side) > 0
+        work = work + share*area_at(place, solution%fields(section_field)%value(:, 1), side_of) &
+               *(0.5_wp*dot_product(traction, motion_of_die(scene, solution, group, old, matmul(side_of, phi)) - matmul(du, phi)) &
+                 + kept_work(old, now, penalty, held))
+      end associate
+    end subroutine add_point
+
+  end subroutine work_of_group
+
+  !> Motion in the step of the place of a die that a point of a side lay on.
+  pure function motion_of_die(scene, solution, group, state, x) result(motion)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: state(:)   !! (nstate) of the point at the start of the step [unit of each component]
+    real(wp), intent(in) :: x(2)       !! then [length]
+    real(wp) :: motion(2)              !! [length]
+    real(wp) :: phi(3), dphi(3), arm(2)
+    integer :: piece
+
+    piece = nint(state(at_piece))
+    motion = 0
+    if (is_deformable(scene%dies(group%die))) then
+      if (piece == 0) return
+      call line3(state(at_xi), phi, dphi)
+      motion = matmul(solution%fields(displacement_field)%last_increment(:, scene%dies(group%die)%nodes(:, piece)), phi)
+    else
+      associate (pilot => solution%fields(pilot_field)%value(:, group%die), &
+                 step => solution%fields(pilot_field)%last_increment(:, group%die))
+        arm = x - (pilot(1:2) - step(1:2))
+        motion = step(1:2) + turned(arm, step(3)) - arm
+      end associate
+    end if
+  end function motion_of_die
+
+end module gap_work
