@@ -10,6 +10,7 @@ module accept_step
   use fields, only: field_t, fill_middle_nodes, has_corners_only, pilot_field
   use friction_heat, only: keep_friction_work
   use heat_books, only: book_heat
+  use heat_flows, only: book_heat_flows
   use heat_record, only: note_heat_step
   use kinds, only: wp
   use newton, only: outcome_t
@@ -44,6 +45,7 @@ contains
     call book_work(equations, outcome%du, solution)
     call book_reactions(scene, equations, solution%time + dt, solution%fields)
     call book_heat(scene, equations, dt, solution)
+    call book_heat_flows(scene, equations, solution)
     call note_heat_step(outcome%heat, solution%heat)
     call note_path_step(outcome%path, dt, solution%time + dt, solution%path)
     call move_fields(equations%dofs, outcome%du, solution%fields)

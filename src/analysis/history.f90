@@ -7,6 +7,7 @@ module history
   use errors, only: error_t
   use fields, only: displacement_field, find_field, pilot_field, section_field
   use heat_books, only: has_heat, heat_imbalance
+  use heat_flows, only: heat_flow_names
   use kinds, only: pi, wp
   use newton, only: outcome_t
   use path_record, only: motion_error, stress_error
@@ -84,13 +85,15 @@ contains
   subroutine name_columns(scene, columns)
     type(scene_t), intent(in) :: scene
     type(string_t), allocatable, intent(out) :: columns(:)
+    type(string_t), allocatable :: flows(:)
     integer :: k, n
 
+    flows = heat_flow_names(scene)
     allocate (columns(14 + merge(1, 0, scene%operation > 0) + merge(1, 0, scene%load_factor%multiplier > 0) &
                       + 6*size(scene%dies) - 3*count(is_deformable(scene%dies)) &
                       + merge(6, 0, scene%plane_state == generalised_plane_strain) &
                       + merge(2, 0, scene%follows_path) + merge(2, 0, scene%remesh%estimate) &
-                      + merge(4, 0, has_heat(scene)) + 2*size(scene%die_heats) &
+                      + merge(4, 0, has_heat(scene)) + size(flows) + 2*size(scene%die_heats) &
                       + size(scene%probes)))
     n = 0
     call add('time [time]')
@@ -140,6 +143,9 @@ contains
       call add('heat_released [energy]')
       call add('heat_imbalance [-]')
     end if
+    do k = 1, size(flows)
+      call add('heat_through_'//flows(k)%s//' [power]')
+    end do
     do k = 1, size(scene%die_heats)
       call add('temperature_'//scene%dies(scene%die_heats(k)%die)%name//' [temperature]')
       call add('heat_flow_'//scene%dies(scene%die_heats(k)%die)%name//' [power]')
@@ -196,6 +202,7 @@ contains
       call table%put(factor*[solution%heat_stored, solution%heat_in, solution%heat_released])
       call table%put(heat_imbalance(solution))
     end if
+    if (has_heat(scene)) call table%put(factor*solution%heat_flows)
     do k = 1, size(scene%die_heats)
       call table%put(temperature_and_flow(scene, solution, k)*[1.0_wp, factor])
     end do

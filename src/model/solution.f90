@@ -50,6 +50,9 @@ module solution
     !> sum of the sizes of the last two by step. Per radian when axisymmetric.
     real(wp) :: heat_stored = 0.0_wp, heat_in = 0.0_wp, heat_released = 0.0_wp, heat_passed = 0.0_wp
     type(heat_record_t) :: heat
+    !> Heat flows into the bodies in the last step, through each boundary and from each source (heat_flows) [power, per radian when
+    !> axisymmetric].
+    real(wp), allocatable :: heat_flows(:)
     !> Errors of the path within the steps.
     type(path_record_t) :: path
     !> Volume at the start, for the drift; 0 before it is measured.

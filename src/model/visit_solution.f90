@@ -37,6 +37,7 @@ contains
     call visitor%member('heat_in', self%heat_in, kept, 'energy')
     call visitor%member('heat_released', self%heat_released, kept, 'energy')
     call visitor%member('heat_passed', self%heat_passed, kept, 'energy', low=0.0_wp)
+    call visitor%derived('heat_flows', 'of the last step: for the row of history.csv that is written with it')
     call visitor%member('initial_volume', self%initial_volume, kept, 'volume', low=0.0_wp)
     call visitor%member('worst_linear_residual', self%worst_linear_residual, kept, '-')
     call visitor%member('worst_penetration', self%worst_penetration, kept, 'length')

@@ -18,7 +18,7 @@ module heat_stages
   use heat_bounds, only: excess_of_temperature, has_bounds, on_corners_alone
   use kinds, only: wp
   use newton, only: outcome_t, solve_step
-  use scene, only: scene_t
+  use scene, only: role_heat_contact, scene_t
   use solution, only: solution_t
   use strategy, only: scheme_tr_bdf2
   use text, only: to_text
@@ -161,7 +161,7 @@ contains
     call flows(scene, equations, solution, 0.0_wp, start, g(:, 0))
     if (present(given)) start = 2*diagonal*given
     passed = 0
-    call add_passed(equations, weights(0), passed)
+    call add_passed(scene, equations, weights(0), passed)
 
     equations%stage = stage_t(share=0.5_wp, reach=2*diagonal)
     call solve_step(scene, equations, solution, 2*diagonal*dt, first, left=g(:, 0), given=start)
@@ -171,7 +171,7 @@ contains
       return
     end if
     call flows(scene, equations, solution, 2*diagonal*dt, first%du, g(:, 1), reach=2*diagonal)
-    call add_passed(equations, weights(1), passed)
+    call add_passed(scene, equations, weights(1), passed)
 
     ! the temperatures go on as they went in the first stage
     start = first%du/(2*diagonal)
@@ -185,8 +185,8 @@ contains
 
     call keep_evaluation(equations, kept)
     call flows(scene, equations, solution, dt, outcome%du, g(:, 2))
-    call add_passed(equations, weights(2), passed)
-    call take_passed(equations, passed, kept%element_force)
+    call add_passed(scene, equations, weights(2), passed)
+    call take_passed(scene, equations, passed, kept%element_force)
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     kept%force = merge(external + diagonal*(kept%force + left - external), kept%force, equations%solves(equations%now)%is_own)
     call estimate(scene, equations, solution, matmul(g, error_weights)/diagonal, outcome)
@@ -213,30 +213,41 @@ contains
     g = merge(equations%force - external, 0.0_wp, equations%solves(equations%now)%is_own)
   end subroutine flows
 
-  !> Add the element forces of the loads of the present solve.
-  pure subroutine add_passed(equations, share, passed)
+  !> Add the element forces of what brings heat in, of the present solve.
+  pure subroutine add_passed(scene, equations, share, passed)
+    type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: share
     real(wp), intent(inout) :: passed(:)   !! [power]
     integer :: k, m, n
 
     do k = 1, size(equations%dofs%groups)
-      if (.not. (equations%solves(equations%now)%active(k) .and. equations%is_load(k))) cycle
+      if (.not. (equations%solves(equations%now)%active(k) .and. passes(scene%groups(k)%role, equations%is_load(k)))) cycle
       m = equations%solves(1)%pattern%force_start(k)
       n = size(equations%dofs%groups(k)%dof)
       passed(m + 1:m + n) = passed(m + 1:m + n) + share*equations%buffers%force(m + 1:m + n)
     end do
   end subroutine add_passed
 
+  !> Heat comes in by the group: a load, or heat through a contact.
+  elemental function passes(role, is_load) result(yes)
+    integer, intent(in) :: role
+    logical, intent(in) :: is_load
+    logical :: yes
+
+    yes = is_load .or. role == role_heat_contact
+  end function passes
+
   !> Put them where the element forces are.
-  pure subroutine take_passed(equations, passed, force)
+  pure subroutine take_passed(scene, equations, passed, force)
+    type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: passed(:)
     real(wp), intent(inout) :: force(:)
     integer :: k, m, n
 
     do k = 1, size(equations%dofs%groups)
-      if (.not. (equations%solves(equations%now)%active(k) .and. equations%is_load(k))) cycle
+      if (.not. (equations%solves(equations%now)%active(k) .and. passes(scene%groups(k)%role, equations%is_load(k)))) cycle
       m = equations%solves(1)%pattern%force_start(k)
       n = size(equations%dofs%groups(k)%dof)
       force(m + 1:m + n) = passed(m + 1:m + n)

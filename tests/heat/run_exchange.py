@@ -9,6 +9,7 @@ usage: run_exchange.py [-v] [-k]
 - `annulus` (NAFEMS, heat flow into a part of the bore): 332.97 K.
 - `fins`: convection with coefficients by temperature, at both ends of a wall, to surroundings that change in time; steady at the end:
   flows agree, q = h(T1) (Ts - T1) = LAMBDA (T1 - T2)/L = h(T2) (T2 - Tr), by bisection.
+- `flows`: heat through every boundary is what the books have, by all schemes.
 - `cylinder`: cooled by convection, Biot numbers 1 and 20: the series of Bessel's functions, and the order in time.
 - `wall_by_temperature`: LAMBDA linear in T: Kirchhoff's transform, T from a (T - T1) + b (T^2 - T1^2)/2 linear in place.
 - `source`: heat from the volume, a parabola; a body that only warms up.
@@ -109,6 +110,36 @@ def convection(checks):
         if run.ok:
             found = np.array([run.history["a"][-1], run.history["b"][-1]])
             checks.small(np.max(np.abs(found/np.array([t1, t2]) - 1)), 1e-9, f"{run.name}: {t1:.3f} and {t2:.3f}")
+            # 0.01 high, 0.5 thick
+            power = h(t1)*(900 - t1)*0.01*0.5
+            through = [run.history[f"heat_through_wall.{side}/CONVE"][-1]/power for side in (4, 2)]
+            checks.small(max(abs(through[0] - 1), abs(through[1] + 1)), 1e-8, f"{run.name}: {power:.4f} W in and out")
+
+
+FLOWS = (HEAD + "BLOCK w PL8TM 9 m {kind}\n   1. 0. 2. 0. 2. 1. 1. 1.\n   4 1. 3 1.\nLAW m HEAT\n   20. 3.\nSTART T 500.\n"
+         "CONVE w 2 H 30. TS 20.\nRADIA w 2 EPS 0.8 SIGMA 5.67E-8 ZERO 273.15 TS 20.\nFLUX w 3 Q 1.E3 on\nHEATS w Q 100.\n"
+         "IMPOS w 4 T on 300.\nIMPOS w 1 T on 300.\nLIC on\n   0. 1. 0.1 0.5\nDIE d\n   SEGM 3. 1. 0. 1.\nCOU2DC w 3 d H 5.\nTDIE d T 100.\n"
+         "STRAT 0.001 1.E-6 0.01 9 3\nSTOP 0.1\nTHETA {scheme}\n" + TIGHT + "END\n")
+
+
+def flows(checks):
+    """Heat through every boundary, in all ways through a side, from the volume and into a die: together what the books have."""
+    names = ["w.2/CONVE", "w.2/RADIA", "w.3/FLUX", "w/HEATS", "w.3/d/COU2DC", "w.4/IMPOS", "w.1/IMPOS"]
+    for scheme in ("1.", "0.5 MEAN", "TRBDF2"):
+        for kind in ("", "BILINEAR"):
+            run = Run(checks, f"flows-{scheme[:3].strip('.')}{kind}", FLOWS.format(title="flows", state="AXISYM", kind=kind, scheme=scheme))
+            if not run.ok:
+                return
+            steps = run.history["step_length"]
+            passed = [np.sum(run.history["heat_through_" + name]*steps) for name in names]
+            whole = run.history["heat_in"][-1] + run.history["heat_released"][-1]
+            checks.small(abs(sum(passed) - whole)/sum(map(abs, passed)), 1e-12, f"{run.name}: sum over the boundaries")
+            checks.that(min(map(abs, passed)) > 50, f"{run.name}: heat through all of them", passed)
+            checks.small(np.max(np.abs(run.history["heat_through_w.3/d/COU2DC"] + run.history["heat_flow_d"])), 1e-9*5e3, f"{run.name}: the die")
+            if scheme == "0.5 MEAN":
+                # both ends of the step, the side 3 pi wide
+                exact = 3*math.pi*1e3*(1 - 0.5*(run.history["time"] - 0.5*steps)/0.1)
+                checks.small(np.max(np.abs(run.history["heat_through_w.3/FLUX"]/exact - 1)), 1e-9, f"{run.name}: FLUX by time")
 
 
 def bessel(order, x):
@@ -225,7 +256,7 @@ def plastic(checks):
 def main():
     """All cases."""
     checks = Checks()
-    for case in (radiation, wave, annulus, convection, cylinder, by_temperature, source, stefan, plastic):
+    for case in (radiation, wave, annulus, convection, flows, cylinder, by_temperature, source, stefan, plastic):
         case(checks)
     checks.end()
 
