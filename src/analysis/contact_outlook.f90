@@ -4,16 +4,17 @@
 module contact_outlook
   use curve_search, only: closest_facing_point, closest_on_pieces
   use closest_point, only: closest_point_t
-  use dies, only: die_t, in_pilot_axes, is_deformable
+  use dies, only: die_t, in_pilot_axes, is_deformable, present_die
   use kinds, only: wp
   use loads, only: multiplier_at
   use plane_vectors, only: turned
   use scene, only: group_t, scene_t
+  use shape_functions, only: line3
   use starting_sides, only: extent_of, sides_at_start
   use vectors, only: length_of
   implicit none
   private
-  public :: look_at_contact, moves, outlook_t
+  public :: look_at_contact, moves, gaps_at_rest, outlook_t
 
   !> Instants at which a moving die is looked at.
   integer, parameter :: ninstant = 50
@@ -59,6 +60,32 @@ contains
     end associate
   end subroutine look_at_contact
 
+  !> Gaps of five points of every side to a die at rest, rigid or made of sides: below 0 for a depth, huge where there is no
+  !> closest point; in lengths and over that of the side.
+  pure subroutine gaps_at_rest(scene, group, gap, over_side)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    real(wp), allocatable, intent(out) :: gap(:, :), over_side(:, :)   !! (5, nside) [length], [-]
+    real(wp), parameter :: places(5) = [-0.8_wp, -0.4_wp, 0.0_wp, 0.4_wp, 0.8_wp]
+    type(die_t) :: die
+    real(wp) :: phi(3), dphi(3)
+    real(wp), allocatable :: sides(:, :, :), behind(:, :)
+    integer :: e, k
+    logical :: faces
+
+    die = present_die(scene%dies(group%die), scene%mesh%coordinates)
+    call sides_at_start(scene, group, sides, behind)
+    allocate (gap(size(places), size(sides, 3)), over_side(size(places), size(sides, 3)), source=huge(1.0_wp))
+    do e = 1, size(sides, 3)
+      do k = 1, size(places)
+        call line3(places(k), phi, dphi)
+        call depth_of(sides(:, :, e), phi, die, die%pilot, 4*extent_of(scene), faces, gap(k, e), over_side(k, e))
+        gap(k, e) = merge(-gap(k, e), huge(1.0_wp), faces)
+        over_side(k, e) = merge(-over_side(k, e), huge(1.0_wp), faces)
+      end do
+    end do
+  end subroutine gaps_at_rest
+
   !> The die's pilot is given a motion that is not rest.
   pure function moves(scene, die) result(yes)
     type(scene_t), intent(in) :: scene
@@ -102,28 +129,46 @@ contains
     real(wp), intent(in) :: pilot(3), reach
     logical, intent(out) :: faces
     real(wp), intent(out) :: depth, over_side
-    type(closest_point_t) :: closest
-    real(wp) :: nodes(2, 3), chord(2), side
+    real(wp), parameter :: node(3, 3) = reshape([1, 0, 0, 0, 1, 0, 0, 0, 1]*1.0_wp, [3, 3])
+    real(wp) :: d, share
     integer :: e, k
+    logical :: found
 
     faces = .false.
     depth = -huge(depth)
     over_side = 0
     do e = 1, size(sides, 3)
-      nodes = in_pilot_axes(sides(:, :, e), pilot)
-      chord = nodes(:, 3) - nodes(:, 1)
-      side = length_of(chord)
       do k = 1, 3
-        call closest_facing_point(die, nodes(:, k), [-chord(2), chord(1)]/side, reach, closest)
-        if (closest%piece == 0) cycle
+        call depth_of(sides(:, :, e), node(:, k), die, pilot, reach, found, d, share)
+        if (.not. found) cycle
         faces = .true.
-        if (.not. closest%d > depth) cycle
-        depth = closest%d
-        over_side = depth/side
+        if (.not. d > depth) cycle
+        depth = d
+        over_side = share
       end do
     end do
     if (.not. faces) depth = 0
   end subroutine deepest
+
+  !> Depth of a point of a side, and over the length of the side.
+  pure subroutine depth_of(nodes, phi, die, pilot, reach, faces, depth, over_side)
+    real(wp), intent(in) :: nodes(2, 3)   !! [length]
+    real(wp), intent(in) :: phi(3)        !! shape functions at the point [-]
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: pilot(3), reach
+    logical, intent(out) :: faces
+    real(wp), intent(out) :: depth, over_side
+    type(closest_point_t) :: closest
+    real(wp) :: local(2, 3), chord(2), side
+
+    local = in_pilot_axes(nodes, pilot)
+    chord = local(:, 3) - local(:, 1)
+    side = length_of(chord)
+    call closest_facing_point(die, matmul(local, phi), [-chord(2), chord(1)]/side, reach, closest)
+    faces = closest%piece > 0
+    depth = closest%d
+    over_side = depth/side
+  end subroutine depth_of
 
   !> Points behind the sides that lie in the die's body: on the right of the curve.
   pure subroutine count_inside(behind, die, outlook)

@@ -1,6 +1,6 @@
 !> Heat through every boundary: the flow through each set of sides with FLUX, CONVE, RADIA or COU2DC, each place with an imposed
-!> temperature, and from each source in a volume. With the heat of rigid dies as COU2DC and the heat of friction in it they are all that
-!> comes into the bodies.
+!> temperature, and from each source in a volume. With the heat of rigid dies as COU2DC and the heat of friction in it they are
+!> all that comes into the bodies.
 module heat_flows
   use equations, only: equations_t
   use fields, only: find_field

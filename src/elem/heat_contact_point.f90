@@ -14,13 +14,14 @@ module heat_contact_point
   use vectors, only: length_of
   implicit none
   private
-  public :: facing_t, find_facing, share_out, shares_t
+  public :: facing_t, find_facing, share_out, shares_t, touching_still
 
   !> The temperature is the first of the element's unknowns, that of a rigid die the second.
   integer, parameter :: temperature = 1, of_die = 2
-  !> A point is closed at a gap below this share of its side, round-off of coordinates; the die is searched for within this share
-  !> where no wider reach is given.
-  real(wp), parameter :: touching = 1.0e-9_wp, searched = 1.0e-3_wp
+  !> A point is closed at a gap below this share of its side, round-off of coordinates; the die is searched for within `searched`,
+  !> as deep in the part as that too, where no wider reach is given. In a scene of heat alone no contact says what touches: there
+  !> two curves that are drawn as one but cut into other parabolas may differ by `drawn` of a side (arcs of 20 degrees by 1e-4).
+  real(wp), parameter :: touching = 1.0e-9_wp, searched = 0.05_wp, drawn = 1.0e-3_wp
 
   !> What a point faces.
   type :: facing_t
@@ -77,7 +78,7 @@ contains
       facing%gap = -closest%d
     end if
     if (facing%piece == 0) return
-    facing%closed = facing%closed .or. facing%gap <= touching*side
+    facing%closed = facing%closed .or. facing%gap <= merge(touching, touching_still(group), size(drivers, 1) > 0)*side
     facing%found = facing%closed .or. facing%gap <= group%heat_contact%reach
     if (allocated(scene%dies(group%die)%nodes)) then
       facing%along = tangent_on(instant%dies(group%die)%pieces(:, :, facing%piece), facing%xi)
@@ -86,6 +87,15 @@ contains
     end if
     facing%along = facing%along/length_of(facing%along)
   end subroutine find_facing
+
+  !> Share of a side at which a point is closed in a scene of heat alone; rows GAP say themselves what a small gap does.
+  elemental function touching_still(group) result(share)
+    type(group_t), intent(in) :: group
+    real(wp) :: share
+
+    share = drawn
+    if (allocated(group%heat_contact%by_gap)) share = touching
+  end function touching_still
 
   !> Unknowns of the side and of the die at a point; none of a deformable die whose piece is no pair of the side.
   pure subroutine share_out(layout, n, rigid, xi, phi, facing, pieces, shares)
