@@ -13,7 +13,7 @@ module cards_heat
   use scene, only: group_t, is_solid
   use scene_draft, only: close_card, draft_t, next_of_words, only_card, words_of
   use strategy, only: coupling_monolithic, scheme_theta, scheme_tr_bdf2
-  use text, only: join, string_t
+  use text, only: join, string_t, to_text
   implicit none
   private
   public :: read_exchanges, read_heated_body, read_multiplier, read_time_scheme
@@ -51,7 +51,7 @@ contains
         end if
         if (draft%groups_sound .and. f == 0) call cursor%fail('no body of this scene has a temperature among its unknowns (PL8TM)')
         call read_numbers(cursor, draft, keyword, group%exchange)
-        call read_table(cursor, group%exchange)
+        call read_table(cursor, keyword, group%exchange)
         group%name = label//'/'//keyword
         do g = 1, size(draft%scene%groups)
           if (draft%scene%groups(g)%name == group%name) call cursor%fail('this is already given at ' &
@@ -140,7 +140,7 @@ contains
         call cursor%real('the constant of Stefan and Boltzmann', constant, lower=0.0_wp, strict_lower=.true., &
                          unit='power/area/temperature^4')
       case ('ZERO')
-        call cursor%real('the temperature to add to make one absolute', exchange%zero, unit='temperature')
+        call cursor%real('the temperature to add to make one absolute', exchange%zero, lower=0.0_wp, unit='temperature')
       case ('TS')
         call cursor%real('the temperature of the surroundings', exchange%surroundings, unit='temperature')
         call read_multiplier(cursor, draft, words, exchange%surroundings_multiplier)
@@ -151,7 +151,23 @@ contains
       if (.not. given(k)) call cursor%fail('expected '//words(k)%s//' and its number, found none')
     end do
     if (keyword == 'RADIA') exchange%amplitude = emissivity*constant
+    if (cursor%failed()) return
+    if (keyword == 'CONVE' .and. least_value(draft, 1.0_wp, exchange%multiplier) < 0) &
+      call cursor%fail('the LIC of a coefficient of convection must not be negative')
+    if (keyword == 'RADIA' .and. least_value(draft, exchange%surroundings, exchange%surroundings_multiplier) < -exchange%zero) &
+      call cursor%fail('the surroundings are below absolute zero, -'//to_text(exchange%zero))
   end subroutine read_numbers
+
+  !> Least value at any time of an amplitude times a multiplier, 0 for none.
+  pure function least_value(draft, amplitude, multiplier) result(least)
+    type(draft_t), intent(in) :: draft
+    real(wp), intent(in) :: amplitude
+    integer, intent(in) :: multiplier
+    real(wp) :: least
+
+    least = amplitude
+    if (multiplier > 0) least = minval(amplitude*draft%scene%multipliers(multiplier)%value)
+  end function least_value
 
   !> The name of a LIC, where a word that is none of the card's follows; else 0.
   subroutine read_multiplier(cursor, draft, words, multiplier)
@@ -170,9 +186,10 @@ contains
     if (k > 0) multiplier = draft%multipliers%item(k)
   end subroutine read_multiplier
 
-  !> Rows of pairs of a temperature, ascending, and a factor.
-  subroutine read_table(cursor, exchange)
+  !> Rows of pairs of a temperature, ascending, and a factor: below 0 of a flow only.
+  subroutine read_table(cursor, keyword, exchange)
     type(cursor_t), intent(inout) :: cursor
+    character(len=*), intent(in) :: keyword
     type(exchange_t), intent(inout) :: exchange
     real(wp), allocatable :: points(:), longer(:)
     real(wp) :: pair(2)
@@ -189,7 +206,11 @@ contains
           call cursor%real('a temperature above the one before', pair(1), lower=points(n - 1), strict_lower=.true., &
                            unit='temperature')
         end if
-        call cursor%real('the factor there', pair(2), unit='-')
+        if (any(keyword == ['CONVE', 'RADIA'])) then
+          call cursor%real('the factor there', pair(2), lower=0.0_wp, unit='-')
+        else
+          call cursor%real('the factor there', pair(2), unit='-')
+        end if
         if (n + 2 > size(points)) then
           allocate (longer(2*size(points)))
           longer(:n) = points(:n)

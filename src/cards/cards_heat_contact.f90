@@ -166,7 +166,7 @@ contains
           call cursor%real('the constant of Stefan and Boltzmann', constant, lower=0.0_wp, strict_lower=.true., &
                            unit='power/area/temperature^4')
         case ('ZERO')
-          call cursor%real('the temperature to add to make one absolute', contact%zero, unit='temperature')
+          call cursor%real('the temperature to add to make one absolute', contact%zero, lower=0.0_wp, unit='temperature')
         case ('REACH')
           call cursor%real('the largest gap across which heat is exchanged', contact%reach, lower=0.0_wp, strict_lower=.true., &
                            unit='length')

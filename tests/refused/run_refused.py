@@ -2,7 +2,7 @@
 """Decks that must be refused: each case of cases.txt damages base.lag, each of steel_cases.txt steel.met, and says where the error
 must be and what it must say.
 
-usage: run_refused.py [-v]        -v prints what the program said for each case
+usage: run_refused.py [-v] [--cards]        -v prints what the program said for each case, --cards how many errors are looked for on each card
 LAGAMINE_BIN is the folder of `lagamine` (default: build/bin of this project). Works in a folder of its own.
 
 cases.txt, blanks count, `|` ends the first word:
@@ -113,6 +113,23 @@ def all_cases():
             yield case, lines, options
 
 
+def by_card():
+    """Errors that are looked for in decks, by the card of their line."""
+    cards = {}
+    base = open(os.path.join(HERE, "base.lag")).read().splitlines()
+    for case in read_cases(os.path.join(HERE, "cases.txt")):
+        lines = damage(base, case["edits"])
+        for text, _, _ in case["says"]:
+            at = lines.index(text) if text else -1
+            while at > 0 and lines[at].startswith(" "):
+                at -= 1
+            card = lines[at].split()[0] if at >= 0 else "(deck)"
+            # cards of laws by their type
+            card += " " + lines[at].split()[2] if card == "LAW" and len(lines[at].split()) > 2 else ""
+            cards[card] = cards.get(card, 0) + 1
+    return dict(sorted(cards.items()))
+
+
 def main():
     verbose = "-v" in sys.argv[1:]
     passed = failed = 0
@@ -128,6 +145,8 @@ def main():
             failed += wrong is not None
             if wrong is not None:
                 print(f"FAILED {case['name']}: {wrong}")
+    if "--cards" in sys.argv[1:]:
+        print("\n".join(f"{count:5d} {card}" for card, count in by_card().items()))
     print(f"{passed} passed, {failed} failed")
     return 1 if failed or not passed else 0
 
