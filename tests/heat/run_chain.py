@@ -16,6 +16,7 @@ usage: run_chain.py [-v] [-k]
 """
 import glob
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -45,9 +46,18 @@ def tube(checks):
         shutil.copy(os.path.join(TUBE, "chained", name + ".lag"), folder)
     with open(os.path.join(TUBE, "hot_cylinder.lag"), encoding="utf-8") as file:
         staggered = file.read()
+    # the other two points of the elements at the walls, for the stress at the walls themselves
+    inner = {f"at{i}": 0.5 + 0.2/15*0.5*(1 + (i - 1)*np.sqrt(0.6)) for i in range(3)}
+    points = dict(inner, **{name.replace("at", "out"): 1.2 - r for name, r in inner.items()})
+    seen = "".join(f"PROBE {name} POINT stress_zz {r!r} 0.005\n" for name, r in points.items()) + "END\n"
+
+    def with_points(text):
+        return re.sub(r"(?m)^END\n", lambda _: seen, text)
+
     runs = [Run(checks, "tube/tube_heat", read(os.path.join(folder, "tube_heat.lag"))),
-            Run(checks, "tube/tube_chained", read(os.path.join(folder, "tube_chained.lag"))), Run(checks, "tube/staggered", staggered),
-            Run(checks, "tube/monolithic", staggered.replace("SOLVE  ONCE", "SOLVE  MONOLITHIC"))]
+            Run(checks, "tube/tube_chained", with_points(read(os.path.join(folder, "tube_chained.lag")))),
+            Run(checks, "tube/staggered", with_points(staggered)),
+            Run(checks, "tube/monolithic", with_points(staggered.replace("SOLVE  ONCE", "SOLVE  MONOLITHIC")))]
     if not all(run.ok for run in runs):
         return
     # the outermost of 3 Gauss points of 15 elements
@@ -58,6 +68,10 @@ def tube(checks):
     for run in runs[1:]:
         for column, r in (("hoop_in", 0.5 + inset), ("hoop_out", 0.7 - inset)):
             checks.small(abs(run.history[column][-1]/hoop_stress(r) - 1), 5e-3, f"{run.name}: {column} {run.history[column][-1]:.5g}")
+        for wall, names, exact in ((0.5, ("at0", "at1", "at2"), -158.760e6), (0.7, ("out0", "out1", "out2"), 126.954e6)):
+            places, values = [points[name] for name in names], [run.history[name][-1] for name in names]
+            found = np.polyval(np.polyfit(np.array(places) - wall, values, 2), 0.0)
+            checks.small(abs(found/exact - 1), 5e-3, f"{run.name}: hoop stress at the wall r = {wall}: {found/1e6:.3f} MPa")
     checks.that("heat_stored" not in runs[1].history, "tube: chained: no books of heat")
 
 
