@@ -73,17 +73,20 @@ contains
     type(probe_t), intent(inout) :: probe
     type(place_t) :: named
     type(string_t), allocatable :: quantities(:), words(:)
+    character(len=:), allocatable :: word
     integer, allocatable :: place(:)
     real(wp) :: x(2), distance
     integer :: node, of_body
 
     call words_of('X Y UX UY', quantities)
-    allocate (place(0))
     if (draft%groups_sound) then
       call field_words(draft%scene%fields, place, words)
       quantities = [quantities, words]
+      call cursor%name('a quantity', quantities, probe%quantity)
+    else
+      ! after a mistake on another card the fields are not known, and no word is wrong
+      call cursor%word('a quantity', word)
     end if
-    call cursor%name('a quantity', quantities, probe%quantity)
     probe%unit = 'length'
     if (probe%quantity > 4) then
       probe%field = place(probe%quantity - 4)
