@@ -12,6 +12,7 @@ from .tables import Column, number
 FIXED_COLUMNS = ["time", "step", "step_length", "iterations", "cutbacks", "strain_increment", "external_work", "elastic_energy",
                  "plastic_work", "friction_work", "volume_drift", "max_penetration", "points_sticking", "points_slipping"]
 HEAT_COLUMNS = ["heat_stored", "heat_in", "heat_released", "heat_imbalance"]
+THROUGH = "heat_through_"
 DIE_COLUMNS = ["force_x_", "force_y_", "moment_", "displacement_x_", "displacement_y_", "rotation_", "temperature_", "heat_flow_"]
 
 
@@ -67,7 +68,13 @@ def force_picture(run: Run) -> Optional[Picture]:
 def probe_columns(run: Run) -> List[Column]:
     """Columns of the deck's PROBE cards: those that are not of the system."""
     of_dies = {prefix + die for prefix in DIE_COLUMNS for die in run.die_names}
-    return [column for name, column in run.history.items() if name not in FIXED_COLUMNS + HEAT_COLUMNS and name not in of_dies]
+    return [column for name, column in run.history.items()
+            if name not in FIXED_COLUMNS + HEAT_COLUMNS and name not in of_dies and not is_boundary(name)]
+
+
+def is_boundary(name: str) -> bool:
+    """A column of heat through a boundary: names of probes have no stroke."""
+    return name.startswith(THROUGH) and "/" in name
 
 
 def probes_picture(run: Run) -> Optional[Picture]:
@@ -152,7 +159,7 @@ def energy_picture(run: Run) -> Optional[Picture]:
 
 
 def heat_picture(run: Run) -> Optional[Picture]:
-    """The books of heat, and temperatures of dies that have one and the heat that comes from them."""
+    """The books of heat, and temperatures of dies that have one and the heat that goes into them, heat through every boundary."""
     history = run.history
     if not set(HEAT_COLUMNS) <= set(history) or not len(history["time"].values):
         return None
@@ -160,11 +167,13 @@ def heat_picture(run: Run) -> Optional[Picture]:
     flows = [history[f"heat_flow_{die}"] for die in run.die_names if f"heat_flow_{die}" in history]
     warm = [history[f"temperature_{die}"] for die in run.die_names if f"temperature_{die}" in history]
     panels = [("heat since the start [energy]", [history[name] for name in HEAT_COLUMNS[:3]])]
-    panels += [(title, held) for title, held in (("heat from the dies [power]", flows), ("temperature of the dies", warm)) if held]
+    through = [column for name, column in history.items() if is_boundary(name)]
+    panels += [(title, held) for title, held in (("heat through boundaries [power]", through), ("heat into the dies [power]", flows),
+                                                 ("temperature of the dies", warm)) if held]
     fig, axes = figure(1, len(panels), (3.6 * len(panels) + (1.6 if len(panels) == 1 else 0), 3.1))
     for panel, (title, held) in zip(axes.flat, panels):
         for column, colour in zip(held, LINES * len(held)):
-            panel.plot(time, column.values, color=colour, label=column.name)
+            panel.plot(time, column.values, color=colour, label=column.name.replace(THROUGH, ""))
         panel.set_title(title)
         panel.set_xlabel("time")
         panel.legend()
