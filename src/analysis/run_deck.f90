@@ -12,6 +12,7 @@ module run_deck
   use exchange, only: read_state, write_checkpoint
   use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
   use kinds, only: wp
+  use laid_bodies, only: share_heat
   use law_api, only: law_t
   use law_manual, only: law_card, law_list
   use law_registry, only: law_names, list_laws
@@ -117,7 +118,9 @@ contains
     type(run_t), allocatable :: run
     type(scene_t), allocatable :: next
     type(solution_t), allocatable :: after
+    type(law_t), allocatable :: laws(:)
 
+    call list_laws(laws)
     do while (.not. allocated(error) .and. code == exit_done .and. scene%operation < operations%count)
       if (caught_signal() /= 0) then
         code = exit_signal + caught_signal()
@@ -127,6 +130,7 @@ contains
       call read_next_operation(deck, diagnostics, operations, scene, solution%step, next, error)
       if (allocated(error)) return
       call begin_operation(scene, solution, next, after)
+      call share_heat(scene, next, laws, after)
       run%deck_path = first%deck_path
       run%deck_text = first%deck_text
       run%folder = first%folder

@@ -2,7 +2,7 @@
 !>
 !> What is asleep has no elements in the scene: no stiffness, no heat content, no unknowns of its own, no cost. Its nodes stay in
 !> the mesh, where they are, so that all operations have one mesh. An operation in which the body is awake for the first time has
-!> it without stress, at the temperature of its START card, but for nodes that it shares with bodies that were awake before.
+!> it without stress, at the temperature of its START card; nodes that it shares with others have a common one (laid_bodies).
 module cards_sleep
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t

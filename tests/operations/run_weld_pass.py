@@ -6,7 +6,6 @@ usage: run_weld_pass.py [-v] [-k]
 - `bar`: between two walls a bar is laid at a high temperature beside another; both come to one temperature, then to that of the
   start. Elastic: the mean temperature and the stress are the integrals of what was laid (closed form). Stopped and resumed: the same
   bits. Put to sleep again, it leaves the other bar without stress.
-- `weld_pipe`: forces across the weld are in balance, the balance of heat closes, signs of a girth weld in a thin pipe.
 """
 import os
 import signal
@@ -15,9 +14,8 @@ import sys
 sys.dont_write_bytecode = True
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path[:0] = [os.path.join(TESTS, "runs")]
-from support import DONE, SIGNAL, SOURCE, Checks, history, result_differences, run, said, start, stop_after, summary, with_h5py, write  # noqa: E402
+from support import DONE, SIGNAL, Checks, history, result_differences, run, said, start, stop_after, with_h5py, write  # noqa: E402
 
-PIPE = os.path.join(SOURCE, "decks", "weld_pipe", "weld_pipe.lag")
 E, ALPHA, LAID, N = 200000.0, 1e-5, 1020.0, 8
 BAR = f"""TITLE  A bar laid on hot beside another, between walls
 STATE  PLSTS
@@ -72,8 +70,8 @@ def bar(checks):
     ends = [k for k in range(len(rows["step"])) if k + 1 == len(rows["step"]) or rows["operation"][k + 1] != rows["operation"][k]]
     checks.that(rows["filler"][ends[0]] != rows["filler"][ends[0]] and rows["stress"][ends[0]] == 0, "before: nothing is read of it",
                 (rows["filler"][ends[0]], rows["stress"][ends[0]]))
-    # the element beside the bar that was there is linear between both temperatures
-    laid = (LAID - 20)*(10 - 10/N/2)
+    # heat of the whole bar: shared nodes take the temperature of the balance
+    laid = (LAID - 20)*10
     for name in ("t_parent", "t_filler"):
         checks.that(abs(rows[name][ends[1]]/(20 + laid/20) - 1) < 1e-9, f"laid: {name}", rows[name][ends[1]])
     checks.that(abs(rows["stress"][ends[1]]) < 1e-6, "laid: what one bar has grown the other has shrunk", rows["stress"][ends[1]])
@@ -98,31 +96,10 @@ def bar(checks):
         checks.that(abs(history(out)["stress"][-1]) < 1e-6*exact, "parted: no stress is left", history(out)["stress"][-1])
 
 
-def pipe(checks):
-    """The deck that is shipped."""
-    import h5py
-    out = checks.path("weld_pipe")
-    result = run([PIPE, "--out", out, "--threads", "1"])
-    if not checks.that(result.returncode == DONE, "weld_pipe", said(result)):
-        return
-    with h5py.File(os.path.join(out, "weld_pipe.ckp.h5"), "r") as file:
-        reaction = file["fields/displacement/reaction"][()][:, 1]
-        checks.that(abs(reaction.sum()) < 1e-6*abs(reaction).sum(), "forces across the weld", (reaction.sum(), abs(reaction).sum()))
-    rows = history(out)
-    checks.that(abs(rows["heat_imbalance"][-1]) < 1e-6, "balance of heat", rows["heat_imbalance"][-1])
-    checks.that(abs(summary(out)["checks"]["energy_imbalance"]) < 0.01, "balance of energy", summary(out)["checks"]["energy_imbalance"])
-    checks.that(rows["axial_out"][-1] < -100 and rows["axial_in"][-1] > rows["axial_out"][-1] + 100, "axial: the wall is bent inwards",
-                (rows["axial_in"][-1], rows["axial_out"][-1]))
-    checks.that(rows["hoop_in"][-1] > 80 and rows["hoop_out"][-1] > 80, "hoop: tension in the weld", (rows["hoop_in"][-1], rows["hoop_out"][-1]))
-    checks.that(rows["bent"][-1] < -0.05 and rows["far"][-1] < -0.05, "the pipe is narrower at the weld, and shorter",
-                (rows["bent"][-1], rows["far"][-1]))
-
-
 def main():
     with_h5py()
     checks = Checks()
     bar(checks)
-    pipe(checks)
     checks.end()
 
 
