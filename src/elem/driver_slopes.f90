@@ -1,14 +1,18 @@
-!> Derivatives of drivers by the temperature, where states of a formulation of heat drive mechanics solved together with it.
+!> Derivatives of drivers by the temperature, where states of a formulation of heat drive mechanics solved together with it; and of
+!> heat by stress, where stress drives the heat.
 !>
 !> In one system for all fields (SOLVE MONOLITHIC) the fractions that PL8TM holds change with the unknown temperature, and the
 !> mechanics with them. Such groups have a third plane of drivers: d(driver at the end)/d(temperature at the point at the end), by
 !> central differences of what the law of heat releases; error eps**(2/3). Where temperatures stand on all nodes, PL8LS takes
 !> them projected (point_temperatures) and PL8TM as they are: the derivative goes along the projected ones.
+!>
+!> Where the law of heat is driven by measures of the stress (METAMEC), mechanics has a fourth plane: d(heat released)/d(measure at
+!> the end) at the point, found in the same way at the stress of the last evaluation; PL8LS knows how the stress follows the motion.
 module driver_slopes
   use fields, only: find_field
   use kinds, only: wp
   use law_api, only: driver_temperature, law_t
-  use point_drivers, only: drivers_t, field_at_points, from_state, with_slopes
+  use point_drivers, only: drives_heat, drivers_t, field_at_points, from_state, from_stress, with_slopes
   use point_temperatures, only: temperature_field
   use scene, only: host_of, scene_t
   use solution, only: solution_t
@@ -31,6 +35,7 @@ contains
     real(wp), allocatable :: high(:), low(:)   ! state of a point at a higher and at a lower temperature
     integer :: k, body, other, e, f, n
 
+    if (drives_heat(drivers(g))) call fill_heat(scene, laws, solution, now, dt, g, drivers)
     if (.not. with_slopes(drivers(g))) return
     drivers(g)%value(:, 3, :, :) = 0
     if (.not. dt > 0) return   ! on a new mesh nothing forms
@@ -74,5 +79,60 @@ contains
     end subroutine slopes_of_element
 
   end subroutine fill_slopes
+
+  !> The fourth plane of a group's drivers: heat released per volume and unit of each measure of its stress.
+  subroutine fill_heat(scene, laws, solution, now, dt, g, drivers)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: now(:, :), dt
+    integer, intent(in) :: g
+    type(drivers_t), intent(inout) :: drivers(:)
+    integer :: other, e, f, k
+
+    drivers(g)%value(:, 4, :, :) = 0
+    if (.not. dt > 0) return
+    f = find_field(scene%fields, temperature_field)
+    do other = 1, size(drivers)
+      if (other == g .or. .not. allocated(drivers(other)%source) .or. host_of(scene, other) /= g) cycle
+      if (.not. any([(drivers(other)%source(k)%kind == from_stress, k=1, size(drivers(other)%source))])) cycle
+      do e = 1, size(drivers(other)%value, 4)
+        call heat_of_element(field_at_points(scene%fields(f), solution%fields(f)%value(1, :), scene%groups(other), e), &
+                             field_at_points(scene%fields(f), now(:, f), scene%groups(other), e))
+      end do
+    end do
+
+  contains
+
+    !> At the points of an element, from the temperatures there at both ends of the step.
+    subroutine heat_of_element(before, after)
+      real(wp), intent(in) :: before(:), after(:)
+      real(wp) :: given(size(drivers(other)%value, 1), 2), change, high, low, slope
+      real(wp), allocatable :: state(:)
+      integer :: p, d, n
+
+      associate (material => scene%materials(scene%groups(other)%material), committed => solution%groups(other)%committed, &
+                 sources => drivers(other)%source)
+        n = total_components(laws(material%law_id)%history)
+        allocate (state(n))
+        do p = 1, size(before)
+          given = drivers(other)%value(:, :2, p, e)
+          given(driver_temperature, :) = [before(p), after(p)]
+          do d = 1, size(sources)
+            if (sources(d)%kind /= from_stress) cycle
+            change = epsilon(1.0_wp)**(1.0_wp/3)*maxval(abs(given(:, 2)), mask=sources%kind == from_stress)
+            if (.not. change > 0) cycle
+            given(d, 2) = given(d, 2) + change
+            call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), high, slope, state)
+            given(d, 2) = given(d, 2) - 2*change
+            call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), low, slope, state)
+            given(d, 2) = given(d, 2) + change
+            drivers(g)%value(sources(d)%measure, 4, p, e) = (high - low)/(2*change)
+          end do
+        end do
+      end associate
+    end subroutine heat_of_element
+
+  end subroutine fill_heat
 
 end module driver_slopes

@@ -9,15 +9,15 @@
 !> in plane stress h_zz is condensed out of M by the row of sigma_zz = 0. With the option MEAN the
 !> points share few values of the change of volume (mean_dilatation).
 module elem_pl8ls
-  use elem_api, only: block_inverted, block_law_failed, elem_t, group_temperature, instant_t, layout_t, of_displacement, &
-                      of_section, report_t, section_motion, that_reads, totals_t
+  use elem_api, only: block_inverted, block_law_failed, elem_t, group_temperature, instant_t, layout_t, mode_advance, &
+                      of_displacement, of_section, report_t, section_motion, that_reads, totals_t
   use kinds, only: wp
   use kinematics_api, only: first_history, first_strain, kinematics_t, solid_variables
   use linear_pressure, only: has_linear_pressure, replace_pressure
   use law_api, only: driver_count, driver_temperature, law_done, law_t, solid_law
   use mean_dilatation, only: dilatation_t, mean_option, share_dilatation, share_pressure
   use plane_stress_points, only: update_plane_stress
-  use plastic_heat, only: add_heat_of_work, heated_by_work, move_along, ncomponent
+  use plastic_heat, only: add_rows_of_heat, heated_by_work, latent_slopes, move_along, ncomponent, shares_of_work
   use point_temperatures, only: nodal_temperatures, point_temperatures_of, projected_functions, temperature_field, temperature_place
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
   use scene, only: generalised_plane_strain, group_t, plane_stress, role_body, scene_t
@@ -87,7 +87,7 @@ contains
     real(wp), dimension(8, group%rule%n, size(x, 3)) :: nx, ny, zx
     real(wp) :: dv(group%rule%n, size(x, 3)), f(5, group%rule%n, size(x, 3)), tangent(4, 5, group%rule%n, size(x, 3))
     real(wp) :: given(driver_count(law), 2, group%rule%n*size(x, 3)), section(3, 2)
-    real(wp) :: functions(8, group%rule%n)
+    real(wp) :: functions(8, group%rule%n), warmer(4, group%rule%n, size(x, 3))   ! d(stress)/d(temperature)
     integer :: status(group%rule%n, size(x, 3))
     real(wp) :: strain
     logical :: valid
@@ -158,8 +158,10 @@ contains
       call forces_of(e, instant%tangent, trial(1:4, :, e), dv(:, e), force(:n, e), stiffness(:n, :n, e))
     end do
     if (.not. instant%tangent .or. n == size(du, 1) .or. report%status /= 0 .or. group%temperature_multiplier > 0) return
-    if (instant%solved(layout%field(temperature_place(layout)))) call add_columns_of_temperature()
-    if (heated_by_work(scene, group, layout, instant) > 0) call add_rows_of_heat()
+    if (.not. instant%solved(layout%field(temperature_place(layout)))) return
+    call add_columns_of_temperature()
+    if (heated_by_work(scene, group, layout, instant) > 0) call add_work()
+    if (size(drivers, 2) == 4 .and. instant%mode == mode_advance .and. instant%content) call add_latent()
 
   contains
 
@@ -217,6 +219,7 @@ contains
       call stresses_at(change, high)
       call stresses_at(-change, low)
       high = (high - low)/(2*change)
+      warmer = high
       do k = 1, layout%count(u)
         shape(:, k) = nodal_temperatures(merge(1.0_wp, 0.0_wp, [(p == k, p=1, layout%count(u))]))
       end do
@@ -268,7 +271,7 @@ contains
     !> d(heat)/d(motion) and d(heat)/d(temperature) of the plastic work, by differences of the whole update. The work of the step
     !> alone is looked at, so that what was done before costs no digits; it bends over elastic strains, some 1e-3, of which a step
     !> of 1e-10 is 1e-7.
-    subroutine add_rows_of_heat()
+    subroutine add_work()
       real(wp), parameter :: step = 1.0e-10_wp
       real(wp) :: slopes(ncomponent + 1, group%rule%n, nb)
       real(wp), dimension(nstate, group%rule%n, nb) :: without, other
@@ -295,8 +298,25 @@ contains
         call update_at(without, change, g, other)
         slopes(ncomponent + 1, :, :) = (other(work, :, :) - done)/change
       end if
-      call add_heat_of_work(scene, group, instant, layout, rule, first, nx, ny, zx, start, slopes, stiffness)
-    end subroutine add_rows_of_heat
+      call shares_of_work(scene, group, instant, layout, rule, start, done)
+      call add_rows_of_heat(scene, group, instant, layout, rule, first, nx, ny, zx, done, slopes, stiffness)
+    end subroutine add_work
+
+    !> The same of latent heat that the stress drives (METAMEC), from the derivatives of the stress.
+    subroutine add_latent()
+      real(wp) :: slopes(ncomponent + 1, group%rule%n, nb), share(group%rule%n, nb)
+      integer :: i
+
+      share = 1
+
+      do i = 1, nb
+        do p = 1, group%rule%n
+          call latent_slopes(scene%plane_state == plane_stress, drivers(:, 4, p, i), trial(1:4, p, i), tangent(:, :, p, i), &
+                             warmer(:, p, i), slopes(:, p, i))
+        end do
+      end do
+      call add_rows_of_heat(scene, group, instant, layout, rule, first, nx, ny, zx, share, slopes, stiffness)
+    end subroutine add_latent
 
   end subroutine compute
 

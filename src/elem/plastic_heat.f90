@@ -1,8 +1,10 @@
-!> Heat that the plastic work of a body releases (QUINNEY), along the motion and the temperature of the body.
+!> Heat that the plastic work of a body releases (QUINNEY), or phases that form under its stress (METAMEC), along the motion and the
+!> temperature of the body.
 !>
 !> PL8TM releases it as -phi_i SHARE (w - w_n)/dt dv0 and knows the work w at the points, not how that depends on the motion.
 !> PL8LS does: where all fields are solved for together it adds -phi_i SHARE dw/dt dv0 to the rows of the temperature, with dw along
-!> h = d(du)/dx(n+1) and the temperature at the points. Left out are the volume ratio of bodies that have had a new mesh, the
+!> h = d(du)/dx(n+1) and the temperature at the points. Latent heat r by the mean and von Mises' stress is released as -phi_i r/dt dv0:
+!> there dr = sum dr/dm dm/d sigma d sigma (driver_slopes). Left out are the volume ratio of bodies that have had a new mesh, the
 !> sharing of the change of volume by the option MEAN, and the section's own motion in generalised plane strain.
 module plastic_heat
   use elem_api, only: instant_t, layout_t, mode_advance
@@ -15,9 +17,10 @@ module plastic_heat
   use scene, only: group_t, role_second, scene_t
   use sections, only: thickness_at
   use state_variables, only: find_variable
+  use stress_measures, only: von_mises
   implicit none
   private
-  public :: add_heat_of_work, heated_by_work, move_along, ncomponent
+  public :: add_rows_of_heat, heated_by_work, latent_slopes, move_along, ncomponent, shares_of_work
 
   !> Components of h: xx, xy, yx, yy, zz.
   integer, parameter :: ncomponent = 5
@@ -65,8 +68,59 @@ contains
     end if
   end subroutine move_along
 
+  !> The share of the plastic work that becomes heat, at the points of a block of elements.
+  pure subroutine shares_of_work(scene, group, instant, layout, rule, start, share)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
+    type(quad8_rule_t), intent(in) :: rule
+    real(wp), intent(in) :: start(:, :)    !! (ndof, nelem) values at the start of the step [unknown]
+    real(wp), intent(out) :: share(:, :)   !! (npoint, nelem) [-]
+    type(functions_t) :: own
+    integer :: u, n, e, p, at, material
+
+    material = heated_by_work(scene, group, layout, instant)
+    u = temperature_place(layout)
+    n = layout%count(u)
+    at = layout%first(1, u) - 1
+    call functions_of(n == 4, rule, own)
+    do e = 1, size(share, 2)
+      do p = 1, rule%npoint
+        share(p, e) = share_of_work(scene%materials(material), dot_product(own%phi(:n, p), start(at + 1:at + n, e)))
+      end do
+    end do
+  end subroutine shares_of_work
+
+  !> Derivatives of latent heat along h and the temperature, by the measures of the stress that drive it.
+  pure subroutine latent_slopes(flat, by_measure, stress, tangent, by_temperature, slopes)
+    logical, intent(in) :: flat                     !! plane stress: h_zz follows from no stress there
+    real(wp), intent(in) :: by_measure(:)           !! (nmeasure or more) d(heat)/d(measure) [energy/volume/stress]
+    real(wp), intent(in) :: stress(4)               !! [stress]
+    real(wp), intent(in) :: tangent(4, 5)           !! d(stress)/dh [stress]
+    real(wp), intent(in) :: by_temperature(4)       !! d(stress)/d(temperature) [stress/temperature]
+    real(wp), intent(out) :: slopes(ncomponent + 1) !! [energy/volume], [energy/volume/temperature]
+    real(wp) :: heat(4), deviator(4), q, moduli(4, 5)
+    integer :: c
+
+    ! d(mean)/d(stress) and d(von Mises)/d(stress), the shear counting twice
+    q = von_mises(stress)
+    heat = by_measure(2)*[1, 1, 0, 1]/3.0_wp
+    deviator = stress - (stress(1) + stress(2) + stress(4))/3*[1, 1, 0, 1]
+    if (q > 0) heat = heat + by_measure(1)*1.5_wp/q*deviator*[1, 1, 2, 1]
+    moduli = tangent
+    if (flat) then
+      do c = 1, 4
+        moduli(:, c) = tangent(:, c) - tangent(:, 5)*(tangent(4, c)/tangent(4, 5))
+      end do
+      moduli(:, 5) = 0
+    end if
+    slopes(:ncomponent) = matmul(heat, moduli)
+    slopes(ncomponent + 1) = dot_product(heat, by_temperature)
+  end subroutine latent_slopes
+
   !> Add the derivatives of the heat of a block of elements to the rows of the temperature.
-  subroutine add_heat_of_work(scene, group, instant, layout, rule, first, nx, ny, zx, start, slopes, stiffness)
+  subroutine add_rows_of_heat(scene, group, instant, layout, rule, first, nx, ny, zx, share, slopes, stiffness)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(instant_t), intent(in) :: instant
@@ -74,14 +128,13 @@ contains
     type(quad8_rule_t), intent(in) :: rule
     integer, intent(in) :: first                                   !! element of the block
     real(wp), intent(in) :: nx(:, :, :), ny(:, :, :), zx(:, :, :)  !! (8, npoint, nelem) gradients, and d h_zz/d(ux) [1/length]
-    real(wp), intent(in) :: start(:, :)                            !! (ndof, nelem) values at the start of the step [unknown]
-    real(wp), intent(in) :: slopes(:, :, :)                        !! (6, npoint, nelem) d(work)/dh [stress], and by temperature
+    real(wp), intent(in) :: share(:, :)                            !! (npoint, nelem) what becomes heat of the next [-]
+    real(wp), intent(in) :: slopes(:, :, :)                        !! (6, npoint, nelem) d()/dh [energy/volume], by temperature
     real(wp), intent(inout) :: stiffness(:, :, :)                  !! (ndof, ndof, nelem)
     type(functions_t) :: own
     real(wp) :: x(2, 8), unused_x(8), unused_y(8), detj, weight, row(size(stiffness, 2)), projected(8, rule%npoint)
-    integer :: u, n, e, p, k, at, material
+    integer :: u, n, e, p, k, at
 
-    material = heated_by_work(scene, group, layout, instant)
     u = temperature_place(layout)
     n = layout%count(u)
     at = layout%first(1, u) - 1
@@ -91,8 +144,7 @@ contains
       x = scene%mesh%coordinates(:, group%connectivity(:, first + e - 1))
       do p = 1, rule%npoint
         call derivatives(rule%dphi(:, :, p), x, unused_x, unused_y, detj)
-        weight = share_of_work(scene%materials(material), dot_product(own%phi(:n, p), start(at + 1:at + n, e))) &
-                 *detj*rule%weight(p)*thickness_at(scene%section, matmul(x, rule%phi(:, p)))/instant%dt
+        weight = share(p, e)*detj*rule%weight(p)*thickness_at(scene%section, matmul(x, rule%phi(:, p)))/instant%dt
         row = 0
         associate (s => slopes(:, p, e))
           row(1:8) = s(1)*nx(:, p, e) + s(2)*ny(:, p, e) + s(5)*zx(:, p, e)
@@ -106,7 +158,7 @@ contains
         end do
       end do
     end do
-  end subroutine add_heat_of_work
+  end subroutine add_rows_of_heat
 
   pure function unit_vector(k, n) result(v)
     integer, intent(in) :: k, n

@@ -29,7 +29,7 @@ module point_drivers
   public :: at_status, at_pressure, at_gap, at_die_piece, at_die_xi, at_friction_work, at_corner_work, at_corner_place, &
             at_body_effusivity, at_die_effusivity
   public :: drivers_t, find_drivers, missing_driver, driver_of_others, start_drivers, advance_drivers, drivers_of_half, &
-            own_states_at_end, nodal_values, is_scalar, field_at_points, with_slopes, from_state
+            own_states_at_end, nodal_values, is_scalar, field_at_points, with_slopes, drives_heat, from_state, from_stress
 
   !> Where a driver comes from. A state variable of the formulation itself is that at the start of the step.
   integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3, from_itself = 4, from_effusivity = 5, &
@@ -56,7 +56,8 @@ module point_drivers
   !> Drivers of the points of a group.
   type :: drivers_t
     !> At the start and at the end of the step (ndriver, 2, npoint, nelem); no rows where the law has none but the temperature of
-    !> its body. With a third plane where states that follow an unknown temperature drive it (driver_slopes).
+    !> its body. With a third plane where states that follow an unknown temperature drive it, and with a fourth where its stress
+    !> drives heat that is solved for together with it (driver_slopes).
     real(wp), allocatable :: value(:, :, :, :)
     type(driver_source_t), allocatable :: source(:)
     !> They change within a step.
@@ -104,6 +105,9 @@ contains
         if (follows_temperature(scene, laws, g, drivers(g)%source)) then
           deallocate (drivers(g)%value)
           allocate (drivers(g)%value(n, 3, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
+        else if (n >= nmeasure .and. stresses_heat(scene, laws, g)) then
+          deallocate (drivers(g)%value)
+          allocate (drivers(g)%value(n, 4, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
         end if
         drivers(g)%vary = any(drivers(g)%source%kind == from_field .or. drivers(g)%source%kind == from_state &
                                .or. drivers(g)%source%kind == from_stress)
@@ -137,8 +141,34 @@ contains
     type(drivers_t), intent(in) :: drivers
     logical :: yes
 
-    yes = size(drivers%value, 2) > 2
+    yes = size(drivers%value, 2) == 3
   end function with_slopes
+
+  !> The drivers have a fourth plane: heat by the measures of the stress, in their order (stress_measures).
+  pure function drives_heat(drivers) result(yes)
+    type(drivers_t), intent(in) :: drivers
+    logical :: yes
+
+    yes = size(drivers%value, 2) == 4
+  end function drives_heat
+
+  !> The stress of a body drives a formulation of heat that is solved together with it.
+  pure function stresses_heat(scene, laws, g) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: g   !! number of the group
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    if (scene%strategy%coupling /= coupling_monolithic .or. .not. is_solid(scene%groups(g))) return
+    do k = 1, size(scene%groups)
+      if (k == g .or. scene%groups(k)%material == 0 .or. host_of(scene, k) /= g) cycle
+      associate (law => laws(scene%materials(scene%groups(k)%material)%law_id))
+        if (law%kind == heat_law .and. associated(law%release)) yes = yes .or. is_stressed(scene, laws, k)
+      end associate
+    end do
+  end function stresses_heat
 
   !> What drives the points of heat through a contact; nothing in scenes of heat alone.
   pure subroutine drive_heat_contact(scene, g, drivers)

@@ -7,6 +7,7 @@ usage: run_stress_phases.py [-v] [-k]
   the mean stress p and von Mises' q, a = .06, b = .03 K/MPa: at every step where both are found together (CONVERGE, or MONOLITHIC with
   the kinetics in the mechanics), with the stress a step behind by ONCE. The same by the laws alone (TEMPE, TIME).
 - `quench`: a bar cooled on its side: ONCE with half the step is near MONOLITHIC; stress moves the mean of martensite.
+- `quench` and `plane_strain` in MONOLITHIC: the derivatives of the latent heat by the stress are in the matrix (iterations).
 - With ISIG 0 METAMEC is META, to the bit.
 - Without stress on the kinetics MONOLITHIC is the same, in as many iterations, with the fractions of META and with those of the law (TIME):
   the cross derivatives are exact. Errors of the path have no bounds here: their estimates in halves of steps differ, and so would the steps.
@@ -161,11 +162,15 @@ def element(checks, name, axial, radial):
             checks.that(rows["z"][-1] > 0.5, f"{name}, {kinem}, {way}: martensite", rows["z"][-1])
 
 
-def quench(checks):
+def quench(checks, plain_iterations):
     """The ways of coupling agree, and stress acts."""
     stress, ends = "STRESS 1. ISIG 1", {}
     for way, own, step in (("MONOLITHIC", "TIME 1. ISIG 1", 0.5), ("ONCE", "", 0.25)):
         rows = done(checks, f"quench_{way}", QUENCH.format(own=own, law="METAMEC", isig=stress, solve=way, step=step))
+        if rows and way == "MONOLITHIC":
+            # 2.0 without the derivatives of latent heat by the stress
+            checks.that(sum(rows["iterations"]) < 1.4*plain_iterations, "quench: iterations with stress on the kinetics",
+                        (sum(rows["iterations"]), plain_iterations))
         if rows:
             ends[way] = [rows[c][-1] for c in ("z", "bain", "side", "core")]
     if len(ends) == 2:
@@ -185,20 +190,30 @@ def fractions(checks):
     rows = {own: done(checks, f"fractions_{bool(own)}", QUENCH.format(own=own, law="META", isig="", solve="MONOLITHIC", step=0.5))
             for own in ("", "TIME 1.")}
     if not all(rows.values()):
-        return
+        return 0
     for column in ("z", "bain", "side", "core"):
         one, other = (r[column][-1] for r in rows.values())
         checks.that(abs(one - other) < 1e-7*abs(one), f"fractions: {column}", (one, other))
     counts = [sum(r["iterations"]) for r in rows.values()]
     checks.that(counts[0] <= counts[1], "fractions: iterations", counts)
+    return counts[0]
+
+
+def plane_strain(checks):
+    """Where a section is held the latent heat that stress drives must be in the matrix: without it no step converged."""
+    rows = done(checks, "plane_strain", QUENCH.format(own="TIME 1. ISIG 1", law="METAMEC", isig="STRESS 1. ISIG 1", solve="MONOLITHIC",
+                                                      step=0.5).replace("AXISYM", "PLSTN"))
+    if rows:
+        checks.that(sum(rows["iterations"]) < 4*len(rows["step"]), "plane strain: iterations", (sum(rows["iterations"]), len(rows["step"])))
 
 
 def main():
     checks = Checks()
-    fractions(checks)
+    plain_iterations = fractions(checks)
     element(checks, "tension", 400, 0)
     element(checks, "pressure", -300, -300)
-    quench(checks)
+    quench(checks, plain_iterations)
+    plane_strain(checks)
     checks.end()
 
 
