@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """A billet of a steel with phases pressed while it cools, remeshed twice on the way: fractions, hardening and strains are carried.
 
-usage: run_phases_remesh.py [-v] [-k]
+usage: run_phases_remesh.py [-v] [-k] [--all]
 
 - `given`: one temperature for the body (TEMPE), the law follows the kinetics (TIME): martensite is Koistinen and Marburger's at every
   point, whatever the mesh.
 - `driven`: the body conducts heat and has phases (META), which drive its mechanics: the end is that on the deck's own mesh.
+- `stressed`: the same under stress on the kinetics (METAMEC), with flow by the rate in each phase (VISCO). With --all (half a minute) also alone,
+  and in one system with the kinetics in the mechanics (MONOLITHIC, ISIG).
 - `history`: cooled into bainite by a TTT diagram or by the histories of a CCT diagram, heated until it is austenite and its grains grow, quenched, and
   tempered, with a new mesh in each of the four: fractions, Scheil sums, grains, hardness and Hollomon-Jaffe's parameter end as on the deck's own mesh.
 """
@@ -106,6 +108,11 @@ NORMS  PATH 0. RATE 0.
 """ + TAIL + "".join(f"PROBE  {name} MEAN {of} billet/PL8TM\n" for name, of in (
     ("z", "martensite"), ("b", "bainite"), ("t", "tempered"), ("s", "incubation_bainite"), ("g", "growth_bainite"), ("grain", "grain_size"),
     ("hv", "hardness"), ("hj", "hollomon_jaffe"), ("a", "austenite")))
+STRESSED = DRIVEN.replace("LAW    heat META\n", "LAW    heat METAMEC\n").replace("ENERGY 1. CONDUCT", "ENERGY 1. STRESS 1. ISIG 1 CONDUCT")
+OWN = "   STRESS 1.\nADDEL"
+ISIG = STEEL.replace("EXPAND", "ISIG\n   MARTENSITE SHIFT 0.06 0.03\nEXPAND")
+BY_RATE = ("PHASE  MARTENSITE\n", "PHASE  MARTENSITE\n   P2     400\n   P3     0.1\n",
+           "PHASE  AUSTENITE\n", "PHASE  AUSTENITE\n   P1     0.1\n   P2     150\n   P3     0.2\n   P4     0.2\n")
 # how far the columns may be from those on the deck's own mesh, over their largest value there
 LIMITS = {"p": 0.01, "r": 0.01, "e": 0.01, "z": 0.003, "force_y_upper": 0.02}
 
@@ -147,6 +154,17 @@ def remeshed(checks, name, text, steel=STEEL, times="0.45 0.75", kept=None):
     return rows
 
 
+def stressed(checks):
+    """Stress on the kinetics and flow by the rate, through new meshes."""
+    by_rate = ISIG.replace(*BY_RATE[:2]).replace(*BY_RATE[2:])
+    remeshed(checks, "stressed", STRESSED.replace(OWN, OWN.replace("1.\n", "1. VISCO 60.\n")).replace("STRAT  0.02 1.E-5 0.02", "STRAT  0.04 1.E-5 0.04"),
+             by_rate, "0.5")
+    if "--all" in sys.argv:
+        remeshed(checks, "stressed_once", STRESSED, ISIG)
+        remeshed(checks, "stressed_own", STRESSED.replace(OWN, OWN.replace("1.\n", "1. TIME 60. ISIG 1\nSOLVE  MONOLITHIC\n")), ISIG)
+        remeshed(checks, "by_rate", DRIVEN.replace(OWN, OWN.replace("1.\n", "1. VISCO 60.\n")), STEEL.replace(*BY_RATE[:2]).replace(*BY_RATE[2:]))
+
+
 def main():
     checks = Checks()
     rows = remeshed(checks, "given", GIVEN)
@@ -155,6 +173,7 @@ def main():
         for column in ("z", "least", "most"):
             checks.that(abs(rows[column][-1] - exact) < 1e-10, f"given: {column}, Koistinen and Marburger", rows[column][-1])
     remeshed(checks, "driven", DRIVEN)
+    stressed(checks)
     for name, kinetics in (("ttt", TTT), ("cct", CCT)):
         remeshed(checks, f"history_{name}", HISTORY, steel_of(kinetics), "0.3 0.6 0.73 0.96", KEPT)
     checks.end()
