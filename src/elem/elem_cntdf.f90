@@ -297,8 +297,8 @@ contains
   !> ends too.
   !>
   !> Sides of a bent mesh make slight corners, and the normal jumps there within a motion smaller than any iteration's: points
-  !> at a corner would change sides without end. Likewise points at the open end of the curve, where two bodies are flush. True
-  !> corners are left to the search.
+  !> at a corner would change sides without end. Likewise points at the open end of the curve, where two bodies are flush: round-off
+  !> would decide whether they are on it, also those whose multiplier bears a pressure at a gap. True corners are left to the search.
   pure subroutine keep_closest_point(die, point, reach, last, middle, nearest, closest)
     type(die_t), intent(in) :: die
     type(contact_point_t), intent(in) :: point
@@ -319,7 +319,8 @@ contains
     if (closest%piece /= piece) from = merge(1.0_wp, -1.0_wp, place_in_reach(die, piece, closest%piece) == pieces_in_reach)
     if (closest%piece == 0) from = merge(1.0_wp, -1.0_wp, piece == size(die%nodes, 2))
     call closest_on_piece(die, piece, point%x, from, merge(beyond_all, beyond, closest%piece == 0), same)
-    if (same%piece == 0 .or. .not. (same%d > 0 .and. same%d < reach)) return
+    if (same%piece == 0 .or. .not. abs(same%d) < reach) return
+    if (.not. (same%d > 0 .or. closest%piece == 0)) return
     if (closest%piece == 0) then
       if (.not. dot_product(same%normal, point%e_r) < 0) return
       nearest = same
