@@ -9,20 +9,25 @@ from force_changes import changes_at_ordinary_steps, changes_at_remeshes, descri
 from remeshed import ROOT, cycle, facts, tries
 from support import DONE, history, run, said, summary, write
 
+STEP = (0.01, 0.05)                                                        # of the largest step [time]
 # Each with its die and the parameters that may be drawn, (least, largest).
 SCENES = {
-    "can": ("punch", {"edge": (0.8, 2.5), "height": (8.0, 14.0), "mu": (0.02, 0.1), "harden": (20.0, 300.0)}),
-    "extrusion_long": ("punch", {"angle": (30.0, 50.0), "exit": (4.5, 7.0), "mu": (0.02, 0.08), "harden": (20.0, 200.0)}),
-    "h_section": ("upper", {"fillet": (1.2, 2.5), "height": (6.5, 7.5), "mu": (0.05, 0.2), "harden": (20.0, 300.0)}),
-    "ring_70": ("upper", {"inner": (5.0, 8.0), "height": (3.0, 5.0), "mu": (0.05, 0.25), "harden": (20.0, 300.0)}),
-    "side_pressing": ("upper", {"radius": (5.0, 20.0), "mu": (0.02, 0.3), "harden": (20.0, 400.0)}),
-    "indentation": ("punch", {"edge": (0.5, 2.0), "height": (12.0, 20.0), "mu": (0.02, 0.3), "harden": (20.0, 300.0)}),
-    "piercing": ("punch", {"slope": (20.0, 45.0), "edge": (0.4, 1.2), "mu": (0.05, 0.2), "harden": (20.0, 300.0)}),
-    "two_strokes": ("first", {"edge": (1.0, 2.5), "height": (8.0, 14.0), "mu": (0.05, 0.2), "harden": (20.0, 300.0)}),
-    "teeth": ("toothed", {"round": (0.4, 0.7), "draft": (15.0, 30.0), "mu": (0.05, 0.2), "harden": (20.0, 300.0)}),
-    "springback": ("wiper", {"round": (4.0, 8.0), "thick": (0.7, 1.3), "mu": (0.02, 0.1), "harden": (200.0, 2000.0)}),
-    "heading": ("punch", {"free": (14.0, 24.0), "edge": (0.3, 1.5), "mu": (0.05, 0.4), "harden": (20.0, 400.0)}),
-    "bimetal": ("upper", {"height": (8.0, 14.0), "core": (4.0, 7.0), "soft": (60.0, 200.0), "mu": (0.05, 0.3)}),
+    "can": ("punch", {"punch": (5.0, 8.0), "edge": (0.4, 2.5), "height": (8.0, 16.0), "mu": (0.0, 0.2), "harden": (5.0, 400.0), "step": STEP}),
+    "extrusion_long": ("punch", {"angle": (20.0, 55.0), "exit": (4.0, 7.0), "mu": (0.0, 0.12), "harden": (5.0, 300.0), "step": STEP}),
+    "h_section": ("upper", {"fillet": (0.8, 3.0), "height": (6.0, 8.0), "flash": (0.6, 1.5), "draft": (0.05, 0.25), "mu": (0.02, 0.35),
+                            "harden": (5.0, 400.0), "step": STEP}),
+    "ring_70": ("upper", {"inner": (4.0, 9.0), "height": (2.5, 6.0), "mu": (0.03, 0.4), "harden": (5.0, 400.0), "step": STEP}),
+    "side_pressing": ("upper", {"radius": (5.0, 20.0), "mu": (0.0, 0.4), "harden": (5.0, 500.0), "step": STEP}),
+    "indentation": ("punch", {"half": (2.5, 6.0), "edge": (0.3, 2.0), "height": (10.0, 22.0), "mu": (0.0, 0.35), "harden": (5.0, 400.0),
+                              "step": STEP}),
+    "piercing": ("punch", {"punch": (3.0, 5.0), "slope": (10.0, 50.0), "edge": (0.3, 1.5), "height": (11.0, 16.0), "mu": (0.02, 0.3),
+                           "harden": (5.0, 400.0), "step": STEP}),
+    "two_strokes": ("first", {"edge": (0.5, 2.5), "height": (7.0, 14.0), "pitch": (8.0, 12.0), "mu": (0.0, 0.3), "harden": (5.0, 400.0),
+                              "step": (0.02, 0.1)}),
+    "teeth": ("toothed", {"round": (0.3, 0.8), "draft": (10.0, 35.0), "deep": (1.6, 2.2), "mu": (0.0, 0.3), "harden": (5.0, 400.0), "step": STEP}),
+    "springback": ("wiper", {"round": (3.0, 9.0), "thick": (0.5, 1.5), "mu": (0.0, 0.15), "harden": (100.0, 3000.0), "step": STEP}),
+    "heading": ("punch", {"free": (15.0, 28.0), "edge": (0.2, 2.0), "mu": (0.02, 0.4), "harden": (5.0, 500.0), "step": STEP}),
+    "bimetal": ("upper", {"height": (6.0, 14.0), "core": (3.0, 8.0), "soft": (50.0, 280.0), "hard": (250.0, 600.0), "mu": (0.02, 0.4), "step": STEP}),
 }
 
 HEAD = ["| scene | code | meshes | tries refused | steps | smallest step / mean | volume drift % | seconds | |", "|---|---|---|---|---|---|---|---|---|"]
