@@ -251,7 +251,7 @@ contains
       if (is_deformable(scene%dies(d))) cycle
       call needs_of_die([(placed_piece(scene%dies(d), solution%fields(pilot_field)%value(:, d), k), &
                           k=1, size(scene%dies(d)%pieces, 3))], &
-                        settings, limits, more)
+                        scene%dies(d)%closed, settings, limits, more)
       bends = [bends, more]
     end do
     do c = 1, size(contours)

@@ -24,6 +24,8 @@ module contour_needs
 
   !> Parts of an arc that are sampled, more of one that is longer than as many of the largest elements, up to a limit.
   integer, parameter :: parts = 4, most_parts = 400
+  !> A vertex of a die that turns by more is a corner, not one of a polygon that follows a curve: 30 degrees [radian].
+  real(wp), parameter :: sharp = 0.52_wp
 
 contains
 
@@ -74,20 +76,38 @@ contains
     call keep_needs(limits, all, needs)
   end subroutine needs_of_boundary
 
-  !> Size requirements of the curvature of a die. They apply where a contour is near, since sizes grow with distance.
-  pure subroutine needs_of_die(pieces, settings, limits, needs)
+  !> Size requirements of the curvature of a die, and of its sharp corners that point to the part, where matter turns on the spot: the
+  !> smallest size there. They apply where a contour is near, since sizes grow with distance.
+  pure subroutine needs_of_die(pieces, closed, settings, limits, needs)
     type(arc_t), intent(in) :: pieces(:)   !! (npiece) in the present position of the die
+    logical, intent(in) :: closed          !! the last piece ends where the first one begins
     type(geometry_settings_t), intent(in) :: settings
     type(size_limits_t), intent(in) :: limits
     type(need_t), allocatable, intent(out) :: needs(:)   !! (nneed)
-    type(need_t) :: all(parts*size(pieces))
-    integer :: k
+    type(need_t) :: all((parts + 1)*size(pieces))
+    integer :: k, n, next
 
+    n = parts*size(pieces)
     do k = 1, size(pieces)
       call needs_of_arc(pieces(k), settings, limits, all(parts*(k - 1) + 1:parts*k))
     end do
-    call keep_needs(limits, all, needs)
+    do k = 1, merge(size(pieces), size(pieces) - 1, closed)
+      next = mod(k, size(pieces)) + 1
+      if (turn_between(tangent_at(pieces(k), 1.0_wp), tangent_at(pieces(next), -1.0_wp)) > -sharp) cycle
+      n = n + 1
+      all(n)%x = point_at(pieces(k), 1.0_wp)
+      all(n)%size = limits%smallest
+    end do
+    call keep_needs(limits, all(:n), needs)
   end subroutine needs_of_die
+
+  !> Angle from one direction to another, positive to the left.
+  pure function turn_between(before, after) result(turn)
+    real(wp), intent(in) :: before(2), after(2)   !! [-]
+    real(wp) :: turn                              !! [radian]
+
+    turn = atan2(cross(before, after), dot_product(before, after))
+  end function turn_between
 
   pure subroutine keep_needs(limits, all, needs)
     type(size_limits_t), intent(in) :: limits
@@ -121,7 +141,7 @@ contains
       length = length_between(arc, xi(1), xi(2))
       needs(i)%x = point_at(arc, 0.5_wp*(xi(1) + xi(2)))
       needs(i)%radius = 0.5_wp*length
-      needs(i)%size = size_of_bend(length, abs(atan2(cross(before, after), dot_product(before, after))), settings, limits)
+      needs(i)%size = size_of_bend(length, abs(turn_between(before, after)), settings, limits)
     end do
   end subroutine needs_of_arc
 
