@@ -17,12 +17,27 @@ module short_free_sides
 contains
 
   !> Drop all runs of free arcs, shorter than `least`, from an end of contact to a corner that only bends: where another set of
-  !> sides, a support or a die begins the corner stays. The arcs of contacts are renumbered.
+  !> sides, a support or a die begins the corner stays. The arcs of contacts are renumbered. Behind a corner that was dropped another
+  !> may follow as near, where a die's corner has crumpled the contour: until none does.
   pure subroutine drop_short_sides(least, tags, contacts, boundary)
     real(wp), intent(in) :: least   !! [length]
     type(side_tags_t), intent(in) :: tags
     type(contact_t), intent(inout) :: contacts(:)   !! (ncontact)
     type(boundary_curve_t), intent(inout) :: boundary
+    logical :: any_dropped
+
+    any_dropped = .true.
+    do while (any_dropped)
+      call drop_once(least, tags, contacts, boundary, any_dropped)
+    end do
+  end subroutine drop_short_sides
+
+  pure subroutine drop_once(least, tags, contacts, boundary, any_dropped)
+    real(wp), intent(in) :: least   !! [length]
+    type(side_tags_t), intent(in) :: tags
+    type(contact_t), intent(inout) :: contacts(:)   !! (ncontact)
+    type(boundary_curve_t), intent(inout) :: boundary
+    logical, intent(out) :: any_dropped
     logical :: dropped(size(boundary%arcs))
     integer, allocatable :: kept(:)
     integer :: k, last
@@ -42,7 +57,8 @@ contains
         end if
       end associate
     end do
-    if (.not. any(dropped)) return
+    any_dropped = any(dropped)
+    if (.not. any_dropped) return
     do k = 1, size(contacts)
       contacts(k)%first = new_number(contacts(k)%first, dropped)
       contacts(k)%next = new_number(contacts(k)%next, dropped)
@@ -51,7 +67,7 @@ contains
     boundary%arcs = boundary%arcs(kept)
     boundary%kinds = boundary%kinds(kept)
     call close_boundary(boundary%corner_turn, boundary)
-  end subroutine drop_short_sides
+  end subroutine drop_once
 
   !> Next arc of n along the curve (towards = 1), or the one before (-1).
   pure function neighbour(k, towards, n) result(number)
