@@ -9,6 +9,7 @@
 !> - Time: errors that come of the path within steps are of order 1 in sum; those of heat of order 1, or 2 (TR-BDF2, and
 !>   theta = 1/2). Seconds go with the number of steps, at the same iterations a step.
 module closing_table
+  use accuracy_plan, only: accuracy_lines, accuracy_t, add_accuracy
   use equations, only: equations_t
   use estimator, only: estimator_t, set_up_estimator, stress_error_now
   use fields, only: displacement_field
@@ -18,7 +19,7 @@ module closing_table
   use path_record, only: motion_error, stress_error
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
-  use strategy, only: scheme_tr_bdf2
+  use strategy, only: order_in_time
   use text, only: string_t, to_text
   use timers, only: ledger_t
   implicit none
@@ -40,6 +41,8 @@ module closing_table
     !> Depth of the part in its dies, at points of contact and between them [length], over what is allowed (0: nothing states that).
     logical :: contact = .false.
     real(wp) :: depth = 0.0_wp, depth_share = 0.0_wp
+    !> Of a deck with ACCURACY that has come to its end.
+    type(accuracy_t), allocatable :: accuracy
   end type closing_t
 
 contains
@@ -60,7 +63,7 @@ contains
     closing%warm = has_heat(scene)
     closing%heat_steps = solution%heat%estimated
     closing%heat = solution%heat%error_sum
-    closing%heat_cost = 2.0_wp**(1.0_wp/order_in_time(scene))
+    closing%heat_cost = 2.0_wp**(1.0_wp/order_in_time(scene%strategy))
     closing%contact = size(scene%dies) > 0 .and. closing%space
     closing%depth = max(solution%worst_penetration, solution%worst_sample)
     closing%depth_share = max(solution%worst_penetration_ratio, solution%worst_sample_ratio)
@@ -86,15 +89,6 @@ contains
     call set_up_estimator(scene, equations%laws, estimator)
     call stress_error_now(estimator, scene, solution, closing%stress)
   end subroutine close_space
-
-  !> Order of the scheme of heat in the length of the step.
-  pure function order_in_time(scene) result(order)
-    type(scene_t), intent(in) :: scene
-    integer :: order
-
-    order = 1
-    if (scene%strategy%scheme == scheme_tr_bdf2 .or. abs(scene%strategy%theta - 0.5_wp) < epsilon(1.0_wp)) order = 2
-  end function order_in_time
 
   !> Time over that of the run with so many times its elements, in as many steps and iterations; 1 where no seconds are known.
   function cost_of_elements(timers, factor) result(cost)
@@ -126,6 +120,7 @@ contains
   subroutine closing_lines(closing, lines)
     type(closing_t), intent(in) :: closing
     type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
+    type(string_t), allocatable :: more(:)
     character(len=:), allocatable :: words
 
     allocate (lines(0))
@@ -147,6 +142,10 @@ contains
       words = 'depth '//to_text(closing%depth, 3)
       if (closing%depth_share > 0) words = words//', '//to_text(closing%depth_share, 3)//' of the allowed'
       call row('at contact', words, '')
+    end if
+    if (allocated(closing%accuracy)) then
+      call accuracy_lines(closing%accuracy, more)
+      lines = [lines, more]
     end if
     if (size(lines) == 1) deallocate (lines)
     if (.not. allocated(lines)) allocate (lines(0))
@@ -221,6 +220,7 @@ contains
       if (closing%depth_share > 0) call json%add('over_allowed', closing%depth_share)
       call json%end_object()
     end if
+    if (allocated(closing%accuracy)) call add_accuracy(json, closing%accuracy)
     call json%end_object()
   end subroutine add_closing
 

@@ -1,5 +1,9 @@
 !> `lagamine DECK`: from a deck to its results.
 module run_deck
+  use accuracy_laws, only: sample_t
+  use accuracy_plan, only: accuracy_warning, judge_run, plan_lines
+  use accuracy_runs, only: make_plan
+  use accuracy_samples, only: read_sample, write_cost
   use atomic, only: refuse_place
   use blas, only: blas_buffer, blas_build, blas_core_name, keep_blas_to_one_thread
   use cards_operations, only: operations_t
@@ -55,8 +59,8 @@ contains
     call unlock_folder(lock)
   end subroutine run_options_on_deck
 
-  subroutine read_and_run(options, lock, code, error)
-    type(run_options_t), intent(in) :: options
+  recursive subroutine read_and_run(given, lock, code, error)
+    type(run_options_t), intent(in) :: given
     type(folder_lock_t), intent(inout) :: lock
     integer, intent(out) :: code
     type(error_t), allocatable, intent(out) :: error
@@ -68,11 +72,22 @@ contains
     type(run_t) :: run
     type(member_reader_t) :: checkpoint
     type(error_t), allocatable :: ignored
+    type(run_options_t) :: options
+    type(string_t), allocatable :: lines(:)
     logical :: at_rest
 
     code = exit_done
+    options = given
     call keep_blas_to_one_thread()
     call read_input(options, deck, diagnostics, operations, scene, run%deck_text, at_rest, checkpoint, error)
+    if (.not. allocated(error) .and. scene%accuracy%asked > 0 .and. .not. allocated(options%fineness)) then
+      call checkpoint%file%close(ignored)
+      allocate (run%plan)
+      call make_plan(options, scene, run%deck_text, run_pilot, run%plan, code, error)
+      if (allocated(error) .or. code /= exit_done) return
+      options%fineness = run%plan%fineness
+      call read_input(options, deck, diagnostics, operations, scene, run%deck_text, at_rest, checkpoint, error)
+    end if
     run%resume = allocated(options%resume) .and. .not. at_rest
     if (.not. (allocated(error) .or. options%check)) then
       call start_solution(scene, solution)
@@ -84,6 +99,9 @@ contains
     if (allocated(error)) return
     if (options%check) then
       call check_deck(options, deck, diagnostics, operations, scene, error)
+      if (allocated(error) .or. .not. allocated(run%plan)) return
+      call plan_lines(run%plan, lines)
+      call print_lines(lines, error)
       return
     end if
     call make_directory(options%out, error)
@@ -103,6 +121,17 @@ contains
                                              code, error)
     end if
   end subroutine read_and_run
+
+  !> A pilot of a deck with ACCURACY.
+  recursive subroutine run_pilot(options, code, error)
+    type(run_options_t), intent(in) :: options
+    integer, intent(out) :: code
+    type(error_t), allocatable, intent(out) :: error
+    type(folder_lock_t) :: lock
+
+    call read_and_run(options, lock, code, error)
+    call unlock_folder(lock)
+  end subroutine run_pilot
 
   !> The operations that follow one that has come to its end, one after the other.
   subroutine go_on(options, deck, diagnostics, operations, scene, solution, first, code, error)
@@ -135,6 +164,7 @@ contains
       run%deck_text = first%deck_text
       run%folder = first%folder
       run%stem = first%stem
+      if (allocated(first%plan)) allocate (run%plan, source=first%plan)
       allocate (run%columns, source=first%columns)
       run%resume = .true.
       run%begins_operation = .true.
@@ -210,6 +240,12 @@ contains
     if (allocated(error)) return
     call list_lines(run%listing, lines)
     call list_lines(run%listing, as_warnings(facts%warnings))
+    if (allocated(run%plan)) then
+      call plan_lines(run%plan, lines)
+      call list_lines(run%listing, lines)
+      if (.not. (options%quiet .or. options%progress)) call print_lines(lines, error)
+      if (allocated(error)) return
+    end if
     call march_to_end(scene, solution, run, error)
     call end_progress(run%listing)
 
@@ -225,6 +261,7 @@ contains
     facts%blas = blas_words(blas_build(), blas_core_name())
     facts%wall = wall_seconds() - started
     call close_run(scene, run%equations, solution, facts%closing)
+    if (scene%accuracy%asked > 0 .and. allocated(options%fineness)) call close_accuracy(options, scene, solution, run, facts, late)
     call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
     call list_lines(run%listing, lines)
     call close_listing(run%listing)
@@ -238,6 +275,30 @@ contains
       if (allocated(late) .and. run%exit_code == exit_done) call move_alloc(late, error)
     end if
   end subroutine run_and_report
+
+  !> What a run of a deck with ACCURACY has cost and, where it has come to its end, reached. A warning where that is less than asked.
+  subroutine close_accuracy(options, scene, solution, run, facts, error)
+    type(run_options_t), intent(in) :: options
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(in) :: run
+    type(run_facts_t), intent(inout) :: facts
+    type(error_t), allocatable, intent(out) :: error
+    type(sample_t) :: sample
+    character(len=:), allocatable :: words
+    logical :: there
+
+    if (run%exit_code /= exit_done) return
+    call write_cost(run%stem, run%deck_text, options%fineness, scene, run%equations, solution, facts%wall, &
+                    merge(facts%closing%stress, -1.0_wp, facts%closing%space), run%begins_operation, error)
+    if (allocated(error) .or. .not. allocated(run%plan) .or. scene%operation < scene%operations) return
+    call read_sample(options, run%deck_text, options%fineness, run%plan%columns, sample, there)
+    if (.not. there) return
+    allocate (facts%closing%accuracy)
+    call judge_run(run%plan, sample, facts%closing%accuracy)
+    words = accuracy_warning(facts%closing%accuracy)
+    if (len(words) > 0) facts%warnings = [facts%warnings, string_t(words)]
+  end subroutine close_accuracy
 
   !> The summary of an operation that others follow has a name of its own.
   pure function summary_name(scene, run) result(name)

@@ -42,6 +42,7 @@ contains
       if (.not. allocated(unfit)) call read_mesh_of(checkpoint, text, remesh, unfit)
     end if
     call list_operations(deck, operations, diagnostics)
+    if (allocated(options%fineness)) operations%fineness = options%fineness
     operation = 1
     if (operations%count > 0) call read_all(deck, operations, diagnostics, scene)
     generation = 1

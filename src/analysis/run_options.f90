@@ -1,5 +1,6 @@
 !> The command line of `lagamine`.
 module run_options
+  use accuracy_rules, only: fineness_t
   use arguments, only: argument, refuse_option, value_of
   use errors, only: error_t, exit_input, fail
   use text, only: string_t
@@ -24,6 +25,8 @@ module run_options
     logical :: cards = .false.
     !> Progress only, also where the output is no terminal.
     logical :: progress = .false.
+    !> Fineness of a run of a deck with ACCURACY, over what the deck says; not allocated before it is chosen.
+    type(fineness_t), allocatable :: fineness
     integer :: threads = 0   !! 0: as many as there are free processors
   end type run_options_t
 

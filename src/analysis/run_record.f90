@@ -1,5 +1,6 @@
 !> A run and its files: what is written when.
 module run_record
+  use accuracy_plan, only: accuracy_plan_t
   use contact_contour, only: find_contact_ends
   use contact_ends, only: contact_end_t
   use csv_writer, only: csv_t
@@ -49,6 +50,8 @@ module run_record
     logical :: mesh_refused = .false.
     !> The note on a spurious mode has been given.
     logical :: spurious_reported = .false.
+    !> Of a deck with ACCURACY, but for its pilots.
+    type(accuracy_plan_t), allocatable :: plan
     integer :: exit_code = exit_done
     character(len=:), allocatable :: stop_reason
   end type run_t

@@ -1,6 +1,6 @@
 !> BLOCK and JOIN: a mesh made of blocks with four sides.
 module cards_blocks
-  use block_mesh, only: block_t, mesh_block, polygon_area, side_arc, side_parabola, side_straight
+  use block_mesh, only: block_t, divisions_of, mesh_block, polygon_area, side_arc, side_parabola, side_straight
   use card_points, only: read_xy
   use cards_mesh, only: read_body_head
   use deck_cursor, only: cursor_t
@@ -53,7 +53,9 @@ contains
       call read_curves(cursor, block)
       call close_card(draft, cursor, deck%cards(i))
       parts%sound = parts%sound .and. .not. cursor%failed()
+      parts%even = parts%even .and. all(mod(block%divisions, 2) == 0)
       if (cursor%failed()) block = unit_block()
+      block%refinement = draft%mesh_factor
       call append_block(block, with_mesh, head_location(deck%cards(i)), body, draft, parts)
     end do
   end subroutine read_blocks
@@ -173,7 +175,7 @@ contains
     end if
     new = size(coordinates, 2)
     body%connectivity = body%connectivity + n
-    body%across = block%divisions(1)
+    body%across = divisions_of(block, 1)
     if (allocated(body%labels)) deallocate (body%labels, body%location)
     allocate (body%labels(0), body%location(1))
     body%location = where

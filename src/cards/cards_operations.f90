@@ -3,6 +3,7 @@
 !> Cards before the first OPERA card belong to all operations, those behind an OPERA card to its operation alone. Every operation is
 !> read as a deck of its own, from the common cards and its own; names on cards of the others count as used there.
 module cards_operations
+  use accuracy_rules, only: fineness_t
   use card_names, only: names_t
   use cards_mesh, only: is_body_elem
   use cards_sleep, only: put_to_sleep, sleep_keyword
@@ -34,6 +35,8 @@ module cards_operations
     real(wp), allocatable :: ends(:)
     !> Columns of the history of all of them.
     type(string_t), allocatable :: columns(:)
+    !> How fine all of them are made, over what the deck says.
+    type(fineness_t) :: fineness
   end type operations_t
 
 contains
@@ -106,7 +109,7 @@ contains
     type(string_t) :: more(1)
     integer :: k
 
-    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL START', keywords)
+    call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL START ACCURACY', keywords)
     call list_elems(elems)
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle
@@ -129,7 +132,7 @@ contains
     integer :: i, mistakes
 
     if (operations%count == 0) then
-      call read_scene(deck, scene, diagnostics, remesh)
+      call read_scene(deck, scene, diagnostics, remesh, operations%fineness)
       return
     end if
     part = deck
@@ -140,7 +143,7 @@ contains
       part%cards(i)%keyword = '-'//part%cards(i)%keyword
     end do
     mistakes = diagnostics%count()
-    call read_scene(part, scene, diagnostics, remesh)
+    call read_scene(part, scene, diagnostics, remesh, operations%fineness)
     if (diagnostics%count() == mistakes) call put_to_sleep(part, scene, diagnostics)
     scene%operation = k
     scene%operations = operations%count
@@ -160,6 +163,7 @@ contains
 
     scene%strategy%end_time = begins + scene%strategy%end_time
     scene%strategy%save_times = begins + scene%strategy%save_times
+    if (allocated(scene%strategy%watch_times)) scene%strategy%watch_times = begins + scene%strategy%watch_times
     do i = 1, size(scene%multipliers)
       scene%multipliers(i)%time = begins + scene%multipliers(i)%time
     end do

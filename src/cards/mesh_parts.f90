@@ -36,6 +36,8 @@ module mesh_parts
     type(location_t), allocatable :: joined(:)
     !> No mistake in what the mesh is made of so far.
     logical :: sound = .true.
+    !> All blocks have even divisions.
+    logical :: even = .true.
   end type mesh_parts_t
 
 contains

@@ -37,6 +37,8 @@ module scene_draft
     logical :: groups_sound = .true.
     !> Length of the diagonal of the box around the mesh [length].
     real(wp) :: mesh_size = 0.0_wp
+    !> Elements along a line of a block, over what its card says.
+    real(wp) :: mesh_factor = 1.0_wp
   end type draft_t
 
 contains

@@ -1,5 +1,7 @@
 !> From the cards of a deck to a scene. Cards may come in any order; all mistakes are reported together.
 module scene_reader
+  use accuracy_rules, only: fineness_t
+  use cards_accuracy, only: make_finer, read_accuracy
   use cards_blocks, only: join_blocks, read_blocks
   use cards_body_forces, only: read_body_forces
   use cards_contours, only: read_contours, refuse_half_contours
@@ -47,12 +49,13 @@ module scene_reader
 contains
 
   !> Fill `scene` from the cards. It is only of use when `diagnostics` has no mistakes afterwards. `remesh` replaces the mesh
-  !> the cards make.
-  subroutine read_scene(deck, scene, diagnostics, remesh)
+  !> the cards make; `fineness` is over what the cards say (none: as they say).
+  subroutine read_scene(deck, scene, diagnostics, remesh, fineness)
     type(deck_t), intent(inout), target :: deck
     type(scene_t), intent(out) :: scene
     type(diagnostics_t), intent(inout), target :: diagnostics
     type(remesh_t), intent(in), optional :: remesh
+    type(fineness_t), intent(in), optional :: fineness
     type(draft_t) :: draft
     type(mesh_parts_t) :: parts
     type(string_t), allocatable :: keywords(:)
@@ -60,6 +63,7 @@ contains
 
     has_own_mesh = .not. present(remesh)
     call start_draft(draft)
+    if (present(fineness)) draft%mesh_factor = fineness%mesh
     call start_parts(parts)
     call known_cards(keywords)
     call refuse_unknown(deck, keywords, diagnostics)
@@ -114,6 +118,8 @@ contains
     call read_load_factor(deck, draft, diagnostics)
     call refuse_half_contours(deck, draft, parts, diagnostics)
     call read_probes(deck, draft, diagnostics)
+    call read_accuracy(deck, draft, parts, diagnostics)
+    if (present(fineness)) call make_finer(fineness, draft)
     call refuse_unused_names(deck, draft, keywords, diagnostics)
 
     if (present(remesh)) call order_as_remeshed(remesh, draft%scene%groups)
@@ -133,7 +139,7 @@ contains
     call list_elems(elems)
     call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE START ' &
                   //'OPERA ASLEEP FLUX CONVE RADIA HEATS GOLDAK COU2DC TDIE THETA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG ' &
-                  //'LIC LOADF STRAT NORMS SOLVR STOP SAVE CKPT PROBE ESTIM REMSH ZPNT ZONE', keywords)
+                  //'LIC LOADF STRAT NORMS ACCURACY SOLVR STOP SAVE CKPT PROBE ESTIM REMSH ZPNT ZONE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle

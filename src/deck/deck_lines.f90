@@ -10,6 +10,8 @@ module deck_lines
 
   integer, parameter :: is_card = 1, is_row = 2, is_param = 3, is_refused = 4
   integer, parameter :: longest_keyword = 6
+  !> The one keyword that is longer.
+  character(len=*), parameter :: long_keyword = 'ACCURACY'
 
 contains
 
@@ -95,7 +97,7 @@ contains
 
   end subroutine classify
 
-  !> Keywords are 1 to 6 capital letters or digits. One in small letters is reported and then taken.
+  !> Keywords are 1 to 6 capital letters or digits, and ACCURACY. One in small letters is reported and then taken.
   subroutine check_keyword(word, where, refused, diagnostics)
     character(len=*), intent(in) :: word
     type(location_t), intent(in) :: where
@@ -115,7 +117,7 @@ contains
         call diagnostics%add(there, '', 'a keyword in column 1 has capital letters and digits, found '''//word// &
                              '''; a data row starts with a blank')
       end if
-    else if (len(word) > longest_keyword) then
+    else if (len(word) > longest_keyword .and. upper_case(word) /= long_keyword) then
       call diagnostics%add(there, '', 'a keyword has at most '//to_text(longest_keyword)//' letters, found '''//word//'''')
     else
       refused = .false.

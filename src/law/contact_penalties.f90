@@ -5,7 +5,7 @@ module contact_penalties
   use materials, only: material_t
   implicit none
   private
-  public :: penalties_t, penalty_parameters, penalties_of_card, penalty_problems, allowed_penetration
+  public :: penalties_t, penalty_parameters, penalties_of_card, penalty_problems, allowed_penetration, scale_penalties
 
   !> Numbers among the values of a material.
   integer, parameter :: place_allowed = 1, place_normal = 2, place_tangential = 3, place_augmentations = 4
@@ -54,6 +54,17 @@ contains
 
     share = material%values(place_allowed)
   end function allowed_penetration
+
+  !> Contact that is stiffer: penetrations of so many times their depth.
+  pure subroutine scale_penalties(depth, material)
+    real(wp), intent(in) :: depth   !! factor
+    type(material_t), intent(inout) :: material
+
+    associate (values => material%values)
+      values(place_allowed) = depth*values(place_allowed)
+      values(place_normal:place_tangential) = values(place_normal:place_tangential)/depth
+    end associate
+  end subroutine scale_penalties
 
   !> Message on a wrong combination of them, '' when there is none.
   pure function penalty_problems(material) result(problem)

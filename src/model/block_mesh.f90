@@ -13,7 +13,7 @@ module block_mesh
   use vectors, only: length_of
   implicit none
   private
-  public :: block_t, mesh_block, grading, least_jacobian, polygon_area
+  public :: block_t, divisions_of, mesh_block, grading, least_jacobian, polygon_area
   public :: side_straight, side_arc, side_parabola
 
   !> Forms of a side: the point given is the centre of the arc, or the middle point of the parabola.
@@ -29,6 +29,8 @@ module block_mesh
     real(wp) :: ratios(2) = 1.0_wp
     integer :: form(4) = side_straight
     real(wp) :: point(2, 4) = 0.0_wp
+    !> Elements along a line over the divisions: 1/2, where these are even, or whole.
+    real(wp) :: refinement = 1.0_wp
   end type block_t
 
 contains
@@ -42,16 +44,16 @@ contains
     integer, intent(out) :: side_first(5)                     !! side k holds columns side_first(k) ... side_first(k+1) - 1
     integer, allocatable, intent(out) :: side_nodes(:, :)     !! (3, nside)
     real(wp), allocatable :: s(:), t(:)
-    integer :: number(0:2*block%divisions(1), 0:2*block%divisions(2))
+    integer, allocatable :: number(:, :)
     integer :: i, j, k, n, nx, ny
 
-    nx = block%divisions(1)
-    ny = block%divisions(2)
-    call grading(nx, block%ratios(1), s)
-    call grading(ny, block%ratios(2), t)
+    nx = divisions_of(block, 1)
+    ny = divisions_of(block, 2)
+    call refined_grading(block, 1, s)
+    call refined_grading(block, 2, t)
+    allocate (number(0:2*nx, 0:2*ny), source=0)
     allocate (coordinates(2, (2*nx + 1)*(2*ny + 1) - nx*ny), connectivity(8, nx*ny), side_nodes(3, 2*(nx + ny)))
     n = 0
-    number = 0
     do j = 0, 2*ny
       do i = 0, 2*nx
         if (mod(i, 2) == 1 .and. mod(j, 2) == 1) cycle
@@ -78,6 +80,43 @@ contains
       side_nodes(:, 2*nx + ny + k) = connectivity(quad8_side(:, 4), (ny - k)*nx + 1)
     end do
   end subroutine mesh_block
+
+  !> Elements along sides 1 and 3 (k = 1), or 2 and 4 (k = 2).
+  elemental function divisions_of(block, k) result(n)
+    type(block_t), intent(in) :: block
+    integer, intent(in) :: k
+    integer :: n
+
+    n = max(nint(block%refinement*block%divisions(k)), 1)
+  end function divisions_of
+
+  !> Parameters of the ends and middles of the elements: each division in equal parts, or two of them together.
+  pure subroutine refined_grading(block, k, s)
+    type(block_t), intent(in) :: block
+    integer, intent(in) :: k
+    real(wp), allocatable, intent(out) :: s(:)   !! (2*n + 1) [-]
+    real(wp), allocatable :: own(:)
+    integer :: i, j, n, parts
+
+    call grading(block%divisions(k), block%ratios(k), own)
+    n = divisions_of(block, k)
+    if (n == block%divisions(k)) then
+      call move_alloc(own, s)
+      return
+    end if
+    allocate (s(2*n + 1))
+    if (n < block%divisions(k)) then
+      s(1::2) = own(1::4)
+    else
+      parts = n/block%divisions(k)
+      do i = 1, block%divisions(k)
+        do j = 0, parts
+          s(1 + 2*(parts*(i - 1) + j)) = own(2*i - 1) + (own(2*i + 1) - own(2*i - 1))*j/parts
+        end do
+      end do
+    end if
+    s(2::2) = 0.5_wp*(s(1:2*n - 1:2) + s(3::2))
+  end subroutine refined_grading
 
   !> Parameters from 0 to 1 of the ends and middles of n elements in geometric progression.
   pure subroutine grading(n, ratio, s)

@@ -1,6 +1,7 @@
 !> A scene: everything a deck says, fixed for the length of a run.
 module scene
   use dies, only: die_t
+  use accuracy_rules, only: accuracy_rules_t
   use effects, only: effect_t
   use fields, only: field_t
   use heat_contacts, only: die_heat_t, heat_contact_t
@@ -120,6 +121,7 @@ module scene
     !> Heat of welding torches.
     type(weld_source_t), allocatable :: sources(:)
     type(strategy_t) :: strategy
+    type(accuracy_rules_t) :: accuracy
     type(remesher_options_t) :: remesher
     type(remesh_rules_t) :: remesh
     type(effect_t), allocatable :: effects(:)

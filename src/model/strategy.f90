@@ -3,7 +3,7 @@ module strategy
   use kinds, only: wp
   implicit none
   private
-  public :: strategy_t
+  public :: strategy_t, order_in_time
   public :: coupling_once, coupling_converged, coupling_monolithic, coupling_names
   public :: scheme_theta, scheme_tr_bdf2
 
@@ -51,5 +51,19 @@ module strategy
     real(wp), allocatable :: save_times(:)
     !> A checkpoint is written every so many steps (0 = with the fields and at the end only).
     integer :: checkpoint_every = 0
+    !> Runs of other fineness are compared at these times, which are hit exactly; not allocated without ACCURACY [time].
+    real(wp), allocatable :: watch_times(:)
   end type strategy_t
+
+contains
+
+  !> Order of the scheme of heat in the length of the step.
+  elemental function order_in_time(strategy) result(order)
+    type(strategy_t), intent(in) :: strategy
+    integer :: order
+
+    order = 1
+    if (strategy%scheme == scheme_tr_bdf2 .or. abs(strategy%theta - 0.5_wp) < epsilon(1.0_wp)) order = 2
+  end function order_in_time
+
 end module strategy

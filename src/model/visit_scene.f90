@@ -58,6 +58,7 @@ contains
     call visitor%derived('probes', of_the_deck)
     call visitor%derived('sources', of_the_deck)
     call visitor%derived('strategy', of_the_deck)
+    call visitor%derived('accuracy', of_the_deck)
     call visitor%derived('effects', of_the_deck)
   end subroutine visit_scene_members
 

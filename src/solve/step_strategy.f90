@@ -88,6 +88,9 @@ contains
     if (allocated(scene%strategy%save_times)) then
       next = min(next, minval(scene%strategy%save_times, mask=scene%strategy%save_times > after))
     end if
+    if (allocated(scene%strategy%watch_times)) then
+      next = min(next, minval(scene%strategy%watch_times, mask=scene%strategy%watch_times > after))
+    end if
     if (allocated(scene%remesh%times)) next = min(next, minval(scene%remesh%times, mask=scene%remesh%times > after))
   end function next_time
 

@@ -1,0 +1,273 @@
+!> How the errors of a scene fall with its mesh, its steps and its penetrations, measured by runs that differ in one of them
+!> (pilots), and the cheapest fineness for an accuracy.
+!>
+!> Error of a quantity in a run: its difference to the exact one at instants that runs have in common, in the mean square, or at
+!> the last of them where that is more, over the range of the quantity. With errors of order q in the size of the elements, two
+!> runs whose elements differ by the factor 2 differ by D = E (2^q - 1), E the error of the finer one (L.F. Richardson, Phil.
+!> Trans. R. Soc. A 210 (1911) 307-357); a third mesh gives q. Errors in time are of the order of the scheme, those of the
+!> penetration of order 1, as it is the pressure over the penalty. Of a quantity the three are added, as if they had one sign.
+module accuracy_laws
+  use accuracy_rules, only: fineness_t
+  use kinds, only: wp
+  use text, only: string_t
+  implicit none
+  private
+  public :: accuracy_law_t, sample_t
+  public :: asked_for, choose_fineness, difference, errors_of, expected_error, expected_seconds, measure_laws
+
+  !> Orders in space that are believed: what a corner leaves at least, and the order of the stress. Without a third mesh that of
+  !> smooth scenes, or that of scenes with contact, flow or phases.
+  real(wp), parameter :: least_order = 0.5_wp, largest_order = 2.0_wp, smooth_order = 2.0_wp, rough_order = 1.0_wp
+  !> Differences below this share of the range are round-off.
+  real(wp), parameter :: round_off = 1.0e-9_wp
+  !> Times are the same when they are this close, over the last one.
+  real(wp), parameter :: same_time = 1.0e-9_wp
+  !> Share of what is asked that is used up, so that what the laws miss has room; and of that by penetration.
+  real(wp), parameter :: used_share = 0.8_wp, depth_share = 0.1_wp
+  !> Least factors of penetration and steps, largest of the mesh.
+  real(wp), parameter :: least_depth = 1/64.0_wp, least_steps = 1/256.0_wp
+  integer, parameter :: largest_mesh = 64
+  !> Time over elements along a line, for the choice between mesh and steps: between loops (2) and factorisations (3).
+  real(wp), parameter :: cost_exponent = 2.4_wp
+  !> How seconds go with the number of elements (closing_table): tasks of elements, contact, factorisation; and what is no task, such
+  !> as files.
+  real(wp), parameter :: task_exponents(4) = [1.0_wp, 0.5_wp, 1.5_wp, 0.0_wp]
+
+  !> A run of some fineness: what it cost, and its judged quantities.
+  type :: sample_t
+    type(fineness_t) :: fineness
+    integer :: elements = 0, steps = 0, iterations = 0
+    !> Tasks of elements, contact, factorisation, the rest [s].
+    real(wp) :: seconds(4) = 0.0_wp
+    !> Estimated error of the stress; below 0 where there is none.
+    real(wp) :: stress = -1.0_wp
+    real(wp), allocatable :: time(:)        !! (nrow) [time]
+    real(wp), allocatable :: values(:, :)   !! (ncolumn, nrow) [unit of each column]
+  end type sample_t
+
+  !> Errors of each quantity over its range.
+  type :: accuracy_law_t
+    !> On the finest mesh among the pilots, which has so many times the elements of the deck along a line.
+    real(wp) :: mesh = 1.0_wp
+    real(wp), allocatable :: space(:), order(:)   !! (nquantity) [-]
+    !> With the steps and the penetrations of the deck.
+    real(wp), allocatable :: time(:), depth(:)    !! (nquantity) [-]
+    real(wp) :: time_order = 1.0_wp
+    !> The order in space was measured by three meshes; there are two meshes at all.
+    logical :: order_measured = .false., space_known = .false.
+  end type accuracy_law_t
+
+contains
+
+  !> Of quantities whose ranges are known. Pilots are ordered by their mesh where they differ in that alone.
+  pure subroutine measure_laws(pilots, scales, with_stress, smooth, time_order, law)
+    type(sample_t), intent(in) :: pilots(:)   !! (npilot)
+    real(wp), intent(in) :: scales(:)         !! (ncolumn) [unit of each column]
+    logical, intent(in) :: with_stress        !! the error of the stress is the last quantity
+    logical, intent(in) :: smooth             !! no contact, flow or phases
+    real(wp), intent(in) :: time_order        !! of the errors in time
+    type(accuracy_law_t), intent(out) :: law
+    integer, allocatable :: meshes(:)
+    real(wp) :: now(size(scales)), before(size(scales))
+    integer :: k, n, first
+
+    n = size(scales) + merge(1, 0, with_stress)
+    allocate (law%space(n), law%time(n), law%depth(n), source=0.0_wp)
+    allocate (law%order(n), source=merge(smooth_order, rough_order, smooth))
+    law%time_order = time_order
+    meshes = pack([(k, k=1, size(pilots))], abs(pilots%fineness%steps - 1) + abs(pilots%fineness%depth - 1) <= 0)
+    if (size(meshes) == 0) return
+    first = meshes(1)
+    law%mesh = pilots(meshes(size(meshes)))%fineness%mesh
+    law%space_known = size(meshes) > 1
+    law%order_measured = size(meshes) > 2
+    n = size(scales)
+    if (law%space_known) then
+      now = difference(pilots(meshes(size(meshes) - 1)), pilots(meshes(size(meshes))), scales)
+      if (law%order_measured) then
+        before = difference(pilots(meshes(size(meshes) - 2)), pilots(meshes(size(meshes) - 1)), scales)
+        law%order(:n) = observed_order(before, now)
+      end if
+      law%space(:n) = now/(2**law%order(:n) - 1)
+      if (with_stress) then
+        law%space(n + 1) = pilots(meshes(size(meshes)))%stress
+        law%order(n + 1) = observed_order(pilots(meshes(size(meshes) - 1))%stress, law%space(n + 1))
+      end if
+    else if (with_stress) then
+      law%space(n + 1) = pilots(first)%stress
+    end if
+    do k = 1, size(pilots)
+      associate (other => pilots(k)%fineness)
+        if (abs(other%mesh - pilots(first)%fineness%mesh) > 0) cycle
+        if (other%steps < 1) law%time(:n) = difference(pilots(first), pilots(k), scales)/(1 - other%steps**time_order)
+        if (other%depth < 1) law%depth(:n) = difference(pilots(first), pilots(k), scales)/(1 - other%depth)
+      end associate
+    end do
+  end subroutine measure_laws
+
+  !> Order of two errors, or differences, of meshes that differ by the factor 2.
+  elemental function observed_order(coarse, fine) result(order)
+    real(wp), intent(in) :: coarse, fine   !! [-]
+    real(wp) :: order
+
+    order = largest_order
+    if (fine > round_off .and. coarse > 0) order = min(max(log(coarse/fine)/log(2.0_wp), least_order), largest_order)
+  end function observed_order
+
+  !> Difference of each quantity between two runs, over its range.
+  pure function difference(a, b, scales) result(d)
+    type(sample_t), intent(in) :: a, b
+    real(wp), intent(in) :: scales(:)   !! (ncolumn) [unit of each column]
+    real(wp) :: d(size(scales))
+    real(wp) :: one(size(scales)), last(size(scales)), tolerance
+    integer :: i, j, n
+
+    d = 0
+    last = 0
+    n = 0
+    i = 1
+    j = 1
+    tolerance = same_time*max(maxval(abs(a%time)), maxval(abs(b%time)))
+    do while (i <= size(a%time) .and. j <= size(b%time))
+      if (a%time(i) < b%time(j) - tolerance) then
+        i = i + 1
+      else if (b%time(j) < a%time(i) - tolerance) then
+        j = j + 1
+      else
+        one = (a%values(:, i) - b%values(:, j))/scales
+        ! a cell of another operation has no number
+        where (.not. abs(one) <= huge(one)) one = 0
+        d = d + one**2
+        last = abs(one)
+        n = n + 1
+        i = i + 1
+        j = j + 1
+      end if
+    end do
+    d = max(sqrt(d/max(n, 1)), last)
+    where (d < round_off) d = 0
+  end function difference
+
+  !> Errors in space, in time and of penetration of every quantity.
+  pure subroutine errors_of(law, fineness, space, time, depth)
+    type(accuracy_law_t), intent(in) :: law
+    type(fineness_t), intent(in) :: fineness
+    real(wp), intent(out) :: space(:), time(:), depth(:)   !! (nquantity) [-]
+
+    space = law%space*(law%mesh/fineness%mesh)**law%order
+    time = law%time*fineness%steps**law%time_order
+    depth = law%depth*fineness%depth
+  end subroutine errors_of
+
+  !> The largest error of all quantities.
+  pure function expected_error(law, fineness) result(error)
+    type(accuracy_law_t), intent(in) :: law
+    type(fineness_t), intent(in) :: fineness
+    real(wp) :: error
+    real(wp), dimension(size(law%space)) :: space, time, depth
+
+    call errors_of(law, fineness, space, time, depth)
+    error = maxval(space + time + depth)
+  end function expected_error
+
+  !> What would have to be asked for an error to be expected.
+  pure function asked_for(error) result(asked)
+    real(wp), intent(in) :: error   !! [-]
+    real(wp) :: asked
+
+    asked = error/used_share
+  end function asked_for
+
+  !> The cheapest fineness whose errors are below what is asked; never coarser than the deck. `met` is false where none is found: then
+  !> the mesh is the finest that may be, or half the error of space is left to it.
+  pure subroutine choose_fineness(law, asked, divisible, fineness, met)
+    type(accuracy_law_t), intent(in) :: law
+    real(wp), intent(in) :: asked         !! [-]
+    logical, intent(in) :: divisible      !! the mesh can be made finer
+    type(fineness_t), intent(out) :: fineness
+    logical, intent(out) :: met
+    real(wp), dimension(size(law%space)) :: space, time, depth
+    type(fineness_t) :: trial
+    real(wp) :: left, cost, least
+    integer :: m, k
+
+    met = .false.
+    do while (maxval(law%depth)*fineness%depth > depth_share*used_share*asked .and. fineness%depth > least_depth)
+      fineness%depth = fineness%depth/2
+    end do
+    least = huge(least)
+    trial = fineness
+    do m = 1, merge(largest_mesh, 1, divisible)
+      trial%mesh = m
+      trial%steps = 1
+      call errors_of(law, trial, space, time, depth)
+      do k = 1, size(space)
+        left = used_share*asked - space(k) - depth(k)
+        if (.not. left > 0) exit
+        if (time(k) > left) trial%steps = min(trial%steps, (left/time(k))**(1/law%time_order))
+      end do
+      if (k <= size(space) .or. trial%steps < least_steps) cycle
+      cost = trial%mesh**cost_exponent/trial%steps
+      if (met .and. .not. cost < least) cycle
+      least = cost
+      fineness = trial
+      met = .true.
+    end do
+    if (met) return
+    call errors_of(law, fineness, space, time, depth)
+    left = used_share*asked/2
+    if (maxval(time) > left) fineness%steps = max((left/maxval(time))**(1/law%time_order), least_steps)
+  end subroutine choose_fineness
+
+  !> Seconds and steps of a run, from the finest pilot: its seconds by tasks, its steps and iterations; how those grew from mesh to
+  !> mesh, and steps from length to length.
+  pure subroutine expected_seconds(pilots, fineness, elements, seconds, steps)
+    type(sample_t), intent(in) :: pilots(:)   !! (npilot)
+    type(fineness_t), intent(in) :: fineness
+    integer, intent(in) :: elements           !! of the run
+    real(wp), intent(out) :: seconds          !! [s]
+    integer, intent(out) :: steps
+    integer, allocatable :: meshes(:)
+    real(wp) :: more, by_mesh, by_length, iterations
+    integer :: k, n
+
+    seconds = 0
+    steps = 0
+    meshes = pack([(k, k=1, size(pilots))], abs(pilots%fineness%steps - 1) + abs(pilots%fineness%depth - 1) <= 0)
+    n = size(meshes)
+    if (n == 0) return
+    by_mesh = 0
+    iterations = 0
+    if (n > 1) then
+      by_mesh = growth(real(pilots(meshes(n - 1))%steps, wp), real(pilots(meshes(n))%steps, wp), 2.0_wp, 1.0_wp)
+      iterations = growth(per_step(pilots(meshes(n - 1))), per_step(pilots(meshes(n))), 2.0_wp, 0.5_wp)
+    end if
+    by_length = 1
+    do k = 1, size(pilots)
+      if (pilots(k)%fineness%steps < 1) &
+        by_length = growth(real(pilots(meshes(1))%steps, wp), real(pilots(k)%steps, wp), 1/pilots(k)%fineness%steps, 1.2_wp)
+    end do
+    associate (finest => pilots(meshes(n)))
+      more = (fineness%mesh/finest%fineness%mesh)**by_mesh*fineness%steps**(-by_length)
+      steps = nint(finest%steps*more)
+      more = more*(fineness%mesh/finest%fineness%mesh)**iterations
+      seconds = more*sum(finest%seconds*(real(elements, wp)/finest%elements)**task_exponents)
+    end associate
+  end subroutine expected_seconds
+
+  !> Exponent of a growth over a factor, from 0 up to a largest one.
+  pure function growth(from, to, factor, largest) result(exponent)
+    real(wp), intent(in) :: from, to, factor, largest
+    real(wp) :: exponent
+
+    exponent = min(max(log(to/from)/log(factor), 0.0_wp), largest)
+  end function growth
+
+  pure function per_step(sample) result(iterations)
+    type(sample_t), intent(in) :: sample
+    real(wp) :: iterations
+
+    iterations = real(max(sample%iterations, 1), wp)/max(sample%steps, 1)
+  end function per_step
+
+end module accuracy_laws
