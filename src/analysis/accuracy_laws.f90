@@ -23,7 +23,7 @@ module accuracy_laws
   !> Times are the same when they are this close, over the last one.
   real(wp), parameter :: same_time = 1.0e-9_wp
   !> Share of what is asked that is used up, so that what the laws miss has room; and of that by penetration.
-  real(wp), parameter :: used_share = 0.8_wp, depth_share = 0.1_wp
+  real(wp), parameter :: used_share = 0.8_wp, depth_share = 0.25_wp
   !> Least factors of penetration and steps, largest of the mesh.
   real(wp), parameter :: least_depth = 1/64.0_wp, least_steps = 1/256.0_wp
   integer, parameter :: largest_mesh = 64
@@ -50,6 +50,8 @@ module accuracy_laws
     !> On the finest mesh among the pilots, which has so many times the elements of the deck along a line.
     real(wp) :: mesh = 1.0_wp
     real(wp), allocatable :: space(:), order(:)   !! (nquantity) [-]
+    !> Order between the two finest meshes, for meshes that are coarser than the finest.
+    real(wp), allocatable :: coarse_order(:)      !! (nquantity) [-]
     !> With the steps and the penetrations of the deck.
     real(wp), allocatable :: time(:), depth(:)    !! (nquantity) [-]
     real(wp) :: time_order = 1.0_wp
@@ -74,6 +76,7 @@ contains
     n = size(scales) + merge(1, 0, with_stress)
     allocate (law%space(n), law%time(n), law%depth(n), source=0.0_wp)
     allocate (law%order(n), source=merge(smooth_order, rough_order, smooth))
+    allocate (law%coarse_order, source=law%order)
     law%time_order = time_order
     meshes = pack([(k, k=1, size(pilots))], abs(pilots%fineness%steps - 1) + abs(pilots%fineness%depth - 1) <= 0)
     if (size(meshes) == 0) return
@@ -87,11 +90,13 @@ contains
       if (law%order_measured) then
         before = difference(pilots(meshes(size(meshes) - 2)), pilots(meshes(size(meshes) - 1)), scales)
         law%order(:n) = observed_order(before, now)
+        law%coarse_order(:n) = law%order(:n)
       end if
       law%space(:n) = now/(2**law%order(:n) - 1)
       if (with_stress) then
         law%space(n + 1) = pilots(meshes(size(meshes)))%stress
         law%order(n + 1) = observed_order(pilots(meshes(size(meshes) - 1))%stress, law%space(n + 1))
+        law%coarse_order(n + 1) = max(log(pilots(meshes(size(meshes) - 1))%stress/law%space(n + 1))/log(2.0_wp), 0.0_wp)
       end if
     else if (with_stress) then
       law%space(n + 1) = pilots(first)%stress
@@ -154,7 +159,7 @@ contains
     type(fineness_t), intent(in) :: fineness
     real(wp), intent(out) :: space(:), time(:), depth(:)   !! (nquantity) [-]
 
-    space = law%space*(law%mesh/fineness%mesh)**law%order
+    space = law%space*(law%mesh/fineness%mesh)**merge(law%coarse_order, law%order, fineness%mesh < law%mesh)
     time = law%time*fineness%steps**law%time_order
     depth = law%depth*fineness%depth
   end subroutine errors_of
@@ -179,7 +184,7 @@ contains
   end function asked_for
 
   !> The cheapest fineness whose errors are below what is asked; never coarser than the deck. `met` is false where none is found: then
-  !> the mesh is the finest that may be, or half the error of space is left to it.
+  !> the mesh is that of the finest pilot, with steps as if half of what is asked were left for them.
   pure subroutine choose_fineness(law, asked, divisible, fineness, met)
     type(accuracy_law_t), intent(in) :: law
     real(wp), intent(in) :: asked         !! [-]
@@ -214,6 +219,7 @@ contains
       met = .true.
     end do
     if (met) return
+    fineness%mesh = max(law%mesh, 1.0_wp)
     call errors_of(law, fineness, space, time, depth)
     left = used_share*asked/2
     if (maxval(time) > left) fineness%steps = max((left/maxval(time))**(1/law%time_order), least_steps)

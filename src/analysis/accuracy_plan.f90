@@ -4,7 +4,7 @@ module accuracy_plan
   use accuracy_rules, only: fineness_t
   use json_writer, only: json_t
   use kinds, only: wp
-  use text, only: join, string_t, to_text
+  use text, only: add_text, join, string_t, to_text
   implicit none
   private
   public :: accuracy_plan_t, accuracy_t
@@ -127,11 +127,11 @@ contains
     do k = 1, size(plan%pilots)
       associate (pilot => plan%pilots(k))
         call put('           pilot: '//fineness_words(pilot%fineness)//': '//to_text(pilot%elements)//' elements, ' &
-                 //to_text(pilot%steps)//' steps, '//to_text(sum(pilot%seconds), 3)//' s')
+                 //to_text(pilot%steps)//' steps, '//to_text(sum(pilot%seconds), 3)//' s of processor')
       end associate
     end do
     call put('           run:   '//fineness_words(plan%fineness)//': '//to_text(plan%elements)//' elements, about ' &
-             //to_text(plan%steps)//' steps and '//to_text(plan%seconds, 2)//' s')
+             //to_text(plan%steps)//' steps and '//to_text(plan%seconds, 2)//' s of processor')
     call put('           expected error '//parts_words(plan%expected))
     if (plan%law%space_known .and. plan%divisible) call put('           order of the errors in space: '//orders_of(plan))
     do k = 1, size(plan%notes)
@@ -143,7 +143,7 @@ contains
     subroutine put(line)
       character(len=*), intent(in) :: line
 
-      lines = [lines, string_t(line)]
+      call add_text(lines, line)
     end subroutine put
 
   end subroutine plan_lines
@@ -193,8 +193,9 @@ contains
       allocate (lines(2))
       lines(1)%s = '    asked       '//percent(plan%asked)//', expected '//percent(total(plan%expected))//', reached ' &
                    //parts_words(accuracy%reached)
-      lines(2)%s = '    spent       '//to_text(accuracy%steps)//' steps and '//to_text(accuracy%seconds, 3)//' s, expected ' &
-                   //to_text(plan%steps)//' and '//to_text(plan%seconds, 3)//' s; pilots '//to_text(plan%pilot_seconds, 3)//' s'
+      lines(2)%s = '    spent       '//to_text(accuracy%steps)//' steps and '//to_text(accuracy%seconds, 3) &
+                   //' s of processor, expected '//to_text(plan%steps)//' and '//to_text(plan%seconds, 3)//' s; pilots ' &
+                   //to_text(plan%pilot_seconds, 3)//' s'
       if (plan%half_costs > 0) lines(2)%s = lines(2)%s//'; half the error costs about '//to_text(plan%half_costs, 2) &
                                             //' times the time, by the measured errors'
     end associate

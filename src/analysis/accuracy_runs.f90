@@ -12,7 +12,7 @@ module accuracy_runs
   use standard_streams, only: print_line
   use strategy, only: order_in_time
   use system, only: join_path
-  use text, only: string_t, to_text
+  use text, only: add_text, string_t, to_text
   implicit none
   private
   public :: make_plan, run_i
@@ -86,7 +86,7 @@ contains
     subroutine note(words)
       character(len=*), intent(in) :: words
 
-      plan%notes = [plan%notes, string_t(words)]
+      call add_text(plan%notes, words)
     end subroutine note
 
     !> The laws of all pilots so far, and what they allow.
@@ -138,7 +138,7 @@ contains
       if (size(plan%columns) == 0 .and. .not. only_stress()) then
         call select_columns(own, scene, plan%columns, plan%names, error)
         if (allocated(error)) return
-        if (scene%accuracy%stress) plan%names = [plan%names, string_t(stress_name)]
+        if (scene%accuracy%stress) call add_text(plan%names, stress_name)
         plan%scales = spread(1.0_wp, 1, size(plan%columns))
       else if (size(plan%names) == 0) then
         plan%names = [string_t(stress_name)]

@@ -12,7 +12,7 @@ module accuracy_samples
   use probes, only: probe_maximum, probe_minimum
   use run_options, only: run_options_t, stem_of
   use run_version, only: version_text
-  use scene, only: is_solid, scene_t
+  use scene, only: axisymmetric, is_solid, scene_t
   use solution, only: solution_t
   use system, only: file_exists, join_path
   use text, only: add_text, string_t, to_text
@@ -30,13 +30,13 @@ module accuracy_samples
 contains
 
   !> Write what the run has cost. Operations add up.
-  subroutine write_cost(stem, deck_text, fineness, scene, equations, solution, wall, stress, goes_on, error)
+  subroutine write_cost(stem, deck_text, fineness, scene, equations, solution, processor, stress, goes_on, error)
     character(len=*), intent(in) :: stem, deck_text
     type(fineness_t), intent(in) :: fineness
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: wall     !! [s]
+    real(wp), intent(in) :: processor   !! seconds of it [s]
     real(wp), intent(in) :: stress   !! estimated error of it [-], below 0 where there is none
     logical, intent(in) :: goes_on   !! from an earlier operation
     type(error_t), allocatable, intent(out) :: error
@@ -53,9 +53,9 @@ contains
       if (equations%timers%name(t) == 'factorisation') n = 3
       seconds(n) = seconds(n) + equations%timers%seconds(t)
     end do
-    ! tasks may lie within others
-    if (sum(seconds) > wall) seconds = seconds*wall/sum(seconds)
-    seconds(4) = wall - sum(seconds)
+    ! tasks are timed on the wall, of a machine that may have other work, and may lie within others
+    if (sum(seconds) > processor) seconds = seconds*processor/sum(seconds)
+    seconds(4) = processor - sum(seconds)
     if (goes_on) then
       call read_cost(stem, deck_text, fineness, before, there)
       if (there) seconds = seconds + before%seconds
@@ -64,7 +64,8 @@ contains
     call write_text(stem//'.cost', version_text//' '//sha256(deck_text)//nl &
                     //exact_text(fineness%mesh)//' '//exact_text(fineness%steps)//' '//exact_text(fineness%depth)//nl &
                     //to_text(n)//' '//to_text(solution%step)//' '//to_text(solution%iterations)//nl &
-                    //exact_text(seconds(1))//' '//exact_text(seconds(2))//' '//exact_text(seconds(3))//' '//exact_text(seconds(4))//nl &
+                    //exact_text(seconds(1))//' '//exact_text(seconds(2))//' '//exact_text(seconds(3)) &
+                    //' '//exact_text(seconds(4))//nl &
                     //exact_text(stress)//nl, error)
   end subroutine write_cost
 
@@ -202,6 +203,8 @@ contains
     integer :: k
 
     yes = any([(index(name, trim(usual(k))) == 1, k=1, size(usual))])
+    ! round the axis these forces are in balance by themselves
+    if (scene%plane_state == axisymmetric) yes = yes .and. index(name, 'force_x_') /= 1 .and. index(name, 'moment_') /= 1
     do k = 1, size(scene%probes)
       if (scene%probes(k)%name == name) yes = all(scene%probes(k)%kind /= [probe_maximum, probe_minimum])
     end do

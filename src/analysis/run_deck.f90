@@ -35,8 +35,9 @@ module run_deck
   use solution, only: solution_t, start_solution
   use standard_streams, only: print_line, print_lines
   use summary, only: run_facts_t, summary_lines, write_summary
-  use system, only: catch_signals, caught_signal, directory_exists, join_path, make_directory, remove_file, wall_seconds
-  use text, only: join, nearest_word, string_t, to_text
+  use system, only: catch_signals, caught_signal, cpu_seconds, directory_exists, join_path, make_directory, &
+                    remove_file, wall_seconds
+  use text, only: add_text, join, nearest_word, string_t, to_text
   use threads, only: start_team
   implicit none
   private
@@ -210,9 +211,10 @@ contains
     type(run_facts_t) :: facts
     type(error_t), allocatable :: late
     type(string_t), allocatable :: lines(:)
-    real(wp) :: started
+    real(wp) :: started, processor
 
     started = wall_seconds()
+    processor = cpu_seconds()
     call start_team(run%equations%team, options%threads)
     call require_memory(0.0_wp, 'the threads of a run', error, address_space=run%equations%team%most*blas_buffer)
     if (allocated(error)) return
@@ -261,7 +263,8 @@ contains
     facts%blas = blas_words(blas_build(), blas_core_name())
     facts%wall = wall_seconds() - started
     call close_run(scene, run%equations, solution, facts%closing)
-    if (scene%accuracy%asked > 0 .and. allocated(options%fineness)) call close_accuracy(options, scene, solution, run, facts, late)
+    if (scene%accuracy%asked > 0 .and. allocated(options%fineness)) &
+      call close_accuracy(options, scene, solution, cpu_seconds() - processor, run, facts, late)
     call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
     call list_lines(run%listing, lines)
     call close_listing(run%listing)
@@ -277,10 +280,11 @@ contains
   end subroutine run_and_report
 
   !> What a run of a deck with ACCURACY has cost and, where it has come to its end, reached. A warning where that is less than asked.
-  subroutine close_accuracy(options, scene, solution, run, facts, error)
+  subroutine close_accuracy(options, scene, solution, seconds, run, facts, error)
     type(run_options_t), intent(in) :: options
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: seconds   !! of processor [s]
     type(run_t), intent(in) :: run
     type(run_facts_t), intent(inout) :: facts
     type(error_t), allocatable, intent(out) :: error
@@ -289,7 +293,7 @@ contains
     logical :: there
 
     if (run%exit_code /= exit_done) return
-    call write_cost(run%stem, run%deck_text, options%fineness, scene, run%equations, solution, facts%wall, &
+    call write_cost(run%stem, run%deck_text, options%fineness, scene, run%equations, solution, seconds, &
                     merge(facts%closing%stress, -1.0_wp, facts%closing%space), run%begins_operation, error)
     if (allocated(error) .or. .not. allocated(run%plan) .or. scene%operation < scene%operations) return
     call read_sample(options, run%deck_text, options%fineness, run%plan%columns, sample, there)
@@ -297,7 +301,7 @@ contains
     allocate (facts%closing%accuracy)
     call judge_run(run%plan, sample, facts%closing%accuracy)
     words = accuracy_warning(facts%closing%accuracy)
-    if (len(words) > 0) facts%warnings = [facts%warnings, string_t(words)]
+    if (len(words) > 0) call add_text(facts%warnings, words)
   end subroutine close_accuracy
 
   !> The summary of an operation that others follow has a name of its own.

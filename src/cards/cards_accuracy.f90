@@ -11,7 +11,7 @@ module cards_accuracy
   use scene, only: scene_t
   use scene_draft, only: close_card, draft_t, only_card, words_of
   use strategy, only: order_in_time
-  use text, only: string_t
+  use text, only: add_text, string_t
   implicit none
   private
   public :: make_finer, read_accuracy
@@ -110,11 +110,11 @@ contains
     call words_of(of_dies, fronts)
     do k = 1, size(draft%scene%dies)
       do i = 1, size(fronts)
-        names = [names, string_t(fronts(i)%s//draft%scene%dies(k)%name)]
+        call add_text(names, fronts(i)%s//draft%scene%dies(k)%name)
       end do
     end do
     do i = 1, size(deck%cards)
-      if (is_probe(deck%cards(i))) names = [names, string_t(deck%cards(i)%head%fields(1)%text)]
+      if (is_probe(deck%cards(i))) call add_text(names, deck%cards(i)%head%fields(1)%text)
     end do
   end subroutine possible_names
 
