@@ -118,13 +118,14 @@ contains
                           //to_text(fineness%depth, 3))
       own%default_out = .false.
       own%check = .false.
+      own%forecast = .false.
       own%quiet = .true.
       own%progress = .false.
       if (allocated(own%resume)) deallocate (own%resume)
       own%fineness = fineness
       call read_sample(own, deck_text, fineness, plan%columns, sample, there)
       if (.not. there) then
-        if (.not. (options%quiet .or. options%progress)) call print_line('accuracy: pilot, '//fineness_words(fineness), error)
+        if (.not. (options%quiet .or. options%progress)) call print_line('pilot of ACCURACY: '//fineness_words(fineness), error)
         if (.not. allocated(error)) call run(own, code, error)
         if (allocated(error)) then
           ! one that finds no equilibrium is no reason why the run should not

@@ -81,7 +81,7 @@ contains
     options = given
     call keep_blas_to_one_thread()
     call read_input(options, deck, diagnostics, operations, scene, run%deck_text, at_rest, checkpoint, error)
-    if (.not. allocated(error) .and. scene%accuracy%asked > 0 .and. .not. allocated(options%fineness)) then
+    if (.not. allocated(error) .and. wants_plan(options, scene)) then
       call checkpoint%file%close(ignored)
       allocate (run%plan)
       call make_plan(options, scene, run%deck_text, run_pilot, run%plan, code, error)
@@ -98,6 +98,10 @@ contains
     end if
     call checkpoint%file%close(ignored)
     if (allocated(error)) return
+    if (options%forecast .and. .not. allocated(run%plan)) then
+      call fail(error, exit_input, '--forecast: the deck has no ACCURACY card')
+      return
+    end if
     if (options%check) then
       call check_deck(options, deck, diagnostics, operations, scene, error)
       if (allocated(error) .or. .not. allocated(run%plan)) return
@@ -122,6 +126,15 @@ contains
                                              code, error)
     end if
   end subroutine read_and_run
+
+  !> A deck with ACCURACY that runs, or a forecast of it, but no pilot.
+  pure function wants_plan(options, scene) result(yes)
+    type(run_options_t), intent(in) :: options
+    type(scene_t), intent(in) :: scene
+    logical :: yes
+
+    yes = scene%accuracy%asked > 0 .and. .not. allocated(options%fineness) .and. (options%forecast .or. .not. options%check)
+  end function wants_plan
 
   !> A pilot of a deck with ACCURACY.
   recursive subroutine run_pilot(options, code, error)

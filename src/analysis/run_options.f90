@@ -20,6 +20,8 @@ module run_options
     !> File of steels (.MET) to print.
     character(len=:), allocatable :: met
     type(string_t), allocatable :: overrides(:)
+    !> What a run with ACCURACY is expected to be: its pilots are made, not the run.
+    logical :: forecast = .false.
     logical :: check = .false., point = .false., quiet = .false., help = .false., version = .false.
     !> The keywords of all cards are asked for.
     logical :: cards = .false.
@@ -53,6 +55,9 @@ contains
         options%cards = .true.
       case ('--check')
         options%check = .true.
+      case ('--forecast')
+        options%check = .true.
+        options%forecast = .true.
       case ('--point')
         options%point = .true.
       case ('--quiet')
@@ -84,6 +89,7 @@ contains
       case default
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
           call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--check'), string_t('--quiet'), &
+                                    string_t('--forecast'), &
                                     string_t('--progress'), string_t('--out'), string_t('--resume'), string_t('--law'), &
                                     string_t('--met'), string_t('--cards'), string_t('--point'), string_t('-p'), &
                                     string_t('--threads')], &
@@ -128,13 +134,14 @@ contains
     character(len=*), parameter :: nl = new_line('a')
 
     text = 'lagamine: metal forming and heat treatment in two dimensions'//nl//nl// &
-           'lagamine DECK [--out DIR] [--check] [--resume CHECKPOINT] [-p NAME=VALUE]... [--threads N]'//nl// &
+           'lagamine DECK [--out DIR] [--check|--forecast] [--resume CHECKPOINT] [-p NAME=VALUE]... [--threads N]'//nl// &
            '         [--progress|--quiet]'//nl// &
            'lagamine --point DECK [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --met FILE [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --law [NAME] | --cards | --help | --version'//nl//nl// &
            '  --out DIR       folder of the results (default: the deck''s name); with --check: for DIR/NAME.scene.json'//nl// &
            '  --check         read the deck, print the scene, run nothing'//nl// &
+           '  --forecast      of a deck with ACCURACY: make its pilots, print what the run is expected to be, do not run it'//nl// &
            '  --resume FILE   go on from a checkpoint of the same deck'//nl// &
            '  -p NAME=VALUE   set a parameter of the deck'//nl// &
            '  --threads N     threads (default: as many as processors are free); the same bits for any number'//nl// &

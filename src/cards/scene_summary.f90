@@ -67,6 +67,8 @@ contains
     do k = 1, size(scene%probes)
       call put('probe      '//padded(scene%probes(k)%name, 24)//'['//scene%probes(k)%unit//']')
     end do
+    if (scene%accuracy%asked > 0) call put('accuracy   '//to_text(100*scene%accuracy%asked, 3)//' % asked (lagamine --forecast ' &
+                                           //'says what that takes)')
     if (scene%remesh%on) then
       if (scene%remesh%stress_error < never) call put_limit('stress_error', 'above '//to_text(scene%remesh%stress_error))
       do k = 1, ncriteria
