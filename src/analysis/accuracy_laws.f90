@@ -23,14 +23,14 @@ module accuracy_laws
   !> Times are the same when they are this close, over the last one.
   real(wp), parameter :: same_time = 1.0e-9_wp
   !> Share of what is asked that is used up, so that what the laws miss has room; and of that by penetration.
-  real(wp), parameter :: used_share = 0.8_wp, depth_share = 0.25_wp
+  real(wp), parameter :: used_share = 0.7_wp, depth_share = 0.25_wp
   !> Least factors of penetration and steps, largest of the mesh.
   real(wp), parameter :: least_depth = 1/64.0_wp, least_steps = 1/256.0_wp
   integer, parameter :: largest_mesh = 64
   !> Time over elements along a line, for the choice between mesh and steps: between loops (2) and factorisations (3).
   real(wp), parameter :: cost_exponent = 2.4_wp
-  !> How seconds go with the number of elements (closing_table): tasks of elements, contact, factorisation; and what is no task, such
-  !> as files.
+  !> How seconds go with the number of elements (closing_table): tasks of elements, contact, factorisation; and what is no task,
+  !> such as files.
   real(wp), parameter :: task_exponents(4) = [1.0_wp, 0.5_wp, 1.5_wp, 0.0_wp]
 
   !> A run of some fineness: what it cost, and its judged quantities.
@@ -183,8 +183,8 @@ contains
     asked = error/used_share
   end function asked_for
 
-  !> The cheapest fineness whose errors are below what is asked; never coarser than the deck. `met` is false where none is found: then
-  !> the mesh is that of the finest pilot, with steps as if half of what is asked were left for them.
+  !> The cheapest fineness whose errors are below what is asked; never coarser than the deck. `met` is false where none is found:
+  !> then the mesh is that of the finest pilot, with steps as if half of what is asked were left for them.
   pure subroutine choose_fineness(law, asked, divisible, fineness, met)
     type(accuracy_law_t), intent(in) :: law
     real(wp), intent(in) :: asked         !! [-]

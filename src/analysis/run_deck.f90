@@ -292,7 +292,8 @@ contains
     end if
   end subroutine run_and_report
 
-  !> What a run of a deck with ACCURACY has cost and, where it has come to its end, reached. A warning where that is less than asked.
+  !> What a run of a deck with ACCURACY has cost and, where it has come to its end, reached. A warning where that is less
+  !> than asked.
   subroutine close_accuracy(options, scene, solution, seconds, run, facts, error)
     type(run_options_t), intent(in) :: options
     type(scene_t), intent(in) :: scene

@@ -1,0 +1,206 @@
+#!/usr/bin/env python3
+"""ACCURACY: true errors are below what was asked, and what was spent is what was expected.
+
+usage: run_accuracy.py [--long] [-v] [-k] [SCENE...]
+
+Truth is a closed form (Lame's cylinder, the finite cylinder) or a run that is much finer (the others). Each error is over the range of its
+quantity, at the end. `--long`: all six scenes at 2 and 0.5 %, a table of them, and seconds of processor within a factor 2; otherwise those
+that take a second or two. Steps are counted in any case: they do not depend on what else the machine does.
+"""
+import csv
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "patch"))
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from patch_support import LAGAMINE, SOURCE, STRESS, Checks, Run, at_points, np  # noqa: E402
+from run_effectivity import density, through_points  # noqa: E402
+
+LONG = "--long" in sys.argv[1:]
+WITHIN = 2.0
+LEAST_SECONDS = 1.0      # of processor: below it the start of a program counts
+
+
+def number(word):
+    """A Fortran real."""
+    return float(word)
+
+
+class Scene:
+    """A deck with another coarse mesh, its card, and the finer run that is its truth."""
+
+    def __init__(self, deck, changes, card, finest=(), exact=None, short=()):
+        self.deck, self.changes, self.card, self.finest, self.exact, self.short = deck, changes, card, finest, exact, short
+        self.name = os.path.basename(deck)
+
+    def text(self, changes, asked=None):
+        """The deck with lines exchanged (by their beginnings), and the card."""
+        with open(os.path.join(SOURCE, "decks", self.deck + ".lag"), encoding="utf-8") as file:
+            text = file.read()
+        for old, new in changes:
+            text, n = re.subn(rf"(?m)^{old}.*$", new, text)
+            assert n == 1, (self.name, old, n)
+        text = text.replace("'../", f"'{os.path.join(SOURCE, 'decks')}/")
+        return text if asked is None else text.replace("\nEND", f"\nACCURACY {asked} % {self.card}\nEND")
+
+
+def lame(x):
+    """Radial displacement and stress rr, zz, rz, tt of the deck's cylinder: E = 1000, nu = 0.3, plane strain, 10 within."""
+    a, b, p, young, nu = 4.0, 10.0, 10.0, 1000.0, 0.3
+    c = p*a*a/(b*b - a*a)
+    rr, tt = c*(1 - b*b/x**2), c*(1 + b*b/x**2)
+    return (1 + nu)/young*c*((1 - 2*nu)*x + b*b/x), np.stack([rr, nu*(rr + tt), 0*x, tt], axis=-1)
+
+
+def lame_errors(folder, name, history):
+    """True errors of the displacement and of the stress, as the polynomials of elements with 2 x 2 points have it."""
+    run = Run.__new__(Run)
+    run.out, run.name = folder, name
+    nodes, elements = run.mesh()
+    places, _, _, volumes = at_points(nodes[elements], nodes[elements], 5)
+    volumes = volumes*places[..., 0]
+    own = np.einsum("qp,epc->eqc", through_points(4, 5), run.state("ring", *STRESS).reshape(len(elements), 4, 4))
+    stress = lame(places[..., 0])[1]
+    moduli = 1000/2.6, 1000/1.2
+    inner = lame(np.array([4.0]))[0][0]
+    return {"u_inner": abs(history["u_inner"][-1]/inner - 1),
+            "STRESS": np.sqrt((volumes*density(own - stress, *moduli)).sum()/(volumes*density(stress, *moduli)).sum())}
+
+
+def cylinder_errors(_folder, _name, history):
+    """The series of reference.csv."""
+    found = {}
+    with open(os.path.join(SOURCE, "decks", "finite_cylinder", "reference.csv"), encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            if row["options"] == "" and row["at"] == "end":
+                q, exact = row["quantity"], number(row["expected"])
+                found[q] = abs(history[q][-1] - exact)/(800 - exact)
+    return found
+
+
+SCENES = [
+    Scene("thick_cylinder/thick_cylinder", [("PARAM  nx", "PARAM  nx 4"), (r"   \$nx 1\.   1 1\.", "   $nx 1.   2 1.")], "OF STRESS u_inner", exact=lame_errors, short=(2, 0.5)),
+    Scene("finite_cylinder/finite_cylinder", [], "", exact=cylinder_errors, short=(2, 0.5)),
+    Scene("quench_16mnd5/quench_16mnd5", [("PARAM  nr 25", "PARAM  nr 10"), ("PARAM  nz 15", "PARAM  nz 6"), ("PARAM  step", "PARAM  step 1"),
+                                          ("PARAM  finish", "PARAM  finish 100")], "OF side core",
+          finest=[("PARAM  nr", "PARAM  nr 40"), ("PARAM  nz", "PARAM  nz 24"), ("PARAM  step", "PARAM  step 0.0625"), ("PARAM  finish", "PARAM  finish 100")]),
+    Scene("hertz/hertz", [("PARAM  n ", "PARAM  n 4 ")], "OF force_y_ball peak_pressure",
+          finest=[("PARAM  n ", "PARAM  n 16 "), (r"   PENETR", "   PENETR 2.E-6   PHI 0."), ("STRAT", "STRAT 0.125 1.E-4 0.125   5 3")]),
+    Scene("upsetting/upsetting", [], "",
+          finest=[("PARAM  nx", "PARAM  nx 48"), ("PARAM  ny", "PARAM  ny 72"),
+                  ("STRAT", "STRAT  0.005  1.E-5  0.0125   5 3\nNORMS PATH 0.01 RATE 0.002")]),
+    Scene("necking/necking", [("PARAM  dt", "PARAM  dt 0.02")], "",
+          finest=[("PARAM  nx", "PARAM  nx 32"), ("PARAM  ny", "PARAM  ny 96"), ("PARAM  dt", "PARAM  dt 0.004"),
+                  ("STRAT", "STRAT  $dt/4  1.E-5  $dt   5 3\nNORMS PATH 0.01 RATE 0.002")]),
+]
+
+
+def call(checks, name, text, code=0):
+    """A run: history, summary and folder."""
+    folder = os.path.join(checks.folder, name)
+    path = folder + ".lag"
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+    done = subprocess.run([LAGAMINE, path, "--out", folder, "--threads", "1", "--quiet"], check=False, stdin=subprocess.DEVNULL,
+                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    checks.that(done.returncode == code, f"{name}: exit code {code}", f"{done.returncode} {done.stderr[:300]}")
+    run = Run.__new__(Run)
+    run.out = folder
+    with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
+        return run.read_history(), json.load(file), folder
+
+
+def against_finest(scene, checks, finest):
+    """Errors of the columns that the finest run has too, over their range in it."""
+    truth, _, _ = call(checks, scene.name + "_finest", scene.text(scene.finest)) if finest is None else (finest, None, None)
+
+    def errors(_folder, _name, history):
+        return {q: abs(history[q][-1] - v[-1])/(v.max() - v.min()) for q, v in truth.items() if q in history and v.max() > v.min()}
+
+    return truth, errors
+
+
+def judge(scene, checks, asked, errors, rows):
+    """One scene at one accuracy."""
+    name = f"{scene.name}_{str(asked).replace('.', 'p')}"
+    history, summary, folder = call(checks, name, scene.text(scene.changes, asked))
+    told = summary["accuracy"]["asked"]
+    judged = list(told["orders"])
+    true = {q: e for q, e in errors(folder, name, history).items() if q in judged}
+    worst = max(true, key=true.get)
+    checks.that(set(true) == set(judged), f"{name}: all quantities have a truth", f"{judged}, {list(true)}")
+    checks.that(100*true[worst] <= asked, f"{name}: true errors below {asked} %", f"{100*true[worst]:.3g} % of {worst}")
+    checks.that(told["met"] and not [w for w in summary["warnings"] if "ACCURACY" in w["text"]], f"{name}: nothing is warned of", told)
+    ratios = [(told["spent_steps"]/told["expected_steps"], "steps")]
+    if LONG and told["spent_s"] > LEAST_SECONDS:
+        ratios.append((told["spent_s"]/told["expected_s"], "seconds"))
+    for ratio, what in ratios:
+        checks.that(1/WITHIN <= ratio <= WITHIN, f"{name}: {what} within a factor {WITHIN:g} of what was expected", f"{ratio:.2f}")
+    rows.append((scene.name, asked, 100*true[worst], worst, told, summary["elements"]))
+    return folder, history
+
+
+def once_more(checks, scene, asked, folder, history):
+    """The same deck again: pilots are read, not made; the same bits. Without the card nothing of it is left."""
+    name = os.path.basename(folder)
+    pilots = {pilot: os.stat(os.path.join(folder, pilot, "history.csv")).st_mtime_ns for pilot in os.listdir(folder) if pilot.startswith("pilot_")}
+    again, summary, _ = call(checks, name, scene.text(scene.changes, asked))
+    checks.that(all(np.array_equal(history[q], again[q]) for q in history), f"{name}: the same bits again")
+    checks.that(all(os.stat(os.path.join(folder, pilot, "history.csv")).st_mtime_ns == time for pilot, time in pilots.items()) and len(pilots) > 2,
+                f"{name}: pilots are not made again", list(pilots))
+    _, plain, other = call(checks, name + "_plain", scene.text(scene.changes))
+    checks.that("asked" not in plain["accuracy"] and not [f for f in os.listdir(other) if f.startswith("pilot") or f.endswith(".cost")],
+                f"{name}: nothing of it without the card")
+    checkpoint = os.path.join(folder, name + ".ckp.1.h5")
+    if os.path.exists(checkpoint):
+        done = subprocess.run([LAGAMINE, folder + ".lag", "--out", folder, "--threads", "1", "--quiet", "--resume", checkpoint], check=False)
+        run = Run.__new__(Run)
+        run.out = folder
+        checks.that(done.returncode == 0 and all(np.array_equal(history[q], column) for q, column in run.read_history().items()),
+                    f"{name}: resumed to the same bits", done.returncode)
+
+
+def told_where_it_is_not(checks):
+    """A mesh that is written out, and an accuracy that no mesh reaches: exit 0 and a warning that says what limits."""
+    text = ("TITLE two elements\nSTATE PLSTN\nKINEM SMALL\nNODES\n" + "".join(f"   {k + 1} {x} {y}\n" for k, (x, y) in enumerate(
+        [(0, 0), (1, 0), (2, 0), (0, 1), (2, 1), (0, 2), (1, 2), (2, 2), (3, 0), (4, 0), (4, 1), (3, 2), (4, 2)])) +
+        "PL8LS plate 4 m\n   1 1 3 8 6 2 5 7 4\n   2 3 10 13 8 9 11 12 5\nSIDES left\n   1 4\nSIDES right\n   2 2\nLAW m ELA\n   1000. 0.3\n"
+        "LIC t\n   0. 0.   1. 1.\nFIXED left XY\nTRACT right Y 1. t\nSTRAT 0.5 1.E-3 0.5 5 3\nPROBE tip NODE UY 4. 2.\nACCURACY 2 %\nEND\n")
+    _, summary, _ = call(checks, "written_out", text)
+    warned = [w["text"] for w in summary["warnings"] if "ACCURACY" in w["text"]]
+    checks.that(len(warned) == 1 and "the mesh is written out" in warned[0] and not summary["accuracy"]["asked"]["met"],
+                "a mesh that is written out is named", warned)
+
+
+def main():
+    checks = Checks()
+    names = [word for word in sys.argv[1:] if not word.startswith("-")]
+    rows = []
+    for scene in SCENES:
+        wanted = (2, 0.5) if LONG else scene.short
+        if (names and scene.name not in names) or not wanted:
+            continue
+        errors, truth = scene.exact, None
+        if errors is None:
+            truth, errors = against_finest(scene, checks, truth)
+        for asked in wanted:
+            folder, history = judge(scene, checks, asked, errors, rows)
+            if scene.name == "finite_cylinder" and asked == 2:
+                once_more(checks, scene, asked, folder, history)
+    if not names:
+        told_where_it_is_not(checks)
+    print("scene            asked %   true %  of               expected %  reached %  elements  mesh  steps  depth  steps: spent expected   seconds: spent expected  pilots")
+    for name, asked, true, of, told, elements in rows:
+        print(f"{name:16s} {asked:7} {true:8.3f}  {of:16s} {told['expected']['error_pct']:10.3f} {told['reached']['error_pct']:10.3f} {elements:9d} {told['mesh']:5g} "
+              f"{told['steps']:6.3f} {told['depth']:6.3f} {told['spent_steps']:13d} {told['expected_steps']:8d} {told['spent_s']:16.2f} {told['expected_s']:8.2f} "
+              f"{told['pilots_s']:7.2f}")
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
