@@ -15,9 +15,11 @@ module accuracy_laws
   public :: accuracy_law_t, sample_t
   public :: asked_for, choose_fineness, difference, errors_of, expected_error, expected_seconds, measure_laws
 
-  !> Orders in space that are believed: what a corner leaves at least, and the order of the stress. Without a third mesh that of
-  !> smooth scenes, or that of scenes with contact, flow or phases.
-  real(wp), parameter :: least_order = 0.5_wp, largest_order = 2.0_wp, smooth_order = 2.0_wp, rough_order = 1.0_wp
+  !> Orders in space that are believed: of the stress what a crack leaves at least; of forces, work and motions twice that (J. Nitsche,
+  !> Abh. Math. Sem. Hamburg 36 (1971) 9-15); and the order of the stress where it is smooth. Without a third mesh that of smooth
+  !> scenes, or that of scenes with contact, flow or phases.
+  real(wp), parameter :: least_of_stress = 0.5_wp, least_order = 2*least_of_stress, largest_order = 2.0_wp, &
+                         smooth_order = 2.0_wp, rough_order = 1.0_wp
   !> Differences below this share of the range are round-off.
   real(wp), parameter :: round_off = 1.0e-9_wp
   !> Times are the same when they are this close, over the last one.
@@ -89,13 +91,13 @@ contains
       now = difference(pilots(meshes(size(meshes) - 1)), pilots(meshes(size(meshes))), scales)
       if (law%order_measured) then
         before = difference(pilots(meshes(size(meshes) - 2)), pilots(meshes(size(meshes) - 1)), scales)
-        law%order(:n) = observed_order(before, now)
+        law%order(:n) = observed_order(before, now, least_order)
         law%coarse_order(:n) = law%order(:n)
       end if
       law%space(:n) = now/(2**law%order(:n) - 1)
       if (with_stress) then
         law%space(n + 1) = pilots(meshes(size(meshes)))%stress
-        law%order(n + 1) = observed_order(pilots(meshes(size(meshes) - 1))%stress, law%space(n + 1))
+        law%order(n + 1) = observed_order(pilots(meshes(size(meshes) - 1))%stress, law%space(n + 1), least_of_stress)
         law%coarse_order(n + 1) = max(log(pilots(meshes(size(meshes) - 1))%stress/law%space(n + 1))/log(2.0_wp), 0.0_wp)
       end if
     else if (with_stress) then
@@ -111,12 +113,12 @@ contains
   end subroutine measure_laws
 
   !> Order of two errors, or differences, of meshes that differ by the factor 2.
-  elemental function observed_order(coarse, fine) result(order)
-    real(wp), intent(in) :: coarse, fine   !! [-]
+  elemental function observed_order(coarse, fine, least) result(order)
+    real(wp), intent(in) :: coarse, fine, least   !! [-]
     real(wp) :: order
 
     order = largest_order
-    if (fine > round_off .and. coarse > 0) order = min(max(log(coarse/fine)/log(2.0_wp), least_order), largest_order)
+    if (fine > round_off .and. coarse > 0) order = min(max(log(coarse/fine)/log(2.0_wp), least), largest_order)
   end function observed_order
 
   !> Difference of each quantity between two runs, over its range.
@@ -183,8 +185,9 @@ contains
     asked = error/used_share
   end function asked_for
 
-  !> The cheapest fineness whose errors are below what is asked; never coarser than the deck. `met` is false where none is found:
-  !> then the mesh is that of the finest pilot, with steps as if half of what is asked were left for them.
+  !> The cheapest fineness whose errors are below what is asked; never coarser than the deck, nor than the third mesh where one
+  !> was needed: steps that a scene chooses by itself differ from mesh to mesh, and their errors may hide those of the mesh. `met` is
+  !> false where none is found: then the mesh is that of the finest pilot, with steps as if half of what is asked were left for them.
   pure subroutine choose_fineness(law, asked, divisible, fineness, met)
     type(accuracy_law_t), intent(in) :: law
     real(wp), intent(in) :: asked         !! [-]
@@ -194,7 +197,7 @@ contains
     real(wp), dimension(size(law%space)) :: space, time, depth
     type(fineness_t) :: trial
     real(wp) :: left, cost, least
-    integer :: m, k
+    integer :: m, k, coarsest
 
     met = .false.
     do while (maxval(law%depth)*fineness%depth > depth_share*used_share*asked .and. fineness%depth > least_depth)
@@ -202,7 +205,9 @@ contains
     end do
     least = huge(least)
     trial = fineness
-    do m = 1, merge(largest_mesh, 1, divisible)
+    coarsest = 1
+    if (law%order_measured) coarsest = nint(max(law%mesh, 1.0_wp))
+    do m = coarsest, merge(largest_mesh, coarsest, divisible)
       trial%mesh = m
       trial%steps = 1
       call errors_of(law, trial, space, time, depth)
@@ -225,8 +230,8 @@ contains
     if (maxval(time) > left) fineness%steps = max((left/maxval(time))**(1/law%time_order), least_steps)
   end subroutine choose_fineness
 
-  !> Seconds and steps of a run, from the finest pilot: its seconds by tasks, its steps and iterations; how those grew from mesh to
-  !> mesh, and steps from length to length.
+  !> Seconds and steps of a run, from the pilots. Steps that finer meshes ask for are added to those of shorter lengths. Seconds of a
+  !> step are those of the finest pilot by tasks, times what iterations a step grow from mesh to mesh, and fall with its length.
   pure subroutine expected_seconds(pilots, fineness, elements, seconds, steps)
     type(sample_t), intent(in) :: pilots(:)   !! (npilot)
     type(fineness_t), intent(in) :: fineness
@@ -234,7 +239,7 @@ contains
     real(wp), intent(out) :: seconds          !! [s]
     integer, intent(out) :: steps
     integer, allocatable :: meshes(:)
-    real(wp) :: more, by_mesh, by_length, iterations
+    real(wp) :: by_mesh, by_length, iterations, fewer
     integer :: k, n
 
     seconds = 0
@@ -249,15 +254,18 @@ contains
       iterations = growth(per_step(pilots(meshes(n - 1))), per_step(pilots(meshes(n))), 2.0_wp, 0.5_wp)
     end if
     by_length = 1
-    do k = 1, size(pilots)
-      if (pilots(k)%fineness%steps < 1) &
-        by_length = growth(real(pilots(meshes(1))%steps, wp), real(pilots(k)%steps, wp), 1/pilots(k)%fineness%steps, 1.2_wp)
-    end do
-    associate (finest => pilots(meshes(n)))
-      more = (fineness%mesh/finest%fineness%mesh)**by_mesh*fineness%steps**(-by_length)
-      steps = nint(finest%steps*more)
-      more = more*(fineness%mesh/finest%fineness%mesh)**iterations
-      seconds = more*sum(finest%seconds*(real(elements, wp)/finest%elements)**task_exponents)
+    fewer = 0
+    associate (first => pilots(meshes(1)), finest => pilots(meshes(n)))
+      do k = 1, size(pilots)
+        if (.not. pilots(k)%fineness%steps < 1) cycle
+        by_length = growth(real(first%steps, wp), real(pilots(k)%steps, wp), 1/pilots(k)%fineness%steps, 1.2_wp)
+        fewer = growth(per_step(pilots(k)), per_step(first), 1/pilots(k)%fineness%steps, 0.5_wp)
+      end do
+      associate (finer => fineness%mesh/finest%fineness%mesh)
+        steps = nint(first%steps*(fineness%steps**(-by_length) - 1) + finest%steps*finer**by_mesh)
+        seconds = finer**iterations*fineness%steps**fewer*steps/finest%steps &
+                  *sum(finest%seconds*(real(elements, wp)/finest%elements)**task_exponents)
+      end associate
     end associate
   end subroutine expected_seconds
 
