@@ -53,8 +53,9 @@ def command_of(deck: str, rung: Rung, fixed: Sequence[str], programs: str, threa
 
 
 def digest_of(deck: str) -> str:
-    """SHA-256 of a deck and the files it includes."""
+    """SHA-256 of a deck and the files it includes, those of steels among them (which name steels, and no files)."""
     digest, waiting, seen = hashlib.sha256(), [os.path.abspath(deck)], set()
+    steels = set()
     while waiting:
         path = waiting.pop()
         if path in seen:
@@ -66,8 +67,12 @@ def digest_of(deck: str) -> str:
         except OSError as error:
             raise ReportError(f"{path}: cannot be read: {error.strerror}") from error
         digest.update(content)
-        names = re.findall(rb"(?im)^[ \t]*(?:INCLU|STEEL)[ \t]+(?:'([^']*)'|(\S+))", content)
-        waiting += [os.path.join(os.path.dirname(path), os.fsdecode(a or b)) for a, b in names]
+        if path in steels:
+            continue
+        for word, a, b in re.findall(rb"(?im)^[ \t]*(INCLU|STEEL)[ \t]+(?:'([^']*)'|(\S+))", content):
+            waiting.append(os.path.join(os.path.dirname(path), os.fsdecode(a or b)))
+            if word.upper() == b"STEEL":
+                steels.add(waiting[-1])
     return digest.hexdigest()
 
 
