@@ -255,7 +255,7 @@ contains
     if (allocated(error)) return
     call list_lines(run%listing, lines)
     call list_lines(run%listing, as_warnings(facts%warnings))
-    if (allocated(run%plan)) then
+    if (allocated(run%plan) .and. .not. run%begins_operation) then
       call plan_lines(run%plan, lines)
       call list_lines(run%listing, lines)
       if (.not. (options%quiet .or. options%progress)) call print_lines(lines, error)

@@ -29,4 +29,18 @@ def accuracy_section(run: Run) -> Sections:
         found = ", ".join(text.format(brief(number(entry[key]), 3)) for key, text in words.items() if key in entry)
         cost = f"about {brief(number(entry['half_costs']), 2)} times the time ({HOW[name]})" if "half_costs" in entry else "\N{EN DASH}"
         rows.append(("", (escape(where), escape(found), escape(cost))))
+    asked = given.get("asked")
+    if isinstance(asked, dict):
+        rows.append(("", _asked(asked)))
     return [("accuracy", "Accuracy", table(("", "estimated error", "half of it costs"), rows))]
+
+
+def _asked(entry: Dict) -> Tuple[str, str, str]:
+    """The row of a deck with ACCURACY."""
+    reached, expected = entry.get("reached"), entry.get("expected")
+    reached, expected = (part if isinstance(part, dict) else {} for part in (reached, expected))
+    found = (f"asked {brief(number(entry.get('error_pct')), 3)} %, reached {brief(number(reached.get('error_pct')), 3)} % of {reached.get('quantity', '?')}, "
+             f"expected {brief(number(expected.get('error_pct')), 3)} %; spent {brief(number(entry.get('spent_s')), 3)} s of processor, "
+             f"expected {brief(number(entry.get('expected_s')), 3)} s")
+    cost = f"about {brief(number(entry['half_costs']), 2)} times the time (measured by pilots)" if "half_costs" in entry else "\N{EN DASH}"
+    return escape("ACCURACY"), escape(found), escape(cost)
