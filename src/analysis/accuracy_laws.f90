@@ -15,8 +15,8 @@ module accuracy_laws
   public :: accuracy_law_t, sample_t
   public :: asked_for, choose_fineness, difference, errors_of, expected_error, expected_seconds, measure_laws
 
-  !> Orders in space that are believed: of the stress what a crack leaves at least; of forces, work and motions twice that (J. Nitsche,
-  !> Abh. Math. Sem. Hamburg 36 (1971) 9-15); and the order of the stress where it is smooth. Without a third mesh that of smooth
+  !> Orders in space that are believed: of the stress what a crack leaves at least; of forces, work and motions twice that
+  !> (J. Nitsche, Abh. Math. Sem. Hamburg 36 (1971) 9-15); and the order of the stress where it is smooth. Without a third mesh that of smooth
   !> scenes, or that of scenes with contact, flow or phases.
   real(wp), parameter :: least_of_stress = 0.5_wp, least_order = 2*least_of_stress, largest_order = 2.0_wp, &
                          smooth_order = 2.0_wp, rough_order = 1.0_wp
@@ -186,8 +186,9 @@ contains
   end function asked_for
 
   !> The cheapest fineness whose errors are below what is asked; never coarser than the deck, nor than the third mesh where one
-  !> was needed: steps that a scene chooses by itself differ from mesh to mesh, and their errors may hide those of the mesh. `met` is
-  !> false where none is found: then the mesh is that of the finest pilot, with steps as if half of what is asked were left for them.
+  !> was needed: steps that a scene chooses by itself differ from mesh to mesh, and their errors may hide those of the mesh.
+  !> `met` is false where none is found: then the mesh is that of the finest pilot, with steps as if half of what is asked were left
+  !> for them.
   pure subroutine choose_fineness(law, asked, divisible, fineness, met)
     type(accuracy_law_t), intent(in) :: law
     real(wp), intent(in) :: asked         !! [-]
@@ -230,8 +231,8 @@ contains
     if (maxval(time) > left) fineness%steps = max((left/maxval(time))**(1/law%time_order), least_steps)
   end subroutine choose_fineness
 
-  !> Seconds and steps of a run, from the pilots. Steps that finer meshes ask for are added to those of shorter lengths. Seconds of a
-  !> step are those of the finest pilot by tasks, times what iterations a step grow from mesh to mesh, and fall with its length.
+  !> Seconds and steps of a run, from the pilots. Steps that finer meshes ask for are added to those of shorter lengths. Seconds of
+  !> a step are those of the finest pilot by tasks, times what iterations a step grow from mesh to mesh, and fall with its length.
   pure subroutine expected_seconds(pilots, fineness, elements, seconds, steps)
     type(sample_t), intent(in) :: pilots(:)   !! (npilot)
     type(fineness_t), intent(in) :: fineness

@@ -106,8 +106,47 @@ def quench_by_long_steps(checks):
     return worst
 
 
+def hardly_cooled(checks):
+    """Biot 3e-5: the bar cools as one lump, by the steps of implicit Euler."""
+    run = bar("lump", "LAW h HEAT\n 30. 4.\n", "CONVE b 2 H 1.E-4 TS 20.\n", "STRAT 1.E4 1. 1.E4 5 3\nSTOP 4.E5\n", checks)
+    lump = 20 + 980*(1 + 1e4/4e5)**-40
+    return max(abs(run.history[name][-1] - lump) for name in ("t0", "t1"))/980
+
+
+def steady_in_one_step(checks):
+    """A wall held hot on one side and cooled on the other, in one step of a million million seconds: the straight line."""
+    run = bar("steady", "LAW h HEAT\n 30. 4.\n", "IMPOS b 4 T one 500.\nLIC one\n 0. 1.\nCONVE b 2 H 6. TS 20.\n", "STRAT 1.E12 1. 1.E12 5 3\nSTOP 1.E12\n", checks,
+              nodes=(0.0, 4.0, 10.0))
+    flow = 480/(10/30 + 1/6)
+    return max(abs(run.history["t1"][-1] - (500 - flow*4/30)), abs(run.history["t2"][-1] - (20 + flow/6)))/480
+
+
+def heated_by_flux(checks):
+    """Heat that comes in by a flux, at steps from short to one for all: what is stored is what came in, to round-off."""
+    worst = 0.0
+    for k, dt in enumerate((0.1, 3.0, 40.0)):
+        run = bar(f"flux-{k}", "LAW h HEAT\n 30. 4.\n", "FLUX b 2 Q 7. go\nLIC go\n 0. 0. 10. 1. 40. 1.\n", f"STRAT {dt} 1.E-3 {dt} 5 3\n", checks)
+        worst = max(worst, abs(run.history["heat_stored"][-1]/run.history["heat_in"][-1] - 1))
+        # the ramp is met by its end: at most half a step of it too much
+        worst = max(worst, float(abs(run.history["heat_in"][-1]) < 7*2*35 - 1e-6))
+    return worst
+
+
+def two_orders_of_nodes(checks):
+    """The steady state by temperatures at corners and at all eight nodes: the same line."""
+    ends = []
+    for name, option in (("corners", " BILINEAR"), ("eight", "")):
+        run = checks.run(name, deck("PLSTN", "SMALL", f"BLOCK b PL8TM 4 h{option}\n 0. 0. 10. 0. 10. 2. 0. 2.\n 4 1. 1 1.\n", "LAW h HEAT\n 30. 4.\n",
+                                    "START T 20.\nIMPOS b 4 T one 500.\nLIC one\n 0. 1.\nCONVE b 2 H 6. TS 20.\nPROBE a NODE T 5. 0.\nPROBE z NODE T 10. 0.\n",
+                                    "STRAT 1.E12 1. 1.E12 5 3\nSTOP 1.E12\n"))
+        ends.append([run.history[c][-1] for c in "az"])
+    return max(abs(a/b - 1) for a, b in zip(*ends))
+
+
 CASES = (
     Case("water quench, Biot 1 000", water_quench, 1e-6), Case("narrow latent heat", narrow_latent_heat, 1e-6),
     Case("radiation to nothing", radiation_to_nothing, 1e-6), Case("conductors 1e8 apart", unlike_conductors, 1e-6),
     Case("burst of heat", moving_source, 1e-9), Case("thermal shock", thermal_shock, 1e-3),
-    Case("martensite burst under load", martensite_burst, 1e-3), Case("steel in long steps", quench_by_long_steps, 1e-6))
+    Case("martensite burst under load", martensite_burst, 1e-3), Case("steel in long steps", quench_by_long_steps, 1e-6),
+    Case("hardly cooled, Biot 3e-5", hardly_cooled, 1e-4), Case("steady in one step", steady_in_one_step, 1e-9),
+    Case("heated by a flux", heated_by_flux, 1e-9), Case("corners or eight nodes", two_orders_of_nodes, 1e-9))

@@ -288,6 +288,76 @@ def rolling(checks):
     return max(abs(run.history["h"][-1]/2*lengths[-1]/lengths[0] - 1), abs(run.history["h"][-1]/1.6 - 1))
 
 
+def nearly_incompressible(checks):
+    """Lame's cylinder, nu = 0.49999: the displacement of the bore is that of the closed form."""
+    nu, young, a, b, p = 0.49999, 1000.0, 4.0, 10.0, 10.0
+    run = checks.run("nearly-incompressible", deck(
+        "AXISYM", "SMALL", block("4. 0. 10. 0. 10. 1. 4. 1.", "5 1. 1 1."), f"LAW m ELA\n 1000. {nu!r}\n",
+        "FIXED b 1 3 Y\nPRES2D b 4 2 10. go\nLIC go\n 0. 0. 1. 1.\nPROBE u NODE UX 4. 0.\n", "STRAT 1. 1. 1. 5 3"))
+    exact = (1 + nu)/young*p*a*a/(b*b - a*a)*((1 - 2*nu)*a + b*b/a)
+    return abs(run.history["u"][-1]/exact - 1)
+
+
+def past_the_peak(checks):
+    """A bar without a flaw pulled to three times the strain of the largest force: it stays a bar, the force falls as Considere says."""
+    e, y, h = 200000.0, 500.0, 500.0
+    run = checks.run("past-the-peak", deck(
+        "AXISYM", "LOG", block("0. 0. 5. 0. 5. 20. 0. 20.", "4 1. 10 1."), f"LAW m EPLA\n {e!r} 0.3\n LINEAR {y!r} {h!r}\n",
+        "FIXED b 1 Y\nFIXED b 4 X\nMOVE b 3 Y go\nLIC go\n 0. 0. 1. 20.\nPROBE f REACT Y b 3\nPROBE r NODE X 5. 0.\nPROBE top NODE X 5. 20.\n",
+        "STRAT 0.01 1.E-6 0.05 5 3"))
+    strain = math.log(2.0)
+    stress = (y + h*strain)/(1 + h/e)
+    force = math.pi*25*stress/2
+    return max(abs(run.history["f"][-1]/force - 1), abs(run.history["r"][-1]/run.history["top"][-1] - 1),
+               float(run.history["f"][-1] > 0.9*run.history["f"].max()))
+
+
+def other_solver(checks):
+    """The billet with MUMPS in the place of FRONT: the same path."""
+    one = upset(checks, "solver-front")
+    other = upset(checks, "solver-mumps", strat="STRAT 0.02 1.E-6 0.05 5 3\nSOLVR MUMPS")
+    if len(one.history["time"]) != len(other.history["time"]):
+        return 1.0
+    return max(np.abs(other.history[c]/one.history[c] - 1).max() for c in ("force_y_d", "bulge"))
+
+
+def joined(checks):
+    """A billet between sticking plates as one block, and as three blocks in another order, joined: other numbers, the same force."""
+    law, strat = "LAW m EPLA\n 200000. 0.3\n LINEAR 300. 500.\n", "STRAT 0.05 1.E-6 0.05 5 3\nNORMS FORCE 1.E-10 DISPL 1.E-10 PATH 0 RATE 0"
+    one = checks.run("one-block", deck(
+        "AXISYM", "LOG", block("0. 0. 10. 0. 10. 12. 0. 12.", "4 1. 6 1."), law,
+        "FIXED b 1 Y\nFIXED b 4 X\nFIXED b 3 X\nMOVE b 3 Y go\nLIC go\n 0. 0. 1. -3.\nPROBE f REACT Y b 3\n", strat))
+    three = checks.run("three-blocks", deck(
+        "AXISYM", "LOG", "BLOCK c PL8LS 4 m\n 0. 8. 10. 8. 10. 12. 0. 12.\n 4 1. 2 1.\nBLOCK b PL8LS 4 m\n 10. 0. 10. 4. 0. 4. 0. 0.\n 2 1. 4 1.\n"
+        "BLOCK d PL8LS 4 m\n 0. 8. 0. 4. 10. 4. 10. 8.\n 2 1. 4 1.\nJOIN b 2 d 2\nJOIN d 4 c 1\n", law,
+        "FIXED b 4 Y\nFIXED b 3 X\nFIXED c 4 X\nFIXED d 1 X\nFIXED c 3 X\nMOVE c 3 Y go\nLIC go\n 0. 0. 1. -3.\nPROBE f REACT Y c 3\n", strat))
+    return np.abs(three.history["f"]/one.history["f"] - 1).max()
+
+
+def pressed_often(checks):
+    """A block pressed into its plastic range and let go, five times to the same depth: from the second time on it is elastic, and
+    every time it bears the same."""
+    times = "".join(f" {k}. {-0.1*(k % 2)!r}\n" for k in range(11))
+    run = checks.run("pressed-often", deck(
+        "PLSTN", "LOG", block("0. 0. 10. 0. 10. 10. 0. 10.", "4 1. 4 1."), "LAW m EPLA\n 200000. 0.3\n LINEAR 300. 500.\nLAW k COUL2D\n PENETR 1.E-4 PHI 0.\n",
+        "FIXED b 1 Y\nFIXED b 4 X\nDIE d PILOT 0. 10.\n SEGM 20. 10. -5. 10.\nCNT2D b 3 d k\nMOVE d Y go\nLIC go\n" + times, "STRAT 0.1 1.E-6 0.25 5 3"))
+    force = abs(run.history["force_y_d"])
+    tops = [force[np.argmin(abs(run.history["time"] - k))] for k in (1, 3, 5, 7, 9)]
+    rests = [force[np.argmin(abs(run.history["time"] - k))] for k in (2, 4, 6, 8, 10)]
+    return max(max(abs(top/tops[0] - 1) for top in tops), max(rests)/tops[0])
+
+
+def one_step_or_many(checks):
+    """An elastic bar stretched by a half in one step and in forty: Hencky's stress does not know how it came there."""
+    ends = []
+    for name, step in (("one-step", 1.0), ("forty-steps", 0.025)):
+        run = checks.run(name, deck(
+            "AXISYM", "LOG", block("0. 0. 5. 0. 5. 10. 0. 10.", "2 1. 3 1."), "LAW m ELA\n 100. 0.45\n",
+            "FIXED b 1 Y\nFIXED b 4 X\nMOVE b 3 Y go\nLIC go\n 0. 0. 1. 5.\nPROBE f REACT Y b 3\n", f"STRAT {step} 1.E-3 {step} 5 3\nNORMS STRAIN 1. FORCE 1.E-12 DISPL 1.E-12"))
+        ends.append(run.history["f"][-1])
+    return abs(ends[1]/ends[0] - 1)
+
+
 CASES = (
     Case("limit load", limit_load, 1e-3), Case("deep notch", deep_notch, 0.03), Case("penalty 1e-2 to 1e6", penalties, 1e-6),
     Case("rate exponent .005 to 1", rate_exponents, 0.003), Case("stiffness ratio 1e8", stiffness_ratio, 1e-5),
@@ -299,4 +369,7 @@ CASES = (
     Case("stick-slip reversal", stick_slip, 1e-3),
     Case("bent round a pin", round_a_pin, 0.25), Case("bent between three rollers", three_point_bending, 0.2),
     Case("blank under a holder", under_a_holder, 1e-4),
-    Case("rolling", rolling, 0.01, LONG), Case("S-shaped dies", s_shaped, 1e-3), Case("rib thinner than elements", thin_rib, 0.5, LONG))
+    Case("rolling", rolling, 0.01, LONG), Case("S-shaped dies", s_shaped, 1e-3), Case("rib thinner than elements", thin_rib, 0.5, LONG),
+    Case("nearly incompressible", nearly_incompressible, 1e-9), Case("past the peak", past_the_peak, 1e-9),
+    Case("another solver", other_solver, 1e-6), Case("three blocks for one", joined, 1e-8), Case("pressed often", pressed_often, 1e-5),
+    Case("one step or many", one_step_or_many, 1e-9))
