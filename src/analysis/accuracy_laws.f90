@@ -25,7 +25,7 @@ module accuracy_laws
   !> Times are the same when they are this close, over the last one.
   real(wp), parameter :: same_time = 1.0e-9_wp
   !> Share of what is asked that is used up, so that what the laws miss has room; and of that by penetration.
-  real(wp), parameter :: used_share = 0.7_wp, depth_share = 0.25_wp
+  real(wp), parameter :: used_share = 0.7_wp, depth_share = 0.35_wp
   !> Least factors of penetration and steps, largest of the mesh.
   real(wp), parameter :: least_depth = 1/64.0_wp, least_steps = 1/256.0_wp
   integer, parameter :: largest_mesh = 64
@@ -201,9 +201,8 @@ contains
     integer :: m, k, coarsest
 
     met = .false.
-    do while (maxval(law%depth)*fineness%depth > depth_share*used_share*asked .and. fineness%depth > least_depth)
-      fineness%depth = fineness%depth/2
-    end do
+    if (maxval(law%depth) > depth_share*used_share*asked) &
+      fineness%depth = max(depth_share*used_share*asked/maxval(law%depth), least_depth)
     least = huge(least)
     trial = fineness
     coarsest = 1
@@ -232,7 +231,8 @@ contains
   end subroutine choose_fineness
 
   !> Seconds and steps of a run, from the pilots. Steps that finer meshes ask for are added to those of shorter lengths. Seconds of
-  !> a step are those of the finest pilot by tasks, times what iterations a step grow from mesh to mesh, and fall with its length.
+  !> a step are those of the finest pilot by tasks, times what iterations a step grow from mesh to mesh and with stiffer contact, and
+  !> fall with its length.
   pure subroutine expected_seconds(pilots, fineness, elements, seconds, steps)
     type(sample_t), intent(in) :: pilots(:)   !! (npilot)
     type(fineness_t), intent(in) :: fineness
@@ -240,7 +240,7 @@ contains
     real(wp), intent(out) :: seconds          !! [s]
     integer, intent(out) :: steps
     integer, allocatable :: meshes(:)
-    real(wp) :: by_mesh, by_length, iterations, fewer
+    real(wp) :: by_mesh, by_length, iterations, fewer, stiffer
     integer :: k, n
 
     seconds = 0
@@ -256,15 +256,18 @@ contains
     end if
     by_length = 1
     fewer = 0
+    stiffer = 0
     associate (first => pilots(meshes(1)), finest => pilots(meshes(n)))
       do k = 1, size(pilots)
+        if (pilots(k)%fineness%depth < 1) stiffer = growth(real(first%iterations, wp), real(pilots(k)%iterations, wp), &
+                                                          1/pilots(k)%fineness%depth, 0.5_wp)
         if (.not. pilots(k)%fineness%steps < 1) cycle
         by_length = growth(real(first%steps, wp), real(pilots(k)%steps, wp), 1/pilots(k)%fineness%steps, 1.2_wp)
         fewer = growth(per_step(pilots(k)), per_step(first), 1/pilots(k)%fineness%steps, 0.5_wp)
       end do
       associate (finer => fineness%mesh/finest%fineness%mesh)
         steps = nint(first%steps*(fineness%steps**(-by_length) - 1) + finest%steps*finer**by_mesh)
-        seconds = finer**iterations*fineness%steps**fewer*steps/finest%steps &
+        seconds = finer**iterations*fineness%steps**fewer*fineness%depth**(-stiffer)*steps/finest%steps &
                   *sum(finest%seconds*(real(elements, wp)/finest%elements)**task_exponents)
       end associate
     end associate
