@@ -11,18 +11,13 @@ module judge_remesh
   use vectors, only: length_of
   implicit none
   private
-  public :: advice_after_refusal, bad_shape, carried_change, energy_change, force_change, force_limit, is_of_contact, limit_lines, &
-            refuse_remesh
+  public :: advice_after_refusal, bad_shape, carried_change, energy_change, force_change, force_limit, limit_lines, refuse_remesh
 
   !> Elements of a smaller scaled Jacobian are distorted (the remesher makes none).
   real(wp), parameter :: bad_shape = 0.2_wp
   !> Pressures that miss the force of a die by more than this share of the largest were lost in the transfer. (Found: 0.27 where
   !> a point in a corner carried much of the force; Newton's method finds the rest.)
   real(wp), parameter :: lost_pressure = 0.5_wp
-
-  !> A residual has at least this share of its square at sides of contact to be one of the contact. (Found: 0.94 to 0.999 where a sharp
-  !> corner of a die bites, 0.2 to 0.3 where contact has no part in it.)
-  real(wp), parameter :: mostly = 0.9_wp
 
   !> Largest limit of the change of a force where the deck gives none, over the default.
   real(wp), parameter :: most_wrong = 2.0_wp
@@ -136,10 +131,10 @@ contains
     if (balance%depth_change > accept%depth_change) then
       what = 'sides lie '//to_text(balance%depth_change, 3)//' times what is allowed from where they carried their pressure, ' &
              //'at most '//to_text(accept%depth_change, 3)
-    else if (balance%first_residual > accept%first_residual .and. .not. is_of_contact(accept, balance)) then
+    else if (balance%first_residual > accept%first_residual) then
       what = 'the first residual is '//to_text(balance%first_residual, 3)//' of the stress, in the norm of energy, at most ' &
              //to_text(accept%first_residual, 3)
-    else if (carried_change(balance) > lost_pressure .and. .not. is_of_contact(accept, balance)) then
+    else if (carried_change(balance) > lost_pressure) then
       what = 'the pressures carried over miss the force of a die by '//percent(carried_change(balance), lost_pressure)
     else if (.not. balance%restored) then
       return   ! the first step finds it, or the mesh is refused on probation
@@ -151,18 +146,6 @@ contains
       what = 'the elastic energy changes by '//percent(energy_change(balance), accept%energy_change)
     end if
   end subroutine find_fault
-
-  !> What was missing came of the contact and was found: the residual away from its sides is within the limit by itself, and Newton's
-  !> method has the balance. Pressures at a corner of a die are not carried but made anew by the sides there, and may be several times
-  !> the old ones while the stresses around are sound; forces and energy in balance then judge the mesh.
-  pure function is_of_contact(accept, balance) result(yes)
-    type(acceptance_t), intent(in) :: accept
-    type(balance_t), intent(in) :: balance
-    logical :: yes
-
-    yes = balance%restored .and. .not. accept%residual_is_given .and. balance%place%at_contact >= mostly &
-          .and. balance%first_residual*sqrt(max(1 - balance%place%at_contact, 0.0_wp)) <= accept%first_residual
-  end function is_of_contact
 
   !> The mesh, where an element is distorted; the contour, where it is not where it carried the pressures;
   !> the transfer of contact, where the pressures do not make the forces of the dies any more; else that of the state.

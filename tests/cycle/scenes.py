@@ -27,6 +27,7 @@ SCENES = {
     "teeth": ("toothed", {"round": (0.3, 0.8), "draft": (10.0, 35.0), "deep": (1.6, 2.2), "mu": (0.0, 0.3), "harden": (5.0, 400.0), "step": STEP}),
     "springback": ("wiper", {"round": (3.0, 9.0), "thick": (0.5, 1.5), "mu": (0.0, 0.15), "harden": (100.0, 3000.0), "step": STEP}),
     "heading": ("punch", {"free": (15.0, 28.0), "edge": (0.2, 2.0), "mu": (0.02, 0.4), "harden": (5.0, 500.0), "step": STEP}),
+    "deformable_punch": ("", {"half": (3.0, 7.0), "edge": (0.5, 2.5), "height": (8.0, 16.0), "mu": (0.0, 0.3), "harden": (5.0, 400.0), "step": STEP}),
     "bimetal": ("upper", {"height": (6.0, 14.0), "core": (3.0, 8.0), "soft": (50.0, 280.0), "hard": (250.0, 600.0), "mu": (0.02, 0.4), "step": STEP}),
 }
 
