@@ -126,9 +126,7 @@ contains
   !> Force on what is met, the opposite of that on the side: traction p n + tau t times length, weight and
   !> thickness. The state of the point goes on from committed to trial.
   !>
-  !> When contact begins inside the step only the share D/(D - d_start) of the way counts as slip, where D is the depth that
-  !> makes the pressure without a multiplier, d + multiplier/AKP: the slip then begins with the pressure, and does not jump where a
-  !> multiplier bears it at d = 0.
+  !> When contact begins inside the step only the share d/(d - d_start) of the way counts as slip.
   pure subroutine act(law, material, dt, drivers, penalty, point, meeting, weight, tangent_wanted, committed, trial, q, dq)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
@@ -143,7 +141,7 @@ contains
     real(wp), intent(inout) :: trial(:)             !! (nstate) [unit of each component]
     real(wp), intent(out) :: q(2)                   !! per radian when axisymmetric [force]
     real(wp), intent(out) :: dq(2, most_unknowns)   !! set where the tangent is wanted and there is contact [force/unknown]
-    real(wp) :: dslip(most_unknowns), t(2), slip, depth, slope, gap, overlap, share, pressure, stress(2), law_tangent(3, 3), area
+    real(wp) :: dslip(most_unknowns), t(2), slip, depth, slope, gap, share, pressure, stress(2), law_tangent(3, 3), area
     real(wp) :: traction(2), dp, dtau
     integer :: status, j
 
@@ -152,10 +150,9 @@ contains
     dslip = meeting%dslip
     depth = meeting%d - meeting%allowed
     gap = meeting%allowed - committed(at_penetration)
-    overlap = depth + committed(at_augmentation)/penalty(1)
-    if (nint(committed(at_status)) == contact_open .and. gap > 0 .and. overlap > 0) then
-      share = overlap/(overlap + gap)
-      dslip = share*dslip + slip*gap/(overlap + gap)**2*meeting%dd
+    if (nint(committed(at_status)) == contact_open .and. gap > 0 .and. depth > 0) then
+      share = depth/(depth + gap)
+      dslip = share*dslip + slip*gap/(depth + gap)**2*meeting%dd
       slip = share*slip
     end if
 
