@@ -3,9 +3,9 @@
 !>
 !> PL8TM releases it as -phi_i SHARE (w - w_n)/dt dv0 and knows the work w at the points, not how that depends on the motion.
 !> PL8LS does: where all fields are solved for together it adds -phi_i SHARE dw/dt dv0 to the rows of the temperature, with dw along
-!> h = d(du)/dx(n+1) and the temperature at the points. Latent heat r by the mean and von Mises' stress is released as -phi_i r/dt dv0:
-!> there dr = sum dr/dm dm/d sigma d sigma (driver_slopes). Left out are the volume ratio of bodies that have had a new mesh, the
-!> sharing of the change of volume by the option MEAN, and the section's own motion in generalised plane strain.
+!> h = d(du)/dx(n+1) and the temperature at the points. Latent heat r by the mean and von Mises' stress is released as
+!> -phi_i r/dt dv0: there dr = sum dr/dm dm/d sigma d sigma (driver_slopes). Left out are the volume ratio of bodies that have had a
+!> new mesh, the sharing of the change of volume by the option MEAN, and the section's own motion in generalised plane strain.
 module plastic_heat
   use elem_api, only: instant_t, layout_t, mode_advance
   use elem_pl8tm, only: functions_of, functions_t
