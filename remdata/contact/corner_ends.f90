@@ -1,8 +1,8 @@
 !> Ends of contact beside a corner of the part that a corner of a die has pressed into it.
 !>
 !> Where matter flows around a sharp corner of a die, the part has a re-entrant corner there, and contact ends a fraction of a side
-!> before it: the last side cannot follow both faces. No mesh resolves the rest; and the corner is where the new mesh needs its node,
-!> for a side across it would have the die's corner inside. So contact ends in the part's corner.
+!> before it: the last side cannot follow both faces. No mesh resolves the rest; and the corner is where the new mesh needs its
+!> node, for a side across it would have the die's corner inside. So contact ends in the part's corner.
 module corner_ends
   use boundary_curves, only: boundary_curve_t, boundary_of_loop, joint_after, turn_at
   use boundary_sides, only: loop_t

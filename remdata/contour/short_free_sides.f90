@@ -17,8 +17,8 @@ module short_free_sides
 contains
 
   !> Drop all runs of free arcs, shorter than `least`, from an end of contact to a corner that only bends: where another set of
-  !> sides, a support or a die begins the corner stays. The arcs of contacts are renumbered. Behind a corner that was dropped another
-  !> may follow as near, where a die's corner has crumpled the contour: until none does.
+  !> sides, a support or a die begins the corner stays. The arcs of contacts are renumbered. Behind a corner that was dropped
+  !> another may follow as near, where a die's corner has crumpled the contour: until none does.
   pure subroutine drop_short_sides(least, tags, contacts, boundary)
     real(wp), intent(in) :: least   !! [length]
     type(side_tags_t), intent(in) :: tags

@@ -76,8 +76,8 @@ contains
     call keep_needs(limits, all, needs)
   end subroutine needs_of_boundary
 
-  !> Size requirements of the curvature of a die, and of its sharp corners that point to the part, where matter turns on the spot: the
-  !> smallest size there. They apply where a contour is near, since sizes grow with distance.
+  !> Size requirements of the curvature of a die, and of its sharp corners that point to the part, where matter turns on the spot:
+  !> the smallest size there. They apply where a contour is near, since sizes grow with distance.
   pure subroutine needs_of_die(pieces, closed, settings, limits, needs)
     type(arc_t), intent(in) :: pieces(:)   !! (npiece) in the present position of the die
     logical, intent(in) :: closed          !! the last piece ends where the first one begins

@@ -297,8 +297,9 @@ contains
   !> ends too.
   !>
   !> Sides of a bent mesh make slight corners, and the normal jumps there within a motion smaller than any iteration's: points
-  !> at a corner would change sides without end. Likewise points at the open end of the curve, where two bodies are flush: round-off
-  !> would decide whether they are on it, also those whose multiplier bears a pressure at a gap. True corners are left to the search.
+  !> at a corner would change sides without end. Likewise points at the open end of the curve, where two bodies are flush:
+  !> round-off would decide whether they are on it, also those whose multiplier bears a pressure at a gap. True corners are left to
+  !> the search.
   pure subroutine keep_closest_point(die, point, reach, last, middle, nearest, closest)
     type(die_t), intent(in) :: die
     type(contact_point_t), intent(in) :: point
