@@ -6,7 +6,7 @@ module blas
   implicit none
   private
   public :: blas_buffer
-  public :: dgemm, dgemv, dtrsm, dtrsv, keep_blas_to_one_thread, blas_core_name, blas_build
+  public :: dgemm, dgemv, keep_blas_to_one_thread, blas_core_name, blas_build
 
   !> Address space that OpenBLAS asks for, for ever if it is refused, in each thread that calls it first [bytes] (its BUFFER_SIZE,
   !> at most; little of it is used).
@@ -34,25 +34,6 @@ module blas
       real(wp), intent(in) :: x(*)        !! (:) [of any unit]
       real(wp), intent(inout) :: y(*)     !! (:) [of any unit]
     end subroutine dgemv
-
-    !> B := alpha op(A)^-1 B, or from the right, A triangular.
-    subroutine dtrsm(side, uplo, transa, diag, m, n, alpha, a, lda, b, ldb)
-      import :: wp
-      character, intent(in) :: side, uplo, transa, diag
-      integer, intent(in) :: m, n, lda, ldb
-      real(wp), intent(in) :: alpha
-      real(wp), intent(in) :: a(lda, *)      !! (lda, :) [of any unit]
-      real(wp), intent(inout) :: b(ldb, *)   !! (ldb, :) [of any unit]
-    end subroutine dtrsm
-
-    !> x := op(A)^-1 x, A triangular.
-    subroutine dtrsv(uplo, trans, diag, n, a, lda, x, incx)
-      import :: wp
-      character, intent(in) :: uplo, trans, diag
-      integer, intent(in) :: n, lda, incx
-      real(wp), intent(in) :: a(lda, *)   !! (lda, :) [of any unit]
-      real(wp), intent(inout) :: x(*)     !! (:) [of any unit]
-    end subroutine dtrsv
 
     subroutine openblas_set_num_threads(n) bind(c, name='openblas_set_num_threads')
       import :: c_int

@@ -1,15 +1,15 @@
-!> Multifrontal factorisation A = L U without pivoting, by all threads (I.S. Duff, J.K. Reid, ACM Trans. Math. Softw. 9 (1983)
-!> 302-325).
+!> Multifrontal factorisation without pivoting, by all threads (I.S. Duff, J.K. Reid, ACM Trans. Math. Softw. 9 (1983) 302-325). A
+!> front keeps the inverses of its blocks of pivots, what is below them, and the rows U beside them (dense_lu).
 !>
 !> Subtrees are tasks; the last of each front is done by the thread that is there: one that waits would help with the tasks of
 !> its own only, not with theirs. A front sums its nonzeros and the borders of its children in a fixed order and writes only
 !> what is its own, so the bits are the same for any number of threads.
 module multifrontal
-  use blas, only: dgemv, dtrsv, keep_blas_to_one_thread
-  use dense_lu, only: eliminate, eliminate_shared
+  use blas, only: dgemv, keep_blas_to_one_thread
+  use dense_lu, only: block, eliminate, eliminate_shared
   use errors, only: error_t, exit_machine, fail
   use front_layout, only: front_layout_t, lay_out_fronts
-  use kinds, only: wp
+  use kinds, only: i8, wp
   use matrix_pattern, only: matrix_pattern_t
   use text, only: to_text
   implicit none
@@ -95,7 +95,6 @@ contains
     integer, intent(in) :: f
     real(wp), intent(inout) :: factors(layout%factor_length + 1), borders(layout%border_length + 1)
     logical, intent(inout) :: sound(:)
-    real(wp) :: keep
     integer :: k, c, p, n
 
     p = layout%first(f + 1) - layout%first(f)
@@ -104,9 +103,6 @@ contains
     associate (pivot => layout%factor_start(f), row => layout%factor_start(f) + int(p, kind(layout%factor_start))*n, &
                border => layout%border_start(f))
       factors(pivot:pivot + int(p, kind(pivot))*(2*n - p) - 1) = 0
-      ! a front without children gets its border from the elimination alone
-      keep = merge(1, 0, layout%child_first(f + 1) > layout%child_first(f))
-      if (keep > 0) borders(border:border + int(n - p, kind(border))**2 - 1) = 0
       do k = layout%entry(f), layout%entry(f + 1) - 1
         factors(pivot + layout%target(k) - 1) = factors(pivot + layout%target(k) - 1) + values(layout%source(k))
       end do
@@ -114,23 +110,30 @@ contains
         c = layout%child(k)
         sound(f) = sound(f) .and. sound(c)
         if (layout%border(c + 1) == layout%border(c)) cycle
-        call add_border(layout%border(c + 1) - layout%border(c), layout%to_parent(layout%border(c)), &
-                        borders(layout%border_start(c)), p, n, factors(pivot), factors(row), borders(border))
+        call add_to_pivots(layout%border(c + 1) - layout%border(c), layout%to_parent(layout%border(c)), &
+                           borders(layout%border_start(c)), p, n, factors(pivot), factors(row))
       end do
       if (.not. sound(f)) return
       if (layout%shared(f)) then
-        call eliminate_shared(p, n, factors(pivot), factors(row), borders(border), keep, sound(f))
+        call eliminate_shared(p, n, factors(pivot), factors(row), borders(border), sound(f))
       else
-        call eliminate(p, n, factors(pivot), factors(row), borders(border), keep, sound(f))
+        call eliminate(p, n, factors(pivot), factors(row), borders(border), sound(f))
       end if
+      if (n == p) return
+      do k = layout%child_first(f), layout%child_first(f + 1) - 1
+        c = layout%child(k)
+        if (layout%border(c + 1) == layout%border(c)) cycle
+        call add_to_border(layout%border(c + 1) - layout%border(c), layout%to_parent(layout%border(c)), &
+                           borders(layout%border_start(c)), p, n, borders(border))
+      end do
     end associate
   end subroutine decompose_front
 
-  !> Add the border of a child to a front, whose rows `to` it goes to.
-  pure subroutine add_border(m, to, child, p, n, pivot, row, border)
+  !> Add the border of a child to the pivot columns and rows of a front, whose rows `to` it goes to.
+  pure subroutine add_to_pivots(m, to, child, p, n, pivot, row)
     integer, intent(in) :: m, to(m), p, n
     real(wp), intent(in) :: child(m, m)
-    real(wp), intent(inout) :: pivot(n, p), row(p, n - p), border(n - p, n - p)
+    real(wp), intent(inout) :: pivot(n, p), row(p, n - p)
     integer :: i, j, inside
 
     inside = count(to <= p)
@@ -143,11 +146,23 @@ contains
       do i = 1, inside
         row(to(i), to(j) - p) = row(to(i), to(j) - p) + child(i, j)
       end do
+    end do
+  end subroutine add_to_pivots
+
+  !> Add the rest of the border of a child to the border of the front, which the elimination has begun.
+  pure subroutine add_to_border(m, to, child, p, n, border)
+    integer, intent(in) :: m, to(m), p, n
+    real(wp), intent(in) :: child(m, m)
+    real(wp), intent(inout) :: border(n - p, n - p)
+    integer :: i, j, inside
+
+    inside = count(to <= p)
+    do j = inside + 1, m
       do i = inside + 1, m
         border(to(i) - p, to(j) - p) = border(to(i) - p, to(j) - p) + child(i, j)
       end do
     end do
-  end subroutine add_border
+  end subroutine add_to_border
 
   !> x := A^-1 x.
   subroutine substitute(solver, x)
@@ -194,8 +209,9 @@ contains
     integer, intent(in) :: f
     real(wp), intent(in) :: factors(layout%factor_length + 1)
     real(wp), intent(inout) :: y(:), sent(:)
-    real(wp) :: z(layout%max_order)
-    integer :: k, c, i, p, n
+    real(wp) :: z(layout%max_order), before(block)
+    integer(i8) :: at
+    integer :: k, c, i, p, n, w
 
     p = layout%first(f + 1) - layout%first(f)
     n = layout%order(f)
@@ -207,10 +223,13 @@ contains
         z(layout%to_parent(i)) = z(layout%to_parent(i)) + sent(i)
       end do
     end do
-    associate (pivot => layout%factor_start(f))
-      call dtrsv('L', 'N', 'U', p, factors(pivot), n, z, 1)
-      if (n > p) call dgemv('N', n - p, p, -1.0_wp, factors(pivot + p), n, z, 1, 1.0_wp, z(p + 1), 1)
-    end associate
+    do k = 1, p, block
+      w = min(block, p - k + 1)
+      before(:w) = z(k:k + w - 1)
+      at = layout%factor_start(f) + (k - 1) + int(k - 1, i8)*n
+      call dgemv('N', w, w, 1.0_wp, factors(at), n, before, 1, 0.0_wp, z(k), 1)
+      if (k + w <= n) call dgemv('N', n - k - w + 1, w, -1.0_wp, factors(at + w), n, z(k), 1, 1.0_wp, z(k + w), 1)
+    end do
     y(layout%first(f):layout%first(f + 1) - 1) = z(:p)
     sent(layout%border(f):layout%border(f + 1) - 1) = z(p + 1:n)
   end subroutine forward
@@ -245,16 +264,20 @@ contains
     real(wp), intent(in) :: factors(layout%factor_length + 1)
     real(wp), intent(inout) :: y(:)
     real(wp) :: z(layout%max_order)
-    integer :: p, n
+    integer(i8) :: at
+    integer :: p, n, k
 
     p = layout%first(f + 1) - layout%first(f)
     n = layout%order(f)
     z(:p) = y(layout%first(f):layout%first(f + 1) - 1)
     z(p + 1:n) = y(layout%index(layout%border(f):layout%border(f + 1) - 1))
-    associate (pivot => layout%factor_start(f), row => layout%factor_start(f) + int(p, kind(layout%factor_start))*n)
-      if (n > p) call dgemv('N', p, n - p, -1.0_wp, factors(row), p, z(p + 1), 1, 1.0_wp, z, 1)
-      call dtrsv('U', 'N', 'N', p, factors(pivot), n, z, 1)
-    end associate
+    at = layout%factor_start(f) + int(p, i8)*n
+    if (n > p) call dgemv('N', p, n - p, -1.0_wp, factors(at), p, z(p + 1), 1, 1.0_wp, z, 1)
+    do k = 1 + block*((p - 1)/block) - block, 1, -block
+      ! rows of a block, by the pivots of those after it
+      at = layout%factor_start(f) + (k - 1) + int(k + block - 1, i8)*n
+      call dgemv('N', block, p - k - block + 1, -1.0_wp, factors(at), n, z(k + block), 1, 1.0_wp, z(k), 1)
+    end do
     y(layout%first(f):layout%first(f + 1) - 1) = z(:p)
   end subroutine backward
 
