@@ -16,8 +16,8 @@ module accuracy_laws
   public :: asked_for, choose_fineness, difference, errors_of, expected_error, expected_seconds, measure_laws
 
   !> Orders in space that are believed: of the stress what a crack leaves at least; of forces, work and motions twice that
-  !> (J. Nitsche, Abh. Math. Sem. Hamburg 36 (1971) 9-15); and the order of the stress where it is smooth. Without a third mesh that of smooth
-  !> scenes, or that of scenes with contact, flow or phases.
+  !> (J. Nitsche, Abh. Math. Sem. Hamburg 36 (1971) 9-15); and the order of the stress where it is smooth. Without a third mesh
+  !> that of smooth scenes, or that of scenes with contact, flow or phases.
   real(wp), parameter :: least_of_stress = 0.5_wp, least_order = 2*least_of_stress, largest_order = 2.0_wp, &
                          smooth_order = 2.0_wp, rough_order = 1.0_wp
   !> Differences below this share of the range are round-off.
@@ -231,8 +231,8 @@ contains
   end subroutine choose_fineness
 
   !> Seconds and steps of a run, from the pilots. Steps that finer meshes ask for are added to those of shorter lengths. Seconds of
-  !> a step are those of the finest pilot by tasks, times what iterations a step grow from mesh to mesh and with stiffer contact, and
-  !> fall with its length.
+  !> a step are those of the finest pilot by tasks, times what iterations a step grow from mesh to mesh and with stiffer contact,
+  !> and fall with its length.
   pure subroutine expected_seconds(pilots, fineness, elements, seconds, steps)
     type(sample_t), intent(in) :: pilots(:)   !! (npilot)
     type(fineness_t), intent(in) :: fineness
