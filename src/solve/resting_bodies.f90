@@ -8,7 +8,7 @@
 !> and in Y (axisymmetric ones in Y) have no such motion, and are not looked at.
 module resting_bodies
   use bodies, only: bodies_of_nodes
-  use contact_point, only: at_piece, at_status
+  use contact_point, only: at_piece, at_status, contact_block
   use dofs, only: dofs_t
   use fields, only: displacement_field
   use kinds, only: wp
@@ -17,6 +17,7 @@ module resting_bodies
   use matrix_pattern, only: matrix_pattern_t
   use scene, only: axisymmetric, group_t, is_solid, role_contact, role_side_load, role_volume_load, scene_t
   use solution, only: solution_t
+  use state_variables, only: find_variable
   implicit none
   private
   public :: find_loose_bodies, leave_at_rest, hold_resting, hold_loose, motion_of_loose
@@ -170,7 +171,7 @@ contains
     end do
   end subroutine enlarge
 
-  !> Bodies with a point in contact, on either side, at the start of the step or in its trial state.
+  !> Bodies with a point, or a place between points, in contact, on either side, at the start of the step or in its trial state.
   subroutine mark_contacts(scene, solution, trial, loose, acted_on)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -193,11 +194,14 @@ contains
     subroutine mark(group, state)
       type(group_t), intent(in) :: group
       real(wp), intent(in) :: state(:, :, :)
-      integer :: e, p
+      integer :: e, p, n
+      logical :: corners
 
+      corners = find_variable(group%variables, 'corner_place') > 0
+      n = merge(contact_block(corners, size(state, 1)), 0, corners)
       do e = 1, size(state, 3)
         do p = 1, size(state, 2)
-          if (nint(state(at_status, p, e)) == contact_open) cycle
+          if (nint(state(at_status, p, e)) == contact_open .and. nint(state(n + at_status, p, e)) == contact_open) cycle
           acted_on(loose(group%connectivity(1, e))) = .true.
           if (group%pairs > 0) acted_on(loose(scene%dies(group%die)%nodes(1, nint(state(at_piece, p, e))))) = .true.
         end do
