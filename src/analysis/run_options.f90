@@ -134,7 +134,7 @@ contains
     character(len=*), parameter :: nl = new_line('a')
 
     text = 'lagamine: metal forming and heat treatment in two dimensions'//nl//nl// &
-           'lagamine DECK [--out DIR] [--check|--forecast] [--resume CHECKPOINT] [-p NAME=VALUE]... [--threads N]'//nl// &
+           'lagamine DECK [--out DIR] [--check|--forecast] [--resume CHECKPOINT] [-p NAME=VALUE]...'//nl// &
            '         [--progress|--quiet]'//nl// &
            'lagamine --point DECK [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --met FILE [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &

@@ -103,7 +103,6 @@ def main():
     picture = Picture("effects_price", "what each effect costs", fig, vector=True)
     with open(options.out, "wb") as file:
         file.write(picture.svg())
-    picture.close()
     lines = ["| with | s | iterations | equations | " + " | ".join(shown) + " |", "|" + "---|" * (4 + len(shown))]
     for title, seconds, summary in bars:
         lines.append(f"| {title} | {sum(seconds.values()):.2f} | {summary['iterations']} | {summary['dofs']} | "

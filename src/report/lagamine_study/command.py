@@ -116,7 +116,6 @@ def write_study(options, out: str, ladders: Sequence[Ladder], quantities) -> int
     write(os.path.join(out, "study.csv"), as_csv([row for ladder in ladders for row in rows(ladder, results[ladder.name], quantities, verdicts)]))
     write(os.path.join(out, "study.md"), table)
     write(os.path.join(out, "work_precision.svg"), picture.svg())
-    picture.close()
     if not options.quiet:
         print(table.decode("utf-8"), end="")
     return NOT_AT_END if any(result.code for held in results.values() for result in held) else EXIT_DONE
