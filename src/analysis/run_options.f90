@@ -135,13 +135,13 @@ contains
 
     text = 'lagamine: metal forming and heat treatment in two dimensions'//nl//nl// &
            'lagamine DECK [--out DIR] [--check|--forecast] [--resume CHECKPOINT] [-p NAME=VALUE]...'//nl// &
-           '         [--progress|--quiet]'//nl// &
+           '         [--threads N] [--progress|--quiet]'//nl// &
            'lagamine --point DECK [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --met FILE [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --law [NAME] | --cards | --help | --version'//nl//nl// &
            '  --out DIR       folder of the results (default: the deck''s name); with --check: for DIR/NAME.scene.json'//nl// &
            '  --check         read the deck, print the scene, run nothing'//nl// &
-           '  --forecast      of a deck with ACCURACY: make its pilots, print what the run is expected to be, do not run it'//nl// &
+           '  --forecast      of a deck with ACCURACY: make its pilots, print what the run is expected to be'//nl// &
            '  --resume FILE   go on from a checkpoint of the same deck'//nl// &
            '  -p NAME=VALUE   set a parameter of the deck'//nl// &
            '  --threads N     threads (default: as many as processors are free); the same bits for any number'//nl// &

@@ -1,0 +1,192 @@
+!> What the iterations of a step tell: whether it has converged, whether it goes round in circles, and why to stop.
+module iteration_history
+  use kinds, only: wp
+  use line_search, only: short_share
+  use scene, only: scene_t
+  use text, only: to_text
+  implicit none
+  private
+  public :: iteration_t
+  public :: caught, goes_to_and_fro, has_converged, in_circles, in_turmoil, is_near, judge, was_given_time, went_round
+
+  !> One line of the listing.
+  type :: iteration_t
+    real(wp) :: force_norm = 0.0_wp, displacement_norm = 0.0_wp, line_search = 1.0_wp
+    !> Points opened, closed, stuck or slipped the other way.
+    logical :: contact_changed = .false.
+  end type iteration_t
+
+  !> A residual this many times larger than the first one, after `patience` iterations, counts as divergence.
+  real(wp), parameter :: hopeless = 1.0e3_wp
+  integer, parameter :: patience = 6
+  !> The residual stagnates when the best of the last `patience` - 1 iterations is above this share of the best before, and
+  !> none of them was under way.
+  real(wp), parameter :: stagnant = 0.3_wp
+  !> Corrections that follow the heat content go round in circles when the residual is above this share of the best so far.
+  real(wp), parameter :: circling = 0.9_wp
+  !> Beyond the largest number of iterations the residual falls on when the best of the last `patience` is below this share of the
+  !> best before.
+  real(wp), parameter :: falling = 0.7_wp
+  !> Residuals of one state that comes again differ by this share at most.
+  real(wp), parameter :: same_state = 2.0e-3_wp
+  !> So many more iterations are made for the balance of heat.
+  integer, parameter :: for_balance = 2
+  !> Heat through contact is linearised along the motion where the residual is below this (contact_heat_tangent).
+  real(wp), parameter :: near_force = 1.0e-2_wp
+  !> After so many short searches one after the other the whole correction is taken.
+  integer, parameter :: short_searches = 2
+
+contains
+
+  !> Both norms are met. A motion that starts in equilibrium needs no correction; one that an earlier turn has found gets one, if
+  !> its residual is more than round-off: the last of all turns would else always leave just less than the norm, and with the same
+  !> sign (2.4e-8 of the heat that passed in decks/hot_upsetting).
+  pure function has_converged(scene, history, again) result(converged)
+    type(scene_t), intent(in) :: scene
+    type(iteration_t), intent(in) :: history(:)
+    logical, intent(in) :: again   !! begun where an earlier turn ended
+    logical :: converged
+    real(wp) :: to_come
+    integer :: n
+
+    n = size(history)
+    converged = history(n)%force_norm <= scene%strategy%force_norm
+    if (converged .and. again .and. n == 1) converged = .not. history(n)%force_norm > 0
+    if (.not. converged .or. n == 1) return
+    to_come = history(n)%displacement_norm
+    if (history(n - 1)%force_norm > 0) to_come = to_come*min(1.0_wp, history(n)%force_norm/history(n - 1)%force_norm)
+    converged = to_come <= scene%strategy%displacement_norm
+  end function has_converged
+
+  !> Residuals have been within their norm for some iterations, or are round-off: heat does not get nearer to its balance.
+  pure function was_given_time(scene, history) result(was)
+    type(scene_t), intent(in) :: scene
+    type(iteration_t), intent(in) :: history(:)
+    logical :: was
+    integer :: n
+
+    n = size(history)
+    was = .not. history(n)%force_norm > 0
+    if (n > for_balance) was = was .or. all(history(n - for_balance:)%force_norm <= scene%strategy%force_norm)
+  end function was_given_time
+
+  !> Near the solution: the residual has fallen below a small share of the forces, and the set of points in contact is settled.
+  pure function is_near(history)
+    type(iteration_t), intent(in) :: history(:)
+    logical :: is_near
+
+    associate (last => history(size(history)))
+      is_near = last%force_norm < near_force .and. .not. last%contact_changed
+    end associate
+  end function is_near
+
+  !> The last searches were all short: they do not get past a turn of loading to unloading. One that went back is not short.
+  pure function caught(history)
+    type(iteration_t), intent(in) :: history(:)
+    logical :: caught
+
+    caught = size(history) > short_searches
+    if (caught) caught = all(abs(history(size(history) - short_searches + 1:)%line_search) < short_share)
+    if (caught) caught = .not. went_round(history)
+  end function caught
+
+  !> The whole correction was taken after short searches before, and the short searches since came back to no less: to take it again
+  !> would go round in circles.
+  pure function went_round(history)
+    type(iteration_t), intent(in) :: history(:)
+    logical :: went_round
+    integer :: n, whole
+
+    n = size(history)
+    whole = n - short_searches
+    went_round = whole > short_searches + 1
+    if (.not. went_round) return
+    went_round = history(whole)%line_search >= 1 &
+                 .and. all(abs(history(whole - short_searches:whole - 1)%line_search) < short_share) &
+                 .and. history(n)%force_norm > circling*history(whole - 1)%force_norm
+  end function went_round
+
+  !> Contact keeps changing and the residual does not fall: it stagnates over the last two iterations.
+  pure function in_turmoil(history)
+    type(iteration_t), intent(in) :: history(:)
+    logical :: in_turmoil
+    integer :: n
+
+    n = size(history)
+    in_turmoil = n > 3
+    if (.not. in_turmoil) return
+    in_turmoil = all(history(n - 1:)%contact_changed) &
+                 .and. minval(history(n - 1:)%force_norm) > stagnant*minval(history(2:n - 2)%force_norm)
+  end function in_turmoil
+
+  !> Corrections that follow the heat content go round in circles: the residual is hardly below the best so far.
+  pure function in_circles(history)
+    type(iteration_t), intent(in) :: history(:)
+    logical :: in_circles
+    integer :: n
+
+    n = size(history)
+    in_circles = n > 3
+    if (in_circles) in_circles = history(n)%force_norm > circling*minval(history(2:n - 1)%force_norm)
+  end function in_circles
+
+  !> Contact changed, or the search went back: the residual need not fall.
+  elemental function is_under_way(line)
+    type(iteration_t), intent(in) :: line
+    logical :: is_under_way
+
+    is_under_way = line%contact_changed .or. line%line_search < 0
+  end function is_under_way
+
+  !> Contact still changes and the residual falls with it: a thin sheet between dies opens and closes point by point, whatever the
+  !> length of the step.
+  pure function falls_on(history)
+    type(iteration_t), intent(in) :: history(:)
+    logical :: falls_on
+    integer :: n
+
+    n = size(history)
+    falls_on = n > 2*patience
+    if (falls_on) falls_on = any(history(n - patience + 1:)%contact_changed) &
+                             .and. minval(history(n - patience + 1:)%force_norm) &
+                             < falling*minval(history(2:n - patience)%force_norm)
+  end function falls_on
+
+  !> Contact changes to and fro between two states, and whole corrections lead from each to the other.
+  pure function goes_to_and_fro(history)
+    type(iteration_t), intent(in) :: history(:)
+    logical :: goes_to_and_fro
+    integer :: n
+
+    n = size(history)
+    goes_to_and_fro = n > 5
+    if (goes_to_and_fro) goes_to_and_fro = all(history(n - 3:)%contact_changed) &
+                                           .and. all(abs(history(n - 2:n)%force_norm - history(n - 4:n - 2)%force_norm) &
+                                                     <= same_state*history(n - 2:n)%force_norm)
+  end function goes_to_and_fro
+
+  !> Reason to stop the iterations, if there is one.
+  pure subroutine judge(scene, history, reason)
+    type(scene_t), intent(in) :: scene
+    type(iteration_t), intent(in) :: history(:)
+    character(len=:), allocatable, intent(out) :: reason
+    integer :: n
+
+    n = size(history) - 1
+    associate (norms => history%force_norm)
+      if (.not. norms(n + 1) <= huge(1.0_wp)) then
+        reason = 'not a number in the forces'
+      else if (n >= scene%strategy%max_iterations .and. .not. falls_on(history)) then
+        reason = to_text(n)//' iterations without convergence (residual '//to_text(norms(n + 1), 3)//')'
+      else if (n > patience .and. norms(n + 1) > hopeless*norms(min(2, n + 1))) then
+        reason = 'diverged: residual '//to_text(norms(n + 1), 3)
+      else if (n >= patience) then
+        if (minval(norms(n - patience + 3:)) > stagnant*minval(norms(2:n - patience + 2)) &
+            .and. .not. any(is_under_way(history(n - patience + 3:)))) then
+          reason = 'residual stagnates at '//to_text(norms(n + 1), 3)
+        end if
+      end if
+    end associate
+  end subroutine judge
+
+end module iteration_history
