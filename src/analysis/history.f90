@@ -88,7 +88,7 @@ contains
     type(string_t), allocatable :: flows(:)
     integer :: k, n
 
-    flows = heat_flow_names(scene)
+    allocate (flows, source=heat_flow_names(scene))
     allocate (columns(14 + merge(1, 0, scene%operation > 0) + merge(1, 0, scene%load_factor%multiplier > 0) &
                       + 6*size(scene%dies) - 3*count(is_deformable(scene%dies)) &
                       + merge(6, 0, scene%plane_state == generalised_plane_strain) &
