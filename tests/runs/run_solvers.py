@@ -4,7 +4,8 @@
 usage: run_solvers.py [-v] [-k]       -v prints every check and the differences, -k keeps the results
 
 A deck takes the same steps and its history agrees to 1e-8 of the largest number of each column: solutions of the linear systems differ
-in round-off alone, and Newton's method ends within its norms, which are a hundredth of the defaults here.
+in round-off alone, and Newton's method ends within its norms, which are a ten thousandth of the defaults here. With norms of a hundredth it
+takes as many iterations, but for one.
 """
 import os
 import re
@@ -16,7 +17,9 @@ from support import (DONE, SIGNAL, SOURCE, Checks, add_cards, deck_text, history
                      start, stop_after, summary, with_h5py, write)
 
 AGREE = 1.0e-8
-NORMS = "NORMS  FORCE 1.E-8 DISPL 1.E-7"
+# Norms with which iterations are counted, and with which histories are compared: points at the limit of friction multiply what Newton's
+# method leaves.
+COUNTED, COMPARED = "NORMS  FORCE 1.E-8 DISPL 1.E-7", "NORMS  FORCE 1.E-10 DISPL 1.E-9"
 OTHERS = ("MUMPS",)
 DECKS = {"upsetting": ("upsetting/upsetting.lag", mesh(4, 6)), "press fit": ("press_fit/press_fit.lag", []),
          "thick cylinder": ("thick_cylinder/thick_cylinder.lag", []), "cook": ("cook/cook.lag", []), "hertz": ("hertz/hertz.lag", [])}
@@ -41,25 +44,34 @@ def difference(one, two, allowed):
     return worst
 
 
-def compare(checks, name, deck, options, solver):
-    """One deck with the default and with another solver."""
+def run_both(checks, name, deck, options, solver, norms):
+    """Folders of one deck with the default and with another solver; none where a run fails."""
     text = deck_text(os.path.join(SOURCE, "decks", deck))
-    folders = {}
-    for label, cards in (("default", NORMS), (solver, f"{NORMS}\nSOLVR  {solver}")):
+    folders = []
+    for label, cards in (("default", norms), (solver, f"{norms}\nSOLVR  {solver}")):
         path = write(checks.path(name.replace(" ", "_"), label, "deck.lag"), add_cards(text, cards))
-        folders[label] = os.path.join(os.path.dirname(path), "out")
-        result = run([path, "--threads", "1", "--quiet", "--out", folders[label]] + options)
+        folders.append(os.path.join(os.path.dirname(path), f"out{norms.split()[2]}"))
+        result = run([path, "--threads", "1", "--quiet", "--out", folders[-1]] + options)
         if not checks.that(result.returncode == DONE, f"{name}, {label}: runs", said(result)):
-            return
-    reported = [summary(folders[label])["linear_solver"] for label in folders]
+            return []
+    reported = [summary(folder)["linear_solver"] for folder in folders]
     checks.that(reported == ["FRONT", solver], f"{name}, {solver}: summary.json states the solver", reported)
-    one, two = (history(folders[label]) for label in folders)
     # lengths of steps follow strains, and have their round-off
-    if checks.that(len(one["time"]) == len(two["time"]), f"{name}, {solver}: the same steps", (len(one["time"]), len(two["time"]))):
-        iterations = abs(sum(one["iterations"]) - sum(two["iterations"]))
-        checks.that(iterations <= 1, f"{name}, {solver}: the same number of iterations", iterations)
-        depths = summary(folders["default"])["checks"]
+    steps = [len(history(folder)["time"]) for folder in folders]
+    return folders if checks.that(steps[0] == steps[1], f"{name}, {solver}: the same steps", steps) else []
+
+
+def compare(checks, name, deck, options, solver):
+    """One deck with the default and with another solver: iterations, and the history."""
+    counted = run_both(checks, name, deck, options, solver, COUNTED)
+    if counted:
+        iterations = [sum(history(folder)["iterations"]) for folder in counted]
+        checks.that(abs(iterations[0] - iterations[1]) <= 1, f"{name}, {solver}: the same number of iterations", iterations)
+    compared = run_both(checks, name, deck, options, solver, COMPARED)
+    if compared:
+        depths = summary(compared[0])["checks"]
         share = depths.get("max_penetration_over_allowed", 0.0)
+        one, two = (history(folder) for folder in compared)
         worst = difference(one, two, depths["max_penetration"]/share if share > 0 else 0.0)
         checks.that(worst[0] <= AGREE, f"{name}, {solver}: the same history", worst)
         if checks.verbose:
