@@ -21,6 +21,7 @@ module gap_work
   use shape_functions, only: line3
   use solution, only: solution_t
   use state_variables, only: find_variable
+  use vectors, only: length_of
   implicit none
   private
   public :: work_across_gaps
@@ -100,7 +101,7 @@ contains
       associate (group => scene%groups(g), side_of => x(:, :3, e))
         call line3(place, phi, dphi)
         tangent = matmul(side_of, dphi)
-        tangent = tangent/norm2(tangent)
+        tangent = tangent/length_of(tangent)
         ! walking along the side the part is on the left: the inner normal of the die is on the right, its tangent goes the same way
         traction = old(at_pressure)*[tangent(2), -tangent(1)] + old(at_tau)*tangent
         side = side_length(scene, group%connectivity(:, e))
