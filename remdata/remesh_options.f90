@@ -3,6 +3,7 @@ module remesh_options
   use arguments, only: argument, refuse_option, value_of
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
+  use remesher_options, only: by_free, by_gmsh, by_zones
   use text, only: string_t
   implicit none
   private
@@ -13,6 +14,8 @@ module remesh_options
     character(len=:), allocatable :: checkpoint, out
     !> Method of state transfer in place of the deck's (-1: the deck's).
     integer :: transfer = -1
+    !> Mesher in place of the deck's (-1: the deck's).
+    integer :: mesher = -1
     !> The requested sizes are divided by this factor.
     real(wp) :: finer = 1.0_wp
     !> The requested sizes are those of the old elements.
@@ -63,6 +66,19 @@ contains
         read (word, *, iostat=status) options%finer
         if (status /= 0 .or. .not. options%finer > 0) &
           call fail(error, exit_input, '--finer: expected a number above 0, found '''//word//'''')
+      case ('--mesher')
+        call value_of('--mesher', k, word, error)
+        if (allocated(error)) exit
+        select case (word)
+        case ('zones')
+          options%mesher = by_zones
+        case ('free')
+          options%mesher = by_free
+        case ('gmsh')
+          options%mesher = by_gmsh
+        case default
+          call fail(error, exit_input, '--mesher: expected zones, free or gmsh, found '''//word//'''')
+        end select
       case ('--same-sizes')
         options%same_sizes = .true.
       case ('--limit')
@@ -74,8 +90,8 @@ contains
       case default
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
           call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--quiet'), string_t('--out'), &
-                                    string_t('--transfer'), string_t('--finer'), string_t('--same-sizes'), string_t('--limit'), &
-                                    string_t('--about'), string_t('--schema')], 'remdata', error)
+                                    string_t('--transfer'), string_t('--finer'), string_t('--mesher'), string_t('--same-sizes'), &
+                                    string_t('--limit'), string_t('--about'), string_t('--schema')], 'remdata', error)
         else if (allocated(options%checkpoint)) then
           call fail(error, exit_input, 'one checkpoint at a time: found '''//options%checkpoint//''' and '''//word//'''')
         else
@@ -101,7 +117,7 @@ contains
     character(len=*), parameter :: nl = new_line('a')
 
     text = 'remdata: a new mesh and the state on it, from a checkpoint of lagamine'//nl//nl// &
-           'remdata CHECKPOINT --out NEW [--transfer N] [--finer F] [--same-sizes] [--limit SECONDS] [--quiet]'//nl// &
+           'remdata CHECKPOINT --out NEW [--transfer N] [--finer F] [--mesher M] [--same-sizes] [--limit SECONDS] [--quiet]'//nl// &
            'remdata --about CHECKPOINT'//nl// &
            'remdata --schema'//nl// &
            'remdata --next DIR/NAME [--tries N] [--fresh] [--ran WHAT --code N --said FILE [--from NAME] [--late S]]'//nl// &
@@ -109,6 +125,7 @@ contains
            '  --out NEW       checkpoint of the new mesh, for lagamine --resume; facts in NEW.json'//nl// &
            '  --transfer N    state transfer: 0 inverse distance, 1 moving least squares, 2 patches (default: the deck''s)'//nl// &
            '  --finer F       divide the wanted sizes of elements by F'//nl// &
+           '  --mesher M      zones, free or gmsh (default: MESHER of the deck); free and gmsh do without its zones'//nl// &
            '  --same-sizes    elements of the size of the old ones in each place, not as the error and the shape want them'//nl// &
            '  --limit SECONDS longest time for Gmsh, where it makes the mesh (default 300)'//nl// &
            '  --about         check the file and print what it holds, a word and its value a line'//nl// &

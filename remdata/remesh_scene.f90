@@ -75,6 +75,7 @@ contains
     type(new_mesh_t) :: mesh
     character(len=:), allocatable :: deck_path, deck_text
     real(wp), allocatable :: moved(:, :)
+    type(remesher_options_t) :: as_the_deck_says
     logical :: first
 
     facts%mesher = 'zones'
@@ -82,7 +83,8 @@ contains
     call read_all(options%checkpoint, deck_path, deck_text, old, before, ends, error)
     if (allocated(error)) return
     first = lacks_mesh(old)
-    call apply_options(options, old)
+    as_the_deck_says = old%remesher
+    call apply_options(options, old%remesher)
     call reset_to_start(old, before, moved)
     facts%step = before%step
     facts%time = before%time
@@ -127,6 +129,7 @@ contains
       if (allocated(error)) return
     end if
     call begin_task(facts, 'checkpoint', 'write')
+    new%remesher = as_the_deck_says
     call write_checkpoint(options%out, deck_path, deck_text, new, after, [contact_end_t ::], error)
     call end_task(facts)
     facts%old_elements = count_elements(old)
@@ -191,12 +194,13 @@ contains
     call update_closest_points(new, after)
   end subroutine carry_state
 
-  !> Command line options that replace those of the deck.
-  subroutine apply_options(options, scene)
+  !> Command line options that replace those of the deck, for this mesh.
+  subroutine apply_options(options, remesher)
     type(remesh_options_t), intent(in) :: options
-    type(scene_t), intent(inout) :: scene
+    type(remesher_options_t), intent(inout) :: remesher
 
-    if (options%transfer >= 0) scene%remesher%transfer = options%transfer
+    if (options%transfer >= 0) remesher%transfer = options%transfer
+    if (options%mesher >= 0) remesher%mesher = options%mesher
   end subroutine apply_options
 
   pure function count_elements(scene) result(n)

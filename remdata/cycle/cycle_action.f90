@@ -23,6 +23,8 @@ module cycle_action
     !> In place of the deck's: method of transfer (negative: the deck's), divisor of sizes (0: none).
     integer :: transfer = -1
     real(wp) :: finer = 0.0_wp
+    !> The free mesher, whatever zones the deck has.
+    logical :: without_zones = .false.
     !> For the user; '' for nothing.
     character(len=:), allocatable :: say
     !> Of a try: the way it was made; of a refused one also its result, the responsible stage, and the reason.

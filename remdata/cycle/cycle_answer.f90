@@ -6,6 +6,7 @@
 !>     new NAME            file for the new mesh, the same way
 !>     transfer N          options of the remesher
 !>     finer F
+!>     mesher free
 !>     do WORD             start, check, resume, remesh or end: comes last
 module cycle_answer
   use cycle_action, only: act_check, act_end, act_refuse, act_remesh, act_resume, act_start, action_t, is_inner
@@ -68,6 +69,7 @@ contains
     if (action%new /= '') call print_word('new', action%new, error)
     if (action%transfer >= 0) call print_word('transfer', to_text(action%transfer), error)
     if (action%finer > 0) call print_word('finer', to_text(action%finer), error)
+    if (action%without_zones) call print_word('mesher', 'free', error)
     select case (action%kind)
     case (act_start)
       call print_word('do', 'start', error)

@@ -8,7 +8,7 @@ module cycle_decision
   use cycle_refusal, only: refuse_first_steps, refuse_made, refuse_restart
   use cycle_situation, only: current_name, due_reason, ended_check, ended_lagamine, ended_nothing, ended_remdata, is_due, &
     is_first_mesh, is_read, mesh_name, situation_t, try_name
-  use cycle_table, only: way_coarser, way_earlier, way_finer, way_old_mesh, way_transfer
+  use cycle_table, only: way_coarser, way_earlier, way_finer, way_mesher, way_old_mesh, way_transfer
   use cycle_ways, only: is_whole, next_way, old_mesh_goes_on, old_state
   use errors, only: exit_done, exit_input, exit_machine, exit_no_convergence, exit_remesh, exit_signal
   use kinds, only: wp
@@ -147,6 +147,7 @@ contains
       if (way == way_transfer) &
         action%transfer = mod(s%new%old_end%facts%transfer + other_transfer, transfer_methods)
       if (way == way_finer) action%finer = finer_by
+      action%without_zones = way == way_mesher
       if (way == way_coarser) action%finer = 1/coarser_by
       if (way == way_earlier) action%from = mesh_name(s%new%generation - 1, 'end.1.h5')
     end if

@@ -7,13 +7,15 @@ module cycle_table
   implicit none
   private
   public :: try_row_t, table_heading, number_of_columns, parse_table, line_of_cells
-  public :: way_deck, way_transfer, way_finer, way_coarser, way_earlier, way_old_mesh
-  public :: first_step_of, number_refused, was_refused, has_new_mesh, keeps_old_mesh, transfer_is_responsible, took_earlier
+  public :: way_deck, way_transfer, way_finer, way_mesher, way_coarser, way_earlier, way_old_mesh
+  public :: first_step_of, number_refused, was_refused, has_new_mesh, keeps_old_mesh, transfer_is_responsible, &
+            mesh_is_responsible, took_earlier
 
   !> What is done for a new mesh, as the column `action` names it: as the deck says, another state transfer, finer or coarser
-  !> elements, from the checkpoint one save earlier; or the old mesh goes on for a while.
+  !> elements, the free mesher instead of the deck's zones, from the checkpoint one save earlier; or the old mesh goes on.
   character(len=*), parameter :: way_deck = 'as the deck says', way_transfer = 'other transfer', way_finer = 'finer', &
-                                 way_coarser = 'coarser', way_earlier = 'earlier', way_old_mesh = 'old mesh'
+                                 way_mesher = 'without zones', way_coarser = 'coarser', way_earlier = 'earlier', &
+                                 way_old_mesh = 'old mesh'
 
   character(len=*), parameter :: table_heading = &
     'generation [-],try [-],stop_step [-],stop_time [time],step [-],trigger,action,result,accepted,stage,'// &
@@ -203,6 +205,20 @@ contains
       can = can .or. all(rows(k)%stage /= [character(len=10) :: 'contour', 'mesh', 'checkpoint'])
     end do
   end function transfer_is_responsible
+
+  !> Was a try refused at this stop because no good mesh came of it?
+  pure function mesh_is_responsible(rows, generation, stop_step) result(is)
+    type(try_row_t), intent(in) :: rows(:)   !! (ntry)
+    integer, intent(in) :: generation, stop_step
+    logical :: is
+    integer :: k
+
+    is = .false.
+    do k = 1, size(rows)
+      if (rows(k)%generation /= generation .or. rows(k)%stop_step /= stop_step .or. rows(k)%accepted) cycle
+      is = is .or. rows(k)%stage == 'mesh'
+    end do
+  end function mesh_is_responsible
 
   !> Was a mesh made from the save before a stop at this time, or at a later one?
   pure function took_earlier(rows, time) result(took)

@@ -5,6 +5,7 @@ module exchange_facts
   use exchange_schema, only: open_checkpoint
   use kinds, only: wp
   use member_reader, only: member_reader_t
+  use remesher_options, only: as_it_comes, has_zones
   use scene, only: is_solid, scene_t
   use solution, only: solution_t, start_solution
   use text, only: string_t
@@ -23,6 +24,8 @@ module exchange_facts
     integer :: transfer = 0
     !> Steps the mesh is still on probation for, and other ways tried where it is refused.
     integer :: probation = 0, tries = 0
+    !> Cards give zones, and another mesher is not forbidden.
+    logical :: has_zones = .false.
     !> Estimated errors of stress and strain, negative where they were not asked for [-].
     real(wp) :: error_stress = -1.0_wp, error_strain = -1.0_wp
     type(string_t), allocatable :: triggers(:)
@@ -61,6 +64,7 @@ contains
     facts%unbalanced = solution%unbalanced
     facts%transfer = scene%remesher%transfer
     facts%tries = scene%remesher%tries
+    facts%has_zones = has_zones(scene%remesher) .and. scene%remesher%mesher == as_it_comes
     facts%probation = solution%probation%left
     if (scene%remesh%estimate) then
       facts%error_stress = solution%estimate%stress

@@ -25,7 +25,7 @@ from support import (BIN, DONE, INPUT, LONGEST_RUN, MACHINE, NO_CONVERGENCE, SIG
 REMDATA = os.path.join(os.path.abspath(BIN), "remdata")
 LAGAMINE = os.path.join(os.path.abspath(BIN), "lagamine")
 REMESH = 4
-ACTIONS = ["as the deck says", "other transfer", "finer", "earlier", "coarser", "old mesh"]
+ACTIONS = ["as the deck says", "other transfer", "finer", "without zones", "earlier", "coarser", "old mesh"]
 STOPS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 # What is measured in seconds differs from run to run.
 CLOCKS = ("remdata [s]", "restart [s]")

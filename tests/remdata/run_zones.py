@@ -16,7 +16,7 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "runs"))
-from support import BIN, DONE, INPUT, LONGEST_RUN, SOURCE, Checks, add_cards, deck_text, history, run, said, with_h5py, write  # noqa: E402
+from support import BIN, DONE, INPUT, LONGEST_RUN, NO_CONVERGENCE, SOURCE, Checks, add_cards, deck_text, history, run, said, with_h5py, write  # noqa: E402
 
 with_h5py()
 import h5py  # noqa: E402
@@ -199,6 +199,28 @@ def forging(checks):
         checks.that(abs(off) < share, f"forging: {quantity} at the end within {share} of a fine mesh", off)
 
 
+def bad_zones(checks):
+    """A line between zones that leans too far makes no good mesh, nor a finer one: the cycle does without, and the deck's mesher is asked
+    again at the next mesh. Where the deck forbids another mesher the cycle ends."""
+    leaning = ONE_ZONE.replace("ZONE   all slab\n   a b c d\n", "ZPNT   p ON X 5.97 LOWER\nZPNT   q ON X 0.03 UPPER\n"
+                               "ZONE   left slab\n   a p q d\nZONE   right slab\n   p b c q\n")
+    for name, rows_of_card in (("leaning", "TIMES 0.4 0.6"), ("kept", "TIMES 0.4 0.6\n   MESHER ZONES")):
+        folder = checks.path(name)
+        text = SMALL_STRIP.replace("TIMES 0.5", rows_of_card).format(mesh=cards_of_grid(6, 4, 6.0, 4.0))
+        deck = write(os.path.join(folder, "case.lag"), add_cards(text, leaning))
+        result = subprocess.run([os.path.join(BIN, "lagacycle"), deck, "--out", folder, "--threads", "1", "--quiet"], text=True,
+                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=LONGEST_RUN, check=False)
+        checks.that(result.returncode == (NO_CONVERGENCE if name == "kept" else DONE), f"{name}: exit code", said(result))
+        with open(os.path.join(folder, "cycle.csv"), encoding="utf-8", newline="") as file:
+            made = [row["action"] for row in csv.DictReader(file)]
+        if name == "kept":
+            checks.that("finer" in made and "without zones" not in made, f"{name}: the ways to a mesh", made)
+        else:
+            last = [k for k, way in enumerate(made) if way == "without zones"]
+            checks.that(len(last) == 2 and all("finer" in made[k - 2:k] for k in last) and made.count("as the deck says") == 2,
+                        f"{name}: zones first at each mesh, then finer, then without", made)
+
+
 def written_out(checks):
     """A body without blocks, by the zone given for it, or by one between the points where its sets of sides meet."""
     text = SMALL_STRIP.format(mesh=cards_of_grid(6, 4, 6.0, 4.0))
@@ -285,6 +307,7 @@ def lost_point(checks):
 if __name__ == "__main__":
     count = Checks()
     forging(count)
+    bad_zones(count)
     written_out(count)
     contour_or_block(count)
     bracket(count)
