@@ -84,21 +84,29 @@ contains
     steel%ms = values(6)
   end subroutine read_temperatures
 
-  !> `MARTEN [BETA rate] [SHIFT from slope offset]`.
+  !> `MARTEN [BETA rate] [SHIFT from slope offset] [INCREM|TOTAL]`.
   subroutine read_martensite(cursor, steel)
     type(cursor_t), intent(inout) :: cursor
     type(steel_t), intent(inout) :: steel
-    type(string_t) :: words(2)
+    type(string_t) :: words(4)
     integer :: k
+    logical :: given(4)
 
     words(1)%s = 'BETA'
     words(2)%s = 'SHIFT'
+    words(3)%s = 'INCREM'
+    words(4)%s = 'TOTAL'
+    given = .false.
     do
-      call cursor%name('BETA or SHIFT', words, k)
+      call cursor%name('BETA, SHIFT, INCREM or TOTAL', words, k)
       if (k == 0) return
+      if (given(k)) call cursor%fail(words(k)%s//' is given twice')
+      given(k) = .true.
+      if (all(given(3:))) call cursor%fail('INCREM and TOTAL exclude each other')
+      steel%martensite_total = given(4)
       if (k == 1) then
         call cursor%real('BETA, the rate of martensite', steel%beta, lower=0.0_wp, strict_lower=.true., unit='1/K')
-      else
+      else if (k == 2) then
         call cursor%real('the fraction from which Ms moves', steel%shift_from, lower=0.0_wp, upper=1.0_wp)
         call cursor%real('the slope of Ms over the fraction', steel%shift_slope, unit='K')
         call cursor%real('the offset of Ms', steel%shift_offset, unit='K')

@@ -15,7 +15,7 @@ module steel_kinetics_cards
 
 contains
 
-  !> `TTT phase ZERO|INCUB [FACTOR f] [START z] [END z]`, rows `T t_start t_end [n]`, a row `LIMIT function`.
+  !> `TTT phase ZERO|INCUB [FACTOR f] [VOLUME] [START z] [END z]`, rows `T t_start t_end [n]`, a row `LIMIT function`.
   subroutine read_ttt(cursor, steel)
     type(cursor_t), intent(inout) :: cursor
     type(steel_t), intent(inout) :: steel
@@ -62,7 +62,7 @@ contains
     steel%kinetics(phase) = kinetics
   end subroutine read_ttt
 
-  !> `AVRAMI phase T_low T_high [ZERO|INCUB [FACTOR f]]`, rows `LNB`, `N`, `START`, `LIMIT` with a function each.
+  !> `AVRAMI phase T_low T_high [ZERO|INCUB [FACTOR f] [VOLUME]]`, rows `LNB`, `N`, `START`, `LIMIT` with a function each.
   subroutine read_avrami(cursor, steel)
     type(cursor_t), intent(inout) :: cursor
     type(steel_t), intent(inout) :: steel
@@ -119,12 +119,12 @@ contains
     if (steel%kinetics(phase)%kind /= kinetics_none) call cursor%fail('the kinetics of '//words(i)%s//' are given twice')
   end subroutine read_phase
 
-  !> `ZERO` or `INCUB`, `FACTOR f`, and of curves `START z`, `END z`.
+  !> `ZERO` or `INCUB`, `FACTOR f`, `VOLUME`, and of curves `START z`, `END z`.
   subroutine read_origin(cursor, kinetics, curves)
     type(cursor_t), intent(inout) :: cursor
     type(kinetics_t), intent(inout) :: kinetics
     logical, intent(in) :: curves
-    type(string_t) :: origins(2), options(3)
+    type(string_t) :: origins(2), options(4)
     integer :: k
 
     origins(1)%s = 'ZERO'
@@ -133,17 +133,21 @@ contains
     kinetics%from_incubation = k == 2
     kinetics%waits = .true.
     options(1)%s = 'FACTOR'
-    options(2)%s = 'START'
-    options(3)%s = 'END'
+    options(2)%s = 'VOLUME'
+    options(3)%s = 'START'
+    options(4)%s = 'END'
     do while (cursor%more())
-      call cursor%name('an option', options(:merge(3, 1, curves)), k)
+      call cursor%name('an option', options(:merge(4, 2, curves)), k)
       select case (k)
       case (1)
         call cursor%real('the factor of germination', kinetics%factor, lower=0.0_wp, strict_lower=.true.)
       case (2)
+        kinetics%start_of_volume = .true.
+        if (kinetics%from_incubation) call cursor%fail('VOLUME goes with ZERO: counted from INCUB nothing forms before the start')
+      case (3)
         call cursor%real('the share at the start', kinetics%start_share, lower=0.0_wp, upper=1.0_wp, strict_lower=.true., &
                          strict_upper=.true.)
-      case (3)
+      case (4)
         call cursor%real('the share at the end', kinetics%finish_share, lower=kinetics%start_share, upper=1.0_wp, &
                          strict_lower=.true., strict_upper=.true.)
       end select

@@ -4,7 +4,8 @@
 !> At one temperature the extended fraction is X = b t^n, and 1 - exp(-X) of what can form has formed. From temperature to
 !> temperature X stays: the fictitious time (X/b)^(1/n) would have given it at the new one (additivity). Exact for any length of
 !> step at one temperature. The Scheil sum S of dt/(factor t_start) reaches 1 at the end of incubation. Time counts from there, or
-!> from zero: then X grows in proportion to S to b t_start^n, the share of the curve of start.
+!> from zero: then X grows in proportion to S to b t_start^n, the share of the curve of start. That share is one of the austenite
+!> that is left, or of the whole volume: then the fraction itself grows in proportion to S to 1 - exp(-b t_start^n).
 !> Two curves t_s(T) and t_f(T) of shares z_s and z_f give n = ln(ln(1-z_f)/ln(1-z_s))/ln(t_f/t_s) (6.12733/ln(t99/t1)),
 !> b = -ln(1-z_s)/t_s^n; their times are linear in ln t between temperatures.
 !> Source: E. Scheil, Arch. Eisenhuettenwes. 8 (1935) 565; M. Avrami, J. Chem. Phys. 8 (1940) 212; F. Fernandes, S. Denis,
@@ -20,14 +21,19 @@ module avrami
 
 contains
 
-  !> Growth over a time at one temperature: Scheil sum and extended fraction, which are advanced.
-  pure subroutine grow_avrami(kinetics, time, temperature, incubation, extended)
+  !> Growth over a time at one temperature: Scheil sum and extended fraction, which are advanced; what this leaves undivided, as the
+  !> share at the start is of the whole volume, `of_volume`.
+  pure subroutine grow_avrami(kinetics, time, temperature, incubation, extended, growth, of_volume)
     type(kinetics_t), intent(in) :: kinetics
     type(dual_t), intent(in) :: time          !! [s]
     type(dual_t), intent(in) :: temperature   !! [degC]
     type(dual_t), intent(inout) :: incubation, extended   !! [-]
-    type(dual_t) :: log_b, n, start, left, share
+    type(dual_t), intent(out) :: growth      !! of the extended fraction, by which austenite is divided [-]
+    type(dual_t), intent(out) :: of_volume   !! fraction of the whole volume that forms beside [-]
+    type(dual_t) :: log_b, n, start, left, share, before, first
 
+    before = extended
+    of_volume = dual_t()
     call avrami_numbers(kinetics, temperature, log_b, n)
     left = time
     if (kinetics%waits .and. incubation%value < 1) then
@@ -41,9 +47,17 @@ contains
         left = time - kinetics%factor*start*share
         incubation = dual_t(1.0_wp)
       end if
-      if (.not. kinetics%from_incubation) extended = extended + share*exp(log_b + n*log(start))
+      if (.not. kinetics%from_incubation) then
+        first = exp(log_b + n*log(start))
+        extended = extended + share*first
+        if (kinetics%start_of_volume) then
+          of_volume = share*(1.0_wp - exp(-first))
+          before = extended
+        end if
+      end if
     end if
     if (left%value > 0) call add_time(log_b, n, left, extended)
+    growth = extended - before
   end subroutine grow_avrami
 
   !> X at the fictitious time, later by `time`.
@@ -90,6 +104,7 @@ contains
     real(wp), intent(in) :: share         !! above 0, below 1
     real(wp) :: time                      !! [s]
     type(dual_t) :: log_b, n, start
+    real(wp) :: first, sum_there
 
     call avrami_numbers(kinetics, dual_t(temperature), log_b, n)
     time = exp((log(-log(1 - share)) - log_b%value)/n%value)
@@ -98,7 +113,10 @@ contains
     if (kinetics%from_incubation) then
       time = time + kinetics%factor*start%value
     else if (time < start%value) then
-      time = -log(1 - share)/exp(log_b%value + n%value*log(start%value))*kinetics%factor*start%value
+      first = exp(log_b%value + n%value*log(start%value))
+      sum_there = -log(1 - share)/first
+      if (kinetics%start_of_volume) sum_there = share/(1 - exp(-first))
+      time = sum_there*kinetics%factor*start%value
     else
       time = time + (kinetics%factor - 1)*start%value
     end if

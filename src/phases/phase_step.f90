@@ -4,7 +4,8 @@
 !> that the end temperature may move while a step is iterated without any jump of the result, and its derivative is exact (dual
 !> numbers). In a sub-step the temperature of kinetics is that in its middle: order 2 in the width of the sub-steps. Each phase
 !> answers the logarithm w_i by which it alone would divide the austenite; together they divide it by exp(sum w_i) and share what
-!> forms in proportion: exact for one phase, order 2 for several. Fractions stay in [0, 1]; austenite is what is left.
+!> forms in proportion: exact for one phase, order 2 for several. What forms as a fraction of the whole volume is taken from the
+!> austenite half before, half after that. Fractions stay in [0, 1]; austenite is what is left.
 !> Where stress acts on the kinetics (stress_kinetics), it is linear in time between both ends of the step.
 module phase_step
   use austenite_kinetics, only: form_austenite, grow_grains
@@ -13,7 +14,7 @@ module phase_step
   use dual_numbers, only: dual_t, exp, log, operator(*), operator(+), operator(-), operator(/)
   use kinds, only: wp
   use li_kinetics, only: grow_li
-  use martensite_kinetics, only: grow_martensite, martensite_start
+  use martensite_kinetics, only: grow_martensite, martensite_start, total_martensite
   use phase_state, only: at_coldest, at_grain, at_hollomon_jaffe, at_rate, at_tempering, first_growth, first_incubation, &
                          never_cold, set_hardness, state_size
   use steels, only: austenite, bainite, ferrite, first_diffusive, kinetics_avrami, kinetics_li, kinetics_none, last_diffusive, &
@@ -110,7 +111,7 @@ contains
     type(steel_t), intent(in) :: steel
     real(wp), intent(in) :: dt, before, load(2), committed(:)
     integer :: parts
-    type(dual_t) :: incubation, growth, w, stress(2), temperature
+    type(dual_t) :: incubation, growth, w, volume, stress(2), temperature
     real(wp) :: most
     integer :: i, active
 
@@ -123,9 +124,9 @@ contains
       if (.not. forms(steel, i, temperature%value)) cycle
       incubation = dual_t(committed(first_incubation + i - first_diffusive))
       growth = dual_t(committed(first_growth + i - first_diffusive))
-      call grow(steel, i, hastened(steel%isig, i, stress, dual_t(dt)), temperature, incubation, growth, w)
+      call grow(steel, i, hastened(steel%isig, i, stress, dual_t(dt)), temperature, incubation, growth, w, volume)
       active = active + 1
-      most = most + w%value
+      most = most + w%value + volume%value
     end do
     parts = 1
     if (active > 1) parts = max(1, min(most_parts, ceiling(min(most/most_growth, real(most_parts, wp)))))
@@ -143,20 +144,19 @@ contains
     end associate
   end function forms
 
-  !> The logarithm by which one phase alone divides what can form in a time at one temperature.
-  pure subroutine grow(steel, phase, time, temperature, incubation, growth, w)
+  !> The logarithm by which one phase alone divides what can form in a time at one temperature, and the fraction of the whole volume
+  !> that forms beside.
+  pure subroutine grow(steel, phase, time, temperature, incubation, growth, w, volume)
     type(steel_t), intent(in) :: steel
     integer, intent(in) :: phase
     type(dual_t), intent(in) :: time, temperature
     type(dual_t), intent(inout) :: incubation, growth
-    type(dual_t), intent(out) :: w
-    type(dual_t) :: old
+    type(dual_t), intent(out) :: w, volume
 
-    old = growth
+    volume = dual_t()
     select case (steel%kinetics(phase)%kind)
     case (kinetics_avrami)
-      call grow_avrami(steel%kinetics(phase), time, temperature, incubation, growth)
-      w = growth - old
+      call grow_avrami(steel%kinetics(phase), time, temperature, incubation, growth, w, volume)
     case (kinetics_li)
       call grow_li(steel%kinetics(phase), steel%li_sum, steel%li_slope, time, temperature, growth, w)
     end select
@@ -246,49 +246,83 @@ contains
     type(steel_t), intent(in) :: steel
     type(dual_t), intent(in) :: time, from, to, stress(2, 2)
     type(dual_t), intent(inout) :: s(:), heat
-    type(dual_t) :: w(ferrite:martensite), total, formed, dz, middle, own, span
+    type(dual_t), dimension(ferrite:martensite) :: w, volume, dz
+    type(dual_t) :: total, total_volume, room, formed, middle, own, span, ms(2), coldest(2), by_diffusion
     integer :: i
 
     middle = 0.5_wp*(from + to)
-    total = dual_t()
+    w = dual_t()
+    volume = dual_t()
     do i = ferrite, bainite
-      w(i) = dual_t()
       own = middle
       span = time
       call stressed_span(steel, i, from, to, stress, own, span)
       if (forms(steel, i, own%value)) then
-        call grow(steel, i, span, own, s(first_incubation + i - ferrite), s(first_growth + i - ferrite), w(i))
-        call limit_growth(steel, i, own, s, w(i))
+        call grow(steel, i, span, own, s(first_incubation + i - ferrite), s(first_growth + i - ferrite), w(i), volume(i))
+        call limit_growth(steel, i, own, s, w(i), volume(i))
       else if (own%value >= steel%kinetics(i)%high) then
         s(first_incubation + i - ferrite) = dual_t()
         s(first_growth + i - ferrite) = dual_t()
       end if
-      total = total + w(i)
     end do
-    call grow_martensite(steel, s(ferrite) + s(pearlite) + s(bainite), to - shift_of_phase(steel%isig, martensite, stress(:, 2)), &
-                         s(at_coldest), w(martensite))
-    total = total + w(martensite)
-    if (.not. (total%value > 0 .and. s(austenite)%value > 0)) return
-    formed = s(austenite)*(1.0_wp - exp(-total))
+    by_diffusion = s(ferrite) + s(pearlite) + s(bainite)
+    ms(1) = martensite_start(steel, by_diffusion)
+    coldest(1) = s(at_coldest)
+    call grow_martensite(steel, by_diffusion, to - shift_of_phase(steel%isig, martensite, stress(:, 2)), s(at_coldest), &
+                         w(martensite))
+    coldest(2) = s(at_coldest)
+    total = sum_of(w)
+    total_volume = sum_of(volume)
+    if (.not. (total%value + total_volume%value > 0 .and. s(austenite)%value > 0)) return
+    if (total_volume%value > 0) then
+      ! (z - v/2) exp(-w) - v/2 is not below 0
+      room = 2.0_wp*s(austenite)*exp(-total)/(1.0_wp + exp(-total))
+      if (total_volume%value > room%value) then
+        do i = ferrite, bainite
+          volume(i) = volume(i)*(room/total_volume)
+        end do
+        total_volume = room
+      end if
+    end if
+    formed = (s(austenite) - 0.5_wp*total_volume)*(1.0_wp - exp(-total))
+    dz = volume
     do i = ferrite, martensite
-      if (.not. w(i)%value > 0) cycle
-      dz = formed*w(i)/total
-      call release(steel, i, middle, dz, heat)
-      s(i) = s(i) + dz
+      if (w(i)%value > 0) dz(i) = dz(i) + formed*w(i)/total
     end do
-    s(austenite) = s(austenite) - formed
+    if (steel%martensite_total) then
+      ms(2) = martensite_start(steel, by_diffusion + sum_of(dz(:bainite)))
+      dz(martensite) = total_martensite(steel, ms, coldest, s(austenite), sum_of(dz(:bainite)))
+    end if
+    do i = ferrite, martensite
+      if (.not. dz(i)%value > 0) cycle
+      call release(steel, i, middle, dz(i), heat)
+      s(i) = s(i) + dz(i)
+    end do
+    s(austenite) = s(austenite) - sum_of(dz)
   end subroutine transform
 
+  pure function sum_of(parts) result(total)
+    type(dual_t), intent(in) :: parts(:)   !! (any number)
+    type(dual_t) :: total
+
+    total = dual_t(sum(parts%value), sum(parts%slope))
+  end function sum_of
+
   !> Of a phase that has a largest fraction, only the rest up to there can form.
-  pure subroutine limit_growth(steel, phase, temperature, s, w)
+  pure subroutine limit_growth(steel, phase, temperature, s, w, volume)
     type(steel_t), intent(in) :: steel
     integer, intent(in) :: phase
     type(dual_t), intent(in) :: temperature, s(:)
-    type(dual_t), intent(inout) :: w
+    type(dual_t), intent(inout) :: w, volume
     type(dual_t) :: room
 
     if (.not. (is_given(steel%kinetics(phase)%limit) .and. s(austenite)%value > 0)) return
     room = dual_curve_at(steel%kinetics(phase)%limit, temperature) - s(phase)
+    if (volume%value > 0) then
+      if (room%value < volume%value) volume = room
+      if (room%value <= 0) volume = dual_t()
+      room = room - volume
+    end if
     if (room%value >= s(austenite)%value) return
     if (room%value <= 0) then
       w = dual_t()

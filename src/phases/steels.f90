@@ -80,6 +80,8 @@ module steels
     !> Growth waits for the Scheil sum of dt/(factor*start) to reach 1; Avrami's time counts from there, else from time zero.
     logical :: waits = .false., from_incubation = .false.
     real(wp) :: factor = 1.0_wp
+    !> The share at the start is one of the whole volume, else of the austenite that is left.
+    logical :: start_of_volume = .false.
     !> Largest fraction by temperature, where it is given.
     type(temperature_curve_t) :: limit
     !> Li: rate = speed (high - T)^power exp(-Q/RT).
@@ -118,6 +120,8 @@ module steels
     type(histories_t) :: cct
     !> Martensite: beta [1/K]; Ms moves by min(0, shift_slope*z + shift_offset) where z, formed before, exceeds shift_from.
     real(wp) :: beta = 0.0_wp, shift_from = 1.0_wp, shift_slope = 0.0_wp, shift_offset = 0.0_wp
+    !> Koistinen and Marburger's share is one of all that other phases leave, else of the austenite that is left.
+    logical :: martensite_total = .false.
     type(stress_effect_t) :: isig
     !> Austenite on heating: time constants at ac1 and ac3 [s]; 0: none forms.
     real(wp) :: tau1 = 0.0_wp, tau3 = 0.0_wp
