@@ -15,6 +15,7 @@ module accept_step
   use kinds, only: wp
   use newton, only: outcome_t
   use path_record, only: note_path_step
+  use phase_books, only: book_fractions
   use point_drivers, only: start_drivers
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
@@ -70,6 +71,7 @@ contains
     if (scene%remesh%on .or. has_body_springs(scene)) call note_force(scene, equations, solution)
     call keep_friction_work(scene, solution)
     call check(solution, totals, error)
+    if (.not. allocated(error)) call book_fractions(scene, solution, error)
     call commit(scene, equations, solution)
   end subroutine accept
 

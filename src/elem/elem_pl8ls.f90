@@ -22,7 +22,7 @@ module elem_pl8ls
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
   use scene, only: generalised_plane_strain, group_t, plane_stress, role_body, scene_t
   use sections, only: thickness_at
-  use solid_terms, only: add_section, first_element, geometric, mean_element
+  use solid_terms, only: add_section, first_element, geometric, local_gradient, mean_element
   use state_variables, only: find_variable, state_variable, state_variable_t, transfer_scalar
   implicit none
   private
@@ -299,8 +299,26 @@ contains
         slopes(ncomponent + 1, :, :) = (other(work, :, :) - done)/change
       end if
       call shares_of_work(scene, group, instant, layout, rule, start, done)
-      call add_rows_of_heat(scene, group, instant, layout, rule, first, nx, ny, zx, done, slopes, stiffness)
+      call add_rows_of_heat(scene, group, instant, layout, rule, first, nx, ny, motion_across(), done, slopes, stiffness)
     end subroutine add_work
+
+    !> d h_zz/d(motion): of the nodes, and of the section where it moves.
+    function motion_across() result(zz)
+      real(wp) :: zz(n, group%rule%n, nb)
+      real(wp) :: whole(5, 19)
+      integer :: i, k
+
+      zz = 0
+      zz(:8, :, :) = zx
+      if (scene%plane_state /= generalised_plane_strain) return
+      do i = 1, nb
+        call sections_of_step(scene, kinematics%finite, instant, layout, du(:, i), section)
+        do k = 1, group%rule%n
+          whole = local_gradient(rule, k, section(:, 1), kinematics%finite, x(:, :, i), du(:, i), nx(:, k, i), ny(:, k, i))
+          zz(:, k, i) = whole(5, :n)
+        end do
+      end do
+    end function motion_across
 
     !> The same of latent heat that the stress drives (METAMEC), from the derivatives of the stress.
     subroutine add_latent()
@@ -308,14 +326,13 @@ contains
       integer :: i
 
       share = 1
-
       do i = 1, nb
         do p = 1, group%rule%n
           call latent_slopes(scene%plane_state == plane_stress, drivers(:, 4, p, i), trial(1:4, p, i), tangent(:, :, p, i), &
                              warmer(:, p, i), slopes(:, p, i))
         end do
       end do
-      call add_rows_of_heat(scene, group, instant, layout, rule, first, nx, ny, zx, share, slopes, stiffness)
+      call add_rows_of_heat(scene, group, instant, layout, rule, first, nx, ny, motion_across(), share, slopes, stiffness)
     end subroutine add_latent
 
   end subroutine compute

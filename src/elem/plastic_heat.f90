@@ -120,14 +120,15 @@ contains
   end subroutine latent_slopes
 
   !> Add the derivatives of the heat of a block of elements to the rows of the temperature.
-  subroutine add_rows_of_heat(scene, group, instant, layout, rule, first, nx, ny, zx, share, slopes, stiffness)
+  subroutine add_rows_of_heat(scene, group, instant, layout, rule, first, nx, ny, zz, share, slopes, stiffness)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(instant_t), intent(in) :: instant
     type(layout_t), intent(in) :: layout
     type(quad8_rule_t), intent(in) :: rule
     integer, intent(in) :: first                                   !! element of the block
-    real(wp), intent(in) :: nx(:, :, :), ny(:, :, :), zx(:, :, :)  !! (8, npoint, nelem) gradients, and d h_zz/d(ux) [1/length]
+    real(wp), intent(in) :: nx(:, :, :), ny(:, :, :)               !! (8, npoint, nelem) gradients [1/length]
+    real(wp), intent(in) :: zz(:, :, :)                            !! (nmotion, npoint, nelem) d h_zz/d(motion) [1/unknown]
     real(wp), intent(in) :: share(:, :)                            !! (npoint, nelem) what becomes heat of the next [-]
     real(wp), intent(in) :: slopes(:, :, :)                        !! (6, npoint, nelem) d()/dh [energy/volume], by temperature
     real(wp), intent(inout) :: stiffness(:, :, :)                  !! (ndof, ndof, nelem)
@@ -147,8 +148,9 @@ contains
         weight = share(p, e)*detj*rule%weight(p)*thickness_at(scene%section, matmul(x, rule%phi(:, p)))/instant%dt
         row = 0
         associate (s => slopes(:, p, e))
-          row(1:8) = s(1)*nx(:, p, e) + s(2)*ny(:, p, e) + s(5)*zx(:, p, e)
-          row(9:16) = s(3)*nx(:, p, e) + s(4)*ny(:, p, e)
+          row(:size(zz, 1)) = s(5)*zz(:, p, e)
+          row(1:8) = row(1:8) + (s(1)*nx(:, p, e) + s(2)*ny(:, p, e))
+          row(9:16) = row(9:16) + (s(3)*nx(:, p, e) + s(4)*ny(:, p, e))
           do k = 1, n
             row(at + k) = s(6)*dot_product(nodal_temperatures(unit_vector(k, n)), projected(:, p))
           end do

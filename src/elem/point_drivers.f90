@@ -29,7 +29,8 @@ module point_drivers
   public :: at_status, at_pressure, at_gap, at_die_piece, at_die_xi, at_friction_work, at_corner_work, at_corner_place, &
             at_body_effusivity, at_die_effusivity
   public :: drivers_t, find_drivers, missing_driver, driver_of_others, start_drivers, advance_drivers, drivers_of_half, &
-            own_states_at_end, nodal_values, is_scalar, field_at_points, with_slopes, drives_heat, from_state, from_stress
+            own_states_at_end, stress_driver_count, stress_of_solution, hand_over_stress, nodal_values, is_scalar, &
+            field_at_points, with_slopes, drives_heat, from_state, from_stress
 
   !> Where a driver comes from. A state variable of the formulation itself is that at the start of the step.
   integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3, from_itself = 4, from_effusivity = 5, &
@@ -62,6 +63,9 @@ module point_drivers
     type(driver_source_t), allocatable :: source(:)
     !> They change within a step.
     logical :: vary = .false.
+    !> Measures of the stress at the end of the step that are handed over from one turn of the solves to the next (ndriver, npoint,
+    !> nelem); not allocated where drivers follow the stress as it is tried.
+    real(wp), allocatable :: handed(:, :, :)
     !> Of contact: group and element of the body behind each side, and its side 1 to 4 (nelem).
     integer, allocatable :: body(:), element(:), side(:)
     !> Of heat through contact with a deformable die: the same behind each of its pieces (npiece).
@@ -476,6 +480,10 @@ contains
             own%value(k, at, :, e) = state_at_points(scene, solution, g, own, k, at, e)
           end do
         case (from_stress)
+          if (at == 2 .and. allocated(own%handed)) then
+            own%value(k, at, :, :) = own%handed(k, :, :)
+            cycle
+          end if
           do e = 1, size(own%value, 4)
             own%value(k, at, :, e) = stress_at_points(scene, solution, g, own%source(k), at, e)
           end do
@@ -577,6 +585,64 @@ contains
       end do
     end associate
   end function stress_at_points
+
+  !> Number of measures of stress that drive points, of all groups together.
+  pure function stress_driver_count(drivers) result(n)
+    type(drivers_t), intent(in) :: drivers(:)   !! (ngroup)
+    integer :: n
+    integer :: g
+
+    n = 0
+    do g = 1, size(drivers)
+      if (.not. allocated(drivers(g)%source)) cycle
+      n = n + count(drivers(g)%source%kind == from_stress)*size(drivers(g)%value, 3)*size(drivers(g)%value, 4)
+    end do
+  end function stress_driver_count
+
+  !> Those measures of the stress as it is tried now, group by group.
+  subroutine stress_of_solution(scene, solution, drivers, values)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(drivers_t), intent(in) :: drivers(:)   !! (ngroup)
+    real(wp), intent(out) :: values(:)          !! (stress_driver_count) [stress]
+    integer :: g, k, e, i, npoint
+
+    i = 0
+    do g = 1, size(drivers)
+      if (.not. allocated(drivers(g)%source)) cycle
+      npoint = size(drivers(g)%value, 3)
+      do k = 1, size(drivers(g)%source)
+        if (drivers(g)%source(k)%kind /= from_stress) cycle
+        do e = 1, size(drivers(g)%value, 4)
+          values(i + 1:i + npoint) = stress_at_points(scene, solution, g, drivers(g)%source(k), 2, e)
+          i = i + npoint
+        end do
+      end do
+    end do
+  end subroutine stress_of_solution
+
+  !> Such measures drive the points at the end of the step from now on; with none, the stress as it is tried does.
+  pure subroutine hand_over_stress(values, drivers)
+    real(wp), intent(in) :: values(:)               !! (stress_driver_count), or none [stress]
+    type(drivers_t), intent(inout) :: drivers(:)    !! (ngroup)
+    integer :: g, k, i, n
+
+    i = 0
+    do g = 1, size(drivers)
+      if (allocated(drivers(g)%handed)) deallocate (drivers(g)%handed)
+      if (size(values) == 0 .or. .not. allocated(drivers(g)%source)) cycle
+      if (.not. any(drivers(g)%source%kind == from_stress)) cycle
+      associate (own => drivers(g))
+        allocate (own%handed(size(own%value, 1), size(own%value, 3), size(own%value, 4)), source=0.0_wp)
+        n = size(own%handed, 2)*size(own%handed, 3)
+        do k = 1, size(own%source)
+          if (own%source(k)%kind /= from_stress) cycle
+          own%handed(k, :, :) = reshape(values(i + 1:i + n), [size(own%handed, 2), size(own%handed, 3)])
+          i = i + n
+        end do
+      end associate
+    end do
+  end subroutine hand_over_stress
 
   !> Flow stress of the body behind a side, 0 where its law does not flow.
   pure function flow_behind(scene, laws, solution, own, drivers, e) result(flow)

@@ -9,7 +9,7 @@ module solid_terms
   use sections, only: thickness_at
   implicit none
   private
-  public :: add_section, first_element, mean_element, geometric
+  public :: add_section, first_element, mean_element, geometric, local_gradient
 
 contains
 
@@ -107,10 +107,13 @@ contains
   !> h = G u at one point, with the unknowns of the section last: they count in generalised plane strain only.
   pure function local_gradient(rule, p, section, finite, x, du, nx, ny) result(g)
     type(quad8_rule_t), intent(in) :: rule
-    integer, intent(in) :: p
-    real(wp), intent(in) :: section(3), x(2, 8), du(:), nx(8), ny(8)
+    integer, intent(in) :: p                !! point
+    real(wp), intent(in) :: section(3)      !! thickness [length] and slopes [-] of the geometry
     logical, intent(in) :: finite
-    real(wp) :: g(5, 19)
+    real(wp), intent(in) :: x(2, 8)         !! nodes at the start of the step [length]
+    real(wp), intent(in) :: du(:)           !! (ndof) motion of the local unknowns [unknown]
+    real(wp), intent(in) :: nx(8), ny(8)    !! [1/length]
+    real(wp) :: g(5, 19)                    !! h (xx, xy, yx, yy, zz) by the unknowns [1/length], of the section [1/unknown]
     real(wp) :: here(2)
 
     here = matmul(x, rule%phi(:, p))

@@ -63,6 +63,8 @@ module solution
     !> Largest share of the spurious mode in the motion of an element (spurious_mode), and the element.
     real(wp) :: worst_spurious = 0.0_wp
     integer :: spurious_group = 0, spurious_element = 0
+    !> By how much fractions of phases have left [0, 1], or their sum 1.
+    real(wp) :: worst_fraction = 0.0_wp
     !> Largest depth of a side in a die anywhere along it, and over what the side allows.
     real(wp) :: worst_sample = 0.0_wp, worst_sample_ratio = 0.0_wp
     !> Largest force on a die so far where meshes are replaced, or on one made of sides; per radian when axisymmetric.

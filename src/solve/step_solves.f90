@@ -2,7 +2,7 @@
 !>
 !> Where fields of several quantities are solved for one after the other, a solve takes the motion of the others' unknowns as their
 !> own solve has found it in this step, or as predicted from the last step. Once in turns is first order in the step; in turns until
-!> nothing changes any more is the result of the monolithic solve.
+!> nothing changes any more is the result of the monolithic solve. Stress that drives heat is handed over by stress_exchange.
 module step_solves
   use equations, only: equations_t
   use fields, only: displacement_field
@@ -15,6 +15,7 @@ module step_solves
   use scene, only: scene_t
   use solution, only: solution_t
   use strategy, only: coupling_converged
+  use stress_exchange, only: advance_exchange, begin_exchange, end_exchange, stress_exchange_t
   use text, only: to_text
   implicit none
   private
@@ -33,10 +34,12 @@ contains
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt   !! [time]
     type(outcome_t), intent(out) :: outcome
+    type(stress_exchange_t) :: exchange
     integer :: solved
 
     solved = corrections_of_motion(equations)
-    call take_turns(scene, equations, solution, dt, outcome)
+    call take_turns(scene, equations, solution, dt, exchange, outcome)
+    call end_exchange(equations, exchange)
     call judge_contours(scene, equations, solution, outcome)
     call judge_path(scene, equations, solution, dt, corrections_of_motion(equations) > solved, outcome)
   end subroutine solve_fields
@@ -77,11 +80,12 @@ contains
   end function corrections_of_motion
 
   !> Each solve in its turn.
-  subroutine take_turns(scene, equations, solution, dt, outcome)
+  subroutine take_turns(scene, equations, solution, dt, exchange, outcome)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt   !! [time]
+    type(stress_exchange_t), intent(out) :: exchange
     type(outcome_t), intent(out) :: outcome
     type(outcome_t) :: own
     real(wp) :: motion(equations%dofs%ndof), change
@@ -99,6 +103,7 @@ contains
     do s = 1, size(solution%groups)
       solution%groups(s)%trial = solution%groups(s)%committed
     end do
+    call begin_exchange(scene, solution, equations, exchange)
     motion = 0
     if (solution%last_step > 0) call proportion(equations%dofs, solution%fields, dt/solution%last_step, motion)
     do turn = 1, most_turns
@@ -116,10 +121,12 @@ contains
         motion = merge(own%du, motion, equations%solves(s)%is_own)
       end do
       outcome%du = motion
+      call advance_exchange(scene, solution, equations, exchange, change)
       if (scene%strategy%coupling /= coupling_converged .or. change <= scene%strategy%displacement_norm) return
     end do
     outcome%converged = .false.
-    outcome%reason = 'the fields do not agree after '//to_text(most_turns)//' turns (they change by '//to_text(change, 3)//')'
+    outcome%reason = 'the fields do not agree after '//to_text(most_turns)//' turns (they change by '//to_text(change, 3) &
+                     //'); SOLVE MONOLITHIC finds them together'
   end subroutine take_turns
 
   !> Change of the motion of the own unknowns over the motion.

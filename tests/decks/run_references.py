@@ -53,6 +53,7 @@ OPTIONAL = ("kind", "long")
 MARK = "<!-- table -->"
 RUN_TIMEOUT = 1000              # seconds, below the 1200 that ctest gives the whole test
 LONG_TIMEOUT = 7200
+FRACTION_SLACK = 1e-12           # by how much fractions of phases may leave [0, 1], or their sum 1, in any step of any run
 END_SLACK = 1e-9                # share by which the last step may miss the place asked for: rounding
 
 OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
@@ -283,10 +284,20 @@ def check_decks(decks, program, names, with_long, report):
             elif key not in runs:
                 runs[key] = run_deck(program, deck, row["options"], LONG_TIMEOUT if row["long"] else RUN_TIMEOUT)
                 report(f"{runs[key].seconds:8.2f} s  {' '.join(key)}")
+                off = fractions_off(runs[key])
+                if off is not None:
+                    report(f"{'':11}fractions of phases within {off:.2g} of [0, 1] and of their sum 1, in every step")
+                    if not off <= FRACTION_SLACK:
+                        faults.append(f"{' '.join(key)}: fractions of phases miss [0, 1] or their sum 1 by {off:.3g}")
             verdicts.append(judge(name, row, runs[key]))
     if not verdicts and not faults:
         faults.append("nothing to compare: no reference.csv, or no row in it that is not long")
     return verdicts, faults
+
+
+def fractions_off(run):
+    """By how much fractions have left [0, 1] or their sum 1 in the worst step; None where there are no phases."""
+    return run.summary.get("checks", {}).get("phase_fractions")
 
 
 def cells(verdict):
@@ -342,7 +353,7 @@ with open(os.path.join(out, "history.csv"), "w") as file:
     if "empty" not in sys.argv:
         file.write("1.,20.,0.\\n2.,30.,NaN\\n3.,40.,NaN\\n")
 with open(os.path.join(out, "summary.json"), "w") as file:
-    json.dump({{"checks": {{"worst": 0.5}}, "status": "done"}}, file)
+    json.dump({{"checks": {{"worst": 0.5, "phase_fractions": 2e-12 if "sums" in sys.argv else 2e-16}}, "status": "done"}}, file)
 sys.exit(3 if "fails" in sys.argv else 0)
 """
 
@@ -434,6 +445,7 @@ FAKE_FILES = [
     (",".join(FAKE_ROW) + "\nfake,,0\n", "fields wanted"),
     (",".join(FAKE_ROW) + "\n" + ",".join(FAKE_ROW.values()) + ",1\n", "fields wanted"),
     (",".join(FAKE_ROW) + "\n" + ",".join(dict(FAKE_ROW, long="no").values()) + "\n", "long is"),
+    (",".join(FAKE_ROW) + "\n" + ",".join(dict(FAKE_ROW, options="sums").values()) + "\n", "miss [0, 1]"),
     (",".join(FAKE_ROW) + "\n" + ",".join(dict(FAKE_ROW, long="yes").values()) + "\n", "nothing to compare"),
 ]
 
