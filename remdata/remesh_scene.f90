@@ -56,6 +56,8 @@ module remesh_scene
   real(wp), parameter :: strain_order = 2.0_wp
   !> Free sides from a corner to contact that are shorter than this share of the smallest element are dropped.
   real(wp), parameter :: least_free = 0.2_wp
+  !> Loops of a free contour that crosses itself are cut off up to the length of so many of the smallest elements: as deep as one.
+  real(wp), parameter :: longest_lap = 2.0_wp
   !> Attempts at a mesh of good shape: smoothing, then finer.
   integer, parameter :: attempts = 3
 
@@ -94,7 +96,8 @@ contains
     if (first) then
       call contours_of_cards(old, contours, facts%contour, error)
     else
-      call build_contours(old, before, ends, contour_options_t(least_free=least_free*max(old%remesher%smallest, 0.0_wp)), &
+      call build_contours(old, before, ends, contour_options_t(least_free=least_free*max(old%remesher%smallest, 0.0_wp), &
+                                                               longest_lap=longest_lap*max(old%remesher%smallest, 0.0_wp)), &
                           contours, facts%contour, error)
     end if
     if (allocated(error)) return

@@ -31,6 +31,8 @@ module contact_placement
     real(wp) :: small_gap_width = 0.1_wp, small_gap_length = 2.0_wp
     !> Free sides that lead from a corner to contact are dropped when they are shorter [length].
     real(wp) :: least_free = 0.0_wp
+    !> Loops up to this length, in which a free contour crosses itself, are cut off [length].
+    real(wp) :: longest_lap = 0.0_wp
   end type contour_options_t
 
   !> Old sides that turn by less than a corner may form one on the die: corners are kept, and sides are steep, from this share of

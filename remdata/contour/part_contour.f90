@@ -21,6 +21,7 @@ module part_contour
   use kinds, only: wp
   use scene, only: axisymmetric, is_solid, scene_t
   use short_free_sides, only: drop_short_sides
+  use small_laps, only: cut_small_laps
   use side_tags, only: find_tags, held_nodes, side_tags_t
   use solution, only: present_coordinates, solution_t
   use text, only: to_text
@@ -59,13 +60,15 @@ module part_contour
     logical :: restored = .true.
     !> Largest distance from an old node of the loop to the boundary curve [length].
     real(wp) :: largest_move = 0.0_wp
+    !> Small laps that were cut off.
+    type(fold_t), allocatable :: laps(:)
   end type contour_t
 
   !> Results of the correction for all contours.
   type :: contour_report_t
     type(contact_limit_t), allocatable :: limits(:)
     type(lap_t), allocatable :: laps(:)
-    !> Sides of a body that lie on other sides of it.
+    !> Sides of a body that lie on other sides of it, and small laps that were cut off.
     type(fold_t), allocatable :: folds(:)
     !> Moves of the nodes of such sides (2, nnode), where there are any [length].
     real(wp), allocatable :: opened(:, :)
@@ -134,6 +137,7 @@ contains
       end do
       call correct(scene, x, uncorrected, held, options, joints, contours(k))
       call list_limits(k, contours(k), report%limits)
+      report%folds = [report%folds, contours(k)%laps]
       report%off_ends = max(report%off_ends, off_ends(contours(k), x)/size_of_boundary(contours(k)%boundary))
       report%small_gaps = report%small_gaps + count([(contours(k)%contacts(i)%interval%small_gap, i=1, size(contours(k)%contacts))])
       if (largest_gap(contours(k)%boundary) > closed_within*size_of_boundary(contours(k)%boundary)) &
@@ -256,6 +260,9 @@ contains
 
     call assemble_boundary(contour%loop, contour%tags, x, options%corner_turn, joints, contour%contacts, contour%boundary)
     if (options%least_free > 0) call drop_short_sides(options%least_free, contour%tags, contour%contacts, contour%boundary)
+    contour%laps = [fold_t ::]
+    if (options%longest_lap > 0) &
+      call cut_small_laps(options%longest_lap, contour%tags, contour%contacts, contour%boundary, contour%laps)
   end subroutine draw_boundary
 
   !> Largest distance from a contour to where the solver found ends of contact that are kept [length].

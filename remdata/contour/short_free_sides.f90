@@ -12,7 +12,7 @@ module short_free_sides
   use side_tags, only: same_tags, side_tags_t
   implicit none
   private
-  public :: drop_short_sides
+  public :: drop_short_sides, is_free, redrawn, remove_arcs
 
 contains
 
@@ -39,7 +39,6 @@ contains
     type(boundary_curve_t), intent(inout) :: boundary
     logical, intent(out) :: any_dropped
     logical :: dropped(size(boundary%arcs))
-    integer, allocatable :: kept(:)
     integer :: k, last
 
     dropped = .false.
@@ -58,7 +57,17 @@ contains
       end associate
     end do
     any_dropped = any(dropped)
-    if (.not. any_dropped) return
+    if (any_dropped) call remove_arcs(dropped, contacts, boundary)
+  end subroutine drop_once
+
+  !> Take arcs out of a boundary curve, and renumber those of the contacts.
+  pure subroutine remove_arcs(dropped, contacts, boundary)
+    logical, intent(in) :: dropped(:)               !! (narc)
+    type(contact_t), intent(inout) :: contacts(:)   !! (ncontact)
+    type(boundary_curve_t), intent(inout) :: boundary
+    integer, allocatable :: kept(:)
+    integer :: k
+
     do k = 1, size(contacts)
       contacts(k)%first = new_number(contacts(k)%first, dropped)
       contacts(k)%next = new_number(contacts(k)%next, dropped)
@@ -67,7 +76,7 @@ contains
     boundary%arcs = boundary%arcs(kept)
     boundary%kinds = boundary%kinds(kept)
     call close_boundary(boundary%corner_turn, boundary)
-  end subroutine drop_once
+  end subroutine remove_arcs
 
   !> Next arc of n along the curve (towards = 1), or the one before (-1).
   pure function neighbour(k, towards, n) result(number)
@@ -129,6 +138,7 @@ contains
     dropped = dropped .or. run
   end subroutine drop_run
 
+  !> It follows neither a die nor a contact interval.
   pure function is_free(arc) result(yes)
     type(arc_t), intent(in) :: arc
     logical :: yes

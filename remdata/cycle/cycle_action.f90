@@ -25,6 +25,8 @@ module cycle_action
     real(wp) :: finer = 0.0_wp
     !> The free mesher, whatever zones the deck has.
     logical :: without_zones = .false.
+    !> The solver need not refuse the mesh by the force of a die.
+    logical :: force_agreed = .false.
     !> For the user; '' for nothing.
     character(len=:), allocatable :: say
     !> Of a try: the way it was made; of a refused one also its result, the responsible stage, and the reason.

@@ -7,6 +7,7 @@
 !>     transfer N          options of the remesher
 !>     finer F
 !>     mesher free
+!>     option WORD         of the solver
 !>     do WORD             start, check, resume, remesh or end: comes last
 module cycle_answer
   use cycle_action, only: act_check, act_end, act_refuse, act_remesh, act_resume, act_start, action_t, is_inner
@@ -70,6 +71,7 @@ contains
     if (action%transfer >= 0) call print_word('transfer', to_text(action%transfer), error)
     if (action%finer > 0) call print_word('finer', to_text(action%finer), error)
     if (action%without_zones) call print_word('mesher', 'free', error)
+    if (action%force_agreed) call print_word('option', '--force-agreed', error)
     select case (action%kind)
     case (act_start)
       call print_word('do', 'start', error)

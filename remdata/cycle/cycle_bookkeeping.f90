@@ -183,9 +183,11 @@ contains
     if (judged .and. accepted == 'y') cells(21)%s = force_change_of(s, old%facts%step)
     cells(22)%s = json_text(made, 'laps')
     cells(23)%s = json_text(made, 'lap_depth')
-    cells(24)%s = json_text(made, 'wall_s')
-    cells(25)%s = json_text(restart, 'wall_s')
-    cells(26)%s = action%reason
+    cells(24)%s = ''
+    if (accepted == 'n') cells(24)%s = scaled(restart, 'force_over_limit', 1.0_wp)
+    cells(25)%s = json_text(made, 'wall_s')
+    cells(26)%s = json_text(restart, 'wall_s')
+    cells(27)%s = action%reason
     line = line_of_cells(cells)
   end function row_of
 

@@ -8,7 +8,8 @@ module cycle_decision
   use cycle_refusal, only: refuse_first_steps, refuse_made, refuse_restart
   use cycle_situation, only: current_name, due_reason, ended_check, ended_lagamine, ended_nothing, ended_remdata, is_due, &
     is_first_mesh, is_read, mesh_name, situation_t, try_name
-  use cycle_table, only: way_coarser, way_earlier, way_finer, way_mesher, way_old_mesh, way_transfer
+  use cycle_table, only: agreed_way, any_agreed, way_agreed, way_coarser, way_earlier, way_finer, way_mesher, way_old_mesh, &
+                         way_transfer
   use cycle_ways, only: is_whole, next_way, old_mesh_goes_on, old_state
   use errors, only: exit_done, exit_input, exit_machine, exit_no_convergence, exit_remesh, exit_signal
   use kinds, only: wp
@@ -21,6 +22,8 @@ module cycle_decision
   real(wp), parameter :: finer_by = 1.5_wp, coarser_by = 1.25_wp
   !> Methods of state transfer, and how far the other one is from the deck's.
   integer, parameter :: transfer_methods = 3, other_transfer = 2
+  !> Why a mesh is taken up that was refused by the force of a die.
+  character(len=*), parameter :: wrong_before = 'the force of a die was wrong on an old mesh: several new ones agree on another'
   character(len=*), parameter :: begin_anew = 'lagacycle --fresh begins anew'
 
 contains
@@ -121,11 +124,13 @@ contains
   pure function make_new_mesh(s) result(action)
     type(situation_t), intent(in) :: s
     type(action_t) :: action
-    character(len=:), allocatable :: way
+    character(len=:), allocatable :: way, made_by
     logical :: whole
 
     way = next_way(s)
     whole = is_whole(s, way)
+    made_by = way
+    if (way == way_agreed) made_by = agreed_way(s%rows, s%new%generation, s%new%old_end%facts%step)
     if (way == '') then
       action = no_way_left(s)
     else if (way == way_old_mesh) then
@@ -139,16 +144,17 @@ contains
       action = new_action(act_resume, from=try_name(s%new%generation, s%new%number), &
                           say='lagamine takes up mesh '//to_text(s%new%generation)//' with '//to_text(s%new%made%facts%elements)// &
                           ' elements, '//place_of(s%new%made))
+      action%force_agreed = way == way_agreed
     else
       action = new_action(act_remesh, from=mesh_name(s%new%generation - 1, 'end.h5'), &
                           new=try_name(s%new%generation, s%new%number), &
                           say='remdata makes mesh '//to_text(s%new%generation)//' ('//way//'), '// &
                           place_of(old_state(s, way))//': '//due_reason(s%new%old_end%facts))
-      if (way == way_transfer) &
+      if (made_by == way_transfer) &
         action%transfer = mod(s%new%old_end%facts%transfer + other_transfer, transfer_methods)
-      if (way == way_finer) action%finer = finer_by
-      action%without_zones = way == way_mesher
-      if (way == way_coarser) action%finer = 1/coarser_by
+      if (made_by == way_finer) action%finer = finer_by
+      action%without_zones = made_by == way_mesher
+      if (made_by == way_coarser) action%finer = 1/coarser_by
       if (way == way_earlier) action%from = mesh_name(s%new%generation - 1, 'end.1.h5')
     end if
   end function make_new_mesh
@@ -169,6 +175,7 @@ contains
     action = new_action(act_accept)
     action%way = next_way(s)
     action%result = 'lagamine: goes on'
+    if (action%way == way_agreed) action%reason = wrong_before
   end function enter_new_mesh
 
   pure function no_way_left(s) result(action)
@@ -228,6 +235,7 @@ contains
     associate (facts => s%current%facts)
       words = place_of(s%current)//', '//to_text(facts%remeshings)//' new mesh'
       if (facts%remeshings /= 1) words = words//'es'
+      if (any_agreed(s%rows)) words = words//'; WARNING: '//wrong_before//' (cycle.csv)'
     end associate
   end function where_it_stands
 

@@ -7,25 +7,30 @@ module cycle_table
   implicit none
   private
   public :: try_row_t, table_heading, number_of_columns, parse_table, line_of_cells
-  public :: way_deck, way_transfer, way_finer, way_mesher, way_coarser, way_earlier, way_old_mesh
-  public :: first_step_of, number_refused, was_refused, has_new_mesh, keeps_old_mesh, transfer_is_responsible, &
-            mesh_is_responsible, took_earlier
+  public :: way_deck, way_transfer, way_finer, way_mesher, way_coarser, way_earlier, way_old_mesh, way_agreed
+  public :: agreed_way, any_agreed, first_step_of, number_refused, was_refused, has_new_mesh, keeps_old_mesh, &
+            transfer_is_responsible, mesh_is_responsible, took_earlier
 
   !> What is done for a new mesh, as the column `action` names it: as the deck says, another state transfer, finer or coarser
-  !> elements, the free mesher instead of the deck's zones, from the checkpoint one save earlier; or the old mesh goes on.
+  !> elements, the free mesher instead of the deck's zones, from the checkpoint one save earlier; the old mesh goes on for a while; or
+  !> the best of several tries, which were refused by the force of a die alone and agree on it, is made again and taken up.
   character(len=*), parameter :: way_deck = 'as the deck says', way_transfer = 'other transfer', way_finer = 'finer', &
                                  way_mesher = 'without zones', way_coarser = 'coarser', way_earlier = 'earlier', &
-                                 way_old_mesh = 'old mesh'
+                                 way_old_mesh = 'old mesh', way_agreed = 'agreed force'
 
   character(len=*), parameter :: table_heading = &
     'generation [-],try [-],stop_step [-],stop_time [time],step [-],trigger,action,result,accepted,stage,'// &
     'old_elements [-],new_elements [-],error_before [%],error_after [%],first_residual [-],iterations [-],force_change [%],'// &
     'energy_change [%],depth_change [-],least_step_ratio [-],first_step_force_change [%],laps [-],'// &
-    'lap_depth [length],remdata [s],restart [s],reason'
+    'lap_depth [length],force_over_limit [-],remdata [s],restart [s],reason'
   !> Numbers of columns in it.
   integer, parameter :: at_generation = 1, at_stop_step = 3, at_stop_time = 4, at_step = 5, at_action = 7, at_accepted = 9, &
-                        at_stage = 10
-  integer, parameter :: number_of_columns = 26
+                        at_stage = 10, at_error_after = 14, at_force = 24
+  integer, parameter :: number_of_columns = 27
+  !> So many tries that were refused by the force of a die alone are several. They agree when their changes of the force differ by no
+  !> more than its limit.
+  integer, parameter :: several = 3
+  real(wp), parameter :: agree_within = 1.0_wp
 
   !> Times are the same up to this share: the table has all their digits.
   real(wp), parameter :: same_time = 1.0e-12_wp
@@ -39,6 +44,9 @@ module cycle_table
     character(len=:), allocatable :: action  !! one of the ways above
     character(len=:), allocatable :: stage   !! responsible, '' when accepted
     logical :: accepted = .false.
+    !> Estimated error of the stress on the new mesh [%]; the change of the force of a die over its limit, negative where it becomes
+    !> smaller, where nothing else speaks against the mesh; each 0 where it is not known.
+    real(wp) :: error_after = 0.0_wp, force = 0.0_wp
   end type try_row_t
 
 contains
@@ -99,8 +107,22 @@ contains
     row%action = cells(at_action)%s
     row%accepted = cells(at_accepted)%s == 'y'
     row%stage = cells(at_stage)%s
+    call read_known(cells(at_error_after)%s, row%error_after, status)
+    if (status == 0) call read_known(cells(at_force)%s, row%force, status)
+    if (status /= 0) return
     good = row%accepted .or. cells(at_accepted)%s == 'n'
   end subroutine parse_row
+
+  !> A number, 0 for an empty cell.
+  pure subroutine read_known(cell, value, status)
+    character(len=*), intent(in) :: cell
+    real(wp), intent(out) :: value
+    integer, intent(out) :: status
+
+    value = 0
+    status = 0
+    if (cell /= '') read (cell, *, iostat=status) value
+  end subroutine read_known
 
   !> Cells as a line of the table; characters that would separate cells are replaced.
   pure function line_of_cells(cells) result(line)
@@ -219,6 +241,48 @@ contains
       is = is .or. rows(k)%stage == 'mesh'
     end do
   end function mesh_is_responsible
+
+  !> The way of the best of several tries at this stop that were refused by the force of a die alone and agree on it: then the old
+  !> mesh was wrong. The best is that with the least error of the stress; '' where there are not several, or they do not agree.
+  pure function agreed_way(rows, generation, stop_step) result(way)
+    type(try_row_t), intent(in) :: rows(:)   !! (ntry)
+    integer, intent(in) :: generation, stop_step
+    character(len=:), allocatable :: way
+    real(wp) :: least, largest, best
+    integer :: k, n
+
+    way = ''
+    least = huge(least)
+    largest = -huge(largest)
+    best = huge(best)
+    n = 0
+    do k = 1, size(rows)
+      associate (row => rows(k))
+        if (row%generation /= generation .or. row%stop_step /= stop_step .or. row%accepted) cycle
+        ! all from one state of the old mesh
+        if (.not. abs(row%force) > 0 .or. row%step /= stop_step .or. row%action == way_agreed) cycle
+        n = n + 1
+        least = min(least, row%force)
+        largest = max(largest, row%force)
+        if (.not. row%error_after < best) cycle
+        best = row%error_after
+        way = row%action
+      end associate
+    end do
+    if (n < several .or. least*largest < 0 .or. largest - least > agree_within) way = ''
+  end function agreed_way
+
+  !> Was a mesh taken up on which several tries agreed?
+  pure function any_agreed(rows) result(any)
+    type(try_row_t), intent(in) :: rows(:)   !! (ntry)
+    logical :: any
+    integer :: k
+
+    any = .false.
+    do k = 1, size(rows)
+      if (rows(k)%accepted) any = any .or. rows(k)%action == way_agreed
+    end do
+  end function any_agreed
 
   !> Was a mesh made from the save before a stop at this time, or at a later one?
   pure function took_earlier(rows, time) result(took)

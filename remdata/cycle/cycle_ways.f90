@@ -1,8 +1,9 @@
 !> Ways to a new mesh, in the order they are tried at a stop of the old one, and whether the try at hand is there.
 module cycle_ways
   use cycle_situation, only: checkpoint_file_t, is_first_mesh, is_in_distress, is_read, situation_t
-  use cycle_table, only: keeps_old_mesh, mesh_is_responsible, number_refused, took_earlier, transfer_is_responsible, was_refused, &
-                         way_coarser, way_deck, way_earlier, way_finer, way_mesher, way_old_mesh, way_transfer
+  use cycle_table, only: agreed_way, keeps_old_mesh, mesh_is_responsible, number_refused, took_earlier, transfer_is_responsible, &
+                         was_refused, way_agreed, way_coarser, way_deck, way_earlier, way_finer, way_mesher, way_old_mesh, &
+                         way_transfer
   implicit none
   private
   public :: next_way, old_state, old_mesh_goes_on, is_whole
@@ -13,8 +14,8 @@ contains
   pure function next_way(s) result(way)
     type(situation_t), intent(in) :: s
     character(len=:), allocatable :: way
-    character(len=*), parameter :: ways(*) = [character(len=16) :: way_deck, way_transfer, way_finer, way_mesher, &
-                                                                way_earlier, way_coarser, way_old_mesh]
+    character(len=*), parameter :: ways(*) = [character(len=16) :: way_deck, way_transfer, way_finer, way_mesher, way_agreed, &
+                                                                way_earlier, way_coarser, way_agreed, way_old_mesh]
     integer :: k, most
 
     associate (generation => s%new%generation, stop_step => s%new%old_end%facts%step)
@@ -29,6 +30,7 @@ contains
         if (way == way_mesher) then
           if (.not. (s%new%old_end%facts%has_zones .and. mesh_is_responsible(s%rows, generation, stop_step))) cycle
         end if
+        if (way == way_agreed .and. agreed_way(s%rows, generation, stop_step) == '') cycle
         if (way == way_earlier .and. .not. has_earlier(s)) cycle
         ! once, and not where the old mesh could go no further or there is none
         if (way == way_old_mesh) then

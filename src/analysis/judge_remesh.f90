@@ -11,7 +11,8 @@ module judge_remesh
   use vectors, only: length_of
   implicit none
   private
-  public :: advice_after_refusal, bad_shape, carried_change, energy_change, force_change, force_limit, limit_lines, refuse_remesh
+  public :: advice_after_refusal, agreed_words, bad_shape, carried_change, energy_change, force_alone, force_along, force_change, &
+            force_limit, limit_lines, refuse_remesh
 
   !> Elements of a smaller scaled Jacobian are distorted (the remesher makes none).
   real(wp), parameter :: bad_shape = 0.2_wp
@@ -74,6 +75,54 @@ contains
     if (.not. accept%force_is_given) limit = max(limit, min(balance%old_error, most_wrong*limit))
   end function force_limit
 
+  !> Of the force that changes most: its change along what it was, over the largest force; negative where it becomes smaller.
+  pure function force_along(balance) result(change)
+    type(balance_t), intent(in) :: balance
+    real(wp) :: change
+    integer :: worst, k
+    real(wp) :: size_of(size(balance%pilot_before, 2))
+
+    change = 0
+    if (size(size_of) == 0) return
+    size_of = [(length_of(balance%pilot_after(1:2, k) - balance%pilot_before(1:2, k)), k=1, size(size_of))]
+    worst = maxloc(size_of, 1)
+    if (.not. size_of(worst) > 0) return
+    change = force_change(balance)
+    if (dot_product(balance%pilot_after(1:2, worst) - balance%pilot_before(1:2, worst), balance%pilot_before(1:2, worst)) < 0) &
+      change = -change
+  end function force_along
+
+  !> Does nothing but the force of a die speak against the mesh, with an energy that goes with the square of the force, and is the
+  !> change within the error of the stress on the old mesh? Then it may be the old mesh that was wrong: other new ones show it. A
+  !> limit that the deck gives holds in any case.
+  pure function force_alone(accept, balance) result(alone)
+    type(acceptance_t), intent(in) :: accept
+    type(balance_t), intent(in) :: balance
+    logical :: alone
+    type(acceptance_t) :: other
+    character(len=:), allocatable :: what
+
+    alone = .false.
+    if (accept%force_is_given .or. .not. balance%restored) return
+    if (.not. balance%shape >= bad_shape .or. .not. force_change(balance) > force_limit(accept, balance)) return
+    if (force_change(balance) > balance%old_error) return
+    other = accept
+    other%force_is_given = .true.
+    other%force_change = force_change(balance)
+    other%energy_change = max(accept%energy_change, (1 + force_change(balance))**2 - 1)
+    call find_fault(other, balance, what)
+    alone = len(what) == 0
+  end function force_alone
+
+  !> What is told of a mesh that is taken up although a force changes.
+  pure function agreed_words(balance) result(words)
+    type(balance_t), intent(in) :: balance
+    character(len=:), allocatable :: words
+
+    words = 'the force of a die changes by '//to_text(100*force_along(balance), 3)//' % at the new mesh: several new ones agree ' &
+            //'that it was wrong on the old one (error of its stress: '//to_text(100*balance%old_error, 3)//' %)'
+  end function agreed_words
+
   !> Change of the elastic energy over what was carried.
   pure function energy_change(balance) result(change)
     type(balance_t), intent(in) :: balance
@@ -103,10 +152,11 @@ contains
     if (balance%place%node > 0) lines(3)%s = lines(3)%s//', worst at node '//to_text(scene%mesh%labels(balance%place%node))
   end function limit_lines
 
-  !> Over a limit a remesh is refused.
-  subroutine refuse_remesh(scene, solution, balance, error)
+  !> Over a limit a remesh is refused; `agreed`: but for the force of a die, on which other new meshes agree.
+  subroutine refuse_remesh(scene, solution, agreed, balance, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
+    logical, intent(in) :: agreed
     type(balance_t), intent(inout) :: balance
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: what
@@ -114,6 +164,10 @@ contains
     call find_fault(scene%remesher%accept, balance, what)
     if (balance%shape < bad_shape) what = 'the scaled Jacobian of an element is '//to_text(balance%shape, 3)//', at least ' &
                                           //to_text(bad_shape, 3)
+    if (agreed .and. force_alone(scene%remesher%accept, balance)) then
+      balance%agreed = .true.
+      what = ''
+    end if
     balance%refused = len(what) > 0
     if (.not. balance%refused) return
     balance%stage = responsible_stage(scene, balance)

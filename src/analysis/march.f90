@@ -228,7 +228,7 @@ contains
     run%totals = run%balance%after
     call list_balance(run%listing, scene, solution, run%balance, outcome)
     call list_lines(run%listing, limit_lines(scene, run%balance))
-    call refuse_remesh(scene, solution, run%balance, error)
+    call refuse_remesh(scene, solution, run%force_agreed, run%balance, error)
     run%mesh_refused = run%balance%refused
     if (.not. run%mesh_refused) call begin_probation(solution%probation)
     if (run%balance%restored) call estimate_stress(scene, run%estimator, solution)

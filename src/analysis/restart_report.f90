@@ -3,7 +3,7 @@ module restart_report
   use errors, only: error_t
   use history, only: circumference
   use dies, only: is_deformable
-  use judge_remesh, only: bad_shape, carried_change, energy_change, force_change, force_limit
+  use judge_remesh, only: bad_shape, carried_change, energy_change, force_alone, force_along, force_change, force_limit
   use json_writer, only: json_t
   use restore_balance, only: balance_t
   use scene, only: scene_t
@@ -60,6 +60,9 @@ contains
       call json%add('force_change', force_change(balance))
       call json%add('energy_change', energy_change(balance))
     end if
+    ! tries are compared by this: whether they agree on the force
+    if (force_alone(scene%remesher%accept, balance)) &
+      call json%add('force_over_limit', force_along(balance)/scene%remesher%accept%force_change)
     call json%add('depth_change', balance%depth_change)
     call json%add('least_scaled_jacobian', balance%shape)
     associate (accept => scene%remesher%accept)

@@ -36,6 +36,8 @@ module restore_balance
     !> The remesh is refused; this stage is responsible.
     logical :: refused = .false.
     character(len=:), allocatable :: stage
+    !> It is taken up although the force of a die changes: other new meshes agree on the force.
+    logical :: agreed = .false.
     !> The first residual: by the energy of its linear correction, and where it acts.
     real(wp) :: first_residual = 0.0_wp
     type(residual_place_t) :: place

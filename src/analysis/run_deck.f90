@@ -15,6 +15,7 @@ module run_deck
   use errors, only: error_t, exit_done, exit_input, exit_remesh, exit_signal, fail
   use exchange, only: read_state, write_checkpoint
   use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
+  use judge_remesh, only: agreed_words
   use kinds, only: wp
   use laid_bodies, only: share_heat
   use law_api, only: law_t
@@ -90,6 +91,7 @@ contains
       call read_input(options, deck, diagnostics, operations, scene, run%deck_text, at_rest, checkpoint, error)
     end if
     run%resume = allocated(options%resume) .and. .not. at_rest
+    run%force_agreed = options%force_agreed
     if (.not. (allocated(error) .or. options%check)) then
       call start_solution(scene, solution)
       if (run%resume) call read_state(checkpoint, scene, solution, error)
@@ -264,6 +266,9 @@ contains
     call march_to_end(scene, solution, run, error)
     call end_progress(run%listing)
 
+    if (allocated(run%balance)) then
+      if (run%balance%agreed) call add_text(facts%warnings, agreed_words(run%balance))
+    end if
     facts%version = version_text
     facts%deck = options%deck
     facts%deck_text = run%deck_text

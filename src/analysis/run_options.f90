@@ -27,6 +27,8 @@ module run_options
     logical :: cards = .false.
     !> Progress only, also where the output is no terminal.
     logical :: progress = .false.
+    !> Other new meshes agree on the forces of the one that is taken up.
+    logical :: force_agreed = .false.
     !> Fineness of a run of a deck with ACCURACY, over what the deck says; not allocated before it is chosen.
     type(fineness_t), allocatable :: fineness
     integer :: threads = 0   !! 0: as many as there are free processors
@@ -64,6 +66,8 @@ contains
         options%quiet = .true.
       case ('--progress')
         options%progress = .true.
+      case ('--force-agreed')
+        options%force_agreed = .true.
       case ('--out')
         call value_of(word, k, options%out, error)
       case ('--resume')
@@ -89,7 +93,7 @@ contains
       case default
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
           call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--check'), string_t('--quiet'), &
-                                    string_t('--forecast'), &
+                                    string_t('--forecast'), string_t('--force-agreed'), &
                                     string_t('--progress'), string_t('--out'), string_t('--resume'), string_t('--law'), &
                                     string_t('--met'), string_t('--cards'), string_t('--point'), string_t('-p'), &
                                     string_t('--threads')], &
@@ -135,7 +139,7 @@ contains
 
     text = 'lagamine: metal forming and heat treatment in two dimensions'//nl//nl// &
            'lagamine DECK [--out DIR] [--check|--forecast] [--resume CHECKPOINT] [-p NAME=VALUE]...'//nl// &
-           '         [--threads N] [--progress|--quiet]'//nl// &
+           '         [--threads N] [--progress|--quiet] [--force-agreed]'//nl// &
            'lagamine --point DECK [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --met FILE [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --law [NAME] | --cards | --help | --version'//nl//nl// &
@@ -143,6 +147,7 @@ contains
            '  --check         read the deck, print the scene, run nothing'//nl// &
            '  --forecast      of a deck with ACCURACY: make its pilots, print what the run is expected to be'//nl// &
            '  --resume FILE   go on from a checkpoint of the same deck'//nl// &
+           '  --force-agreed  with --resume: other new meshes agree on the force of a die, it refuses none'//nl// &
            '  -p NAME=VALUE   set a parameter of the deck'//nl// &
            '  --threads N     threads (default: as many as processors are free); the same bits for any number'//nl// &
            '  --point         one material point along the deck''s PATH; its answer comes into DIR/NAME.point.csv'//nl// &

@@ -48,6 +48,8 @@ module run_record
     type(balance_t), allocatable :: balance
     !> A new mesh was refused, at the restart or on probation.
     logical :: mesh_refused = .false.
+    !> Other new meshes agree on the forces of the one that the run goes on with: they do not speak against it.
+    logical :: force_agreed = .false.
     !> The note on a spurious mode has been given.
     logical :: spurious_reported = .false.
     !> Of a deck with ACCURACY, but for its pilots.

@@ -1,0 +1,113 @@
+!> Small laps of a free contour: loops no longer than an element or two, where a crevice has closed over its ground or a short side
+!> has turned over.
+!>
+!> Such a contour crosses itself, and no mesh resolves what is in the loop. It is cut off where the contour crosses itself: the
+!> matter has met there, and the contour goes on from one flank to the other. The volume is restored with that of the contacts.
+module small_laps
+  use arc_crossings, only: crossings_between, extent, most_crossings, touching
+  use boundary_curves, only: boundary_curve_t
+  use contour_assembly, only: contact_t
+  use folded_sides, only: fold_t
+  use kinds, only: wp
+  use offset_parabolas, only: length_between, point_at
+  use short_free_sides, only: is_free, redrawn, remove_arcs
+  use side_tags, only: same_tags, side_tags_t
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: cut_small_laps
+
+  !> A loop from arc `first` at xi(1) to arc `last` at xi(2).
+  type :: loop_of_lap_t
+    integer :: first = 0, last = 0
+    real(wp) :: xi(2) = 0.0_wp, length = 0.0_wp
+    real(wp) :: point(2) = 0.0_wp   !! where the contour crosses itself [length]
+  end type loop_of_lap_t
+
+contains
+
+  !> Cut off all loops up to a length; each is added to the list as a fold from where the contour crosses itself to its ground.
+  pure subroutine cut_small_laps(longest, tags, contacts, boundary, laps)
+    real(wp), intent(in) :: longest   !! [length]
+    type(side_tags_t), intent(in) :: tags
+    type(contact_t), intent(inout) :: contacts(:)   !! (ncontact) their arcs are renumbered
+    type(boundary_curve_t), intent(inout) :: boundary
+    type(fold_t), allocatable, intent(inout) :: laps(:)
+    type(loop_of_lap_t) :: lap
+    integer :: pass
+
+    ! each takes an arc away, or a part of two
+    do pass = 1, size(boundary%arcs)
+      call find_loop(longest, tags, boundary, lap)
+      if (lap%first == 0) return
+      call cut_off(lap, contacts, boundary, laps)
+    end do
+  end subroutine cut_small_laps
+
+  !> The first loop of free arcs of one set of tags; its `first` is 0 where there is none.
+  pure subroutine find_loop(longest, tags, boundary, lap)
+    real(wp), intent(in) :: longest
+    type(side_tags_t), intent(in) :: tags
+    type(boundary_curve_t), intent(in) :: boundary
+    type(loop_of_lap_t), intent(out) :: lap
+    real(wp) :: xi(2, most_crossings), between, length, point(2)
+    integer :: i, k, n, c
+
+    do i = 1, size(boundary%arcs)
+      if (.not. is_free(boundary%arcs(i))) cycle
+      between = 0
+      k = mod(i, size(boundary%arcs)) + 1
+      do while (k /= i .and. between <= longest)
+        if (.not. is_free(boundary%arcs(k))) exit
+        if (.not. same_tags(tags, boundary%arcs(i)%side, boundary%arcs(k)%side)) exit
+        associate (one => boundary%arcs(i), two => boundary%arcs(k))
+          call crossings_between(one, two, n, xi)
+          do c = 1, n
+            point = point_at(one, xi(1, c))
+            ! the joint of two arcs that follow each other is no crossing
+            if (max(length_of(point_at(one, one%range(2)) - point), length_of(point_at(two, two%range(1)) - point)) &
+                <= touching*max(extent(one), extent(two))) cycle
+            length = length_between(one, xi(1, c), one%range(2)) + between + length_between(two, two%range(1), xi(2, c))
+            ! the outermost of loops within each other
+            if (length > longest .or. length < lap%length) cycle
+            lap = loop_of_lap_t(i, k, xi(:, c), length, point)
+          end do
+          between = between + length_between(two, two%range(1), two%range(2))
+        end associate
+        k = mod(k, size(boundary%arcs)) + 1
+      end do
+      if (lap%first > 0) return
+    end do
+  end subroutine find_loop
+
+  pure subroutine cut_off(lap, contacts, boundary, laps)
+    type(loop_of_lap_t), intent(in) :: lap
+    type(contact_t), intent(inout) :: contacts(:)
+    type(boundary_curve_t), intent(inout) :: boundary
+    type(fold_t), allocatable, intent(inout) :: laps(:)
+    logical :: dropped(size(boundary%arcs))
+    type(fold_t) :: fold
+    integer :: k
+
+    fold%from = lap%point
+    fold%length = 0.5_wp*lap%length
+    associate (one => boundary%arcs(lap%first))
+      fold%to = point_at(one, one%range(2))
+      one%range(2) = lap%xi(1)
+      one = redrawn(one, lap%point, 2)
+    end associate
+    associate (one => boundary%arcs(lap%last))
+      one%range(1) = lap%xi(2)
+      one = redrawn(one, lap%point, 1)
+    end associate
+    laps = [laps, fold]
+    dropped = .false.
+    k = mod(lap%first, size(dropped)) + 1
+    do while (k /= lap%last)
+      dropped(k) = .true.
+      k = mod(k, size(dropped)) + 1
+    end do
+    call remove_arcs(dropped, contacts, boundary)
+  end subroutine cut_off
+
+end module small_laps
