@@ -56,6 +56,9 @@ module remesh_scene
   real(wp), parameter :: strain_order = 2.0_wp
   !> Free sides from a corner to contact that are shorter than this share of the smallest element are dropped.
   real(wp), parameter :: least_free = 0.2_wp
+  !> An element becomes larger by this factor at most from mesh to mesh, however small its error: that of few steps on a mesh says
+  !> nothing of the next ones, nor of what the sides must follow (a body that is touched at one node so far has no error at all).
+  real(wp), parameter :: most_coarser = 1.5_wp
   !> Loops of a free contour that crosses itself are cut off up to the length of so many of the smallest elements: as deep as one.
   real(wp), parameter :: longest_lap = 2.0_wp
   !> Attempts at a mesh of good shape: smoothing, then finer.
@@ -286,7 +289,8 @@ contains
     if (scene%remesh%estimate) then
       do e = 1, size(old%requested)
         error = solution%estimate%strain_of(e)
-        old%requested(e) = requested_size(old%requested(e), error, scene%remesher%strain_error, strain_order)
+        old%requested(e) = min(requested_size(old%requested(e), error, scene%remesher%strain_error, strain_order), &
+                               most_coarser*old%requested(e))
       end do
     end if
     call set_up_sizes(limits, needs, sizes, old)
