@@ -8,6 +8,7 @@ module remesh_scene
   use axis_nodes, only: put_on_axis
   use better_mesh, only: free_mesh_is_better
   use block_mesh, only: polygon_area
+  use body_seams, only: find_seams, seams_t
   use boundary_curves, only: boundary_curve_t
   use contact_carry, only: carry_contacts
   use contact_ends, only: contact_end_t
@@ -21,7 +22,7 @@ module remesh_scene
   use kept_members, only: member_memory_t
   use kinds, only: wp
   use material_interfaces, only: interface_t, interfaces_of
-  use material_volumes, only: compare_materials
+  use material_volumes, only: compare_materials, materials_kept_t
   use member_reader, only: member_reader_t
   use mesh_prediction, only: predict
   use mesh_without_zones, only: make_mesh_without_zones
@@ -75,6 +76,7 @@ contains
     type(contact_end_t), allocatable :: ends(:)
     type(contour_t), allocatable :: contours(:)
     type(interface_t), allocatable :: interfaces(:)
+    type(seams_t) :: seams
     type(plan_t) :: plan
     type(size_field_t) :: sizes
     type(new_mesh_t) :: mesh
@@ -106,6 +108,7 @@ contains
     if (allocated(error)) return
     call begin_task(facts, 'mesh', 'sizes')
     call interfaces_of(old, before, contours, interfaces)
+    call find_seams(old, before, contours, seams)
     call requested_sizes(old, before, contours, first, options%same_sizes, sizes)
     if (all(old%remesher%mesher /= [by_free, by_gmsh])) then
       call begin_task(facts, 'mesh', 'zones')
@@ -114,10 +117,10 @@ contains
       call begin_task(facts, 'mesh', 'mesh')
       if (.not. allocated(error)) call make_mesh(old, before, contours, plan, sizes, options%finer, mesh, facts, error)
     end if
-    if (needs_free_mesh(old%remesher, size(interfaces) > 0, error)) then
-      call make_free_mesh(old, before, contours, sizes, options, plan, mesh, facts, error)
-    else if (.not. allocated(error) .and. may_be_free(old%remesher, size(interfaces) > 0)) then
-      call take_better_mesh(old, before, contours, sizes, options%finer, plan, mesh, facts)
+    if (needs_free_mesh(old%remesher, error)) then
+      call make_free_mesh(old, before, contours, seams, sizes, options, plan, mesh, facts, error)
+    else if (.not. allocated(error) .and. may_be_free(old%remesher)) then
+      call take_better_mesh(old, before, contours, seams, sizes, options%finer, plan, mesh, facts)
     end if
     if (allocated(error)) return
     if (old%plane_state == axisymmetric) call put_on_axis(mesh%coordinates)
@@ -331,46 +334,49 @@ contains
   end subroutine make_mesh
 
   !> Is a mesh without zones needed: because it is requested, or because zones that the user did not give failed?
-  pure function needs_free_mesh(remesher, materials_share, error) result(yes)
+  pure function needs_free_mesh(remesher, error) result(yes)
     type(remesher_options_t), intent(in) :: remesher
-    logical, intent(in) :: materials_share            !! sides, which no mesh without zones keeps
     type(error_t), allocatable, intent(in) :: error   !! of the mesh by zones
     logical :: yes
 
-    yes = any(remesher%mesher == [by_free, by_gmsh]) .or. (allocated(error) .and. may_be_free(remesher, materials_share))
+    yes = any(remesher%mesher == [by_free, by_gmsh]) .or. (allocated(error) .and. may_be_free(remesher))
   end function needs_free_mesh
 
   !> May a mesh without zones take the place of one by zones?
-  pure function may_be_free(remesher, materials_share) result(yes)
+  pure function may_be_free(remesher) result(yes)
     type(remesher_options_t), intent(in) :: remesher
-    logical, intent(in) :: materials_share
     logical :: yes
 
-    yes = remesher%mesher == as_it_comes .and. .not. (has_zones(remesher) .or. materials_share)
+    yes = remesher%mesher == as_it_comes .and. .not. has_zones(remesher)
   end function may_be_free
 
   !> The mesh by derived zones is compared with that of the free mesher, and the better one taken.
-  subroutine take_better_mesh(old, before, contours, sizes, finer, plan, mesh, facts)
+  subroutine take_better_mesh(old, before, contours, seams, sizes, finer, plan, mesh, facts)
     type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
     type(contour_t), intent(in) :: contours(:)   !! (ncontour)
+    type(seams_t), intent(in) :: seams           !! between its bodies
     type(size_field_t), intent(in) :: sizes
     real(wp), intent(in) :: finer                !! requested sizes are divided by this factor
     type(plan_t), intent(inout) :: plan
     type(new_mesh_t), intent(inout) :: mesh
     type(remesh_facts_t), intent(inout) :: facts
     type(plan_t) :: free_plan
+    type(materials_kept_t) :: kept
     type(new_mesh_t) :: free
     type(mesh_check_t) :: check
     type(mesher_t) :: mesher
     type(error_t), allocatable :: error
 
     call begin_task(facts, 'mesh', 'free')
-    call make_mesh_without_zones(old, materials_of(old, before), contours, sizes, finer, mesher, free_plan, free, check, error)
+    call make_mesh_without_zones(old, materials_of(old, before), contours, seams, sizes, finer, mesher, free_plan, free, check, &
+                                 error)
+    if (.not. allocated(error)) call compare_materials(old, before, free_plan, free, kept, error)
     if (allocated(error)) return
     if (.not. free_mesh_is_better(facts%mesh, facts%expected, check, predict(free, sizes, strain_order))) return
     plan = free_plan
     mesh = free
+    facts%materials = kept
     facts%mesher = 'free'
     facts%mesh = check
     call note_free_mesh(mesh, sizes, facts)
@@ -378,10 +384,11 @@ contains
 
   !> A mesh without zones: by the free mesher, or by Gmsh where it is requested or the free mesher failed. Where both fail, the
   !> error of the free mesher is the one to report.
-  subroutine make_free_mesh(old, before, contours, sizes, options, plan, mesh, facts, error)
+  subroutine make_free_mesh(old, before, contours, seams, sizes, options, plan, mesh, facts, error)
     type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
     type(contour_t), intent(in) :: contours(:)
+    type(seams_t), intent(in) :: seams
     type(size_field_t), intent(in) :: sizes
     type(remesh_options_t), intent(in) :: options
     type(plan_t), intent(out) :: plan
@@ -394,8 +401,9 @@ contains
     if (old%remesher%mesher /= by_gmsh) then
       facts%mesher = 'free'
       call begin_task(facts, 'mesh', 'free')
-      call make_mesh_without_zones(old, materials_of(old, before), contours, sizes, options%finer, mesher, plan, mesh, facts%mesh, &
-                                   error)
+      call make_mesh_without_zones(old, materials_of(old, before), contours, seams, sizes, options%finer, mesher, plan, mesh, &
+                                   facts%mesh, error)
+      if (.not. allocated(error)) call compare_materials(old, before, plan, mesh, facts%materials, error)
       call note_free_mesh(mesh, sizes, facts)
       if (.not. allocated(error) .or. old%remesher%mesher == by_free) return
       if (error%code == exit_input) return
@@ -405,8 +413,9 @@ contains
     call begin_task(facts, 'mesh', 'gmsh')
     mesher%is_gmsh = .true.
     call find_gmsh(options%out, options%limit, mesher%gmsh)
-    call make_mesh_without_zones(old, materials_of(old, before), contours, sizes, options%finer, mesher, plan, mesh, facts%mesh, &
-                                 error)
+    call make_mesh_without_zones(old, materials_of(old, before), contours, seams, sizes, options%finer, mesher, plan, mesh, &
+                                 facts%mesh, error)
+    if (.not. allocated(error)) call compare_materials(old, before, plan, mesh, facts%materials, error)
     call note_free_mesh(mesh, sizes, facts)
     if (allocated(error) .and. allocated(first_error)) then
       facts%mesher = 'free'

@@ -2,6 +2,7 @@
 !> every new mesh.
 module mesh_without_zones
   use body_outlines, only: find_outlines, outline_t
+  use body_seams, only: marks_along_paths, seams_t
   use boundary_curves, only: boundary_curve_t
   use errors, only: error_t
   use kinds, only: wp
@@ -26,11 +27,12 @@ module mesh_without_zones
 
 contains
 
-  !> In `plan` each zone is a body in one piece.
-  subroutine make_mesh_without_zones(scene, material, contours, sizes, finer, mesher, plan, mesh, check, error)
+  !> In `plan` each zone is a body in one piece, or the part of a body that is a group.
+  subroutine make_mesh_without_zones(scene, material, contours, seams, sizes, finer, mesher, plan, mesh, check, error)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: material(:)           !! of each group of the scene, as for the sizes (ngroup)
     type(contour_t), intent(in) :: contours(:)   !! (ncontour)
+    type(seams_t), intent(in) :: seams           !! between its bodies
     type(size_field_t), intent(in) :: sizes
     real(wp), intent(in) :: finer   !! requested sizes are divided by this factor
     type(mesher_t), intent(inout) :: mesher
@@ -43,7 +45,7 @@ contains
     type(boundary_curve_t) :: boundaries(size(contours))
     integer :: attempt, c
 
-    call find_outlines(scene, material, contours, outlines, error)
+    call find_outlines(scene, material, contours, outlines, error, seams)
     if (allocated(error)) return
     do c = 1, size(contours)
       boundaries(c) = contours(c)%boundary
@@ -53,7 +55,7 @@ contains
     do attempt = 1, size(finer_by)
       if (allocated(error)) deallocate (error)
       settings%division%refine = finer*finer_by(attempt)
-      call mesh_outlines(boundaries, outlines, sizes, settings, split(attempt), mesher, mesh, error)
+      call mesh_outlines(boundaries, outlines, sizes, settings, split(attempt), mesher, mesh, error, seams)
       if (.not. allocated(error)) call check_new_mesh(contours, mesh, check, error)
       if (.not. allocated(error) .or. .not. mesher%gmsh%available .or. mesher%gmsh%late) exit
     end do
@@ -62,6 +64,7 @@ contains
     allocate (plan%sets(4, size(outlines)), source=0)
     allocate (plan%zones, source=mesh%layout%zones)
     plan%group = outlines%group
+    plan%on_seam = marks_along_paths(scene%mesh%sides, contours, seams)
   end subroutine make_mesh_without_zones
 
 end module mesh_without_zones

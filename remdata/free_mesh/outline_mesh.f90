@@ -6,22 +6,24 @@
 module outline_mesh
   use block_mesh, only: polygon_area
   use body_outlines, only: divide_outlines, lay_out_outlines, outline_t
-  use boundary_curves, only: boundary_curve_t, position_t, turn_at
+  use body_seams, only: seams_t
+  use boundary_curves, only: boundary_curve_t, position_t
+  use corner_mesh, only: corner_mesh_t, loops_around, loops_t, put_points
   use errors, only: error_t
   use flat_quads, only: open_flat_corners
   use gmsh_call, only: gmsh_t, mesh_outline
   use gmsh_files, only: cell_t
-  use kinds, only: pi, wp
+  use kinds, only: wp
   use quad_lists, only: quads_t, refuse_mesh
   use quad_mesher, only: fill_with_quads
-  use side_curves, only: curve_point, curve_t
+  use side_curves, only: curve_t
   use side_middles, only: place_middle
   use size_cells, only: cover
   use size_field, only: size_field_t
   use split_cells, only: split_into_quads
   use text, only: to_text
   use untangle_elements, only: untangle
-  use zone_mesh, only: mesh_settings_t, new_mesh_t
+  use zone_mesh, only: mesh_settings_t, new_mesh_t, seam_side_t
   use zones, only: zone_layout_t
   implicit none
   private
@@ -37,27 +39,10 @@ module outline_mesh
   real(wp), parameter :: growth = 1.02_wp
   integer, parameter :: attempts = 8
 
-  !> No element has both its sides along a contour that turns by less between them: 35 degrees.
-  real(wp), parameter :: flat_turn = 35*pi/180
-
-  !> The corners of the mesh under construction. Points along the contours come first, side by side, then those inside body by body.
-  type :: corner_mesh_t
-    real(wp), allocatable :: x(:, :)        !! (2, nend) [length]
-    integer, allocatable :: corners(:, :)   !! (4, nelem) counter-clockwise
-    integer, allocatable :: zone(:)         !! (nelem)
-    !> Point each side of the layout begins with, and one past the last (nside + 1).
-    integer, allocatable :: start(:)
-    !> Point after each along its contour.
-    integer, allocatable :: next(:)
-    !> Position of each, and whether the contour has no corner there.
-    type(position_t), allocatable :: position(:)
-    logical, allocatable :: smooth(:)
-  end type corner_mesh_t
-
 contains
 
   !> The mesh, or the reason of the failure. `division%factor` of the mesh is the effect of a limited number of elements.
-  subroutine mesh_outlines(boundaries, outlines, field, settings, split, mesher, mesh, error)
+  subroutine mesh_outlines(boundaries, outlines, field, settings, split, mesher, mesh, error, seams)
     type(boundary_curve_t), intent(in) :: boundaries(:)   !! (nboundary)
     type(outline_t), intent(in) :: outlines(:)            !! (nbody)
     type(size_field_t), intent(in) :: field
@@ -66,6 +51,7 @@ contains
     type(mesher_t), intent(inout) :: mesher
     type(new_mesh_t), intent(out) :: mesh
     type(error_t), allocatable, intent(out) :: error
+    type(seams_t), optional, intent(in) :: seams   !! of the outlines that have some
     type(curve_t), allocatable :: curves(:)
     integer, allocatable :: first(:)
     real(wp), allocatable :: ends(:)
@@ -73,7 +59,7 @@ contains
     real(wp) :: factor
     integer :: attempt, k
 
-    call lay_out_outlines(boundaries, outlines, mesh%layout)
+    call lay_out_outlines(boundaries, outlines, mesh%layout, seams)
     factor = 1/settings%division%refine
     do attempt = 1, attempts
       call divide_outlines(boundaries, outlines, mesh%layout, field, factor, split, curves, mesh%division, first, ends)
@@ -85,7 +71,7 @@ contains
     mesh%division%nelem = size(draft%zone)
     call complete(boundaries, curves, first, ends, name_of(mesher), draft, mesh, error)
     if (allocated(error) .or. .not. settings%least_sine > 0) return
-    associate (nend => size(draft%x, 2), n => size(draft%next))
+    associate (nend => size(draft%x, 2), n => draft%nfixed)
       call untangle(mesh%connectivity, [(k > n, k=1, nend)], settings%least_sine, mesh%coordinates)
     end associate
   end subroutine mesh_outlines
@@ -103,30 +89,52 @@ contains
     type(mesher_t), intent(inout) :: mesher
     type(corner_mesh_t), intent(out) :: draft
     type(error_t), allocatable, intent(out) :: error
+    type(loops_t) :: loops
     type(quads_t) :: quads
-    integer, allocatable :: begins(:)
-    integer :: b, low, high
+    integer :: b
 
     call put_points(boundaries, layout, curves, first, ends, draft)
     allocate (draft%corners(4, 0), draft%zone(0))
     do b = 1, size(outlines)
-      call find_contours(layout, b, draft%start, begins)
-      low = begins(1)
-      high = begins(size(begins)) - 1
-      begins = begins - low
-      if (split) then
-        call fill_contours(mesher, draft%x(:, low:high:2), begins/2 + 1, field, outlines(b)%material, 2*factor, quads, error)
-        if (.not. allocated(error)) &
-          call split_into_quads(draft%x(:, low:high:2), (draft%next(draft%next(low:high:2)) - low)/2 + 1, quads)
-      else
-        call fill_contours(mesher, draft%x(:, low:high), begins + 1, field, outlines(b)%material, factor, quads, error)
-        if (.not. allocated(error)) call refuse_triangles(mesher, quads, error)
-      end if
+      call loops_around(layout, draft, b, loops, error)
       if (allocated(error)) return
-      call add_quads(quads, b, low, high, draft)
+      associate (x => draft%x(:, loops%points))
+        if (split) then
+          call fill_contours(mesher, x(:, ::2), loops%first/2 + 1, field, outlines(b)%material, 2*factor, quads, error)
+          if (.not. allocated(error)) call split_into_quads(x(:, ::2), loops%next(loops%next(::2))/2 + 1, quads)
+        else
+          call fill_contours(mesher, x, loops%first, field, outlines(b)%material, factor, quads, error)
+          if (.not. allocated(error)) call refuse_triangles(mesher, quads, error)
+        end if
+      end associate
+      if (allocated(error)) return
+      if (any(outlines%has_seams)) call open_corners_of_part(loops, draft%x(:, loops%points), quads)
+      call add_quads(quads, b, loops%points, draft)
     end do
-    call open_flat_corners(draft%next, draft%smooth, draft%x, draft%corners, draft%zone)
+    ! not across seams
+    if (.not. any(outlines%has_seams)) call open_flat_corners(draft%next, draft%smooth, draft%x, draft%corners, draft%zone)
   end subroutine make_corners
+
+  !> Flat corners along contours and seams of a part, before it is one of several.
+  pure subroutine open_corners_of_part(loops, points, quads)
+    type(loops_t), intent(in) :: loops
+    real(wp), intent(in) :: points(:, :)   !! of the loops (2, n) [length]
+    type(quads_t), intent(inout) :: quads
+    real(wp), allocatable :: x(:, :)
+    integer, allocatable :: zone(:)
+    integer :: e, n
+
+    n = size(points, 2)
+    allocate (x(2, n + size(quads%inside, 2)), zone(size(quads%corners, 2)))
+    x(:, :n) = points
+    x(:, n + 1:) = quads%inside
+    zone = 0
+    do e = 1, size(zone)
+      if (polygon_area(x(:, quads%corners(:, e))) < 0) quads%corners(:, e) = quads%corners([1, 4, 3, 2], e)
+    end do
+    call open_flat_corners(loops%next, loops%smooth, x, quads%corners, zone)
+    quads%inside = x(:, n + 1:)
+  end subroutine open_corners_of_part
 
   !> Quadrilaterals, and perhaps triangles, between the points along the contours of a body.
   subroutine fill_contours(mesher, points, first, field, material, factor, quads, error)
@@ -171,75 +179,14 @@ contains
     if (mesher%is_gmsh) name = 'Gmsh'
   end function name_of
 
-  !> Ends of elements along all sides.
-  pure subroutine put_points(boundaries, layout, curves, first, ends, draft)
-    type(boundary_curve_t), intent(in) :: boundaries(:)
-    type(zone_layout_t), intent(in) :: layout
-    type(curve_t), intent(in) :: curves(:)
-    integer, intent(in) :: first(:)
-    real(wp), intent(in) :: ends(:)
-    type(corner_mesh_t), intent(inout) :: draft
-    integer :: s, k, n, node
-
-    n = size(ends) - size(curves)
-    allocate (draft%x(2, n), draft%position(n), draft%next(n), draft%smooth(n), &
-              draft%start(size(curves) + 1))
-    draft%start(1) = 1
-    do s = 1, size(curves)
-      draft%start(s + 1) = draft%start(s) + first(s + 1) - first(s) - 1
-      do k = first(s), first(s + 1) - 2
-        node = draft%start(s) + k - first(s)
-        call curve_point(boundaries, curves(s), ends(k), draft%x(:, node), draft%position(node))
-        draft%next(node) = node + 1
-        draft%smooth(node) = k > first(s)
-      end do
-      associate (node => draft%start(s))
-        draft%smooth(node) = abs(turn_at(boundaries(curves(s)%boundary), draft%position(node)%arc)) <= flat_turn
-      end associate
-    end do
-    n = 1
-    do s = 1, size(curves)
-      ! the last side of a contour ends where its first one began
-      if (layout%sides(s)%boundary /= layout%sides(n)%boundary) n = s
-      draft%next(draft%start(s + 1) - 1) = merge(draft%start(n), draft%start(s + 1), closes(s))
-    end do
-
-  contains
-
-    pure function closes(side) result(yes)
-      integer, intent(in) :: side
-      logical :: yes
-
-      yes = side == size(curves)
-      if (.not. yes) yes = layout%sides(side + 1)%boundary /= layout%sides(side)%boundary
-    end function closes
-
-  end subroutine put_points
-
-  !> First point of each contour of a body, and one past its last.
-  pure subroutine find_contours(layout, body, start, begins)
-    type(zone_layout_t), intent(in) :: layout
-    integer, intent(in) :: body, start(:)
-    integer, allocatable, intent(out) :: begins(:)
-    integer :: s, boundary
-
-    allocate (begins(0))
-    boundary = 0
-    do s = 1, size(layout%sides)
-      if (layout%sides(s)%zones(1) == body .and. layout%sides(s)%boundary /= boundary) begins = [begins, start(s)]
-      if (layout%sides(s)%zones(1) == body) boundary = layout%sides(s)%boundary
-    end do
-    begins = [begins, start(findloc(layout%sides%zones(1), body, 1, back=.true.) + 1)]
-  end subroutine find_contours
-
-  !> Quadrilaterals between points `low` to `high` and new ones, counter-clockwise.
-  pure subroutine add_quads(quads, body, low, high, draft)
+  !> Quadrilaterals between the points of loops and new ones, counter-clockwise.
+  pure subroutine add_quads(quads, outline, points, draft)
     type(quads_t), intent(in) :: quads
-    integer, intent(in) :: body, low, high
+    integer, intent(in) :: outline, points(:)   !! (n) of the loops
     type(corner_mesh_t), intent(inout) :: draft
     real(wp), allocatable :: x(:, :)
     integer, allocatable :: corners(:, :)
-    integer :: e, n, old
+    integer :: e, k, n, old
 
     n = size(draft%x, 2)
     allocate (x(2, n + size(quads%inside, 2)))
@@ -248,12 +195,18 @@ contains
     old = size(draft%corners, 2)
     allocate (corners(4, old + size(quads%corners, 2)))
     corners(:, :old) = draft%corners
-    corners(:, old + 1:) = merge(quads%corners + (low - 1), quads%corners + (n - high + low - 1), &
-                                 quads%corners <= high - low + 1)
+    do e = 1, size(quads%corners, 2)
+      do k = 1, 4
+        associate (corner => quads%corners(k, e))
+          corners(k, old + e) = n + corner - size(points)
+          if (corner <= size(points)) corners(k, old + e) = points(corner)
+        end associate
+      end do
+    end do
     do e = old + 1, size(corners, 2)
       if (polygon_area(x(:, corners(:, e))) < 0) corners(:, e) = corners([1, 4, 3, 2], e)
     end do
-    draft%zone = [draft%zone, spread(body, 1, size(quads%corners, 2))]
+    draft%zone = [draft%zone, spread(outline, 1, size(quads%corners, 2))]
     call move_alloc(x, draft%x)
     call move_alloc(corners, draft%corners)
   end subroutine add_quads
@@ -291,7 +244,7 @@ contains
     end do
     mesh%boundary = 0
     mesh%position(:n) = draft%position
-    do s = 1, size(curves)
+    do s = 1, size(draft%start) - 1
       do i = draft%start(s), draft%start(s + 1) - 1
         k = first(s) + i - draft%start(s)
         middle = nend + i
@@ -304,7 +257,59 @@ contains
         mesh%sides(i)%to = draft%position(draft%next(i))
       end do
     end do
+    call complete_seams(boundaries, curves, first, ends, draft, mesh, fills)
+    if (.not. fills) call refuse_mesh(name, 'its elements do not follow the sides between bodies', error)
   end subroutine complete
+
+  !> Sides along seams, with their middle nodes on them.
+  pure subroutine complete_seams(boundaries, curves, first, ends, draft, mesh, follows)
+    type(boundary_curve_t), intent(in) :: boundaries(:)
+    type(curve_t), intent(in) :: curves(:)
+    integer, intent(in) :: first(:)
+    real(wp), intent(in) :: ends(:)
+    type(corner_mesh_t), intent(in) :: draft
+    type(new_mesh_t), intent(inout) :: mesh
+    logical, intent(out) :: follows   !! all of them are sides of elements
+    type(position_t) :: ignored
+    integer :: s, k, n
+
+    n = 0
+    do s = size(draft%start), size(curves)
+      n = n + ubound(draft%seams(s)%points, 1)
+    end do
+    allocate (mesh%seams(n))
+    follows = .true.
+    n = 0
+    do s = size(draft%start), size(curves)
+      associate (points => draft%seams(s)%points)
+        do k = 1, ubound(points, 1)
+          n = n + 1
+          mesh%seams(n) = seam_side_t([points(k - 1), middle_between(mesh%connectivity, points(k - 1), points(k)), points(k)], &
+                                      mesh%layout%sides(s)%path)
+          follows = follows .and. mesh%seams(n)%nodes(2) > 0
+          if (.not. follows) return
+          call place_middle(boundaries, curves(s), ends(first(s) + k - 1:first(s) + k), draft%x(:, points(k - 1:k)), &
+                            mesh%coordinates(:, mesh%seams(n)%nodes(2)), ignored)
+        end do
+      end associate
+    end do
+  end subroutine complete_seams
+
+  !> Middle node of the side of an element from one node to another; 0 where there is none.
+  pure function middle_between(connectivity, from, to) result(middle)
+    integer, intent(in) :: connectivity(:, :), from, to
+    integer :: middle
+    integer :: e, k
+
+    do e = 1, size(connectivity, 2)
+      do k = 1, 4
+        if (connectivity(k, e) /= from .or. connectivity(mod(k, 4) + 1, e) /= to) cycle
+        middle = connectivity(4 + k, e)
+        return
+      end do
+    end do
+    middle = 0
+  end function middle_between
 
   !> Middle nodes: first those along the contour, in the order of its points, then the others as elements have them. The
   !> elements fill the contour when each of its sides belongs to one element, and every other side to two, one on each side.

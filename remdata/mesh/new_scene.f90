@@ -76,6 +76,18 @@ contains
         sides = reshape([sides, zone_side(mesh, z, k)], [3, size(sides, 2) + divisions(z, k)])
       end do
     end do
+    if (allocated(plan%on_seam) .and. allocated(mesh%seams)) then
+      do k = 1, size(mesh%seams)
+        associate (nodes => mesh%seams(k)%nodes)
+          select case (plan%on_seam(mesh%seams(k)%path, set))
+          case (1)
+            sides = reshape([sides, nodes], [3, size(sides, 2) + 1])
+          case (-1)
+            sides = reshape([sides, nodes([3, 2, 1])], [3, size(sides, 2) + 1])
+          end select
+        end associate
+      end do
+    end if
     sides = in_order(sides)
     if (size(sides) > 0) return
     do k = 1, size(mesh%sides)
@@ -100,7 +112,8 @@ contains
       integer, intent(in) :: list(:, :)
       integer :: ordered(3, size(list, 2)), i, next
 
-      next = findloc([(any(list(3, :) == list(1, i)), i=1, size(list, 2))], .false., 1)
+      ! a closed one begins anywhere
+      next = max(1, findloc([(any(list(3, :) == list(1, i)), i=1, size(list, 2))], .false., 1))
       do i = 1, size(list, 2)
         ordered(:, i) = list(:, next)
         next = findloc(list(1, :), list(3, next), 1)

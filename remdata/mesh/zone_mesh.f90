@@ -18,7 +18,7 @@ module zone_mesh
   use zones, only: coordinates_of, follows_interface, lay_out, runs_straight, zone_layout_t, zone_point_t, zone_t
   implicit none
   private
-  public :: mesh_settings_t, contour_side_t, new_mesh_t, mesh_zones
+  public :: mesh_settings_t, contour_side_t, new_mesh_t, seam_side_t, mesh_zones
 
   !> Settings of a mesh, which are changed when one is refused.
   type :: mesh_settings_t
@@ -37,6 +37,11 @@ module zone_mesh
     type(position_t) :: from, to
   end type contour_side_t
 
+  !> A side of two elements along a seam: first end, middle, second end, and the path of the layout that it follows.
+  type :: seam_side_t
+    integer :: nodes(3) = 0, path = 0
+  end type seam_side_t
+
   type :: new_mesh_t
     real(wp), allocatable :: coordinates(:, :)   !! (2, nnode) [length]
     integer, allocatable :: connectivity(:, :)   !! (8, nelem) in the order of `quad8`
@@ -46,6 +51,8 @@ module zone_mesh
     type(position_t), allocatable :: position(:)
     !> Contour sides, sorted by boundary curve and position.
     type(contour_side_t), allocatable :: sides(:)
+    !> Sides along seams, of meshes without zones, the left part on their left.
+    type(seam_side_t), allocatable :: seams(:)
     type(zone_layout_t) :: layout
     type(division_t) :: division
   end type new_mesh_t

@@ -54,6 +54,8 @@ module zones
     integer, allocatable :: group(:), sets(:, :)
     !> Open curves that sides between materials follow, from one corner to the next, in either direction.
     type(boundary_curve_t), allocatable :: paths(:)
+    !> Sets of sides along paths of a mesh without zones: 1 with their part on the left, -1 on the right, 0 elsewhere (npath, nset).
+    integer, allocatable :: on_seam(:, :)
   end type plan_t
 
   type :: zone_side_t

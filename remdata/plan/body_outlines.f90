@@ -1,9 +1,13 @@
 !> Bodies that are meshed from their contours alone: their boundaries, and the ends of elements along their contours.
 !>
+!> Parts of a body that are groups of their own, as two materials are, have an outline each: their share of the contours and the
+!> seams between them, whose ends are ends of elements of both.
+!>
 !> Contours are divided as the sides of zones are: from corner to corner, with an end of an element where contact begins or ends
 !> and where another set of sides begins. The contours of a body together get an even number of elements: an odd number bounds no
 !> mesh of quadrilaterals, since each has four sides and each inner side belongs to two.
 module body_outlines
+  use body_seams, only: add_seam_ends, group_beside, group_of_element, lay_out_seams, mark_sets, seams_t
   use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, kind_corner, position_at_arc_length, turn_at
   use boundary_sides, only: loop_t
   use contour_divisions, only: divide_sides
@@ -12,6 +16,7 @@ module body_outlines
   use kinds, only: wp
   use part_contour, only: contour_options_t, contour_t
   use scene, only: is_solid, scene_t
+  use shape_functions, only: quad8_side
   use side_curves, only: curve_t, draw_side, measure_density
   use size_field, only: size_field_t
   use zone_divisions, only: division_t, rounded_up
@@ -20,11 +25,13 @@ module body_outlines
   private
   public :: outline_t, find_outlines, refuse_inner_sets, lay_out_outlines, divide_outlines
 
-  !> A body in one piece: its group in the scene, and its contours.
+  !> A body in one piece: its group in the scene, and its contours. Or the part of a body that is a group.
   type :: outline_t
     integer :: group = 0, material = 0
-    !> The outer contour, then the holes.
+    !> The outer contour, then the holes; of a part all contours of which it has a share.
     integer, allocatable :: boundaries(:)
+    !> It shares sides with other groups.
+    logical :: has_seams = .false.
   end type outline_t
 
   !> A contour has no fewer elements than this.
@@ -32,28 +39,45 @@ module body_outlines
 
 contains
 
-  !> All bodies. Where two of them share sides, only zones can separate them.
-  pure subroutine find_outlines(scene, material, contours, outlines, error)
+  !> All bodies, and the parts of those that have seams.
+  pure subroutine find_outlines(scene, material, contours, outlines, error, seams)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: material(:)                         !! of each group of the scene, as for the sizes (ngroup)
     type(contour_t), intent(in) :: contours(:)                 !! (ncontour)
     type(outline_t), allocatable, intent(out) :: outlines(:)   !! (nbody)
     type(error_t), allocatable, intent(out) :: error
+    type(seams_t), optional, intent(in) :: seams
     integer :: body(size(contours)), c, n
+    logical :: of_parts(size(scene%groups)), in_parts(size(contours))
 
-    call refuse_shared_nodes(scene, error)
-    if (.not. allocated(error)) call refuse_inner_sets(scene, contours, error)
+    of_parts = .false.
+    if (present(seams)) then
+      do n = 1, size(seams%interfaces)
+        of_parts(seams%interfaces(n)%materials) = .true.
+      end do
+    end if
+    call refuse_shared_nodes(scene, error, seams)
+    if (.not. allocated(error)) call refuse_inner_sets(scene, contours, error, seams)
     if (allocated(error)) return
     do c = 1, size(contours)
       body(c) = contours(c)%loop%body
       if (body(c) == 0) body(c) = c   ! a first mesh: a body is one contour
+      in_parts(c) = .false.
+      if (any(of_parts)) in_parts(c) = of_parts(group_of(scene, contours(c)%loop, c))
     end do
-    n = maxval(body)
-    allocate (outlines(n))
+    ! numbers of bodies without parts, one after the other
+    do n = maxval(body), 1, -1
+      if (any(body == n .and. .not. in_parts)) cycle
+      where (body > n) body = body - 1
+    end do
+    n = maxval([0, pack(body, .not. in_parts)])
+    allocate (outlines(n + count(of_parts)))
     do n = 1, size(outlines)
       allocate (outlines(n)%boundaries(0))
     end do
+    if (present(seams)) call add_parts(material, of_parts, seams, outlines(size(outlines) - count(of_parts) + 1:))
     do c = 1, size(contours)
+      if (in_parts(c)) cycle
       associate (outline => outlines(body(c)))
         if (volume_inside(contours(c)%boundary, .false.) > 0) then
           outline%boundaries = [c, outline%boundaries]
@@ -66,11 +90,36 @@ contains
     end do
   end subroutine find_outlines
 
-  pure subroutine refuse_shared_nodes(scene, error)
+  !> The parts of bodies, in the order of their groups.
+  pure subroutine add_parts(material, of_parts, seams, outlines)
+    integer, intent(in) :: material(:)            !! (ngroup)
+    logical, intent(in) :: of_parts(:)            !! (ngroup)
+    type(seams_t), intent(in) :: seams
+    type(outline_t), intent(inout) :: outlines(:)   !! (npart)
+    integer :: g, c, n
+
+    n = 0
+    do g = 1, size(of_parts)
+      if (.not. of_parts(g)) cycle
+      n = n + 1
+      outlines(n)%has_seams = .true.
+      outlines(n)%group = g
+      outlines(n)%material = material(g)
+      do c = 1, size(seams%groups, 2)
+        if (any(seams%groups(:, c) == g)) outlines(n)%boundaries = [outlines(n)%boundaries, c]
+      end do
+    end do
+  end subroutine add_parts
+
+  !> Bodies that share nodes where no seam is.
+  pure subroutine refuse_shared_nodes(scene, error, seams)
     type(scene_t), intent(in) :: scene
     type(error_t), allocatable, intent(out) :: error
+    type(seams_t), optional, intent(in) :: seams
     integer :: owner(size(scene%mesh%coordinates, 2)), g, e, k
+    logical :: on_seam(size(owner))
 
+    call mark_shared_sides(scene, present(seams), on_seam)
     owner = 0
     do g = 1, size(scene%groups)
       if (.not. is_solid(scene%groups(g))) cycle
@@ -78,7 +127,7 @@ contains
         do k = 1, 8
           associate (node => scene%groups(g)%connectivity(k, e))
             if (owner(node) == 0) owner(node) = g
-            if (owner(node) == g) cycle
+            if (owner(node) == g .or. on_seam(node)) cycle
             call fail(error, exit_input, 'remdata: the bodies '//scene%groups(owner(node))%name//' and '//scene%groups(g)%name// &
                       ' share sides: a mesh without zones does not keep what is between them', 'give ZONE cards')
             return
@@ -88,19 +137,50 @@ contains
     end do
   end subroutine refuse_shared_nodes
 
-  !> Sets of sides are kept along contours only: one inside a body would be lost.
-  pure subroutine refuse_inner_sets(scene, contours, error)
+  !> Nodes of sides that two groups share; none where these are not `wanted`.
+  pure subroutine mark_shared_sides(scene, wanted, shared)
+    type(scene_t), intent(in) :: scene
+    logical, intent(in) :: wanted
+    logical, intent(out) :: shared(:)   !! (nnode)
+    integer :: owner(size(shared)), g, e, k
+
+    owner = 0
+    shared = .false.
+    if (.not. wanted) return
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      do e = 1, size(scene%groups(g)%connectivity, 2)
+        do k = 1, 4
+          associate (nodes => scene%groups(g)%connectivity(quad8_side(:, k), e))
+            if (owner(nodes(2)) == 0) owner(nodes(2)) = g
+            if (owner(nodes(2)) /= g) shared(nodes) = .true.
+          end associate
+        end do
+      end do
+    end do
+  end subroutine mark_shared_sides
+
+  !> Sets of sides are kept along contours and whole seams only: another one inside a body would be lost.
+  pure subroutine refuse_inner_sets(scene, contours, error, seams)
     type(scene_t), intent(in) :: scene
     type(contour_t), intent(in) :: contours(:)   !! (ncontour)
     type(error_t), allocatable, intent(out) :: error
+    type(seams_t), optional, intent(in) :: seams
     integer :: s, c, found
+    integer, allocatable :: on_seam(:, :)
+    logical :: whole(size(scene%mesh%sides))
 
+    whole = .false.
+    if (present(seams)) then
+      allocate (on_seam(size(seams%interfaces), size(whole)))
+      call mark_sets(scene%mesh%sides, contours, seams, on_seam, whole)
+    end if
     do s = 1, size(scene%mesh%sides)
       found = 0
       do c = 1, size(contours)
         found = found + count(contours(c)%tags%on_set(s, :))
       end do
-      if (found >= size(scene%mesh%sides(s)%nodes, 2)) cycle
+      if (found >= size(scene%mesh%sides(s)%nodes, 2) .or. whole(s)) cycle
       call fail(error, exit_input, 'remdata: the sides '//scene%mesh%sides(s)%name &
                 //' lie inside a body: a new mesh does not keep them', &
                 'name sides on the contour, or make the mesh of BLOCK cards')
@@ -114,46 +194,65 @@ contains
     type(loop_t), intent(in) :: loop
     integer, intent(in) :: number
     integer :: group
-    integer :: last
 
     if (size(loop%element) == 0) then
       group = scene%remesher%contours(number)%group
       return
     end if
-    last = 0
-    do group = 1, size(scene%groups)
-      if (.not. is_solid(scene%groups(group))) cycle
-      last = last + size(scene%groups(group)%connectivity, 2)
-      if (loop%element(1) <= last) return
-    end do
+    group = group_of_element(scene, loop%element(1))
   end function group_of
 
   !> A body is treated as a zone with any number of sides, along its contours from corner to corner.
-  pure subroutine lay_out_outlines(boundaries, outlines, layout)
+  !> Sides along seams come last.
+  pure subroutine lay_out_outlines(boundaries, outlines, layout, seams)
     type(boundary_curve_t), intent(in) :: boundaries(:)   !! (nboundary)
     type(outline_t), intent(in) :: outlines(:)            !! (nbody)
     type(zone_layout_t), intent(out) :: layout
+    type(seams_t), optional, intent(in) :: seams
     type(zone_side_t) :: side
     type(zone_point_t), allocatable :: points(:)
-    integer :: b, i, k, first
+    logical :: laid_out(size(boundaries))
+    integer :: b, i, k, n, first
 
     allocate (layout%points(0), layout%sides(0), layout%zones(size(outlines)), layout%zone_sides(4, 0))
     side%form = follows_contour
+    laid_out = .false.
     do b = 1, size(outlines)
       layout%zones(b)%material = outlines(b)%material
       side%zones(1) = b
       do i = 1, size(outlines(b)%boundaries)
         side%boundary = outlines(b)%boundaries(i)
+        if (laid_out(side%boundary)) cycle
+        laid_out(side%boundary) = .true.
         call corners_of(boundaries(side%boundary), side%boundary, points)
+        if (outlines(b)%has_seams) call add_seam_ends(seams, boundaries(side%boundary), side%boundary, points)
         first = size(layout%points)
         layout%points = [layout%points, points]
         do k = 1, size(points)
-          side%points = first + [k, mod(k, size(points)) + 1]
+          n = mod(k, size(points)) + 1
+          side%points = first + [k, n]
+          if (outlines(b)%has_seams) side%zones(1) = &
+            part_of(group_beside(seams, boundaries(side%boundary), side%boundary, points(k)%position, points(n)%position))
           layout%sides = [layout%sides, side]
         end do
       end do
     end do
+    if (any(outlines%has_seams)) then
+      n = maxval(outlines%group)
+      call lay_out_seams(seams, [(part_of(k), k=1, n)], boundaries, layout)
+    end if
     allocate (layout%point_moves(size(layout%points)), source=.false.)
+
+  contains
+
+    !> Number of the outline that is a group; 0 where none is.
+    pure function part_of(group) result(number)
+      integer, intent(in) :: group
+      integer :: number
+
+      number = findloc(outlines%has_seams .and. outlines%group == group, .true., 1)
+    end function part_of
+
   end subroutine lay_out_outlines
 
   !> Corners of a contour in their order; a contour with less than two gets other points.
@@ -202,7 +301,12 @@ contains
     do s = 1, size(curves)
       associate (side => layout%sides(s))
         call draw_side(boundaries, layout, side, field, curves(s))
-        call measure_density(boundaries, field, layout%zones(side%zones(1))%material, curves(s))
+        if (side%zones(2) > 0) then
+          call measure_density(boundaries, field, layout%zones(side%zones(1))%material, curves(s), &
+                               layout%zones(side%zones(2))%material)
+        else
+          call measure_density(boundaries, field, layout%zones(side%zones(1))%material, curves(s))
+        end if
       end associate
       division%count(s) = sum(rounded_up(curves(s)%needs/factor))
       if (all_even) division%count(s) = division%count(s) + mod(division%count(s), 2)
@@ -216,12 +320,51 @@ contains
           end do
         end associate
       end do
-      if (mod(sum(pack(division%count, layout%sides%zones(1) == b)), 2) == 0) cycle
-      s = neediest(curves, division%count, layout%sides%zones(1) == b)
-      division%count(s) = division%count(s) + 1
+      associate (around => layout%sides%zones(1) == b .or. layout%sides%zones(2) == b)
+        do while (sum(pack(division%count, around)) < fewest)
+          s = neediest(curves, division%count, around)
+          division%count(s) = division%count(s) + merge(2, 1, all_even)
+        end do
+        if (mod(sum(pack(division%count, around)), 2) > 0) call add_one_each(layout, curves, b, division%count)
+      end associate
     end do
     call divide_sides(layout, curves, division, field%limits%gradation, first, ends)
   end subroutine divide_outlines
+
+  !> One element more on sides that lead from an outline to the outside, through as few others as possible: their numbers stay even
+  !> or odd, that of the outline changes. (An inclusion has no side that is no other's too.)
+  pure subroutine add_one_each(layout, curves, outline, count)
+    type(zone_layout_t), intent(in) :: layout
+    type(curve_t), intent(in) :: curves(:)   !! (nside)
+    integer, intent(in) :: outline
+    integer, intent(inout) :: count(:)       !! (nside)
+    integer :: came_by(size(layout%zones)), queue(size(layout%zones)), s, b, i, n, other
+
+    came_by = 0
+    queue(1) = outline
+    n = 1
+    i = 0
+    do while (i < n)
+      i = i + 1
+      b = queue(i)
+      if (any(layout%sides%zones(1) == b .and. layout%sides%zones(2) == 0)) exit
+      do s = 1, size(count)
+        if (all(layout%sides(s)%zones /= b) .or. layout%sides(s)%zones(2) == 0) cycle
+        other = sum(layout%sides(s)%zones) - b
+        if (other == outline .or. came_by(other) > 0) cycle
+        came_by(other) = s
+        n = n + 1
+        queue(n) = other
+      end do
+    end do
+    s = neediest(curves, count, layout%sides%zones(1) == b .and. layout%sides%zones(2) == 0)
+    do
+      count(s) = count(s) + 1
+      if (b == outline) return
+      s = came_by(b)
+      b = sum(layout%sides(s)%zones) - b
+    end do
+  end subroutine add_one_each
 
   !> The side with the largest need per element.
   pure function neediest(curves, count, among) result(most)

@@ -17,7 +17,7 @@ module material_interfaces
   use zones, only: on_boundary
   implicit none
   private
-  public :: interface_t, interfaces_of, node_on_contour, path_between
+  public :: group_interfaces, interface_t, interfaces_of, node_on_contour, path_between
 
   type :: interface_t
     !> Materials on its left and on its right.
@@ -28,6 +28,8 @@ module material_interfaces
     !> Contours that its ends lie on, 0 inside, and positions on them.
     integer :: contour(2) = 0
     type(position_t) :: position(2)
+    !> Node of the old mesh that it begins with.
+    integer :: first_node = 0
   end type interface_t
 
   !> Coincidence tolerance: a shorter part of an arc, in half sides, is dropped.
@@ -48,6 +50,28 @@ contains
     call mesh_of(pieces, mesh)
     call find_interfaces(mesh%connectivity, mesh%material, mesh%nodes, contours, interfaces)
   end subroutine interfaces_of
+
+  !> The same between all groups of the scene, be their materials alike or not; `materials` are the numbers of the groups.
+  subroutine group_interfaces(scene, solution, contours, interfaces)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(contour_t), intent(in) :: contours(:)                     !! (ncontour)
+    type(interface_t), allocatable, intent(out) :: interfaces(:)   !! (ninterface)
+    type(state_pieces_t) :: pieces
+    type(transfer_mesh_t) :: mesh
+    integer, allocatable :: group(:)
+    integer :: k, n
+
+    call solid_pieces(scene, pieces, solution)
+    call mesh_of(pieces, mesh)
+    allocate (group(size(mesh%material)))
+    n = 0
+    do k = 1, size(pieces%groups)
+      group(n + 1:n + size(pieces%groups(k)%connectivity, 2)) = pieces%groups(k)%scene_group
+      n = n + size(pieces%groups(k)%connectivity, 2)
+    end do
+    call find_interfaces(mesh%connectivity, group, mesh%nodes, contours, interfaces)
+  end subroutine group_interfaces
 
   pure subroutine find_interfaces(connectivity, material, x, contours, interfaces)
     integer, intent(in) :: connectivity(:, :)                      !! nodes of all elements (8, nelem)
@@ -75,6 +99,7 @@ contains
         n = n + 1
         list(n)%materials = pairs(:, s)
         list(n)%closed = pass == 2
+        list(n)%first_node = sides(1, walk(1))
         call draw(x, contours, sides(:, walk), list(n))
       end do
     end do

@@ -1,6 +1,6 @@
 !> Check that a new mesh keeps the volume of every material and the interfaces between materials.
 module material_volumes
-  use boundary_curves, only: boundary_length, closest_position, point_on
+  use boundary_curves, only: boundary_curve_t, boundary_length, closest_position, point_on
   use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
   use scene, only: scene_t
@@ -60,22 +60,36 @@ contains
     real(wp) :: worst
     type(node_numbers_t) :: numbers
     integer, allocatable :: nodes(:)
-    integer :: s, k
+    integer :: s
 
     worst = 0
-    allocate (nodes(0))
+    if (allocated(mesh%seams)) then
+      do s = 1, size(mesh%seams)
+        call compare(mesh%seams(s)%nodes, mesh%layout%paths(mesh%seams(s)%path))
+      end do
+      return
+    end if
     numbers = number_nodes(mesh%layout, mesh%division)
     do s = 1, size(mesh%layout%sides)
       if (mesh%layout%sides(s)%path == 0) cycle
       nodes = [ends_of_side(mesh%layout, mesh%division, numbers, s), middles_of_side(mesh%division, numbers, s)]
-      associate (path => mesh%layout%paths(mesh%layout%sides(s)%path))
-        do k = 1, size(nodes)
-          associate (x => mesh%coordinates(:, nodes(k)))
-            worst = max(worst, length_of(point_on(path, closest_position(path, x)) - x)/boundary_length(path))
-          end associate
-        end do
-      end associate
+      call compare(nodes, mesh%layout%paths(mesh%layout%sides(s)%path))
     end do
+
+  contains
+
+    pure subroutine compare(along, path)
+      integer, intent(in) :: along(:)
+      type(boundary_curve_t), intent(in) :: path
+      integer :: k
+
+      do k = 1, size(along)
+        associate (x => mesh%coordinates(:, along(k)))
+          worst = max(worst, length_of(point_on(path, closest_position(path, x)) - x)/boundary_length(path))
+        end associate
+      end do
+    end subroutine compare
+
   end function off_interfaces
 
   !> Volumes in both meshes, where materials share sides. A mesh is refused in which a material has lost its interface, or too much
