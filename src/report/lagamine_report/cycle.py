@@ -15,6 +15,7 @@ NUMBERS = ("stop_time", "old_elements", "new_elements", "error_before", "error_a
 LATER = ("laps", "lap_depth")
 TEXTS = ("trigger", "action", "accepted", "stage", "reason")
 KEEPS_OLD = "old mesh"
+AGREED = "agreed force"
 LIMIT = "_limit"
 # What the restart balances: name in NAME.gNN.restart.json, without `_before` and `_after`, and in words.
 BALANCES = {"volume": "volume", "elastic_energy": "elastic energy", "plastic_work": "plastic work of the run"}

@@ -3,7 +3,7 @@ from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 
-from .cycle import BALANCES, Change, Try, new_meshes
+from .cycle import AGREED, BALANCES, Change, Try, new_meshes
 from .markup import Sections, escape, figure, table
 from .picture import Picture
 from .reader import Run
@@ -58,6 +58,8 @@ def cells(run: Run, row: Try) -> List[str]:
     elif row.refused:
         words = {key: escape(text) for key, text in row.texts.items()}
         why += f"<br><b>refused</b> ({words['action']}; stage {words['stage']}): {words['reason']}"
+    elif row.texts["action"] == AGREED:
+        why += f"<br><b>warning</b>: {escape(row.texts['reason'])}"
     elif row.number > 1:
         why += f"<br>try {row.number}: {escape(row.texts['action'])}"
     if n["laps"] > 0:
