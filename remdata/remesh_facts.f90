@@ -1,5 +1,6 @@
 !> Results of a remesh, the stage it reached and the time each task took: for the report.
 module remesh_facts
+  use cuts, only: cut_record_t
   use kinds, only: wp
   use material_volumes, only: materials_kept_t
   use mesh_prediction, only: prediction_t
@@ -34,6 +35,9 @@ module remesh_facts
     type(prediction_t) :: expected
     !> Seconds of the tasks, in their order.
     type(ledger_t) :: timers
+    !> What came of the cuts of the scene, where some were made; the volume removed, of the full circumference when axisymmetric.
+    type(cut_record_t), allocatable :: cuts(:)
+    real(wp) :: removed = 0.0_wp
     !> The current task; 0: none.
     integer :: task = 0
   end type remesh_facts_t

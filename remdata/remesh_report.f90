@@ -46,6 +46,7 @@ contains
         end associate
       end do
     end if
+    if (allocated(facts%cuts)) call print_line('  cut: volume removed '//to_text(facts%removed, 6), error)
     call print_line('  by '//facts%mesher//', shape: scaled Jacobian from '//to_text(facts%mesh%scaled_jacobian, 3)//', angles ' &
       //to_text(facts%mesh%least_angle, 3)//' to '//to_text(facts%mesh%largest_angle, 4)//' degrees', error)
     if (facts%mesh%off_ends > without_node) call print_line('  an end of contact has no node: the nearest one is ' &
@@ -95,6 +96,7 @@ contains
       call json%add('laps', size(facts%contour%folds))
       call json%add('lap_depth', maxval([0.0_wp, facts%contour%folds%length]))
     end if
+    if (allocated(facts%cuts)) call json%add('removed_volume', facts%removed)
     call json%begin_object('seconds')
     do k = 1, facts%timers%size()
       call json%add(facts%timers%name(k), facts%timers%seconds(k))

@@ -12,15 +12,18 @@ module remesh_scene
   use boundary_curves, only: boundary_curve_t
   use contact_carry, only: carry_contacts
   use contact_ends, only: contact_end_t
+  use contour_cuts, only: cut_is_due, make_cuts
+  use contour_volume, only: volume_inside
+  use cuts, only: stage_of_cuts
   use contour_needs, only: geometry_settings_t, needs_of_boundary, needs_of_die
   use dies, only: is_deformable
-  use errors, only: error_t, exit_input
+  use errors, only: error_t, exit_input, fail
   use exchange, only: open_checkpoint, read_bare_scene, read_contact_ends, read_deck_of_checkpoint, read_state, write_checkpoint
   use fields, only: displacement_field, on_nodes, pilot_field
   use first_contours, only: contours_of_cards
   use gmsh_call, only: find_gmsh
   use kept_members, only: member_memory_t
-  use kinds, only: wp
+  use kinds, only: pi, wp
   use material_interfaces, only: interface_t, interfaces_of
   use material_volumes, only: compare_materials, materials_kept_t
   use member_reader, only: member_reader_t
@@ -83,7 +86,7 @@ contains
     character(len=:), allocatable :: deck_path, deck_text
     real(wp), allocatable :: moved(:, :)
     type(remesher_options_t) :: as_the_deck_says
-    logical :: first
+    logical :: first, is_cut
 
     facts%mesher = 'zones'
     call begin_task(facts, 'checkpoint', 'read')
@@ -106,18 +109,20 @@ contains
                           contours, facts%contour, error)
     end if
     if (allocated(error)) return
-    call begin_task(facts, 'mesh', 'sizes')
     call interfaces_of(old, before, contours, interfaces)
+    call cut_bodies(old, before, size(interfaces) > 0, contours, facts, is_cut, error)
+    if (allocated(error)) return
     call find_seams(old, before, contours, seams)
+    call begin_task(facts, 'mesh', 'sizes')
     call requested_sizes(old, before, contours, first, options%same_sizes, sizes)
-    if (all(old%remesher%mesher /= [by_free, by_gmsh])) then
+    if (all(old%remesher%mesher /= [by_free, by_gmsh]) .and. .not. is_cut) then
       call begin_task(facts, 'mesh', 'zones')
       call plan_zones(old, present_coordinates(old, before), before%fields(pilot_field)%value, materials_of(old, before), &
                       contours, interfaces, plan, error)
       call begin_task(facts, 'mesh', 'mesh')
       if (.not. allocated(error)) call make_mesh(old, before, contours, plan, sizes, options%finer, mesh, facts, error)
     end if
-    if (needs_free_mesh(old%remesher, error)) then
+    if (is_cut .or. needs_free_mesh(old%remesher, error)) then
       call make_free_mesh(old, before, contours, seams, sizes, options, plan, mesh, facts, error)
     else if (.not. allocated(error) .and. may_be_free(old%remesher)) then
       call take_better_mesh(old, before, contours, seams, sizes, options%finer, plan, mesh, facts)
@@ -136,6 +141,7 @@ contains
     else
       call carry_state(old, before, moved, contours, mesh, new, after, facts, error)
       if (allocated(error)) return
+      if (is_cut) call note_cuts(old, contours, facts, after)
     end if
     call begin_task(facts, 'checkpoint', 'write')
     new%remesher = as_the_deck_says
@@ -144,6 +150,48 @@ contains
     facts%old_elements = count_elements(old)
     facts%new_elements = count_elements(new)
   end subroutine remesh_checkpoint
+
+  !> Make the cuts that are due. The facts have what came of all cuts of the scene.
+  subroutine cut_bodies(old, before, materials_share, contours, facts, is_cut, error)
+    type(scene_t), intent(in) :: old
+    type(solution_t), intent(in) :: before
+    logical, intent(in) :: materials_share   !! sides
+    type(contour_t), allocatable, intent(inout) :: contours(:)   !! (ncontour)
+    type(remesh_facts_t), intent(inout) :: facts
+    logical, intent(out) :: is_cut
+    type(error_t), allocatable, intent(out) :: error
+    integer :: k
+
+    is_cut = any([(cut_is_due(old, before, k), k=1, size(before%cuts))])
+    if (.not. is_cut) return
+    call begin_task(facts, stage_of_cuts, 'cut')
+    if (materials_share) then
+      call fail(error, exit_input, 'a body that is cut shares sides with another one', 'cut a body that stands alone')
+      return
+    end if
+    call make_cuts(old, before, contours, facts%cuts, error)
+  end subroutine cut_bodies
+
+  !> What was cut off is no drift of the volume.
+  subroutine note_cuts(old, contours, facts, after)
+    type(scene_t), intent(in) :: old
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
+    type(remesh_facts_t), intent(inout) :: facts
+    type(solution_t), intent(inout) :: after
+    real(wp) :: left, share
+    integer :: c
+
+    left = 0
+    do c = 1, size(contours)
+      left = left + volume_inside(contours(c)%boundary, old%plane_state == axisymmetric)
+    end do
+    facts%removed = sum(facts%cuts%volume, mask=facts%cuts%generation == facts%generation)
+    share = left/(left + facts%removed)
+    after%initial_volume = share*after%initial_volume
+    after%work%grown = share*after%work%grown
+    after%cuts = facts%cuts
+    if (old%plane_state == axisymmetric) facts%removed = 2*pi*facts%removed
+  end subroutine note_cuts
 
   !> Read the whole checkpoint; it is opened, and its hash compared, once.
   subroutine read_all(path, deck_path, deck_text, scene, solution, ends, error)

@@ -183,11 +183,12 @@ contains
     if (judged .and. accepted == 'y') cells(21)%s = force_change_of(s, old%facts%step)
     cells(22)%s = json_text(made, 'laps')
     cells(23)%s = json_text(made, 'lap_depth')
-    cells(24)%s = ''
-    if (accepted == 'n') cells(24)%s = scaled(restart, 'force_over_limit', 1.0_wp)
-    cells(25)%s = json_text(made, 'wall_s')
-    cells(26)%s = json_text(restart, 'wall_s')
-    cells(27)%s = action%reason
+    cells(24)%s = json_text(made, 'removed_volume')
+    cells(25)%s = ''
+    if (accepted == 'n') cells(25)%s = scaled(restart, 'force_over_limit', 1.0_wp)
+    cells(26)%s = json_text(made, 'wall_s')
+    cells(27)%s = json_text(restart, 'wall_s')
+    cells(28)%s = action%reason
     line = line_of_cells(cells)
   end function row_of
 
@@ -213,14 +214,16 @@ contains
     type(situation_t), intent(in) :: s
     type(action_t), intent(in) :: action
     character(len=:), allocatable :: line
-    character(len=:), allocatable :: made, restart
+    character(len=:), allocatable :: made, restart, removed
     type(checkpoint_file_t) :: old
 
     old = old_state(s, action%way)
     made = facts_of(s, try_name(s%new%generation, s%new%number)//'.json', .true.)
     restart = facts_of(s, mesh_name(s%new%generation, 'restart.json'), .true.)
+    removed = json_text(made, 'removed_volume')
+    if (removed /= '') removed = 'volume '//to_text(json_number(made, 'removed_volume', 0.0_wp), 6)//' removed; '
     line = 'mesh '//to_text(s%new%generation)//'  step '//to_text(old%facts%step)//'  time '//to_text(old%facts%time)//': ' &
-           //due_reason(s%new%old_end%facts)//'; '//to_text(old%facts%elements)//' -> '//json_text(made, 'new_elements') &
+           //due_reason(s%new%old_end%facts)//'; '//removed//to_text(old%facts%elements)//' -> '//json_text(made, 'new_elements') &
            //' elements; error '//or_dash(error_of(old))//' -> '//or_dash(scaled(restart, 'error_stress_pct', 1.0_wp)) &
            //' %; residual '//to_text(json_number(restart, 'first_residual', 0.0_wp), 3)//'; ' &
            //to_text(json_number(made, 'wall_s', 0.0_wp) + json_number(restart, 'wall_s', 0.0_wp), 2)//' s'

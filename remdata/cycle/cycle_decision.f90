@@ -11,6 +11,7 @@ module cycle_decision
   use cycle_table, only: agreed_way, any_agreed, way_agreed, way_coarser, way_earlier, way_finer, way_mesher, way_old_mesh, &
                          way_transfer
   use cycle_ways, only: is_whole, next_way, old_mesh_goes_on, old_state
+  use cuts, only: stage_of_cuts
   use errors, only: exit_done, exit_input, exit_machine, exit_no_convergence, exit_remesh, exit_signal
   use kinds, only: wp
   use text, only: to_text
@@ -42,6 +43,8 @@ contains
         action = give_up(ended%code, ended%said, begin_anew)
       else if (ended%program == ended_lagamine .and. ended%code /= exit_remesh) then
         action = after_lagamine(s)
+      else if (is_no_cut(s)) then
+        action = give_up(ended%code, ended%said)
       else if (ended%program == ended_remdata .and. ended%code == exit_machine .and. .not. s%has_room) then
         action = give_up(ended%code, ended%said)   ! a full disk is no fault of a mesh
       else
@@ -49,6 +52,15 @@ contains
       end if
     end associate
   end function next_action
+
+  !> The remesher cannot cut a body as the deck says: no other mesh makes another cut.
+  pure function is_no_cut(s)
+    type(situation_t), intent(in) :: s
+    logical :: is_no_cut
+
+    is_no_cut = s%ended%program == ended_remdata .and. s%ended%code /= exit_done .and. allocated(s%new%made_stage)
+    if (is_no_cut) is_no_cut = s%new%made_stage == stage_of_cuts
+  end function is_no_cut
 
   !> Nothing was called yet: a checkpoint that is there must be whole, or the one before takes its place.
   pure function opening(s) result(action)

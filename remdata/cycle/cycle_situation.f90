@@ -2,6 +2,7 @@
 !> by `cycle_folder` from files and by hand in tests; `cycle_decision` decides the next action.
 module cycle_situation
   use cycle_table, only: try_row_t
+  use cuts, only: trim_trigger, web_trigger
   use exchange, only: checkpoint_facts_t
   use kinds, only: wp
   use text, only: to_text, two_digits
@@ -104,7 +105,7 @@ contains
     if (allocated(facts%triggers)) is_due = is_due .or. size(facts%triggers) > 0
   end function is_due
 
-  !> The old mesh could go no further.
+  !> The old mesh could go no further: steps fail on it, or the body is cut.
   pure function is_in_distress(facts) result(distress)
     type(checkpoint_facts_t), intent(in) :: facts
     logical :: distress
@@ -113,7 +114,7 @@ contains
     distress = .false.
     if (.not. allocated(facts%triggers)) return
     do k = 1, size(facts%triggers)
-      distress = distress .or. facts%triggers(k)%s == 'distress'
+      distress = distress .or. any(facts%triggers(k)%s == [character(len=8) :: 'distress', trim_trigger, web_trigger])
     end do
   end function is_in_distress
 
@@ -127,7 +128,9 @@ contains
     if (allocated(facts%triggers)) then
       do k = 1, size(facts%triggers)
         if (k > 1) why = why//'; '
-        why = why//facts%triggers(k)%s//' '//to_text(facts%values(k), 4)//' (limit '//to_text(facts%limits(k))//')'
+        why = why//facts%triggers(k)%s
+        if (facts%triggers(k)%s == trim_trigger) cycle
+        why = why//' '//to_text(facts%values(k), 4)//' (limit '//to_text(facts%limits(k))//')'
       end do
     end if
     if (is_first_mesh(facts)) why = no_mesh_yet

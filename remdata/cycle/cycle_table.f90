@@ -22,11 +22,11 @@ module cycle_table
     'generation [-],try [-],stop_step [-],stop_time [time],step [-],trigger,action,result,accepted,stage,'// &
     'old_elements [-],new_elements [-],error_before [%],error_after [%],first_residual [-],iterations [-],force_change [%],'// &
     'energy_change [%],depth_change [-],least_step_ratio [-],first_step_force_change [%],laps [-],'// &
-    'lap_depth [length],force_over_limit [-],remdata [s],restart [s],reason'
+    'lap_depth [length],removed_volume [volume],force_over_limit [-],remdata [s],restart [s],reason'
   !> Numbers of columns in it.
   integer, parameter :: at_generation = 1, at_stop_step = 3, at_stop_time = 4, at_step = 5, at_action = 7, at_accepted = 9, &
-                        at_stage = 10, at_error_after = 14, at_force = 24
-  integer, parameter :: number_of_columns = 27
+                        at_stage = 10, at_error_after = 14, at_force = 25
+  integer, parameter :: number_of_columns = 28
   !> So many tries that were refused by the force of a die alone are several. They agree when their changes of the force differ by no
   !> more than its limit.
   integer, parameter :: several = 3

@@ -35,7 +35,7 @@ contains
           position = mesh%sides(k)%from
           if (i == 2) position = middle_position(contours, mesh%sides(k))
           associate (arc => contour%boundary%arcs(position%arc))
-            if (arc%die > 0) cycle
+            if (arc%die > 0 .or. arc%side > size(contour%loop%sides, 2)) cycle   ! not of the old contour
             call line3(position%xi, phi, dphi)
             mesh%coordinates(:, nodes(i)) = mesh%coordinates(:, nodes(i)) - matmul(opened(:, contour%loop%sides(:, arc%side)), phi)
           end associate

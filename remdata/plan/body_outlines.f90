@@ -9,11 +9,11 @@
 module body_outlines
   use body_seams, only: add_seam_ends, group_beside, group_of_element, lay_out_seams, mark_sets, seams_t
   use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, kind_corner, position_at_arc_length, turn_at
-  use boundary_sides, only: loop_t
   use contour_divisions, only: divide_sides
   use contour_volume, only: volume_inside
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
+  use loop_group, only: group_of
   use part_contour, only: contour_options_t, contour_t
   use scene, only: is_solid, scene_t
   use shape_functions, only: quad8_side
@@ -187,20 +187,6 @@ contains
       return
     end do
   end subroutine refuse_inner_sets
-
-  !> Group of the body inside a contour.
-  pure function group_of(scene, loop, number) result(group)
-    type(scene_t), intent(in) :: scene
-    type(loop_t), intent(in) :: loop
-    integer, intent(in) :: number
-    integer :: group
-
-    if (size(loop%element) == 0) then
-      group = scene%remesher%contours(number)%group
-      return
-    end if
-    group = group_of_element(scene, loop%element(1))
-  end function group_of
 
   !> A body is treated as a zone with any number of sides, along its contours from corner to corner.
   !> Sides along seams come last.

@@ -2,6 +2,7 @@
 !> remesh is responsible where it is not.
 module judge_remesh
   use acceptance, only: acceptance_t
+  use cuts, only: was_just_cut
   use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
   use restore_balance, only: balance_t
@@ -161,7 +162,9 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: what
 
-    call find_fault(scene%remesher%accept, balance, what)
+    what = ''
+    ! a cut sets free what it removes has carried: forces, energy and residual change with it
+    if (.not. was_just_cut(solution%cuts, scene%generation)) call find_fault(scene%remesher%accept, balance, what)
     if (balance%shape < bad_shape) what = 'the scaled Jacobian of an element is '//to_text(balance%shape, 3)//', at least ' &
                                           //to_text(bad_shape, 3)
     if (agreed .and. force_alone(scene%remesher%accept, balance)) then

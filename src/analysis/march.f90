@@ -4,6 +4,7 @@ module march
   use acceptance, only: begin_probation, is_on_probation, note_cut, note_step
   use blas, only: blas_buffer
   use bookkeeping, only: measure_scene
+  use cut_report, only: lines_of_cuts
   use energy_books, only: start_stored
   use equations, only: set_up
   use errors, only: error_t, exit_no_convergence, fail
@@ -31,7 +32,7 @@ module march
   use step_strategy, only: after_failure, after_success, choose_step
   use system, only: caught_signal, join_path
   use text, only: to_text, two_digits
-  use watch_mesh, only: answer_distress, estimate, estimate_stress, look_at_mesh, mesh_is_due
+  use watch_mesh, only: answer_distress, ask_for_trims, estimate, estimate_stress, look_at_mesh, mesh_is_due
   implicit none
   private
   public :: march_to_end
@@ -56,7 +57,7 @@ contains
 
     cuts = 0
     call start(scene, solution, run, error)
-    do while (.not. allocated(error) .and. solution%time < scene%strategy%end_time*(1 - 64*eps))
+    do while (.not. (allocated(error) .or. mesh_is_due(solution)) .and. solution%time < scene%strategy%end_time*(1 - 64*eps))
       dt = choose_step(scene, solution%time, solution%next_step)
       length = min(solution%next_step, scene%strategy%largest_step)
       on_probation = is_on_probation(solution%probation)
@@ -167,7 +168,8 @@ contains
     call open_results(scene, solution, run%stem, merge(solution%step, -1, run%resume), new_mesh, run%results, error)
     if (allocated(error)) return
     if (allocated(run%results%note)) call list_note(run%listing, run%results%note)
-    if (new_mesh) then
+    call ask_for_trims(scene, run%listing, solution)
+    if (new_mesh .or. mesh_is_due(solution)) then
       call save_all(scene, solution, run, error)
     else if (.not. run%resume) then
       call save_fields(scene, solution, run%results, error)
@@ -228,6 +230,7 @@ contains
     run%totals = run%balance%after
     call list_balance(run%listing, scene, solution, run%balance, outcome)
     call list_lines(run%listing, limit_lines(scene, run%balance))
+    call list_lines(run%listing, lines_of_cuts(scene, solution, scene%generation))
     call refuse_remesh(scene, solution, run%force_agreed, run%balance, error)
     run%mesh_refused = run%balance%refused
     if (.not. run%mesh_refused) call begin_probation(solution%probation)

@@ -3,6 +3,7 @@ module summary
   use closing_table, only: add_closing, closing_lines, closing_t
   use effects, only: effect_t
   use elem_api, only: totals_t
+  use cut_report, only: add_cuts, lines_of_cuts
   use energy_books, only: energy_imbalance, imbalance_advice, missing_energy, spring_energy
   use equations, only: equations_t
   use errors, only: error_t
@@ -84,6 +85,7 @@ contains
     call json%add('iterations', solution%iterations)
     call json%add('cutbacks', solution%cutbacks)
     call json%add('remeshings', scene%generation - max(scene%operation, 1))
+    call add_cuts(json, scene, solution)
     call json%add('initial_volume', circumference(scene)*solution%initial_volume)
     call json%add('wall_s', facts%wall)
     call json%add('cpu_s', cpu_seconds())
@@ -369,7 +371,7 @@ contains
     type(solution_t), intent(in) :: solution
     type(totals_t), intent(in) :: totals
     type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
-    type(string_t), allocatable :: table(:)
+    type(string_t), allocatable :: table(:), cut_lines(:)
     integer :: t
 
     allocate (lines(0))
@@ -382,6 +384,10 @@ contains
              //to_text(100*energy_imbalance(solution), 3)//' %, worst linear residual ' &
              //to_text(solution%worst_linear_residual, 2))
     call warn('energy imbalance '//to_text(100*energy_imbalance(solution), 3)//' %', imbalance_advice(solution))
+    cut_lines = lines_of_cuts(scene, solution)
+    do t = 1, size(cut_lines)
+      call put(cut_lines(t)%s)
+    end do
     if (has_heat(scene)) &
       call put('  heat taken up '//to_text(circumference(scene)*solution%heat_stored, 4)//', come in ' &
                //to_text(circumference(scene)*solution%heat_in, 4)//', released ' &

@@ -1,5 +1,6 @@
 !> Supervision of the mesh: its errors after every step, and whether a new one is due (cards ESTIM, REMSH).
 module watch_mesh
+  use cuts, only: trim_trigger
   use estimator, only: estimate_errors, estimator_t
   use listing, only: list_lines, listing_t
   use remeshing, only: trigger_t
@@ -7,10 +8,10 @@ module watch_mesh
   use solution, only: solution_t
   use text, only: string_t, to_text
   use timers, only: ledger_t
-  use triggers, only: distress_trigger, find_triggers, was_good
+  use triggers, only: distress_trigger, find_triggers, find_trims, was_good
   implicit none
   private
-  public :: estimate, estimate_stress, look_at_mesh, answer_distress, mesh_is_due, remesh_reason
+  public :: estimate, estimate_stress, look_at_mesh, ask_for_trims, answer_distress, mesh_is_due, remesh_reason
 
 contains
 
@@ -59,6 +60,17 @@ contains
     call timers%stop(timer)
     if (size(found) > 0) call ask_for_mesh(scene, found, listing, solution)
   end subroutine look_at_mesh
+
+  !> Ask for the mesh that is cut along lines, when an operation begins.
+  subroutine ask_for_trims(scene, listing, solution)
+    type(scene_t), intent(in) :: scene
+    type(listing_t), intent(in) :: listing
+    type(solution_t), intent(inout) :: solution
+    type(trigger_t), allocatable :: found(:)
+
+    call find_trims(scene, solution, found)
+    if (size(found) > 0) call ask_for_mesh(scene, found, listing, solution)
+  end subroutine ask_for_trims
 
   !> Ask for a new mesh when a step has been cut often on one that was good before, or can be cut no more.
   subroutine answer_distress(scene, cuts, give_up, listing, solution)
@@ -120,8 +132,10 @@ contains
     type(trigger_t), intent(in) :: trigger
     character(len=:), allocatable :: s
 
-    s = trigger%name//' '//to_text(trigger%value, 4)//' (limit '//to_text(trigger%limit)//')'
-    if (trigger%group > 0) s = s//', element '//to_text(trigger%element)//' of '//scene%groups(trigger%group)%name
+    s = trigger%name
+    if (s /= trim_trigger) s = s//' '//to_text(trigger%value, 4)//' (limit '//to_text(trigger%limit)//')'
+    if (trigger%element > 0) s = s//', element '//to_text(trigger%element)
+    if (trigger%group > 0) s = s//' of '//scene%groups(trigger%group)%name
   end function trigger_text
 
 end module watch_mesh

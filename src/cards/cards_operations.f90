@@ -5,6 +5,7 @@
 module cards_operations
   use accuracy_rules, only: fineness_t
   use card_names, only: names_t
+  use cards_cuts, only: trim_keyword
   use cards_mesh, only: is_body_elem
   use cards_sleep, only: put_to_sleep, sleep_keyword
   use deck_cursor, only: cursor_t
@@ -67,6 +68,8 @@ contains
         if (remeshed) call diagnostics%add(head_location(deck%cards(i)), sleep_keyword, &
           'a body that is asleep keeps the elements of the deck: expected no REMSH and no BODY card')
       end if
+      if (deck%cards(i)%keyword == trim_keyword .and. operations%count < 2) call diagnostics%add(head_location(deck%cards(i)), &
+        trim_keyword, 'an operation begins with the cut of what the one before has left: expected behind the second OPERA card')
       if (deck%cards(i)%keyword == keyword) then
         call cursor%open(deck%cards(i), diagnostics)
         call names%define(cursor, 'the name of the operation', keyword, i, diagnostics, word(1)%s)

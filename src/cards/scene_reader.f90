@@ -5,6 +5,7 @@ module scene_reader
   use cards_blocks, only: join_blocks, read_blocks
   use cards_body_forces, only: read_body_forces
   use cards_contours, only: read_contours, refuse_half_contours
+  use cards_cuts, only: read_cuts
   use cards_dies, only: read_dies
   use cards_fields, only: read_coupling, read_formulations, read_imposed_values
   use cards_head, only: read_kinematics, read_title
@@ -115,6 +116,7 @@ contains
     call read_coupling(deck, draft, diagnostics)
     call read_time_scheme(deck, draft, diagnostics)
     call read_remesh(deck, draft, diagnostics)
+    call read_cuts(deck, draft, diagnostics)
     call read_load_factor(deck, draft, diagnostics)
     call refuse_half_contours(deck, draft, parts, diagnostics)
     call read_probes(deck, draft, diagnostics)
@@ -139,7 +141,7 @@ contains
     call list_elems(elems)
     call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE START ' &
                   //'OPERA ASLEEP FLUX CONVE RADIA HEATS GOLDAK COU2DC TDIE THETA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG ' &
-                  //'LIC LOADF STRAT NORMS ACCURACY SOLVR STOP SAVE CKPT PROBE ESTIM REMSH ZPNT ZONE', keywords)
+                  //'LIC LOADF STRAT NORMS ACCURACY SOLVR STOP SAVE CKPT PROBE ESTIM REMSH TRIM PIERC ZPNT ZONE', keywords)
     allocate (more(1))
     do k = 1, size(elems)
       if (.not. is_body_elem(elems(k))) cycle

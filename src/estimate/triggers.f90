@@ -6,15 +6,17 @@
 module triggers
   use acceptance, only: is_on_probation
   use contact_quality, only: measure_misfit, misfit_t
+  use cuts, only: is_trim, trim_trigger, web_trigger
   use fields, only: displacement_field, pilot_field
   use kinds, only: eps, wp
   use mesh_quality, only: element_shape, is_bad, shape_places, shape_places_t
   use remeshing, only: criterion_names, is_upper, ncriteria, never, scaled_jacobian, stroke_t, trigger_t
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
+  use web_thickness, only: measure_web, web_t
   implicit none
   private
-  public :: find_triggers, distress_trigger, was_good, has_passed
+  public :: find_triggers, find_trims, distress_trigger, was_good, has_passed
 
   !> The error and bad elements of a new mesh grow to this multiple before another one is due.
   real(wp), parameter :: worse = 1.5_wp
@@ -50,7 +52,40 @@ contains
                  - scene%dies(stroke%die)%pilot(stroke%component), stroke%value)
       end associate
     end do
+    call find_thin_webs(scene, solution, found)
   end subroutine find_triggers
+
+  !> Webs that part (cards PIERC).
+  pure subroutine find_thin_webs(scene, solution, found)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(trigger_t), allocatable, intent(inout) :: found(:)
+    type(web_t), allocatable :: ways(:)
+    integer :: k
+
+    do k = 1, size(solution%cuts)
+      associate (cut => scene%remesher%cuts(k))
+        if (is_trim(cut) .or. solution%cuts(k)%generation > 0) cycle
+        call measure_web(scene, solution, cut, ways)
+        if (any(ways%thickness <= cut%thickness)) &
+          call add(found, web_trigger, minval(ways%thickness), cut%thickness, cut%group)
+      end associate
+    end do
+  end subroutine find_thin_webs
+
+  !> Cuts along lines that are due when an operation begins (cards TRIM), one by one.
+  pure subroutine find_trims(scene, solution, found)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(trigger_t), allocatable, intent(out) :: found(:)   !! (ntrigger)
+    integer :: k
+
+    allocate (found(0))
+    do k = 1, size(solution%cuts)
+      if (is_trim(scene%remesher%cuts(k)) .and. solution%cuts(k)%generation == 0) &
+        call add(found, trim_trigger, real(scene%operation, wp), real(scene%operation, wp), scene%remesher%cuts(k)%group)
+    end do
+  end subroutine find_trims
 
   !> The mesh has made its least number of steps before another one may be due.
   pure function was_good(scene, solution) result(good)

@@ -76,6 +76,7 @@ contains
     after%friction_apart = 0
     after%path%error = fresh%path%error
     after%estimate = fresh%estimate
+    after%cuts = fresh%cuts
     after%estimate%last_stop = before%step
     after%fields = fresh%fields
     was_there = .false.

@@ -1,11 +1,12 @@
 !> How a scene is remeshed: options of REMSH cards for the remesher, and for the restart on a new mesh.
 module remesher_options
   use acceptance, only: acceptance_t
+  use cuts, only: cut_t
   use kinds, only: pi, wp
   use zone_marks, only: contour_card_t, zone_card_t, zone_mark_t
   implicit none
   private
-  public :: own_mesh_t, remesher_options_t, has_zones, has_contours, elements_allowed
+  public :: own_mesh_t, remesher_options_t, has_zones, has_contours, elements_allowed, number_of_cuts
   public :: as_it_comes, by_zones, by_gmsh, by_free
 
   !> Mesher: zones, and where they fail the free mesher, then Gmsh; zones alone; Gmsh alone; the free mesher alone.
@@ -45,6 +46,8 @@ module remesher_options
     type(zone_card_t), allocatable :: zones(:)
     !> Contours of bodies of which the remesher makes the first mesh too.
     type(contour_card_t), allocatable :: contours(:)
+    !> Bodies that are cut.
+    type(cut_t), allocatable :: cuts(:)
   end type remesher_options_t
 
 contains
@@ -66,6 +69,14 @@ contains
     most = huge(most)
     if (options%most_elements > 0) most = int(min(options%most_elements*max(1.0_wp, finer)**2, real(huge(most), wp)))
   end function elements_allowed
+
+  pure function number_of_cuts(options) result(n)
+    type(remesher_options_t), intent(in) :: options
+    integer :: n
+
+    n = 0
+    if (allocated(options%cuts)) n = size(options%cuts)
+  end function number_of_cuts
 
   pure function has_contours(options) result(yes)
     type(remesher_options_t), intent(in) :: options

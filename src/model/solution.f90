@@ -1,12 +1,14 @@
 !> The state of a run at an accepted instant, and the trial state of the present step.
 module solution
   use acceptance, only: probation_t
+  use cuts, only: cut_record_t
   use fields, only: displacement_field, field_t, find_field, on_nodes, on_pilots, pilot_field, section_field, start_field
   use heat_record, only: heat_record_t
   use kinds, only: wp
   use loads, only: multiplier_at, start_t
   use pairs, only: pairs_t, start_pairs
   use path_record, only: path_record_t, start_path
+  use remesher_options, only: number_of_cuts
   use remeshing, only: estimate_t
   use scene, only: is_solid, scene_t
   use state_variables, only: total_components
@@ -71,6 +73,8 @@ module solution
     real(wp) :: largest_force = 0.0_wp
     !> Errors of the mesh; of no elements where they are not needed.
     type(estimate_t) :: estimate
+    !> What came of the cuts of the scene (ncut).
+    type(cut_record_t), allocatable :: cuts(:)
   end type solution_t
 
 contains
@@ -107,6 +111,7 @@ contains
     allocate (solution%estimate%stress_of(nsolid), solution%estimate%strain_of(nsolid), &
               solution%estimate%strain_sums(2, nsolid), source=0.0_wp)
     allocate (solution%estimate%triggers(0))
+    allocate (solution%cuts(number_of_cuts(scene%remesher)))
   end subroutine start_solution
 
   !> All fields at rest: zero, the pilots and the section where the scene has them. A field on nodes that no element declares has

@@ -3,6 +3,7 @@ module visit_remesher
   use contact_ends, only: contact_end_t
   use kinds, only: pi, wp
   use remesher_options, only: by_free, own_mesh_t, remesher_options_t
+  use visit_cuts, only: visit_cut_list
   use visitors, only: kept, not_carried, visitor_t
   use zone_marks, only: contour_card_t, mark_corner, mark_inside, name_length, zone_card_t, zone_mark_t
   implicit none
@@ -68,6 +69,7 @@ contains
       call visit_contour_card(visitor, self%contours(k))
       call visitor%leave('contours')
     end do
+    call visit_cut_list(visitor, self%cuts)
   end subroutine visit_remesher_options
 
   subroutine visit_own_mesh(visitor, self)

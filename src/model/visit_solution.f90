@@ -6,6 +6,7 @@ module visit_solution
   use pairs, only: pairs_t
   use path_record, only: path_record_t
   use solution, only: group_state_t, solution_t
+  use visit_cuts, only: visit_cut_records
   use visit_estimate, only: visit_estimate_members
   use visit_field, only: visit_field_values
   use visit_work, only: visit_work_members
@@ -66,6 +67,7 @@ contains
     call visitor%enter('estimate')
     call visit_estimate_members(visitor, self%estimate)
     call visitor%leave('estimate')
+    call visit_cut_records(visitor, self%cuts)
     do k = 1, size(self%fields)
       call visitor%enter('fields/'//self%fields(k)%name)
       call visit_field_values(visitor, self%fields(k))

@@ -1,0 +1,190 @@
+!> Where a straight cut crosses the contours of a body.
+!>
+!> The distance from the line of the cut changes its sign along a contour; the place is found by bisection on the arc. Crossings are
+!> sorted along the cut: from the first to the second it runs through the body, from the third to the fourth, and so on. One that
+!> lies close to a corner, or to an end of contact, is put there, so that no short side is left to be meshed.
+module cut_crossings
+  use boundary_curves, only: boundary_curve_t, closest_position, joint_point, kind_end, point_on, position_t
+  use kinds, only: wp
+  use offset_parabolas, only: point_at
+  use part_contour, only: contour_t
+  use plane_vectors, only: cross
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: crossing_t, crossings_of_line, crossings_of_way, is_after
+
+  type :: crossing_t
+    integer :: contour = 0
+    type(position_t) :: position
+    !> Share of the cut up to there.
+    real(wp) :: along = 0.0_wp
+    !> The contour, along its direction, enters there what is kept.
+    logical :: enters = .false.
+    !> Crossing at the other end of the cut through the body.
+    integer :: mate = 0
+  end type crossing_t
+
+  !> Parts of an arc that are looked at, and halvings.
+  integer, parameter :: parts = 8, halvings = 60
+  !> A cut may end on the contour, within this share of its length.
+  real(wp), parameter :: at_its_end = 1.0e-9_wp
+
+contains
+
+  !> Crossings of the contours `among` with a line, paired; `odd`: the line begins or ends within the body.
+  pure subroutine crossings_of_line(contours, among, line, kept, close, list, odd)
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
+    logical, intent(in) :: among(:)              !! (ncontour)
+    real(wp), intent(in) :: line(4), kept(2)     !! points at its ends, a point on the side that is kept [length]
+    real(wp), intent(in) :: close                !! to a joint [length]
+    type(crossing_t), allocatable, intent(out) :: list(:)   !! (ncrossing) along the line
+    logical, intent(out) :: odd
+    type(crossing_t) :: one
+    real(wp) :: before, now, xi, last
+    integer :: c, k, i
+
+    allocate (list(0))
+    do c = 1, size(contours)
+      if (.not. among(c)) cycle
+      associate (boundary => contours(c)%boundary)
+        before = height(point_at(boundary%arcs(size(boundary%arcs)), boundary%arcs(size(boundary%arcs))%range(2)))
+        do k = 1, size(boundary%arcs)
+          associate (arc => boundary%arcs(k))
+            last = arc%range(1)
+            do i = 0, parts
+              xi = arc%range(1) + (arc%range(2) - arc%range(1))*i/parts
+              now = height(point_at(arc, xi))
+              if ((now < 0) .neqv. (before < 0)) then
+                one%contour = c
+                one%position = position_t(k, root(last, xi, before < 0))
+                one%enters = before < 0
+                one%along = dot_product(point_on(boundary, one%position) - line(1:2), line(3:4) - line(1:2)) &
+                            /dot_product(line(3:4) - line(1:2), line(3:4) - line(1:2))
+                if (one%along >= -at_its_end .and. one%along <= 1 + at_its_end) then
+                  call put_at_joint(boundary, close, one%position)
+                  call insert(one, list)
+                end if
+              end if
+              before = now
+              last = xi
+            end do
+          end associate
+        end do
+      end associate
+    end do
+    odd = mod(size(list), 2) == 1
+    do k = 1, size(list) - 1, 2
+      list(k)%mate = k + 1
+      list(k + 1)%mate = k
+      odd = odd .or. (list(k)%enters .eqv. list(k + 1)%enters)
+    end do
+
+  contains
+
+    !> Distance from the line, positive where it is kept, times its length.
+    pure function height(point) result(h)
+      real(wp), intent(in) :: point(2)
+      real(wp) :: h
+
+      h = cross(line(3:4) - line(1:2), point - line(1:2))
+      if (cross(line(3:4) - line(1:2), kept - line(1:2)) < 0) h = -h
+    end function height
+
+    pure function root(from, to, is_below) result(middle)
+      real(wp), intent(in) :: from, to
+      logical, intent(in) :: is_below   !! at `from`
+      real(wp) :: middle
+      real(wp) :: low, high
+      integer :: n
+
+      low = from
+      high = to
+      do n = 1, halvings
+        middle = 0.5_wp*(low + high)
+        if ((height(point_at(contours(c)%boundary%arcs(k), middle)) < 0) .eqv. is_below) then
+          low = middle
+        else
+          high = middle
+        end if
+      end do
+      middle = high
+    end function root
+
+  end subroutine crossings_of_line
+
+  !> The two ends of a way through the body; `enters` is true of the first.
+  pure subroutine crossings_of_way(contours, among, from, to, close, list)
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
+    logical, intent(in) :: among(:)              !! (ncontour)
+    real(wp), intent(in) :: from(2), to(2), close           !! close to a joint [length]
+    type(crossing_t), allocatable, intent(out) :: list(:)   !! (2)
+    type(position_t) :: position
+    real(wp) :: ends(2, 2), distance, least
+    integer :: c, k
+
+    ends = reshape([from, to], [2, 2])
+    allocate (list(2))
+    do k = 1, 2
+      least = huge(least)
+      do c = 1, size(contours)
+        if (.not. among(c)) cycle
+        position = closest_position(contours(c)%boundary, ends(:, k))
+        distance = length_of(point_on(contours(c)%boundary, position) - ends(:, k))
+        if (.not. distance < least) cycle
+        least = distance
+        list(k)%contour = c
+        list(k)%position = position
+      end do
+      if (list(k)%contour > 0) call put_at_joint(contours(list(k)%contour)%boundary, close, list(k)%position)
+      list(k)%along = k - 1
+      list(k)%mate = 3 - k
+    end do
+    list(1)%enters = .true.
+  end subroutine crossings_of_way
+
+  !> A position close to a joint that a new mesh has a node at moves there.
+  pure subroutine put_at_joint(boundary, close, position)
+    type(boundary_curve_t), intent(in) :: boundary
+    real(wp), intent(in) :: close
+    type(position_t), intent(inout) :: position
+    real(wp) :: point(2), distance, least
+    integer :: joint, k
+
+    point = point_on(boundary, position)
+    least = close
+    joint = 0
+    do k = 1, size(boundary%arcs)
+      if (boundary%kinds(k) == kind_end) cycle
+      distance = length_of(joint_point(boundary, k) - point)
+      if (.not. distance < least) cycle
+      least = distance
+      joint = k
+    end do
+    if (joint > 0) position = position_t(joint, boundary%arcs(joint)%range(1))
+  end subroutine put_at_joint
+
+  !> Sorted along the cut.
+  pure subroutine insert(one, list)
+    type(crossing_t), intent(in) :: one
+    type(crossing_t), allocatable, intent(inout) :: list(:)
+    type(crossing_t), allocatable :: longer(:)
+    integer :: n
+
+    n = count(list%along <= one%along)
+    allocate (longer(size(list) + 1))
+    longer(:n) = list(:n)
+    longer(n + 1) = one
+    longer(n + 2:) = list(n + 1:)
+    call move_alloc(longer, list)
+  end subroutine insert
+
+  !> Does a position come after another one, from the start of their contour?
+  pure function is_after(one, other) result(yes)
+    type(position_t), intent(in) :: one, other
+    logical :: yes
+
+    yes = one%arc > other%arc .or. (one%arc == other%arc .and. one%xi > other%xi)
+  end function is_after
+
+end module cut_crossings
