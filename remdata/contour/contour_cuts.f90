@@ -135,7 +135,7 @@ contains
     end if
   end subroutine trim_body
 
-  !> Through the web under a die. What is as thin as that goes with the slug: of all ways that are short enough the one is taken that
+  !> Through the web under a die. What is as thin goes with the slug: of all ways that are short enough the one is taken that
   !> leaves least of the piece that is kept.
   subroutine pierce_body(scene, solution, cut, contours, of_body, pieces, record, error)
     type(scene_t), intent(in) :: scene

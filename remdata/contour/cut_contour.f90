@@ -1,7 +1,7 @@
 !> The contour of a piece of a body that was cut: with the tags of its sides, and with its contact intervals.
 !>
-!> The cut surface belongs to the sets of the sides at both its ends, but not of those that are held, are a die of another body or lie
-!> on the axis: what a tool or a furnace does to the surface beside the cut it does to the cut surface too.
+!> The cut surface belongs to the sets of the sides at both its ends, but not of those that are held, are a die of another body or
+!> lie on the axis: what a tool or a furnace does to the surface beside the cut it does to the cut surface too.
 module cut_contour
   use arcs, only: arc_t
   use contact_intervals, only: side_point_t

@@ -89,17 +89,20 @@ contains
     end associate
   end subroutine zones_of_cards
 
-  !> Are all bodies blocks, with their four sides?
+  !> Are all bodies blocks, with their four sides still?
   pure function are_blocks(scene) result(yes)
     type(scene_t), intent(in) :: scene
     logical :: yes
-    integer :: g, k
+    integer :: g, k, set
 
     yes = .not. has_contours(scene%remesher)
     do g = 1, size(scene%groups)
       if (.not. is_solid(scene%groups(g))) cycle
       do k = 1, 4
-        yes = yes .and. find_side_set(scene%mesh, scene%groups(g)%name//'.'//to_text(k)) > 0
+        set = find_side_set(scene%mesh, scene%groups(g)%name//'.'//to_text(k))
+        yes = yes .and. set > 0
+        ! a side that was cut off
+        if (yes) yes = size(scene%mesh%sides(set)%nodes, 2) > 0
       end do
     end do
   end function are_blocks

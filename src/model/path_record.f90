@@ -167,7 +167,7 @@ contains
     record%pending_motion = 0
     record%quiet_length = min(step%spare/ample, most_quiet + 1.0_wp)*dt
     record%quiet_bend = max(bends_more*step%bend, least_bend)
-    if (.not. step%above) record%quiet = int(min(step%spare/ample - 1, real(most_quiet, wp)))
+    if (.not. step%above) record%quiet = int(max(min(step%spare/ample - 1, real(most_quiet, wp)), 0.0_wp))
   end subroutine note_path_step
 
   !> Go on with the recent mean.
