@@ -222,9 +222,8 @@ contains
     real(wp), allocatable, intent(out) :: moved(:, :)   !! (2, nnode) [length]
 
     associate (displacement => solution%fields(displacement_field)%value)
-      allocate (moved, mold=displacement)
-      moved = 0
-      if (scene%finite .or. any(scene%groups%die > 0)) return
+      allocate (moved(2, size(scene%mesh%coordinates, 2)), source=0.0_wp)
+      if (scene%finite .or. any(scene%groups%die > 0) .or. .not. scene%fields(displacement_field)%declared) return
       moved = displacement
       displacement = 0
     end associate

@@ -4,10 +4,9 @@
 !> the latter are known here by the name of their element and their own, `PL8TM austenite`: names may be the same in both.
 module state_pieces
   use errors, only: error_t, exit_bug, fail
-  use fields, only: displacement_field
   use kinds, only: wp
   use scene, only: axisymmetric, is_solid, role_second, scene_t
-  use solution, only: solution_t
+  use solution, only: present_coordinates, solution_t
   use state_variables, only: find_variable, name_of_ratio, state_variable_t, total_components
   use text, only: to_text
   use transfer_mesh, only: set_up_mesh, transfer_mesh_t
@@ -49,7 +48,7 @@ contains
     integer :: g, k, other, nsolid, low, high
 
     allocate (pieces%nodes, source=scene%mesh%coordinates)
-    if (present(solution)) pieces%nodes = pieces%nodes + solution%fields(displacement_field)%value
+    if (present(solution)) pieces%nodes = present_coordinates(scene, solution)
     pieces%axisymmetric = scene%plane_state == axisymmetric
     nsolid = 0
     do g = 1, size(scene%groups)

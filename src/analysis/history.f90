@@ -1,6 +1,7 @@
 !> `history.csv`: one row per accepted step. Forces and energies are those of the full circumference
 !> when the scene is axisymmetric.
 module history
+  use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
   use csv_writer, only: csv_t
   use dies, only: is_deformable
   use elem_api, only: totals_t
@@ -235,6 +236,10 @@ contains
     real(wp) :: value
 
     value = 0
+    if (probe%is_gone) then
+      value = ieee_value(value, ieee_quiet_nan)
+      return
+    end if
     select case (probe%kind)
     case (probe_node)
       associate (node => probe%nodes(1), c => 2 - mod(probe%quantity, 2), u => solution%fields(displacement_field)%value)

@@ -20,7 +20,7 @@ module march
   use point_drivers, only: start_drivers
   use probation, only: is_too_short, pass_probation, refuse_after_all
   use restart_report, only: write_restart
-  use restore_balance, only: balance_t, restore_equilibrium
+  use restore_balance, only: balance_t, keep_balance, restore_equilibrium
   use results, only: open_results, save_fields
   use run_record, only: run_t, record, save_all, at_end
   use run_stop, only: stop_here, finish
@@ -162,6 +162,7 @@ contains
       call release_part(scene, solution, run, error)
     end if
     if (allocated(error)) return
+    if (new_mesh) call list_lines(run%listing, lines_of_cuts(scene, solution, scene%generation))
     call start_stored(run%totals, solution)
     call open_history(scene, solution, join_path(run%folder, 'history.csv'), run%resume, run%columns, run%table, error)
     if (allocated(error)) return
@@ -222,6 +223,11 @@ contains
     solution%friction_apart = solution%friction_work - run%totals%friction_work
     run%totals%friction_work = solution%friction_work
     run%balance%before = run%totals
+    if (.not. scene%fields(displacement_field)%declared) then
+      call keep_balance(scene, solution, run%balance)
+      call write_restart(run%stem//'.g'//two_digits(scene%generation)//'.restart.json', scene, solution, run%balance, error)
+      return
+    end if
     call restore_equilibrium(scene, run%equations, solution, run%balance, outcome)
     if (allocated(outcome%error)) then
       call move_alloc(outcome%error, error)
@@ -230,7 +236,6 @@ contains
     run%totals = run%balance%after
     call list_balance(run%listing, scene, solution, run%balance, outcome)
     call list_lines(run%listing, limit_lines(scene, run%balance))
-    call list_lines(run%listing, lines_of_cuts(scene, solution, scene%generation))
     call refuse_remesh(scene, solution, run%force_agreed, run%balance, error)
     run%mesh_refused = run%balance%refused
     if (.not. run%mesh_refused) call begin_probation(solution%probation)

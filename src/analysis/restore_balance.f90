@@ -28,7 +28,7 @@ module restore_balance
   use vectors, only: length_of
   implicit none
   private
-  public :: balance_t, restore_equilibrium
+  public :: balance_t, keep_balance, restore_equilibrium
 
   !> What the restart reports about the remesh.
   type :: balance_t
@@ -72,6 +72,22 @@ module restore_balance
   real(wp), parameter :: missed_by_parabola = 1.0e-3_wp
 
 contains
+
+  !> A scene without motion is in equilibrium on any mesh.
+  subroutine keep_balance(scene, solution, balance)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    type(balance_t), intent(inout) :: balance   !! `before` is known
+
+    solution%unbalanced = .false.
+    balance%restored = .true.
+    balance%after = balance%before
+    balance%shape = least_shape(scene, scene%mesh%coordinates)
+    allocate (balance%pilot_before, source=solution%fields(pilot_field)%applied)
+    allocate (balance%pilot_carried, source=balance%pilot_before)
+    allocate (balance%pilot_after, source=balance%pilot_before)
+    allocate (balance%pressed(size(scene%dies)), source=0.0_wp)
+  end subroutine keep_balance
 
   !> Restore equilibrium. When it is not `restored`, the solution is that of the last part.
   subroutine restore_equilibrium(scene, equations, solution, balance, outcome)

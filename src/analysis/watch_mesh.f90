@@ -2,6 +2,7 @@
 module watch_mesh
   use cuts, only: trim_trigger
   use estimator, only: estimate_errors, estimator_t
+  use fields, only: displacement_field
   use listing, only: list_lines, listing_t
   use remeshing, only: trigger_t
   use scene, only: scene_t
@@ -23,7 +24,7 @@ contains
     type(solution_t), intent(inout) :: solution
     integer :: timer
 
-    if (.not. scene%remesh%estimate) return
+    if (.not. has_estimate(scene)) return
     call timers%add('error estimates', timer)
     call timers%start(timer)
     call estimate_errors(estimator, scene, solution)
@@ -37,12 +38,20 @@ contains
     type(solution_t), intent(inout) :: solution
     type(solution_t), allocatable :: tried
 
-    if (.not. scene%remesh%estimate) return
+    if (.not. has_estimate(scene)) return
     allocate (tried, source=solution)
     call estimate_errors(estimator, scene, tried)
     solution%estimate%stress = tried%estimate%stress
     solution%estimate%stress_of = tried%estimate%stress_of
   end subroutine estimate_stress
+
+  !> Errors are estimated of stresses and strains: where bodies move.
+  pure function has_estimate(scene)
+    type(scene_t), intent(in) :: scene
+    logical :: has_estimate
+
+    has_estimate = scene%remesh%estimate .and. scene%fields(displacement_field)%declared
+  end function has_estimate
 
   !> Ask for a new mesh when the one just used has passed a limit.
   subroutine look_at_mesh(scene, timers, listing, solution)

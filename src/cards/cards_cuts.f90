@@ -15,7 +15,7 @@ module cards_cuts
   use vectors, only: length_of
   implicit none
   private
-  public :: read_cuts, trim_keyword
+  public :: may_be_cut, read_cuts, trim_keyword
 
   character(len=*), parameter :: trim_keyword = 'TRIM', pierce_keyword = 'PIERC'
   !> A kept point closer to the line than this share of its length is on neither side of it.
@@ -50,6 +50,19 @@ contains
     end do
     call move_alloc(list, draft%scene%remesher%cuts)
   end subroutine read_cuts
+
+  !> Does a card of the deck, perhaps of another operation, cut a body?
+  pure function may_be_cut(deck) result(yes)
+    type(deck_t), intent(in) :: deck
+    logical :: yes
+    integer :: i
+
+    yes = .false.
+    do i = 1, size(deck%cards)
+      yes = yes .or. any(deck%cards(i)%keyword == [character(len=6) :: trim_keyword, '-'//trim_keyword, &
+                                                   pierce_keyword, '-'//pierce_keyword])
+    end do
+  end function may_be_cut
 
   !> `body`: a BLOCK, BODY or card of elements.
   subroutine read_body(cursor, draft, group)

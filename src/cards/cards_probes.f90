@@ -2,6 +2,7 @@
 module cards_probes
   use card_places, only: node_text, place_t, read_place
   use card_points, only: read_xy
+  use cards_cuts, only: may_be_cut
   use cards_fields, only: field_words
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
@@ -36,11 +37,13 @@ contains
     type(cursor_t) :: cursor
     type(string_t), allocatable :: kinds_of_probe(:)
     type(probe_t) :: probe, none
+    logical :: is_cut
     integer :: i, k
 
     ! In the order of the numbers in module `probes`.
     call words_of('NODE REACT POINT MAX MIN MEAN', kinds_of_probe)
     allocate (draft%scene%probes(0))
+    is_cut = draft%scene%generation > 1 .and. may_be_cut(deck)
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword /= 'PROBE') cycle
       call cursor%open(deck%cards(i), diagnostics)
@@ -51,13 +54,14 @@ contains
       probe%unit = '-'
       select case (probe%kind)
       case (probe_node)
-        call read_node_probe(cursor, any([(deck%cards(k)%keyword == 'REMSH', k=1, size(deck%cards))]), draft, probe)
+        call read_node_probe(cursor, any([(deck%cards(k)%keyword == 'REMSH', k=1, size(deck%cards))]), is_cut, draft, probe)
       case (probe_reaction)
         call read_reaction_probe(cursor, draft, probe)
       case (probe_point)
-        call read_point_probe(cursor, draft, probe)
+        call read_point_probe(cursor, is_cut, draft, probe)
       case (probe_maximum, probe_minimum, probe_mean)
         call read_extreme_probe(cursor, draft, probe)
+        if (is_cut .and. probe%group > 0) probe%is_gone = size(draft%scene%groups(probe%group)%connectivity, 2) == 0
       end select
       call close_card(draft, cursor, deck%cards(i))
       draft%scene%probes = [draft%scene%probes, probe]
@@ -66,9 +70,10 @@ contains
 
   !> `X|Y|UX|UY x y [body]`, or the word of another field: the node nearest to a point of the mesh as it begins, of a body where
   !> one is named: nodes of several bodies may stand at one place. `X|Y|UX|UY NODE label`: a node of a NODES card.
-  subroutine read_node_probe(cursor, remeshed, draft, probe)
+  subroutine read_node_probe(cursor, remeshed, is_cut, draft, probe)
     type(cursor_t), intent(inout) :: cursor
     logical, intent(in) :: remeshed   !! the deck asks for new meshes
+    logical, intent(in) :: is_cut     !! bodies may have been cut
     type(draft_t), intent(inout) :: draft
     type(probe_t), intent(inout) :: probe
     type(place_t) :: named
@@ -102,7 +107,7 @@ contains
       node = named%nodes(1)
       x = draft%scene%mesh%origin(:, node)
     else
-      call read_point(cursor, draft, x)
+      call read_point(cursor, draft, is_cut, x)
       call read_body(cursor, draft, of_body)
       if (cursor%failed() .or. .not. draft%mesh_sound) return
       call nearest_node(draft%scene%mesh%origin, x, node, distance)
@@ -112,6 +117,7 @@ contains
     if (probe%field > 0 .and. draft%scene%generation == 1) &
       call refuse_without_field(cursor, draft, probe%field, probe%nodes, node_text(draft, node), own=.false.)
     if (draft%scene%generation > 1) probe%offset = x - draft%scene%mesh%origin(:, node)
+    if (is_cut) probe%is_gone = is_off(draft, node, x)
   end subroutine read_node_probe
 
   !> The name of a body at the end of a row, 0 where there is none.
@@ -184,12 +190,15 @@ contains
       if (draft%scene%fixations(k)%field /= displacement_field) cycle
       if (draft%scene%fixations(k)%component == probe%quantity) held = held .or. any(asked(draft%scene%fixations(k)%nodes))
     end do
-    if (.not. held) call cursor%fail('no motion is given there in this direction: the reaction would always be zero')
+    ! what was cut off is held nowhere
+    if (.not. (held .or. size(place%nodes) == 0)) &
+      call cursor%fail('no motion is given there in this direction: the reaction would always be zero')
   end subroutine read_reaction_probe
 
   !> `component x y`: the integration point nearest to a point of the mesh as it begins.
-  subroutine read_point_probe(cursor, draft, probe)
+  subroutine read_point_probe(cursor, is_cut, draft, probe)
     type(cursor_t), intent(inout) :: cursor
+    logical, intent(in) :: is_cut   !! bodies may have been cut
     type(draft_t), intent(in) :: draft
     type(probe_t), intent(inout) :: probe
     character(len=:), allocatable :: component
@@ -197,7 +206,7 @@ contains
     integer :: g, k, e, p
 
     call read_component(cursor, draft, component)
-    call read_point(cursor, draft, x)
+    call read_point(cursor, draft, is_cut, x)
     if (cursor%failed() .or. .not. (draft%mesh_sound .and. draft%groups_sound)) return
     nearest = huge(nearest)
     do g = 1, size(draft%scene%groups)
@@ -213,7 +222,35 @@ contains
         call set_component(group, component, probe)
       end associate
     end do
+    if (.not. is_cut) return
+    call nearest_node(draft%scene%mesh%origin, x, k, distance)
+    probe%is_gone = is_off(draft, k, x)
   end subroutine read_point_probe
+
+  !> Is a point further from its nearest node than the elements there are long? The matter there was cut off.
+  pure function is_off(draft, node, x) result(off)
+    type(draft_t), intent(in) :: draft
+    integer, intent(in) :: node
+    real(wp), intent(in) :: x(2)
+    logical :: off
+    real(wp) :: longest
+    integer :: g, e, k
+
+    longest = 0
+    do g = 1, size(draft%scene%groups)
+      if (.not. is_solid(draft%scene%groups(g))) cycle
+      do e = 1, size(draft%scene%groups(g)%connectivity, 2)
+        associate (nodes => draft%scene%groups(g)%connectivity(:, e))
+          if (all(nodes /= node)) cycle
+          do k = 1, 4
+            longest = max(longest, length_of(draft%scene%mesh%origin(:, nodes(k)) &
+                                             - draft%scene%mesh%origin(:, nodes(mod(k, 4) + 1))))
+          end do
+        end associate
+      end do
+    end do
+    off = length_of(draft%scene%mesh%origin(:, node) - x) > longest
+  end function is_off
 
   !> `component group`: the largest or smallest over all points of a group, or with more groups the mean over their volumes.
   subroutine read_extreme_probe(cursor, draft, probe)
@@ -336,14 +373,15 @@ contains
   end function unit_of
 
   !> Coordinates, which must lie in the box around the mesh.
-  subroutine read_point(cursor, draft, x)
+  subroutine read_point(cursor, draft, is_cut, x)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft
+    logical, intent(in) :: is_cut   !! bodies may have been cut: the box says nothing
     real(wp), intent(out) :: x(2)
     real(wp) :: low(2), high(2)
 
     call read_xy(cursor, 'the point', x)
-    if (cursor%failed() .or. .not. draft%mesh_sound) return
+    if (cursor%failed() .or. is_cut .or. .not. draft%mesh_sound) return
     low = minval(draft%scene%mesh%origin, 2) - outside_tolerance*draft%mesh_size
     high = maxval(draft%scene%mesh%origin, 2) + outside_tolerance*draft%mesh_size
     if (any(x < low .or. x > high)) &

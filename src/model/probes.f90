@@ -32,6 +32,8 @@ module probes
     integer, allocatable :: more_groups(:), more_components(:)
     !> Measure of the stress whose first component that is (stress_measures), 0 for the component itself.
     integer :: measure = 0
+    !> What it reads was cut off: it is nan.
+    logical :: is_gone = .false.
     !> Factor, for instance 2 pi for forces of axisymmetric scenes.
     real(wp) :: factor = 1.0_wp
   end type probe_t

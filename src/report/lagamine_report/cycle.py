@@ -12,7 +12,7 @@ WHOLE = ("generation", "try", "step")
 NUMBERS = ("stop_time", "old_elements", "new_elements", "error_before", "error_after", "first_residual", "iterations",
            "force_change", "energy_change", "depth_change", "least_step_ratio", "first_step_force_change", "remdata", "restart")
 # Columns that older tables do not have.
-LATER = ("laps", "lap_depth")
+LATER = ("laps", "lap_depth", "removed_volume")
 TEXTS = ("trigger", "action", "accepted", "stage", "reason")
 KEEPS_OLD = "old mesh"
 AGREED = "agreed force"

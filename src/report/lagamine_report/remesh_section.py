@@ -64,6 +64,8 @@ def cells(run: Run, row: Try) -> List[str]:
         why += f"<br>try {row.number}: {escape(row.texts['action'])}"
     if n["laps"] > 0:
         why += f"<br>{shown_number(n['laps'])} lap{'s' if n['laps'] > 1 else ''}, up to {shown_number(n['lap_depth'], 3)} deep"
+    if n["removed_volume"] > 0:
+        why += f"<br>volume {shown_number(n['removed_volume'], 6)} removed"
     seconds = np.nansum([n["remdata"], n["restart"]])
     return [str(row.generation), str(row.step), shown_number(n["stop_time"]), shown_number(height(run, row)), why,
             f"{shown_number(n['old_elements'], 9)} → {shown_number(n['new_elements'], 9)}",
