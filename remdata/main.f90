@@ -2,6 +2,7 @@
 program remdata
   use atomic, only: refuse_place
   use checkpoint_summary, only: print_about, print_schema
+  use cost_file, only: add_remesher
   use cycle_answer, only: answer_next
   use cycle_options, only: asks_for_next
   use cycle_processes, only: asks_for_lock, asks_for_start, lock_cycle, start_program
@@ -15,7 +16,7 @@ program remdata
   use solver_blas, only: ask_blas
   use standard_streams, only: claim_standard_streams, print_error, print_line
   use start_again, only: start_as_fits
-  use system, only: program_stop, wall_seconds
+  use system, only: cpu_seconds, program_stop, wall_seconds
   use threads, only: number_of_threads, start_team, team_t
   implicit none
   type(remesh_options_t) :: options
@@ -73,6 +74,8 @@ contains
     call start_team(team, 0)
     call remesh_checkpoint(options, facts, error)
     call write_facts(options%out//'.json', facts, wall_seconds() - started, error, late)
+    if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
+    if (allocated(options%cost)) call add_remesher(options%cost, cpu_seconds(), late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
     if (.not. options%quiet .and. .not. allocated(error)) call print_facts(facts, wall_seconds() - started, error)
   end subroutine run

@@ -20,6 +20,8 @@ module remesh_options
     real(wp) :: finer = 1.0_wp
     !> The requested sizes are those of the old elements.
     logical :: same_sizes = .false.
+    !> What the files of the run begin with whose cost grows by that of this program; not allocated: none.
+    character(len=:), allocatable :: cost
     !> Time limit for Gmsh to make a mesh [s].
     real(wp) :: limit = 300.0_wp
     !> Only print the contents of the checkpoint.
@@ -54,6 +56,8 @@ contains
         options%quiet = .true.
       case ('--out')
         call value_of(word, k, options%out, error)
+      case ('--cost')
+        call value_of(word, k, options%cost, error)
       case ('--transfer')
         call value_of('--transfer', k, word, error)
         if (allocated(error)) exit
@@ -90,8 +94,9 @@ contains
       case default
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
           call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--quiet'), string_t('--out'), &
-                                    string_t('--transfer'), string_t('--finer'), string_t('--mesher'), string_t('--same-sizes'), &
-                                    string_t('--limit'), string_t('--about'), string_t('--schema')], 'remdata', error)
+                                    string_t('--cost'), string_t('--transfer'), string_t('--finer'), string_t('--mesher'), &
+                                    string_t('--same-sizes'), string_t('--limit'), string_t('--about'), &
+                                    string_t('--schema')], 'remdata', error)
         else if (allocated(options%checkpoint)) then
           call fail(error, exit_input, 'one checkpoint at a time: found '''//options%checkpoint//''' and '''//word//'''')
         else
@@ -117,7 +122,8 @@ contains
     character(len=*), parameter :: nl = new_line('a')
 
     text = 'remdata: a new mesh and the state on it, from a checkpoint of lagamine'//nl//nl// &
-           'remdata CHECKPOINT --out NEW [--transfer N] [--finer F] [--mesher M] [--same-sizes] [--limit SECONDS] [--quiet]'//nl// &
+           'remdata CHECKPOINT --out NEW [--transfer N] [--finer F] [--mesher M] [--same-sizes] [--limit SECONDS]'//nl// &
+           '        [--cost DIR/NAME] [--quiet]'//nl// &
            'remdata --about CHECKPOINT'//nl// &
            'remdata --schema'//nl// &
            'remdata --next DIR/NAME [--tries N] [--fresh] [--ran WHAT --code N --said FILE [--from NAME] [--late S]]'//nl// &
@@ -128,6 +134,7 @@ contains
            '  --mesher M      zones, free or gmsh (default: MESHER of the deck); free and gmsh do without its zones'//nl// &
            '  --same-sizes    elements of the size of the old ones in each place, not as the error and the shape want them'//nl// &
            '  --limit SECONDS longest time for Gmsh, where it makes the mesh (default 300)'//nl// &
+           '  --cost DIR/NAME add the seconds of this program to DIR/NAME.cost, if the run of deck NAME has that file'//nl// &
            '  --about         check the file and print what it holds, a word and its value a line'//nl// &
            '  --schema        print what is in a checkpoint: every member with unit, range, and what a remesh does with it'//nl// &
            '  --quiet         print errors only'//nl// &

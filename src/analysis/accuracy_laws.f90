@@ -8,12 +8,13 @@
 !> penetration of order 1, as it is the pressure over the penalty. Of a quantity the three are added, as if they had one sign.
 module accuracy_laws
   use accuracy_rules, only: fineness_t
+  use cost_file, only: ntask
   use kinds, only: wp
   use text, only: string_t
   implicit none
   private
   public :: accuracy_law_t, sample_t
-  public :: asked_for, choose_fineness, difference, errors_of, expected_error, expected_seconds, measure_laws
+  public :: asked_for, choose_fineness, difference, errors_of, expected_error, expected_seconds, grown_seconds, measure_laws
 
   !> Orders in space that are believed: of the stress what a crack leaves at least; of forces, work and motions twice that
   !> (J. Nitsche, Abh. Math. Sem. Hamburg 36 (1971) 9-15); and the order of the stress where it is smooth. Without a third mesh
@@ -31,16 +32,16 @@ module accuracy_laws
   integer, parameter :: largest_mesh = 64
   !> Time over elements along a line, for the choice between mesh and steps: between loops (2) and factorisations (3).
   real(wp), parameter :: cost_exponent = 2.4_wp
-  !> How seconds go with the number of elements (closing_table): tasks of elements, contact, factorisation; and what is no task,
-  !> such as files.
-  real(wp), parameter :: task_exponents(4) = [1.0_wp, 0.5_wp, 1.5_wp, 0.0_wp]
+  !> How seconds go with the number of elements (closing_table): tasks of elements, contact, factorisation; what is no task,
+  !> such as files; and the remesher (its growth is measured by tests/bench/remdata_bench.py).
+  real(wp), parameter :: task_exponents(ntask) = [1.0_wp, 0.5_wp, 1.5_wp, 0.0_wp, 1.0_wp]
 
   !> A run of some fineness: what it cost, and its judged quantities.
   type :: sample_t
     type(fineness_t) :: fineness
     integer :: elements = 0, steps = 0, iterations = 0
-    !> Tasks of elements, contact, factorisation, the rest [s].
-    real(wp) :: seconds(4) = 0.0_wp
+    !> Seconds of processor by tasks [s].
+    real(wp) :: seconds(ntask) = 0.0_wp
     !> Estimated error of the stress; below 0 where there is none.
     real(wp) :: stress = -1.0_wp
     real(wp), allocatable :: time(:)        !! (nrow) [time]
@@ -189,26 +190,29 @@ contains
   !> was needed: steps that a scene chooses by itself differ from mesh to mesh, and their errors may hide those of the mesh.
   !> `met` is false where none is found: then the mesh is that of the finest pilot, with steps as if half of what is asked were left
   !> for them.
-  pure subroutine choose_fineness(law, asked, divisible, fineness, met)
+  pure subroutine choose_fineness(law, asked, divisible, fineness, met, parts)
     type(accuracy_law_t), intent(in) :: law
     real(wp), intent(in) :: asked         !! [-]
     logical, intent(in) :: divisible      !! the mesh can be made finer
     type(fineness_t), intent(out) :: fineness
     logical, intent(out) :: met
+    integer, intent(in), optional :: parts   !! factors of the mesh are whole over this (default: whole)
     real(wp), dimension(size(law%space)) :: space, time, depth
     type(fineness_t) :: trial
     real(wp) :: left, cost, least
-    integer :: m, k, coarsest
+    integer :: m, k, coarsest, over
 
     met = .false.
     if (maxval(law%depth) > depth_share*used_share*asked) &
       fineness%depth = max(depth_share*used_share*asked/maxval(law%depth), least_depth)
     least = huge(least)
     trial = fineness
-    coarsest = 1
-    if (law%order_measured) coarsest = nint(max(law%mesh, 1.0_wp))
-    do m = coarsest, merge(largest_mesh, coarsest, divisible)
-      trial%mesh = m
+    over = 1
+    if (present(parts)) over = parts
+    coarsest = over
+    if (law%order_measured) coarsest = nint(max(law%mesh, 1.0_wp))*over
+    do m = coarsest, merge(largest_mesh*over, coarsest, divisible)
+      trial%mesh = real(m, wp)/over
       trial%steps = 1
       call errors_of(law, trial, space, time, depth)
       do k = 1, size(space)
@@ -268,10 +272,19 @@ contains
       associate (finer => fineness%mesh/finest%fineness%mesh)
         steps = nint(first%steps*(fineness%steps**(-by_length) - 1) + finest%steps*finer**by_mesh)
         seconds = finer**iterations*fineness%steps**fewer*fineness%depth**(-stiffer)*steps/finest%steps &
-                  *sum(finest%seconds*(real(elements, wp)/finest%elements)**task_exponents)
+                  *grown_seconds(finest%seconds, real(elements, wp)/finest%elements)
       end associate
     end associate
   end subroutine expected_seconds
+
+  !> Seconds by tasks with so many times the elements, in as many steps and iterations [s].
+  pure function grown_seconds(seconds, factor) result(grown)
+    real(wp), intent(in) :: seconds(ntask)   !! by tasks [s]
+    real(wp), intent(in) :: factor
+    real(wp) :: grown
+
+    grown = sum(seconds*factor**task_exponents)
+  end function grown_seconds
 
   !> Exponent of a growth over a factor, from 0 up to a largest one.
   pure function growth(from, to, factor, largest) result(exponent)

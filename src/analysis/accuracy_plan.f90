@@ -34,8 +34,9 @@ module accuracy_plan
     real(wp) :: seconds = 0.0_wp, pilot_seconds = 0.0_wp
     !> Time for half the error, over that for what was asked.
     real(wp) :: half_costs = 1.0_wp
-    !> The mesh can be made finer.
+    !> The mesh can be made finer, by factors that are whole over this.
     logical :: divisible = .false.
+    integer :: parts = 1
     !> What is not known, and why.
     type(string_t), allocatable :: notes(:)
   end type accuracy_plan_t
@@ -65,7 +66,7 @@ contains
     k = maxloc(space + time + depth, 1)
     plan%expected = parts_of(plan%names(k)%s, space(k), time(k), depth(k))
     call expected_seconds(plan%pilots, plan%fineness, elements, plan%seconds, plan%steps)
-    call choose_fineness(plan%law, asked_for(total(plan%expected)/2), plan%divisible, finer, met)
+    call choose_fineness(plan%law, asked_for(total(plan%expected)/2), plan%divisible, finer, met, plan%parts)
     plan%half_costs = 0
     if (.not. (met .and. plan%seconds > 0 .and. total(plan%expected) > 0)) return
     call expected_seconds(plan%pilots, finer, nint(elements*(finer%mesh/plan%fineness%mesh)**2), seconds, steps)

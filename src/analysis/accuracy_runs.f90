@@ -1,21 +1,31 @@
 !> The pilots of a deck with ACCURACY: short runs that measure how its errors fall, each in a folder of its own beside the results.
-!> A pilot that is there already, of the same deck and program, is not made again.
+!> A pilot that is there already, of the same deck and program, is not made again. Those of a deck with REMSH need new meshes,
+!> which the solver does not make: it asks `lagacycle` for one after the other (`NAME.pilot`, exit code 7).
 module accuracy_runs
   use accuracy_laws, only: choose_fineness, measure_laws, sample_t
   use accuracy_plan, only: accuracy_plan_t, expect, fineness_words
   use accuracy_rules, only: coarsest_mesh, fineness_t, stress_name
-  use accuracy_samples, only: range_of, read_sample, select_columns
+  use accuracy_samples, only: key_of, range_of, read_sample, select_columns
+  use atomic, only: read_text, write_text
+  use cost_file, only: cost_t, read_cost
   use errors, only: error_t, exit_done, exit_input, exit_no_convergence, fail
+  use exact_numbers, only: exact_text
   use kinds, only: wp
-  use run_options, only: run_options_t
+  use remesher_options, only: has_contours
+  use run_options, only: run_options_t, stem_of
   use scene, only: scene_t
   use standard_streams, only: print_line
   use strategy, only: order_in_time
-  use system, only: join_path
+  use system, only: file_exists, join_path, make_directory
   use text, only: add_text, string_t, to_text
   implicit none
   private
-  public :: make_plan, run_i
+  public :: exit_pilot, make_plan, run_i
+
+  !> Exit code of a run that needs a pilot which only `lagacycle` can make; it reads it too.
+  integer, parameter :: exit_pilot = 7
+  !> Meshes of bodies that are given by their contours can be finer by any factor: quarters are fine enough.
+  integer, parameter :: quarters = 4
 
   !> Steps of half the length, a quarter of the penetration.
   real(wp), parameter :: half = 0.5_wp, quarter = 0.25_wp
@@ -48,6 +58,7 @@ contains
     allocate (plan%pilots(0), plan%notes(0), plan%names(0), plan%scales(0), plan%columns(0))
     plan%asked = scene%accuracy%asked
     plan%divisible = scene%accuracy%divisible
+    if (has_contours(scene%remesher)) plan%parts = quarters
     coarsest = merge(coarsest_mesh, 1.0_wp, scene%accuracy%halvable)
     call pilot(fineness_t(coarsest, 1.0_wp, 1.0_wp), there)
     if (.not. there .and. coarsest < 1 .and. goes_on()) then
@@ -101,7 +112,8 @@ contains
       finest = maxloc(plan%pilots%fineness%mesh, 1)
       call range_of(plan%pilots(finest), plan%scales)
       call measure_laws(plan%pilots, plan%scales, scene%accuracy%stress, is_smooth(scene), time_order(scene), plan%law)
-      call choose_fineness(plan%law, plan%asked, plan%divisible .and. plan%law%space_known, plan%fineness, plan%met)
+      call choose_fineness(plan%law, plan%asked, plan%divisible .and. plan%law%space_known, plan%fineness, plan%met, &
+                            plan%parts)
       elements = nint(plan%pilots(finest)%elements*(plan%fineness%mesh/plan%pilots(finest)%fineness%mesh)**2)
       call expect(plan, elements)
     end subroutine choose
@@ -124,6 +136,12 @@ contains
       if (allocated(own%resume)) deallocate (own%resume)
       own%fineness = fineness
       call read_sample(own, deck_text, fineness, plan%columns, sample, there)
+      if (.not. there .and. scene%remesh%on) then
+        call ask_for_cycle(options, own, deck_text, error)
+        if (allocated(error)) return
+        call note('the pilot with '//fineness_words(fineness)//' did not reach its end')
+        return
+      end if
       if (.not. there) then
         if (.not. (options%quiet .or. options%progress)) call print_line('pilot of ACCURACY: '//fineness_words(fineness), error)
         if (.not. allocated(error)) call run(own, code, error)
@@ -158,6 +176,35 @@ contains
     end function only_stress
 
   end subroutine make_plan
+
+  !> Ask for a pilot that needs new meshes: `NAME.pilot` names its folder, its fineness, and how it begins. No error where it has
+  !> been made and did not reach its end: then its folder has that file.
+  subroutine ask_for_cycle(options, own, deck_text, error)
+    type(run_options_t), intent(in) :: options, own   !! of the run and of the pilot
+    character(len=*), intent(in) :: deck_text
+    type(error_t), allocatable, intent(out) :: error
+    character(len=*), parameter :: nl = new_line('a')
+    character(len=:), allocatable :: name, what, tried
+    type(cost_t) :: cost
+    logical :: there
+
+    name = stem_of(options%deck)//'.pilot'
+    what = own%out//nl//exact_text(own%fineness%mesh)//','//exact_text(own%fineness%steps)//','//exact_text(own%fineness%depth)//nl
+    if (file_exists(join_path(own%out, name))) then
+      call read_text(join_path(own%out, name), tried, error)
+      if (allocated(error)) return
+      if (index(tried, what) == 1 .and. index(tried, nl//key_of(deck_text)//nl) > 0) return
+    end if
+    call read_cost(join_path(own%out, stem_of(options%deck)), key_of(deck_text), cost, there)
+    call make_directory(options%out, error)
+    if (.not. allocated(error)) &
+      call write_text(join_path(options%out, name), what//trim(merge('go on', 'begin', there .and. .not. cost%finished))//nl &
+                                                  //key_of(deck_text)//nl, error)
+    if (allocated(error)) return
+    call fail(error, exit_pilot, 'ACCURACY with REMSH: the pilot with '//fineness_words(own%fineness) &
+              //' is missing, and needs new meshes', &
+              'call lagacycle with this deck, or lagacycle --forecast: it makes pilots and new meshes')
+  end subroutine ask_for_cycle
 
   !> A part of the scene faces a rigid die by a law with a penetration.
   pure function has_rigid_contact(scene) result(yes)

@@ -2,11 +2,10 @@
 module accuracy_samples
   use accuracy_laws, only: sample_t
   use accuracy_rules, only: fineness_t
-  use atomic, only: read_text, write_text
+  use cost_file, only: cost_t, ntask, read_cost, write_cost
   use csv_reader, only: read_csv
   use equations, only: equations_t
   use errors, only: error_t, exit_input, fail
-  use exact_numbers, only: exact_text
   use hash, only: sha256
   use kinds, only: wp
   use probes, only: probe_maximum, probe_minimum
@@ -14,11 +13,11 @@ module accuracy_samples
   use run_version, only: version_text
   use scene, only: axisymmetric, is_solid, scene_t
   use solution, only: solution_t
-  use system, only: file_exists, join_path
-  use text, only: add_text, string_t, to_text
+  use system, only: join_path
+  use text, only: add_text, string_t
   implicit none
   private
-  public :: range_of, read_sample, select_columns, write_cost
+  public :: add_cost, key_of, range_of, read_sample, select_columns
 
   !> A quantity that changes by less than this share of the largest change in its unit is none by itself.
   real(wp), parameter :: hardly = 1.0e-3_wp
@@ -29,21 +28,30 @@ module accuracy_samples
 
 contains
 
-  !> Write what the run has cost. Operations add up.
-  subroutine write_cost(stem, deck_text, fineness, scene, equations, solution, processor, stress, goes_on, error)
+  !> Program and deck, as the cost of a run has them.
+  function key_of(deck_text) result(key)
+    character(len=*), intent(in) :: deck_text
+    character(len=:), allocatable :: key
+
+    key = version_text//' '//sha256(deck_text)
+  end function key_of
+
+  !> Add what a call of the solver has cost to what the run had cost before; what all has cost.
+  subroutine add_cost(stem, deck_text, fineness, scene, equations, solution, processor, stress, finished, goes_on, cost, error)
     character(len=*), intent(in) :: stem, deck_text
     type(fineness_t), intent(in) :: fineness
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: processor   !! seconds of it [s]
-    real(wp), intent(in) :: stress   !! estimated error of it [-], below 0 where there is none
-    logical, intent(in) :: goes_on   !! from an earlier operation
+    real(wp), intent(in) :: stress      !! estimated error of it [-], below 0 where there is none
+    logical, intent(in) :: finished     !! the end of the scene
+    logical, intent(in) :: goes_on      !! from an earlier operation, mesh or stop
+    type(cost_t), intent(out) :: cost
     type(error_t), allocatable, intent(out) :: error
-    character(len=*), parameter :: nl = new_line('a')
-    type(sample_t) :: before
+    type(cost_t) :: before
     logical :: there
-    real(wp) :: seconds(4)
+    real(wp) :: seconds(ntask)
     integer :: t, g, n
 
     seconds = 0
@@ -57,46 +65,27 @@ contains
     if (sum(seconds) > processor) seconds = seconds*processor/sum(seconds)
     seconds(4) = processor - sum(seconds)
     if (goes_on) then
-      call read_cost(stem, deck_text, fineness, before, there)
+      call read_cost(stem, key_of(deck_text), before, there)
+      if (there) there = is_same(before%fineness, fineness)
       if (there) seconds = seconds + before%seconds
     end if
-    n = sum([(merge(size(scene%groups(g)%connectivity, 2), 0, is_solid(scene%groups(g))), g=1, size(scene%groups))])
-    call write_text(stem//'.cost', version_text//' '//sha256(deck_text)//nl &
-                    //exact_text(fineness%mesh)//' '//exact_text(fineness%steps)//' '//exact_text(fineness%depth)//nl &
-                    //to_text(n)//' '//to_text(solution%step)//' '//to_text(solution%iterations)//nl &
-                    //exact_text(seconds(1))//' '//exact_text(seconds(2))//' '//exact_text(seconds(3)) &
-                    //' '//exact_text(seconds(4))//nl &
-                    //exact_text(stress)//nl, error)
-  end subroutine write_cost
+    cost%key = key_of(deck_text)
+    cost%fineness = fineness
+    cost%finished = finished
+    cost%elements = sum([(merge(size(scene%groups(g)%connectivity, 2), 0, is_solid(scene%groups(g))), g=1, size(scene%groups))])
+    cost%steps = solution%step
+    cost%iterations = solution%iterations
+    cost%seconds = seconds
+    cost%stress = stress
+    call write_cost(stem, cost, error)
+  end subroutine add_cost
 
-  !> `there` is false where the file is missing, or of another deck, program or fineness.
-  subroutine read_cost(stem, deck_text, fineness, sample, there)
-    character(len=*), intent(in) :: stem, deck_text
-    type(fineness_t), intent(in) :: fineness
-    type(sample_t), intent(out) :: sample
-    logical, intent(out) :: there
-    character(len=:), allocatable :: text
-    type(error_t), allocatable :: error
-    character(len=*), parameter :: nl = new_line('a')
-    integer :: first, status
+  elemental function is_same(a, b) result(same)
+    type(fineness_t), intent(in) :: a, b
+    logical :: same
 
-    there = file_exists(stem//'.cost')
-    if (.not. there) return
-    call read_text(stem//'.cost', text, error)
-    there = .not. allocated(error)
-    if (there) there = index(text, version_text//' '//sha256(deck_text)//nl) == 1
-    if (.not. there) return
-    first = index(text, nl) + 1
-    ! list-directed reading of an internal file sees one record
-    do
-      if (index(text(first:), nl) == 0) exit
-      text(first + index(text(first:), nl) - 1:first + index(text(first:), nl) - 1) = ' '
-    end do
-    read (text(first:), *, iostat=status) sample%fineness%mesh, sample%fineness%steps, sample%fineness%depth, &
-      sample%elements, sample%steps, sample%iterations, sample%seconds, sample%stress
-    there = status == 0 .and. abs(sample%fineness%mesh - fineness%mesh) <= 0 &
-            .and. abs(sample%fineness%steps - fineness%steps) <= 0 .and. abs(sample%fineness%depth - fineness%depth) <= 0
-  end subroutine read_cost
+    same = abs(a%mesh - b%mesh) <= 0 .and. abs(a%steps - b%steps) <= 0 .and. abs(a%depth - b%depth) <= 0
+  end function is_same
 
   !> A run that has reached its end, with its quantities.
   subroutine read_sample(options, deck_text, fineness, columns, sample, there)
@@ -109,9 +98,17 @@ contains
     type(string_t), allocatable :: titles(:)
     real(wp), allocatable :: table(:, :)
     type(error_t), allocatable :: error
+    type(cost_t) :: cost
     integer :: i, k
 
-    call read_cost(join_path(options%out, stem_of(options%deck)), deck_text, fineness, sample, there)
+    call read_cost(join_path(options%out, stem_of(options%deck)), key_of(deck_text), cost, there)
+    if (there) there = cost%finished .and. is_same(cost%fineness, fineness)
+    sample%fineness = fineness
+    sample%elements = cost%elements
+    sample%steps = cost%steps
+    sample%iterations = cost%iterations
+    sample%seconds = cost%seconds
+    sample%stress = cost%stress
     if (there) call read_csv(join_path(options%out, 'history.csv'), titles, table, error)
     there = there .and. .not. allocated(error)
     if (.not. there) return

@@ -9,8 +9,12 @@
 !> - Time: errors that come of the path within steps are of order 1 in sum; those of heat of order 1, or 2 (TR-BDF2, and
 !>   theta = 1/2). Seconds go with the number of steps, at the same iterations a step.
 module closing_table
+  use accuracy_laws, only: grown_seconds
   use accuracy_plan, only: accuracy_lines, accuracy_t, add_accuracy
+  use cost_file, only: cost_t, ntask, remesher_task
+  use csv_reader, only: read_csv
   use equations, only: equations_t
+  use errors, only: error_t
   use estimator, only: estimator_t, set_up_estimator, stress_error_now
   use fields, only: displacement_field
   use heat_books, only: has_heat
@@ -24,7 +28,7 @@ module closing_table
   use timers, only: ledger_t
   implicit none
   private
-  public :: closing_t, add_closing, close_run, closing_lines, cost_of_elements
+  public :: closing_t, add_closing, close_cycle, close_run, closing_lines, cost_of_elements
 
   !> Shares, unless a unit is given; a cost is the time over that of this run.
   type :: closing_t
@@ -41,6 +45,10 @@ module closing_table
     !> Depth of the part in its dies, at points of contact and between them [length], over what is allowed (0: nothing states that).
     logical :: contact = .false.
     real(wp) :: depth = 0.0_wp, depth_share = 0.0_wp
+    !> Meshes of the whole run with REMSH, the largest errors of the stress and of the strain over all of its steps, and its seconds
+    !> by tasks [s]; forecasts are then of all meshes.
+    integer :: meshes = 1
+    real(wp) :: stress_worst = 0.0_wp, strain_worst = 0.0_wp, seconds(ntask) = 0.0_wp
     !> Of a deck with ACCURACY that has come to its end.
     type(accuracy_t), allocatable :: accuracy
   end type closing_t
@@ -68,6 +76,41 @@ contains
     closing%depth = max(solution%worst_penetration, solution%worst_sample)
     closing%depth_share = max(solution%worst_penetration_ratio, solution%worst_sample_ratio)
   end subroutine close_run
+
+  !> What the whole run has cost and had of errors, where it had other meshes before: seconds are those of all calls of both
+  !> programs, errors those of the history.
+  subroutine close_cycle(scene, cost, history, closing)
+    type(scene_t), intent(in) :: scene
+    type(cost_t), intent(in) :: cost
+    character(len=*), intent(in) :: history   !! its file
+    type(closing_t), intent(inout) :: closing
+    type(string_t), allocatable :: titles(:)
+    real(wp), allocatable :: table(:, :)
+    type(error_t), allocatable :: error
+    integer :: k
+
+    closing%meshes = scene%generation - max(scene%operation, 1) + 1
+    if (closing%meshes == 1 .or. .not. closing%space) return
+    closing%seconds = cost%seconds
+    if (sum(cost%seconds) > 0) closing%space_cost = grown_seconds(cost%seconds, 2.0_wp)/sum(cost%seconds)
+    call read_csv(history, titles, table, error)
+    closing%stress_worst = closing%stress
+    closing%strain_worst = closing%strain
+    ! a history that is gone says nothing of the steps before
+    if (allocated(error)) return
+    do k = 1, size(titles)
+      if (index(titles(k)%s, 'error_stress') == 1) closing%stress_worst = max(closing%stress, largest(table(k, :)))
+      if (index(titles(k)%s, 'error_strain') == 1) closing%strain_worst = max(closing%strain, largest(table(k, :)))
+    end do
+  end subroutine close_cycle
+
+  !> Of the cells that have a number.
+  pure function largest(column) result(value)
+    real(wp), intent(in) :: column(:)   !! (nrow) [-]
+    real(wp) :: value
+
+    value = maxval([0.0_wp, pack(column, abs(column) <= huge(column))])
+  end function largest
 
   !> Error of the stress, and of the strain where the steps were followed.
   subroutine close_space(scene, equations, solution, closing)
@@ -129,6 +172,9 @@ contains
       words = 'stress '//percent(closing%stress)
       if (closing%strain_known) words = words//', strain '//percent(closing%strain)
       call row('in space', words, times(closing%space_cost)//' the time: twice the elements')
+      if (closing%meshes > 1) call row('', 'at most '//percent(closing%stress_worst)//', '//percent(closing%strain_worst)//' on ' &
+        //to_text(closing%meshes)//' meshes', to_text(sum(closing%seconds), 3)//' s of processor in all, ' &
+        //to_text(closing%seconds(remesher_task), 3)//' s of the remesher')
     end if
     if (closing%flows .and. .not. closing%path) call row('in time', 'path within steps: not estimated (NORMS)', '')
     if (closing%path) &
@@ -194,10 +240,21 @@ contains
     type(closing_t), intent(in) :: closing
 
     call json%begin_object('accuracy')
+    if (closing%meshes > 1) then
+      call json%begin_object('cycle')
+      call json%add('meshes', closing%meshes)
+      call json%add('processor_s', sum(closing%seconds))
+      call json%add('remesher_s', closing%seconds(remesher_task))
+      call json%end_object()
+    end if
     if (closing%space) then
       call json%begin_object('space')
       call json%add('stress_pct', 100*closing%stress)
       if (closing%strain_known) call json%add('strain_pct', 100*closing%strain)
+      if (closing%meshes > 1) then
+        call json%add('stress_worst_pct', 100*closing%stress_worst)
+        call json%add('strain_worst_pct', 100*closing%strain_worst)
+      end if
       call json%add('half_costs', closing%space_cost)
       call json%end_object()
     end if

@@ -1,14 +1,16 @@
 !> `lagamine DECK`: from a deck to its results.
 module run_deck
   use accuracy_laws, only: sample_t
-  use accuracy_plan, only: accuracy_warning, judge_run, plan_lines
+  use accuracy_plan, only: accuracy_lines, accuracy_warning, judge_run, plan_lines
+  use accuracy_rules, only: fineness_t
   use accuracy_runs, only: make_plan
-  use accuracy_samples, only: read_sample, write_cost
+  use accuracy_samples, only: add_cost, key_of, read_sample
   use atomic, only: refuse_place
   use blas, only: blas_buffer, blas_build, blas_core_name, keep_blas_to_one_thread
   use cards_operations, only: operations_t
-  use closing_table, only: close_run
+  use closing_table, only: close_cycle, close_run
   use contact_ends, only: contact_end_t
+  use cost_file, only: cost_t, write_cost
   use deck_check, only: as_warnings, check_deck, look_at_deck
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
@@ -201,7 +203,12 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(len=*), parameter :: reason = 'remesh: no mesh yet, the remesher makes it'
     type(string_t), allocatable :: lines(:), warnings(:)
+    type(cost_t) :: cost
 
+    cost%key = key_of(run%deck_text)
+    if (allocated(options%fineness)) cost%fineness = options%fineness
+    call write_cost(run%stem, cost, error)
+    if (allocated(error)) return
     call open_listing(run%stem//'.log', .false., options%quiet, options%progress, 0.0_wp, run%listing, error)
     if (allocated(error)) return
     call scene_lines(scene, lines)
@@ -226,6 +233,7 @@ contains
     type(run_facts_t) :: facts
     type(error_t), allocatable :: late
     type(string_t), allocatable :: lines(:)
+    character(len=:), allocatable :: words
     real(wp) :: started, processor
 
     started = wall_seconds()
@@ -260,7 +268,7 @@ contains
     if (allocated(run%plan) .and. .not. run%begins_operation) then
       call plan_lines(run%plan, lines)
       call list_lines(run%listing, lines)
-      if (.not. (options%quiet .or. options%progress)) call print_lines(lines, error)
+      if (.not. (options%quiet .or. run%resume)) call print_lines(lines, error)
       if (allocated(error)) return
     end if
     call march_to_end(scene, solution, run, error)
@@ -281,8 +289,8 @@ contains
     facts%blas = blas_words(blas_build(), blas_core_name())
     facts%wall = wall_seconds() - started
     call close_run(scene, run%equations, solution, facts%closing)
-    if (scene%accuracy%asked > 0 .and. allocated(options%fineness)) &
-      call close_accuracy(options, scene, solution, cpu_seconds() - processor, run, facts, late)
+    if (scene%remesh%on .or. (scene%accuracy%asked > 0 .and. allocated(options%fineness))) &
+      call close_cost(options, scene, solution, cpu_seconds() - processor, run, facts, late)
     call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
     call list_lines(run%listing, lines)
     call close_listing(run%listing)
@@ -294,12 +302,17 @@ contains
       call print_lines(lines, late)
       ! scripts read first why a run has stopped
       if (allocated(late) .and. run%exit_code == exit_done) call move_alloc(late, error)
+    else if (options%progress .and. allocated(facts%closing%accuracy) .and. .not. allocated(error)) then
+      call accuracy_lines(facts%closing%accuracy, lines)
+      call print_lines(lines, error)
+      words = accuracy_warning(facts%closing%accuracy)
+      if (len(words) > 0 .and. .not. allocated(error)) call print_lines(as_warnings([string_t(words)]), error)
     end if
   end subroutine run_and_report
 
-  !> What a run of a deck with ACCURACY has cost and, where it has come to its end, reached. A warning where that is less
-  !> than asked.
-  subroutine close_accuracy(options, scene, solution, seconds, run, facts, error)
+  !> What a run of a deck with ACCURACY or REMSH has cost, over all its meshes; and what one with ACCURACY that has come to its end
+  !> has reached. A warning where that is less than asked.
+  subroutine close_cost(options, scene, solution, seconds, run, facts, error)
     type(run_options_t), intent(in) :: options
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -308,20 +321,26 @@ contains
     type(run_facts_t), intent(inout) :: facts
     type(error_t), allocatable, intent(out) :: error
     type(sample_t) :: sample
+    type(fineness_t) :: fineness
+    type(cost_t) :: cost
     character(len=:), allocatable :: words
     logical :: there
 
-    if (run%exit_code /= exit_done) return
-    call write_cost(run%stem, run%deck_text, options%fineness, scene, run%equations, solution, seconds, &
-                    merge(facts%closing%stress, -1.0_wp, facts%closing%space), run%begins_operation, error)
-    if (allocated(error) .or. .not. allocated(run%plan) .or. scene%operation < scene%operations) return
+    if (allocated(options%fineness)) fineness = options%fineness
+    call add_cost(run%stem, run%deck_text, fineness, scene, run%equations, solution, seconds, &
+                  merge(facts%closing%stress, -1.0_wp, facts%closing%space), &
+                  run%exit_code == exit_done .and. scene%operation >= scene%operations, &
+                  run%begins_operation .or. allocated(options%resume), cost, error)
+    if (allocated(error)) return
+    if (scene%remesh%on) call close_cycle(scene, cost, join_path(run%folder, 'history.csv'), facts%closing)
+    if (.not. (cost%finished .and. allocated(run%plan))) return
     call read_sample(options, run%deck_text, options%fineness, run%plan%columns, sample, there)
     if (.not. there) return
     allocate (facts%closing%accuracy)
     call judge_run(run%plan, sample, facts%closing%accuracy)
     words = accuracy_warning(facts%closing%accuracy)
     if (len(words) > 0) call add_text(facts%warnings, words)
-  end subroutine close_accuracy
+  end subroutine close_cost
 
   !> The summary of an operation that others follow has a name of its own.
   pure function summary_name(scene, run) result(name)

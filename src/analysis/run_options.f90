@@ -72,6 +72,9 @@ contains
         call value_of(word, k, options%out, error)
       case ('--resume')
         call value_of(word, k, options%resume, error)
+      case ('--fineness')
+        call value_of('--fineness', k, word, error)
+        if (.not. allocated(error)) call read_fineness(word, options%fineness, error)
       case ('--law')
         if (k == command_argument_count()) then
           options%law = ''
@@ -93,7 +96,7 @@ contains
       case default
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
           call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--check'), string_t('--quiet'), &
-                                    string_t('--forecast'), string_t('--force-agreed'), &
+                                    string_t('--forecast'), string_t('--fineness'), string_t('--force-agreed'), &
                                     string_t('--progress'), string_t('--out'), string_t('--resume'), string_t('--law'), &
                                     string_t('--met'), string_t('--cards'), string_t('--point'), string_t('-p'), &
                                     string_t('--threads')], &
@@ -121,6 +124,23 @@ contains
     end if
   end subroutine read_options
 
+  !> `MESH,STEPS,DEPTH`: factors over the deck's.
+  subroutine read_fineness(word, fineness, error)
+    character(len=*), intent(in) :: word
+    type(fineness_t), allocatable, intent(out) :: fineness
+    type(error_t), allocatable, intent(out) :: error
+    integer :: status
+
+    allocate (fineness)
+    read (word, *, iostat=status) fineness%mesh, fineness%steps, fineness%depth
+    if (status == 0 .and. verify(word, '0123456789.,+-Ee') == 0) then
+      if (min(fineness%mesh, fineness%steps, fineness%depth) > 0) return
+    end if
+    call fail(error, exit_input, '--fineness: expected three numbers above 0 and commas between them, found '''//word &
+              //'''', &
+              'elements along a line, length of steps and penetration, each over what the deck says')
+  end subroutine read_fineness
+
   !> Name of a file without folders and ending.
   pure function stem_of(path) result(stem)
     character(len=*), intent(in) :: path
@@ -139,13 +159,15 @@ contains
 
     text = 'lagamine: metal forming and heat treatment in two dimensions'//nl//nl// &
            'lagamine DECK [--out DIR] [--check|--forecast] [--resume CHECKPOINT] [-p NAME=VALUE]...'//nl// &
-           '         [--threads N] [--progress|--quiet] [--force-agreed]'//nl// &
+           '         [--fineness M,S,D] [--threads N] [--progress|--quiet] [--force-agreed]'//nl// &
            'lagamine --point DECK [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --met FILE [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --law [NAME] | --cards | --help | --version'//nl//nl// &
            '  --out DIR       folder of the results (default: the deck''s name); with --check: for DIR/NAME.scene.json'//nl// &
            '  --check         read the deck, print the scene, run nothing'//nl// &
            '  --forecast      of a deck with ACCURACY: make its pilots, print what the run is expected to be'//nl// &
+           '  --fineness M,S,D of a deck with ACCURACY: one pilot, with M times its elements along a line, S times'//nl// &
+           '                  its steps and D times its penetration; lagacycle asks for it where a pilot takes new meshes'//nl// &
            '  --resume FILE   go on from a checkpoint of the same deck'//nl// &
            '  --force-agreed  with --resume: other new meshes agree on the force of a die, it refuses none'//nl// &
            '  -p NAME=VALUE   set a parameter of the deck'//nl// &
@@ -157,6 +179,7 @@ contains
            '  --law [NAME]    print the card of a law: parameters, units, state, source; without a name, list all laws'//nl// &
            '  --cards         list the keywords of all cards'//nl//nl// &
            'Exit codes: 0 done, 2 input refused, 3 no convergence at the smallest step, 4 remesh due,'//nl// &
+           '            7 a pilot of ACCURACY is due that takes new meshes (lagacycle makes it),'//nl// &
            '            5 the machine failed, 6 a check of our own failed, 128+n stopped by signal n'
   end function usage_text
 

@@ -8,6 +8,8 @@ module cards_accuracy
   use kinds, only: wp
   use law_api, only: contact_law
   use mesh_parts, only: mesh_parts_t
+  use remesher_options, only: has_contours
+  use remeshing, only: never
   use scene, only: scene_t
   use scene_draft, only: close_card, draft_t, only_card, words_of
   use strategy, only: order_in_time
@@ -45,11 +47,9 @@ contains
       rules%asked = percent/hundred
       allocate (rules%columns(0))
       call read_names(cursor, deck, draft)
-      rules%divisible = size(parts%bodies) > 0 .and. all(parts%bodies%is_block)
-      rules%halvable = rules%divisible .and. parts%even
+      rules%divisible = parts%divisible
+      rules%halvable = parts%divisible .and. parts%even .and. .not. has_contours(draft%scene%remesher)
     end associate
-    if (.not. cursor%failed() .and. draft%scene%remesh%on) &
-      call cursor%fail('a deck with REMSH chooses its meshes by that card: expected no ACCURACY beside it')
     if (.not. cursor%failed()) call set_instants(draft%scene)
     call close_card(draft, cursor, deck%cards(k))
   end subroutine read_accuracy
@@ -140,7 +140,8 @@ contains
     end associate
   end subroutine set_instants
 
-  !> Steps and penetrations of a run of another fineness. What bounds the error of a single step is of one order more than the
+  !> Steps and penetrations of a run of another fineness, and limits of REMSH that count the one or the other: new meshes are then
+  !> due at about the same instants. What bounds the error of a single step is of one order more than the
   !> scheme.
   subroutine make_finer(fineness, draft)
     type(fineness_t), intent(in) :: fineness
@@ -155,6 +156,10 @@ contains
       strategy%rate_bound = share*strategy%rate_bound
       strategy%travel_bound = share*strategy%travel_bound
       strategy%time_tolerance = share**(order_in_time(strategy) + 1)*strategy%time_tolerance
+      associate (rules => draft%scene%remesh)
+        if (rules%least_steps > 1) rules%least_steps = nint(rules%least_steps/share)
+        if (rules%contact < never) rules%contact = rules%contact/fineness%depth
+      end associate
     end associate
     do k = 1, size(draft%scene%materials)
       id = draft%scene%materials(k)%law_id

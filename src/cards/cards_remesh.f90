@@ -10,7 +10,7 @@ module cards_remesh
                        scaled_jacobian, stroke_t
   use remesh_defaults, only: set_default_limits, set_default_sizes
   use remesher_options, only: has_contours
-  use remesher_rows, only: complete_options, read_remesher_row, remesher_words
+  use remesher_rows, only: complete_options, make_sizes_finer, read_remesher_row, remesher_words
   use scene_draft, only: close_card, draft_t, only_card, words_of
   use state_variables, only: name_of_ratio, state_variable, state_variable_t, total_components, transfer_scalar
   use text, only: string_t, to_text
@@ -49,6 +49,7 @@ contains
       call read_rows(cursor, draft)
       call close_card(draft, cursor, deck%cards(k))
       if (has_contours(draft%scene%remesher)) call set_default_sizes(draft%scene%remesher)
+      if (abs(draft%mesh_factor - 1) > 0) call make_sizes_finer(draft%mesh_factor, draft%scene%remesh, draft%scene%remesher)
     end if
     call complete_options(draft%scene%remesher)
     if (draft%groups_sound .and. draft%scene%remesh%on) call keep_volume_ratios(draft)

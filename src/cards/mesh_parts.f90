@@ -38,6 +38,8 @@ module mesh_parts
     logical :: sound = .true.
     !> All blocks have even divisions.
     logical :: even = .true.
+    !> The mesh of the cards can be made finer: all bodies are blocks, or given by their contours.
+    logical :: divisible = .false.
   end type mesh_parts_t
 
 contains

@@ -8,12 +8,13 @@ module remesher_rows
   use deck_cursor, only: cursor_t
   use kinds, only: pi, wp
   use mesh_parts, only: mesh_parts_t
+  use remeshing, only: never, remesh_rules_t
   use remesher_options, only: by_free, by_gmsh, has_zones, own_mesh_t, remesher_options_t
   use scene_draft, only: words_of
   use text, only: string_t
   implicit none
   private
-  public :: remesher_words, read_remesher_row, measure_own_mesh, complete_options
+  public :: remesher_words, read_remesher_row, make_sizes_finer, measure_own_mesh, complete_options
 
   !> In the order of `read_remesher_row`.
   character(len=*), parameter :: remesher_words = 'STRAIN SIZE COUNT ACROSS TURN TRANSFER ACCEPT TRIES MESHER'
@@ -153,6 +154,23 @@ contains
       end do
     end if
   end function measure_own_mesh
+
+  !> New meshes of a run with so many times the deck's elements along a line: what the cards say of sizes, and of errors that
+  !> fall with them, that of strains with the square of the size, that of the stress with the size at least (accuracy_laws). What
+  !> they do not say follows the deck's own mesh, which is as much finer.
+  pure subroutine make_sizes_finer(factor, rules, options)
+    real(wp), intent(in) :: factor
+    type(remesh_rules_t), intent(inout) :: rules
+    type(remesher_options_t), intent(inout) :: options
+
+    options%smallest = options%smallest/factor
+    options%largest = options%largest/factor
+    options%most_elements = nint(options%most_elements*factor**2)
+    options%strain_error = options%strain_error/factor**2
+    options%across_contact = nint(options%across_contact*factor)
+    options%turn = options%turn/factor
+    if (rules%stress_error < never) rules%stress_error = rules%stress_error/factor
+  end subroutine make_sizes_finer
 
   !> What was not given is taken from the deck's own mesh.
   pure subroutine complete_options(options)

@@ -85,6 +85,8 @@ contains
     call read_contours(deck, draft, parts, diagnostics)
     call read_side_sets(deck, draft, parts, diagnostics)
     call join_blocks(deck, draft, parts, diagnostics)
+    ! asked of the cards: on a new mesh no body is a block
+    parts%divisible = size(parts%bodies) > 0 .and. (all(parts%bodies%is_block) .or. has_contours(draft%scene%remesher))
     if (present(remesh)) then
       draft%scene%remesher%own_mesh = remesh%own_mesh
       call replace_parts(remesh, draft, parts)

@@ -111,7 +111,7 @@ def put(study: Study, out: str) -> None:
     with open(os.path.join(out, "work_precision.svg"), "rb") as source, open(os.path.join(folder, picture), "wb") as target:
         target.write(source.read())
     command = f"`python3 src/documents/studies.py {study.name}`"
-    text = f"{MARK}\n{HEADING}\nMade by {command}; seconds are those of one thread.\n\n![Error over seconds]({picture})\n\n{tables}\n{MARK}\n"
+    text = f"{MARK}\n{HEADING}\nMade by {command}; seconds are those of the processor, one thread.\n\n![Error over seconds]({picture})\n\n{tables}\n{MARK}\n"
     readme = os.path.join(folder, "README.md")
     with open(readme, encoding="utf-8") as file:
         old = file.read()

@@ -2,6 +2,7 @@
 """lagastudy: errors, orders and costs of made-up and of real ladders; runs that are there, that fail, that a scheduler makes; refusals."""
 import csv
 import glob
+import json
 import math
 import os
 import shutil
@@ -103,6 +104,7 @@ class Study(unittest.TestCase):
             self.assertAlmostEqual(100 * (1 + h)**(-4 / h), float(row["value"]), places=6)
             self.assertAlmostEqual(abs(float(row["value"]) / exact - 1), float(row["relative_error"]), places=12)
             self.assertGreater(float(row["wall_s"]), 0)
+            self.assertGreater(float(row["processor_s"]), 0)
         self.assertAlmostEqual(1.0, float(rows[-1]["order"]), delta=0.1)
         halfway = [row for row in self.table("steps") if row["ladder"] == "step" and row["quantity"] == "t@2"]
         self.assertIn("Richardson", halfway[0]["truth_from"])
@@ -111,6 +113,10 @@ class Study(unittest.TestCase):
             self.assertTrue(os.path.getsize(os.path.join(self.folder, "steps", name)) > 0)
         summaries = sorted(glob.glob(os.path.join(self.folder, "steps", "*", "summary.json")))
         self.assertEqual(6, len(summaries))
+        # a run's seconds are at least those that its program counts itself
+        first = rows[0]
+        with open(os.path.join(self.folder, "steps", "step0.5", "summary.json"), encoding="utf-8") as file:
+            self.assertGreaterEqual(float(first["processor_s"]), json.load(file)["cpu_s"] - 0.05)
         before = [os.stat(path).st_mtime_ns for path in summaries]
         os.remove(summaries[0])       # one that was interrupted is made again, the others are not
         self.assertEqual(0, self.study(*words).returncode)

@@ -44,8 +44,8 @@ def _parser(version: str) -> Parser:
                         help="what a quantity should be (default: Richardson's extrapolation where three runs allow it, otherwise the finest run)")
     parser.add_argument("-p", metavar="NAME=VALUE", dest="parameters", action="append", default=[], help="a parameter for all runs")
     parser.add_argument("--out", metavar="DIR", help="folder of the runs, of study.csv, study.md and work_precision.svg (default: study_NAME in the present one)")
-    parser.add_argument("--jobs", metavar="N", type=int, default=1, help="runs at a time (default 1: seconds are then those of a run alone)")
-    parser.add_argument("--threads", metavar="N", type=int, default=1, help="threads of a run (default 1)")
+    parser.add_argument("--jobs", metavar="N", type=int, default=1, help="runs at a time (default 1)")
+    parser.add_argument("--threads", metavar="N", type=int, default=1, help="threads of a run (default 1); seconds are those of all of them")
     parser.add_argument("--slurm", metavar="FILE", help="write a script for a Slurm array of the runs that are missing instead of making them; "
                         "the same command without it then makes the tables")
     parser.add_argument("--quiet", action="store_true", help="print nothing when all goes well")

@@ -6,9 +6,10 @@ import re
 import shlex
 import shutil
 import subprocess
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Dict, List, Sequence
+from typing import Dict, List, Sequence, Tuple
 
 from lagamine_report.errors import EXIT_MACHINE, ReportError
 from lagamine_report.program import write
@@ -18,6 +19,7 @@ from lagamine_report.tables import number, read_object, read_summary
 from .ladders import Quantity, Rung
 
 MARK = "study.json"      # in the folder of a run: the call that made it
+SPENT = "study.seconds.json"      # beside it: seconds of processor of that call, all programs
 
 
 @dataclass
@@ -28,7 +30,8 @@ class Result:
     code: int
     reason: str
     values: Dict[str, float]
-    seconds: float
+    seconds: float      # of processor
+    wall: float
     steps: float
     iterations: float
     elements: float
@@ -93,19 +96,29 @@ def make_runs(commands: Dict[str, List[str]], marks: Dict[str, Dict[str, object]
                 shutil.rmtree(folder)
             os.makedirs(folder)
             write(os.path.join(folder, MARK), json.dumps(marks[folder], indent=1).encode("utf-8"))
-            done = subprocess.run(commands[folder], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                                  check=False, errors="replace")
+            code, said, spent = call(commands[folder])
+            write(os.path.join(folder, SPENT), json.dumps({"processor_s": spent}).encode("utf-8"))
         except FileExistsError as error:
             raise ReportError(f"{folder}: is there, and no run of a study", advice="move it away, or choose another --out") from error
         except OSError as error:
             raise ReportError(f"{commands[folder][0]}: cannot be started: {error.strerror}", EXIT_MACHINE) from error
-        if done.returncode not in (0, 3):
-            raise ReportError(f"{shlex.join(commands[folder])}: {done.stderr.strip() or f'ended with {done.returncode}'}", done.returncode)
+        if code not in (0, 3):
+            raise ReportError(f"{shlex.join(commands[folder])}: {said.strip() or f'ended with {code}'}", code)
         tell(folder)
 
     with ThreadPoolExecutor(jobs) as pool:
         for finished in [pool.submit(one, folder) for folder in commands]:
             finished.result()
+
+
+def call(words: Sequence[str]) -> Tuple[int, str, float]:
+    """Exit code, messages and seconds of processor of a program and of all that it has started and waited for."""
+    with tempfile.TemporaryFile() as messages:
+        with subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=messages) as program:
+            _, status, used = os.wait4(program.pid, 0)
+            program.returncode = os.waitstatus_to_exitcode(status)
+        messages.seek(0)
+        return program.returncode, messages.read().decode("utf-8", errors="replace"), used.ru_utime + used.ru_stime
 
 
 def read_result(rung: Rung, quantities: Sequence[Quantity]) -> Result:
@@ -115,7 +128,10 @@ def read_result(rung: Rung, quantities: Sequence[Quantity]) -> Result:
     code = int(number(s.get("exit_code", 0)))
     values = {quantity.text: quantity.of(run.history) if code == 0 else float("nan") for quantity in quantities}
     calls = run.calls
-    seconds = calls.wall if calls.number > 1 else number(s.get("wall_s"))
-    remesher = sum(row.numbers["remdata"] for row in run.tries if row.numbers["remdata"] == row.numbers["remdata"])
-    return Result(rung, code, s.get("stop_reason") or "", values, seconds + remesher, number(s.get("steps")), number(s.get("iterations")),
+    wall = calls.wall if calls.number > 1 else number(s.get("wall_s"))
+    wall += sum(row.numbers["remdata"] for row in run.tries if row.numbers["remdata"] == row.numbers["remdata"])
+    spent = os.path.join(rung.folder, SPENT)
+    # runs of a scheduler have what their last program says
+    seconds = number(read_object(spent).get("processor_s")) if os.path.isfile(spent) else number(s.get("cpu_s"))
+    return Result(rung, code, s.get("stop_reason") or "", values, seconds, wall, number(s.get("steps")), number(s.get("iterations")),
                   number(s.get("elements")), number(s.get("dofs")))

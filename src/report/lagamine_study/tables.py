@@ -13,7 +13,7 @@ from .ladders import Ladder, Quantity
 from .runs import Result
 
 Verdicts = Dict[Tuple[str, str], Verdict]      # by ladder and quantity
-HEADINGS = ["ladder", "run", "exit_code", "quantity", "value", "truth", "truth_from", "relative_error", "order", "wall_s", "steps", "iterations", "elements",
+HEADINGS = ["ladder", "run", "exit_code", "quantity", "value", "truth", "truth_from", "relative_error", "order", "processor_s", "wall_s", "steps", "iterations", "elements",
             "equations"]
 
 
@@ -25,7 +25,7 @@ def rows(ladder: Ladder, results: Sequence[Result], quantities: Sequence[Quantit
         for k, result in enumerate(results):
             order = verdict.orders[k - 1] if k else float("nan")
             found.append([ladder.name, result.rung.title, result.code, quantity.text, result.values[quantity.text], verdict.truth, verdict.source,
-                          verdict.errors[k], order, result.seconds, result.steps, result.iterations, result.elements, result.equations])
+                          verdict.errors[k], order, result.seconds, result.wall, result.steps, result.iterations, result.elements, result.equations])
     return found
 
 
@@ -46,7 +46,7 @@ def as_markdown(title: str, ladders: Sequence[Ladder], results: Dict[str, List[R
         for quantity in quantities:
             verdict = verdicts[ladder.name, quantity.text]
             lines += [f"## {quantity.text} over {ladder.name}", f"Truth {brief(verdict.truth, 7)}: {verdict.source}.{_price(verdict)}", "",
-                      "| run | value | error % | order | seconds | steps | iterations | elements |", "|---|---|---|---|---|---|---|---|"]
+                      "| run | value | error % | order | processor s | steps | iterations | elements |", "|---|---|---|---|---|---|---|---|"]
             for k, result in enumerate(held):
                 order = verdict.orders[k - 1] if k else float("nan")
                 lines.append(f"| {result.rung.title} | {_cell(result.values[quantity.text], 7)} | {_cell(100 * verdict.errors[k], 3)} | {_cell(order, 3)} | "
@@ -76,10 +76,10 @@ def work_precision(ladders: Sequence[Ladder], results: Dict[str, List[Result]], 
             if known:
                 panel.loglog(*zip(*known), marker="o", color=colour, label=ladder.name)
         panel.set_title(quantity.text)
-        panel.set_xlabel("seconds")
+        panel.set_xlabel("seconds of processor")
         panel.set_ylabel("error %")
         if panel.get_legend_handles_labels()[0]:
             panel.legend()
     for panel in axes.flat[len(quantities):]:
         panel.set_visible(False)
-    return Picture("work_precision", "error over seconds on the wall", fig, vector=True)
+    return Picture("work_precision", "error over seconds of processor", fig, vector=True)

@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+"""ACCURACY of decks with new meshes: pilots are cycles, the accuracy drives the sizes of all meshes, and a stop changes nothing.
+
+usage: run_accuracy_remesh.py [--long] [-v] [-k]
+
+The billet, coarse and pressed a little way, with a new mesh half-way. `--long`: true errors against cycles that are finer, of the billet
+pressed until its side has folded, and of a can, a body that is given by its contour (some minutes of processor).
+"""
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "patch"))
+from patch_support import BIN, SOURCE, Checks, Run, np  # noqa: E402
+
+LONG = "--long" in sys.argv[1:]
+LAGAMINE, LAGACYCLE = (os.path.join(os.path.abspath(BIN), name) for name in ("lagamine", "lagacycle"))
+DONE, REFUSED, NO_CONVERGENCE, PILOT_DUE, TERMINATED = 0, 2, 3, 7, 128 + signal.SIGTERM
+WITHIN = 2.0
+# Elements of new meshes are squares of the wanted sizes only about.
+FINER = 1.6
+LONGEST = 60
+
+
+def deck(checks, name, changes, card, file="upsetting_remesh/upsetting_remesh"):
+    """A shipped deck with lines exchanged (by their beginnings) and the card; its path."""
+    with open(os.path.join(SOURCE, "decks", file + ".lag"), encoding="utf-8") as source:
+        text = source.read()
+    for old, new in changes:
+        text, number = re.subn(rf"(?m)^{old}.*$", new, text)
+        assert number == 1, (name, old, number)
+    path = os.path.join(checks.folder, name + ".lag")
+    with open(path, "w", encoding="utf-8") as target:
+        target.write(text.replace("\nEND", f"\n{card}\nEND"))
+    return path
+
+
+SMALL = [("PARAM  nx", "PARAM  nx 4"), ("PARAM  ny", "PARAM  ny 6"), ("PARAM  travel", "PARAM  travel 3."), (r"   SIZE", "   SIZE 1.2 5."),
+         (r"   ERROR 0.1", "   TIMES 0.5"), ("STRAT", "STRAT  0.05  1.E-5  0.1   5 3")]
+
+
+def call(checks, program, *words, code=DONE):
+    """What a program says that must end with this code."""
+    done = subprocess.run([program, *words, "--threads", "1"], check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    checks.that(done.returncode == code, f"{' '.join(os.path.basename(word) for word in (program, *words))}: exit code {code}",
+                f"{done.returncode} {done.stderr[:400]}")
+    return done.stdout + done.stderr
+
+
+def history(folder):
+    run = Run.__new__(Run)
+    run.out = folder
+    return run.read_history()
+
+
+def summary(folder):
+    with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
+        return json.load(file)
+
+
+def same(a, b):
+    """The same bits of all columns but times on the wall."""
+    return set(a) == set(b) and all(np.array_equal(a[q], b[q], equal_nan=True) for q in a)
+
+
+def pilots(folder):
+    return {name: os.stat(os.path.join(folder, name, "history.csv")).st_mtime_ns for name in sorted(os.listdir(folder)) if name.startswith("pilot_")}
+
+
+def new_elements(folder, name):
+    """Of the first new mesh."""
+    with open(os.path.join(folder, name + ".g02.start.h5.json"), encoding="utf-8") as file:
+        return json.load(file)["new_elements"]
+
+
+def drives_all_meshes(checks):
+    name = "billet"
+    path, out = deck(checks, name, SMALL, "ACCURACY 12 % OF force_y_upper"), os.path.join(checks.folder, name)
+    said = call(checks, LAGAMINE, path, "--out", os.path.join(checks.folder, "alone"), code=PILOT_DUE)
+    checks.that("needs new meshes" in said and "lagacycle" in said, "the solver alone names the program that makes pilots", said)
+    forecast = call(checks, LAGACYCLE, path, "--forecast", "--out", out)
+    expected = re.search(r"(?m)^ +run: .*$", forecast)
+    checks.that(expected and "asked of force_y_upper" in forecast and not os.path.exists(os.path.join(out, "history.csv")),
+                "--forecast: pilots, no run", forecast[-400:])
+    made = pilots(out)
+    said = call(checks, LAGACYCLE, path, "--out", out)
+    checks.that(expected and expected.group() in said and "    spent  " in said, "the run says before what was forecast, and after what it spent", said)
+    checks.that(pilots(out) == made and len(made) >= 4, "pilots are not made again", list(made))
+    run, told = history(out), summary(out)["accuracy"]
+    asked = told["asked"]
+    checks.that(asked["met"] and asked["reached"]["error_pct"] <= 12, "reached what was asked", asked)
+    checks.that(1/WITHIN <= asked["spent_steps"]/asked["expected_steps"] <= WITHIN, "steps as expected", asked)
+    checks.that(told["cycle"]["meshes"] == 2 and 0 < told["cycle"]["remesher_s"] < told["cycle"]["processor_s"]
+                and abs(told["cycle"]["processor_s"] - asked["spent_s"]) < 1e-9, "the cost is that of both meshes and of the remesher", told)
+    worst = history(out)["error_stress"].max()
+    checks.that(abs(told["space"]["stress_worst_pct"] - 100*worst) < 1e-9*worst + 1e-9 and told["space"]["stress_pct"] <= told["space"]["stress_worst_pct"],
+                "the largest error is that over both meshes", (told["space"], worst))
+    coarse, fine = (new_elements(os.path.join(out, pilot), name) for pilot in ("pilot_0.5_1_1", "pilot_1_1_1"))
+    checks.that(fine > FINER*coarse, "new meshes are finer too", (coarse, fine))
+    # the same fineness without any pilot
+    other = os.path.join(checks.folder, "by_hand")
+    call(checks, LAGACYCLE, path, "--out", other, "--fineness", ",".join(repr(asked[q]) for q in ("mesh", "steps", "depth")), "--quiet")
+    checks.that(same(run, history(other)) and not pilots(other), "a run of that fineness has the same bits")
+    return path, run
+
+
+def goes_on(checks, path, run):
+    """Stopped in the middle of a pilot, and of the run: the same command goes on to the same bits."""
+    out = os.path.join(checks.folder, "stopped")
+    for what in ("pilot_1_1_1", "."):
+        started = subprocess.Popen([LAGACYCLE, path, "--out", out, "--threads", "1", "--quiet"], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        table, begun = os.path.join(out, what, "history.csv"), time.monotonic()
+        while started.poll() is None and not os.path.exists(table) and time.monotonic() - begun < LONGEST:
+            time.sleep(0.005)
+        started.terminate()
+        checks.that(started.wait() == TERMINATED, f"stopped while {table} grows", started.returncode)
+    call(checks, LAGACYCLE, path, "--out", out, "--quiet")
+    checks.that(same(run, history(out)), "stopped twice: the same bits")
+    # another deck in the same folder: pilots are made anew
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    changed = os.path.join(checks.folder, "other", os.path.basename(path))
+    os.makedirs(os.path.dirname(changed))
+    with open(changed, "w", encoding="utf-8") as file:
+        file.write(text.replace("PARAM  travel 3.", "PARAM  travel 2.5"))
+    before = pilots(out)
+    call(checks, LAGACYCLE, changed, "--forecast", "--out", out)
+    after = pilots(out)
+    checks.that(before.keys() <= after.keys() and all(after[q] != before[q] for q in before), "pilots of another deck are not taken", (before, after))
+
+
+def pilot_that_fails(checks, path):
+    """A pilot that does not reach its end is not made again and again: the run is made, and a warning names it."""
+    solver = os.path.join(checks.folder, "failing")
+    with open(solver, "w", encoding="utf-8") as file:
+        file.write(f'#!/bin/sh\ncase "$*" in *"--fineness 0.5,0.5,1.0"*) echo no convergence >&2; exit 3 ;; esac\nexec "{LAGAMINE}" "$@"\n')
+    os.chmod(solver, 0o755)
+    out = os.path.join(checks.folder, "fails")
+    for _ in range(2):
+        done = subprocess.run([LAGACYCLE, path, "--forecast", "--out", out, "--threads", "1"], check=False, stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True, env=dict(os.environ, LAGAMINE=solver))
+        checks.that(done.returncode == DONE and "the pilot with elements along a line x 0.5, steps x 0.5, penetration x 1 did not reach its end" in done.stdout
+                    and "errors in time are not known" in done.stdout, "a pilot that fails is named", (done.returncode, done.stderr[:300], done.stdout[-600:]))
+
+
+def main():
+    checks = Checks()
+    path, run = drives_all_meshes(checks)
+    goes_on(checks, path, run)
+    pilot_that_fails(checks, path)
+    checks.that(call(checks, LAGAMINE, path, "--fineness", "1,0", code=REFUSED).startswith("--fineness: expected three numbers"), "--fineness 1,0")
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
