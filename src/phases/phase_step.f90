@@ -168,15 +168,16 @@ contains
     type(steel_t), intent(in) :: steel
     type(dual_t), intent(in) :: time, from, to, stress(2, 2)
     type(dual_t), intent(inout) :: s(:), heat
-    type(dual_t) :: middle
+    type(dual_t) :: middle, before(2)
 
     middle = 0.5_wp*(from + to)
+    before = s([martensite, bainite])
     if (steel%ac1 > unknown_temperature) then
       if (middle%value > steel%ac1) call heat_up(steel, time, middle, s, heat)
     end if
     if (steel%cct%n > 0 .and. s(austenite)%value > 0) call cool_by_histories(steel, time, from, to, stress(:, 2), s, heat)
     call transform(steel, time, from, to, stress, s, heat)
-    if (any(steel%temper_rate > 0)) call temper_phases(steel, time, middle, s)
+    if (any(steel%temper_rate > 0)) call temper_phases(steel, time, middle, before, s)
     call settle(s)
   end subroutine sub_step
 
@@ -331,10 +332,12 @@ contains
     end if
   end subroutine limit_growth
 
-  !> Martensite and bainite become tempered; the time counts above all where there is something to temper.
-  pure subroutine temper_phases(steel, time, temperature, s)
+  !> Martensite and bainite become tempered; the time counts above all where there is something to temper. What has formed in the
+  !> sub-step is tempered for half of it in the mean.
+  pure subroutine temper_phases(steel, time, temperature, before, s)
     type(steel_t), intent(in) :: steel
     type(dual_t), intent(in) :: time, temperature
+    type(dual_t), intent(in) :: before(2)   ! martensite and bainite at the start of the sub-step
     type(dual_t), intent(inout) :: s(:)
     integer, parameter :: phases(2) = [martensite, bainite]
     type(dual_t) :: w, gone
@@ -345,7 +348,8 @@ contains
     do k = 1, 2
       if (.not. s(phases(k))%value > 0) cycle
       call temper(steel, k, time, temperature, s(at_tempering + k - 1), w)
-      gone = s(phases(k))*(1.0_wp - exp(-w))
+      gone = 0.5_wp*(before(k) + s(phases(k)))*(1.0_wp - exp(-w))
+      if (gone%value > s(phases(k))%value) gone = s(phases(k))
       s(phases(k)) = s(phases(k)) - gone
       s(tempered) = s(tempered) + gone
     end do
