@@ -1,7 +1,8 @@
-!> START: values of fields at the start, as numbers, by formulas of the place, or the temperatures of another run.
+!> START: values of fields at the start, as numbers, by formulas of the place, or the temperatures of another run; and the phases.
 module cards_start
   use cards_fields, only: read_body, read_field
   use cards_sleep, only: may_sleep
+  use cards_start_phases, only: read_start_phases
   use deck_cursor, only: cursor_t
   use deck_expression, only: evaluate
   use deck_parameters, only: parameters_t
@@ -22,8 +23,9 @@ module cards_start
 
 contains
 
-  !> All START cards, `field value [body]` or `field FROM file AT time [body]`: the value of a field at the start, everywhere or on
-  !> a body; a number, a formula of the place where the material is in the deck's own mesh, or the temperatures of another run.
+  !> All START cards: `PHASES phase share ... [body]`, the phases; `field value [body]` or `field FROM file AT time [body]`, the value
+  !> of a field at the start, everywhere or on a body: a number, a formula of the place where the material is in the deck's own mesh,
+  !> or the temperatures of another run.
   subroutine read_start_values(deck, draft, diagnostics)
     type(deck_t), intent(inout), target :: deck
     type(draft_t), intent(inout) :: draft
@@ -32,7 +34,7 @@ contains
     type(start_t) :: start
     type(start_t), allocatable :: everywhere(:)
     type(run_temperatures_t) :: run
-    logical, allocatable :: given(:)
+    logical, allocatable :: given(:), with_phases(:)
     character(len=:), allocatable :: formula, file
     integer, allocatable :: cards(:)
     real(wp) :: value
@@ -40,10 +42,16 @@ contains
     logical :: whole, from_run
 
     allocate (given(0), cards(0), everywhere(0), draft%scene%starts(0))
+    allocate (with_phases(size(draft%scene%groups)), source=.false.)
     if (draft%groups_sound) given = spread(.false., 1, size(draft%scene%fields))
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword /= 'START') cycle
       call cursor%open(deck%cards(i), diagnostics)
+      if (cursor%peek_word() == 'PHASES') then
+        call read_start_phases(cursor, draft, with_phases)
+        call close_card(draft, cursor, deck%cards(i))
+        cycle
+      end if
       call read_field(cursor, draft, f)
       if (f > 0) then
         start%field = f

@@ -107,7 +107,9 @@ contains
     end if
     index = 0
     nearest = nearest_word(field%text, known)
-    if (nearest /= '') then
+    if (field%numeric .and. nearest == field%text) then
+      nearest = ', a number: write the name in quotes'
+    else if (nearest /= '') then
       nearest = '; nearest: '''//nearest//''''
     else if (size(known) == 0) then
       nearest = '; there is none yet'
