@@ -28,6 +28,7 @@ module run_deck
   use member_reader, only: member_reader_t
   use memory_limits, only: require_memory
   use next_operation, only: begin_operation
+  use passed_planes, only: warn_of_passed_planes
   use remeshing, only: drop_triggers
   use run_input, only: read_input, read_next_operation
   use run_options, only: run_options_t, stem_of
@@ -277,6 +278,7 @@ contains
     if (allocated(run%balance)) then
       if (run%balance%agreed) call add_text(facts%warnings, agreed_words(run%balance))
     end if
+    call warn_of_passed_planes(scene, solution, facts%warnings)
     facts%version = version_text
     facts%deck = options%deck
     facts%deck_text = run%deck_text

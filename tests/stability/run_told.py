@@ -5,6 +5,7 @@ usage: run_told.py [-v] [-k]       -v prints every check, -k keeps the results
 
 - Decks that are read without a mistake and mean something else than their author: `--check` warns in one line of each, with the words
   that the table prints; the deck that they are made from, and all decks of the project, are told nothing.
+- A body that passes the plane in which it is held: in the summary.
 - `KINEM SMALL` at large strain, with a body that flows and one that locks beyond its limit load, ends with code 3.
 - Probes of measures of stress against the components of the same point; of nodes that stand at one place.
 """
@@ -167,6 +168,22 @@ def warned_cycle(checks):
     checks.that(len(told) == 1 and "does not meet the part" in told[0]["text"], "the summary of a later mesh has the warning", told)
 
 
+def passed_planes(checks):
+    """A corner that is moved behind the plane in which its body is held: told at the end, with the depth; not where it stays
+    before it, nor where the side is clamped."""
+    overhang = {"DIE    upper\n": "", "   SEGM  30. 15.   -5. 15.\n": "", "CNT2D  billet 3 upper -3 rough\n": "", "LAW    rough COUL2D\n": "",
+                "   PENETR 1.E-3   PHI 0.3\n": "", "10. 0.   10. 15.": "5. 0.   10. 1.", "upper Y press": "POINT 10. 1. Y press"}
+    for name, changes, behind in (("behind its plane", {"1. -2.": "1. -1.5"}, True), ("before its plane", {"1. -2.": "1. -0.9"}, False),
+                                  ("clamped", {"1. -2.": "1. -1.5", "billet 1 Y": "billet 1 XY"}, False)):
+        run = Run(checks, name.replace(" ", "-"), changed(checks, {**overhang, **changes}))
+        if not run.ok:
+            continue
+        with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as summary:
+            told = [warning["text"] for warning in json.load(summary)["warnings"]]
+        words = "has passed the plane y = 0 in which it is held (FIXED billet.1 Y), by 0.5"
+        checks.that(len(told) == behind and all(words in text for text in told), f"{name}: told" if behind else f"{name}: nothing is told", told)
+
+
 def small(checks):
     """SMALL ends where strains are large."""
     half = changed(checks, {"KINEM  LOG": "KINEM  SMALL", "1. -2.": "1. -9."})
@@ -203,6 +220,7 @@ def main():
     decks(checks)
     warned_run(checks)
     warned_cycle(checks)
+    passed_planes(checks)
     small(checks)
     probes(checks)
     checks.end()
