@@ -60,9 +60,6 @@ module remesh_scene
   real(wp), parameter :: strain_order = 2.0_wp
   !> Free sides from a corner to contact that are shorter than this share of the smallest element are dropped.
   real(wp), parameter :: least_free = 0.2_wp
-  !> An element's error lets the next one be so many times as large at most: what it meets later is not known. A mesh that was
-  !> strained by less than this in the mean of its elements has shown nothing yet, and lets none grow.
-  real(wp), parameter :: most_growth = 1.5_wp, strained = 0.01_wp
   !> Loops of a free contour that crosses itself are cut off up to the length of so many of the smallest elements: as deep as one.
   real(wp), parameter :: longest_lap = 2.0_wp
   !> Attempts at a mesh of good shape: smoothing, then finer.
@@ -299,7 +296,7 @@ contains
     type(size_limits_t) :: limits
     type(geometry_settings_t) :: settings
     type(need_t), allocatable :: needs(:), bends(:), more(:)
-    real(wp) :: error, growth
+    real(wp) :: error
     integer :: e, c, d, k
 
     if (scene%remesher%smallest > 0) limits%smallest = scene%remesher%smallest
@@ -337,11 +334,9 @@ contains
       return
     end if
     if (scene%remesh%estimate) then
-      growth = merge(most_growth, 1.0_wp, sum(solution%estimate%strain_sums(2, :)) > strained*size(old%requested))
       do e = 1, size(old%requested)
         error = solution%estimate%strain_of(e)
-        old%requested(e) = min(requested_size(old%requested(e), error, scene%remesher%strain_error, strain_order), &
-                               growth*old%requested(e))
+        old%requested(e) = requested_size(old%requested(e), error, scene%remesher%strain_error, strain_order)
       end do
     end if
     call set_up_sizes(limits, needs, sizes, old)
