@@ -12,6 +12,7 @@ module remesh_scene
   use boundary_curves, only: boundary_curve_t
   use contact_carry, only: carry_contacts
   use contact_ends, only: contact_end_t
+  use contact_misfits, only: needs_of_misfits
   use contour_cuts, only: cut_is_due, make_cuts
   use contour_volume, only: volume_inside
   use cuts, only: stage_of_cuts
@@ -319,6 +320,9 @@ contains
       call set_up_sizes(limits, needs, sizes)
       return
     end if
+    call needs_of_misfits(scene, solution, more)
+    more%size = max(more%size, limits%smallest)
+    needs = [needs, more]
     call solid_pieces(scene, pieces, solution)
     pieces%axisymmetric = .false.
     call mesh_of(pieces, mesh)

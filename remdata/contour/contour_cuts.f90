@@ -2,7 +2,7 @@
 module contour_cuts
   use contour_volume, only: volume_inside
   use cut_contour, only: contour_of_piece
-  use cut_crossings, only: crossing_t, crossings_of_line, crossings_of_way
+  use cut_crossings, only: cut_crossing_t, crossings_of_line, crossings_of_way
   use cut_pieces, only: follow_pieces, piece_t
   use cuts, only: cut_record_t, cut_t, is_trim, web_trigger
   use boundary_curves, only: boundary_curve_t
@@ -112,7 +112,7 @@ contains
     logical, intent(in) :: of_body(:)
     type(piece_t), allocatable, intent(out) :: pieces(:)
     type(error_t), allocatable, intent(out) :: error
-    type(crossing_t), allocatable :: crossings(:)
+    type(cut_crossing_t), allocatable :: crossings(:)
     character(len=:), allocatable :: what
     logical :: odd, clean
     integer :: n, k
@@ -187,7 +187,7 @@ contains
       logical, intent(in) :: first   !! the piece that begins where the way begins; else the other one
       type(piece_t), allocatable, intent(out) :: found(:)
       logical, intent(out) :: is_clean
-      type(crossing_t), allocatable :: crossings(:)
+      type(cut_crossing_t), allocatable :: crossings(:)
 
       call crossings_of_way(contours, of_body, ways(way)%from, ways(way)%to, close_to_joint*scene%remesher%smallest, crossings)
       if (.not. first) crossings%enters = .not. crossings%enters

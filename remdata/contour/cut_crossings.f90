@@ -12,9 +12,9 @@ module cut_crossings
   use vectors, only: length_of
   implicit none
   private
-  public :: crossing_t, crossings_of_line, crossings_of_way, is_after
+  public :: cut_crossing_t, crossings_of_line, crossings_of_way, is_after
 
-  type :: crossing_t
+  type :: cut_crossing_t
     integer :: contour = 0
     type(position_t) :: position
     !> Share of the cut up to there.
@@ -23,7 +23,7 @@ module cut_crossings
     logical :: enters = .false.
     !> Crossing at the other end of the cut through the body.
     integer :: mate = 0
-  end type crossing_t
+  end type cut_crossing_t
 
   !> Parts of an arc that are looked at, and halvings.
   integer, parameter :: parts = 8, halvings = 60
@@ -38,9 +38,9 @@ contains
     logical, intent(in) :: among(:)              !! (ncontour)
     real(wp), intent(in) :: line(4), kept(2)     !! points at its ends, a point on the side that is kept [length]
     real(wp), intent(in) :: close                !! to a joint [length]
-    type(crossing_t), allocatable, intent(out) :: list(:)   !! (ncrossing) along the line
+    type(cut_crossing_t), allocatable, intent(out) :: list(:)   !! (ncrossing) along the line
     logical, intent(out) :: odd
-    type(crossing_t) :: one
+    type(cut_crossing_t) :: one
     real(wp) :: before, now, xi, last
     integer :: c, k, i
 
@@ -118,7 +118,7 @@ contains
     type(contour_t), intent(in) :: contours(:)   !! (ncontour)
     logical, intent(in) :: among(:)              !! (ncontour)
     real(wp), intent(in) :: from(2), to(2), close           !! close to a joint [length]
-    type(crossing_t), allocatable, intent(out) :: list(:)   !! (2)
+    type(cut_crossing_t), allocatable, intent(out) :: list(:)   !! (2)
     type(position_t) :: position
     real(wp) :: ends(2, 2), distance, least
     integer :: c, k
@@ -166,9 +166,9 @@ contains
 
   !> Sorted along the cut.
   pure subroutine insert(one, list)
-    type(crossing_t), intent(in) :: one
-    type(crossing_t), allocatable, intent(inout) :: list(:)
-    type(crossing_t), allocatable :: longer(:)
+    type(cut_crossing_t), intent(in) :: one
+    type(cut_crossing_t), allocatable, intent(inout) :: list(:)
+    type(cut_crossing_t), allocatable :: longer(:)
     integer :: n
 
     n = count(list%along <= one%along)

@@ -3,7 +3,7 @@
 module cut_pieces
   use arcs, only: arc_t, cut, straight
   use boundary_curves, only: boundary_curve_t, close_boundary, kind_corner, point_on
-  use cut_crossings, only: crossing_t, is_after
+  use cut_crossings, only: cut_crossing_t, is_after
   use kinds, only: wp
   use part_contour, only: contour_t
   implicit none
@@ -25,7 +25,7 @@ contains
   !> All closed curves along the crossings; `clean` is false where they do not close.
   pure subroutine follow_pieces(contours, crossings, pieces, clean)
     type(contour_t), intent(in) :: contours(:)       !! (ncontour)
-    type(crossing_t), intent(in) :: crossings(:)     !! (ncrossing) paired
+    type(cut_crossing_t), intent(in) :: crossings(:)     !! (ncrossing) paired
     type(piece_t), allocatable, intent(out) :: pieces(:)   !! (npiece)
     logical, intent(out) :: clean
     type(piece_t) :: piece
@@ -64,7 +64,7 @@ contains
 
   pure function place(contours, crossing) result(point)
     type(contour_t), intent(in) :: contours(:)
-    type(crossing_t), intent(in) :: crossing
+    type(cut_crossing_t), intent(in) :: crossing
     real(wp) :: point(2)
 
     point = point_on(contours(crossing%contour)%boundary, crossing%position)
@@ -72,7 +72,7 @@ contains
 
   !> The crossing that follows along the contour.
   pure function next_crossing(crossings, k) result(next)
-    type(crossing_t), intent(in) :: crossings(:)
+    type(cut_crossing_t), intent(in) :: crossings(:)
     integer, intent(in) :: k
     integer :: next
     logical :: behind, better
@@ -95,7 +95,7 @@ contains
   !> The arcs of a contour from one crossing to another.
   pure subroutine add_run(contours, from, to, piece)
     type(contour_t), intent(in) :: contours(:)
-    type(crossing_t), intent(in) :: from, to
+    type(cut_crossing_t), intent(in) :: from, to
     type(piece_t), intent(inout) :: piece
     real(wp) :: range(2)
     integer :: k

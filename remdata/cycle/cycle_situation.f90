@@ -114,7 +114,10 @@ contains
     distress = .false.
     if (.not. allocated(facts%triggers)) return
     do k = 1, size(facts%triggers)
-      distress = distress .or. any(facts%triggers(k)%s == [character(len=8) :: 'distress', trim_trigger, web_trigger])
+      select case (facts%triggers(k)%s)
+      case ('distress', trim_trigger, web_trigger)
+        distress = .true.
+      end select
     end do
   end function is_in_distress
 

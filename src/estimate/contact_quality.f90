@@ -18,7 +18,7 @@ module contact_quality
   use vectors, only: length_of
   implicit none
   private
-  public :: misfit_t, measure_misfit
+  public :: misfit_t, measure_misfit, misfit_of_sides
 
   !> The worst of a group, over the allowed penetration, and the sides where it is (0: none).
   type :: misfit_t
@@ -34,13 +34,30 @@ contains
     integer, intent(in) :: g                   !! a group that faces a die
     type(solution_t), intent(in) :: solution   !! at an accepted instant
     type(misfit_t) :: misfit
-    type(die_t) :: die
-    real(wp) :: side(2, 3), x(2, size(scene%mesh%coordinates, 2)), allowed, length, known, deep
-    logical :: corners
-    integer :: e, n
+    real(wp) :: of_sides(2, size(scene%groups(g)%connectivity, 2)), allowed
+    integer :: e
 
     allowed = allowed_penetration(scene%materials(scene%groups(g)%material))
     if (.not. allowed > 0) return
+    of_sides = misfit_of_sides(scene, g, solution)/allowed
+    do e = 1, size(of_sides, 2)
+      call keep(of_sides(1, e), e, misfit%between, misfit%between_side)
+      call keep(of_sides(2, e), e, misfit%corner, misfit%corner_side)
+    end do
+  end function measure_misfit
+
+  !> The depth of each side over its length: between its points, and at a corner of the die.
+  pure function misfit_of_sides(scene, g, solution) result(of_sides)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g                   !! a group that faces a die
+    type(solution_t), intent(in) :: solution   !! at an accepted instant
+    real(wp) :: of_sides(2, size(scene%groups(g)%connectivity, 2))   !! [-]
+    type(die_t) :: die
+    real(wp) :: side(2, 3), x(2, size(scene%mesh%coordinates, 2)), length, known, deep
+    logical :: corners
+    integer :: e, n
+
+    of_sides = 0
     corners = find_variable(scene%groups(g)%variables, 'corner_place') > 0
     x = present_coordinates(scene, solution)
     die = present_die(scene%dies(scene%groups(g)%die), x)
@@ -53,15 +70,15 @@ contains
         known = depth_of(state(:n, :))
         if (corners) then
           deep = depth_of(state(n + 1:2*n, :))
-          call keep(deep/(allowed*length), e, misfit%corner, misfit%corner_side)
+          of_sides(2, e) = deep/length
           known = max(known, deep)
         end if
         deep = deepest_sample(die, side, length) - known
         if (scene%groups(g)%rule%family == rule_along) deep = max(deep, span_of(state(:n, :)))
-        call keep(deep/(allowed*length), e, misfit%between, misfit%between_side)
+        of_sides(1, e) = deep/length
       end associate
     end do
-  end function measure_misfit
+  end function misfit_of_sides
 
   !> Largest penetration of points in contact [length].
   pure function depth_of(state) result(depth)
