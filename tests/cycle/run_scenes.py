@@ -12,7 +12,8 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from scenes import HEAD, SCENES, asks_by_remsh_alone, badly_shaped, checked, deck_of, finer_deck, force_table, line, run_scene  # noqa: E402
+from scenes import (HEAD, LEAST_ANGLE, SCENES, asks_by_remsh_alone, badly_shaped, checked, deck_of, finer_deck, force_table, line,  # noqa: E402
+                    run_scene, totals)
 from support import DONE, Checks  # noqa: E402
 
 QUICK = ("bimetal", "side_pressing", "teeth")
@@ -57,6 +58,9 @@ def main():
             words += ": force of the deck " + ", ".join(
                 f"{100 * (force(found, share) / force(fine, share) - 1):+.2f} % at {share:g}" for share in (0.25, 0.5, 0.75, 1.0))
         print(line(fine, words), flush=True)
+    tried, refused, angle, jacobian = totals([checks.path(name) for name in names])
+    print(f"\ntries at new meshes refused: {refused} of {tried} ({100 * refused / max(tried, 1):.1f} %); accepted meshes: smallest angle {angle:.1f} degrees, "
+          f"scaled Jacobian {jacobian:.2f} (where the contour has no corner below {LEAST_ANGLE:g} degrees)")
     print("\n".join(["", *force_table([checks.path(name) for name in names])]))
     checks.end()
 

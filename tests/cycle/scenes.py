@@ -112,6 +112,24 @@ def badly_shaped(found):
     return bad
 
 
+def totals(outs):
+    """Tries at new meshes and those refused of all runs; the least angle and scaled Jacobian of accepted meshes without a sharp contour corner."""
+    tried = refused = 0
+    angle, jacobian = 90.0, 1.0
+    for out in outs:
+        for row in tries(out):
+            if row["action"] == "old mesh":
+                continue
+            tried += 1
+            if row["accepted"] == "n":
+                refused += 1
+                continue
+            mesh = facts(out, int(row["generation [-]"]), "start")["mesh"]
+            if mesh["sharpest_corner"] > LEAST_ANGLE:
+                angle, jacobian = min(angle, mesh["least_angle"]), min(jacobian, mesh["scaled_jacobian"])
+    return tried, refused, angle, jacobian
+
+
 def force_table(outs):
     """Changes of the largest die force at the first full steps on new meshes, and at ordinary steps, over all runs."""
     at_remeshes, ordinary = [], []
