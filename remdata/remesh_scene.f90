@@ -61,6 +61,9 @@ module remesh_scene
   real(wp), parameter :: strain_order = 2.0_wp
   !> Free sides from a corner to contact that are shorter than this share of the smallest element are dropped.
   real(wp), parameter :: least_free = 0.2_wp
+  !> A mesh that was strained by less than this in the mean of its elements, as by unloading or where one node is touched so far, has
+  !> shown no errors of what comes: its elements are not made larger.
+  real(wp), parameter :: strained = 1.0e-3_wp
   !> Loops of a free contour that crosses itself are cut off up to the length of so many of the smallest elements: as deep as one.
   real(wp), parameter :: longest_lap = 2.0_wp
   !> Attempts at a mesh of good shape: smoothing, then finer.
@@ -297,7 +300,8 @@ contains
     type(size_limits_t) :: limits
     type(geometry_settings_t) :: settings
     type(need_t), allocatable :: needs(:), bends(:), more(:)
-    real(wp) :: error
+    real(wp) :: error, now
+    logical :: shown
     integer :: e, c, d, k
 
     if (scene%remesher%smallest > 0) limits%smallest = scene%remesher%smallest
@@ -338,9 +342,12 @@ contains
       return
     end if
     if (scene%remesh%estimate) then
+      shown = sum(solution%estimate%strain_sums(2, :)) > strained*size(old%requested)
       do e = 1, size(old%requested)
         error = solution%estimate%strain_of(e)
-        old%requested(e) = requested_size(old%requested(e), error, scene%remesher%strain_error, strain_order)
+        now = old%requested(e)
+        old%requested(e) = requested_size(now, error, scene%remesher%strain_error, strain_order)
+        if (.not. shown) old%requested(e) = min(old%requested(e), now)
       end do
     end if
     call set_up_sizes(limits, needs, sizes, old)
