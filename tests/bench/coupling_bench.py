@@ -3,8 +3,8 @@
 
 usage: coupling_bench.py [--write]
   --write   put the tables into decks/quench_bar_trip/README.md, between its lines <!-- ways -->
-The bar of quench_bar_trip, its mechanics with kinetics of their own and heat of the change of volume (own=1, source=3500), by each way of SOLVE in the
-same steps, one thread; differences to MONOLITHIC in steps a fifth as long. Then coupled decks with the error in time that they ask for and ten times as
+The bar of quench_bar_trip, its mechanics with kinetics of their own and heat of the change of volume (own=1, source=3500), by each way of SOLVE, one
+thread; differences to MONOLITHIC in steps a fifth as long. Then coupled decks with the error in time that they ask for and ten times as
 much (`tol`), or with longest steps ten times as long: the change of the mean fractions at the end, which must stay below 1e-3. LAGAMINE_BIN: folder of
 `lagamine`. Ends with 1 where a run fails, a bound is not kept, or ways differ by more than the error that the README states (0.2 % of the stress).
 """
