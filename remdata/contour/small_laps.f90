@@ -32,7 +32,7 @@ contains
     type(side_tags_t), intent(in) :: tags
     type(contact_t), intent(inout) :: contacts(:)   !! (ncontact) their arcs are renumbered
     type(boundary_curve_t), intent(inout) :: boundary
-    type(fold_t), allocatable, intent(inout) :: laps(:)
+    type(fold_t), allocatable, intent(inout) :: laps(:)   !! (nlap)
     type(loop_of_lap_t) :: lap
     integer :: pass
 

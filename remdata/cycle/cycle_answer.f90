@@ -71,7 +71,7 @@ contains
     if (action%transfer >= 0) call print_word('transfer', to_text(action%transfer), error)
     if (action%finer > 0) call print_word('finer', to_text(action%finer), error)
     if (action%without_zones) call print_word('mesher', 'free', error)
-    if (action%force_agreed) call print_word('option', '--force-agreed', error)
+    if (action%force_agreed) call print_word('option', '--agreed', error)
     select case (action%kind)
     case (act_start)
       call print_word('do', 'start', error)

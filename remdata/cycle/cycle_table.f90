@@ -12,8 +12,8 @@ module cycle_table
             transfer_is_responsible, mesh_is_responsible, took_earlier
 
   !> What is done for a new mesh, as the column `action` names it: as the deck says, another state transfer, finer or coarser
-  !> elements, the free mesher instead of the deck's zones, from the checkpoint one save earlier; the old mesh goes on for a while; or
-  !> the best of several tries, which were refused by the force of a die alone and agree on it, is made again and taken up.
+  !> elements, the free mesher instead of the deck's zones, from the checkpoint one save earlier; the old mesh goes on for a while;
+  !> or the best of several tries, refused by the force of a die alone and agreed on it, is made again and taken up.
   character(len=*), parameter :: way_deck = 'as the deck says', way_transfer = 'other transfer', way_finer = 'finer', &
                                  way_mesher = 'without zones', way_coarser = 'coarser', way_earlier = 'earlier', &
                                  way_old_mesh = 'old mesh', way_agreed = 'agreed force'
@@ -27,8 +27,8 @@ module cycle_table
   integer, parameter :: at_generation = 1, at_stop_step = 3, at_stop_time = 4, at_step = 5, at_action = 7, at_accepted = 9, &
                         at_stage = 10, at_error_after = 14, at_force = 25
   integer, parameter :: number_of_columns = 28
-  !> So many tries that were refused by the force of a die alone are several. They agree when their changes of the force differ by no
-  !> more than its limit.
+  !> So many tries that were refused by the force of a die alone are several. They agree when their changes of the force differ by
+  !> no more than its limit.
   integer, parameter :: several = 3
   real(wp), parameter :: agree_within = 1.0_wp
 
@@ -121,7 +121,9 @@ contains
 
     value = 0
     status = 0
-    if (cell /= '') read (cell, *, iostat=status) value
+    if (cell == '') return
+    read (cell, *, iostat=status) value
+    if (status /= 0) value = 0
   end subroutine read_known
 
   !> Cells as a line of the table; characters that would separate cells are replaced.

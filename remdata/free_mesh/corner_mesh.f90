@@ -51,11 +51,11 @@ contains
 
   !> Ends of elements along all sides.
   pure subroutine put_points(boundaries, layout, curves, first, ends, draft)
-    type(boundary_curve_t), intent(in) :: boundaries(:)
+    type(boundary_curve_t), intent(in) :: boundaries(:)   !! (nboundary)
     type(zone_layout_t), intent(in) :: layout
-    type(curve_t), intent(in) :: curves(:)
-    integer, intent(in) :: first(:)
-    real(wp), intent(in) :: ends(:)
+    type(curve_t), intent(in) :: curves(:)                !! (nside)
+    integer, intent(in) :: first(:)                       !! (nside + 1) of each side among the ends
+    real(wp), intent(in) :: ends(:)                       !! (first(nside + 1) - 1) along the sides [length]
     type(corner_mesh_t), intent(inout) :: draft
     integer :: s, k, n, node, nside
 

@@ -70,7 +70,7 @@ contains
       if (any(body == n .and. .not. in_parts)) cycle
       where (body > n) body = body - 1
     end do
-    n = maxval([0, pack(body, .not. in_parts)])
+    n = maxval([0, pack(body,.not. in_parts)])
     allocate (outlines(n + count(of_parts)))
     do n = 1, size(outlines)
       allocate (outlines(n)%boundaries(0))

@@ -22,7 +22,7 @@ contains
   subroutine warn_of_passed_planes(scene, solution, warnings)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
-    type(string_t), allocatable, intent(inout) :: warnings(:)
+    type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning) lines
     real(wp) :: x(2, size(scene%mesh%coordinates, 2)), plane, below, above
     logical :: body(size(scene%mesh%coordinates, 2))
     integer :: f, g, c

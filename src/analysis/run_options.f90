@@ -66,7 +66,7 @@ contains
         options%quiet = .true.
       case ('--progress')
         options%progress = .true.
-      case ('--force-agreed')
+      case ('--agreed')
         options%force_agreed = .true.
       case ('--out')
         call value_of(word, k, options%out, error)
@@ -96,7 +96,7 @@ contains
       case default
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
           call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--check'), string_t('--quiet'), &
-                                    string_t('--forecast'), string_t('--fineness'), string_t('--force-agreed'), &
+                                    string_t('--forecast'), string_t('--fineness'), string_t('--agreed'), &
                                     string_t('--progress'), string_t('--out'), string_t('--resume'), string_t('--law'), &
                                     string_t('--met'), string_t('--cards'), string_t('--point'), string_t('-p'), &
                                     string_t('--threads')], &
@@ -109,7 +109,9 @@ contains
       end select
     end do
     if (allocated(error) .or. options%help .or. options%version .or. options%cards .or. allocated(options%law)) return
-    if (allocated(options%met)) then
+    if (options%force_agreed .and. .not. allocated(options%resume)) then
+      call fail(error, exit_input, '--agreed: expected --resume with a checkpoint on a new mesh')
+    else if (allocated(options%met)) then
       if (allocated(options%deck)) call fail(error, exit_input, '--met takes no deck: found '''//options%deck//'''')
       if (.not. allocated(options%out)) options%out = stem_of(options%met)
     else if (options%point .and. allocated(options%resume)) then
@@ -159,7 +161,7 @@ contains
 
     text = 'lagamine: metal forming and heat treatment in two dimensions'//nl//nl// &
            'lagamine DECK [--out DIR] [--check|--forecast] [--resume CHECKPOINT] [-p NAME=VALUE]...'//nl// &
-           '         [--fineness M,S,D] [--threads N] [--progress|--quiet] [--force-agreed]'//nl// &
+           '         [--fineness M,S,D] [--threads N] [--progress|--quiet] [--agreed]'//nl// &
            'lagamine --point DECK [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --met FILE [--out DIR] [--check] [-p NAME=VALUE]... [--quiet]'//nl// &
            'lagamine --law [NAME] | --cards | --help | --version'//nl//nl// &
@@ -169,7 +171,7 @@ contains
            '  --fineness M,S,D of a deck with ACCURACY: one pilot, with M times its elements along a line, S times'//nl// &
            '                  its steps and D times its penetration; lagacycle asks for it where a pilot takes new meshes'//nl// &
            '  --resume FILE   go on from a checkpoint of the same deck'//nl// &
-           '  --force-agreed  with --resume: other new meshes agree on the force of a die, it refuses none'//nl// &
+           '  --agreed        with --resume: other new meshes agree on the force of a die, it refuses none'//nl// &
            '  -p NAME=VALUE   set a parameter of the deck'//nl// &
            '  --threads N     threads (default: as many as processors are free); the same bits for any number'//nl// &
            '  --point         one material point along the deck''s PATH; its answer comes into DIR/NAME.point.csv'//nl// &
