@@ -34,7 +34,8 @@ contains
       associate (trigger => solution%estimate%triggers(k))
         if (index(trigger%name, 'contact_') /= 1) cycle
         associate (sides => scene%groups(trigger%group)%connectivity)
-          of_sides = misfit_of_sides(scene, trigger%group, solution)
+          if (allocated(of_sides)) deallocate (of_sides)
+          allocate (of_sides, source=misfit_of_sides(scene, trigger%group, solution))
           ! the checkpoint has no laws: what is allowed follows from the side that is worst
           limit = maxval(of_sides(:, trigger%element))*trigger%limit/trigger%value
           do e = 1, size(sides, 2)
