@@ -53,7 +53,7 @@ contains
         arcs(k)%side = nside
       end do
     end associate
-    call keep_contacts(contours(main), piece, main, x, contour)
+    call keep_contacts(contours(main), piece, x, contour)
     contour%volume_after = volume_inside(contour%boundary, axisymmetric)
     contour%volume_before = contour%volume_after
   end function contour_of_piece
@@ -121,10 +121,9 @@ contains
 
   !> Contact intervals of which one run of arcs is left; where the cut goes through one it begins or ends there. Others are dropped:
   !> the solver finds the contact again.
-  pure subroutine keep_contacts(before, piece, main, x, contour)
+  pure subroutine keep_contacts(before, piece, x, contour)
     type(contour_t), intent(in) :: before
     type(piece_t), intent(in) :: piece
-    integer, intent(in) :: main
     real(wp), intent(in) :: x(:, :)
     type(contour_t), intent(inout) :: contour
     type(contact_t), allocatable :: contacts(:)
