@@ -4,8 +4,9 @@
 !> Error of a quantity in a run: its difference to the exact one at instants that runs have in common, in the mean square, or at
 !> the last of them where that is more, over the range of the quantity. With errors of order q in the size of the elements, two
 !> runs whose elements differ by the factor 2 differ by D = E (2^q - 1), E the error of the finer one (L.F. Richardson, Phil.
-!> Trans. R. Soc. A 210 (1911) 307-357); a third mesh gives q. Errors in time are of the order of the scheme, those of the
-!> penetration of order 1, as it is the pressure over the penalty. Of a quantity the three are added, as if they had one sign.
+!> Trans. R. Soc. A 210 (1911) 307-357); a third mesh gives q. Errors in time are of the order of the scheme in the length
+!> that steps have, those of the penetration of order 1, as it is the pressure over the penalty. Of a quantity the three are added,
+!> as if they had one sign.
 module accuracy_laws
   use accuracy_rules, only: fineness_t
   use cost_file, only: ntask
@@ -21,6 +22,8 @@ module accuracy_laws
   !> that of smooth scenes, or that of scenes with contact, flow or phases.
   real(wp), parameter :: least_of_stress = 0.5_wp, least_order = 2*least_of_stress, largest_order = 2.0_wp, &
                          smooth_order = 2.0_wp, rough_order = 1.0_wp
+  !> Where steps hardly change in number, little is seen of their errors: less than this is not believed.
+  real(wp), parameter :: least_shortening = 0.25_wp
   !> Differences below this share of the range are round-off.
   real(wp), parameter :: round_off = 1.0e-9_wp
   !> Times are the same when they are this close, over the last one.
@@ -57,6 +60,7 @@ module accuracy_laws
     real(wp), allocatable :: coarse_order(:)      !! (nquantity) [-]
     !> With the steps and the penetrations of the deck.
     real(wp), allocatable :: time(:), depth(:)    !! (nquantity) [-]
+    !> Over the factor that is asked of the lengths of steps.
     real(wp) :: time_order = 1.0_wp
     !> The order in space was measured by three meshes; there are two meshes at all.
     logical :: order_measured = .false., space_known = .false.
@@ -74,7 +78,7 @@ contains
     type(accuracy_law_t), intent(out) :: law
     integer, allocatable :: meshes(:)
     real(wp) :: now(size(scales)), before(size(scales))
-    integer :: k, n, first
+    integer :: k, n, first, longer, shorter
 
     n = size(scales) + merge(1, 0, with_stress)
     allocate (law%space(n), law%time(n), law%depth(n), source=0.0_wp)
@@ -107,11 +111,47 @@ contains
     do k = 1, size(pilots)
       associate (other => pilots(k)%fineness)
         if (abs(other%mesh - pilots(first)%fineness%mesh) > 0) cycle
-        if (other%steps < 1) law%time(:n) = difference(pilots(first), pilots(k), scales)/(1 - other%steps**time_order)
         if (other%depth < 1) law%depth(:n) = difference(pilots(first), pilots(k), scales)/(1 - other%depth)
       end associate
     end do
+    call shortest_steps(pilots, first, longer, shorter)
+    if (shorter == first) return
+    law%time_order = time_order*shortening(pilots(longer), pilots(shorter))
+    law%time(:n) = difference(pilots(longer), pilots(shorter), scales) &
+                   /(pilots(longer)%fineness%steps**law%time_order - pilots(shorter)%fineness%steps**law%time_order)
   end subroutine measure_laws
+
+  !> The pilots with the shortest and the next longer steps, on the mesh of the first and with its penetration; the first one where
+  !> there is no other.
+  pure subroutine shortest_steps(pilots, first, longer, shorter)
+    type(sample_t), intent(in) :: pilots(:)   !! (npilot)
+    integer, intent(in) :: first
+    integer, intent(out) :: longer, shorter
+    integer :: k
+
+    longer = first
+    shorter = first
+    do k = 1, size(pilots)
+      associate (other => pilots(k)%fineness)
+        if (abs(other%mesh - pilots(first)%fineness%mesh) + abs(other%depth - 1) > 0) cycle
+        if (.not. other%steps < pilots(shorter)%fineness%steps) cycle
+        longer = shorter
+        shorter = k
+      end associate
+    end do
+  end subroutine shortest_steps
+
+  !> How far steps really get shorter when they are asked to be: the exponent of their number over the factor. Instants that are
+  !> hit, events and steps that grow from a short first one make them shorter already, so that they change by less.
+  pure function shortening(coarse, fine) result(exponent)
+    type(sample_t), intent(in) :: coarse, fine   !! that differ in the length of their steps
+    real(wp) :: exponent
+
+    exponent = 1
+    if (min(coarse%steps, fine%steps) == 0) return
+    exponent = log(real(coarse%steps, wp)/fine%steps)/log(fine%fineness%steps)
+    exponent = min(max(exponent, least_shortening), 1.0_wp)
+  end function shortening
 
   !> Order of two errors, or differences, of meshes that differ by the factor 2.
   elemental function observed_order(coarse, fine, least) result(order)
@@ -245,7 +285,7 @@ contains
     integer, intent(out) :: steps
     integer, allocatable :: meshes(:)
     real(wp) :: by_mesh, by_length, iterations, fewer, stiffer
-    integer :: k, n
+    integer :: k, n, longer, shorter
 
     seconds = 0
     steps = 0
@@ -261,17 +301,19 @@ contains
     by_length = 1
     fewer = 0
     stiffer = 0
-    associate (first => pilots(meshes(1)), finest => pilots(meshes(n)))
+    call shortest_steps(pilots, meshes(1), longer, shorter)
+    associate (first => pilots(meshes(1)), finest => pilots(meshes(n)), long => pilots(longer), short => pilots(shorter))
       do k = 1, size(pilots)
         if (pilots(k)%fineness%depth < 1) stiffer = growth(real(first%iterations, wp), real(pilots(k)%iterations, wp), &
                                                           1/pilots(k)%fineness%depth, 0.5_wp)
-        if (.not. pilots(k)%fineness%steps < 1) cycle
-        by_length = growth(real(first%steps, wp), real(pilots(k)%steps, wp), 1/pilots(k)%fineness%steps, 1.2_wp)
-        fewer = growth(per_step(pilots(k)), per_step(first), 1/pilots(k)%fineness%steps, 0.5_wp)
       end do
-      associate (finer => fineness%mesh/finest%fineness%mesh)
-        steps = nint(first%steps*(fineness%steps**(-by_length) - 1) + finest%steps*finer**by_mesh)
-        seconds = finer**iterations*fineness%steps**fewer*fineness%depth**(-stiffer)*steps/finest%steps &
+      if (shorter /= meshes(1)) then
+        by_length = growth(real(long%steps, wp), real(short%steps, wp), long%fineness%steps/short%fineness%steps, 1.2_wp)
+        fewer = growth(per_step(short), per_step(long), long%fineness%steps/short%fineness%steps, 0.5_wp)
+      end if
+      associate (finer => fineness%mesh/finest%fineness%mesh, longer_by => fineness%steps/short%fineness%steps)
+        steps = nint(short%steps*longer_by**(-by_length) - first%steps + finest%steps*finer**by_mesh)
+        seconds = finer**iterations*per_step(short)/per_step(first)*longer_by**fewer*fineness%depth**(-stiffer)*steps/finest%steps &
                   *grown_seconds(finest%seconds, real(elements, wp)/finest%elements)
       end associate
     end associate

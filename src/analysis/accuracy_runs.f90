@@ -5,7 +5,7 @@ module accuracy_runs
   use accuracy_laws, only: choose_fineness, measure_laws, sample_t
   use accuracy_plan, only: accuracy_plan_t, expect, fineness_words
   use accuracy_rules, only: coarsest_mesh, fineness_t, stress_name
-  use accuracy_samples, only: key_of, range_of, read_sample, select_columns
+  use accuracy_samples, only: join_forces, key_of, range_of, read_sample, select_columns
   use atomic, only: read_text, write_text
   use cost_file, only: cost_t, read_cost
   use errors, only: error_t, exit_done, exit_input, exit_no_convergence, fail
@@ -29,6 +29,8 @@ module accuracy_runs
 
   !> Steps of half the length, a quarter of the penetration.
   real(wp), parameter :: half = 0.5_wp, quarter = 0.25_wp
+  !> No pilot has shorter steps than this share of the deck's.
+  real(wp), parameter :: least_pilot = 1/64.0_wp
 
   abstract interface
     !> A run by its options; its exit code, where there is no error.
@@ -51,7 +53,7 @@ contains
     type(accuracy_plan_t), intent(out) :: plan
     integer, intent(out) :: code         !! of a pilot that was stopped by a signal
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: coarsest
+    real(wp) :: coarsest, shortest
     logical :: there
 
     code = exit_done
@@ -67,6 +69,7 @@ contains
     end if
     if (plan%divisible .and. goes_on()) call pilot(fineness_t(2*coarsest, 1.0_wp, 1.0_wp), there)
     if (goes_on()) call pilot(fineness_t(coarsest, half, 1.0_wp), there)
+    shortest = merge(half, 1.0_wp, there)
     if (.not. there .and. goes_on()) call note('errors in time are not known')
     if (has_rigid_contact(scene) .and. goes_on()) then
       call pilot(fineness_t(coarsest, 1.0_wp, quarter), there)
@@ -75,6 +78,12 @@ contains
     do while (goes_on())
       call choose()
       if (allocated(error)) return
+      if (shortest < 1 .and. plan%fineness%steps < half*shortest .and. shortest > least_pilot) then
+        ! a law of the steps is good near those that it was measured with
+        call pilot(fineness_t(coarsest, max(next_power(plan%fineness%steps), shortest/8), 1.0_wp), there)
+        shortest = merge(max(next_power(plan%fineness%steps), shortest/8), 0.0_wp, there)
+        cycle
+      end if
       if (.not. (plan%divisible .and. plan%law%space_known .and. plan%fineness%mesh > 2*plan%law%mesh)) exit
       call pilot(fineness_t(2*plan%law%mesh, 1.0_wp, 1.0_wp), there)
       if (.not. there) exit
@@ -111,6 +120,7 @@ contains
       end if
       finest = maxloc(plan%pilots%fineness%mesh, 1)
       call range_of(plan%pilots(finest), plan%scales)
+      if (size(scene%accuracy%columns) == 0) call join_forces(plan%names, plan%scales)
       call measure_laws(plan%pilots, plan%scales, scene%accuracy%stress, is_smooth(scene), time_order(scene), plan%law)
       call choose_fineness(plan%law, plan%asked, plan%divisible .and. plan%law%space_known, plan%fineness, plan%met, &
                             plan%parts)
@@ -176,6 +186,14 @@ contains
     end function only_stress
 
   end subroutine make_plan
+
+  !> The power of 1/2 that is not below a factor.
+  pure function next_power(factor) result(power)
+    real(wp), intent(in) :: factor
+    real(wp) :: power
+
+    power = 0.5_wp**int(-log(factor)/log(2.0_wp))
+  end function next_power
 
   !> Ask for a pilot that needs new meshes: `NAME.pilot` names its folder, its fineness, and how it begins. No error where it has
   !> been made and did not reach its end: then its folder has that file.

@@ -17,7 +17,7 @@ module accuracy_samples
   use text, only: add_text, string_t
   implicit none
   private
-  public :: add_cost, key_of, range_of, read_sample, select_columns
+  public :: add_cost, join_forces, key_of, range_of, read_sample, select_columns
 
   !> A quantity that changes by less than this share of the largest change in its unit is none by itself.
   real(wp), parameter :: hardly = 1.0e-3_wp
@@ -136,6 +136,22 @@ contains
       end associate
     end do
   end subroutine range_of
+
+  !> Both components of the force of a die are judged over the range of the larger one: the other may be what is left of parts that
+  !> balance each other.
+  pure subroutine join_forces(names, scales)
+    type(string_t), intent(in) :: names(:)     !! (ncolumn) at least
+    real(wp), intent(inout) :: scales(:)       !! (ncolumn) [unit of each]
+    character(len=*), parameter :: along = 'force_x_', across = 'force_y_'
+    integer :: i, k
+
+    do i = 1, size(scales)
+      if (index(names(i)%s, along) /= 1) cycle
+      do k = 1, size(scales)
+        if (names(k)%s == across//names(i)%s(len(along) + 1:)) scales([i, k]) = max(scales(i), scales(k))
+      end do
+    end do
+  end subroutine join_forces
 
   !> Titles and names of the columns that are judged: those of the card, otherwise the usual ones that change.
   subroutine select_columns(options, scene, columns, names, error)

@@ -178,7 +178,7 @@ contains
     end if
     if (closing%flows .and. .not. closing%path) call row('in time', 'path within steps: not estimated (NORMS)', '')
     if (closing%path) &
-      call row('in time', 'path: motion '//percent(closing%motion)//', stress '//percent(closing%path_stress), &
+      call row('in time', 'path: motion '//percent(closing%motion)//', stress '//percent(closing%path_stress)//' at it', &
                times(closing%path_cost)//' the time: half the steps'' length')
     if (closing%warm .and. closing%heat_steps == 0) call row('in time', 'heat: not estimated (TOL of THETA)', '')
     if (closing%heat_steps > 0) &

@@ -44,13 +44,15 @@ STUDIES: List[Study] = [
     Study("hertz/hertz", ["n=2,4,8"], ["force_y_ball", "peak_pressure"]),
     Study("finite_cylinder/finite_cylinder", ["n=2,4,8", "step=1.6,0.8,0.4,0.2"], ["centre", "corner"], parameters=["theta=0.5", "step=0.1", "n=6"],
           exact=["centre=468.586", "corner=178.841"], short=["step=1"]),
-    Study("upsetting/upsetting", ["nx=6,12,24 ny=9,18,36"], ["force_y_upper", "mid_radius"], short=["travel=0.5"]),
-    Study("necking/necking", ["nx=4,8,16 ny=12,24,48", "dt=0.04,0.02,0.01,0.005"], ["force", "neck"], parameters=["dt=0.01"], short=["pull=0.5"]),
+    Study("upsetting/upsetting", ["nx=6,12,24,48 ny=9,18,36,72"], ["force_y_upper", "external_work"], short=["travel=0.5"]),
+    Study("necking/necking", ["nx=4,8,16 ny=12,24,48", "dt=0.02,0.01,0.005,0.0025,0.00125"], ["force", "neck"], parameters=["dt=0.01"], short=["pull=0.5"]),
     Study("quench_16mnd5/quench_16mnd5", ["nr=5,10,20 nz=3,6,12", "step=2,1,0.5,0.25"], ["side", "core"],
           parameters=["nr=10", "nz=6", "step=0.5", "finish=100"], short=["finish=4"]),
-    Study("forging_rib/forging_rib_remesh", ["smallest=0.8,0.56,0.4 largest=2.,1.4,1."], ["force_y_upper", "rim"], seconds=False),
+        # sizes are to decide, not the number of elements
+    Study("forging_rib/forging_rib_remesh", ["nx=8,11,16,23 ny=4,6,8,12 smallest=1.,0.7,0.5,0.35 largest=2.8,2.,1.4,1."], ["external_work", "rim"], seconds=False,
+          changes=[("   COUNT", "   COUNT 6000")]),
     # the limits are those of REMSH alone
-    Study("can/can", ["size=1.4,1,0.7"], ["force_y_punch", "external_work"], seconds=False, changes=[
+    Study("can/can", ["size=1.4,1,0.7,0.5"], ["force_y_punch", "external_work"], seconds=False, changes=[
         ("PARAM  travel", "PARAM  travel 6\nPARAM  size 1"),
         ("REMSH", "REMSH\n   ANGLE 15. 165.\n   MIDDLE 0.4\n   SCALED 0.2\n   ASPECT 10.\n   CONTACT 50.\n   DISTRESS 4\n   LEAST 5\n"
          "   SIZE 0.2*$size $size\n   COUNT 4000")]),
