@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Estimated errors of the stress beside true ones: what the closing table of a run says, against the finest run of the same deck.
 
-usage: effectivity_table.py [--runs DIR] [--write] [SCENE...]     some minutes; --write renews the table in tests/estimate/README.md
+usage: effectivity_table.py [--runs DIR] [SCENE...]     some minutes
 
 Space: the stress of a run, within each element the polynomial through its points, against the stress at the points of a run with more
 elements, steps and penetration the same. Time: against the same mesh with much shorter steps, at the points. Both in the norm of elastic
@@ -26,8 +26,6 @@ from patch_support import quad8  # noqa: E402
 from run_accuracy import lame  # noqa: E402
 from run_effectivity import density, lagrange  # noqa: E402
 
-README = os.path.join(HERE, "README.md")
-BEGIN, END = "<!-- effectivity: written by effectivity_table.py --write -->", "<!-- effectivity: end -->"
 STRESS = ("stress_xx", "stress_yy", "stress_xy", "stress_zz")
 NEAREST = 9             # elements among which a place is looked for, by their middles
 OUTSIDE = 1.2           # in the element's own coordinates: a place farther out is none of the body
@@ -171,24 +169,17 @@ def refined(x):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", default=os.path.join(ROOT, "out", "effectivity"))
-    parser.add_argument("--write", action="store_true")
     parser.add_argument("scenes", nargs="*", metavar="SCENE")
     options = parser.parse_args()
-    lines, missed = ["| scene | part | run | elements | true error % | estimated % | effectivity |", "|---|---|---|---|---|---|---|"], []
-    print("\n".join(lines))
+    missed = []
+    print("| scene | part | run | elements | true error % | estimated % | effectivity |\n|---|---|---|---|---|---|---|")
     for scene in SCENES:
         if options.scenes and scene not in options.scenes:
             continue
         for part, what, elements, true, guess, limits in rows_of(scene, options.runs):
-            lines.append(f"| {scene} | {part} | {what} | {elements} | {100*true:.3g} | {100*guess:.3g} | {guess/true:.2f} |")
-            print(lines[-1], flush=True)
+            print(f"| {scene} | {part} | {what} | {elements} | {100*true:.3g} | {100*guess:.3g} | {guess/true:.2f} |", flush=True)
             if limits and not limits[0] <= guess/true <= limits[1]:
                 missed.append(f"{scene}, {part}, {what}: {guess/true:.2f}")
-    if options.write:
-        with open(README, encoding="utf-8") as file:
-            before, rest = file.read().split(BEGIN)
-        with open(README, "w", encoding="utf-8") as file:
-            file.write(before + BEGIN + "\n" + "\n".join(lines) + "\n" + END + rest.split(END)[1])
     if missed:
         sys.exit("beyond its limits: " + "; ".join(missed))
 
