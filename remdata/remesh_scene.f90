@@ -61,8 +61,8 @@ module remesh_scene
   real(wp), parameter :: strain_order = 2.0_wp
   !> Free sides from a corner to contact that are shorter than this share of the smallest element are dropped.
   real(wp), parameter :: least_free = 0.2_wp
-  !> A mesh that was strained by less than this in the mean of its elements, as by unloading or where one node is touched so far, has
-  !> shown no errors of what comes: its elements are not made larger.
+  !> A mesh that was strained by less than this in the mean of its elements, as by unloading or where one node is touched so far
+  !> has shown no errors of what comes: its elements are not made larger.
   real(wp), parameter :: strained = 1.0e-3_wp
   !> Loops of a free contour that crosses itself are cut off up to the length of so many of the smallest elements: as deep as one.
   real(wp), parameter :: longest_lap = 2.0_wp
