@@ -151,7 +151,7 @@ contains
     character(len=:), allocatable :: line
 
     line = to_text(generation)//',1,'//to_text(stop_step)//','//to_text(stop_step/60.0_wp, 17)//',6,time,'//action//',result,' &
-           //accepted//','//stage//',12,,,,,,,,,,,,,,,,why'
+           //accepted//','//stage//',12,,,,,,,,,,,,,,,,,why'
   end function row_text
 
   !> A row by the way of the table's text.
