@@ -23,9 +23,9 @@ module cards_start
 
 contains
 
-  !> All START cards: `PHASES phase share ... [body]`, the phases; `field value [body]` or `field FROM file AT time [body]`, the value
-  !> of a field at the start, everywhere or on a body: a number, a formula of the place where the material is in the deck's own mesh,
-  !> or the temperatures of another run.
+  !> All START cards: `PHASES phase share ... [body]`, the phases; `field value [body]` or `field FROM file AT time [body]`, the
+  !> value of a field at the start, everywhere or on a body: a number, a formula of the place where the material is in the deck's
+  !> own mesh, or the temperatures of another run.
   subroutine read_start_values(deck, draft, diagnostics)
     type(deck_t), intent(inout), target :: deck
     type(draft_t), intent(inout) :: draft
