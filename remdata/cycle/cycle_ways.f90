@@ -28,7 +28,9 @@ contains
         if (was_refused(s%rows, generation, stop_step, way)) cycle
         if (way == way_transfer .and. .not. transfer_is_responsible(s%rows, generation, stop_step)) cycle
         if (way == way_mesher) then
-          if (.not. (s%new%old_end%facts%has_zones .and. mesh_is_responsible(s%rows, generation, stop_step))) cycle
+          ! zones of a first mesh are the deck's to mend
+          if (is_first_mesh(s%new%old_end%facts) .or. .not. s%new%old_end%facts%has_zones) cycle
+          if (.not. mesh_is_responsible(s%rows, generation, stop_step)) cycle
         end if
         if (way == way_agreed .and. agreed_way(s%rows, generation, stop_step) == '') cycle
         if (way == way_earlier .and. .not. has_earlier(s)) cycle

@@ -3,6 +3,7 @@ module accept_step
   use bookkeeping, only: book_reactions, book_deformable_dies, measure_scene, book_spurious_mode, pressed_on, sample_contacts
   use dies, only: is_deformable
   use dofs, only: move_fields
+  use driver_values, only: start_drivers
   use elem_api, only: totals_t
   use energy_books, only: book_stored, book_work
   use equations, only: equations_t
@@ -16,7 +17,6 @@ module accept_step
   use newton, only: outcome_t
   use path_record, only: note_path_step
   use phase_books, only: book_fractions
-  use point_drivers, only: start_drivers
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use spring_check, only: has_body_springs

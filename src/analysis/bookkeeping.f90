@@ -6,8 +6,9 @@ module bookkeeping
   use dies, only: is_deformable, present_die
   use elem_api, only: add_totals, totals_t
   use element_loop, only: group_geometry
-  use equations, only: equations_t, external_forces
+  use equations, only: equations_t
   use errors, only: error_t, exit_bug, fail
+  use external_loads, only: external_forces
   use fields, only: displacement_field, field_t, on_nodes, pilot_field, section_field
   use kinds, only: wp
   use law_api, only: contact_open

@@ -5,8 +5,9 @@ module march
   use blas, only: blas_buffer
   use bookkeeping, only: measure_scene
   use cut_report, only: lines_of_cuts
+  use driver_values, only: start_drivers
   use energy_books, only: start_stored
-  use equations, only: set_up
+  use equation_set_up, only: set_up
   use errors, only: error_t, exit_no_convergence, fail
   use fields, only: displacement_field
   use estimator, only: set_up_estimator
@@ -17,7 +18,6 @@ module march
   use memory_limits, only: require_memory
   use newton, only: outcome_t
   use path_record, only: note_attempt
-  use point_drivers, only: start_drivers
   use probation, only: is_too_short, pass_probation, refuse_after_all
   use restart_report, only: write_restart
   use restore_balance, only: balance_t, keep_balance, restore_equilibrium

@@ -11,10 +11,13 @@ module restore_balance
   use accept_step, only: accept_balance
   use bookkeeping, only: pressed_on
   use contact_penalties, only: allowed_penetration
+  use corrections, only: solve_correction
   use dies, only: is_deformable
   use elem_api, only: block_done, mode_advance, mode_restore, report_t, totals_t
-  use equations, only: equations_t, evaluate, external_forces, solve_correction, take_turn
+  use equations, only: equations_t, take_turn
   use errors, only: error_t
+  use evaluation, only: evaluate
+  use external_loads, only: external_forces
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
   use linear_solver, only: return_to_chosen

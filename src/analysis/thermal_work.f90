@@ -9,6 +9,7 @@
 !> mean of that at the start and at the end counts).
 !> Source: B.A. Boley, J.H. Weiner, Theory of Thermal Stresses (1960), ch. 1 (free energy of an elastic body).
 module thermal_work
+  use drivers, only: own_states_at_end
   use elem_api, only: group_temperature, instant_t, totals_t
   use element_loop, only: group_geometry
   use equations, only: equations_t
@@ -16,7 +17,6 @@ module thermal_work
   use kinds, only: wp
   use law_api, only: asks_for, driver_count, driver_temperature, law_t, solid_law
   use loads, only: multiplier_at
-  use point_drivers, only: own_states_at_end
   use point_temperatures, only: point_temperatures_of, projected_functions, temperature_place
   use quad8_geometry, only: quad8_rule, quad8_rule_t
   use scene, only: group_t, scene_t

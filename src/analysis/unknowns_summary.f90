@@ -1,6 +1,7 @@
 !> What a scene costs, for --check: unknowns, fill, memory, expected seconds per iteration.
 module unknowns_summary
-  use equations, only: equations_t, set_up
+  use equation_set_up, only: set_up
+  use equations, only: equations_t
   use errors, only: error_t
   use kinds, only: wp
   use memory_limits, only: megabytes, memory_left

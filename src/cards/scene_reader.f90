@@ -29,11 +29,11 @@ module scene_reader
   use cards_zones, only: read_zones
   use deck_reader, only: deck_t, refuse_unknown, row_t
   use diagnostics, only: diagnostics_t, location_t
+  use driver_sources, only: driver_of_others, missing_driver
   use elem_api, only: declare_fields, elem_t
   use elem_registry, only: list_elems
   use mesh_finish, only: finish_mesh
   use mesh_parts, only: mesh_parts_t, start_parts
-  use point_drivers, only: driver_of_others, missing_driver
   use remesh, only: remesh_t
   use remeshed_parts, only: order_as_remeshed, replace_parts
   use remesher_options, only: has_contours

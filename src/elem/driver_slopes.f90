@@ -9,10 +9,11 @@
 !> Where the law of heat is driven by measures of the stress (METAMEC), mechanics has a fourth plane: d(heat released)/d(measure at
 !> the end) at the point, found in the same way at the stress of the last evaluation; PL8LS knows how the stress follows the motion.
 module driver_slopes
+  use driver_values, only: field_at_points
+  use drivers, only: drivers_t, drives_heat, from_state, from_stress, with_slopes
   use fields, only: find_field
   use kinds, only: wp
   use law_api, only: driver_temperature, law_t
-  use point_drivers, only: drives_heat, drivers_t, field_at_points, from_state, from_stress, with_slopes
   use point_temperatures, only: temperature_field
   use scene, only: host_of, scene_t
   use solution, only: solution_t

@@ -16,6 +16,7 @@
 module elem_heat_contact
   use contact_point, only: area_at, side_length
   use contact_work, only: friction_energy
+  use drivers, only: at_body_effusivity, at_corner_place, at_corner_work, at_die_effusivity, at_friction_work
   use elem_api, only: elem_t, first_unknown, instant_t, layout_t, mode_advance, mode_error, of_pilot, report_t, unknown_t
   use elem_heat_sides, only: heat_side_row
   use fields, only: displacement_field, field_t, has_corners_only, on_pilots
@@ -25,7 +26,6 @@ module elem_heat_contact
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
   use pairs, only: list_pieces, pieces_in_reach
-  use point_drivers, only: at_body_effusivity, at_corner_place, at_corner_work, at_die_effusivity, at_friction_work
   use quadrature, only: line_rule
   use scene, only: group_t, role_heat_contact, scene_t
   use sections, only: thickness_at

@@ -3,12 +3,12 @@ module heat_contact_point
   use closest_point, only: closest_point_t
   use contact_point, only: contact_point_t, most_unknowns, side_point
   use curve_search, only: closest_facing_point
+  use drivers, only: at_die_piece, at_die_xi, at_gap, at_pressure, at_status
   use elem_api, only: instant_t, layout_t
   use kinds, only: wp
   use law_api, only: contact_open
   use parabolas, only: tangent_on
   use plane_vectors, only: turned
-  use point_drivers, only: at_die_piece, at_die_xi, at_gap, at_pressure, at_status
   use scene, only: group_t, scene_t
   use shape_functions, only: line3
   use vectors, only: length_of

@@ -5,7 +5,8 @@
 !> in the die: a shorter step would have the same to find.
 module augmentations
   use elem_api, only: report_t
-  use equations, only: equations_t, evaluate
+  use equations, only: equations_t
+  use evaluation, only: evaluate
   use kinds, only: wp
   use scene, only: scene_t
   use solution, only: group_state_t, solution_t

@@ -14,15 +14,16 @@
 !> small (J. Nocedal, S.J. Wright, Numerical Optimization, 2nd ed., Springer 2006, sec. 11.2: the order of convergence is that of
 !> the matrices near the solution); before that pressure, gap and heat of friction are held.
 module contact_heat_tangent
+  use drivers, only: at_corner_place, at_status
   use elem_api, only: instant_t, layout_t, report_t
   use element_loop, only: gather_geometry, gather_matrix
-  use equations, only: equations_t, make_instant
+  use equations, only: equations_t
   use fields, only: displacement_field, find_field, pilot_field
   use kinds, only: wp
-  use point_drivers, only: at_corner_place, at_status
   use scene, only: group_t, role_heat_contact, scene_t
   use solution, only: solution_t
   use state_variables, only: find_variable
+  use step_instants, only: make_instant
   implicit none
   private
   public :: follow_contact

@@ -4,13 +4,14 @@
 !> then gathered in a fixed order, so results are the same bits for any number of threads.
 module element_loop
   use dofs, only: dofs_t
+  use driver_values, only: advance_drivers
+  use drivers, only: drivers_t, with_slopes
   use elem_api, only: block_done, elem_t, instant_t, layout_t, report_t
   use fields, only: displacement_field
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
   use driver_slopes, only: fill_slopes
-  use point_drivers, only: advance_drivers, drivers_t, with_slopes
   use scene, only: group_t, scene_t
   use solution, only: solution_t
   use sparsity, only: pattern_t

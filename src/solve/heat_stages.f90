@@ -10,10 +10,12 @@
 !> as heat content.
 !> A first step is of implicit Euler: what was started with need not agree with what is imposed, which would cost TR-BDF2 an order.
 module heat_stages
+  use corrections, only: solve_correction
   use elem_api, only: report_t
-  use equations, only: equations_t, evaluate, external_forces, measure_error, remedy_euler, remedy_monotone, remedy_none, &
-                       solve_correction, stage_t
+  use equations, only: equations_t, remedy_euler, remedy_monotone, remedy_none, stage_t
   use errors, only: error_t
+  use evaluation, only: evaluate, measure_error
+  use external_loads, only: external_forces
   use fields, only: find_field
   use heat_bounds, only: excess_of_temperature, has_bounds, on_corners_alone
   use kinds, only: wp

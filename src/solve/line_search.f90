@@ -27,7 +27,8 @@ module line_search
   use contact_changes, only: loses_a_die
   use convergence, only: free_force, slope_along
   use elem_api, only: block_done, report_t
-  use equations, only: equations_t, evaluate
+  use equations, only: equations_t
+  use evaluation, only: evaluate
   use kinds, only: wp
   use scene, only: scene_t
   use solution, only: solution_t

@@ -8,10 +8,13 @@ module newton
   use contact_changes, only: contact_set, note_contact
   use contact_heat_tangent, only: follow_contact
   use convergence, only: heat_in_balance, pilots_in_equilibrium, relative_motion, relative_residual, weigh_quantities
+  use corrections, only: solve_correction
   use elem_api, only: block_done, block_inverted, block_without_source, report_t
   use element_loop, only: add_prescribed
-  use equations, only: equations_t, evaluate, external_forces, solve_correction
+  use equations, only: equations_t
   use errors, only: error_t, exit_no_convergence
+  use evaluation, only: evaluate
+  use external_loads, only: external_forces
   use fields, only: displacement_field
   use heat_correction, only: follow_content
   use heat_record, only: heat_step_t

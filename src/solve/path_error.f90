@@ -12,10 +12,12 @@
 !> the laws, from a state with elastic strains a little larger: creep forgets it, elastic unloading does not.
 module path_error
   use axis_wall, only: press_on_axis
+  use corrections, only: solve_correction
   use dofs, only: move_fields
+  use drivers, only: drivers_of_half, drivers_t
   use elem_api, only: block_done, instant_t, report_t, totals_t
   use element_loop, only: gather_forces, group_geometry, run_elements
-  use equations, only: equations_t, make_instant, solve_correction, take_turn
+  use equations, only: equations_t, take_turn
   use errors, only: exit_no_convergence
   use fields, only: displacement_field, section_field
   use kinds, only: eps, wp
@@ -23,10 +25,10 @@ module path_error
   use law_api, only: law_t, solid_law
   use newton, only: outcome_t
   use path_record, only: mean_square, stress_scale
-  use point_drivers, only: drivers_of_half, drivers_t
   use predictor, only: proportion
   use scene, only: scene_t
   use solution, only: group_state_t, solution_t
+  use step_instants, only: make_instant
   use timers, only: ledger_t
   implicit none
   private

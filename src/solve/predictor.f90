@@ -7,7 +7,8 @@
 module predictor
   use dofs, only: dofs_t, prescribed_motion
   use elem_api, only: block_done, report_t
-  use equations, only: equations_t, evaluate
+  use equations, only: equations_t
+  use evaluation, only: evaluate
   use fields, only: field_t
   use kinds, only: wp
   use resting_bodies, only: leave_at_rest

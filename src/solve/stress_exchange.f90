@@ -6,9 +6,10 @@
 !> between turns of the step, the combination that leaves least of f; of that a share is added, at each point after its own secant.
 !> Source: D.G. Anderson, J. ACM 12 (1965) 547; H.F. Walker, P. Ni, SIAM J. Numer. Anal. 49 (2011) 1715.
 module stress_exchange
+  use driver_values, only: stress_of_solution
+  use drivers, only: hand_over_stress, stress_driver_count
   use equations, only: equations_t
   use kinds, only: wp
-  use point_drivers, only: hand_over_stress, stress_of_solution, stress_driver_count
   use scene, only: scene_t
   use solution, only: solution_t
   use strategy, only: coupling_converged

@@ -1,0 +1,95 @@
+!> The element sizes that a scene asks for: by errors, by bends of the contour and of dies, by contact.
+module sizes_of_scene
+  use arcs_on_die, only: placed_piece
+  use block_mesh, only: polygon_area
+  use contact_misfits, only: needs_of_misfits
+  use contour_needs, only: geometry_settings_t, needs_of_boundary, needs_of_die
+  use dies, only: is_deformable
+  use fields, only: pilot_field
+  use kinds, only: wp
+  use part_contour, only: contour_t
+  use scene, only: axisymmetric, scene_t
+  use size_field, only: need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t
+  use solution, only: solution_t
+  use state_pieces, only: mesh_of, solid_pieces, state_pieces_t
+  use transfer_mesh, only: transfer_mesh_t
+  implicit none
+  private
+  public :: strain_order, requested_sizes
+
+  !> Errors of strain fall with the size to this power (8-node elements).
+  real(wp), parameter :: strain_order = 2.0_wp
+  !> A mesh that was strained by less than this in the mean of its elements, as by unloading or where one node is touched so far
+  !> has shown no errors of what comes: its elements are not made larger.
+  real(wp), parameter :: strained = 1.0e-3_wp
+
+contains
+
+  !> Sizes by the error of the strains, by the curvature of the contour and of nearby dies, and by contact intervals.
+  subroutine requested_sizes(scene, solution, contours, first, same, sizes)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
+    logical, intent(in) :: first   !! there is no mesh yet: largest elements except where the geometry requires smaller ones
+    logical, intent(in) :: same    !! those of the old elements, whatever the error and the geometry ask for
+    type(size_field_t), intent(out) :: sizes
+    type(state_pieces_t) :: pieces
+    type(transfer_mesh_t) :: mesh
+    type(old_mesh_t) :: old
+    type(size_limits_t) :: limits
+    type(geometry_settings_t) :: settings
+    type(need_t), allocatable :: needs(:), bends(:), more(:)
+    real(wp) :: error, now
+    logical :: shown
+    integer :: e, c, d, k
+
+    if (scene%remesher%smallest > 0) limits%smallest = scene%remesher%smallest
+    if (scene%remesher%largest > 0) limits%largest = scene%remesher%largest
+    settings%across = scene%remesher%across_contact
+    settings%turn = scene%remesher%turn
+    allocate (needs(0), bends(0))
+    do d = 1, size(scene%dies)
+      if (is_deformable(scene%dies(d))) cycle
+      call needs_of_die([(placed_piece(scene%dies(d), solution%fields(pilot_field)%value(:, d), k), &
+                          k=1, size(scene%dies(d)%pieces, 3))], &
+                        scene%dies(d)%closed, settings, limits, more)
+      bends = [bends, more]
+    end do
+    do c = 1, size(contours)
+      call needs_of_boundary(contours(c)%boundary, settings, limits, more, bends)
+      needs = [needs, more]
+    end do
+    if (first) then
+      call set_up_sizes(limits, needs, sizes)
+      return
+    end if
+    call needs_of_misfits(scene, solution, more)
+    more%size = max(more%size, limits%smallest)
+    needs = [needs, more]
+    call solid_pieces(scene, pieces, solution)
+    pieces%axisymmetric = .false.
+    call mesh_of(pieces, mesh)
+    old%nodes = mesh%nodes
+    old%connectivity = mesh%connectivity
+    old%material = mesh%material
+    allocate (old%requested(size(mesh%material)))
+    do e = 1, size(old%requested)
+      old%requested(e) = sqrt(polygon_area(old%nodes(:, old%connectivity(1:4, e))))
+    end do
+    if (same) then
+      call set_up_sizes(size_limits_t(), [need_t ::], sizes, old)
+      return
+    end if
+    if (scene%remesh%estimate) then
+      shown = sum(solution%estimate%strain_sums(2, :)) > strained*size(old%requested)
+      do e = 1, size(old%requested)
+        error = solution%estimate%strain_of(e)
+        now = old%requested(e)
+        old%requested(e) = requested_size(now, error, scene%remesher%strain_error, strain_order)
+        if (.not. shown) old%requested(e) = min(old%requested(e), now)
+      end do
+    end if
+    call set_up_sizes(limits, needs, sizes, old)
+  end subroutine requested_sizes
+
+end module sizes_of_scene

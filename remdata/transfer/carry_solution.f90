@@ -1,0 +1,134 @@
+!> What a solution holds, but contact, from the old mesh to the new one: progress, state of the solids, fields on nodes.
+module carry_solution
+  use errors, only: error_t
+  use fields, only: displacement_field, on_nodes
+  use kept_members, only: member_memory_t
+  use kinds, only: wp
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use state_pieces, only: change_volume_ratios, mesh_of, solid_pieces, state_pieces_t, store_states, take_values
+  use transfer_api, only: transfer_options_t
+  use transfer_mesh, only: build_mesh_trees, transfer_mesh_t
+  use transfer_nodes, only: carry_at_nodes
+  use transfer_report, only: transfer_report_t
+  use transfer_states, only: carry_states
+  use visit_solution, only: visit_solution_members
+  implicit none
+  private
+  public :: carry_progress, carry_solids
+
+contains
+
+  !> Time, dies, work: what does not depend on the mesh (visit_solution says of each member how it is carried).
+  subroutine carry_progress(before, after)
+    type(solution_t), intent(in) :: before
+    type(solution_t), intent(inout) :: after
+    type(member_memory_t) :: memory
+    type(solution_t), allocatable :: shown   ! a visitor may change what it visits
+
+    allocate (shown, source=before)
+    call visit_solution_members(memory, shown)
+    memory%gives = .true.
+    call visit_solution_members(memory, after)
+    after%estimate%last_stop = before%step
+    after%estimate%previous_stress = before%estimate%stress
+    after%unbalanced = .true.
+  end subroutine carry_progress
+
+  !> State of the solids and nodal fields: initial position of the material points, displacement of the last step, and displacement
+  !> since the start where the mesh is not updated.
+  subroutine carry_solids(old, before, moved, new, after, report, error)
+    type(scene_t), intent(in) :: old
+    type(solution_t), intent(in) :: before
+    real(wp), intent(in) :: moved(:, :)   !! (2, nnode) [length]
+    type(scene_t), intent(inout) :: new
+    type(solution_t), intent(inout) :: after
+    type(transfer_report_t), intent(out) :: report
+    type(error_t), allocatable, intent(out) :: error
+    type(state_pieces_t) :: from, to, start
+    type(transfer_options_t) :: options
+    type(transfer_mesh_t) :: mesh, target, rest
+    integer, allocatable :: material(:)
+    integer :: k
+
+    options%method = old%remesher%transfer
+    options%exponent = old%remesher%exponent
+    options%neighbours = old%remesher%neighbours
+    call solid_pieces(old, from, before)
+    call solid_pieces(new, to)
+    do k = 1, size(to%groups)
+      call take_values(after, to%groups(k))
+    end do
+    call mesh_of(from, mesh)
+    call solid_pieces(old, start)
+    call mesh_of(start, rest)
+    call change_volume_ratios(rest%volumes, mesh%volumes, from)
+    call build_mesh_trees(mesh)
+    call mesh_of(to, target)
+    call carry_states(mesh, target, from, to, options, report, error)
+    if (allocated(error)) return
+    call store_states(to, after)
+
+    allocate (material(size(new%mesh%coordinates, 2)), source=0)
+    do k = 1, size(target%material)
+      material(target%connectivity(:, k)) = target%material(k)
+    end do
+    call carry_nodes(mesh, old, before, moved, material, options%outside, new, after, error)
+  end subroutine carry_solids
+
+  !> What belongs to nodes, by the shape functions of the old mesh: origin of the material, and of every field on nodes the change
+  !> of the last step and the value; of the displacement the value is what was `moved`.
+  subroutine carry_nodes(mesh, old, before, moved, material, outside, new, after, error)
+    type(transfer_mesh_t), intent(in) :: mesh
+    type(scene_t), intent(in) :: old
+    type(solution_t), intent(in) :: before
+    real(wp), intent(in) :: moved(:, :)      !! (2, nnode) [length]
+    integer, intent(in) :: material(:)       !! of the new nodes (nnode)
+    real(wp), intent(in) :: outside
+    type(scene_t), intent(inout) :: new
+    type(solution_t), intent(inout) :: after
+    type(error_t), allocatable, intent(out) :: error
+    real(wp), allocatable :: from(:, :), to(:, :)
+    real(wp) :: farthest
+    integer :: f, n, pass
+
+    n = 2
+    do f = 1, size(before%fields)
+      if (is_carried(f)) n = n + 2*before%fields(f)%ncomp
+    end do
+    allocate (from(n, size(moved, 2)), to(n, size(material)))
+    from(1:2, :) = old%mesh%origin
+    do pass = 1, 2
+      n = 2
+      do f = 1, size(before%fields)
+        if (.not. is_carried(f)) cycle
+        associate (m => before%fields(f)%ncomp)
+          if (pass == 1) then
+            from(n + 1:n + m, :) = before%fields(f)%last_increment
+            from(n + m + 1:n + 2*m, :) = before%fields(f)%value
+            if (f == displacement_field) from(n + m + 1:n + 2*m, :) = moved
+          else
+            after%fields(f)%last_increment = to(n + 1:n + m, :)
+            after%fields(f)%value = to(n + m + 1:n + 2*m, :)
+          end if
+          n = n + 2*m
+        end associate
+      end do
+      if (pass == 2) exit
+      call carry_at_nodes(mesh, from, new%mesh%coordinates, material, outside, to, farthest, error)
+      if (allocated(error)) return
+    end do
+    new%mesh%origin = to(1:2, :)
+
+  contains
+
+    pure function is_carried(k) result(yes)
+      integer, intent(in) :: k
+      logical :: yes
+
+      yes = before%fields(k)%place == on_nodes .and. before%fields(k)%declared
+    end function is_carried
+
+  end subroutine carry_nodes
+
+end module carry_solution

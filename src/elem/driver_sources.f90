@@ -1,0 +1,286 @@
+!> Where the drivers of the points of each group come from: fields, states of other formulations, stress, the body behind.
+module driver_sources
+  use drivers, only: at_body_effusivity, at_corner_place, at_die_effusivity, at_status, driver_source_t, drivers_t, flow_name, &
+                     from_effusivity, from_field, from_flow, from_itself, from_nothing, from_state, from_stress, is_scalar, &
+                     of_contact
+  use fields, only: find_field
+  use kinds, only: wp
+  use law_api, only: driver_count, driver_t, driver_temperature, heat_law, law_t, solid_law
+  use materials, only: has_number
+  use point_temperatures, only: temperature_field
+  use scene, only: host_of, is_solid, role_contact, role_heat_contact, scene_t
+  use state_variables, only: find_variable
+  use strategy, only: coupling_monolithic
+  use stress_measures, only: measure_names, nmeasure
+  implicit none
+  private
+  public :: find_drivers, missing_driver, driver_of_others
+
+contains
+
+  !> Where the drivers of all groups come from. A name that nothing in the scene has is an error of the deck (missing_driver).
+  subroutine find_drivers(scene, laws, drivers)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)                        !! (nlaw)
+    type(drivers_t), allocatable, intent(out) :: drivers(:)   !! (ngroup)
+    integer :: g, k, n, law
+
+    allocate (drivers(size(scene%groups)))
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        n = 0
+        law = 0
+        if (group%role == role_heat_contact) then
+          call drive_heat_contact(scene, g, drivers(g))
+          cycle
+        end if
+        if (group%material > 0) then
+          law = scene%materials(group%material)%law_id
+          n = driver_count(laws(law))
+          if (n == 1 .and. group%role /= role_contact) n = 0
+        end if
+        allocate (drivers(g)%value(n, 2, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
+        allocate (drivers(g)%source(n))
+        if (n == 0) cycle
+        if (group%role == role_contact) then
+          call find_bodies_behind(scene, group%connectivity(2, :), drivers(g)%body, drivers(g)%element, drivers(g)%side)
+          drivers(g)%source(driver_temperature) = source_of(scene, g, temperature_field)
+        end if
+        do k = 2, n
+          if (is_asked_for(scene, g, laws(law)%drivers(k - 1))) &
+            drivers(g)%source(k) = source_of(scene, g, laws(law)%drivers(k - 1)%name)
+        end do
+        if (follows_temperature(scene, laws, g, drivers(g)%source)) then
+          deallocate (drivers(g)%value)
+          allocate (drivers(g)%value(n, 3, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
+        else if (n >= nmeasure .and. stresses_heat(scene, laws, g)) then
+          deallocate (drivers(g)%value)
+          allocate (drivers(g)%value(n, 4, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
+        end if
+        drivers(g)%vary = any(drivers(g)%source%kind == from_field .or. drivers(g)%source%kind == from_state &
+                               .or. drivers(g)%source%kind == from_stress)
+        if (allocated(drivers(g)%body)) &
+          drivers(g)%vary = drivers(g)%vary .or. any(scene%groups(drivers(g)%body)%temperature_multiplier > 0)
+      end associate
+    end do
+  end subroutine find_drivers
+
+  !> A body is driven by states of a formulation of heat that is solved together with it.
+  pure function follows_temperature(scene, laws, g, sources) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: g
+    type(driver_source_t), intent(in) :: sources(:)
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    if (scene%strategy%coupling /= coupling_monolithic .or. .not. is_solid(scene%groups(g))) return
+    do k = 1, size(sources)
+      if (sources(k)%kind /= from_state) cycle
+      associate (other => scene%groups(sources(k)%group(host_of(scene, g))))
+        yes = yes .or. associated(laws(scene%materials(other%material)%law_id)%release)
+      end associate
+    end do
+  end function follows_temperature
+
+  !> The stress of a body drives a formulation of heat that is solved together with it.
+  pure function stresses_heat(scene, laws, g) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: g   !! number of the group
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    if (scene%strategy%coupling /= coupling_monolithic .or. .not. is_solid(scene%groups(g))) return
+    do k = 1, size(scene%groups)
+      if (k == g .or. scene%groups(k)%material == 0 .or. host_of(scene, k) /= g) cycle
+      associate (law => laws(scene%materials(scene%groups(k)%material)%law_id))
+        if (law%kind == heat_law .and. associated(law%release)) yes = yes .or. is_stressed(scene, laws, k)
+      end associate
+    end do
+  end function stresses_heat
+
+  !> What drives the points of heat through a contact; nothing in scenes of heat alone.
+  pure subroutine drive_heat_contact(scene, g, drivers)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g
+    type(drivers_t), intent(inout) :: drivers
+    integer :: k, n, v
+
+    associate (group => scene%groups(g))
+      n = merge(at_die_effusivity, 0, group%host > 0)
+      allocate (drivers%value(n, 2, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
+      allocate (drivers%source(n))
+      drivers%vary = n > 0
+      if (n == 0) return
+      do k = at_status, at_corner_place
+        v = find_variable(scene%groups(group%host)%variables, trim(of_contact(k)))
+        if (v == 0) cycle
+        drivers%source(k)%kind = from_state
+        allocate (drivers%source(k)%group(size(scene%groups)), drivers%source(k)%row(size(scene%groups)), source=0)
+        drivers%source(k)%group(group%host) = group%host
+        drivers%source(k)%row(group%host) = scene%groups(group%host)%variables(v)%first
+      end do
+      if (.not. group%heat_contact%friction > 0 .or. group%heat_contact%share >= 0) return
+      call find_bodies_behind(scene, group%connectivity(2, :), drivers%body, drivers%element, drivers%side)
+      if (allocated(scene%dies(group%die)%nodes)) &
+        call find_bodies_behind(scene, scene%dies(group%die)%nodes(2, :), drivers%die_body, drivers%die_element, drivers%die_side)
+      drivers%source([at_body_effusivity, at_die_effusivity])%kind = from_effusivity
+    end associate
+  end subroutine drive_heat_contact
+
+  !> The first driver that the law of a group needs and nothing in the scene gives, '' where there is none.
+  pure function missing_driver(scene, laws, g) result(name)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
+    integer, intent(in) :: g             !! number of the group
+    character(len=:), allocatable :: name
+    type(driver_source_t) :: source
+    integer :: k
+
+    name = ''
+    if (scene%groups(g)%material == 0) return
+    associate (law => laws(scene%materials(scene%groups(g)%material)%law_id))
+      do k = 1, driver_count(law) - 1
+        if (.not. is_asked_for(scene, g, law%drivers(k))) cycle
+        source = source_of(scene, g, law%drivers(k)%name)
+        if (source%kind /= from_nothing) cycle
+        name = law%drivers(k)%name
+        return
+      end do
+    end associate
+  end function missing_driver
+
+  !> The first driver of a law for solids that is a state of another formulation whose law is driven by the stress of this one, ''
+  !> where there is none.
+  pure function driver_of_others(scene, laws, g) result(name)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
+    integer, intent(in) :: g             !! number of the group
+    character(len=:), allocatable :: name
+    type(driver_source_t) :: source
+    integer :: k
+
+    name = ''
+    if (scene%groups(g)%material == 0) return
+    associate (law => laws(scene%materials(scene%groups(g)%material)%law_id))
+      if (law%kind /= solid_law) return
+      do k = 1, driver_count(law) - 1
+        source = source_of(scene, g, law%drivers(k)%name)
+        if (source%kind /= from_state) cycle
+        if (.not. is_stressed(scene, laws, source%group(host_of(scene, g)))) cycle
+        name = law%drivers(k)%name
+        return
+      end do
+    end associate
+  end function driver_of_others
+
+  !> The law of a group is driven by stress.
+  pure function is_stressed(scene, laws, g) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: g
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    associate (law => laws(scene%materials(scene%groups(g)%material)%law_id))
+      do k = 1, driver_count(law) - 1
+        if (is_asked_for(scene, g, law%drivers(k))) yes = yes .or. place_of_measure(law%drivers(k)%name) > 0
+      end do
+    end associate
+  end function is_stressed
+
+  !> The material of a group has the number for which its law needs a driver.
+  pure function is_asked_for(scene, g, driver) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g   !! place of the group
+    type(driver_t), intent(in) :: driver
+    logical :: yes
+
+    yes = driver%needs == 0
+    if (.not. yes) yes = has_number(scene%materials(scene%groups(g)%material), driver%needs)
+  end function is_asked_for
+
+  !> Bodies behind sides, by the nodes in the middle of these: group, element, and its side 1 to 4.
+  pure subroutine find_bodies_behind(scene, middles, body, element, side)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: middles(:)                                  !! (nside)
+    integer, allocatable, intent(out) :: body(:), element(:), side(:)  !! (nside)
+    integer :: owner(3, size(scene%mesh%coordinates, 2)), g, e, k
+
+    owner = 0
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      do e = 1, size(scene%groups(g)%connectivity, 2)
+        do k = 1, 4
+          owner(:, scene%groups(g)%connectivity(4 + k, e)) = [g, e, k]
+        end do
+      end do
+    end do
+    body = owner(1, middles)
+    element = owner(2, middles)
+    side = owner(3, middles)
+  end subroutine find_bodies_behind
+
+  !> Source of a name for a group.
+  pure function source_of(scene, g, name) result(source)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g   !! number of the group
+    character(len=*), intent(in) :: name
+    type(driver_source_t) :: source
+    integer :: k, v, f
+
+    if (scene%groups(g)%role == role_contact .and. name == flow_name) then
+      source%kind = from_flow
+      return
+    end if
+    f = find_field(scene%fields, name)
+    if (f > 0) then
+      if (is_scalar(scene%fields(f))) then
+        source%kind = from_field
+        source%field = f
+        return
+      end if
+    end if
+    allocate (source%group(size(scene%groups)), source%row(size(scene%groups)), source=0)
+    v = find_variable(scene%groups(g)%variables, name)
+    if (v > 0 .and. scene%groups(g)%role /= role_contact) then
+      source%kind = from_itself
+      source%row(g) = scene%groups(g)%variables(v)%first
+      return
+    end if
+    source%measure = place_of_measure(name)
+    do k = 1, size(scene%groups)
+      if (k == g .or. scene%groups(k)%role == role_contact) cycle
+      if (source%measure > 0 .and. scene%groups(g)%role /= role_contact .and. host_of(scene, k) == host_of(scene, g)) then
+        v = find_variable(scene%groups(k)%variables, 'stress')
+        if (v == 0) cycle
+        source%kind = from_stress
+        source%group(host_of(scene, k)) = k
+        source%row(host_of(scene, k)) = scene%groups(k)%variables(v)%first
+        return
+      end if
+      v = find_variable(scene%groups(k)%variables, name)
+      if (v == 0) cycle
+      if (scene%groups(k)%variables(v)%ncomp > 1) cycle
+      if (scene%groups(g)%role /= role_contact .and. host_of(scene, k) /= host_of(scene, g)) cycle
+      source%kind = from_state
+      source%group(host_of(scene, k)) = k
+      source%row(host_of(scene, k)) = scene%groups(k)%variables(v)%first
+    end do
+  end function source_of
+
+  !> Place of a name among the measures of a stress, 0 where it is none.
+  pure function place_of_measure(name) result(place)
+    character(len=*), intent(in) :: name
+    integer :: place
+
+    do place = nmeasure, 1, -1
+      if (trim(measure_names(place)) == name) return
+    end do
+  end function place_of_measure
+
+end module driver_sources

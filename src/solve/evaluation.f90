@@ -1,0 +1,100 @@
+!> Internal forces and matrices of the present solve at a motion of the step, and the error of a heat content.
+module evaluation
+  use axis_wall, only: press_on_axis
+  use elem_api, only: block_done, instant_t, mode_error, report_t
+  use element_loop, only: gather_forces, gather_matrix, run_elements
+  use equation_set_up, only: pair_up, renew_pairs
+  use equations, only: equations_t, solves_heat
+  use fields, only: displacement_field
+  use kinds, only: wp
+  use resting_bodies, only: hold_resting
+  use round_off_floors, only: set_floors
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use step_instants, only: driving_values, make_instant, note_correction
+  use threads, only: fit_to_load
+  implicit none
+  private
+  public :: evaluate, measure_error
+
+contains
+
+  !> Internal force, and matrices when wanted, at the motion `du` of the step. Points that meet pieces of deformable dies
+  !> beyond their pairs get new ones, and all is computed again: no contact is lost, no step cut.
+  subroutine evaluate(scene, equations, solution, dt, du, tangent, report, predicted, corrected_from)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt      !! [time]
+    real(wp), intent(in) :: du(:)   !! (ndof) [unknown]
+    logical, intent(in) :: tangent
+    type(report_t), intent(out) :: report
+    logical, intent(in), optional :: predicted              !! the motion is a prediction
+    real(wp), intent(in), optional :: corrected_from(:)     !! (ndof) motion before the correction that led to it [unknown]
+    type(instant_t) :: instant
+    real(wp), allocatable :: now(:, :)
+    integer :: timer
+
+    call fit_to_load(equations%team)
+    call make_instant(scene, equations, solution, dt, du, tangent, instant)
+    if (present(predicted)) instant%predicted = predicted
+    if (present(corrected_from)) call note_correction(scene, equations%dofs, corrected_from, instant)
+    call driving_values(scene, equations, solution, du, now)
+    do
+      call pair_up(scene, solution%pairs, equations)
+      instant%pairs = solution%pairs
+      call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, &
+                        equations%solves(equations%now)%active, equations%solves(equations%now)%pattern, instant, du, now, &
+                        solution, equations%drivers, equations%buffers, equations%timers, report)
+      if (report%status /= block_done) return
+      if (.not. report%unpaired) exit
+      call renew_pairs(scene, equations%solves(equations%now)%active, solution)
+    end do
+    equations%source = sqrt(report%source)
+    if (solves_heat(scene, equations)) then
+      equations%heat_stored = report%heat_stored
+      equations%heat_released = report%heat_released
+    end if
+    call equations%timers%add('assembly', timer)
+    call equations%timers%start(timer)
+    associate (solve => equations%solves(equations%now))
+      ! round-off is that of the bodies alone
+      if (tangent) call set_floors(scene, equations, solution%fields)
+      if (solve%own(displacement_field)) &
+        call press_on_axis(scene, equations%dofs, solve%pattern, solve%active, solution%fields(displacement_field)%value, du, &
+                           tangent, equations%wall, equations%buffers%force, equations%buffers%matrix, report)
+      call gather_forces(solve%pattern, equations%buffers, solve%is_own, equations%force, equations%magnitude)
+      if (tangent) then
+        call gather_matrix(solve%pattern, equations%buffers, solve%values)
+        call hold_resting(scene, equations%dofs, solution, equations%loose, solve%pattern, solve%equation, equations%resting, &
+                          solve%values)
+      end if
+    end associate
+    call equations%timers%stop(timer)
+  end subroutine evaluate
+
+  !> An error of the heat content at the end of a step, in the mean square of the volume of the bodies, over the least heat capacity
+  !> of each. It is given by the temperatures that it belongs to.
+  subroutine measure_error(scene, equations, solution, du, temperatures, error)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: du(:)             !! (ndof) motion of the step [unknown]
+    real(wp), intent(in) :: temperatures(:)   !! (ndof) the error [unknown]
+    real(wp), intent(out) :: error            !! [temperature]
+    type(instant_t) :: instant
+    type(report_t) :: report
+    real(wp), allocatable :: now(:, :)
+
+    call make_instant(scene, equations, solution, 0.0_wp, du, .false., instant)
+    instant%mode = mode_error
+    instant%values = instant%values + du
+    call driving_values(scene, equations, solution, du, now)
+    call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, &
+                      equations%solves(equations%now)%active, equations%solves(equations%now)%pattern, instant, temperatures, now, &
+                      solution, equations%drivers, equations%buffers, equations%timers, report)
+    error = 0
+    if (report%error_volume > 0) error = sqrt(report%error_square/report%error_volume)
+  end subroutine measure_error
+
+end module evaluation
