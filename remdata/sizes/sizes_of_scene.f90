@@ -21,7 +21,7 @@ module sizes_of_scene
   real(wp), parameter :: strain_order = 2.0_wp
   !> A mesh that was strained by less than this in the mean of its elements, as by unloading or where one node is touched so far
   !> has shown no errors of what comes: its elements are not made larger.
-  real(wp), parameter :: strained = 1.0e-3_wp
+  real(wp), parameter :: strained = 1.0e-4_wp
 
 contains
 

@@ -135,7 +135,7 @@ contains
   !> A nodal field at the points of an element or a side.
   pure function field_at_points(field, now, group, e) result(values)
     type(field_t), intent(in) :: field
-    real(wp), intent(in) :: now(:)   !! (nnode)
+    real(wp), intent(in) :: now(:)   !! (nnode) [unit of the field]
     type(group_t), intent(in) :: group
     integer, intent(in) :: e   !! element
     real(wp) :: values(group%rule%n)

@@ -19,9 +19,9 @@ contains
   !> Flow stress of the body behind a side, 0 where its law does not flow.
   pure function flow_behind(scene, laws, solution, own, drivers, e) result(flow)
     type(scene_t), intent(in) :: scene
-    type(law_t), intent(in) :: laws(:)
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
     type(solution_t), intent(in) :: solution
-    type(drivers_t), intent(in) :: own, drivers(:)   !! of the contact, and of all groups
+    type(drivers_t), intent(in) :: own, drivers(:)   !! of the contact, and of all groups (ngroup)
     integer, intent(in) :: e
     real(wp) :: flow   !! [stress]
     integer :: near(2), p
@@ -48,9 +48,9 @@ contains
   !> Effusivity of a die at the points of a side: the number of a rigid one, or that of the bodies behind the facing pieces.
   pure function effusivity_of_die(scene, laws, solution, own, drivers, g, e) result(values)
     type(scene_t), intent(in) :: scene
-    type(law_t), intent(in) :: laws(:)
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
     type(solution_t), intent(in) :: solution
-    type(drivers_t), intent(in) :: own, drivers(:)   !! of the group, and of all groups
+    type(drivers_t), intent(in) :: own, drivers(:)   !! of the group, and of all groups (ngroup)
     integer, intent(in) :: g, e
     real(wp) :: values(scene%groups(g)%rule%n)
     integer :: p, piece
@@ -68,9 +68,9 @@ contains
   !> sqrt(conductivity times heat capacity) of a body behind a side at the mean temperature of its element, 0 where it has none.
   pure function effusivity(scene, laws, solution, drivers, body, element, side) result(b)
     type(scene_t), intent(in) :: scene
-    type(law_t), intent(in) :: laws(:)
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
     type(solution_t), intent(in) :: solution
-    type(drivers_t), intent(in) :: drivers(:)
+    type(drivers_t), intent(in) :: drivers(:)   !! (ngroup)
     integer, intent(in) :: body, element, side
     real(wp) :: b   !! [power time^(1/2)/area/temperature]
     real(wp) :: conductivity(1), slope(1), taken(1), capacity(1)

@@ -135,7 +135,7 @@ contains
   !> Unknowns and pattern for other pairs; the solver analyses them before the next factorisation.
   subroutine pair_up(scene, pairs, equations)
     type(scene_t), intent(in) :: scene
-    type(pairs_t), intent(in) :: pairs(:)
+    type(pairs_t), intent(in) :: pairs(:)   !! (npair)
     type(equations_t), intent(inout) :: equations
     integer :: s, timer
 

@@ -43,7 +43,7 @@ contains
   !> sign (2.4e-8 of the heat that passed in decks/hot_upsetting).
   pure function has_converged(scene, history, again) result(converged)
     type(scene_t), intent(in) :: scene
-    type(iteration_t), intent(in) :: history(:)
+    type(iteration_t), intent(in) :: history(:)   !! (niteration)
     logical, intent(in) :: again   !! begun where an earlier turn ended
     logical :: converged
     real(wp) :: to_come
@@ -61,7 +61,7 @@ contains
   !> Residuals have been within their norm for some iterations, or are round-off: heat does not get nearer to its balance.
   pure function was_given_time(scene, history) result(was)
     type(scene_t), intent(in) :: scene
-    type(iteration_t), intent(in) :: history(:)
+    type(iteration_t), intent(in) :: history(:)   !! (niteration)
     logical :: was
     integer :: n
 
@@ -72,7 +72,7 @@ contains
 
   !> Near the solution: the residual has fallen below a small share of the forces, and the set of points in contact is settled.
   pure function is_near(history)
-    type(iteration_t), intent(in) :: history(:)
+    type(iteration_t), intent(in) :: history(:)   !! (niteration)
     logical :: is_near
 
     associate (last => history(size(history)))
@@ -82,7 +82,7 @@ contains
 
   !> The last searches were all short: they do not get past a turn of loading to unloading. One that went back is not short.
   pure function caught(history)
-    type(iteration_t), intent(in) :: history(:)
+    type(iteration_t), intent(in) :: history(:)   !! (niteration)
     logical :: caught
 
     caught = size(history) > short_searches
@@ -93,7 +93,7 @@ contains
   !> The whole correction was taken after short searches before, and the short searches since came back to no less: to take it again
   !> would go round in circles.
   pure function went_round(history)
-    type(iteration_t), intent(in) :: history(:)
+    type(iteration_t), intent(in) :: history(:)   !! (niteration)
     logical :: went_round
     integer :: n, whole
 
@@ -108,7 +108,7 @@ contains
 
   !> Contact keeps changing and the residual does not fall: it stagnates over the last two iterations.
   pure function in_turmoil(history)
-    type(iteration_t), intent(in) :: history(:)
+    type(iteration_t), intent(in) :: history(:)   !! (niteration)
     logical :: in_turmoil
     integer :: n
 
@@ -121,7 +121,7 @@ contains
 
   !> Corrections that follow the heat content go round in circles: the residual is hardly below the best so far.
   pure function in_circles(history)
-    type(iteration_t), intent(in) :: history(:)
+    type(iteration_t), intent(in) :: history(:)   !! (niteration)
     logical :: in_circles
     integer :: n
 
@@ -141,7 +141,7 @@ contains
   !> Contact still changes and the residual falls with it: a thin sheet between dies opens and closes point by point, whatever the
   !> length of the step.
   pure function falls_on(history)
-    type(iteration_t), intent(in) :: history(:)
+    type(iteration_t), intent(in) :: history(:)   !! (niteration)
     logical :: falls_on
     integer :: n
 
@@ -154,7 +154,7 @@ contains
 
   !> Contact changes to and fro between two states, and whole corrections lead from each to the other.
   pure function goes_to_and_fro(history)
-    type(iteration_t), intent(in) :: history(:)
+    type(iteration_t), intent(in) :: history(:)   !! (niteration)
     logical :: goes_to_and_fro
     integer :: n
 
@@ -168,7 +168,7 @@ contains
   !> Reason to stop the iterations, if there is one.
   pure subroutine judge(scene, history, reason)
     type(scene_t), intent(in) :: scene
-    type(iteration_t), intent(in) :: history(:)
+    type(iteration_t), intent(in) :: history(:)   !! (niteration)
     character(len=:), allocatable, intent(out) :: reason
     integer :: n
 

@@ -20,7 +20,7 @@ contains
   pure subroutine set_floors(scene, equations, fields)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
-    type(field_t), intent(inout) :: fields(:)
+    type(field_t), intent(inout) :: fields(:)   !! (nfield)
     integer :: f
 
     do f = 1, size(fields)

@@ -115,7 +115,7 @@ contains
   pure subroutine note_correction(scene, dofs, motion, instant)
     type(scene_t), intent(in) :: scene
     type(dofs_t), intent(in) :: dofs
-    real(wp), intent(in) :: motion(:)
+    real(wp), intent(in) :: motion(:)   !! (ndof) [unknown]
     type(instant_t), intent(inout) :: instant
     integer :: k, c
 
@@ -172,8 +172,8 @@ contains
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: du(:)      !! change of the unknowns in the step (ndof)
-    real(wp), allocatable, intent(out) :: now(:, :)
+    real(wp), intent(in) :: du(:)   !! change in the step (ndof) [unknown]
+    real(wp), allocatable, intent(out) :: now(:, :)   !! (nnode, nfield) [unit of each field]
     integer :: f, k
 
     if (.not. any(equations%drivers%vary)) then

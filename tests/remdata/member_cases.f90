@@ -2,6 +2,7 @@
 module member_cases
   use contact_ends, only: contact_end_t
   use contour_cases, only: add_block, add_contact, add_die, begin_scene, box, polyline, start
+  use cuts, only: cut_record_t, cut_t
   use dies, only: die_t, is_deformable, place_on_nodes
   use fields, only: displacement_field, field_t, mechanical_fields, on_nodes, transfer_nodal
   use kept_members, only: member_memory_t
@@ -190,9 +191,11 @@ contains
         options%mesher = by_gmsh
         options%tries = 6
         options%own_mesh = own_mesh_t(12, 0.3_wp, 0.6_wp)
-        allocate (options%marks(1), options%zones(1), options%contours(1))
+        allocate (options%marks(1), options%zones(1), options%contours(1), options%cuts(1))
         options%marks(1) = zone_mark_t(name='corner', form=mark_crossing, x=[0.3_wp, 0.4_wp], axis=1, pick=-1, by_matter=.true., &
                                        die=1, stays=.true.)
+        options%cuts(1) = cut_t(group=2, line=[0.1_wp, 0.2_wp, 0.3_wp, 0.4_wp], die=1, thickness=0.05_wp, names_kept=.true., &
+                                kept=[0.6_wp, 0.7_wp])
         options%zones(1) = zone_card_t(name='zone', group=2, marks=[1, 1, 1, 1])
         options%contours(1) = contour_card_t(group=2, pieces=reshape([1, 2, 3, 4, 5, 6]*0.5_wp, [2, 3, 1]), row=[4])
       end associate
@@ -226,6 +229,9 @@ contains
     call start(scene, solution)
     call fill(filler, solution)
     solution%spurious_group = 2
+    if (allocated(solution%cuts)) deallocate (solution%cuts)
+    allocate (solution%cuts(1))
+    solution%cuts(1) = cut_record_t(generation=2, time=0.3_wp, volume=0.2_wp, thickness=0.1_wp, force=12.0_wp)
     deallocate (solution%estimate%triggers)
     allocate (solution%estimate%triggers(2))
     solution%estimate%triggers(1)%name = 'aspect_ratio'
