@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
 """ACCURACY of decks with new meshes: pilots are cycles, the accuracy drives the sizes of all meshes, and a stop changes nothing.
 
-usage: run_accuracy_remesh.py [--long] [-v] [-k]
+usage: run_accuracy_remesh.py [-v] [-k]
 
-The billet, coarse and pressed a little way, with a new mesh half-way. `--long`: true errors against cycles that are finer, of the billet
-pressed until its side has folded, and of a can, a body that is given by its contour (some minutes of processor).
+The billet, coarse and pressed a little way, with a new mesh half-way.
 """
 import json
 import os
@@ -19,7 +18,6 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "patch"))
 from patch_support import BIN, SOURCE, Checks, Run, np  # noqa: E402
 
-LONG = "--long" in sys.argv[1:]
 LAGAMINE, LAGACYCLE = (os.path.join(os.path.abspath(BIN), name) for name in ("lagamine", "lagacycle"))
 DONE, REFUSED, NO_CONVERGENCE, PILOT_DUE, TERMINATED = 0, 2, 3, 7, 128 + signal.SIGTERM
 WITHIN = 2.0
