@@ -18,7 +18,7 @@ module remesh_scene
   use first_contours, only: contours_of_cards
   use fold_closing, only: close_folds
   use kinds, only: pi, wp
-  use material_interfaces, only: interface_t, interfaces_of
+  use material_interfaces, only: group_interfaces, interface_t, interfaces_of
   use member_reader, only: member_reader_t
   use mesh_choice, only: make_free_mesh, make_mesh, materials_of, may_be_free, needs_free_mesh, take_better_mesh
   use new_mesh_check, only: check_shape
@@ -86,7 +86,7 @@ contains
     end if
     if (allocated(error)) return
     call interfaces_of(old, before, contours, interfaces)
-    call cut_bodies(old, before, size(interfaces) > 0, contours, facts, is_cut, error)
+    call cut_bodies(old, before, contours, facts, is_cut, error)
     if (allocated(error)) return
     call find_seams(old, before, contours, seams)
     call begin_task(facts, 'mesh', 'sizes')
@@ -128,23 +128,28 @@ contains
   end subroutine remesh_checkpoint
 
   !> Make the cuts that are due. The facts have what came of all cuts of the scene.
-  subroutine cut_bodies(old, before, materials_share, contours, facts, is_cut, error)
+  subroutine cut_bodies(old, before, contours, facts, is_cut, error)
     type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
-    logical, intent(in) :: materials_share   !! sides
     type(contour_t), allocatable, intent(inout) :: contours(:)   !! (ncontour)
     type(remesh_facts_t), intent(inout) :: facts
     logical, intent(out) :: is_cut
     type(error_t), allocatable, intent(out) :: error
-    integer :: k
+    type(interface_t), allocatable :: shared(:)
+    integer :: g, i, k
 
     is_cut = any([(cut_is_due(old, before, k), k=1, size(before%cuts))])
     if (.not. is_cut) return
     call begin_task(facts, stage_of_cuts, 'cut')
-    if (materials_share) then
-      call fail(error, exit_input, 'a body that is cut shares sides with another one', 'cut a body that stands alone')
+    call group_interfaces(old, before, contours, shared)
+    do k = 1, size(before%cuts)
+      if (.not. cut_is_due(old, before, k)) cycle
+      g = old%remesher%cuts(k)%group
+      if (.not. any([(any(shared(i)%materials == g), i=1, size(shared))])) cycle
+      call fail(error, exit_input, 'TRIM, PIERC: '//old%groups(g)%name//' shares sides with another body', &
+                'cut a body that stands alone')
       return
-    end if
+    end do
     call make_cuts(old, before, contours, facts%cuts, error)
   end subroutine cut_bodies
 

@@ -12,6 +12,7 @@ module contour_cuts
   use loop_group, only: group_of
   use offset_parabolas, only: point_at
   use part_contour, only: contour_t
+  use plane_vectors, only: cross
   use scene, only: axisymmetric, scene_t
   use solution, only: present_coordinates, solution_t
   use text, only: to_text
@@ -34,16 +35,18 @@ contains
     type(solution_t), intent(in) :: solution
     integer, intent(in) :: k
     logical :: due
+    type(web_t), allocatable :: ways(:)
     integer :: i
 
     due = solution%cuts(k)%generation == 0
     if (.not. due .or. is_trim(scene%remesher%cuts(k))) return
     due = .false.
     do i = 1, size(solution%estimate%triggers)
-      associate (trigger => solution%estimate%triggers(i))
-        due = due .or. (trigger%name == web_trigger .and. trigger%group == scene%remesher%cuts(k)%group)
-      end associate
+      due = due .or. solution%estimate%triggers(i)%name == web_trigger
     end do
+    if (.not. due) return
+    call measure_web(scene, solution, scene%remesher%cuts(k), ways)
+    due = any(ways%thickness <= scene%remesher%cuts(k)%thickness)
   end function cut_is_due
 
   !> Make all cuts that are due; `records` tells what came of them.
@@ -87,7 +90,7 @@ contains
       call pierce_body(scene, solution, cut, contours, of_body, pieces, record, error)
     end if
     if (allocated(error)) return
-    call replace_contours(scene, solution, of_body, pieces, contours)
+    call replace_contours(scene, solution, cut, of_body, pieces, contours)
     record%volume = before - total_volume(contours, [(group_of(scene, contours(c)%loop, c) == cut%group, c=1, size(contours))], &
                                           scene%plane_state == axisymmetric)
   end subroutine make_cut
@@ -211,10 +214,12 @@ contains
 
   end subroutine pierce_body
 
-  !> The pieces take the place of the contours of the body; of contours that the cut does not cross those within the pieces stay.
-  subroutine replace_contours(scene, solution, of_body, pieces, contours)
+  !> The pieces take the place of the contours of the body; of contours that the cut does not cross holes within the pieces stay,
+  !> and parts that stand for themselves: those beside a line on the side that is kept.
+  subroutine replace_contours(scene, solution, cut, of_body, pieces, contours)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
+    type(cut_t), intent(in) :: cut
     logical, intent(in) :: of_body(:)
     type(piece_t), intent(in) :: pieces(:)
     type(contour_t), allocatable, intent(inout) :: contours(:)
@@ -230,7 +235,12 @@ contains
       stays = .not. of_body(c)
       if (.not. (stays .or. crossed)) then
         associate (arc => contours(c)%boundary%arcs(1))
-          stays = any([(is_around(pieces(k)%boundary, point_at(arc, arc%range(1))), k=1, size(pieces))])
+          if (volume_inside(contours(c)%boundary, .false.) > 0) then
+            stays = .not. is_trim(cut)
+            if (is_trim(cut)) stays = side_of_line(cut, point_at(arc, arc%range(1)))*side_of_line(cut, cut%kept) > 0
+          else
+            stays = any([(is_around(pieces(k)%boundary, point_at(arc, arc%range(1))), k=1, size(pieces))])
+          end if
         end associate
       end if
       if (stays) after = [after, contours(c)]
@@ -240,6 +250,15 @@ contains
     end do
     call move_alloc(after, contours)
   end subroutine replace_contours
+
+  !> Above 0 on the left of the line of a cut, below on its right [area].
+  pure function side_of_line(cut, point) result(side)
+    type(cut_t), intent(in) :: cut
+    real(wp), intent(in) :: point(2)   !! [length]
+    real(wp) :: side
+
+    side = cross(cut%line(3:4) - cut%line(1:2), point - cut%line(1:2))
+  end function side_of_line
 
   !> Is a point within a closed curve? By the crossings of a ray along x with its chords.
   pure function is_around(boundary, point) result(around)

@@ -4,7 +4,7 @@ module loop_group
   use scene, only: is_solid, scene_t
   implicit none
   private
-  public :: group_of
+  public :: group_of, group_of_element
 
 contains
 
@@ -14,18 +14,28 @@ contains
     type(loop_t), intent(in) :: loop
     integer, intent(in) :: number   !! of the contour, of which a first mesh has one for each body
     integer :: group
-    integer :: last
 
     if (size(loop%element) == 0) then
       group = scene%remesher%contours(number)%group
       return
     end if
-    last = 0
-    do group = 1, size(scene%groups)
-      if (.not. is_solid(scene%groups(group))) cycle
-      last = last + size(scene%groups(group)%connectivity, 2)
-      if (loop%element(1) <= last) return
-    end do
+    group = group_of_element(scene, loop%element(1))
   end function group_of
+
+  !> Group of an element, counted through all solid groups; 0 beyond the last.
+  pure function group_of_element(scene, element) result(group)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: element
+    integer :: group
+    integer :: g, last
+
+    group = 0
+    last = 0
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      last = last + size(scene%groups(g)%connectivity, 2)
+      if (group == 0 .and. element <= last) group = g
+    end do
+  end function group_of_element
 
 end module loop_group

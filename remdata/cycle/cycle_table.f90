@@ -153,8 +153,17 @@ contains
     integer, intent(in) :: generation, stop_step
     integer :: number
 
-    number = count(rows%generation == generation .and. rows%stop_step == stop_step .and. .not. rows%accepted)
+    number = count(is_refused(rows, generation, stop_step))
   end function number_refused
+
+  !> A try at this mesh, at this stop, that was refused.
+  elemental function is_refused(row, generation, stop_step) result(refused)
+    type(try_row_t), intent(in) :: row
+    integer, intent(in) :: generation, stop_step
+    logical :: refused
+
+    refused = row%generation == generation .and. row%stop_step == stop_step .and. .not. row%accepted
+  end function is_refused
 
   !> Was this way refused at this stop?
   pure function was_refused(rows, generation, stop_step, way) result(refused)
@@ -166,8 +175,7 @@ contains
 
     refused = .false.
     do k = 1, size(rows)
-      if (rows(k)%generation == generation .and. rows(k)%stop_step == stop_step .and. .not. rows(k)%accepted) &
-        refused = refused .or. rows(k)%action == way
+      if (is_refused(rows(k), generation, stop_step)) refused = refused .or. rows(k)%action == way
     end do
   end function was_refused
 
@@ -225,8 +233,8 @@ contains
 
     can = .false.
     do k = 1, size(rows)
-      if (rows(k)%generation /= generation .or. rows(k)%stop_step /= stop_step .or. rows(k)%accepted) cycle
-      can = can .or. all(rows(k)%stage /= [character(len=10) :: 'contour', 'mesh', 'checkpoint'])
+      if (is_refused(rows(k), generation, stop_step)) &
+        can = can .or. all(rows(k)%stage /= [character(len=10) :: 'contour', 'mesh', 'checkpoint'])
     end do
   end function transfer_is_responsible
 
@@ -239,8 +247,7 @@ contains
 
     is = .false.
     do k = 1, size(rows)
-      if (rows(k)%generation /= generation .or. rows(k)%stop_step /= stop_step .or. rows(k)%accepted) cycle
-      is = is .or. rows(k)%stage == 'mesh'
+      if (is_refused(rows(k), generation, stop_step)) is = is .or. rows(k)%stage == 'mesh'
     end do
   end function mesh_is_responsible
 
@@ -260,7 +267,7 @@ contains
     n = 0
     do k = 1, size(rows)
       associate (row => rows(k))
-        if (row%generation /= generation .or. row%stop_step /= stop_step .or. row%accepted) cycle
+        if (.not. is_refused(row, generation, stop_step)) cycle
         ! all from one state of the old mesh
         if (.not. abs(row%force) > 0 .or. row%step /= stop_step .or. row%action == way_agreed) cycle
         n = n + 1

@@ -7,7 +7,7 @@
 !> and where another set of sides begins. The contours of a body together get an even number of elements: an odd number bounds no
 !> mesh of quadrilaterals, since each has four sides and each inner side belongs to two.
 module body_outlines
-  use body_seams, only: add_seam_ends, group_beside, group_of_element, lay_out_seams, mark_sets, seams_t
+  use body_seams, only: add_seam_ends, group_beside, lay_out_seams, mark_sets, seams_t
   use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, kind_corner, position_at_arc_length, turn_at
   use contour_divisions, only: divide_sides
   use contour_volume, only: volume_inside

@@ -5,16 +5,17 @@ module body_seams
   use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, kind_corner, point_on, position_at_arc_length, &
                              position_t, size_of_boundary
   use kinds, only: wp
+  use loop_group, only: group_of_element
   use material_interfaces, only: group_interfaces, interface_t, path_between
   use mesh, only: side_set_t
   use part_contour, only: contour_t
-  use scene, only: is_solid, scene_t
+  use scene, only: scene_t
   use solution, only: solution_t
   use vectors, only: length_of
   use zones, only: follows_interface, zone_layout_t, zone_point_t, zone_side_t
   implicit none
   private
-  public :: seams_t, add_seam_ends, find_seams, group_of_element, group_beside, lay_out_seams, mark_sets, marks_along_paths
+  public :: seams_t, add_seam_ends, find_seams, group_beside, lay_out_seams, mark_sets, marks_along_paths
 
   type :: seams_t
     !> Between groups of the scene: `materials` are their numbers.
@@ -45,21 +46,6 @@ contains
     end do
   end subroutine find_seams
 
-  !> Group of an element, counted through all solid groups.
-  pure function group_of_element(scene, element) result(group)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: element
-    integer :: group
-    integer :: last
-
-    last = 0
-    do group = 1, size(scene%groups)
-      if (.not. is_solid(scene%groups(group))) cycle
-      last = last + size(scene%groups(group)%connectivity, 2)
-      if (element <= last) return
-    end do
-  end function group_of_element
-
   !> Group beside a contour between two of its points, one after the other.
   pure function group_beside(seams, boundary, number, from, to) result(group)
     type(seams_t), intent(in) :: seams
@@ -73,7 +59,11 @@ contains
     s = [arc_length_at(boundary, from), arc_length_at(boundary, to)]
     if (.not. s(2) > s(1)) s(2) = s(2) + boundary_length(boundary)
     middle = position_at_arc_length(boundary, 0.5_wp*sum(s))
-    group = seams%groups(boundary%arcs(middle%arc)%side, number)
+    ! the face of a cut is no side of the old mesh: a body that is cut has no seams
+    group = seams%groups(1, number)
+    associate (side => boundary%arcs(middle%arc)%side)
+      if (side <= count(seams%groups(:, number) > 0)) group = seams%groups(side, number)
+    end associate
   end function group_beside
 
   !> Ends of seams on a contour become corners of it, in their order.

@@ -149,7 +149,7 @@ contains
 
     exponent = 1
     if (min(coarse%steps, fine%steps) == 0) return
-    exponent = log(real(coarse%steps, wp)/fine%steps)/log(fine%fineness%steps)
+    exponent = log(real(coarse%steps, wp)/fine%steps)/log(fine%fineness%steps/coarse%fineness%steps)
     exponent = min(max(exponent, least_shortening), 1.0_wp)
   end function shortening
 

@@ -8,7 +8,7 @@ module accuracy_runs
   use accuracy_samples, only: join_forces, key_of, range_of, read_sample, select_columns
   use atomic, only: read_text, write_text
   use cost_file, only: cost_t, read_cost
-  use errors, only: error_t, exit_done, exit_input, exit_no_convergence, fail
+  use errors, only: error_t, exit_done, exit_input, exit_no_convergence, exit_pilot, fail
   use exact_numbers, only: exact_text
   use kinds, only: wp
   use remesher_options, only: has_contours
@@ -20,10 +20,8 @@ module accuracy_runs
   use text, only: add_text, string_t, to_text
   implicit none
   private
-  public :: exit_pilot, make_plan, run_i
+  public :: make_plan, run_i
 
-  !> Exit code of a run that needs a pilot which only `lagacycle` can make; it reads it too.
-  integer, parameter :: exit_pilot = 7
   !> Meshes of bodies that are given by their contours can be finer by any factor: quarters are fine enough.
   integer, parameter :: quarters = 4
 
@@ -80,8 +78,9 @@ contains
       if (allocated(error)) return
       if (shortest < 1 .and. plan%fineness%steps < half*shortest .and. shortest > least_pilot) then
         ! a law of the steps is good near those that it was measured with
-        call pilot(fineness_t(coarsest, max(next_power(plan%fineness%steps), shortest/8), 1.0_wp), there)
-        shortest = merge(max(next_power(plan%fineness%steps), shortest/8), 0.0_wp, there)
+        shortest = max(next_power(plan%fineness%steps), shortest/8, least_pilot)
+        call pilot(fineness_t(coarsest, shortest, 1.0_wp), there)
+        if (.not. there) shortest = 0
         cycle
       end if
       if (.not. (plan%divisible .and. plan%law%space_known .and. plan%fineness%mesh > 2*plan%law%mesh)) exit

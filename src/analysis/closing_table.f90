@@ -45,9 +45,10 @@ module closing_table
     !> Depth of the part in its dies, at points of contact and between them [length], over what is allowed (0: nothing states that).
     logical :: contact = .false.
     real(wp) :: depth = 0.0_wp, depth_share = 0.0_wp
-    !> Meshes of the whole run with REMSH, the largest errors of the stress and of the strain over all of its steps, and its seconds
-    !> by tasks [s]; forecasts are then of all meshes.
+    !> Meshes of the whole run with REMSH, the largest errors of the stress and of the strain over all of its steps where these are
+    !> in the history, and its seconds by tasks [s]; forecasts are then of all meshes.
     integer :: meshes = 1
+    logical :: errors_of_all = .false.
     real(wp) :: stress_worst = 0.0_wp, strain_worst = 0.0_wp, seconds(ntask) = 0.0_wp
     !> Of a deck with ACCURACY that has come to its end.
     type(accuracy_t), allocatable :: accuracy
@@ -96,7 +97,8 @@ contains
     call read_csv(history, titles, table, error)
     closing%stress_worst = closing%stress
     closing%strain_worst = closing%strain
-    ! a history that is gone says nothing of the steps before
+    ! a history that is gone says nothing of the steps before, nor does this run then
+    closing%errors_of_all = .not. allocated(error)
     if (allocated(error)) return
     do k = 1, size(titles)
       if (index(titles(k)%s, 'error_stress') == 1) closing%stress_worst = max(closing%stress, largest(table(k, :)))
@@ -172,13 +174,12 @@ contains
       words = 'stress '//percent(closing%stress)
       if (closing%strain_known) words = words//', strain '//percent(closing%strain)
       call row('in space', words, times(closing%space_cost)//' the time: twice the elements')
-      if (closing%meshes > 1) call row('', 'at most '//percent(closing%stress_worst)//', '//percent(closing%strain_worst)//' on ' &
-        //to_text(closing%meshes)//' meshes', to_text(sum(closing%seconds), 3)//' s of processor in all, ' &
+      if (closing%meshes > 1) call row('', on_all_meshes(), to_text(sum(closing%seconds), 3)//' s of processor in all, ' &
         //to_text(closing%seconds(remesher_task), 3)//' s of the remesher')
     end if
     if (closing%flows .and. .not. closing%path) call row('in time', 'path within steps: not estimated (NORMS)', '')
     if (closing%path) &
-      call row('in time', 'path: motion '//percent(closing%motion)//', stress '//percent(closing%path_stress)//' at it', &
+      call row('in time', 'path: motion '//percent(closing%motion)//', stress '//percent(closing%path_stress)//' at this motion', &
                times(closing%path_cost)//' the time: half the steps'' length')
     if (closing%warm .and. closing%heat_steps == 0) call row('in time', 'heat: not estimated (TOL of THETA)', '')
     if (closing%heat_steps > 0) &
@@ -197,6 +198,15 @@ contains
     if (.not. allocated(lines)) allocate (lines(0))
 
   contains
+
+    !> The largest errors of the run.
+    function on_all_meshes() result(words)
+      character(len=:), allocatable :: words
+
+      words = to_text(closing%meshes)//' meshes'
+      if (closing%errors_of_all) words = 'at most '//percent(closing%stress_worst)//', '//percent(closing%strain_worst) &
+                                         //' on '//words
+    end function on_all_meshes
 
     subroutine put(line)
       character(len=*), intent(in) :: line
@@ -252,8 +262,8 @@ contains
       call json%add('stress_pct', 100*closing%stress)
       if (closing%strain_known) call json%add('strain_pct', 100*closing%strain)
       if (closing%meshes > 1) then
-        call json%add('stress_worst_pct', 100*closing%stress_worst)
-        call json%add('strain_worst_pct', 100*closing%strain_worst)
+        if (closing%errors_of_all) call json%add('stress_worst_pct', 100*closing%stress_worst)
+        if (closing%errors_of_all) call json%add('strain_worst_pct', 100*closing%strain_worst)
       end if
       call json%add('half_costs', closing%space_cost)
       call json%end_object()

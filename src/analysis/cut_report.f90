@@ -3,12 +3,14 @@ module cut_report
   use cuts, only: is_trim
   use history, only: circumference
   use json_writer, only: json_t
+  use kinds, only: wp
   use scene, only: scene_t
   use solution, only: solution_t
-  use text, only: string_t, to_text
+  use text, only: add_text, string_t, to_text
+  use web_thickness, only: measure_web, web_t
   implicit none
   private
-  public :: add_cuts, lines_of_cuts
+  public :: add_cuts, lines_of_cuts, warn_of_webs
 
 contains
 
@@ -40,7 +42,38 @@ contains
         lines = [lines, line]
       end associate
     end do
+    if (.not. present(on_mesh) .or. size(lines) == 0) return
+    line%s = '  of the limits for a new mesh those of the shape of its elements hold alone'
+    lines = [lines, line]
   end function lines_of_cuts
+
+  !> A line for each web that has not parted, added to the warnings of a run at its end.
+  subroutine warn_of_webs(scene, solution, warnings)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning) lines
+    type(web_t), allocatable :: ways(:)
+    character(len=:), allocatable :: words
+    real(wp) :: web
+    integer :: k
+
+    do k = 1, size(solution%cuts)
+      associate (cut => scene%remesher%cuts(k))
+        if (is_trim(cut) .or. solution%cuts(k)%generation > 0) cycle
+        call measure_web(scene, solution, cut, ways)
+        web = minval([huge(web), ways%thickness])
+        words = scene%groups(cut%group)%name//' has not parted under '//scene%dies(cut%die)%name
+        if (web <= cut%thickness) then
+          words = words//', though the web is '//to_text(web, 4)//' at the end: it became thin in the last step, go on for one more'
+        else if (web < huge(web)) then
+          words = words//': the web is '//to_text(web, 4)//' at the end, it parts at '//to_text(cut%thickness, 4)
+        else
+          words = words//': there is no web between it and a free side'
+        end if
+        call add_text(warnings, words)
+      end associate
+    end do
+  end subroutine warn_of_webs
 
   !> `cuts` in the summary, where the scene has any.
   subroutine add_cuts(json, scene, solution)

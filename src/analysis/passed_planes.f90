@@ -23,7 +23,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning) lines
-    real(wp) :: x(2, size(scene%mesh%coordinates, 2)), plane, below, above
+    real(wp) :: x(2, size(scene%mesh%coordinates, 2)), plane, below, above, depth
     logical :: body(size(scene%mesh%coordinates, 2))
     integer :: f, g, c
 
@@ -45,13 +45,13 @@ contains
         if (min(below, above) > straight*max(below, above)) cycle
         plane = x(c, scene%fixations(f)%nodes(1))
         if (above > below) then
-          below = plane - minval(x(c, :), body)
+          depth = plane - minval(x(c, :), body)
         else
-          below = maxval(x(c, :), body) - plane
+          depth = maxval(x(c, :), body) - plane
         end if
-        if (below <= deep*max(above, below)) cycle
+        if (depth <= deep*max(above, below)) cycle
         call add_text(warnings, scene%groups(g)%name//' has passed the plane '//axes(c:c)//' = '//to_text(plane, 4)// &
-                      ' in which it is held ('//scene%fixations(f)%label//'), by '//to_text(below, 3)// &
+                      ' in which it is held ('//scene%fixations(f)%label//'), by '//to_text(depth, 3)// &
                       ': a plane of symmetry has the mirror image there, let the body face a DIE along it')
       end do
     end do

@@ -68,12 +68,16 @@ contains
   pure function worst_of(z) result(worst)
     real(wp), intent(in) :: z(:, :, :)   !! (fraction, point, element) [-]
     real(wp) :: worst
+    real(wp) :: off
     integer :: e, p
 
     worst = 0
     do e = 1, size(z, 3)
       do p = 1, size(z, 2)
-        worst = max(worst, abs(sum(z(:, p, e)) - 1), -minval(z(:, p, e)), maxval(z(:, p, e)) - 1)
+        off = max(abs(sum(z(:, p, e)) - 1), -minval(z(:, p, e)), maxval(z(:, p, e)) - 1)
+        ! a fraction that is no number is none
+        if (.not. (all(z(:, p, e) <= huge(off)) .and. all(z(:, p, e) >= -huge(off)))) off = huge(off)
+        worst = max(worst, off)
       end do
     end do
   end function worst_of

@@ -11,6 +11,7 @@ module run_deck
   use closing_table, only: close_cycle, close_run
   use contact_ends, only: contact_end_t
   use cost_file, only: cost_t, write_cost
+  use cut_report, only: warn_of_webs
   use deck_check, only: as_warnings, check_deck, look_at_deck
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
@@ -279,6 +280,7 @@ contains
       if (run%balance%agreed) call add_text(facts%warnings, agreed_words(run%balance))
     end if
     call warn_of_passed_planes(scene, solution, facts%warnings)
+    if (run%exit_code == exit_done) call warn_of_webs(scene, solution, facts%warnings)
     facts%version = version_text
     facts%deck = options%deck
     facts%deck_text = run%deck_text

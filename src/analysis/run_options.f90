@@ -131,11 +131,12 @@ contains
     character(len=*), intent(in) :: word
     type(fineness_t), allocatable, intent(out) :: fineness
     type(error_t), allocatable, intent(out) :: error
-    integer :: status
+    integer :: k, status
 
     allocate (fineness)
     read (word, *, iostat=status) fineness%mesh, fineness%steps, fineness%depth
-    if (status == 0 .and. verify(word, '0123456789.,+-Ee') == 0) then
+    if (status == 0 .and. verify(word, '0123456789.,+-Ee') == 0 .and. count([(word(k:k) == ',', k=1, len(word))]) == 2 &
+        .and. index(word, ',,') == 0) then
       if (min(fineness%mesh, fineness%steps, fineness%depth) > 0) return
     end if
     call fail(error, exit_input, '--fineness: expected three numbers above 0 and commas between them, found '''//word &
@@ -168,8 +169,8 @@ contains
            '  --out DIR       folder of the results (default: the deck''s name); with --check: for DIR/NAME.scene.json'//nl// &
            '  --check         read the deck, print the scene, run nothing'//nl// &
            '  --forecast      of a deck with ACCURACY: make its pilots, print what the run is expected to be'//nl// &
-           '  --fineness M,S,D of a deck with ACCURACY: one pilot, with M times its elements along a line, S times'//nl// &
-           '                  its steps and D times its penetration; lagacycle asks for it where a pilot takes new meshes'//nl// &
+           '  --fineness M,S,D  with M times the deck''s elements along a line, steps S times as long, D times its'//nl// &
+           '                  penetration: a pilot of ACCURACY, which lagacycle asks for where it takes new meshes'//nl// &
            '  --resume FILE   go on from a checkpoint of the same deck'//nl// &
            '  --agreed        with --resume: other new meshes agree on the force of a die, it refuses none'//nl// &
            '  -p NAME=VALUE   set a parameter of the deck'//nl// &

@@ -4,7 +4,7 @@ module errors
   implicit none
   private
   public :: error_t, fail
-  public :: exit_done, exit_input, exit_no_convergence, exit_remesh, exit_machine, exit_bug, exit_signal
+  public :: exit_done, exit_input, exit_no_convergence, exit_remesh, exit_machine, exit_bug, exit_pilot, exit_signal
 
   !> Exit codes, the same for every program of the system.
   integer, parameter :: exit_done = 0
@@ -13,6 +13,7 @@ module errors
   integer, parameter :: exit_remesh = 4          !! a new mesh is due; checkpoint ready
   integer, parameter :: exit_machine = 5         !! disk, memory or a library failed us
   integer, parameter :: exit_bug = 6             !! a check of our own failed
+  integer, parameter :: exit_pilot = 7           !! a pilot of ACCURACY is due that lagacycle makes
   integer, parameter :: exit_signal = 128        !! plus the number of the signal
 
   type :: error_t

@@ -3,6 +3,7 @@ module card_places
   use card_points, only: read_xy
   use deck_cursor, only: cursor_t
   use deck_reader, only: card_t
+  use dies, only: is_deformable
   use field_places, only: refuse_without_field
   use fields, only: displacement_field
   use kinds, only: wp
@@ -13,7 +14,7 @@ module card_places
   use text, only: string_t, to_text
   implicit none
   private
-  public :: place_t, read_sides, read_place, numbers_after_name, node_text
+  public :: place_t, read_sides, read_place, read_rigid_die, numbers_after_name, node_text
 
   !> `POINT x y` means the node there; one further off than this share of the mesh's size is a typing error.
   real(wp), parameter :: point_tolerance = 1.0e-3_wp
@@ -193,6 +194,29 @@ contains
     if (distance > point_tolerance*draft%mesh_size .and. draft%scene%generation == 1) &
       call cursor%fail('there is no node at this point; the nearest is '//node_text(draft, node)//', '//to_text(distance)//' away')
   end subroutine read_point
+
+  !> A die that is not made of sides, by its name; 0 where it is none.
+  subroutine read_rigid_die(cursor, draft, die, instead)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(inout) :: draft
+    integer, intent(out) :: die
+    character(len=*), intent(in), optional :: instead   !! what to write where it is made of sides
+    character(len=:), allocatable :: advice
+    integer :: k
+
+    die = 0
+    advice = ''
+    if (present(instead)) advice = ': use '//instead
+    call draft%places%find(cursor, 'the name of a die', k)
+    if (k == 0) return
+    if (draft%places%keywords(k)%s /= 'DIE') then
+      call cursor%fail(''''//draft%places%words(k)%s//''' is no DIE')
+    else if (is_deformable(draft%scene%dies(draft%places%item(k)))) then
+      call cursor%fail('the DIE '''//draft%places%words(k)%s//''' is deformable'//advice)
+    else
+      die = draft%places%item(k)
+    end if
+  end subroutine read_rigid_die
 
   !> A node for messages: label and coordinates.
   pure function node_text(draft, node) result(s)

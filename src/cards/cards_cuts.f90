@@ -1,11 +1,11 @@
 !> TRIM and PIERC: a body is cut along a line, or parts where a web under a die has become thin.
 module cards_cuts
+  use card_places, only: read_rigid_die
   use card_points, only: read_xy
   use cuts, only: cut_t
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use dies, only: is_deformable
   use kinds, only: wp
   use plane_vectors, only: cross
   use remesher_options, only: by_zones, has_zones
@@ -110,14 +110,8 @@ contains
     type(string_t), allocatable :: words(:)
     integer :: k
 
-    call draft%places%find(cursor, 'the name of a die', k)
-    if (k == 0) return
-    if (draft%places%keywords(k)%s /= 'DIE') then
-      call cursor%fail(''''//draft%places%words(k)%s//''' is no DIE')
-      return
-    end if
-    cut%die = draft%places%item(k)
-    if (is_deformable(draft%scene%dies(cut%die))) call cursor%fail('the DIE '''//draft%places%words(k)%s//''' is deformable')
+    call read_rigid_die(cursor, draft, cut%die)
+    if (cut%die == 0) return
     call words_of('WEB', words)
     call cursor%name('WEB', words, k)
     call cursor%real('the thickness at which the web parts', cut%thickness, lower=0.0_wp, strict_lower=.true., unit='length')

@@ -1,9 +1,9 @@
 !> REMSH and ESTIM: when a new mesh is wanted and how it is made, and whether errors are estimated.
 module cards_remesh
+  use card_places, only: read_rigid_die
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use dies, only: is_deformable
   use fields, only: displacement_field
   use kinds, only: wp
   use remeshing, only: aspect_ratio, jacobian_ratio, largest_angle, least_angle, middle_share, never, remesh_rules_t, &
@@ -188,16 +188,9 @@ contains
     type(draft_t), intent(inout) :: draft
     type(string_t), allocatable :: words(:)
     type(stroke_t) :: stroke
-    integer :: k
 
-    call draft%places%find(cursor, 'the name of a die', k)
-    if (k == 0) return
-    if (draft%places%keywords(k)%s /= 'DIE') then
-      call cursor%fail(''''//draft%places%words(k)%s//''' is no DIE')
-      return
-    end if
-    stroke%die = draft%places%item(k)
-    if (is_deformable(draft%scene%dies(stroke%die))) call cursor%fail('the DIE '''//draft%places%words(k)%s//''' is deformable')
+    call read_rigid_die(cursor, draft, stroke%die)
+    if (stroke%die == 0) return
     call words_of('X Y A', words)
     call cursor%name('X, Y or A', words, stroke%component)
     do while (.not. cursor%failed())

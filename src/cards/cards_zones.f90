@@ -1,11 +1,11 @@
 !> ZPNT and ZONE: quadrilateral zones that the remesher fills with elements.
 module cards_zones
   use card_names, only: names_t
+  use card_places, only: read_rigid_die
   use card_points, only: read_xy
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
-  use dies, only: is_deformable
   use kinds, only: wp
   use scene_draft, only: close_card, draft_t, words_of
   use text, only: string_t
@@ -123,29 +123,11 @@ contains
         mark%stays = .true.
       case default
         if (mark%die > 0) call cursor%fail('DIE is given twice')
-        call read_die(cursor, draft, mark%die)
+        call read_rigid_die(cursor, draft, mark%die, 'MATTER')
       end select
       if (mark%by_matter .and. mark%die > 0) call cursor%fail('a point goes with the matter or with a die, not with both')
     end do
   end subroutine read_options
-
-  subroutine read_die(cursor, draft, die)
-    type(cursor_t), intent(inout) :: cursor
-    type(draft_t), intent(inout) :: draft
-    integer, intent(out) :: die
-    integer :: k
-
-    die = 0
-    call draft%places%find(cursor, 'the name of a die', k)
-    if (k == 0) return
-    if (draft%places%keywords(k)%s /= 'DIE') then
-      call cursor%fail(''''//draft%places%words(k)%s//''' is no DIE')
-    else if (is_deformable(draft%scene%dies(draft%places%item(k)))) then
-      call cursor%fail('the DIE '''//draft%places%words(k)%s//''' is deformable: use MATTER')
-    else
-      die = draft%places%item(k)
-    end if
-  end subroutine read_die
 
   !> `ZONE name body` and a row of four points.
   subroutine read_quadrilaterals(deck, draft, points, sound, diagnostics)

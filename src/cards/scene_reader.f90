@@ -87,6 +87,8 @@ contains
     call join_blocks(deck, draft, parts, diagnostics)
     ! asked of the cards: on a new mesh no body is a block
     parts%divisible = size(parts%bodies) > 0 .and. (all(parts%bodies%is_block) .or. has_contours(draft%scene%remesher))
+    if (abs(draft%mesh_factor - 1) > 0 .and. .not. parts%divisible .and. size(parts%bodies) > 0) &
+      call refuse_written_out(deck, diagnostics)
     if (present(remesh)) then
       draft%scene%remesher%own_mesh = remesh%own_mesh
       call replace_parts(remesh, draft, parts)
@@ -160,6 +162,17 @@ contains
     call diagnostics%register(deck%path, where%file)
     call diagnostics%add(where, 'BLOCK', 'the deck has no body: expected a BLOCK, PL8LS or BODY card')
   end subroutine refuse_empty
+
+  !> Elements that are written out cannot be made more.
+  subroutine refuse_written_out(deck, diagnostics)
+    type(deck_t), intent(in) :: deck
+    type(diagnostics_t), intent(inout) :: diagnostics
+    type(location_t) :: where
+
+    call diagnostics%register(deck%path, where%file)
+    call diagnostics%add(where, 'PL8LS', '--fineness: the elements of this deck are written out: expected BLOCK or BODY ' &
+                         //'cards alone, or 1 for elements along a line')
+  end subroutine refuse_written_out
 
   !> What drives the law of a body, or of its sides, must be there.
   subroutine refuse_missing_drivers(draft, diagnostics)

@@ -3,7 +3,7 @@
 
 usage: studies.py [--programs BIN] [--runs DIR] [--short] [NAME...]
 NAME is a study (default: all). Runs that are in DIR/NAME are not made again (default DIR: out/studies in the project), so that it can be
-interrupted. Tables stand in decks/FOLDER/README.md between two lines <!-- study -->, the picture is decks/FOLDER/study_NAME.png.
+interrupted. Tables stand in decks/FOLDER/README.md between two lines <!-- study -->, the picture is decks/FOLDER/study_NAME.svg.
 --short makes the coarsest runs of each ladder only, in DIR, of all that take seconds, and writes nothing into decks: a test that they run.
 """
 import argparse

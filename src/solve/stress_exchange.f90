@@ -66,7 +66,7 @@ contains
     type(solution_t), intent(in) :: solution
     type(equations_t), intent(inout) :: equations
     type(stress_exchange_t), intent(inout) :: exchange
-    real(wp), intent(inout) :: change   !! of the motion; of all [-]
+    real(wp), intent(inout) :: change   !! largest one of the turn, over DISPL; on return weighed, with that of the stress [-]
     real(wp), allocatable :: g(:), x(:), f(:)
 
     if (.not. allocated(exchange%x)) return

@@ -11,7 +11,7 @@ module cost_file
   implicit none
   private
   public :: cost_t
-  public :: add_remesher, cost_path, ntask, read_cost, remesher_task, write_cost
+  public :: add_remesher, ntask, read_cost, remesher_task, write_cost
 
   !> Tasks: elements, contact, factorisation, the rest of the solver, the remesher.
   integer, parameter :: ntask = 5, remesher_task = 5

@@ -285,6 +285,8 @@ def check_decks(decks, program, names, with_long, report):
                 runs[key] = run_deck(program, deck, row["options"], LONG_TIMEOUT if row["long"] else RUN_TIMEOUT)
                 report(f"{runs[key].seconds:8.2f} s  {' '.join(key)}")
                 off = fractions_off(runs[key])
+                if off is None and runs[key].summary and has_steel(deck):
+                    faults.append(f"{' '.join(key)}: summary.json says nothing of the fractions of phases")
                 if off is not None:
                     report(f"{'':11}fractions of phases within {off:.2g} of [0, 1] and of their sum 1, in every step")
                     if not off <= FRACTION_SLACK:
@@ -298,6 +300,12 @@ def check_decks(decks, program, names, with_long, report):
 def fractions_off(run):
     """By how much fractions have left [0, 1] or their sum 1 in the worst step; None where there are no phases."""
     return run.summary.get("checks", {}).get("phase_fractions")
+
+
+def has_steel(deck):
+    """A law of the deck has phases."""
+    with open(deck, encoding="utf-8") as text:
+        return any(line.split()[:1] == ["STEEL"] for line in text)
 
 
 def cells(verdict):

@@ -31,7 +31,7 @@ NEAREST = 9             # elements among which a place is looked for, by their m
 OUTSIDE = 1.2           # in the element's own coordinates: a place farther out is none of the body
 FACTOR, EXACT = (0.5, 2.0), (0.8, 1.25)
 SCENES = {
-    # deck, body, E, nu, parameters, meshes, mesh and steps of the truth, and whether places are those of the material
+    # deck, body, E, nu, parameters, meshes, finest mesh and its steps, the truth in space, and those of the truth in time
     "lame": ("thick_cylinder/thick_cylinder", "ring", 1000.0, 0.3, [], (1, 2, 4), None, None),
     "billet to 25 %": ("upsetting/upsetting", "billet", 200000.0, 0.3, ["nx=6", "ny=9", "travel=3.75"], (1, 2), (4, 1), (1, 0.125)),
     "billet to 60 %": ("upsetting/upsetting", "billet", 200000.0, 0.3, ["nx=6", "ny=9"], (1, 2), (4, 1), (1, 0.125)),

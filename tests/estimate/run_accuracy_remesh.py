@@ -152,7 +152,9 @@ def main():
     path, run = drives_all_meshes(checks)
     goes_on(checks, path, run)
     pilot_that_fails(checks, path)
-    checks.that(call(checks, LAGAMINE, path, "--fineness", "1,0", code=REFUSED).startswith("--fineness: expected three numbers"), "--fineness 1,0")
+    for numbers in ("1,0", "1,,1", "1,2,3,4", "1,-1,1"):
+        said = call(checks, LAGAMINE, path, "--fineness", numbers, code=REFUSED)
+        checks.that(said.startswith("--fineness: expected three numbers"), f"--fineness {numbers}", said)
     checks.end()
 
 

@@ -280,6 +280,12 @@ def bodies(checks):
         result, facts = remdata(stop_of(checks, f"joined_{mesher}", TWO_BLOCKS.format(more=f"   MESHER {mesher}\n")),
                                 checks.path("joined.h5"))
         checks.that(result.returncode == DONE and facts["mesh"]["mesher"] == mesher.lower(), f"joined blocks: by {mesher}", said(result))
+        with h5py.File(checks.path("joined.h5"), "r") as file:
+            x = Mesh.rows(file["mesh/coordinates"][()], 2) + Mesh.rows(file["fields/displacement/value"][()], 2)
+            one, two = (set((Mesh.rows(file[f"groups/{k}/connectivity"][()], 8) - 1).ravel()) for k in (1, 2))
+        shared = x[sorted(one & two)]
+        checks.that(len(shared) >= 5 and np.ptp(shared[:, 0]) < 1e-9 and np.ptp(shared[:, 1]) > 1.9,
+                    f"joined blocks: by {mesher}, with the nodes of the sides between them in common", shared)
 
 
 

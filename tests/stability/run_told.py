@@ -173,14 +173,19 @@ def passed_planes(checks):
     before it, nor where the side is clamped."""
     overhang = {"DIE    upper\n": "", "   SEGM  30. 15.   -5. 15.\n": "", "CNT2D  billet 3 upper -3 rough\n": "", "LAW    rough COUL2D\n": "",
                 "   PENETR 1.E-3   PHI 0.3\n": "", "10. 0.   10. 15.": "5. 0.   10. 1.", "upper Y press": "POINT 10. 1. Y press"}
+    # the same from the other side: held along y = 15
+    hanging = {"10. 0.   10. 15.": "10. 14.   5. 15.", "upper Y press": "POINT 10. 14. Y press", "billet 1 Y": "billet 3 Y"}
     for name, changes, behind in (("behind its plane", {"1. -2.": "1. -1.5"}, True), ("before its plane", {"1. -2.": "1. -0.9"}, False),
+                                  ("above its plane", {**hanging, "1. -2.": "1. 1.5"}, True),
+                                  ("above it by a hair", {**hanging, "1. -2.": "1. 1.005"}, False),
                                   ("clamped", {"1. -2.": "1. -1.5", "billet 1 Y": "billet 1 XY"}, False)):
         run = Run(checks, name.replace(" ", "-"), changed(checks, {**overhang, **changes}))
         if not run.ok:
             continue
         with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as summary:
             told = [warning["text"] for warning in json.load(summary)["warnings"]]
-        words = "has passed the plane y = 0 in which it is held (FIXED billet.1 Y), by 0.5"
+        plane, side = (15, 3) if "above" in name else (0, 1)
+        words = f"has passed the plane y = {plane} in which it is held (FIXED billet.{side} Y), by 0.5"
         checks.that(len(told) == behind and all(words in text for text in told), f"{name}: told" if behind else f"{name}: nothing is told", told)
 
 
