@@ -130,7 +130,10 @@ contains
     else
       call follow_pieces(contours, crossings, pieces, clean)
       n = count([(volume_inside(pieces(k)%boundary, .false.) > 0, k=1, size(pieces))])
-      if (.not. clean .or. n == 0) then
+      if (.not. clean) then
+        call fail(error, exit_input, what//' does not part the body: it begins or ends in a hole', &
+                  'let it begin and end outside, and go on through the body on both sides of the hole')
+      else if (n == 0) then
         call fail(error, exit_input, what//' leaves nothing of the body', 'give another line, or another point to keep')
       else if (n > 1) then
         call fail(error, exit_input, what//' leaves '//to_text(n)//' pieces of the body', 'give a line that leaves one')

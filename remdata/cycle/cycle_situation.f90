@@ -5,12 +5,13 @@ module cycle_situation
   use cuts, only: trim_trigger, web_trigger
   use exchange, only: checkpoint_facts_t
   use kinds, only: wp
+  use remeshing, only: trigger_words
   use text, only: to_text, two_digits
   implicit none
   private
   public :: checkpoint_file_t, ended_t, made_mesh_t, situation_t
   public :: ended_nothing, ended_check, ended_lagamine, ended_remdata, ended_known
-  public :: due_reason, is_due, is_in_distress, is_first_mesh, is_read, first_line
+  public :: due_reason, is_due, must_be_replaced, is_first_mesh, is_read, first_line
   public :: try_name, mesh_name, current_name
 
   !> What was called last: nothing yet, `lagamine --check`, the solver, the remesher; or its end has been dealt with.
@@ -105,21 +106,21 @@ contains
     if (allocated(facts%triggers)) is_due = is_due .or. size(facts%triggers) > 0
   end function is_due
 
-  !> The old mesh could go no further: steps fail on it, or the body is cut.
-  pure function is_in_distress(facts) result(distress)
+  !> The old mesh cannot go on: steps fail on it, or a body is cut.
+  pure function must_be_replaced(facts) result(yes)
     type(checkpoint_facts_t), intent(in) :: facts
-    logical :: distress
+    logical :: yes
     integer :: k
 
-    distress = .false.
+    yes = .false.
     if (.not. allocated(facts%triggers)) return
     do k = 1, size(facts%triggers)
       select case (facts%triggers(k)%s)
       case ('distress', trim_trigger, web_trigger)
-        distress = .true.
+        yes = .true.
       end select
     end do
-  end function is_in_distress
+  end function must_be_replaced
 
   !> Why a new mesh is due, '' if it is not.
   pure function due_reason(facts) result(why)
@@ -131,9 +132,7 @@ contains
     if (allocated(facts%triggers)) then
       do k = 1, size(facts%triggers)
         if (k > 1) why = why//'; '
-        why = why//facts%triggers(k)%s
-        if (facts%triggers(k)%s == trim_trigger) cycle
-        why = why//' '//to_text(facts%values(k), 4)//' (limit '//to_text(facts%limits(k))//')'
+        why = why//trigger_words(facts%triggers(k)%s, facts%values(k), facts%limits(k))
       end do
     end if
     if (is_first_mesh(facts)) why = no_mesh_yet

@@ -1,6 +1,6 @@
 !> Ways to a new mesh, in the order they are tried at a stop of the old one, and whether the try at hand is there.
 module cycle_ways
-  use cycle_situation, only: checkpoint_file_t, is_first_mesh, is_in_distress, is_read, situation_t
+  use cycle_situation, only: checkpoint_file_t, is_first_mesh, is_read, must_be_replaced, situation_t
   use cycle_table, only: agreed_way, keeps_old_mesh, mesh_is_responsible, number_refused, took_earlier, transfer_is_responsible, &
                          was_refused, way_agreed, way_coarser, way_deck, way_earlier, way_finer, way_mesher, way_old_mesh, &
                          way_transfer
@@ -72,7 +72,7 @@ contains
     type(situation_t), intent(in) :: s
     logical :: cannot_go_on
 
-    cannot_go_on = is_in_distress(s%new%old_end%facts) .or. is_first_mesh(s%new%old_end%facts)
+    cannot_go_on = must_be_replaced(s%new%old_end%facts) .or. is_first_mesh(s%new%old_end%facts)
   end function cannot_go_on
 
   !> It was decided that the old mesh goes on from this stop.

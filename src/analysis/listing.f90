@@ -16,7 +16,7 @@ module listing
   implicit none
   private
   public :: listing_t, open_listing, close_listing, show_progress, end_progress
-  public :: list_lines, list_resumed, list_balance, list_step, list_cut, list_event, list_note
+  public :: list_lines, list_resumed, list_balance, list_step, list_cutback, list_event, list_note
 
   type :: listing_t
     integer :: unit = -1
@@ -143,8 +143,8 @@ contains
     flush (listing%unit)
   end subroutine list_balance
 
-  !> A step that was cut: why, where, and the next length.
-  subroutine list_cut(listing, scene, solution, dt, next, outcome)
+  !> A step that was cut back: why, where, and the next length.
+  subroutine list_cutback(listing, scene, solution, dt, next, outcome)
     type(listing_t), intent(in) :: listing
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -154,11 +154,11 @@ contains
 
     where_at = ''
     if (outcome%group > 0) where_at = ' (element '//to_text(outcome%element)//' of '//scene%groups(outcome%group)%name//')'
-    write (listing%unit, '(a)') 'cut: step '//to_text(solution%step + 1)//'  time '//to_text(solution%time)//'  length ' &
+    write (listing%unit, '(a)') 'cutback: step '//to_text(solution%step + 1)//'  time '//to_text(solution%time)//'  length ' &
       //to_text(dt)//' -> '//to_text(next)//': '//outcome%reason//where_at
     call list_iterations(listing, outcome)
     flush (listing%unit)
-  end subroutine list_cut
+  end subroutine list_cutback
 
   !> A step shortened to the moment when contact begins, or by its error in time.
   subroutine list_event(listing, solution, dt, reason)

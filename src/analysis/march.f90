@@ -1,7 +1,7 @@
 !> The march in time: the page that reads like the method.
 module march
   use accept_step, only: accept
-  use acceptance, only: begin_probation, is_on_probation, note_cut, note_step
+  use acceptance, only: begin_probation, is_on_probation, note_cutback, note_step
   use blas, only: blas_buffer
   use bookkeeping, only: measure_scene
   use cut_report, only: lines_of_cuts
@@ -14,7 +14,7 @@ module march
   use history, only: open_history
   use judge_remesh, only: limit_lines, refuse_remesh
   use kinds, only: eps, wp
-  use listing, only: list_balance, list_cut, list_event, list_lines, list_note, list_step, show_progress
+  use listing, only: list_balance, list_cutback, list_event, list_lines, list_note, list_step, show_progress
   use memory_limits, only: require_memory
   use newton, only: outcome_t
   use path_record, only: note_attempt
@@ -39,8 +39,8 @@ module march
 
   !> A step shortened to an event is shortened by at least this much, so that the event is met in a few trials.
   real(wp), parameter :: largest_event = 0.95_wp
-  !> So many cuts in a row show that a body passes through itself in steps of any length.
-  integer, parameter :: most_cuts_for_crossing = 3
+  !> So many cutbacks in a row show that a body passes through itself in steps of any length.
+  integer, parameter :: most_cutbacks_for_crossing = 3
 
 contains
 
@@ -53,9 +53,9 @@ contains
     type(outcome_t) :: outcome
     real(wp) :: dt, length
     logical :: on_probation
-    integer :: cuts
+    integer :: cutbacks
 
-    cuts = 0
+    cutbacks = 0
     call start(scene, solution, run, error)
     do while (.not. (allocated(error) .or. mesh_is_due(solution)) .and. solution%time < scene%strategy%end_time*(1 - 64*eps))
       dt = choose_step(scene, solution%time, solution%next_step)
@@ -76,7 +76,7 @@ contains
       end if
 
       if (.not. outcome%converged) then
-        call answer_failure(scene, dt, on_probation, outcome, cuts, solution, run, error)
+        call answer_failure(scene, dt, on_probation, outcome, cutbacks, solution, run, error)
         if (mesh_is_due(solution)) exit
         cycle
       end if
@@ -85,7 +85,7 @@ contains
                                         min(outcome%heat%growth, outcome%path%growth))
       call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
       if (allocated(error)) exit
-      cuts = 0
+      cutbacks = 0
       call note_step(solution%probation, length)
       call estimate(scene, run%estimator, run%equations%timers, solution)
       call list_step(run%listing, solution, outcome, run%totals)
@@ -103,13 +103,13 @@ contains
     call finish(scene, solution, run, error)
   end subroutine march_to_end
 
-  !> A step has failed: it is cut, a new mesh is asked for, the mesh is refused, or the run cannot go on.
-  subroutine answer_failure(scene, dt, on_probation, outcome, cuts, solution, run, error)
+  !> A step has failed: it is cut back, a new mesh is asked for, the mesh is refused, or the run cannot go on.
+  subroutine answer_failure(scene, dt, on_probation, outcome, cutbacks, solution, run, error)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: dt
     logical, intent(in) :: on_probation
     type(outcome_t), intent(in) :: outcome
-    integer, intent(inout) :: cuts   !! one after the other
+    integer, intent(inout) :: cutbacks   !! one after the other
     type(solution_t), intent(inout) :: solution
     type(run_t), intent(inout) :: run
     type(error_t), allocatable, intent(out) :: error
@@ -117,15 +117,15 @@ contains
 
     solution%cutbacks = solution%cutbacks + 1
     call after_failure(scene, dt, solution%next_step, give_up)
-    call list_cut(run%listing, scene, solution, dt, solution%next_step, outcome)
-    cuts = cuts + 1
-    if (outcome%passes_itself) give_up = give_up .or. cuts > most_cuts_for_crossing
-    call note_cut(solution%probation, solution%next_step)
+    call list_cutback(run%listing, scene, solution, dt, solution%next_step, outcome)
+    cutbacks = cutbacks + 1
+    if (outcome%passes_itself) give_up = give_up .or. cutbacks > most_cutbacks_for_crossing
+    call note_cutback(solution%probation, solution%next_step)
     if (on_probation .and. is_too_short(scene, solution)) then
       call refuse_mesh(scene, solution, outcome, run, error)
       return
     end if
-    call answer_distress(scene, cuts, give_up, run%listing, solution)
+    call answer_distress(scene, cutbacks, give_up, run%listing, solution)
     if (mesh_is_due(solution)) then
       if (on_probation) call pass_probation(scene, run%stem, run%listing, solution, error)
       if (.not. allocated(error)) call save_all(scene, solution, run, error)

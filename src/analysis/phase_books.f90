@@ -8,7 +8,7 @@ module phase_books
   use text, only: to_text
   implicit none
   private
-  public :: book_fractions, has_fractions
+  public :: book_fractions, fraction_slack, has_fractions
 
   !> By how much fractions may miss 0, 1 or their sum: round-off of a few terms.
   real(wp), parameter :: fraction_slack = 1.0e-12_wp

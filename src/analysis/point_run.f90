@@ -23,11 +23,11 @@ module point_run
   private
   public :: run_point
 
-  !> A step is cut in halves down to this share of it.
+  !> A step is cut back by halves down to this share of it.
   real(wp), parameter :: least_share = 2.0_wp**(-12)
 
   type :: counts_t
-    integer :: steps = 0, iterations = 0, cuts = 0
+    integer :: steps = 0, iterations = 0, cutbacks = 0
   end type counts_t
 
 contains
@@ -82,7 +82,7 @@ contains
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
     if (allocated(error) .or. options%quiet) return
     call print_line('done: '//to_text(counts%steps)//' steps, '//to_text(counts%iterations)//' iterations, ' &
-                    //to_text(counts%cuts)//' cuts; table in '//file, unseen)
+                    //to_text(counts%cutbacks)//' cutbacks; table in '//file, unseen)
     if (allocated(unseen)) call move_alloc(unseen, error)
   end subroutine follow_path
 
@@ -119,7 +119,7 @@ contains
     end do
   end subroutine place_point
 
-  !> All steps of a ramp, one row of the table each. A step without a solution is cut.
+  !> All steps of a ramp, one row of the table each. A step without a solution is cut back.
   subroutine follow(ramp, point, time, temperature, counts, table, error)
     type(ramp_t), intent(in) :: ramp
     type(point_t), intent(inout) :: point
@@ -150,12 +150,13 @@ contains
           share = min(2*share, to - at)
           cycle
         end if
-        counts%cuts = counts%cuts + 1
+        counts%cutbacks = counts%cutbacks + 1
         share = share/2
         if (share*ramp%steps >= least_share) cycle
         time = begun + at*(ramp%time - begun)
         call fail(error, exit_no_convergence, ramp%where_defined//': PATH: no solution after time '//to_text(time) &
-                  //', step '//to_text(counts%steps + 1)//', even when the step is cut by '//to_text(nint(1/least_share)), &
+                  //', step '//to_text(counts%steps + 1)//', even when the step is cut back to 1/' &
+                  //to_text(nint(1/least_share))//' of its length', &
                   'a given stress may be out of reach, or take smaller steps')
         return
       end do

@@ -17,7 +17,7 @@ module summary
   use law_api, only: find_parameter
   use path_advice, only: motion_advice, stress_advice
   use path_record, only: motion_error, stress_error
-  use phase_books, only: has_fractions
+  use phase_books, only: fraction_slack, has_fractions
   use penetration_advice, only: advice_at_points, advice_between_points, sides_that_span, states_penetration
   use restart_report, only: add_restart
   use restore_balance, only: balance_t
@@ -129,7 +129,10 @@ contains
       call json%add('spring_share', spring_share(scene, solution))
     end if
     call json%add('spurious_mode', solution%worst_spurious)
-    if (has_fractions(scene)) call json%add('phase_fractions', solution%worst_fraction)
+    if (has_fractions(scene)) then
+      call json%add('phase_fractions', solution%worst_fraction)
+      call json%add('phase_fractions_allowed', fraction_slack)
+    end if
     call json%end_object()
     call add_advice(json, scene, solution)
     call json%begin_object('energy')

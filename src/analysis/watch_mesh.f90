@@ -1,10 +1,9 @@
 !> Supervision of the mesh: its errors after every step, and whether a new one is due (cards ESTIM, REMSH).
 module watch_mesh
-  use cuts, only: trim_trigger
   use estimator, only: estimate_errors, estimator_t
   use fields, only: displacement_field
   use listing, only: list_lines, listing_t
-  use remeshing, only: trigger_t
+  use remeshing, only: trigger_t, trigger_words
   use scene, only: scene_t
   use solution, only: solution_t
   use text, only: string_t, to_text
@@ -81,17 +80,17 @@ contains
     if (size(found) > 0) call ask_for_mesh(scene, found, listing, solution)
   end subroutine ask_for_trims
 
-  !> Ask for a new mesh when a step has been cut often on one that was good before, or can be cut no more.
-  subroutine answer_distress(scene, cuts, give_up, listing, solution)
+  !> Ask for a new mesh when a step has been cut back often on one that was good before, or can be cut back no more.
+  subroutine answer_distress(scene, cutbacks, give_up, listing, solution)
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: cuts       !! one after the other
+    integer, intent(in) :: cutbacks   !! one after the other
     logical, intent(in) :: give_up    !! the least step has failed
     type(listing_t), intent(in) :: listing
     type(solution_t), intent(inout) :: solution
 
     if (scene%remesh%distress == huge(0) .or. .not. was_good(scene, solution)) return
-    if (.not. give_up .and. cuts < scene%remesh%distress) return
-    call ask_for_mesh(scene, [distress_trigger(scene, cuts)], listing, solution)
+    if (.not. give_up .and. cutbacks < scene%remesh%distress) return
+    call ask_for_mesh(scene, [distress_trigger(scene, cutbacks)], listing, solution)
     ! what comes next is another mesh, or one more try
     solution%next_step = max(solution%next_step, scene%strategy%least_step)
   end subroutine answer_distress
@@ -141,8 +140,7 @@ contains
     type(trigger_t), intent(in) :: trigger
     character(len=:), allocatable :: s
 
-    s = trigger%name
-    if (s /= trim_trigger) s = s//' '//to_text(trigger%value, 4)//' (limit '//to_text(trigger%limit)//')'
+    s = trigger_words(trigger%name, trigger%value, trigger%limit)
     if (trigger%element > 0) s = s//', element '//to_text(trigger%element)
     if (trigger%group > 0) s = s//' of '//scene%groups(trigger%group)%name
   end function trigger_text

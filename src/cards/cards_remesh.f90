@@ -149,7 +149,7 @@ contains
                                             lower=0.0_wp, strict_lower=.true.)
         if (size(draft%scene%dies) == 0) call cursor%fail('the deck has no die')
       case ('DISTRESS')
-        call cursor%integer('the cuts of a step one after the other', rules%distress, lower=1)
+        call cursor%integer('the cutbacks of a step one after the other', rules%distress, lower=1)
       case ('TIMES')
         call read_times(cursor, draft)
       case ('STROKE')

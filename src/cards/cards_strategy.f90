@@ -93,7 +93,7 @@ contains
         call cursor%real('the correction over the displacement of the step', strategy%displacement_norm, lower=0.0_wp, &
                          upper=1.0_wp, strict_lower=.true., strict_upper=.true.)
       case (3)
-        call cursor%integer('the iterations after which a step is cut', strategy%max_iterations, lower=2, upper=1000)
+        call cursor%integer('the iterations after which a step is cut back', strategy%max_iterations, lower=2, upper=1000)
       case (4)
         call cursor%real('the largest strain increment of a step', strategy%strain_bound, lower=0.0_wp, strict_lower=.true.)
       case (5)

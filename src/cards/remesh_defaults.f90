@@ -18,8 +18,8 @@ module remesh_defaults
   !> Depth of sides between their points over what the law allows: 5 % of a side where PENETR is 1e-3. What a finer mesh can mend
   !> begins there; sides that roll onto a die are as deep as 1 % on any mesh.
   real(wp), parameter :: depth = 50.0_wp
-  !> Cuts in a row; steps between two meshes.
-  integer, parameter :: cuts = 4, steps = 5
+  !> Cutbacks in a row; steps between two meshes.
+  integer, parameter :: cutbacks = 4, steps = 5
 
   !> Elements of a first mesh, and across its most slender body: a strip of thickness t has area/perimeter = t/2.
   integer, parameter :: elements_at_first = 150, elements_across = 4
@@ -40,7 +40,7 @@ contains
     rules%shape(scaled_jacobian) = least_scaled
     rules%shape(aspect_ratio) = aspect
     if (.not. has_steps) rules%least_steps = steps
-    rules%distress = cuts
+    rules%distress = cutbacks
     if (has_dies) rules%contact = depth
   end subroutine set_default_limits
 

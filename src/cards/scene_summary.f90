@@ -78,7 +78,7 @@ contains
       end do
       if (scene%remesh%contact < never) &
         call put_limit('contact', 'deeper by '//to_text(scene%remesh%contact)//' times the allowed penetration')
-      if (scene%remesh%distress < huge(0)) call put_limit('distress', to_text(scene%remesh%distress)//' cuts in a row')
+      if (scene%remesh%distress < huge(0)) call put_limit('distress', to_text(scene%remesh%distress)//' cutbacks in a row')
       do k = 1, size(scene%remesh%times)
         call put_limit('time', to_text(scene%remesh%times(k)))
       end do

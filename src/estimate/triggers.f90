@@ -83,7 +83,7 @@ contains
     allocate (found(0))
     do k = 1, size(solution%cuts)
       if (is_trim(scene%remesher%cuts(k)) .and. solution%cuts(k)%generation == 0) &
-        call add(found, trim_trigger, real(scene%operation, wp), real(scene%operation, wp), scene%remesher%cuts(k)%group)
+        call add(found, trim_trigger, 0.0_wp, 0.0_wp, scene%remesher%cuts(k)%group)
     end do
   end subroutine find_trims
 
@@ -96,14 +96,14 @@ contains
     good = solution%step - solution%estimate%last_stop >= scene%remesh%least_steps
   end function was_good
 
-  !> Cuts in a row on a mesh that was good before.
-  pure function distress_trigger(scene, cuts) result(trigger)
+  !> Cutbacks in a row on a mesh that was good before.
+  pure function distress_trigger(scene, cutbacks) result(trigger)
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: cuts
+    integer, intent(in) :: cutbacks
     type(trigger_t) :: trigger
 
     trigger%name = 'distress'
-    trigger%value = real(cuts, wp)
+    trigger%value = real(cutbacks, wp)
     trigger%limit = real(scene%remesh%distress, wp)
   end function distress_trigger
 

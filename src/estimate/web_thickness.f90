@@ -3,6 +3,7 @@
 !> From points along the sides in contact the closest points on all free sides of the body are found that lie across: the way leaves
 !> the one surface inwards and the other outwards, and the surfaces face away from each other.
 module web_thickness
+  use bodies, only: elements_at_middles
   use cuts, only: cut_t
   use kinds, only: wp
   use offset_parabolas, only: closest_xi, offset_parabola_t, point_at, tangent_at
@@ -76,18 +77,15 @@ contains
     integer, intent(in) :: body
     real(wp), intent(in) :: x(:, :)
     type(offset_parabola_t), allocatable, intent(out) :: sides(:)
-    integer :: owners(size(x, 2)), e, k, n
+    integer :: sharing(size(x, 2)), e, k, n
 
+    sharing = elements_at_middles(scene, only_of=body)
+    allocate (sides(count(sharing == 1)))
     associate (connectivity => scene%groups(body)%connectivity)
-      owners = 0
-      do e = 1, size(connectivity, 2)
-        owners(connectivity(5:8, e)) = owners(connectivity(5:8, e)) + 1
-      end do
-      allocate (sides(count(owners == 1)))
       n = 0
       do e = 1, size(connectivity, 2)
         do k = 1, 4
-          if (owners(connectivity(quad8_side(2, k), e)) /= 1) cycle
+          if (sharing(connectivity(quad8_side(2, k), e)) /= 1) cycle
           n = n + 1
           sides(n)%points = x(:, connectivity(quad8_side(:, k), e))
         end do

@@ -111,7 +111,7 @@ contains
     if (n < 0) x = -1.0e6_wp*n
   end function in_full
 
-  !> Factorise the matrix with these nonzeros. A singular matrix gives exit_no_convergence: the step is cut.
+  !> Factorise the matrix with these nonzeros. A singular matrix gives exit_no_convergence: the step is cut back.
   subroutine factorise_mumps(self, values, sound, error)
     class(mumps_t), intent(inout) :: self
     real(wp), intent(in) :: values(:)

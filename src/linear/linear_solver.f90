@@ -95,7 +95,7 @@ contains
   end subroutine return_to_chosen
 
   !> Factorise the matrix with these nonzeros, unless it is the one that sound factors are at hand of. A singular matrix gives
-  !> exit_no_convergence: the step is cut.
+  !> exit_no_convergence: the step is cut back.
   subroutine factorise(solver, values, error)
     type(linear_solver_t), intent(inout) :: solver
     real(wp), intent(in) :: values(:)    !! (nnz) [residual/unknown]

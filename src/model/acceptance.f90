@@ -5,7 +5,7 @@ module acceptance
   implicit none
   private
   public :: acceptance_t, probation_t
-  public :: begin_probation, end_probation, is_on_probation, note_cut, note_step, probation_steps, step_ratio
+  public :: begin_probation, end_probation, is_on_probation, note_cutback, note_step, probation_steps, step_ratio
 
   !> Steps after a remesh that are compared with as many before it.
   integer, parameter :: probation_steps = 5
@@ -24,8 +24,8 @@ module acceptance
     !> Change of the depth in a die, in the mean of its pressures, over the penetration the deck allows and a thousandth of the side
     !> (found: up to 0.3): above 1 the contour is another one than that which carried the pressures.
     real(wp) :: depth_change = 1.0_wp
-    !> Least step on probation over the least before: seven cuts in a row are allowed (1/128), an eighth is not. (The first step
-    !> returns to the yield surface what was carried past it, and finds the new points of contact; six cuts have been found on
+    !> Least step on probation over the least before: seven cutbacks in a row are allowed (1/128), an eighth is not. (The first step
+    !> returns to the yield surface what was carried past it, and finds the new points of contact; six cutbacks have been found on
     !> meshes that went well.)
     real(wp) :: step_ratio = 0.005_wp
   end type acceptance_t
@@ -66,13 +66,13 @@ contains
     probation%left = probation%left - 1
   end subroutine note_step
 
-  !> A step was cut to this length.
-  pure subroutine note_cut(probation, length)
+  !> A step was cut back to this length.
+  pure subroutine note_cutback(probation, length)
     type(probation_t), intent(inout) :: probation
     real(wp), intent(in) :: length   !! [time]
 
     if (probation%left > 0) probation%least = min(probation%least, length)
-  end subroutine note_cut
+  end subroutine note_cutback
 
   pure subroutine end_probation(probation)
     type(probation_t), intent(inout) :: probation

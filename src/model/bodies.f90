@@ -3,10 +3,7 @@ module bodies
   use scene, only: is_solid, scene_t
   implicit none
   private
-  public :: bodies_of_nodes, elements_at_middles, corners_of_sides
-
-  !> Local nodes of the sides of an element of eight nodes, the body on the left: first, middle, last.
-  integer, parameter :: corners_of_sides(3, 4) = reshape([1, 5, 2, 2, 6, 3, 3, 7, 4, 4, 8, 1], [3, 4])
+  public :: bodies_of_nodes, elements_at_middles
 
 contains
 
@@ -33,14 +30,18 @@ contains
   end function bodies_of_nodes
 
   !> How many elements of bodies have each node in the middle of a side (nnode): 1 on free sides and on those of other parts.
-  pure function elements_at_middles(scene) result(number)
+  pure function elements_at_middles(scene, only_of) result(number)
     type(scene_t), intent(in) :: scene
+    integer, intent(in), optional :: only_of   !! the elements of this group alone are counted
     integer :: number(size(scene%mesh%coordinates, 2))
     integer :: g, e
 
     number = 0
     do g = 1, size(scene%groups)
       if (.not. is_solid(scene%groups(g))) cycle
+      if (present(only_of)) then
+        if (g /= only_of) cycle
+      end if
       do e = 1, size(scene%groups(g)%connectivity, 2)
         associate (middle => scene%groups(g)%connectivity(5:8, e))
           number(middle) = number(middle) + 1

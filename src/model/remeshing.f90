@@ -1,10 +1,12 @@
 !> Limits for a new mesh (card REMSH), and the estimated errors of the present one (cards ESTIM, REMSH).
 module remeshing
+  use cuts, only: trim_trigger
   use kinds, only: wp
+  use text, only: to_text
   implicit none
   private
   public :: remesh_rules_t, stroke_t, trigger_t, estimate_t
-  public :: drop_triggers
+  public :: drop_triggers, trigger_words
   public :: ncriteria, criterion_names, is_upper, never
   public :: least_angle, largest_angle, middle_share, jacobian_ratio, scaled_jacobian, aspect_ratio
 
@@ -33,7 +35,7 @@ module remeshing
     real(wp) :: bad_share = 0.0_wp
     !> Error of the stress, and depth of a side or a corner over what is allowed.
     real(wp) :: stress_error = never, contact = never
-    !> Cuts of a step one after the other.
+    !> Cutbacks of a step one after the other.
     integer :: distress = huge(0)
     !> Steps at least from one stop to the next.
     integer :: least_steps = 1
@@ -41,7 +43,8 @@ module remeshing
     type(stroke_t), allocatable :: strokes(:)
   end type remesh_rules_t
 
-  !> A limit that was passed: its name, the value found, and where it is worst (0: none).
+  !> A limit that was passed: its name, the value found, and where it is worst (0: none). A cut along a line has neither a value nor
+  !> a limit.
   type :: trigger_t
     character(len=:), allocatable :: name
     real(wp) :: value = 0.0_wp, limit = 0.0_wp
@@ -66,6 +69,16 @@ module remeshing
   end type estimate_t
 
 contains
+
+  !> Why a new mesh is due: `aspect_ratio 12.3 (limit 10)`.
+  pure function trigger_words(name, value, limit) result(words)
+    character(len=*), intent(in) :: name       !! of the trigger
+    real(wp), intent(in) :: value, limit       !! in the unit of what `name` measures
+    character(len=:), allocatable :: words
+
+    words = name
+    if (name /= trim_trigger) words = words//' '//to_text(value, 4)//' (limit '//to_text(limit)//')'
+  end function trigger_words
 
   !> No new mesh is due any more.
   pure subroutine drop_triggers(estimate)

@@ -24,7 +24,7 @@ module strategy
     integer :: nopti = 5
     real(wp) :: nalpha = 3.0_wp
     real(wp) :: dminmu = 0.25_wp, dmaxmu = 1.5_wp
-    !> Iterations after which a step is cut.
+    !> Iterations after which a step is cut back.
     integer :: max_iterations = 20
     !> Residual force over reference force, correction over the step's displacement.
     real(wp) :: force_norm = 1.0e-6_wp, displacement_norm = 1.0e-5_wp

@@ -11,7 +11,7 @@
 !> The force is added to that of the element the side belongs to, before it is gathered: pattern and order of sums stay what they
 !> are, and where no point is below 0 so do all bits. The wall stands still and does no work.
 module axis_wall
-  use bodies, only: corners_of_sides, elements_at_middles
+  use bodies, only: elements_at_middles
   use contact_point, only: share_of_way
   use dofs, only: dofs_t
   use elem_api, only: report_t
@@ -20,7 +20,7 @@ module axis_wall
   use law_api, only: law_t
   use quadrature, only: line_rule, rule_equidistant, rule_t
   use scene, only: axisymmetric, is_solid, scene_t
-  use shape_functions, only: line3
+  use shape_functions, only: line3, quad8_side
   use sparsity, only: pattern_t
   use vectors, only: length_of
   implicit none
@@ -70,13 +70,13 @@ contains
       if (mover == 0) cycle
       do e = 1, size(scene%groups(g)%connectivity, 2)
         do k = 1, 4
-          associate (nodes => scene%groups(g)%connectivity(corners_of_sides(:, k), e))
+          associate (nodes => scene%groups(g)%connectivity(quad8_side(:, k), e))
             wanted = sharing(nodes(2)) == 1 .and. any(dofs%is_free(dofs%fields(displacement_field)%number(1, nodes)))
             if (.not. wanted) cycle
             n = n + 1
             wall%group(n) = mover
             wall%element(n) = e
-            wall%local(:, n) = corners_of_sides(:, k)
+            wall%local(:, n) = quad8_side(:, k)
             wall%length(n) = length_of(scene%mesh%coordinates(:, nodes(3)) - scene%mesh%coordinates(:, nodes(1)))
             wall%stiffness(n) = hardness*modulus_of(scene, laws, mover)*wall%length(n)
           end associate

@@ -20,7 +20,7 @@ module evaluation
 contains
 
   !> Internal force, and matrices when wanted, at the motion `du` of the step. Points that meet pieces of deformable dies
-  !> beyond their pairs get new ones, and all is computed again: no contact is lost, no step cut.
+  !> beyond their pairs get new ones, and all is computed again: no contact is lost, no step cut back.
   subroutine evaluate(scene, equations, solution, dt, du, tangent, report, predicted, corrected_from)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations

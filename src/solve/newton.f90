@@ -34,7 +34,7 @@ module newton
 
   type :: outcome_t
     logical :: converged = .false.
-    !> Why the step must be cut, when it has not converged; and the element that failed, when there is one.
+    !> Why the step must be cut back, when it has not converged; and the element that failed, when there is one.
     character(len=:), allocatable :: reason
     integer :: group = 0, element = 0
     !> Iterations in all, and those before the first augmentation: the difficulty of the step.
@@ -242,7 +242,7 @@ contains
     outcome%element = report%element
   end subroutine set_cause
 
-  !> A matrix that the solver cannot factorise cuts the step; a failure of the machine does not.
+  !> A matrix that the solver cannot factorise cuts the step back; a failure of the machine does not.
   subroutine set_solver_cause(outcome)
     type(outcome_t), intent(inout) :: outcome
 

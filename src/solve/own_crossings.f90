@@ -6,7 +6,7 @@
 !> beside their common node in a distorted mesh: the shape of elements is judged elsewhere.
 module own_crossings
   use arc_crossings, only: box_of_chords, crossings_between, most_crossings
-  use bodies, only: bodies_of_nodes, corners_of_sides, elements_at_middles
+  use bodies, only: bodies_of_nodes, elements_at_middles
   use box_tree, only: box_tree_t, build_tree, items_meeting
   use contact_point, only: at_piece, at_status
   use dofs, only: dofs_t
@@ -16,6 +16,7 @@ module own_crossings
   use offset_parabolas, only: offset_parabola_t, point_at
   use plane_vectors, only: cross
   use scene, only: is_solid, role_contact, scene_t
+  use shape_functions, only: quad8_side
   use solution, only: solution_t
   use vectors, only: length_of
   implicit none
@@ -59,7 +60,7 @@ contains
       if (.not. (wanted .and. is_solid(scene%groups(g)))) cycle
       do e = 1, size(scene%groups(g)%connectivity, 2)
         do k = 1, 4
-          associate (nodes => scene%groups(g)%connectivity(corners_of_sides(:, k), e))
+          associate (nodes => scene%groups(g)%connectivity(quad8_side(:, k), e))
             if (sharing(nodes(2)) /= 1) cycle
             n = n + 1
             sides%nodes(:, n) = nodes

@@ -12,8 +12,8 @@ module step_strategy
   public :: choose_step, after_success, after_failure
 
   !> A failed step is tried again with this share of its length.
-  real(wp), parameter :: cut = 0.5_wp
-  !> A step is proposed with this share of the strain bound, so that it need not be cut.
+  real(wp), parameter :: cutback = 0.5_wp
+  !> A step is proposed with this share of the strain bound, so that it need not be cut back.
   real(wp), parameter :: foresight = 0.8_wp
   !> A time is reached when it is this close, relative to the end of the scene.
   real(wp), parameter :: reached = 64*eps
@@ -123,7 +123,7 @@ contains
     real(wp), intent(out) :: next
     logical, intent(out) :: give_up
 
-    next = cut*dt
+    next = cutback*dt
     give_up = next < scene%strategy%least_step
   end subroutine after_failure
 

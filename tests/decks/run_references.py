@@ -53,7 +53,8 @@ OPTIONAL = ("kind", "long")
 MARK = "<!-- table -->"
 RUN_TIMEOUT = 1000              # seconds, below the 1200 that ctest gives the whole test
 LONG_TIMEOUT = 7200
-FRACTION_SLACK = 1e-12           # by how much fractions of phases may leave [0, 1], or their sum 1, in any step of any run
+FRACTION_SLACK = 1e-12           # by how much fractions of phases may leave [0, 1], or their sum 1, in any step of any run: round-off
+                                 # (the solver has a limit of its own; this one does not come from what is tested)
 END_SLACK = 1e-9                # share by which the last step may miss the place asked for: rounding
 
 OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,

@@ -223,18 +223,18 @@ def distress(checks):
     text = add_cards(text, "NORMS STRAIN 0.05").replace("1.E-5  0.05", "1.E-7  0.05")
     folder = go(checks, "distress", add_cards(text, "REMSH\n   DISTRESS 3"), SMALL, REMESH)
     found, reported = triggers(checks, folder), summary(folder)
-    checks.that(found == {"distress": (3.0, 3.0)} and reported["cutbacks"] == 3, "DISTRESS: three cuts in a row", (found, reported["cutbacks"]))
+    checks.that(found == {"distress": (3.0, 3.0)} and reported["cutbacks"] == 3, "DISTRESS: three cutbacks in a row", (found, reported["cutbacks"]))
     checks.that(abs(reported["time"] - 0.5) < 1e-12, "DISTRESS: the state before", reported["time"])
     code, stops = resume(checks, folder, SMALL, (DONE, REMESH)), 1
     checks.that(code == DONE or summary(folder)["steps"] > reported["steps"], "DISTRESS: does not fire again before a step is made", code)
     while code == REMESH and stops < 20:
         code, stops = resume(checks, folder, SMALL, (DONE, REMESH)), stops + 1
     checks.that(code == DONE, "DISTRESS: goes on to the end", code)
-    # at the least step a run without the row gives up; with it, it asks for a mesh, whatever the number of cuts
+    # at the least step a run without the row gives up; with it, it asks for a mesh, whatever the number of cutbacks
     text = text.replace("1.E-7  0.05", "0.009  0.05")
     go(checks, "given-up", text, SMALL, 3)
     folder = go(checks, "last-step", add_cards(text, "REMSH\n   DISTRESS 50"), SMALL, REMESH)
-    checks.that(triggers(checks, folder)["distress"][1] == 50.0, "DISTRESS: a step that can be cut no more")
+    checks.that(triggers(checks, folder)["distress"][1] == 50.0, "DISTRESS: a step that can be cut back no more")
     resume(checks, folder, SMALL, 3)
 
 

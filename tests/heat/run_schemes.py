@@ -13,7 +13,7 @@ usage: run_schemes.py [-v] [-k]
   implicit Euler and says how often; with eight temperatures an element the steps outside are counted. On skew and on flat elements, with
   numbers by temperature, every scheme makes steps again, in the end without flows against the fall of the temperature: none is outside.
 - `latent`: freezing of a half space (F. Neumann) by intervals of melting, meshes and steps that differ by 1000, 5 and 10: within 1 %
-  and with one cut at most (68 of the first of them once); a corner that melts, in the plane.
+  and with one cutback at most (68 of the first of them once); a corner that melts, in the plane.
 - `factors`: a linear problem factorises once for each length of a step; one by temperature at every iteration.
 - `phases`: what forms of a phase in a cooling that takes long, by TR-BDF2 as by implicit Euler: kinetics see the whole time.
 - `resume`: from the older checkpoint on, the same bits.
@@ -199,7 +199,7 @@ def latent(checks):
                           f"STRAT {step/2} 1.E-6 {step} 9 3\nSTOP 6.\nSAVE TIMES 3.\nTHETA {scheme}\nPROBE p NODE T 0.01 0.\nEND\n")
                 if not run.ok:
                     continue
-                checks.that(summary(run)["cutbacks"] <= 1, f"{run.name}: one cut at most", summary(run)["cutbacks"])
+                checks.that(summary(run)["cutbacks"] <= 1, f"{run.name}: one cutback at most", summary(run)["cutbacks"])
                 checks.small(abs(checks_of(run)["heat_imbalance"]), 1e-8, f"{run.name}: books of heat")
                 for time, value in exact:
                     k = int(np.argmin(np.abs(run.history["time"] - time)))
@@ -210,7 +210,7 @@ def latent(checks):
                   f"   TEMP 0.\n   210. 0.\n   TEMP 660.\n   210. 2.E9\n   TEMP {660 + width}\n   95. 3.E9\n   TEMP 900.\n   95. 3.6E9\n"
                   "START T 600.\nCONVE c 3 H 20000. TS 900.\nIMPOS c 4 T on 800.\nLIC on\n   0. 1.\nSTRAT 0.1 1.E-6 2. 9 3\nSTOP 30.\nEND\n")
         if run.ok:
-            checks.that(summary(run)["cutbacks"] <= 1, f"{run.name}: one cut at most", summary(run)["cutbacks"])
+            checks.that(summary(run)["cutbacks"] <= 1, f"{run.name}: one cutback at most", summary(run)["cutbacks"])
             checks.small(abs(checks_of(run)["heat_imbalance"]), 1e-8, f"{run.name}: books of heat")
 
 

@@ -240,7 +240,7 @@ def turning(checks, kinem, npoint, law, stretch):
     found = run.state("p", *STRESS)
     checks.small(np.abs(found - stress).max()/max(np.abs(stress).max(), 1e-3*YOUNG), TOLERANCE, f"{run.name}: stress after a whole turn")
     checks.small(np.abs(run.displacement() - moved).max()/0.24, TOLERANCE, f"{run.name}: places after a whole turn")
-    checks.that(run.history["step"][-1] == 25, f"{run.name}: no step was cut", run.history["step"][-1])
+    checks.that(run.history["step"][-1] == 25, f"{run.name}: no step was cut back", run.history["step"][-1])
 
 
 def loaded_sides(checks):

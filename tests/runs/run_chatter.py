@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Points of contact that open and close, stick and slip to and fro: the steps converge all the same, few are cut.
+"""Points of contact that open and close, stick and slip to and fro: the steps converge all the same, few are cut back.
 
 usage: run_chatter.py [-v] [-k]       -v prints every check, -k keeps the results
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Contact between deformable bodies whose pairs change all the way (decks/press_fit/drive_on): stopped and resumed, and with any
-number of threads, the same bits; steps that are cut and predictions that are thrown away leave nothing behind.
+number of threads, the same bits; steps that are cut back and predictions that are thrown away leave nothing behind.
 
 usage: run_pairs.py [-v] [-k]       -v prints every check, -k keeps the results
 """

@@ -103,7 +103,7 @@ def steps_picture(run: Run) -> Optional[Picture]:
         return None
     step = history["step"].values
     fig, axes = figure(3, 1, (9.2, 5.0), sharex=True, gridspec_kw={"height_ratios": [1.3, 1.1, 0.8]})
-    length, iterations, cuts = axes[:, 0]
+    length, iterations, cutbacks = axes[:, 0]
     length.step(step, history["step_length"].values, where="mid", color=LINES[0])
     positive = history["step_length"].values[history["step_length"].values > 0]
     if positive.size and positive.max() > 20 * positive.min():
@@ -111,13 +111,13 @@ def steps_picture(run: Run) -> Optional[Picture]:
     length.set_title("length of the step")
     iterations.stairs(history["iterations"].values, np.append(step - 0.5, step[-1] + 0.5), fill=True, color="#9db8d1")
     iterations.set_title("iterations")
-    cuts.step(step, history["cutbacks"].values, where="mid", color=WARN)
-    cuts.set_title("cutbacks so far")
-    cuts.set_ylim(bottom=0)
-    cuts.set_xlabel("step")
-    for panel in (iterations, cuts):
+    cutbacks.step(step, history["cutbacks"].values, where="mid", color=WARN)
+    cutbacks.set_title("cutbacks so far")
+    cutbacks.set_ylim(bottom=0)
+    cutbacks.set_xlabel("step")
+    for panel in (iterations, cutbacks):
         panel.yaxis.set_major_locator(MaxNLocator(4, integer=True))
-    cuts.xaxis.set_major_locator(MaxNLocator(12, integer=True))
+    cutbacks.xaxis.set_major_locator(MaxNLocator(12, integer=True))
     return Picture("steps", "how the march in time went", fig, vector=True)
 
 

@@ -174,7 +174,7 @@ def _effects(run: Run) -> Sections:
 
 def _notes(run: Run) -> Sections:
     parts = []
-    for kind, heading in (("warnings", "Warnings"), ("cuts", "Steps that were cut")):
+    for kind, heading in (("warnings", "Warnings"), ("cutbacks", "Steps that were cut back")):
         lines = run.notes[kind]
         if not lines:
             continue
@@ -185,7 +185,7 @@ def _notes(run: Run) -> Sections:
             more = f"<details><summary>{len(lines) - LONGEST_LIST} more</summary><pre>{rest}</pre></details>"
         parts.append(f"<h3>{heading}: {len(lines)}</h3>\n<pre>{text}</pre>{more}")
     if not parts:
-        parts = ["<p>No warnings, no cuts.</p>"]
+        parts = ["<p>No warnings, no cutbacks.</p>"]
     return [("notes", "From the listing", "\n".join(parts))]
 
 

@@ -117,10 +117,10 @@ def columns_of(path: str, text: str) -> Dict[str, Column]:
 
 def read_notes(path: str) -> Dict[str, List[str]]:
     """From the listing: the steps that were cut, and its warnings."""
-    notes: Dict[str, List[str]] = {"cuts": [], "warnings": []}
+    notes: Dict[str, List[str]] = {"cutbacks": [], "warnings": []}
     for line in read_text(path).splitlines():
-        if line.startswith("cut:"):
-            notes["cuts"].append(line[4:].strip())
+        if line.startswith("cutback:"):
+            notes["cutbacks"].append(line[8:].strip())
         elif "WARNING" in line or line.lower().startswith("warning:"):
             notes["warnings"].append(line.strip())
     return notes
