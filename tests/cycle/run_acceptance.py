@@ -10,18 +10,20 @@ import math
 import os
 import random
 import shutil
+import subprocess
 import sys
 
 sys.dont_write_bytecode = True
 from remeshed import cycle, facts, tries, within_limits  # noqa: E402
-from support import (BIN, DONE, NO_CONVERGENCE, UPSETTING, Checks, add_cards, deck_text, history, said, with_h5py,  # noqa: E402
-                     write)
+from support import (BIN, DONE, NO_CONVERGENCE, UPSETTING, Checks, add_cards, deck_text, history, run, said,  # noqa: E402
+                     summary, with_h5py, write)
 
 with_h5py()
 from run_cycle import kills  # noqa: E402
 from sealed import alter, columns_of  # noqa: E402
 
 KILLS = 2
+REMESH_DUE = 4
 REMDATA = os.path.join(os.path.abspath(BIN), "remdata")
 # The remesher with a fault in the first mesh it makes; as ever, that mesh is there as a whole or not.
 FAULTY = """#!{python}
@@ -174,6 +176,38 @@ def number_of_tries(checks, text):
                     f"TRIES 1 {' '.join(options)}: {number} made", said(result))
 
 
+def softer(wrong, *more):
+    """Seven tenths of the stress are left, and the old mesh is said to have had this error of the stress; further faults."""
+    def fault(file):
+        scale_state(file, 1, ("stress", "elastic_strain"), 0.7)
+        file["estimate"].attrs["previous_stress"] = wrong
+        for one in more:
+            one(file)
+    return fault
+
+
+def agreed(checks, text):
+    """`--agreed`: a mesh that the force of a die alone refuses is taken up, with a warning, where the stress of the old mesh was as
+    wrong; not where the pressures speak against it too, nor where the deck gives the limit of the force."""
+    force = "the force of a die changes"
+    for name, card, fault, options, phrase in (
+            ("agreed", "", softer(0.5), ("--agreed",), ""), ("not asked for", "", softer(0.5), (), force),
+            ("a good old mesh", "", softer(0.1), ("--agreed",), force),
+            ("no pressure", "", softer(0.5, no_pressure), ("--agreed",), "the pressures carried over miss"),
+            ("limit of the deck", "\n   ACCEPT FORCE 0.1", softer(0.5), ("--agreed",), force)):
+        folder = checks.path("agreed", name.replace(" ", "-"))
+        deck = write(os.path.join(folder, "case.lag"), text.replace("   TIMES 0.1 0.25", "   TIMES 0.1 0.25" + card))
+        new = os.path.join(folder, "new.h5")
+        checks.that(run([deck, "--out", folder, "--threads", "1"]).returncode == REMESH_DUE
+                    and subprocess.run([REMDATA, os.path.join(folder, "case.ckp.h5"), "--out", new, "--quiet"], check=False).returncode == DONE,
+                    f"--agreed, {name}: a new mesh")
+        alter(new, fault)
+        result = run([deck, "--resume", new, "--out", folder, "--threads", "1", *options])
+        checks.that(result.returncode == (NO_CONVERGENCE if phrase else REMESH_DUE) and phrase in result.stderr, f"--agreed, {name}", said(result))
+        warned = [warning["text"] for warning in summary(folder)["warnings"] if "several new ones agree" in warning["text"]]
+        checks.that(len(warned) == (not phrase), f"--agreed, {name}: the warning", warned)
+
+
 def main():
     checks = Checks()
     text = add_cards(deck_text(UPSETTING).replace("SAVE   20", "SAVE   3").replace("travel 9", "travel 4"),
@@ -185,6 +219,7 @@ def main():
             refused_with_stage(checks, deck, fault, stage, phrase)
     kills(checks, random.Random(1), deck, checks.path("fault", "strength"), KILLS, 2.0, **environment(checks, "strength"))
     number_of_tries(checks, text)
+    agreed(checks, text)
     checks.end()
 
 
