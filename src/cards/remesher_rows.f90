@@ -48,7 +48,7 @@ contains
     case ('COUNT')
       call cursor%integer('the largest number of elements', options%most_elements, lower=1)
     case ('ACROSS')
-      call cursor%integer('the number of elements across a stretch of contact', options%across_contact, lower=0, upper=1000)
+      call cursor%integer('the number of elements across a contact interval', options%across_contact, lower=0, upper=1000)
     case ('TURN')
       call cursor%real('the angle a side of an element may turn by', degrees, lower=0.0_wp, upper=90.0_wp, &
                        strict_lower=.true., unit='degrees')
