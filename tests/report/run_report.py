@@ -197,8 +197,8 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(0, result.returncode, result.stderr)
         text = self.good_page(os.path.join(folder, "report.html"), 8)
         with open(os.path.join(folder, "billet.log"), encoding="utf-8") as file:
-            cut = next(line for line in file if line.startswith("cut:"))[4:].strip()
-        for words in ("did not reach its end", "exit code 3", cut.replace(">", "&gt;")):
+            cutback = next(line for line in file if line.startswith("cutback:"))[len("cutback:"):].strip()
+        for words in ("did not reach its end", "exit code 3", cutback.replace(">", "&gt;")):
             self.assertIn(words, text)
 
     def test_penetration(self):

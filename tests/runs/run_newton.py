@@ -59,7 +59,7 @@ def sequences(listing):
     for line in listing.splitlines():
         if line.startswith("step "):
             now = []
-        elif line.startswith(("cut:", "event:")):
+        elif line.startswith(("cutback:", "event:")):
             now = None
         elif now is not None and re.match(r" +\d+ +\S+E", line):
             words = line.split()

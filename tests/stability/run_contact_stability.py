@@ -16,7 +16,7 @@ measured by this script; the upper block faces the lower one with -3 points ther
   the penetration allowed, found from nodes and die alone (tests/runs/die_depth.py). `flat`: a ring under friction whose sides follow
   their die; the force on it beside that of -3 points, in all steps.
 - `augmented`: a billet between dies with much friction and a small allowed depth, whose multipliers are carried forward up to 20 or 50
-  times a step. `cuts`: steps that were cut though they had been in equilibrium, for an augmentation after it had none.
+  times a step. `cutbacks`: steps that were cut back though they had been in equilibrium, for an augmentation after it had none.
 """
 import os
 import sys
@@ -28,7 +28,7 @@ from die_depth import sampled  # noqa: E402
 from patch_support import STRESS, Checks, Run, np, num  # noqa: E402
 from run_contact_pair import PRESSURE, stacked  # noqa: E402
 
-BOUND = {"unlike": 0.01, "lateral": 1.0e-12, "moved": 0.002, "cuts": 0.5, "depth": 2.0, "flat": 0.002}
+BOUND = {"unlike": 0.01, "lateral": 1.0e-12, "moved": 0.002, "cutbacks": 0.5, "depth": 2.0, "flat": 0.002}
 # Sides of the lower and of the upper block; before: plane strain, axisymmetric.
 UNLIKE = {(4, 5): (0.095, 0.118), (5, 4): (0.166, 0.331), (7, 4): (0.225, 0.506), (4, 7): (0.056, 0.063), (10, 3): (0.776, 1.107),
           (3, 10): (0.001, 0.004), (20, 2): (np.inf, np.inf), (2, 20): (0.001, 0.001)}
@@ -86,7 +86,7 @@ def corners(checks):
 
 
 def augmented(checks):
-    """Rows of the table: steps cut after they had been in equilibrium."""
+    """Rows of the table: steps cut back after they had been in equilibrium."""
     rows = []
     for name, (allowed, phi, times, before) in AUGMENTED.items():
         text = ("TITLE billet\nSTATE AXISYM\nKINEM LOG\nBLOCK b PL8LS 4 m\n   0. 0. 10. 0. 10. 15. 0. 15.\n   6 1. 9 1.\n"
@@ -95,7 +95,7 @@ def augmented(checks):
                 "LIC t\n   0. 0. 1. -9.\nMOVE d Y t\nSTRAT 0.01 1.E-5 0.05 5 3\nEND\n")
         run = Run(checks, name.replace(" ", "-"), text)
         if run.ok:
-            rows.append((f"augmented {name}", "cuts", before, cuts_after_equilibrium(os.path.join(run.out, run.name + ".log"))))
+            rows.append((f"augmented {name}", "cutbacks", before, cutbacks_after_equilibrium(os.path.join(run.out, run.name + ".log"))))
     return rows
 
 
@@ -126,17 +126,17 @@ def along(checks):
     return rows
 
 
-def cuts_after_equilibrium(listing):
-    """Cut steps with a residual below the norm among their iterations."""
-    cuts, within = 0, False
+def cutbacks_after_equilibrium(listing):
+    """Steps that were cut back with a residual below the norm among their iterations."""
+    cutbacks, within = 0, False
     with open(listing, encoding="utf-8") as file:
         for line in file:
             words = line.split()
-            if line.startswith(("cut:", "step ", "event:")):
-                within = line.startswith("cut:")
+            if line.startswith(("cutback:", "step ", "event:")):
+                within = line.startswith("cutback:")
             elif within and len(words) == 4 and words[0].isdigit() and float(words[1]) <= 1.0e-6:
-                cuts, within = cuts + 1, False
-    return cuts
+                cutbacks, within = cutbacks + 1, False
+    return cutbacks
 
 
 def main():

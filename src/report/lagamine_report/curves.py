@@ -6,7 +6,7 @@ from matplotlib.ticker import MaxNLocator
 
 from .picture import Picture
 from .reader import Run
-from .style import LINES, SOFT, WARN, figure
+from .style import LINES, SOFT, WARN, figure, plain_numbers
 from .tables import Column, number
 
 FIXED_COLUMNS = ["time", "step", "step_length", "iterations", "cutbacks", "strain_increment", "external_work", "elastic_energy",
@@ -108,12 +108,13 @@ def steps_picture(run: Run) -> Optional[Picture]:
     positive = history["step_length"].values[history["step_length"].values > 0]
     if positive.size and positive.max() > 20 * positive.min():
         length.set_yscale("log")
+        plain_numbers(length.yaxis)
     length.set_title("length of the step")
     iterations.stairs(history["iterations"].values, np.append(step - 0.5, step[-1] + 0.5), fill=True, color="#9db8d1")
     iterations.set_title("iterations")
     cutbacks.step(step, history["cutbacks"].values, where="mid", color=WARN)
     cutbacks.set_title("cutbacks so far")
-    cutbacks.set_ylim(bottom=0)
+    cutbacks.set_ylim(0, max(1, 1.05 * history["cutbacks"].values.max()))
     cutbacks.set_xlabel("step")
     for panel in (iterations, cutbacks):
         panel.yaxis.set_major_locator(MaxNLocator(4, integer=True))

@@ -1,8 +1,10 @@
 """One look for all pictures: colours, fonts, sizes."""
+import math
 from typing import Tuple
 
 import matplotlib
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 INK, SOFT, FAINT = "#22303c", "#6b7a88", "#d5dce2"
 BODIES = ["#dbe6f0", "#efe4d4", "#dfeadb", "#eadfec"]
@@ -10,6 +12,8 @@ DIE_FILL, DIE_LINE = "#c3c9cf", "#4a5560"
 LINES = ["#1f5f99", "#c8562c", "#3b8a5a", "#8a5aa8", "#b08a1e", "#4f9aa8", "#a8415b", "#6b7a88"]
 GOOD, WARN = "#2e7d4f", "#b3541e"
 POSITIVE, SIGNED = "viridis", "RdBu_r"
+SHORTEST_AXIS = 6.0      # of logarithms: the largest number on it over the smallest
+MANY_DECADES = 2.5       # on an axis: no numbers between the powers of ten
 
 matplotlib.rcParams.update({
     "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 9.5,
@@ -39,3 +43,16 @@ def panel_size(width: float, height: float, widest: float, highest: float) -> Tu
     """Inches for a drawing of this width and height, inside a box of inches."""
     scale = min(widest / max(width, 1e-300), highest / max(height, 1e-300))
     return max(width * scale, 1.2), max(height * scale, 0.8)
+
+
+def plain_numbers(axis) -> None:
+    """Logarithms with numbers as people write them; an axis that spans little is made longer, so that two of them stand there at least."""
+    low, high = axis.get_data_interval()
+    if not (0 < low <= high < math.inf):
+        return
+    grow = max(1.1, (high / low)**0.06, math.sqrt(SHORTEST_AXIS * low / high))
+    axis.axes.set(**{f"{axis.axis_name}lim": (low / grow, high * grow)})
+    decades = math.log10(high / low) + 2 * math.log10(grow)
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if decades < MANY_DECADES else (1,)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_locator(NullLocator())

@@ -4,7 +4,7 @@ import math
 DIRECTIONS = {"xx": ("xx", "radial"), "yy": ("yy", "axial"), "xy": ("xy", "shear"), "zz": ("zz", "hoop")}
 WORDS = {"mises": "von Mises stress", "plastic_strain": "equivalent plastic strain", "plastic_work": "plastic work per volume",
          "stored_work": "work kept by backstress per volume", "plastic_rate": "rate of plastic strain",
-         "displacement": "displacement (length)", "applied_force": "applied force at nodes", "temperature": "temperature"}
+         "displacement": "size of the displacement", "applied_force": "applied force at nodes", "temperature": "temperature"}
 
 
 def field_title(name: str, axisymmetric: bool = False) -> str:

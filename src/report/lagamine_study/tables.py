@@ -5,15 +5,13 @@ import math
 from typing import Dict, List, Sequence, Tuple
 
 from lagamine_report.picture import Picture
-from lagamine_report.style import LINES, figure
+from lagamine_report.style import LINES, figure, plain_numbers
 from lagamine_report.words import brief
 
 from .errors_of_ladder import Verdict
 from .ladders import Ladder, Quantity
 from .runs import Result
 
-SHORTEST_AXIS = 6.0      # the largest number on it over the smallest
-MANY_DECADES = 2.5       # on an axis: no numbers between the powers of ten
 Verdicts = Dict[Tuple[str, str], Verdict]      # by ladder and quantity
 HEADINGS = ["ladder", "run", "exit_code", "quantity", "value", "truth", "truth_from", "relative_error", "order", "processor_s", "wall_s", "steps", "iterations", "elements",
             "equations"]
@@ -81,23 +79,9 @@ def work_precision(ladders: Sequence[Ladder], results: Dict[str, List[Result]], 
         panel.set_xlabel("seconds of processor")
         panel.set_ylabel("error %")
         for axis in (panel.xaxis, panel.yaxis):
-            _plain_numbers(axis)
+            plain_numbers(axis)
         if panel.get_legend_handles_labels()[0]:
             panel.legend()
     for panel in axes.flat[len(quantities):]:
         panel.set_visible(False)
     return Picture("work_precision", "error over seconds of processor", fig, vector=True)
-
-
-def _plain_numbers(axis) -> None:
-    """Logarithms with numbers as people write them; an axis that spans little is made longer, so that two of them stand there at least."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
-    low, high = axis.get_data_interval()
-    if not (0 < low <= high < math.inf):
-        return
-    grow = max(1.1, (high / low)**0.06, math.sqrt(SHORTEST_AXIS * low / high))
-    axis.axes.set(**{f"{axis.axis_name}lim": (low / grow, high * grow)})
-    decades = math.log10(high / low) + 2 * math.log10(grow)
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if decades < MANY_DECADES else (1,)))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_locator(NullLocator())
