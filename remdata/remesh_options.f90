@@ -31,6 +31,9 @@ module remesh_options
     logical :: quiet = .false., help = .false., version = .false.
   end type remesh_options_t
 
+  !> What whole numbers and numbers are written with: reading alone stops at a comma, a blank or a slash, and takes what is before.
+  character(len=*), parameter :: digits = '0123456789', of_numbers = digits//'.+-Ee'
+
 contains
 
   subroutine read_remesh_options(options, error)
@@ -62,13 +65,13 @@ contains
         call value_of('--transfer', k, word, error)
         if (allocated(error)) exit
         read (word, *, iostat=status) options%transfer
-        if (status /= 0 .or. options%transfer < 0) &
+        if (status /= 0 .or. verify(word, digits) > 0) &
           call fail(error, exit_input, '--transfer: expected the number of a method (0, 1, 2), found '''//word//'''')
       case ('--finer')
         call value_of('--finer', k, word, error)
         if (allocated(error)) exit
         read (word, *, iostat=status) options%finer
-        if (status /= 0 .or. .not. options%finer > 0) &
+        if (status /= 0 .or. verify(word, of_numbers) > 0 .or. .not. options%finer > 0) &
           call fail(error, exit_input, '--finer: expected a number above 0, found '''//word//'''')
       case ('--mesher')
         call value_of('--mesher', k, word, error)
@@ -89,7 +92,7 @@ contains
         call value_of('--limit', k, word, error)
         if (allocated(error)) exit
         read (word, *, iostat=status) options%limit
-        if (status /= 0 .or. .not. options%limit > 0) &
+        if (status /= 0 .or. verify(word, of_numbers) > 0 .or. .not. options%limit > 0) &
           call fail(error, exit_input, '--limit: expected seconds above 0, found '''//word//'''')
       case default
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then

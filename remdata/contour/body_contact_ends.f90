@@ -8,7 +8,6 @@ module body_contact_ends
   use contact_intervals, only: side_point_t
   use contour_assembly, only: contact_t
   use dies, only: die_t, is_deformable
-  use kinds, only: wp
   implicit none
   private
   public :: add_body_contact_ends

@@ -4,7 +4,7 @@
 !> to the opposite face of a thin part.
 module contour_match
   use arcs, only: arc_t
-  use boundary_curves, only: boundary_curve_t, point_on, position_t
+  use boundary_curves, only: boundary_curve_t, position_t
   use boundary_sides, only: loop_t
   use contact_intervals, only: along, side_point_t
   use contour_assembly, only: contact_t

@@ -1,7 +1,7 @@
 !> Contours of bodies that have no mesh yet, from their BODY cards.
 module first_contours
   use boundary_curves, only: close_boundary, kind_end, kind_joint
-  use contour_laps, only: find_laps, lap_t
+  use contour_laps, only: find_laps
   use errors, only: error_t, exit_input, fail
   use part_contour, only: contour_options_t, contour_report_t, contour_t
   use scene, only: scene_t

@@ -7,7 +7,7 @@ module cycle_options
   use text, only: string_t, to_text
   implicit none
   private
-  public :: cycle_options_t, asks_for_next, next_option, read_cycle_options
+  public :: cycle_options_t, asks_for_next, read_cycle_options
 
   character(len=*), parameter :: next_option = '--next'
 

@@ -4,7 +4,6 @@ module cycle_situation
   use cycle_table, only: try_row_t
   use cuts, only: trim_trigger, web_trigger
   use exchange, only: checkpoint_facts_t
-  use kinds, only: wp
   use remeshing, only: trigger_words
   use text, only: to_text, two_digits
   implicit none

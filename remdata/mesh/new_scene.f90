@@ -1,6 +1,6 @@
 !> The scene on the new mesh: groups, sets of sides, elements on sides and dies made of sides as the deck has them.
 module new_scene
-  use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, position_at_arc_length, position_t
+  use boundary_curves, only: arc_length_at, boundary_length, position_at_arc_length, position_t
   use cards_side_dies, only: curve_of_sides
   use contact_rule, only: choose_rules
   use dies, only: is_deformable, place_on_nodes

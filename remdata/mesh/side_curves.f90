@@ -7,7 +7,7 @@ module side_curves
   use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, joint_after, kind_corner, kind_entry, kind_exit, &
                              kind_joint, point_on, position_at_arc_length, position_t
   use kinds, only: wp
-  use offset_parabolas, only: exact_point, length_between, point_at, tangent_at, xi_at_length
+  use offset_parabolas, only: exact_point, length_between, point_at, xi_at_length
   use size_field, only: size_at, size_field_t
   use vectors, only: length_of
   use zones, only: coordinates_of, follows_contour, follows_interface, on_boundary, runs_curved, side_arc_lengths, zone_layout_t, &

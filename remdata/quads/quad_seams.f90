@@ -3,7 +3,6 @@
 !> A point on a curve gets a copy for each further sector between the curves there: elements on one side of a curve are then
 !> connected by what lies on that side only, and no change of theirs crosses it.
 module quad_seams
-  use kinds, only: wp
   implicit none
   private
   public :: separate_sides

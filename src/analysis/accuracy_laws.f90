@@ -11,11 +11,10 @@ module accuracy_laws
   use accuracy_rules, only: fineness_t
   use cost_file, only: ntask
   use kinds, only: wp
-  use text, only: string_t
   implicit none
   private
   public :: accuracy_law_t, sample_t
-  public :: asked_for, choose_fineness, difference, errors_of, expected_error, expected_seconds, grown_seconds, measure_laws
+  public :: asked_for, choose_fineness, difference, errors_of, expected_seconds, grown_seconds, measure_laws
 
   !> Orders in space that are believed: of the stress what a crack leaves at least; of forces, work and motions twice that
   !> (J. Nitsche, Abh. Math. Sem. Hamburg 36 (1971) 9-15); and the order of the stress where it is smooth. Without a third mesh
@@ -206,17 +205,6 @@ contains
     time = law%time*fineness%steps**law%time_order
     depth = law%depth*fineness%depth
   end subroutine errors_of
-
-  !> The largest error of all quantities.
-  pure function expected_error(law, fineness) result(error)
-    type(accuracy_law_t), intent(in) :: law
-    type(fineness_t), intent(in) :: fineness
-    real(wp) :: error
-    real(wp), dimension(size(law%space)) :: space, time, depth
-
-    call errors_of(law, fineness, space, time, depth)
-    error = maxval(space + time + depth)
-  end function expected_error
 
   !> What would have to be asked for an error to be expected.
   pure function asked_for(error) result(asked)

@@ -28,7 +28,7 @@ module closing_table
   use timers, only: ledger_t
   implicit none
   private
-  public :: closing_t, add_closing, close_cycle, close_run, closing_lines, cost_of_elements
+  public :: closing_t, add_closing, close_cycle, close_run, closing_lines
 
   !> Shares, unless a unit is given; a cost is the time over that of this run.
   type :: closing_t

@@ -24,7 +24,6 @@ module energy_books
   implicit none
   private
   public :: book_stored, book_work, energy_imbalance, imbalance_advice, missing_energy, spring_energy, start_stored
-  public :: largest_imbalance
 
   !> The run warns above this share of what passed.
   real(wp), parameter :: largest_imbalance = 0.01_wp

@@ -2,7 +2,6 @@
 module listing
   use dies, only: is_deformable
   use elem_api, only: totals_t
-  use equations, only: equations_t
   use errors, only: error_t, exit_machine, fail
   use file_kinds, only: refuse_to_replace
   use kinds, only: wp

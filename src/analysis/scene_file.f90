@@ -6,9 +6,9 @@ module scene_file
   use json_writer, only: json_t
   use kinds, only: wp
   use remesher_options, only: has_contours
-  use scene, only: plane_state_names, role_body, role_contact, role_die_heat, role_heat_contact, role_load_factor, role_second, &
+  use scene, only: plane_state_names, role_contact, role_die_heat, role_heat_contact, role_load_factor, role_second, &
                    role_side_load, role_spring, role_volume_load, scene_t
-  use zone_marks, only: mark_corner, mark_crossing, mark_inside, mark_matter
+  use zone_marks, only: mark_crossing, mark_inside
   implicit none
   private
   public :: write_scene

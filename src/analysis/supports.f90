@@ -3,8 +3,8 @@ module supports
   use contact_outlook, only: outlook_t
   use fields, only: displacement_field
   use kinds, only: wp
-  use scene, only: axisymmetric, group_t, is_solid, scene_t
-  use text, only: string_t, to_text
+  use scene, only: axisymmetric, is_solid, scene_t
+  use text, only: string_t
   implicit none
   private
   public :: free_motions

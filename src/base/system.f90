@@ -10,7 +10,7 @@ module system
   private
   public :: is_terminal, peak_memory_mb, cpu_seconds, wall_seconds
   public :: file_exists, directory_exists, make_directory, rename_file, link_file, remove_file, flush_to_disk
-  public :: split_path, base_name, directory_of, join_path
+  public :: base_name, directory_of, join_path
   public :: catch_signals, caught_signal, signals_to_errors, program_stop, reason, last_failure
   public :: set_environment, in_environment, from_environment, text_of_c
 

@@ -1,6 +1,6 @@
 !> ACCURACY: which error a run may have; and what a run of another fineness than the deck's is.
 module cards_accuracy
-  use accuracy_rules, only: coarsest_mesh, fineness_t, stress_name
+  use accuracy_rules, only: fineness_t, stress_name
   use contact_penalties, only: scale_penalties
   use deck_cursor, only: cursor_t
   use deck_reader, only: card_t, deck_t

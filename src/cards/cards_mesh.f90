@@ -6,11 +6,10 @@ module cards_mesh
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
   use elem_api, only: elem_t
-  use kinds, only: wp
   use mesh, only: side_set_t
   use mesh_parts, only: body_t, find_label, mesh_parts_t, sort_labels
   use scene, only: plane_stress, role_body
-  use scene_draft, only: close_card, draft_t, find_elem, words_of
+  use scene_draft, only: close_card, draft_t, find_elem
   use shape_functions, only: quad8_side
   use text, only: string_t, to_text
   implicit none

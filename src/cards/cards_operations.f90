@@ -10,7 +10,7 @@ module cards_operations
   use cards_sleep, only: put_to_sleep, sleep_keyword
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
-  use diagnostics, only: diagnostics_t, location_t
+  use diagnostics, only: diagnostics_t
   use elem_api, only: elem_t
   use elem_registry, only: list_elems
   use kinds, only: wp

@@ -6,8 +6,7 @@ module cards_remesh
   use diagnostics, only: diagnostics_t
   use fields, only: displacement_field
   use kinds, only: wp
-  use remeshing, only: aspect_ratio, jacobian_ratio, largest_angle, least_angle, middle_share, never, remesh_rules_t, &
-                       scaled_jacobian, stroke_t
+  use remeshing, only: aspect_ratio, jacobian_ratio, largest_angle, least_angle, middle_share, never, scaled_jacobian, stroke_t
   use remesh_defaults, only: set_default_limits, set_default_sizes
   use remesher_options, only: has_contours
   use remesher_rows, only: complete_options, make_sizes_finer, read_remesher_row, remesher_words

@@ -6,10 +6,9 @@ module cards_zones
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
-  use kinds, only: wp
   use scene_draft, only: close_card, draft_t, words_of
   use text, only: string_t
-  use zone_marks, only: mark_corner, mark_crossing, mark_inside, mark_matter, zone_card_t, zone_mark_t
+  use zone_marks, only: mark_crossing, mark_inside, mark_matter, zone_card_t, zone_mark_t
   implicit none
   private
   public :: read_zones

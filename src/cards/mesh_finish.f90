@@ -41,7 +41,6 @@ contains
       mesh%coordinates = parts%coordinates(:, kept(:n))
       if (.not. allocated(mesh%origin)) mesh%origin = mesh%coordinates
       mesh%labels = parts%labels(kept(:n))
-      allocate (mesh%node_sets(0))
       next_label = 0
       if (parts%nexplicit > 0) next_label = maxval(parts%labels)
       do i = 1, n

@@ -6,7 +6,6 @@ module remesh_defaults
   use remesher_options, only: remesher_options_t
   use remeshing, only: aspect_ratio, largest_angle, least_angle, middle_share, remesh_rules_t, scaled_jacobian
   use vectors, only: length_of
-  use zone_marks, only: contour_card_t
   implicit none
   private
   public :: area_in, set_default_limits, set_default_sizes

@@ -12,7 +12,6 @@ module elem_api
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
-  use materials, only: material_t
   use pairs, only: pairs_t
   use scene, only: generalised_plane_strain, group_t, scene_t
   use state_variables, only: state_variable_t

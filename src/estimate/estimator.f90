@@ -13,7 +13,6 @@ module estimator
   use patch_recovery, only: find_patches, patches_t
   use quad8_geometry, only: derivatives, quad8_rule_t
   use recovered_errors, only: fields_of_rule, fields_t, missing_squares, ncomp, npoint
-  use remeshing, only: estimate_t
   use scene, only: is_solid, scene_t
   use sections, only: thickness_at
   use solution, only: solution_t

@@ -19,7 +19,7 @@ module curve_search
   use closest_point, only: closest_at_vertex, closest_point_t, closest_within_piece, distance_slope, end_slack, stationary_points, &
                            whole_piece
   use corner_faces, only: keep_to_face, leave_beside
-  use kinds, only: eps, wp
+  use kinds, only: wp
   use piecewise_curves, only: adjacent_piece, box_gap, box_of_node, piecewise_curve_t
   implicit none
   private

@@ -2,7 +2,7 @@
 module effects
   implicit none
   private
-  public :: effect_t, find_effect
+  public :: effect_t
 
   type :: effect_t
     character(len=:), allocatable :: name
@@ -14,19 +14,5 @@ module effects
     !> Effect whose loop does its work; empty when it has one of its own. Its seconds are counted there.
     character(len=:), allocatable :: within
   end type effect_t
-
-contains
-
-  !> Position of an effect in a list, 0 when it is not listed.
-  pure function find_effect(effects, name) result(k)
-    type(effect_t), intent(in) :: effects(:)   !! (neffect)
-    character(len=*), intent(in) :: name
-    integer :: k
-
-    do k = 1, size(effects)
-      if (effects(k)%name == name) return
-    end do
-    k = 0
-  end function find_effect
 
 end module effects

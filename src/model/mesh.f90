@@ -1,10 +1,10 @@
-!> Nodes and the named sets of nodes and sides that cards refer to.
+!> Nodes and the named sets of sides that cards refer to.
 module mesh
   use kinds, only: wp
   use vectors, only: length_of
   implicit none
   private
-  public :: mesh_t, node_set_t, side_set_t, find_side_set, nodes_of_sides, nearest_node
+  public :: mesh_t, side_set_t, find_side_set, nodes_of_sides, nearest_node
 
   !> Sides of elements on a boundary, each traversed with the part on its left.
   type :: side_set_t
@@ -12,11 +12,6 @@ module mesh
     !> Nodes (3, n): first end, middle, second end.
     integer, allocatable :: nodes(:, :)
   end type side_set_t
-
-  type :: node_set_t
-    character(len=:), allocatable :: name
-    integer, allocatable :: nodes(:)
-  end type node_set_t
 
   type :: mesh_t
     !> Coordinates (2, nnode) at the start of this mesh [length].
@@ -26,7 +21,6 @@ module mesh
     !> Number the user knows the node by (nnode).
     integer, allocatable :: labels(:)
     type(side_set_t), allocatable :: sides(:)
-    type(node_set_t), allocatable :: node_sets(:)
   end type mesh_t
 
 contains

@@ -1,7 +1,6 @@
 !> The members of the mesh, of dies and supports (visitors).
 module visit_parts
   use dies, only: die_t, is_deformable
-  use kinds, only: wp
   use loads, only: fixation_t
   use mesh, only: mesh_t, side_set_t
   use visitors, only: kept, of_the_mesh, visitor_t
@@ -23,7 +22,6 @@ contains
     call visitor%member('coordinates', self%coordinates, of_the_mesh, '2, node', 'length')
     call visitor%member('origin', self%origin, of_the_mesh, '2, node', 'length')
     call visitor%member('labels', self%labels, of_the_mesh, 'node')
-    call visitor%derived('node_sets', of_the_deck)
     n = 0
     if (allocated(self%sides)) n = size(self%sides)
     call visitor%list('sides', n, most_sets)

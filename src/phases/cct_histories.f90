@@ -8,12 +8,12 @@
 !> diagram count as its first or last; the distance weighs a factor e in rate as a difference of 1 in a fraction. Histories hold
 !> down to Ms.
 module cct_histories
-  use dual_numbers, only: dual_t, exp, log, operator(*), operator(+), operator(-), operator(/)
+  use dual_numbers, only: dual_t, log, operator(*), operator(+), operator(-), operator(/)
   use kinds, only: wp
   use steels, only: histories_t
   implicit none
   private
-  public :: cct_increments, history_at
+  public :: cct_increments
 
 contains
 

@@ -7,7 +7,7 @@ module hardness
   use temperature_curves, only: curve_at, is_given
   implicit none
   private
-  public :: hardness_of, phase_hardness, maynier_hardness, has_hardness
+  public :: hardness_of, maynier_hardness, has_hardness
 
   real(wp), parameter :: seconds_per_hour = 3600.0_wp
   !> Cooling rates below this say nothing of hardness: a point that has not passed 700 degC [K/s].

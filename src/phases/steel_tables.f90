@@ -10,7 +10,7 @@ module steel_tables
   use steels, only: austenite, kinetics_avrami, kinetics_li, martensite, phase_count, steel_t, unknown_temperature
   implicit none
   private
-  public :: isothermal_time, isothermal_rows, cool_at_rate, forms_at, hold_martensite
+  public :: isothermal_time, isothermal_rows, cool_at_rate, hold_martensite
 
   !> Length of a step of temperature while cooling [K]; sub-steps are within.
   real(wp), parameter :: step_length = 2.0_wp

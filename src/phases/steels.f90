@@ -16,7 +16,7 @@ module steels
             prop_rate, prop_hardening
   public :: expansion_none, expansion_total, expansion_incremental
   public :: plasticity_none, plasticity_desalos, plasticity_leblond, plasticity_tanaka, plasticity_names
-  public :: element_names, celsius_zero, gas_constant, unknown_temperature, default_substep
+  public :: element_names, celsius_zero, gas_constant, unknown_temperature
   public :: el_c, el_mn, el_si, el_ni, el_cr, el_mo, el_v, el_w, el_cu, el_p, el_al, el_as, el_ti
 
   !> Phases. `ferrite` is what forms before pearlite, cementite in a hypereutectoid steel; `tempered` is martensite and bainite

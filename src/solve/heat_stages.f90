@@ -13,7 +13,6 @@ module heat_stages
   use corrections, only: solve_correction
   use elem_api, only: report_t
   use equations, only: equations_t, remedy_euler, remedy_monotone, remedy_none, stage_t
-  use errors, only: error_t
   use evaluation, only: evaluate, measure_error
   use external_loads, only: external_forces
   use fields, only: find_field

@@ -44,7 +44,6 @@ contains
 
     scene%title = ''
     call visit_scene_members(reader, scene)
-    allocate (scene%mesh%node_sets(0))
     call check_scene(reader%file, scene)
     if (.not. reader%file%failed()) call check_parts(reader%file, scene)
     call reader%file%status(error)

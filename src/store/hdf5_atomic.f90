@@ -15,7 +15,7 @@ module hdf5_atomic
   use system, only: file_exists, remove_file
   implicit none
   private
-  public :: create_atomic, commit_atomic, discard_atomic, open_verified
+  public :: create_atomic, commit_atomic, open_verified
 
 contains
 
@@ -49,15 +49,6 @@ contains
     if (.not. allocated(error)) call replace_file(final_name(temporary), error, keep_previous)
     if (allocated(error)) call discard(temporary)
   end subroutine commit_atomic
-
-  !> Discard a file begun by `create_atomic`.
-  subroutine discard_atomic(file)
-    type(hdf5_file_t), intent(inout) :: file
-    type(error_t), allocatable :: ignored
-
-    call file%close(ignored)
-    call discard(file%path())
-  end subroutine discard_atomic
 
   !> Open a committed file for reading, unaltered and made of nothing but what this program writes.
   subroutine open_verified(file, path, error)

@@ -82,6 +82,12 @@ def main():
     facts = dict(line.split(" ", 1) for line in result.stdout.splitlines())
     checks.that(result.returncode == DONE and facts["generation"] == "1" and facts["elements"] == "12"
                 and facts["due"].startswith("time 0.1"), "--about states what is in it", facts)
+    for option, value, wanted in (("--transfer", "1,2", "the number of a method"), ("--transfer", "-1", "the number of a method"),
+                                  ("--finer", "1/2", "a number above 0"), ("--finer", "1,5", "a number above 0"), ("--finer", "0", "a number above 0"),
+                                  ("--limit", "5 s", "seconds above 0"), ("--mesher", "hand", "zones, free or gmsh")):
+        result = call("remdata", good, "--out", new, option, value)
+        checks.that(result.returncode == INPUT and result.stderr.startswith(f"{option}: expected {wanted}") and f"'{value}'" in result.stderr
+                    and not os.path.exists(new), f"remdata {option} {value}: refused", said(result))
     damages = {"a text": (text, "not a file of this program"), "cut to nothing": (cut(0), "not a file of this program"), "cut to 10 %": (cut(0.1), "cut short"),
                "cut to 97 %": (cut(0.97), "cut short"), "another schema": (lambda path: alter(path, other_schema), "schema"),
                "no schema": (lambda path: alter(path, lambda file: file.attrs.__delitem__("schema")), "not a checkpoint"),
