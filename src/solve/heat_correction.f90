@@ -7,7 +7,7 @@
 !> capacity is lumped: a content of their own goes with them.
 module heat_correction
   use equations, only: equations_t
-  use fields, only: find_field, has_corners_only
+  use fields, only: displacement_field, find_field, has_corners_only
   use kinds, only: eps, wp
   use law_api, only: driver_count, driver_temperature, heat_law, law_t
   use materials, only: material_t
@@ -15,7 +15,7 @@ module heat_correction
   use solution, only: solution_t
   implicit none
   private
-  public :: follow_content, temperature_after
+  public :: follow_content, is_steep, temperature_after
 
   !> The content is followed where it differs by more than this factor from the linear one.
   real(wp), parameter :: much = 3.0_wp
@@ -63,6 +63,30 @@ contains
       end associate
     end do
   end subroutine follow_content
+
+  !> Temperatures on 8 nodes are solved for, alone, and the heat capacity of a body varies much: the content is of points between
+  !> the nodes, no temperature of a node has it. For one conductivity the balance is the minimum of a convex function, so that
+  !> Newton's method with a search for the zero along each correction comes to it.
+  pure function is_steep(scene, equations) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    logical :: yes
+    integer :: f, g
+
+    yes = .false.
+    f = find_field(scene%fields, 'temperature')
+    if (f == 0) return
+    associate (own => equations%solves(equations%now)%own)
+      if (.not. own(f) .or. own(displacement_field) .or. has_corners_only(scene%fields(f))) return
+    end associate
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%material == 0) cycle
+      associate (material => scene%materials(scene%groups(g)%material))
+        if (equations%laws(material%law_id)%kind /= heat_law) cycle
+        yes = yes .or. varies_much(equations%laws(material%law_id), material)
+      end associate
+    end do
+  end function is_steep
 
   !> The heat capacities of a material at the temperatures of its card differ by more than the factor.
   pure function varies_much(law, material) result(yes)

@@ -38,15 +38,15 @@ module line_search
 
   !> How to search: take the whole whatever the residual, or find the zero along the correction more closely.
   type :: manner_t
-    logical :: whole = .false., closely = .false.
+    logical :: whole = .false., closely = .false., exactly = .false.
   end type manner_t
 
   !> A search that ends below this share of the correction is short.
   real(wp), parameter :: short_share = 0.2_wp
-  real(wp), parameter :: search_above = 0.8_wp, search_closely_above = 0.3_wp
+  real(wp), parameter :: search_above = 0.8_wp, search_closely_above = 0.3_wp, search_exactly_above = 0.02_wp
   !> A share of the correction is taken when the whole residual falls to this part of what it was.
   real(wp), parameter :: real_fall = 0.5_wp
-  integer, parameter :: max_searches = 6, max_touches = 12
+  integer, parameter :: max_searches = 6, max_touches = 12, max_exact_searches = 30
   !> From one share to the next, where a die was lost; there are `max_touches` of them at most.
   real(wp), parameter :: tenth = 0.1_wp
   !> A share that touches the die is short enough when one that does not is longer than this part of it.
@@ -70,13 +70,14 @@ contains
     type(report_t), intent(out) :: report
     real(wp) :: start(size(du)), trial, slope0, slope, enough, best, norm, norm0, near(2), far(2), touching, missed
     logical :: ascent, accepted, lost
-    integer :: k
+    integer :: k, most
 
     start = du
     trial = 1
     slope0 = slope_along(equations, correction, residual)
     ascent = slope0 < 0
     enough = merge(search_closely_above, search_above, manner%closely)
+    if (manner%exactly) enough = search_exactly_above
     norm0 = free_force(equations, residual)
     near = [0.0_wp, slope0]
     far = 0
@@ -85,7 +86,9 @@ contains
     touching = 0
     missed = 0
     lost = loses_a_die(scene, solution)
-    do k = 1, merge(max_touches, max_searches, lost)
+    most = merge(max_touches, max_searches, lost)
+    if (manner%exactly) most = max_exact_searches
+    do k = 1, most
       du = start + trial*correction + missing
       call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
       if (report%status /= block_done) then
@@ -99,8 +102,9 @@ contains
         best = abs(slope)
         s = trial
       end if
-      accepted = manner%whole .or. any(abs(missing) > 0) .or. norm < real_fall*norm0
-      if (.not. ascent) accepted = accepted .or. abs(slope) <= enough*slope0 .or. (k == 1 .and. norm < norm0)
+      accepted = manner%whole .or. any(abs(missing) > 0) .or. (norm < real_fall*norm0 .and. .not. manner%exactly)
+      if (.not. ascent) accepted = accepted .or. abs(slope) <= enough*slope0  &
+                                      .or. (k == 1 .and. norm < norm0 .and. .not. manner%exactly)
       if (accepted) then
         s = trial
         return

@@ -16,7 +16,7 @@ module newton
   use evaluation, only: evaluate
   use external_loads, only: external_forces
   use fields, only: displacement_field
-  use heat_correction, only: follow_content
+  use heat_correction, only: follow_content, is_steep
   use heat_record, only: heat_step_t
   use iteration_history, only: caught, goes_to_and_fro, has_converged, in_circles, in_turmoil, is_near, iteration_t, judge, &
                                was_given_time, went_round
@@ -83,7 +83,7 @@ contains
     type(report_t) :: report
     integer, allocatable :: contact(:)
     logical, allocatable :: held(:, :)
-    logical :: changed, followed, again
+    logical :: changed, followed, again, steep
     integer :: first
 
     allocate (outcome%history(0), outcome%du(equations%dofs%ndof))
@@ -104,6 +104,7 @@ contains
 
     again = .false.
     if (present(go_on)) again = go_on .and. .not. equations%solves(equations%now)%own(displacement_field)
+    steep = is_steep(scene, equations)
     first = 1
     correction = 0
     allocate (contact, source=contact_set(scene, solution))
@@ -150,6 +151,7 @@ contains
       call follow_content(scene, equations, solution, outcome%du, correction, followed)
       manner = manner_t(whole=caught(outcome%history(first:)), &
                         closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
+      if (steep) manner = manner_t(exactly=.true.)
       ! past a limit point the way to equilibrium leads up and down
       if (scene%load_factor%multiplier > 0) manner%whole = .true.
       if (followed) then
@@ -168,7 +170,7 @@ contains
         cycle
       end if
       call note_contact(scene, solution, contact, line%contact_changed)
-      line%contact_changed = line%contact_changed .or. followed .or. any(held .neqv. equations%wall%held)
+      line%contact_changed = line%contact_changed .or. followed .or. steep .or. any(held .neqv. equations%wall%held)
       held = equations%wall%held
       correction = line%line_search*correction
       missing = 0

@@ -24,8 +24,9 @@ module path_error
   use kinematics_api, only: first_history
   use law_api, only: law_t, solid_law
   use newton, only: outcome_t
-  use path_record, only: mean_square, stress_scale
+  use path_record, only: mean_square, path_step_t, stress_scale
   use predictor, only: proportion
+  use round_off_floors, only: round_off_motion
   use scene, only: scene_t
   use solution, only: group_state_t, solution_t
   use step_instants, only: make_instant
@@ -97,6 +98,7 @@ contains
         step%motion = mean_square(on_nodes(equations, outcome%du))
         allocate (step%error, source=on_nodes(equations, error))
         step%motion_error = mean_square(step%error)
+        call drop_round_off(equations, solution, step)
         if (max(abs(step%stress_error), abs(solution%path%stress_error)) &
             > negligible*stress_scale(solution%path, step%stress)) then
           before = root_energy(scene, equations, active, solution, solution%groups, committed=.true.)
@@ -156,6 +158,19 @@ contains
     end subroutine advance
 
   end subroutine estimate_path
+
+  !> Where hardly anything moves yet, as before a torch comes near, both errors are round-off of places and stresses: none.
+  pure subroutine drop_round_off(equations, solution, step)
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    type(path_step_t), intent(inout) :: step
+    real(wp) :: motion, energy
+
+    motion = round_off_motion*equations%size
+    energy = 0.5_wp*solution%fields(displacement_field)%floor*motion
+    if (step%motion_error <= motion) step%motion_error = 0
+    if (abs(step%stress_error) <= sqrt(energy)) step%stress_error = 0
+  end subroutine drop_round_off
 
   !> Motion of the first half: velocities are linear in time, with the mean v(n) of the step before and v of this one in their
   !> middles, du_1 = dt v/2 - (v - v(n)) dt^2/(4 (dt + dt_n)). What is no motion goes straight; so does all where a multiplier has a

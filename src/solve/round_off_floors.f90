@@ -7,7 +7,7 @@ module round_off_floors
   use scene, only: role_body, role_second, scene_t
   implicit none
   private
-  public :: set_floors
+  public :: round_off_motion, set_floors
 
   !> Motions below this share of the mesh's size are round-off of coordinates: some eps.
   real(wp), parameter :: round_off_motion = 16*eps
