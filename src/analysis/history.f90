@@ -256,7 +256,7 @@ contains
     case (probe_point)
       value = state_of(solution, probe, probe%point, probe%element)
     case (probe_maximum, probe_minimum)
-      value = extreme_of(solution, probe)
+      value = extreme_of(scene, solution, probe)
     case (probe_mean)
       value = mean_of(scene, solution, probe)
     end select
@@ -279,13 +279,20 @@ contains
     end associate
   end function state_of
 
-  !> The largest or smallest of that over a group.
-  pure function extreme_of(solution, probe) result(value)
+  !> The largest or smallest of that over a group, or of a field over its nodes.
+  pure function extreme_of(scene, solution, probe) result(value)
+    type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(probe_t), intent(in) :: probe
     real(wp) :: value
     integer :: p, e
 
+    if (probe%field > 0) then
+      associate (values => solution%fields(probe%field)%value(1, pack(scene%groups(probe%group)%connectivity, .true.)))
+        value = merge(maxval(values), minval(values), probe%kind == probe_maximum)
+      end associate
+      return
+    end if
     associate (state => solution%groups(probe%group)%committed)
       value = merge(-huge(value), huge(value), probe%kind == probe_maximum)
       do e = 1, size(state, 3)
@@ -329,7 +336,7 @@ contains
     type(probe_t), intent(in) :: probe
     real(wp), intent(inout) :: integral, volume
     type(quad8_rule_t) :: rule
-    real(wp) :: x(2, 8), nx(8), ny(8), section(3), detj, dv
+    real(wp) :: x(2, 8), nx(8), ny(8), section(3), detj, dv, here
     integer :: p, e
 
     section = scene%section
@@ -343,7 +350,12 @@ contains
           call derivatives(rule%dphi(:, :, p), x, nx, ny, detj)
           dv = detj*rule%weight(p)*thickness_at(section, matmul(x, rule%phi(:, p)))
           volume = volume + dv
-          integral = integral + dv*state_of(solution, probe, p, e)
+          if (probe%field > 0) then
+            here = dot_product(rule%phi(:, p), solution%fields(probe%field)%value(1, group%connectivity(:, e)))
+          else
+            here = state_of(solution, probe, p, e)
+          end if
+          integral = integral + dv*here
         end do
       end do
     end associate

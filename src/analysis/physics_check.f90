@@ -1,17 +1,14 @@
 !> What can be told of a deck before it runs: how parts and dies stand to each other, and what is seldom meant.
 module physics_check
-  use contact_outlook, only: look_at_contact, gaps_at_rest, moves, outlook_t
+  use contact_outlook, only: look_at_contact, moves, outlook_t
   use dies, only: is_deformable
-  use elem_weld_source, only: source_share
   use fields, only: displacement_field
-  use heat_contact_point, only: touching_still
+  use heat_check, only: check_heat
   use kinds, only: wp
   use law_api, only: driver_count, law_t
-  use scene, only: group_t, lacks_mesh, role_heat_contact, scene_t
+  use scene, only: group_t, lacks_mesh, scene_t
   use supports, only: free_motions
   use text, only: string_t, to_text
-  use vectors, only: length_of
-  use weld_sources, only: power_in_plane
   implicit none
   private
   public :: check_physics
@@ -20,10 +17,6 @@ module physics_check
   real(wp), parameter :: largest_overlap = 0.01_wp
   !> Metals yield at less than this share of Young's modulus: the strongest steels and glassy metals at 0.01 to 0.02.
   real(wp), parameter :: largest_yield = 0.03_wp
-  !> A torch with less of half its ellipse in its bodies is not where it was meant to be, or the mesh too coarse for it.
-  real(wp), parameter :: expected_share = 0.9_wp
-  !> A side beside a die by less than this share of its length was meant to lie on it.
-  real(wp), parameter :: nearly = 0.05_wp
 
 contains
 
@@ -38,17 +31,8 @@ contains
     integer :: g
 
     allocate (table(0), warnings(0))
-    if (allocated(scene%sources) .and. .not. lacks_mesh(scene)) then
-      do g = 1, size(scene%sources)
-        call judge_torch(scene, g, warnings)
-      end do
-    end if
-    if (.not. scene%fields(displacement_field)%declared) then
-      do g = 1, size(scene%groups)
-        if (scene%groups(g)%role == role_heat_contact) call judge_heat_contact(scene, scene%groups(g), table, warnings)
-      end do
-      return
-    end if
+    call check_heat(scene, laws, table, warnings)
+    if (.not. scene%fields(displacement_field)%declared) return
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
         if (group%die == 0 .or. group%material == 0) cycle
@@ -64,74 +48,6 @@ contains
     if (.not. anything_acts(scene)) &
       call add(warnings, 'nothing moves and no load acts: all multipliers (LIC) are zero at all times')
   end subroutine check_physics
-
-  !> Heat to a die in a scene of heat alone: nothing moves, so what does not pass at the start never does.
-  subroutine judge_heat_contact(scene, group, table, warnings)
-    type(scene_t), intent(in) :: scene
-    type(group_t), intent(in) :: group
-    type(string_t), allocatable, intent(inout) :: table(:), warnings(:)
-    real(wp), allocatable :: gap(:, :), over_side(:, :)
-    integer :: closed, beside
-
-    if (lacks_mesh(scene) .and. is_deformable(scene%dies(group%die))) return
-    call gaps_at_rest(scene, group, gap, over_side)
-    associate (limit => touching_still(group), die => scene%dies(group%die)%name)
-      closed = count(over_side <= limit)
-      beside = count(over_side > limit .and. over_side < nearly .and. gap > group%heat_contact%reach)
-      if (.not. any(gap < huge(1.0_wp))) then
-        call add(table, 'heat       '//group%name//': no side faces the die')
-        call add(warnings, group%name//': no side faces die '//die//', and no heat passes: a die is walked ' &
-                 //'with the part on the left (DIE)')
-        return
-      end if
-      call add(table, 'heat       '//group%name//': '//to_text(closed)//' of '//to_text(size(gap))//' points of sides lie on the ' &
-               //'die, least gap '//to_text(max(minval(gap), 0.0_wp), 3))
-      if (closed + beside == 0 .and. minval(gap) > group%heat_contact%reach) then
-        call add(warnings, group%name//': the least gap to die '//die//' is '//to_text(minval(gap), 3) &
-                 //', wider than REACH, and no heat passes')
-      else if (beside > 0) then
-        call add(warnings, group%name//': '//to_text(beside)//' of '//to_text(size(gap))//' points of sides are beside die '//die &
-                 //' by more than '//to_text(100*limit, 2)//' % of a side and beyond REACH: no heat passes there ' &
-                 //'(a finer ARC of the die, a finer mesh?)')
-      end if
-    end associate
-  end subroutine judge_heat_contact
-
-  !> A torch whose ellipsoid is not all in its bodies, or that goes far in a step.
-  subroutine judge_torch(scene, k, warnings)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: k   !! place in the scene's list
-    type(string_t), allocatable, intent(inout) :: warnings(:)
-    real(wp) :: share, least, time, at, way, axis
-    integer :: i, j
-    integer, parameter :: parts = 8
-
-    associate (source => scene%sources(k), path => scene%sources(k)%path)
-      axis = min(source%front, source%rear)
-      way = 0
-      if (source%crosses) way = source%speed*scene%strategy%largest_step
-      least = huge(least)
-      at = 0
-      do i = 1, size(path, 2)
-        do j = 1, parts
-          time = path(1, i)
-          if (i > 1) time = time - (path(1, i) - path(1, i - 1))*real(j - 1, wp)/parts
-          time = min(max(time, 0.0_wp), scene%strategy%end_time)
-          if (.not. power_in_plane(source, scene%multipliers, merge(source%crossing_time, time, source%crosses), 1.0_wp) > 0) cycle
-          share = source_share(scene, k, time)
-          if (share < least) at = time
-          least = min(share, least)
-        end do
-        if (i == 1 .or. source%crosses) cycle
-        way = max(way, length_of(path(2:3, i) - path(2:3, i - 1))/(path(1, i) - path(1, i - 1))*scene%strategy%largest_step)
-      end do
-    end associate
-    if (least < expected_share) call add(warnings, 'GOLDAK '//to_text(k)//': at time '//to_text(at, 3)//' only ' &
-      //to_text(100*least, 3)//' % of half its ellipse is found in its bodies, which take all of the power: it ends outside them ' &
-      //'(half a weld, of half the power, does), or elements are longer than its semi-axes')
-    if (way > axis) call add(warnings, 'GOLDAK '//to_text(k)//': it goes '//to_text(way/axis, 3) &
-      //' times its shorter semi-axis in the largest step (STRAT): the heat of single steps shows')
-  end subroutine judge_torch
 
   !> How a group stands to its die.
   function words_of(scene, group, outlook) result(words)

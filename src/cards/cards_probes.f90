@@ -13,7 +13,7 @@ module cards_probes
   use mesh, only: nearest_node
   use probes, only: probe_maximum, probe_mean, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
   use quadrature, only: line_rule, square_rule
-  use scene, only: axisymmetric, group_t, is_solid
+  use scene, only: axisymmetric, group_t, is_solid, role_body, role_second
   use scene_draft, only: close_card, draft_t, words_of
   use shape_functions, only: line3, quad8
   use state_variables, only: component_names, find_variable, state_variable_t
@@ -252,7 +252,8 @@ contains
     off = length_of(draft%scene%mesh%origin(:, node) - x) > longest
   end function is_off
 
-  !> `component group`: the largest or smallest over all points of a group, or with more groups the mean over their volumes.
+  !> `component group`: the largest or smallest over all points of a group, or with more groups the mean over their volumes; of the
+  !> word of a field of nodes, over the nodes of a body, or the mean over its volume.
   subroutine read_extreme_probe(cursor, draft, probe)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft
@@ -262,7 +263,7 @@ contains
     type(probe_t) :: one
     integer :: g
 
-    call read_component(cursor, draft, component)
+    call read_component(cursor, draft, component, probe%field)
     allocate (probe%more_groups(0), probe%more_components(0))
     if (.not. draft%groups_sound) then
       call cursor%word('the name of a group', component)
@@ -281,15 +282,18 @@ contains
       if (probe%kind == probe_mean .and. size(draft%scene%groups(g)%connectivity, 1) /= 8) &
         call cursor%fail('MEAN is over the volume of a body: '''//names(g)%s//''' has none')
       if (probe%group == g .or. any(probe%more_groups == g)) call cursor%fail('the group '''//names(g)%s//''' is given twice')
-      if (find_component(draft%scene%groups(g), component) == 0) then
-        call cursor%fail('group '''//names(g)%s//''' has no component '''//component//'''')
+      if (probe%field > 0) then
+        call find_values(cursor, draft, g, probe)
+      else if (find_component(draft%scene%groups(g), component) == 0) then
+        call cursor%fail('group '''//names(g)%s//''' has no component '''//component//''''//group_with(draft, component, g))
         return
       end if
+      if (cursor%failed()) return
       if (probe%group == 0) then
         probe%group = g
-        call set_component(draft%scene%groups(g), component, probe)
+        if (probe%field == 0) call set_component(draft%scene%groups(g), component, probe)
       else
-        call set_component(draft%scene%groups(g), component, one)
+        if (probe%field == 0) call set_component(draft%scene%groups(g), component, one)
         probe%more_groups = [probe%more_groups, g]
         probe%more_components = [probe%more_components, one%component]
       end if
@@ -297,19 +301,61 @@ contains
     end do
   end subroutine read_extreme_probe
 
-  !> A component of the state of any group.
-  subroutine read_component(cursor, draft, component)
+  !> The group on the same elements that has a component, for a message; '' where there is none.
+  pure function group_with(draft, component, asked) result(words)
+    type(draft_t), intent(in) :: draft
+    character(len=*), intent(in) :: component
+    integer, intent(in) :: asked   !! number of the group that has not
+    character(len=:), allocatable :: words
+    integer :: g
+
+    words = ''
+    do g = 1, size(draft%scene%groups)
+      if (g == asked .or. find_component(draft%scene%groups(g), component) == 0) cycle
+      if (draft%scene%groups(g)%host == asked) words = '; '''//draft%scene%groups(g)%name//''' has'
+    end do
+  end function group_with
+
+  !> A body whose nodes have values of a field.
+  subroutine find_values(cursor, draft, g, probe)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    integer, intent(in) :: g   !! number of the group
+    type(probe_t), intent(inout) :: probe
+
+    associate (group => draft%scene%groups(g), field => draft%scene%fields(probe%field))
+      probe%unit = field%unit
+      if (all(group%role /= [role_body, role_second])) then
+        call cursor%fail('expected a body, '''//group%name//''' is none')
+      else if (size(group%connectivity) > 0) then
+        call refuse_without_field(cursor, draft, probe%field, pack(group%connectivity, .true.), group%name, own=.false.)
+      end if
+    end associate
+  end subroutine find_values
+
+  !> A component of the state of any group; or, where `field` is there, the word of a field of nodes.
+  subroutine read_component(cursor, draft, component, field)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft
     character(len=:), allocatable, intent(out) :: component
+    integer, intent(out), optional :: field   !! its place in the scene's list, 0 for a component
     type(string_t), allocatable :: known(:), names(:)
+    integer, allocatable :: place(:)
     integer :: g, k
+
+    if (present(field)) field = 0
 
     if (.not. draft%groups_sound) then
       call cursor%word('a component of the state', component)
       return
     end if
     allocate (known(0))
+    if (present(field)) then
+      call field_words(draft%scene%fields, place, known)
+      do k = 1, size(known)
+        if (known(k)%s == cursor%peek_word()) field = place(k)
+      end do
+    end if
     do g = 1, size(draft%scene%groups)
       call component_names(draft%scene%groups(g)%variables, names)
       known = [known, names]

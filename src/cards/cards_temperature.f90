@@ -218,7 +218,7 @@ contains
           do k = 1, size(draft%places%words)
             if (draft%places%words(k)%s /= group%name) cycle
             call diagnostics%add(draft%places%location(k), draft%places%keywords(k)%s, 'LAW '//material%name//reason(material) &
-                                 //': body '//group%name//' needs a TEMPE card')
+                                 //': body '//group%name//' needs a TEMPE card, or ADDEL with PL8TM')
           end do
         end associate
       end associate

@@ -29,7 +29,7 @@ module scene_reader
   use cards_zones, only: read_zones
   use deck_reader, only: deck_t, refuse_unknown, row_t
   use diagnostics, only: diagnostics_t, location_t
-  use driver_sources, only: driver_of_others, missing_driver
+  use driver_checks, only: refuse_missing_drivers
   use elem_api, only: declare_fields, elem_t
   use elem_registry, only: list_elems
   use mesh_finish, only: finish_mesh
@@ -41,7 +41,6 @@ module scene_reader
   use scene, only: role_die_heat, scene_t
   use scene_draft, only: draft_t, start_draft, words_of
   use scene_effects, only: list_effects
-  use strategy, only: coupling_monolithic
   use text, only: string_t
   implicit none
   private
@@ -173,38 +172,6 @@ contains
     call diagnostics%add(where, 'PL8LS', '--fineness: the elements of this deck are written out: expected BLOCK or BODY ' &
                          //'cards alone, or 1 for elements along a line')
   end subroutine refuse_written_out
-
-  !> What drives the law of a body, or of its sides, must be there.
-  subroutine refuse_missing_drivers(draft, diagnostics)
-    type(draft_t), intent(in) :: draft
-    type(diagnostics_t), intent(inout) :: diagnostics
-    character(len=:), allocatable :: name
-    logical :: reported(size(draft%materials%words))
-    integer :: g, k
-
-    reported = .false.
-    do g = 1, size(draft%scene%groups)
-      name = missing_driver(draft%scene, draft%laws, g)
-      if (name /= '') call refuse(''': expected a field, or a state of another element, of that name on its body, found none')
-      if (name /= '' .or. draft%scene%strategy%coupling /= coupling_monolithic) cycle
-      name = driver_of_others(draft%scene, draft%laws, g)
-      if (name /= '') call refuse(''' of another element, which forms under the stress that it drives: SOLVE MONOLITHIC cannot '// &
-                                  'follow both; expected SOLVE ONCE, or a law that finds it by itself (TIME)')
-    end do
-
-  contains
-
-    subroutine refuse(why)
-      character(len=*), intent(in) :: why
-
-      do k = 1, size(reported)
-        if (draft%materials%item(k) /= draft%scene%groups(g)%material .or. reported(k)) cycle
-        reported(k) = .true.
-        call diagnostics%add(draft%materials%location(k), 'LAW', ''''//draft%materials%words(k)%s//''' is driven by '''//name//why)
-      end do
-    end subroutine refuse
-
-  end subroutine refuse_missing_drivers
 
   !> What is defined must be used. Words on cards of unknown keywords count as uses.
   subroutine refuse_unused_names(deck, draft, keywords, diagnostics)

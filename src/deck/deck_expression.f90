@@ -278,6 +278,7 @@ contains
     real(wp), intent(out) :: value
     character(len=:), allocatable :: whole, part, scale
     integer :: first, power, lead, status
+    character(len=*), parameter :: quotes = ' (a name that begins with a digit stands in quotes)'
 
     value = 0
     first = p%at
@@ -291,7 +292,8 @@ contains
     if (next_is(p, 'eEdD')) call read_scale(p, scale)
     if (len(whole) + len(part) == 0 .or. next_is(p, name_letters//'.')) then
       call take(p, name_letters//'.', part)
-      call stop_at(p, first, 'malformed number '''//p%s(first:p%at - 1)//'''')
+      call stop_at(p, first, 'malformed number '''//p%s(first:p%at - 1)//''''//trim(merge(quotes, repeat(' ', len(quotes)), &
+                                                                                        len(whole) > 0 .and. len(part) > 0)))
       return
     end if
     ! The power of ten is checked before the conversion, which would trap on an overflow.

@@ -20,7 +20,7 @@ module probes
     integer :: kind = 0
     !> Node kind: 1 = x, 2 = y, 3 = displacement x, 4 = displacement y. Reaction kind: 1 = x, 2 = y.
     integer :: quantity = 0
-    !> Field of the node kind that is not the displacement (position in the scene's list), 0 for this.
+    !> Field of nodes that is not the displacement (position in the scene's list), 0 for this or for the state.
     integer :: field = 0
     !> Nodes asked for (one for the node kind).
     integer, allocatable :: nodes(:)

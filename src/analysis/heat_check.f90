@@ -1,0 +1,239 @@
+!> What can be told of the heat of a deck before it runs: torches beside their bodies, dies beside sides, sides cooled twice, steels
+!> without hardness, austenite that is too cold.
+module heat_check
+  use contact_outlook, only: gaps_at_rest
+  use dies, only: is_deformable
+  use elem_weld_source, only: source_share
+  use fields, only: displacement_field, find_field
+  use hardness, only: has_hardness
+  use heat_contact_point, only: touching_still
+  use kinds, only: wp
+  use law_api, only: find_parameter, heat_law, law_t
+  use loads, only: by_convection
+  use scene, only: group_t, host_of, lacks_mesh, role_heat_contact, scene_t
+  use state_variables, only: find_variable
+  use steels, only: first_diffusive, kinetics_none, last_diffusive, martensite, phase_names, prop_hardness, steel_t
+  use temperature_curves, only: is_given
+  use text, only: string_t, to_text
+  use vectors, only: length_of
+  use weld_sources, only: power_in_plane
+  implicit none
+  private
+  public :: check_heat
+
+  !> A torch with less of half its ellipse in its bodies is not where it was meant to be, or the mesh too coarse for it.
+  real(wp), parameter :: expected_share = 0.9_wp
+  !> A side beside a die by less than this share of its length was meant to lie on it.
+  real(wp), parameter :: nearly = 0.05_wp
+
+contains
+
+  !> Lines of the table of places and dies, and warnings, one line each. Torches are not looked at where bodies have contours alone.
+  subroutine check_heat(scene, laws, table, warnings)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)                          !! (nlaw)
+    type(string_t), allocatable, intent(inout) :: table(:)      !! (nline)
+    type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning)
+    integer :: g
+
+    if (allocated(scene%sources) .and. .not. lacks_mesh(scene)) then
+      do g = 1, size(scene%sources)
+        call judge_torch(scene, g, warnings)
+      end do
+    end if
+    do g = 1, size(scene%groups)
+      call judge_start(scene, laws, g, warnings)
+      call judge_exchange(scene, g, warnings)
+    end do
+    call judge_hardness(scene, warnings)
+    if (scene%fields(displacement_field)%declared) return
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%role == role_heat_contact) call judge_heat_contact(scene, scene%groups(g), table, warnings)
+    end do
+  end subroutine check_heat
+
+  !> A body that begins as austenite below Ms: no temperature, or no phases, were given.
+  subroutine judge_start(scene, laws, g, warnings)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: g   !! number of the group
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    real(wp) :: coldest
+    integer :: f, k, v
+
+    associate (group => scene%groups(g))
+      if (group%material == 0) return
+      if (.not. allocated(scene%materials(group%material)%steel)) return
+      f = find_field(scene%fields, 'temperature')
+      v = find_variable(group%variables, 'austenite')
+      if (f == 0 .or. v == 0) return
+      if (.not. scene%fields(f)%declared .or. scene%fields(f)%given .or. group%variables(v)%initial < 1) return
+      coldest = scene%fields(f)%initial
+      if (allocated(scene%starts)) then
+        do k = 1, size(scene%starts)
+          if (scene%starts(k)%field /= f) cycle
+          if (len(scene%starts(k)%body) > 0 .and. scene%starts(k)%body /= scene%groups(host_of(scene, g))%name) cycle
+          coldest = minval(scene%starts(k)%values(pack(group%connectivity, .true.)))
+        end do
+      end if
+      associate (material => scene%materials(group%material), law => laws(scene%materials(group%material)%law_id))
+        if (law%kind /= heat_law) return
+        if (.not. coldest + material%values(find_parameter(law, 'ZERO')) < material%steel%ms) return
+        call add(warnings, group%name//': it begins as austenite at '//to_text(coldest, 4)//', below Ms of the steel ' &
+                 //material%steel%name//' ('//to_text(material%steel%ms, 4)//' degC): START T, or START PHASES')
+      end associate
+    end associate
+  end subroutine judge_start
+
+  !> A side that two cards of convection name: their exchanges add up.
+  subroutine judge_exchange(scene, g, warnings)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g   !! number of the group
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    integer :: k, s, n
+
+    if (.not. cools_side(scene%groups(g))) return
+    do k = 1, g - 1
+      if (.not. cools_side(scene%groups(k))) cycle
+      associate (here => scene%groups(g)%connectivity, there => scene%groups(k)%connectivity)
+        n = 0
+        do s = 1, size(here, 2)
+          if (any(there(1, :) == here(1, s) .and. there(3, :) == here(3, s))) n = n + 1
+        end do
+      end associate
+      if (n > 0) call add(warnings, scene%groups(g)%name//' and '//scene%groups(k)%name//': '//to_text(n) &
+                          //' sides of elements are on both, and have the sum of both exchanges')
+    end do
+  end subroutine judge_exchange
+
+  pure function cools_side(group) result(yes)
+    type(group_t), intent(in) :: group
+    logical :: yes
+
+    yes = group%exchange%kind == by_convection .and. group%die == 0 .and. size(group%connectivity, 1) == 3
+  end function cools_side
+
+  !> A probe of the hardness of a steel that has none, or none of a phase that may form.
+  subroutine judge_hardness(scene, warnings)
+    type(scene_t), intent(in) :: scene
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    character(len=:), allocatable :: without
+    logical :: told(size(scene%materials))
+    integer :: k
+
+    told = .false.
+    do k = 1, size(scene%probes)
+      associate (probe => scene%probes(k))
+        if (probe%group == 0) cycle
+        associate (group => scene%groups(probe%group))
+          if (group%material == 0) cycle
+          if (.not. allocated(scene%materials(group%material)%steel) .or. told(group%material)) cycle
+          if (find_variable(group%variables, 'hardness') == 0) cycle
+          if (probe%component /= group%variables(find_variable(group%variables, 'hardness'))%first) cycle
+          told(group%material) = .true.
+          associate (steel => scene%materials(group%material)%steel)
+            without = phases_without(steel)
+            if (.not. has_hardness(steel)) then
+              call add(warnings, 'probe '//probe%name//': the steel '//steel%name//' has no hardness, it is 0 throughout: rows ' &
+                       //'HV of its phases, or HARDN MAYNIER with a composition (COMPO)')
+            else if (without /= '') then
+              call add(warnings, 'probe '//probe%name//': the steel '//steel%name//' has no HV of'//without//': they count as 0')
+            end if
+          end associate
+        end associate
+      end associate
+    end do
+  end subroutine judge_hardness
+
+  !> Phases that may form and have no hardness.
+  pure function phases_without(steel) result(names)
+    type(steel_t), intent(in) :: steel
+    character(len=:), allocatable :: names
+    logical :: may_form
+    integer :: i
+
+    names = ''
+    if (steel%maynier) return
+    do i = first_diffusive, last_diffusive
+      may_form = steel%kinetics(i)%kind /= kinetics_none .or. steel%cct%n > 0
+      if (may_form .and. .not. is_given(steel%properties(prop_hardness, i))) names = names//' '//trim(phase_names(i))
+    end do
+    if (steel%beta > 0 .and. .not. is_given(steel%properties(prop_hardness, martensite))) names = names//' MARTENSITE'
+  end function phases_without
+
+  !> Heat to a die in a scene of heat alone: nothing moves, so what does not pass at the start never does.
+  subroutine judge_heat_contact(scene, group, table, warnings)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(string_t), allocatable, intent(inout) :: table(:), warnings(:)
+    real(wp), allocatable :: gap(:, :), over_side(:, :)
+    integer :: closed, beside
+
+    if (lacks_mesh(scene) .and. is_deformable(scene%dies(group%die))) return
+    call gaps_at_rest(scene, group, gap, over_side)
+    associate (limit => touching_still(group), die => scene%dies(group%die)%name)
+      closed = count(over_side <= limit)
+      beside = count(over_side > limit .and. over_side < nearly .and. gap > group%heat_contact%reach)
+      if (.not. any(gap < huge(1.0_wp))) then
+        call add(table, 'heat       '//group%name//': no side faces the die')
+        call add(warnings, group%name//': no side faces die '//die//', and no heat passes: a die is walked ' &
+                 //'with the part on the left (DIE)')
+        return
+      end if
+      call add(table, 'heat       '//group%name//': '//to_text(closed)//' of '//to_text(size(gap))//' points of sides lie on the ' &
+               //'die, least gap '//to_text(max(minval(gap), 0.0_wp), 3))
+      if (closed + beside == 0 .and. minval(gap) > group%heat_contact%reach) then
+        call add(warnings, group%name//': the least gap to die '//die//' is '//to_text(minval(gap), 3) &
+                 //', wider than REACH, and no heat passes')
+      else if (beside > 0) then
+        call add(warnings, group%name//': '//to_text(beside)//' of '//to_text(size(gap))//' points of sides are beside die '//die &
+                 //' by more than '//to_text(100*limit, 2)//' % of a side and beyond REACH: no heat passes there ' &
+                 //'(a finer ARC of the die, a finer mesh?)')
+      end if
+    end associate
+  end subroutine judge_heat_contact
+
+  !> A torch whose ellipsoid is not all in its bodies, or that goes far in a step.
+  subroutine judge_torch(scene, k, warnings)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: k   !! place in the scene's list
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    real(wp) :: share, least, time, at, way, axis
+    integer :: i, j
+    integer, parameter :: parts = 8
+
+    associate (source => scene%sources(k), path => scene%sources(k)%path)
+      axis = min(source%front, source%rear)
+      way = 0
+      if (source%crosses) way = source%speed*scene%strategy%largest_step
+      least = huge(least)
+      at = 0
+      do i = 1, size(path, 2)
+        do j = 1, parts
+          time = path(1, i)
+          if (i > 1) time = time - (path(1, i) - path(1, i - 1))*real(j - 1, wp)/parts
+          time = min(max(time, 0.0_wp), scene%strategy%end_time)
+          if (.not. power_in_plane(source, scene%multipliers, merge(source%crossing_time, time, source%crosses), 1.0_wp) > 0) cycle
+          share = source_share(scene, k, time)
+          if (share < least) at = time
+          least = min(share, least)
+        end do
+        if (i == 1 .or. source%crosses) cycle
+        way = max(way, length_of(path(2:3, i) - path(2:3, i - 1))/(path(1, i) - path(1, i - 1))*scene%strategy%largest_step)
+      end do
+    end associate
+    if (least < expected_share) call add(warnings, 'GOLDAK '//to_text(k)//': at time '//to_text(at, 3)//' only ' &
+      //to_text(100*least, 3)//' % of half its ellipse is found in its bodies, which take all of the power: it ends outside them ' &
+      //'(half a weld, of half the power, does), or elements are longer than its semi-axes')
+    if (way > axis) call add(warnings, 'GOLDAK '//to_text(k)//': it goes '//to_text(way/axis, 3) &
+      //' times its shorter semi-axis in the largest step (STRAT): the heat of single steps shows')
+  end subroutine judge_torch
+
+  subroutine add(list, line)
+    type(string_t), allocatable, intent(inout) :: list(:)
+    character(len=*), intent(in) :: line
+
+    list = [list, string_t(line)]
+  end subroutine add
+
+end module heat_check

@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+"""Heat treatment and hot processes against closed forms.
+
+usage: run_processes.py [-v] [-k]
+
+- `melting`: the one-phase problem of Stefan (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, 2nd ed., section 11.2) on
+  temperatures of 8 nodes with an interval of 0.01 K, and a square bar that freezes with a jump of the conductivity: no step is cut.
+- `bree`: a wall under tension whose one face is heated in cycles (J. Bree, J. Strain Analysis 2 (1967) 226-238). With X the tension
+  and Y the largest thermal stress over the yield stress, it shakes down at X = .6, Y = 1.5 (X + Y/4 < 1), and at Y = 2.5 it
+  grows by 2 Y (1 - 2 sqrt((1 - X)/Y)) times the yield strain in a cycle.
+- `waits`: a section before its torch comes, in which nothing moves yet: as few steps as elsewhere.
+- `probes`: the mean temperature of a body is the heat that it took up over its capacity; the extremes are those of its nodes.
+- `told`: warnings before a run.
+"""
+import json
+import math
+import os
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "patch"))
+from patch_support import Checks, Run  # noqa: E402
+
+STEEL = """STEEL  s
+SOURCE 'round numbers'
+EXPAND TOTAL 0
+PHASE  AUSTENITE
+   LAMBDA 50
+   RHOC   3.6
+   E      200000
+   NU     0.3
+   ALPHA  1.E-5
+   SY     200
+   ET     0
+END
+"""
+
+
+def law_file(checks):
+    """The steel of these decks, beside them."""
+    with open(os.path.join(checks.folder, "steel.met"), "w") as file:
+        file.write(STEEL)
+
+
+def last(run, name):
+    return run.history[name][-1]
+
+
+def summary(run):
+    with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+        return json.load(file)
+
+
+def melting(checks):
+    conductivity, capacity, latent, cold, end = 2.2, 1.9e6, 3.06e8, -20., 7200.
+    stefan = -cold*capacity/latent
+    low, high = 0., 1.
+    for _ in range(100):
+        front = 0.5*(low + high)
+        low, high = (front, high) if front*math.exp(front**2)*math.erf(front) < stefan/math.sqrt(math.pi) else (low, front)
+    ice = """LAW    ice HEATH
+   TEMP -50.
+   2.2 0.
+   TEMP -0.01
+   2.2 49.99*1.9E6
+   TEMP 0.
+   %s 49.99*1.9E6+3.06E8
+   TEMP 50.
+   %s 49.99*1.9E6+3.06E8+50.*%s
+"""
+    run = Run(checks, "melting", "TITLE ice\nSTATE PLSTN\nKINEM SMALL\nBLOCK slab PL8TM 9 ice\n   0. 0.   0.1 0.   0.1 0.01   0. 0.01\n"
+              "   20 1.   1 1.\n" + ice % ("2.2", "2.2", "1.9E6") + "START T 0.\nIMPOS slab 4 T cold\nLIC cold\n   0. -20.\n"
+              "STRAT 1. 0.001 60. 6 3\nSTOP 7200.\nPROBE a NODE T 0.01 0.\nPROBE b NODE T 0.03 0.\nEND\n")
+    if run.ok:
+        for name, x in (("a", 0.01), ("b", 0.03)):
+            share = math.erf(x/2/math.sqrt(conductivity/capacity*end))/math.erf(front)
+            checks.small(abs(last(run, name) - cold*(1 - share)), 0.1, f"melting: temperature at {x} [K]")
+        checks.that(last(run, "cutbacks") == 0, "melting: no step is cut")
+    run = Run(checks, "bar", "TITLE ice\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 9 ice\n   0. 0.   0.05 0.   0.05 0.05   0. 0.05\n"
+              "   4 1.   4 1.\n" + ice % ("0.55", "0.55", "4.2E6") + "START T 10.\nCONVE bar 2 3 H 200. TS -20.\n"
+              "STRAT 1. 0.001 100. 6 3\nSTOP 4000.\nEND\n")
+    if run.ok:
+        checks.that(last(run, "cutbacks") == 0, "bar that freezes: no step is cut")
+
+
+def bree(checks):
+    for hot, growth in ((300., 0.), (500., 2*2.5e-3*(1 - 2*math.sqrt(0.4/2.5)))):
+        run = Run(checks, f"bree-{hot:.0f}", f"TITLE Bree\nSTATE GPLSTN\nSECTN E FORCE 120.*0.02 load\nSECTN KX HELD\nSECTN KY HELD\n"
+                  "KINEM SMALL\nBLOCK wall PL8LS 4 steel\n   0. 0.   1. 0.   1. .02   0. .02\n   20 1.   1 1.\nLAW steel ARBTHMET\n"
+                  "   STEEL steel.met s\n   STRESS 1.\nADDEL wall PL8TM hot\nLAW hot META\n   STEEL steel.met s\n   ENERGY 1.\nSTART T 0.\n"
+                  "FIXED wall 4 X\nFIXED wall 1 Y\nIMPOS wall 4 T zero\nIMPOS wall 2 T cycle " + f"{hot}\n"
+                  "LIC zero\n   0. 0.\nLIC load\n   0. 0. 1. 1.\nLIC cycle\n   0. 0. 10. 0. 20. 1. 30. 0. 40. 1. 50. 0. 60. 1.\n"
+                  "STRAT 0.5 1.E-4 2. 5 3\nEND\n")
+        if not run.ok:
+            continue
+        at = dict(zip((round(t, 6) for t in run.history["time"]), run.history["section_strain"]))
+        checks.small(abs(at[60.] - at[40.] - growth)/5e-4, 5e-3, f"Bree, {hot:.0f} K: growth in a cycle")
+
+
+def waits(checks):
+    run = Run(checks, "waits", "TITLE torch\nSTATE GPLSTN\nSECTN E FREE\nSECTN KX HELD\nSECTN KY FREE\nKINEM SMALL\n"
+              "BLOCK plate PL8LS 4 steel\n   0. 0.   20. 0.   20. 6.   0. 6.\n   8 4.   2 1.\nLAW steel ARBTHMET\n   STEEL steel.met s\n"
+              "   STRESS 1.\nADDEL plate PL8TM hot BILINEAR\nLAW hot META\n   STEEL steel.met s\n   ENERGY 1.\nSTART T 20.\n"
+              "FIXED plate 4 X\nFIXED POINT 20. 0. Y\nCONVE plate 1 2 H 0.02 TS 20.\n"
+              "GOLDAK plate P 1.E6 on ETA 0.8 FRONT 4. REAR 8. WIDTH 3. DEPTH 3. INTO 0. -1. CROSS 6. 2.\n   0. 0. 6.\nLIC on\n   0. 1.\n"
+              "STRAT 0.02 1.E-5 0.5 6 3\nSTOP 2.\nEND\n")
+    if run.ok:
+        checks.that(last(run, "step") < 120, "torch that is waited for: few steps")
+
+
+def probes(checks):
+    for option in ("", " BILINEAR"):
+        run = Run(checks, "probes" + option.strip(), f"TITLE ball\nSTATE AXISYM\nKINEM SMALL\nBLOCK ball PL8TM 9 steel{option}\n"
+                  "   0.5 0.   2. 0.   0. 2.   0. 0.5\n   3 1.   6 1.\n   SIDE 2 ARC 0. 0.\n   SIDE 4 ARC 0. 0.\nLAW steel HEAT\n   4. 4.\n"
+                  "START T 20.\nFLUX ball 2 Q 3.\nSTRAT 0.1 1.E-3 0.1 4 3\nSTOP 1.\nPROBE mean MEAN T ball\nPROBE most MAX T ball\n"
+                  "PROBE least MIN T ball\nPROBE skin NODE T 2. 0.\nPROBE bore NODE T 0.5 0.\nNORMS FORCE 1.E-12 DISPL 1.E-12\nEND\n")
+        if not run.ok:
+            continue
+        volume = 2*math.pi/3*(2**3 - 0.5**3)
+        checks.small(abs(last(run, "heat_stored")/(4*volume)/(last(run, "mean") - 20) - 1), 1e-3, f"{run.name}: mean temperature")
+        checks.that(last(run, "most") >= last(run, "skin") > last(run, "bore") >= last(run, "least") > 20, f"{run.name}: extremes")
+
+
+def told(checks):
+    steel = "STEEL s\nSOURCE 'round numbers'\nTEMPS MS 300\nMARTEN BETA 0.011\nPHASE ALL\n   LAMBDA 30\n   RHOC 4.5\nEND\n"
+    with open(os.path.join(checks.folder, "soft.met"), "w") as file:
+        file.write(steel)
+    run = Run(checks, "told", "TITLE told\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+              "   2 1.   2 1.\nLAW hot META\n   STEEL soft.met s\n   ENERGY 1.\nCONVE bar 2 H 1. TS 20.\nCONVE bar 2 3 H 1. TS 20.\n"
+              "PROBE h MEAN hardness bar\nSTRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
+    if run.ok:
+        warnings = summary(run)["warnings"]
+        for words in ("bar: it begins as austenite at 0, below Ms of the steel s (300 degC)", "2 sides of elements are on both",
+                      "the steel s has no hardness"):
+            checks.that(sum(words in line["text"] for line in warnings) == 1, f"told: {words}", warnings)
+
+
+if __name__ == "__main__":
+    all_checks = Checks()
+    law_file(all_checks)
+    for case in (melting, bree, waits, probes, told):
+        case(all_checks)
+    sys.exit(all_checks.end())
