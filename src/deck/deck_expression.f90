@@ -276,9 +276,8 @@ contains
   subroutine read_number(p, value)
     type(parser_t), intent(inout) :: p
     real(wp), intent(out) :: value
-    character(len=:), allocatable :: whole, part, scale
+    character(len=:), allocatable :: whole, part, scale, hint
     integer :: first, power, lead, status
-    character(len=*), parameter :: quotes = ' (a name that begins with a digit stands in quotes)'
 
     value = 0
     first = p%at
@@ -292,8 +291,11 @@ contains
     if (next_is(p, 'eEdD')) call read_scale(p, scale)
     if (len(whole) + len(part) == 0 .or. next_is(p, name_letters//'.')) then
       call take(p, name_letters//'.', part)
-      call stop_at(p, first, 'malformed number '''//p%s(first:p%at - 1)//''''//trim(merge(quotes, repeat(' ', len(quotes)), &
-                                                                                        len(whole) > 0 .and. len(part) > 0)))
+      hint = ''
+      ! more than one letter: a name of a steel, such as 42CrMo4, rather than a number
+      if (len(whole) > 0 .and. len(part) > 1 .and. scan(part, '.') == 0) &
+        hint = ' (a name that begins with a digit stands in quotes)'
+      call stop_at(p, first, 'malformed number '''//p%s(first:p%at - 1)//''''//hint)
       return
     end if
     ! The power of ten is checked before the conversion, which would trap on an overflow.

@@ -103,7 +103,7 @@ contains
         s = trial
       end if
       accepted = manner%whole .or. any(abs(missing) > 0) .or. (norm < real_fall*norm0 .and. .not. manner%exactly)
-      if (.not. ascent) accepted = accepted .or. abs(slope) <= enough*slope0  &
+      if (.not. ascent) accepted = accepted .or. abs(slope) <= enough*slope0 &
                                       .or. (k == 1 .and. norm < norm0 .and. .not. manner%exactly)
       if (accepted) then
         s = trial
