@@ -172,7 +172,8 @@ contains
     group%name = ''
     group%elem = elem
     group%elem_id = find_elem(draft%elems, elem)
-    group%role = draft%elems(group%elem_id)%role
+    ! a program of fewer elements refuses the card: no body has the field that it acts on
+    if (group%elem_id > 0) group%role = draft%elems(group%elem_id)%role
     allocate (group%variables(0))
   end subroutine start_group
 

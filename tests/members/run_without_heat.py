@@ -78,6 +78,10 @@ def main():
               f"{sum(part['calls'] for part in effects.values()):8d}")
     checks.that(run(OTHER, os.path.join(SOURCE, "decks", "stefan", "stefan.lag"), checks.path("stefan")) == INPUT,
                 "the other solver knows no heat")
+    with open(checks.path("card.lag"), "w", encoding="utf-8") as file:
+        file.write("TITLE card\nSTATE PLSTN\nKINEM SMALL\nBLOCK a PL8LS 4 m\n   0. 0.   1. 0.   1. 1.   0. 1.\n   1 1.   1 1.\n"
+                   "LAW m ELA\n   1. 0.\nCONVE a 2 H 1. TS 20.\nHEATS a Q 1.\nSTRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
+    checks.that(run(OTHER, checks.path("card.lag"), checks.path("card")) == INPUT, "cards of heat are refused by it")
     checks.end()
 
 
