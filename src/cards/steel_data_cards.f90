@@ -4,7 +4,7 @@ module steel_data_cards
   use kinds, only: wp
   use steel_curves, only: read_curve
   use steel_mechanics_cards, only: check_range
-  use steels, only: austenite, element_names, martensite, bainite, phase_count, phase_names, prop_content, prop_rhoc, &
+  use steels, only: austenite, el_c, element_names, martensite, bainite, phase_count, phase_names, prop_content, prop_rhoc, &
                     prop_strain, property_count, property_names, property_units, steel_t, unknown_temperature
   use temperature_curves, only: curve_table, is_given, temperature_curve_t
   use text, only: string_t
@@ -15,6 +15,8 @@ module steel_data_cards
 
   !> No steel is colder or hotter [degC].
   real(wp), parameter :: coldest = -273.15_wp, hottest = 2000.0_wp
+  !> Cast iron has 4 or 5 per cent of carbon, and no steel as much; half an alloy of iron is iron [mass per cent].
+  real(wp), parameter :: most_carbon = 5.0_wp, most_alloy = 50.0_wp
 
 contains
 
@@ -50,7 +52,8 @@ contains
       if (i == 0) return
       if (given(i)) call cursor%fail(words(i)%s//' is given twice')
       given(i) = .true.
-      call cursor%real('the content of '//words(i)%s, steel%composition%w(i), lower=0.0_wp, upper=50.0_wp, unit='mass per cent')
+      call cursor%real('the content of '//words(i)%s, steel%composition%w(i), lower=0.0_wp, &
+                       upper=merge(most_carbon, most_alloy, i == el_c), unit='mass per cent')
       if (.not. cursor%more()) exit
     end do
     steel%composition%given = .true.

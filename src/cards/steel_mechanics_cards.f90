@@ -3,9 +3,10 @@ module steel_mechanics_cards
   use deck_cursor, only: cursor_t
   use kinds, only: wp
   use steel_curves, only: read_curve
-  use steels, only: expansion_incremental, expansion_total, plasticity_names, prop_alpha, prop_consistency, prop_hardening, &
-                    prop_hardness, prop_memory, prop_modulus, prop_plasticity, prop_poisson, prop_rate, prop_rise, &
-                    prop_saturation, prop_softening, prop_strain, prop_yield, prop_young, property_names, steel_t
+  use steels, only: expansion_incremental, expansion_total, plasticity_names, prop_alpha, prop_consistency, &
+                    prop_content, prop_hardening, prop_hardness, prop_lambda, prop_latent, prop_memory, prop_modulus, &
+                    prop_plasticity, prop_poisson, prop_rate, prop_rhoc, prop_rise, prop_saturation, prop_softening, &
+                    prop_strain, prop_yield, prop_young, property_names, property_units, steel_t
   use temperature_curves, only: curve_polynomial, curve_table, temperature_curve_t
   use text, only: string_t, to_text
   implicit none
@@ -62,6 +63,31 @@ contains
     if (.not. fits) call cursor%fail('the weight must be a TABLE that grows from 0 0 to 1 1')
   end subroutine read_weight
 
+  !> More than any metal has, by a factor of ten or so: numbers in other units are refused. They are fixed in a file of steels.
+  pure function most_of(property) result(most)
+    integer, intent(in) :: property
+    real(wp) :: most   !! [unit of the property]
+
+    select case (property)
+    case (prop_lambda)
+      most = 5.0e3_wp
+    case (prop_rhoc)
+      most = 100.0_wp
+    case (prop_content, prop_latent)
+      most = 1.0e6_wp
+    case (prop_hardness)
+      most = 2.0e4_wp
+    case (prop_young)
+      most = 1.0e7_wp
+    case (prop_yield)
+      most = 1.0e5_wp
+    case (prop_alpha)
+      most = 1.0e-3_wp
+    case default
+      most = huge(most)
+    end select
+  end function most_of
+
   !> A property that has a range must be within it, where it is a number or a table.
   subroutine check_range(cursor, property, curve)
     type(cursor_t), intent(inout) :: cursor
@@ -95,7 +121,13 @@ contains
     case (prop_strain)
       worst = maxval(abs(curve%v))
       if (.not. worst < 0.1_wp) call fail('must be below 0.1 in size')
+    case (prop_lambda, prop_rhoc)
+      worst = minval(curve%v)
+      if (.not. worst > 0) call fail('must be above 0')
     end select
+    if (cursor%failed()) return
+    worst = maxval(abs(curve%v))
+    if (worst > most_of(property)) call fail('is in '//trim(property_units(property))//', at most '//to_text(most_of(property)))
 
   contains
 
