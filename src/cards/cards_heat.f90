@@ -180,7 +180,7 @@ contains
     multiplier = 0
     if (.not. cursor%more()) return
     do k = 1, size(words)
-      if (cursor%peek_word() == words(k)%s) return
+      if (cursor%peek_name() == words(k)%s) return
     end do
     call draft%multipliers%find(cursor, 'the name of a LIC', k)
     if (k > 0) multiplier = draft%multipliers%item(k)

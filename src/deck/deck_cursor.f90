@@ -40,6 +40,7 @@ module deck_cursor
     procedure :: text => read_text
     procedure :: more
     procedure :: peek_word
+    procedure :: peek_name
     procedure :: next_is_number
     procedure :: end_row
     procedure :: more_rows
@@ -234,15 +235,22 @@ contains
     class(cursor_t), intent(in) :: self
     character(len=:), allocatable :: word
 
-    word = ''
+    word = upper_case(self%peek_name())
+  end function peek_word
+
+  !> The same as it is written.
+  pure function peek_name(self) result(name)
+    class(cursor_t), intent(in) :: self
+    character(len=:), allocatable :: name
+
+    name = ''
     if (.not. self%more()) return
     if (self%row == 0) then
-      if (.not. self%card%head%fields(self%field + 1)%numeric) word = upper_case(self%card%head%fields(self%field + 1)%text)
+      if (.not. self%card%head%fields(self%field + 1)%numeric) name = self%card%head%fields(self%field + 1)%text
     else
-      if (.not. self%card%rows(self%row)%fields(self%field + 1)%numeric) &
-        word = upper_case(self%card%rows(self%row)%fields(self%field + 1)%text)
+      if (.not. self%card%rows(self%row)%fields(self%field + 1)%numeric) name = self%card%rows(self%row)%fields(self%field + 1)%text
     end if
-  end function peek_word
+  end function peek_name
 
   pure function next_is_number(self) result(yes)
     class(cursor_t), intent(in) :: self
