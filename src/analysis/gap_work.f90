@@ -15,6 +15,7 @@ module gap_work
   use held_depth, only: soft_depth
   use kinds, only: wp
   use law_api, only: contact_open
+  use parabolas, only: tangent_on
   use plane_vectors, only: turned
   use quadrature, only: line_rule
   use scene, only: group_t, role_contact, scene_t
@@ -100,9 +101,8 @@ contains
       if (.not. opens(old(at_status), now(at_status))) return
       associate (group => scene%groups(g), side_of => x(:, :3, e))
         call line3(place, phi, dphi)
-        tangent = matmul(side_of, dphi)
-        tangent = tangent/length_of(tangent)
-        ! walking along the side the part is on the left: the inner normal of the die is on the right, its tangent goes the same way
+        tangent = tangent_of_die(scene, solution, group, old, matmul(side_of, dphi))
+        ! walking along the die the part is on the left: the inner normal of the die is on the right
         traction = old(at_pressure)*[tangent(2), -tangent(1)] + old(at_tau)*tangent
         side = side_length(scene, group%connectivity(:, e))
         penalty = penalties(scene%materials(group%material), group%modulus, side)
@@ -114,6 +114,34 @@ contains
     end subroutine add_point
 
   end subroutine work_of_group
+
+  !> Unit tangent of a die where a point of a side lay on it at the start of the step: pressure and friction act along its normal
+  !> and along it. At the end of a piece, where the normal may be any, that of the side.
+  pure function tangent_of_die(scene, solution, group, state, along_side) result(tangent)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: state(:)        !! (nstate) of the point at the start of the step [unit of each component]
+    real(wp), intent(in) :: along_side(2)   !! tangent of the side there, the part on the left [length]
+    real(wp) :: tangent(2), angle
+    integer :: piece
+
+    piece = nint(state(at_piece))
+    tangent = along_side
+    if (piece > 0 .and. abs(state(at_xi)) < 1) then
+      associate (die => scene%dies(group%die), u => solution%fields(displacement_field), pilots => solution%fields(pilot_field))
+        if (is_deformable(die)) then
+          associate (nodes => die%nodes(:, piece))
+            tangent = tangent_on(scene%mesh%coordinates(:, nodes) + u%value(:, nodes) - u%last_increment(:, nodes), state(at_xi))
+          end associate
+        else
+          angle = pilots%value(3, group%die) - pilots%last_increment(3, group%die)
+          tangent = turned(tangent_on(die%pieces(:, :, piece), state(at_xi)), angle)
+        end if
+      end associate
+    end if
+    tangent = tangent/length_of(tangent)
+  end function tangent_of_die
 
   !> Motion in the step of the place of a die that a point of a side lay on.
   pure function motion_of_die(scene, solution, group, state, x) result(motion)

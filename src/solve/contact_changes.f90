@@ -11,7 +11,7 @@ module contact_changes
   use state_variables, only: find_variable
   implicit none
   private
-  public :: contact_set, note_contact, loses_a_die
+  public :: contact_set, has_left, note_contact, loses_a_die
 
 contains
 
@@ -43,19 +43,45 @@ contains
     end do
   end function loses_a_die
 
+  !> Of the points and corners that touched this die at the start of the step more than half do not in the trial state.
+  pure function has_left(scene, solution, die) result(left)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: die
+    logical :: left
+    integer :: g, before, now
+
+    before = 0
+    now = 0
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%die /= die .or. scene%groups(g)%material == 0) cycle
+      before = before + touching(scene%groups(g), solution%groups(g)%committed)
+      now = now + touching(scene%groups(g), solution%groups(g)%trial)
+    end do
+    left = 2*now < before
+  end function has_left
+
   !> A point or a corner of a group of contact is closed in this state.
   pure function touches(group, state)
     type(group_t), intent(in) :: group
     real(wp), intent(in) :: state(:, :, :)   !! (component, point, element)
     logical :: touches
 
-    associate (variables => group%variables)
-      touches = any(nint(state(variables(find_variable(variables, 'contact_status'))%first, :, :)) /= contact_open)
-      if (find_variable(variables, 'corner_place') == 0) return
-      touches = touches .or. &
-                any(nint(state(variables(find_variable(variables, 'corner_contact_status'))%first, :, :)) /= contact_open)
-    end associate
+    touches = touching(group, state) > 0
   end function touches
+
+  !> Points and corners of a group of contact that are closed in this state.
+  pure function touching(group, state) result(n)
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: state(:, :, :)   !! (component, point, element)
+    integer :: n
+
+    associate (variables => group%variables)
+      n = count(nint(state(variables(find_variable(variables, 'contact_status'))%first, :, :)) /= contact_open)
+      if (find_variable(variables, 'corner_place') == 0) return
+      n = n + count(nint(state(variables(find_variable(variables, 'corner_contact_status'))%first, :, :)) /= contact_open)
+    end associate
+  end function touching
 
   !> Status of all points and corners in the trial state, one after the other: open, stick, slip; slip backwards is negative.
   pure function contact_set(scene, solution) result(set)

@@ -4,19 +4,25 @@
 !> motion, and only the onset of it is kept: the matrix there (loading, with the contacts of now)
 !> spreads the rest. A body that nothing holds starts at rest (resting_bodies). What prescribed unknowns
 !> still miss is left for the first iteration to spread.
+!>
+!> Where a die turns back the step starts a little way back along that motion: the matrix there is that of unloading.
+!>
+!> The first iteration takes contacts as they are: a die that withdraws would pull the part along, by more than it can bear. Where
+!> most points that touched such a die do not after it, the step starts again so, with the die where it goes: contact is then open,
+!> and the part springs back from its own forces.
 module predictor
   use dofs, only: dofs_t, prescribed_motion
   use elem_api, only: block_done, report_t
   use equations, only: equations_t
   use evaluation, only: evaluate
-  use fields, only: field_t
+  use fields, only: field_t, pilot_field
   use kinds, only: wp
   use resting_bodies, only: leave_at_rest
   use scene, only: scene_t
   use solution, only: solution_t
   implicit none
   private
-  public :: predict, proportion
+  public :: predict, proportion, withdrawing_dies
 
   !> Change of penetration, as a share of the side, below which contact goes on as before.
   real(wp), parameter :: smooth_contact = 2.0e-3_wp
@@ -28,7 +34,7 @@ module predictor
 contains
 
   !> Start `du` and what prescribed unknowns miss of their motion; forces and matrices are evaluated there.
-  subroutine predict(scene, equations, solution, dt, given, go_on, du, missing, report)
+  subroutine predict(scene, equations, solution, dt, given, go_on, du, missing, report, left)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -37,7 +43,8 @@ contains
     logical, intent(in), optional :: go_on       !! start from `given` for the own unknowns too
     real(wp), intent(out) :: du(:), missing(:)   !! (ndof) [unknown]
     type(report_t), intent(out) :: report
-    logical :: fixed(size(du))
+    logical, intent(in), optional :: left(:)     !! (ndie) dies that leave the part: they start where they go
+    logical :: fixed(size(du)), at_place(size(du)), back
     real(wp) :: motion(size(equations%dofs%prescribed))
     real(wp) :: ratio
     integer :: k
@@ -46,13 +53,24 @@ contains
                            solution%time + dt, motion)
     fixed = .not. equations%solves(equations%now)%is_own
     if (present(go_on)) fixed = fixed .or. go_on
+    at_place = .false.
+    if (present(left)) then
+      associate (pilot => equations%dofs%fields(pilot_field)%number)
+        do k = 1, size(left)
+          if (left(k)) at_place(pack(pilot(:, k), pilot(:, k) > 0)) = .true.
+        end do
+      end associate
+    end if
     ratio = 0
     if (solution%last_step > 0) ratio = dt/solution%last_step
+    back = present(left)
+    if (.not. back .and. ratio > 0) back = turns_back()
+    if (back) ratio = -onset*ratio
     call start_from(ratio)
-    if (report%status == block_done .and. report%event >= 1 .and. report%jump > smooth_contact) then
+    if (.not. back .and. report%status == block_done .and. report%event >= 1 .and. report%jump > smooth_contact) then
       call start_from(onset*ratio)
     end if
-    if (report%status /= block_done .and. ratio > 0) then
+    if (report%status /= block_done .and. abs(ratio) > 0) then
       call start_from(0.0_wp)
     end if
 
@@ -69,6 +87,24 @@ contains
 
   contains
 
+    !> A die goes the other way than in the last step.
+    function turns_back()
+      logical :: turns_back, reversed(size(du))
+      real(wp) :: before(size(du))
+      integer :: i
+
+      call proportion(equations%dofs, solution%fields, ratio, before)
+      reversed = .false.
+      do i = 1, size(motion)
+        associate (d => equations%dofs%prescribed(i)%dof)
+          reversed(d) = motion(i)*before(d) < 0
+        end associate
+      end do
+      associate (pilot => equations%dofs%fields(pilot_field)%number)
+        turns_back = any(reversed(pack(pilot, pilot > 0)))
+      end associate
+    end function turns_back
+
     !> Evaluate at the last motion times a share; what is given is taken as it is.
     subroutine start_from(share)
       real(wp), intent(in) :: share
@@ -78,12 +114,33 @@ contains
                          equations%resting)
       if (present(given)) du = merge(given, du, fixed)
       do k = 1, size(motion)
-        if (equations%dofs%prescribed(k)%history > 0) du(equations%dofs%prescribed(k)%dof) = motion(k)
+        associate (p => equations%dofs%prescribed(k))
+          if (p%history > 0 .or. at_place(p%dof)) du(p%dof) = motion(k)
+        end associate
       end do
       call evaluate(scene, equations, solution, dt, du, .true., report, predicted=.true.)
     end subroutine start_from
 
   end subroutine predict
+
+  !> Dies that the forces on the part help to move on: what their pilots miss of the motion of the step goes away from the part.
+  pure function withdrawing_dies(equations, missing) result(withdrawing)
+    type(equations_t), intent(in) :: equations   !! with the forces of the prediction
+    real(wp), intent(in) :: missing(:)           !! (ndof) [unknown]
+    logical :: withdrawing(size(equations%dofs%fields(pilot_field)%number, 2))   !! (ndie)
+    real(wp) :: work
+    integer :: c, k
+
+    associate (pilot => equations%dofs%fields(pilot_field)%number)
+      do k = 1, size(pilot, 2)
+        work = 0
+        do c = 1, size(pilot, 1)
+          if (pilot(c, k) > 0) work = work + equations%force(pilot(c, k))*missing(pilot(c, k))
+        end do
+        withdrawing(k) = work < 0
+      end do
+    end associate
+  end function withdrawing_dies
 
   !> The last accepted motion of all unknowns times `ratio`.
   pure subroutine proportion(dofs, fields, ratio, du)

@@ -209,6 +209,18 @@ def released(checks):
     return worst
 
 
+def lifts_off(checks):
+    """A die that presses a billet goes back at once or after a while, by half its way or far beyond it: no step is cut."""
+    cuts = 0
+    for k, way in enumerate(("1.05 -2.5", "1.05 20.", "1.1 -3. 1.2 2.")):
+        for name, law in (("slip", PLASTIC), ("stick", PLASTIC.replace("PHI 0.2", "M 0.9 AUGMENT 10"))):
+            cuts += report(checks.run(f"lifts-off-{k}-{name}", deck(
+                "PLSTN", "LOG", block("0. 0. 10. 0. 10. 15. 0. 15.", "5 1. 7 1."), law,
+                "FIXED b 1 Y\nFIXED b 4 X\nDIE d PILOT 0. 15.\n SEGM 30. 15. -5. 15.\nCNT2D b 2 3 d k\nMOVE d Y go\n"
+                f"LIC go\n 0. 0. 1. -3. {way}\n", "STRAT 0.02 1.E-6 0.05 6 3")))["cutbacks"]
+    return cuts
+
+
 def past_the_end(checks):
     """A block under a weight dragged over the open end of its table and back: it stays whole, and the force is friction's."""
     run = checks.run("past-the-end", deck(
@@ -365,7 +377,8 @@ CASES = (
     Case("middle nodes off centre", off_centre, 1e-9), Case("change of units", units, 1e-9), Case("threads", threads, 0.0),
     Case("steps far too long", long_steps, 0.02), Case("mirror image", mirrored, 1e-7),
     Case("held by friction alone", friction_alone, 1e-2), Case("contact again", contact_again, 0.01),
-    Case("released and pressed again", released, 1e-9), Case("past a die's end", past_the_end, 1e-2),
+    Case("released and pressed again", released, 1e-9), Case("lifts off", lifts_off, 0),
+    Case("past a die's end", past_the_end, 1e-2),
     Case("stick-slip reversal", stick_slip, 1e-3),
     Case("bent round a pin", round_a_pin, 0.25), Case("bent between three rollers", three_point_bending, 0.2),
     Case("blank under a holder", under_a_holder, 1e-4),
