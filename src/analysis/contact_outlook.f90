@@ -14,17 +14,20 @@ module contact_outlook
   use vectors, only: length_of
   implicit none
   private
-  public :: look_at_contact, moves, gaps_at_rest, outlook_t
+  public :: lies_on, look_at_contact, moves, gaps_at_rest, outlook_t
 
   !> Instants at which a moving die is looked at.
   integer, parameter :: ninstant = 50
+  !> A die lies on a side where it is no farther off, or deeper in it, than this share of the side.
+  real(wp), parameter :: lies_on = 1.0e-6_wp
 
   type :: outlook_t
     !> A side has a closest point on the die at the start, at the end of the die's motion.
     logical :: faces = .false., faces_at_end = .false.
     !> Depth of the deepest node at the start, below 0 for a gap; and over the length of its side.
     real(wp) :: depth = 0.0_wp, over_side = 0.0_wp
-    !> First instant at which a node is in the die; below 0 where none is.
+    !> First instant at which a node is in the die; below 0 where none is, or where sides lie on it at the start and it never
+    !> presses them.
     real(wp) :: first = -1.0_wp
     !> Sides whose element lies in the die's body, of those that have a closest point.
     integer :: inside = 0, seen = 0
@@ -39,7 +42,7 @@ contains
     type(outlook_t), intent(out) :: outlook
     real(wp), allocatable :: sides(:, :, :), behind(:, :)
     real(wp) :: depth, over_side, time, reach
-    logical :: faces
+    logical :: faces, pressed
     integer :: k
 
     associate (die => scene%dies(group%die))
@@ -51,11 +54,14 @@ contains
       outlook%faces_at_end = outlook%faces
       if (outlook%faces .and. outlook%depth >= 0) outlook%first = 0
       if (.not. moves(scene, group%die)) return
+      pressed = .false.
       do k = 1, ninstant
         time = scene%strategy%end_time*k/ninstant
         call deepest(sides, die, pilot_at(scene, group%die, time), reach, faces, depth, over_side)
+        pressed = pressed .or. (faces .and. over_side > lies_on)
         if (faces .and. depth >= 0 .and. outlook%first < 0) outlook%first = time
       end do
+      if (abs(outlook%over_side) < lies_on .and. faces .and. .not. pressed) outlook%first = -1
       outlook%faces_at_end = faces
     end associate
   end subroutine look_at_contact

@@ -1,12 +1,12 @@
 !> What can be told of a deck before it runs: how parts and dies stand to each other, and what is seldom meant.
 module physics_check
-  use contact_outlook, only: look_at_contact, moves, outlook_t
+  use contact_outlook, only: lies_on, look_at_contact, gaps_at_rest, moves, outlook_t
   use dies, only: is_deformable
   use fields, only: displacement_field
   use heat_check, only: check_heat
   use kinds, only: wp
   use law_api, only: driver_count, law_t
-  use scene, only: group_t, lacks_mesh, scene_t
+  use scene, only: group_t, lacks_mesh, role_heat_contact, role_side_load, role_volume_load, scene_t
   use supports, only: free_motions
   use text, only: string_t, to_text
   implicit none
@@ -61,7 +61,7 @@ contains
       return
     else if (.not. outlook%faces) then
       words = 'no side faces the die at the start'
-    else if (abs(outlook%over_side) < 1.0e-6_wp) then
+    else if (abs(outlook%over_side) < lies_on) then
       words = 'touches at the start'
     else if (outlook%depth > 0) then
       words = to_text(outlook%depth, 4)//' deep at the start'
@@ -101,16 +101,20 @@ contains
     end associate
   end subroutine judge_contact
 
-  !> Nothing but this die moves by what the deck gives.
+  !> Nothing but this die moves by what the deck gives: no other motion, no load, no heat.
   pure function alone(scene, die) result(yes)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: die
     logical :: yes
     integer :: k
 
-    yes = size(scene%die_forces) == 0
+    yes = size(scene%die_forces) == 0 .and. size(scene%forces) == 0 &
+          .and. .not. any(scene%groups%role == role_side_load .or. scene%groups%role == role_volume_load)
     do k = 1, size(scene%dies)
       if (k /= die) yes = yes .and. .not. moves(scene, k)
+    end do
+    do k = 1, size(scene%fields)
+      yes = yes .and. (scene%fields(k)%quantity == 'motion' .or. .not. scene%fields(k)%declared)
     end do
     do k = 1, size(scene%fixations)
       yes = yes .and. (scene%fixations(k)%multiplier == 0 .or. scene%fixations(k)%field /= displacement_field)

@@ -15,7 +15,7 @@ module run_deck
   use deck_check, only: as_warnings, check_deck, look_at_deck
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use errors, only: error_t, exit_done, exit_input, exit_remesh, exit_signal, fail
+  use errors, only: error_t, exit_done, exit_input, exit_no_convergence, exit_remesh, exit_signal, fail
   use exchange, only: read_state, write_checkpoint
   use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
   use judge_remesh, only: agreed_words
@@ -234,9 +234,9 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(run_facts_t) :: facts
     type(error_t), allocatable :: late
-    type(string_t), allocatable :: lines(:)
-    character(len=:), allocatable :: words
+    type(string_t), allocatable :: lines(:), late_warnings(:)
     real(wp) :: started, processor
+    integer :: told
 
     started = wall_seconds()
     processor = cpu_seconds()
@@ -262,6 +262,7 @@ contains
     call scene_lines(scene, lines)
     call list_lines(run%listing, lines)
     call look_at_deck(options, scene, lines, facts%warnings, error)
+    if (.not. allocated(error)) told = size(facts%warnings)
     if (options%progress .and. .not. (allocated(options%resume) .or. allocated(error))) &
       call print_lines(as_warnings(facts%warnings), error)
     if (allocated(error)) return
@@ -275,6 +276,7 @@ contains
     end if
     call march_to_end(scene, solution, run, error)
     call end_progress(run%listing)
+    if (allocated(error)) call add_warnings(facts%warnings, error)
 
     if (allocated(run%balance)) then
       if (run%balance%agreed) call add_text(facts%warnings, agreed_words(run%balance))
@@ -306,13 +308,48 @@ contains
       call print_lines(lines, late)
       ! scripts read first why a run has stopped
       if (allocated(late) .and. run%exit_code == exit_done) call move_alloc(late, error)
-    else if (options%progress .and. allocated(facts%closing%accuracy) .and. .not. allocated(error)) then
-      call accuracy_lines(facts%closing%accuracy, lines)
-      call print_lines(lines, error)
-      words = accuracy_warning(facts%closing%accuracy)
-      if (len(words) > 0 .and. .not. allocated(error)) call print_lines(as_warnings([string_t(words)]), error)
+    else if (options%progress .and. run%exit_code == exit_done .and. .not. allocated(error)) then
+      allocate (late_warnings, source=closing_warnings(lines, facts%warnings(:told)))
+      if (allocated(facts%closing%accuracy)) then
+        call accuracy_lines(facts%closing%accuracy, lines)
+        call print_lines(lines, error)
+      end if
+      if (.not. allocated(error)) call print_lines(late_warnings, error)
     end if
   end subroutine run_and_report
+
+  !> Warnings among the lines of the summary that were not printed before the run.
+  pure function closing_warnings(lines, before) result(list)
+    type(string_t), intent(in) :: lines(:)    !! (nline) of the summary
+    type(string_t), intent(in) :: before(:)   !! (nwarning) of the deck
+    type(string_t), allocatable :: list(:)
+    integer :: k, j
+
+    allocate (list(0))
+    do k = 1, size(lines)
+      if (index(lines(k)%s, 'WARNING: ') == 0) cycle
+      do j = 1, size(before)
+        if (index(lines(k)%s, before(j)%s) > 0) exit
+      end do
+      if (j > size(before)) call add_text(list, trim(adjustl(lines(k)%s)))
+    end do
+  end function closing_warnings
+
+  !> What was seen of the deck before the run may be why it cannot go on.
+  pure subroutine add_warnings(warnings, error)
+    type(string_t), intent(in) :: warnings(:)   !! (nwarning) of the deck
+    type(error_t), intent(inout) :: error
+    character(len=:), allocatable :: words
+    integer :: k
+
+    if (error%code /= exit_no_convergence .or. size(warnings) == 0) return
+    words = 'WARNING before the run: '//warnings(1)%s
+    do k = 2, size(warnings)
+      words = words//'; '//warnings(k)%s
+    end do
+    if (allocated(error%advice)) words = words//'; '//error%advice
+    error%advice = words
+  end subroutine add_warnings
 
   !> What a run of a deck with ACCURACY or REMSH has cost, over all its meshes; and what one with ACCURACY that has come to its end
   !> has reached. A warning where that is less than asked.

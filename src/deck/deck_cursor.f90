@@ -322,7 +322,12 @@ contains
     self%row = self%row + 1
     self%field = 0
     call self%take('', field)
-    if (.not. self%silent) call self%expected('no more data rows', field)
+    if (self%silent) return
+    if (len(field%text) > 2 .and. verify(field%text, 'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789') == 0 .and. .not. field%numeric) then
+      call self%expected('no more data rows', field, '; should it be a card, it begins in column 1')
+    else
+      call self%expected('no more data rows', field)
+    end if
   end subroutine end_card
 
   !> A mistake of the caller's own finding, at the field last read.

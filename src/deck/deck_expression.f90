@@ -59,7 +59,13 @@ contains
     p%placed = present(place)
     if (present(place)) p%place = place
     call read_sum(p, parameters, value)
-    if (.not. p%failed .and. p%at <= len(p%s)) call expected(p, 'an operator')
+    if (.not. p%failed .and. p%at <= len(p%s)) then
+      if (p%s(p%at:p%at) == ',') then
+        call expected(p, 'a decimal point or an operator')
+      else
+        call expected(p, 'an operator')
+      end if
+    end if
     failed = p%failed
     message = p%message
     position = p%failed_at

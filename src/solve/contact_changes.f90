@@ -11,7 +11,7 @@ module contact_changes
   use state_variables, only: find_variable
   implicit none
   private
-  public :: contact_set, has_left, note_contact, loses_a_die
+  public :: contact_set, note_contact, loses_a_die, touching_dies
 
 contains
 
@@ -43,23 +43,21 @@ contains
     end do
   end function loses_a_die
 
-  !> Of the points and corners that touched this die at the start of the step more than half do not in the trial state.
-  pure function has_left(scene, solution, die) result(left)
+  !> Points and corners of all groups that touch each die in the trial state.
+  pure function touching_dies(scene, solution) result(n)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
-    integer, intent(in) :: die
-    logical :: left
-    integer :: g, before, now
+    integer :: n(size(scene%dies))   !! (ndie)
+    integer :: g
 
-    before = 0
-    now = 0
+    n = 0
     do g = 1, size(scene%groups)
-      if (scene%groups(g)%die /= die .or. scene%groups(g)%material == 0) cycle
-      before = before + touching(scene%groups(g), solution%groups(g)%committed)
-      now = now + touching(scene%groups(g), solution%groups(g)%trial)
+      if (scene%groups(g)%die == 0 .or. scene%groups(g)%material == 0) cycle
+      associate (die => scene%groups(g)%die)
+        n(die) = n(die) + touching(scene%groups(g), solution%groups(g)%trial)
+      end associate
     end do
-    left = 2*now < before
-  end function has_left
+  end function touching_dies
 
   !> A point or a corner of a group of contact is closed in this state.
   pure function touches(group, state)

@@ -5,7 +5,7 @@
 !> `displacement_norm` of the motion of the step.
 module newton
   use augmentations, only: augment, augmentations_t, begin_augmentations, go_back, put_back
-  use contact_changes, only: contact_set, has_left, note_contact
+  use contact_changes, only: contact_set, note_contact, touching_dies
   use contact_heat_tangent, only: follow_contact
   use convergence, only: heat_in_balance, pilots_in_equilibrium, relative_motion, relative_residual, weigh_quantities
   use corrections, only: solve_correction
@@ -24,7 +24,7 @@ module newton
   use linear_solver, only: return_to_chosen
   use line_search, only: manner_t, search_along
   use path_record, only: path_step_t
-  use predictor, only: predict, withdrawing_dies
+  use predictor, only: leaving_dies, predict, work_of_dies
   use scene, only: scene_t
   use solution, only: solution_t
   use text, only: to_text
@@ -82,7 +82,9 @@ contains
     type(manner_t) :: manner
     type(report_t) :: report
     integer, allocatable :: contact(:)
-    logical, allocatable :: held(:, :), left_by(:)
+    logical, allocatable :: held(:, :)
+    integer :: touched(size(scene%dies))
+    real(wp) :: work(size(scene%dies))
     logical :: changed, followed, again, steep
     integer :: first
 
@@ -158,13 +160,15 @@ contains
         manner%whole = .true.
         if (in_circles(outcome%history(first:))) correction = 0.5_wp*correction
       end if
-      left_by = withdrawing_dies(equations, missing)
+      if (any(abs(missing) > 0)) then
+        touched = touching_dies(scene, solution)
+        work = work_of_dies(equations, missing)
+      end if
       ! between the two states contact may be as in neither
       if (goes_to_and_fro(outcome%history(first:))) correction = 0.5_wp*correction
       call search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, outcome%du, &
                         line%line_search, report)
-      missing = 0
-      if (any(left_by)) call follow_dies()
+      if (any(abs(missing) > 0)) call follow_dies()
       if (.not. abs(line%line_search) > 0) then
         call set_cause(report, outcome)
         if (made%times == 0) exit
@@ -200,17 +204,17 @@ contains
 
   contains
 
-    !> Of dies that withdraw some have left the part, or the part cannot follow them at all: once more from where the part was.
+    !> Where dies leave the part, or it cannot follow those that withdraw: once more, with these dies where they go.
     subroutine follow_dies()
-      integer :: k
+      logical :: left(size(touched))
+      integer :: now(size(touched))
 
-      if (abs(line%line_search) > 0) then
-        do k = 1, size(left_by)
-          if (left_by(k)) left_by(k) = has_left(scene, solution, k)
-        end do
-        if (.not. any(left_by)) return
-      end if
-      call predict(scene, equations, solution, dt, given, go_on, outcome%du, missing, report, left_by)
+      now = 0
+      if (abs(line%line_search) > 0) now = touching_dies(scene, solution)
+      missing = 0
+      left = leaving_dies(work, touched, now)
+      if (.not. any(left)) return
+      call predict(scene, equations, solution, dt, given, go_on, outcome%du, missing, report, left)
       line%line_search = merge(1.0_wp, 0.0_wp, report%status == block_done)
       correction = 0
     end subroutine follow_dies

@@ -8,8 +8,8 @@
 !> Where a die turns back the step starts a little way back along that motion: the matrix there is that of unloading.
 !>
 !> The first iteration takes contacts as they are: a die that withdraws would pull the part along, by more than it can bear. Where
-!> most points that touched such a die do not after it, the step starts again so, with the die where it goes: contact is then open,
-!> and the part springs back from its own forces.
+!> most points that touched such a die no longer do after it, the step starts again so, with the die where it goes: contact is then
+!> open, and the part springs back from its own forces.
 module predictor
   use dofs, only: dofs_t, prescribed_motion
   use elem_api, only: block_done, report_t
@@ -22,7 +22,7 @@ module predictor
   use solution, only: solution_t
   implicit none
   private
-  public :: predict, proportion, withdrawing_dies
+  public :: predict, proportion, leaving_dies, work_of_dies
 
   !> Change of penetration, as a share of the side, below which contact goes on as before.
   real(wp), parameter :: smooth_contact = 2.0e-3_wp
@@ -123,24 +123,33 @@ contains
 
   end subroutine predict
 
-  !> Dies that the forces on the part help to move on: what their pilots miss of the motion of the step goes away from the part.
-  pure function withdrawing_dies(equations, missing) result(withdrawing)
+  !> Work of the forces of the prediction on what the dies' pilots miss of the motion of the step: below 0 for those that go away
+  !> from the part.
+  pure function work_of_dies(equations, missing) result(work)
     type(equations_t), intent(in) :: equations   !! with the forces of the prediction
     real(wp), intent(in) :: missing(:)           !! (ndof) [unknown]
-    logical :: withdrawing(size(equations%dofs%fields(pilot_field)%number, 2))   !! (ndie)
-    real(wp) :: work
+    real(wp) :: work(size(equations%dofs%fields(pilot_field)%number, 2))   !! (ndie) [energy]
     integer :: c, k
 
+    work = 0
     associate (pilot => equations%dofs%fields(pilot_field)%number)
       do k = 1, size(pilot, 2)
-        work = 0
         do c = 1, size(pilot, 1)
-          if (pilot(c, k) > 0) work = work + equations%force(pilot(c, k))*missing(pilot(c, k))
+          if (pilot(c, k) > 0) work(k) = work(k) + equations%force(pilot(c, k))*missing(pilot(c, k))
         end do
-        withdrawing(k) = work < 0
       end do
     end associate
-  end function withdrawing_dies
+  end function work_of_dies
+
+  !> Dies that leave the part: those that withdraw and lose more than half of their points in the first iteration, or all of them.
+  !> Without a force, as at the start, it is not known which way a die goes, but one that presses does not lose all points.
+  elemental function leaving_dies(work, before, now) result(leaving)
+    real(wp), intent(in) :: work            !! of work_of_dies [energy]
+    integer, intent(in) :: before, now      !! points that touch the die in the prediction, and after the iteration
+    logical :: leaving
+
+    leaving = work < 0 .and. 2*now < before .or. .not. abs(work) > 0 .and. now == 0 .and. before > 0
+  end function leaving_dies
 
   !> The last accepted motion of all unknowns times `ratio`.
   pure subroutine proportion(dofs, fields, ratio, du)

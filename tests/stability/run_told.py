@@ -50,6 +50,7 @@ WRONG = {
     "corner in a fillet": ({"SEGM  30. 15.   -5. 15.": "SEGM  10.2 -5.   10.2 15.\n   FILLT 3. 1.E-2\n   SEGM  10.2 15.   -5. 15.",
                             "CNT2D  billet 3": "CNT2D  billet 2 3"}, "deep in die upper"),
     "moved away": ({"30. 15.   -5. 15.": "30. 16.   -5. 16.", "1. -2.": "1. 2."}, "does not meet the part"),
+    "moved away from where it lies": ({"1. -2.": "1. 2."}, "does not meet the part"),
     "stroke too short": ({"30. 15.   -5. 15.": "30. 18.   -5. 18."}, "does not meet the part"),
     "stroke that leaves the part": ({"MOVE   upper Y press": "MOVE   upper X press 20."}, "no longer faces the part"),
     "floating": ({"FIXED  billet 1 Y\n": TABLE, "30. 15.   -5. 15.": "30. 16.   -5. 16."}, "nothing holds it in Y before it meets"),
@@ -153,6 +154,14 @@ def warned_run(checks):
             checks.that("does not meet the part" in listing.read(), "so has the listing")
 
 
+def stopped_run(checks):
+    """A run that cannot go on says first what was seen of the deck."""
+    run = Run(checks, "walked", changed(checks, WRONG["die in the part"][0]).replace("1. -2.", "1. -14.").replace("1.E-4", "0.1"),
+              NO_CONVERGENCE)
+    if run.ok:
+        checks.that("WARNING before the run: billet.3/upper: the part begins 1 deep in die upper" in run.said, "what it says", run.said)
+
+
 def warned_cycle(checks):
     """So has a cycle of contours, in what it prints first and in the summary at its end, which is that of a later mesh."""
     path, out = os.path.join(checks.folder, "contour.lag"), os.path.join(checks.folder, "contour")
@@ -224,6 +233,7 @@ def main():
     checks = Checks()
     decks(checks)
     warned_run(checks)
+    stopped_run(checks)
     warned_cycle(checks)
     passed_planes(checks)
     small(checks)
