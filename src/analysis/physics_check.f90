@@ -1,6 +1,6 @@
 !> What can be told of a deck before it runs: how parts and dies stand to each other, and what is seldom meant.
 module physics_check
-  use contact_outlook, only: lies_on, look_at_contact, gaps_at_rest, moves, outlook_t
+  use contact_outlook, only: lies_on, look_at_contact, moves, outlook_t
   use dies, only: is_deformable
   use fields, only: displacement_field
   use heat_check, only: check_heat

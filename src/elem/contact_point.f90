@@ -57,6 +57,8 @@ module contact_point
     real(wp) :: allowed = 0.0_wp
     !> Depth up to which the penalty is that of the card (held_depth) [length].
     real(wp) :: soft = 0.0_wp
+    !> A point in contact at the start of the step follows its law linearised at the depth it had then (instant_t).
+    logical :: kept = .false.
     real(wp), dimension(most_unknowns) :: dd, dslip, turn
   end type meeting_t
 
@@ -142,7 +144,7 @@ contains
     real(wp), intent(out) :: q(2)                   !! per radian when axisymmetric [force]
     real(wp), intent(out) :: dq(2, most_unknowns)   !! set where the tangent is wanted and there is contact [force/unknown]
     real(wp) :: dslip(most_unknowns), t(2), slip, depth, slope, gap, share, pressure, stress(2), law_tangent(3, 3), area
-    real(wp) :: traction(2), dp, dtau
+    real(wp) :: traction(2), dp, dtau, change
     integer :: status, j
 
     q = 0
@@ -157,9 +159,18 @@ contains
     end if
 
     call stiffened(meeting%d - meeting%allowed, meeting%soft, depth, slope)
+    ! of the depth since the start of the step, where the law is linearised there
+    change = 0
+    if (meeting%kept .and. nint(committed(at_status)) /= contact_open) then
+      change = depth
+      call stiffened(committed(at_penetration) - meeting%allowed, meeting%soft, depth, slope)
+      change = change - depth
+    end if
     ! nothing moves across the plane: the second tangential component stays at rest
     call law%slide(material, dt, drivers, penalty, committed(at_augmentation), depth, [slip, 0.0_wp], [committed(at_tau), 0.0_wp], &
                    committed(npoint_state + 1:), pressure, stress, trial(npoint_state + 1:), law_tangent, status)
+    pressure = pressure + law_tangent(1, 1)*change
+    stress(1) = stress(1) + law_tangent(2, 1)*change
     trial(at_pressure) = pressure
     trial(at_tau) = stress(1)
     trial(at_status) = status

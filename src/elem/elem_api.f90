@@ -87,6 +87,8 @@ module elem_api
     !> Newton's iteration: the motion is a prediction; or a correction brought it about, which began at these displacements in the
     !> step (2, nnode) and this motion of the section. Otherwise it has converged, or nothing is known of it.
     logical :: predicted = .false.
+    !> Points in contact at the start of the step are kept there: their law is linearised at the depth they had then.
+    logical :: kept = .false.
     real(wp), allocatable :: corrected_from(:, :)
     real(wp) :: section_from(3) = 0.0_wp
     !> Values of all unknowns at the start of the step (ndof); not allocated where mechanics is all there is.

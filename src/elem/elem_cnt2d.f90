@@ -17,9 +17,9 @@
 !> Forces are integrated consistently over the side. The reaction acts on the pilot: force, and
 !> moment about it. Everything is linearised exactly, the curvature of the die included.
 module elem_cnt2d
-  use closest_point, only: closest_point_t
+  use closest_point, only: closest_point_t, closest_within_piece
   use contact_measure, only: augment, measure
-  use contact_point, only: at_penetration, at_status, at_work, contact_block, contact_point_t, no_surface, &
+  use contact_point, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, contact_point_t, no_surface, &
                            penalties, point_variables, rest, share_to_contact, show_on_axis, side_length, &
                            thinning, touching
   use corner_contact, only: press_corners
@@ -33,7 +33,7 @@ module elem_cnt2d
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_law, contact_open, law_t
   use materials, only: material_t
-  use plane_vectors, only: turned
+  use plane_vectors, only: cross, turned
   use quadrature, only: line_rule
   use rigid_contact, only: closest_or_followed, ndof, place_point, press, side_t
   use scene, only: axisymmetric, group_t, role_contact, scene_t
@@ -41,6 +41,10 @@ module elem_cnt2d
   implicit none
   private
   public :: elem_cnt2d_row
+
+  !> A die that turns by more than this sine on the way of a point has a corner there: parabolas that follow a curve within a
+  !> tolerance turn by less.
+  real(wp), parameter :: blunt = 0.1_wp
 
 contains
 
@@ -157,6 +161,7 @@ contains
     side%pilot(:, 2) = side%pilot(:, 1) + du(7:9)
     side%dt = instant%dt
     side%tangent = instant%tangent
+    side%kept = instant%kept
   end subroutine begin_side
 
   !> States without contact; the work of friction goes with the area.
@@ -190,6 +195,22 @@ contains
     skipped = box_distance(die, [minval(y(1, :)), minval(y(2, :)), maxval(y(1, :)), maxval(y(2, :))]) > side%length
   end function far
 
+  !> A point has lost depth on a way along the die that passes a corner.
+  pure function passes_corner(die, committed, closest) result(yes)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: committed(:)             !! (nstate) of the point [unit of each component]
+    type(closest_point_t), intent(in) :: closest     !! at the end of the step
+    logical :: yes
+    type(closest_point_t) :: before
+
+    yes = .false.
+    if (nint(committed(at_piece)) == 0 .or. closest%d >= committed(at_penetration)) return
+    associate (piece => die%pieces(:, :, nint(committed(at_piece))))
+      call closest_within_piece(piece, piece(:, 2), committed(at_xi), before)
+    end associate
+    yes = abs(cross(before%normal, closest%normal)) > blunt
+  end function passes_corner
+
   !> Contact at one integration point: state, forces, matrix.
   pure subroutine contact_at(die, law, material, drivers, axisym, side, xi, weight, committed, trial, force, stiffness)
     type(die_t), intent(in) :: die
@@ -205,6 +226,7 @@ contains
     type(closest_point_t) :: closest
     type(release_t) :: release
     real(wp) :: before(ndof)
+    logical :: passed
 
     call place_point(side, xi, point)
     call closest_or_followed(die, turned(point%x - side%pilot(1:2, 2), -side%pilot(3, 2)), &
@@ -217,7 +239,10 @@ contains
     if (axisym .and. point%x(1) <= no_surface*side%length) return
     if (abs(closest%d) <= touching*side%length) closest%d = 0
     before = force
-    call press(law, material, drivers, side, xi, point, closest, 0.0_wp, weight*release%share, committed, trial, force, stiffness)
+    passed = .false.
+    if (side%kept) passed = passes_corner(die, committed, closest)
+    call press(law, material, drivers, side, xi, point, closest, 0.0_wp, weight*release%share, committed, trial, force, stiffness, &
+               released=passed)
     if (.not. (side%tangent .and. release%share < 1)) return
     stiffness = stiffness + release%slope/release%share*spread(force - before, 2, ndof) &
                 *spread(motion_past_corner(side, point, release), 1, ndof)

@@ -160,6 +160,7 @@ contains
           place(7:12) = [at + 1, at + 2, at + 3, nnode + at + 1, nnode + at + 2, nnode + at + 3]
           call line3(closest%xi, psi, dpsi)
           call meet(closest, matmul(x(:, 1:3, e), phi), x(:, at + 1:at + 3, e), du(place(7:12), e), point, meeting, dxi)
+          meeting%kept = instant%kept
           call act(law, scene%materials(group%material), instant%dt, drivers(:, :, p, e), &
                    penalties(scene%materials(group%material), group%modulus, side), point, meeting, weight(p), instant%tangent, &
                    committed(:, p, e), trial(:, p, e), q, dq)

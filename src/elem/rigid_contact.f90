@@ -40,8 +40,8 @@ module rigid_contact
     real(wp) :: penalty(2) = 0.0_wp
     !> Length of the step [time].
     real(wp) :: dt = 0.0_wp
-    !> Matrices are wanted.
-    logical :: tangent = .true.
+    !> Matrices are wanted; contact is kept (instant_t).
+    logical :: tangent = .true., kept = .false.
   end type side_t
 
   !> Derivatives of a point's position on the side, and of the angle by which the normal of depth turns.
@@ -64,7 +64,7 @@ contains
 
   !> Contact of a point with its closest point on the die: state, forces, matrix.
   pure subroutine press(law, material, drivers, side, xi, point, closest, allowed, weight, committed, trial, force, stiffness, &
-                        drift)
+                        drift, released)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) of the law [unit of each driver]
@@ -79,6 +79,7 @@ contains
     real(wp), intent(inout) :: force(ndof)             !! [force]
     real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
     type(drift_t), intent(in), optional :: drift       !! of a point that is not fixed on its side
+    logical, intent(in), optional :: released          !! its contact is not kept
     type(meeting_t) :: meeting
     real(wp) :: phi(3), dphi(3), lever(2), q(2), moment, dlever(2, ndof), dmoment(ndof), dq(2, most_unknowns)
     integer :: j, k
@@ -94,6 +95,8 @@ contains
     call meet(side, phi, dphi, closest, lever, dlever, meeting, drift)
     meeting%allowed = allowed
     meeting%soft = side%soft
+    meeting%kept = side%kept
+    if (present(released)) meeting%kept = meeting%kept .and. .not. released
     call act(law, material, side%dt, drivers, side%penalty, point, meeting, weight, side%tangent, committed, trial, q, dq)
     if (nint(trial(at_status)) == contact_open) return
 

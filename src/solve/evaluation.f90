@@ -21,7 +21,7 @@ contains
 
   !> Internal force, and matrices when wanted, at the motion `du` of the step. Points that meet pieces of deformable dies
   !> beyond their pairs get new ones, and all is computed again: no contact is lost, no step cut back.
-  subroutine evaluate(scene, equations, solution, dt, du, tangent, report, predicted, corrected_from)
+  subroutine evaluate(scene, equations, solution, dt, du, tangent, report, predicted, kept, corrected_from)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -30,6 +30,7 @@ contains
     logical, intent(in) :: tangent
     type(report_t), intent(out) :: report
     logical, intent(in), optional :: predicted              !! the motion is a prediction
+    logical, intent(in), optional :: kept                   !! contact of the start of the step is kept
     real(wp), intent(in), optional :: corrected_from(:)     !! (ndof) motion before the correction that led to it [unknown]
     type(instant_t) :: instant
     real(wp), allocatable :: now(:, :)
@@ -38,6 +39,7 @@ contains
     call fit_to_load(equations%team)
     call make_instant(scene, equations, solution, dt, du, tangent, instant)
     if (present(predicted)) instant%predicted = predicted
+    if (present(kept)) instant%kept = kept
     if (present(corrected_from)) call note_correction(scene, equations%dofs, corrected_from, instant)
     call driving_values(scene, equations, solution, du, now)
     do

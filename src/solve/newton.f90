@@ -85,7 +85,7 @@ contains
     logical, allocatable :: held(:, :)
     integer :: touched(size(scene%dies))
     real(wp) :: work(size(scene%dies))
-    logical :: changed, followed, again, steep
+    logical :: changed, followed, again, kept, steep
     integer :: first
 
     allocate (outcome%history(0), outcome%du(equations%dofs%ndof))
@@ -93,7 +93,7 @@ contains
     call return_to_chosen(equations%solves(equations%now)%solver)
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     if (present(left)) external = external - left
-    call predict(scene, equations, solution, dt, given, go_on, outcome%du, missing, report)
+    call predict(scene, equations, solution, dt, given, go_on, outcome%du, missing, kept, report)
     if (report%status /= block_done) then
       call set_cause(report, outcome)
       return
@@ -119,7 +119,7 @@ contains
       outcome%history = [outcome%history, line]
       outcome%iterations = size(outcome%history) - 1
       if (.not. any(abs(missing) > 0)) then
-        if (has_converged(scene, outcome%history(first:), again) &
+        if (has_converged(scene, outcome%history(first:), again .or. (kept .and. outcome%iterations == 0)) &
             .and. pilots_in_equilibrium(equations, solution%fields, external, residual) &
             .and. (heat_in_balance(equations, residual, dt) .or. was_given_time(scene, outcome%history(first:)))) then
           if (made%times == 0) outcome%first_iterations = outcome%iterations
@@ -214,7 +214,7 @@ contains
       missing = 0
       left = leaving_dies(work, touched, now)
       if (.not. any(left)) return
-      call predict(scene, equations, solution, dt, given, go_on, outcome%du, missing, report, left)
+      call predict(scene, equations, solution, dt, given, go_on, outcome%du, missing, kept, report, left)
       line%line_search = merge(1.0_wp, 0.0_wp, report%status == block_done)
       correction = 0
     end subroutine follow_dies

@@ -1,15 +1,18 @@
 !> Where Newton's method starts: the motion of the last step, in proportion.
 !>
-!> The proportion is kept while it changes no penetration much; otherwise contact has changed the
-!> motion, and only the onset of it is kept: the matrix there (loading, with the contacts of now)
-!> spreads the rest. A body that nothing holds starts at rest (resting_bodies). What prescribed unknowns
-!> still miss is left for the first iteration to spread.
+!> It goes straight on, while points that slide on a die follow its bends: after a slip s on a fillet of radius r they are
+!> s^2/2r off it, open or far too deep. Where that changes a penetration much, the first correction is found with the points that
+!> were in contact kept there, their law linearised at the depth they had (`kept` of instant_t): it brings them back to
+!> the die, and the body behind them with them, while slip and flow go on as they were.
 !>
 !> Where a die turns back the step starts a little way back along that motion: the matrix there is that of unloading.
 !>
 !> The first iteration takes contacts as they are: a die that withdraws would pull the part along, by more than it can bear. Where
 !> most points that touched such a die no longer do after it, the step starts again so, with the die where it goes: contact is then
 !> open, and the part springs back from its own forces.
+!>
+!> A body that nothing holds starts at rest (resting_bodies). What prescribed unknowns still miss is left for the first iteration
+!> to spread.
 module predictor
   use dofs, only: dofs_t, prescribed_motion
   use elem_api, only: block_done, report_t
@@ -26,15 +29,16 @@ module predictor
 
   !> Change of penetration, as a share of the side, below which contact goes on as before.
   real(wp), parameter :: smooth_contact = 2.0e-3_wp
-  !> Share of the proportional motion that shows which points load.
+  !> Share of the last motion, backwards, by which points unload.
   real(wp), parameter :: onset = 0.02_wp
   !> A missing motion below this share of the motion is round-off: of times, and of their differences.
   real(wp), parameter :: round_off = 1.0e-10_wp
 
 contains
 
-  !> Start `du` and what prescribed unknowns miss of their motion; forces and matrices are evaluated there.
-  subroutine predict(scene, equations, solution, dt, given, go_on, du, missing, report, left)
+  !> Start `du` and what prescribed unknowns miss of their motion; forces and matrices are evaluated there. With `kept` they
+  !> are not those of the motion: contact is as it was.
+  subroutine predict(scene, equations, solution, dt, given, go_on, du, missing, kept, report, left)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -42,6 +46,7 @@ contains
     real(wp), intent(in), optional :: given(:)   !! (ndof) motion of the unknowns of other solves [unknown]
     logical, intent(in), optional :: go_on       !! start from `given` for the own unknowns too
     real(wp), intent(out) :: du(:), missing(:)   !! (ndof) [unknown]
+    logical, intent(out) :: kept
     type(report_t), intent(out) :: report
     logical, intent(in), optional :: left(:)     !! (ndie) dies that leave the part: they start where they go
     logical :: fixed(size(du)), at_place(size(du)), back
@@ -66,11 +71,14 @@ contains
     back = present(left)
     if (.not. back .and. ratio > 0) back = turns_back()
     if (back) ratio = -onset*ratio
+    kept = .false.
     call start_from(ratio)
     if (.not. back .and. report%status == block_done .and. report%event >= 1 .and. report%jump > smooth_contact) then
-      call start_from(onset*ratio)
+      kept = .true.
+      call start_from(ratio)
     end if
     if (report%status /= block_done .and. abs(ratio) > 0) then
+      kept = .false.
       call start_from(0.0_wp)
     end if
 
@@ -118,7 +126,7 @@ contains
           if (p%history > 0 .or. at_place(p%dof)) du(p%dof) = motion(k)
         end associate
       end do
-      call evaluate(scene, equations, solution, dt, du, .true., report, predicted=.true.)
+      call evaluate(scene, equations, solution, dt, du, .true., report, predicted=.true., kept=kept)
     end subroutine start_from
 
   end subroutine predict
