@@ -5,8 +5,8 @@ usage: run_hot_upsetting.py [-v] [-k] [--write]     --write puts the tables into
 
 Energy and heat close to 1 %; over each new mesh the heat (the integral of the temperature over the volume) is kept to 1e-3 and
 temperatures stay within their old bounds; heat of plastic work and friction is their work to 1 %; the die has got what is its
-temperature now. The ways of coupling, with steps and meshes of their own, agree to 1 % of temperatures and heat
-and to 3 % of the force.
+temperature now. The ways of coupling, with steps and meshes of their own, agree to 1 % of temperatures, to 0.2 % of the heat
+released and to 3 % of the force. With ONCE the heat of the last step comes after the end: MONOLITHIC's is that of the step before.
 """
 import glob
 import os
@@ -26,7 +26,7 @@ MARK = "<!-- cycle -->"
 WAYS = ("ONCE", "CONVERGE", "MONOLITHIC")
 # The force on a die differs by this much from mesh to mesh (run_upsetting_remesh.py).
 FORCE = 0.03
-BALANCE, KEPT, BOUNDS = 0.01, 1e-3, 1e-3
+BALANCE, RELEASED, KEPT, BOUNDS = 0.01, 0.002, 1e-3, 1e-3
 
 
 def processor_seconds():
@@ -54,13 +54,20 @@ def meshes(checks, way, out):
     return lines
 
 
+def heat_at(rows, time):
+    """Heat released at a time, linear between the steps."""
+    k = next(k for k, end in enumerate(rows["time"]) if end >= time)
+    begin, end, before, after = rows["time"][k - 1], rows["time"][k], rows["heat_released"][k - 1], rows["heat_released"][k]
+    return before + (after - before)*(time - begin)/(end - begin)
+
+
 def main():
     checks = Checks()
     with open(DECK, encoding="utf-8") as file:
         text = file.read()
     table = ["| coupling | steps | meshes | seconds of processor | force kN | core C | face C | die C | heat released, J | released / work % | energy missing % | heat missing % |",
              "|---|---|---|---|---|---|---|---|---|---|---|---|"]
-    ends, listed = {}, []
+    ends, runs, listed = {}, {}, []
     for way in WAYS:
         out = checks.path(way)
         deck = write(checks.path(f"{way}.lag"), text.replace("\nSAVE ", f"\nSOLVE  {way}\nSAVE "))
@@ -83,17 +90,21 @@ def main():
         checks.that(abs(share - 1) < BALANCE, f"{way}: heat of plastic work and friction", share)
         got = sum(flow*step for flow, step in zip(rows["heat_flow_upper"], rows["step_length"]))
         checks.that(abs(2e5*(rows["temperature_upper"][-1] - 250)/got - 1) < 1e-9, f"{way}: heat in the die", got)
-        ends[way] = [rows[name][-1] for name in ("force_y_upper", "core", "face", "temperature_upper", "heat_released")]
-        force, core, face, die, _ = ends[way]
+        runs[way] = rows
+        ends[way] = [rows[name][-1] for name in ("force_y_upper", "core", "face", "temperature_upper")]
+        force, core, face, die = ends[way]
         table.append(f"| `{way}` | {len(rows['step'])} | {1 + sum(t['accepted'] == 'y' for t in tries(out))} | {seconds:.1f} | {force/1000:.2f} | "
                      f"{core:.1f} | {face:.1f} | {die:.2f} | {rows['heat_released'][-1]/1000:.2f} | {100*share:.2f} | {100*energy:+.3f} | {100*heat:+.1e} |")
     if len(ends) == len(WAYS):
         for one in ("ONCE", "CONVERGE"):
             force, *others = (a/b - 1 for a, b in zip(ends[one], ends["MONOLITHIC"]))
-            table.append(f"| `{one}` to `MONOLITHIC` | | | | {100*force:+.2f} % | " + " | ".join(f"{100*a:+.2f} %" for a in others) + " | | |")
-            force, *others = (abs(a) for a in (force, *others))
-            checks.that(force < FORCE, f"{one} and MONOLITHIC: force, each on meshes of its own", f"{force:.2%}")
-            checks.that(max(others) < BALANCE, f"{one} and MONOLITHIC: temperatures and heat", f"{max(others):.2%}")
+            time = runs[one]["time"][-2 if one == "ONCE" else -1]
+            heat = runs[one]["heat_released"][-1]/heat_at(runs["MONOLITHIC"], time) - 1
+            table.append(f"| `{one}` to `MONOLITHIC` | | | | {100*force:+.2f} % | " + " | ".join(f"{100*a:+.2f} %" for a in (*others, heat))
+                         + " | | |")
+            checks.that(abs(force) < FORCE, f"{one} and MONOLITHIC: force, each on meshes of its own", f"{force:.2%}")
+            checks.that(max(map(abs, others)) < BALANCE, f"{one} and MONOLITHIC: temperatures", f"{max(map(abs, others)):.2%}")
+            checks.that(abs(heat) < RELEASED, f"{one} and MONOLITHIC: heat released", f"{heat:.2%}")
     lines = table + ["", "| mesh | at s | elements | heat % | temperatures |", "|---|---|---|---|---|"] + listed
     print("\n".join(lines))
     if "--write" in sys.argv:

@@ -231,6 +231,17 @@ def past_the_end(checks):
     return max(abs(force[np.argmin(abs(time - t))]/(s*80) - 1) for t, s in ((1.0, 1), (2.0, -1), (3.0, -1)))
 
 
+def round_a_fillet(checks):
+    """A bar pushed through a die whose cone begins and ends in fillets: iterations over steps, points slide round the bends."""
+    run = checks.run("fillet", deck(
+        "AXISYM", "LOG", "PARAM rise 0.5/tan(15*pi/180)\n" + block("0. $rise 5. $rise 5. 25. 0. 25.", "5 1. 24 1."),
+        "LAW m EPLA\n 70000. 0.33\n LINEAR 200. 50.\nLAW k COUL2D\n PENETR 1.E-3 PHI 0.05 AUGMENT 10\n",
+        "DIE d\n SEGM 4.5 -20. 4.5 0.\n FILLT 2. 1.E-3\n SEGM 4.5 0. 5. $rise\n FILLT 2. 1.E-3\n"
+        " SEGM 5. $rise 5. 30.\nDIE p PILOT 0. 25.\n SEGM 6. 25. -1. 25.\nCNT2D b 1 2 d -3 k\nCNT2D b 3 p -3 k\nFIXED b 4 X\n"
+        "MOVE p Y go\nLIC go\n 0. 0. 1. -8.\n", "STRAT 0.002 1.E-6 0.02 6 3"))
+    return run.history["iterations"].mean()
+
+
 def stick_slip(checks):
     """A block driven to and fro on a table: the force is friction's on every way, and friction never gives work back."""
     run = checks.run("stick-slip", deck(
@@ -378,7 +389,7 @@ CASES = (
     Case("steps far too long", long_steps, 0.02), Case("mirror image", mirrored, 1e-7),
     Case("held by friction alone", friction_alone, 1e-2), Case("contact again", contact_again, 0.01),
     Case("released and pressed again", released, 1e-9), Case("lifts off", lifts_off, 0),
-    Case("past a die's end", past_the_end, 1e-2),
+    Case("past a die's end", past_the_end, 1e-2), Case("round a fillet", round_a_fillet, 5.0),
     Case("stick-slip reversal", stick_slip, 1e-3),
     Case("bent round a pin", round_a_pin, 0.25), Case("bent between three rollers", three_point_bending, 0.2),
     Case("blank under a holder", under_a_holder, 1e-4),
