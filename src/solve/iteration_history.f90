@@ -40,8 +40,8 @@ contains
 
   !> Both norms are met. A motion that starts in equilibrium needs no correction; one that an earlier turn has found gets one, if
   !> its residual is more than round-off: the last of all turns would else always leave just less than the norm, and with the same
-  !> sign (2.4e-8 of the heat that passed in decks/hot_upsetting). So does one whose contact was kept: its forces are not those of the
-  !> motion.
+  !> sign (2.4e-8 of the heat that passed in decks/hot_upsetting). So does one whose contact was kept: its forces are not those of
+  !> the motion.
   pure function has_converged(scene, history, again) result(converged)
     type(scene_t), intent(in) :: scene
     type(iteration_t), intent(in) :: history(:)   !! (niteration)
