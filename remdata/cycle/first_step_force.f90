@@ -19,7 +19,8 @@ module first_step_force
 
 contains
 
-  !> `known` is false where the old mesh has made too few steps, the new one none, the force is low, or the table is not to be read.
+  !> `known` is false where the old mesh has made too few steps, the new one none, the force is low before or after the remesh, or the
+  !> table is not to be read.
   pure subroutine first_step_change(table, first, last, change, known)
     character(len=*), intent(in) :: table   !! text of history.csv
     integer, intent(in) :: first, last      !! step at which the old mesh began, and its last one
@@ -77,7 +78,8 @@ contains
     associate (t => time(1 - steps_before:0), f => forces(1 - steps_before:0))
       foretold = line_at(t, f, time(k))
     end associate
-    known = foretold > 0
+    ! a die that has left says nothing either
+    known = foretold > 0 .and. .not. forces(k) < least_share*largest
     if (known) change = forces(k)/foretold - 1
   end subroutine first_step_change
 

@@ -6,7 +6,7 @@ usage: force_changes.py [--each] DIR...     DIR: results of lagacycle; --each pr
 The force is foretold by the straight line in time through the last four steps (least squares), of the die that has the largest
 force then. At a remesh these are the last steps of the old mesh, and it is compared at the first full step on the new one: the
 first that ends half a step of the old mesh or more after the remesh. An ordinary step is one on the same mesh as the four before
-it, and at least half as long. Steps where the force is below a fifth of the largest in the run are left out. The column
+it, and at least half as long. Where the force before or after is below a fifth of the largest in the run it is left out. The column
 `first_step_force_change` of cycle.csv is the same, with the largest in the run so far (remdata/cycle/first_step_force.f90).
 """
 import csv
@@ -51,6 +51,10 @@ class Forces:
     def change(self, row, after, largest):
         """The same to the row `after`; None where the force is low."""
         if max(self.force[row]) < LEAST * largest:
+            return None
+        die = max(range(len(self.dies)), key=lambda k: self.force[row][k])
+        # a die that has left says nothing either
+        if self.force[after][die] < LEAST * largest:
             return None
         return self.change_of(row, self.time[after], self.force[after])
 
