@@ -124,6 +124,8 @@ contains
       select case (word)
       case ('ERROR')
         call cursor%real('the largest error of the stress', rules%stress_error, lower=0.0_wp, strict_lower=.true.)
+        if (cursor%more()) call cursor%real('the strain of an element from which on the error counts', rules%error_strain, &
+                                            lower=0.0_wp)
       case ('ANGLE')
         call cursor%real('the least angle of a corner', shape(least_angle), lower=0.0_wp, upper=90.0_wp, &
                          strict_upper=.true., unit='degrees')

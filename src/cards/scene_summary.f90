@@ -70,7 +70,8 @@ contains
     if (scene%accuracy%asked > 0) call put('accuracy   '//to_text(100*scene%accuracy%asked, 3)//' % asked (lagamine --forecast ' &
                                            //'says what that takes)')
     if (scene%remesh%on) then
-      if (scene%remesh%stress_error < never) call put_limit('stress_error', 'above '//to_text(scene%remesh%stress_error))
+      if (scene%remesh%stress_error < never) call put_limit('stress_error', 'above '//to_text(scene%remesh%stress_error) &
+                                                            //strain_text(scene%remesh%error_strain))
       do k = 1, ncriteria
         if (.not. abs(scene%remesh%shape(k)) < never) cycle
         call put_limit(trim(criterion_names(k)), trim(merge('above', 'below', is_upper(k)))//' '//to_text(scene%remesh%shape(k)) &
@@ -125,6 +126,14 @@ contains
       s = ''
       if (most > 0) s = ', at most '//to_text(most)
     end function most_text
+
+    pure function strain_text(strain) result(s)
+      real(wp), intent(in) :: strain
+      character(len=:), allocatable :: s
+
+      s = ''
+      if (strain > 0) s = ' where an element has been strained by '//to_text(strain)
+    end function strain_text
 
     pure function share_text(share) result(s)
       real(wp), intent(in) :: share

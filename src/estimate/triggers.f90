@@ -35,7 +35,8 @@ contains
     if (was_good(scene, solution)) then
       limit = scene%remesh%stress_error
       if (solution%estimate%first_stress > limit) limit = worse*solution%estimate%first_stress
-      if (solution%estimate%stress > limit) call add(found, 'stress_error', solution%estimate%stress, limit)
+      if (solution%estimate%stress > limit .and. .not. worst_strain(solution) < scene%remesh%error_strain) &
+        call add(found, 'stress_error', solution%estimate%stress, limit)
       if (any(abs(scene%remesh%shape) < never)) call find_bad_shapes(scene, solution, found)
       if (scene%remesh%contact < never) call find_misfits(scene, solution, found)
     else if (any(abs(scene%remesh%shape) < never) .and. is_on_probation(solution%probation)) then
@@ -95,6 +96,14 @@ contains
 
     good = solution%step - solution%estimate%last_stop >= scene%remesh%least_steps
   end function was_good
+
+  !> Equivalent strain of the most strained element, summed over the steps since the mesh began.
+  pure function worst_strain(solution) result(strain)
+    type(solution_t), intent(in) :: solution
+    real(wp) :: strain
+
+    strain = sqrt(2.0_wp/3.0_wp)*maxval(solution%estimate%strain_sums(2, :))
+  end function worst_strain
 
   !> Cutbacks in a row on a mesh that was good before.
   pure function distress_trigger(scene, cutbacks) result(trigger)

@@ -35,6 +35,8 @@ module remeshing
     real(wp) :: bad_share = 0.0_wp
     !> Error of the stress, and depth of a side or a corner over what is allowed.
     real(wp) :: stress_error = never, contact = never
+    !> Strain of the most strained element since the mesh began from which on the error counts.
+    real(wp) :: error_strain = 0.0_wp
     !> Cutbacks of a step one after the other.
     integer :: distress = huge(0)
     !> Steps at least from one stop to the next.

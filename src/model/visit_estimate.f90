@@ -59,6 +59,7 @@ contains
     call visitor%derived('shape', of_the_deck)
     call visitor%derived('bad_share', of_the_deck)
     call visitor%derived('stress_error', of_the_deck)
+    call visitor%derived('error_strain', of_the_deck)
     call visitor%derived('contact', of_the_deck)
     call visitor%derived('distress', of_the_deck)
     call visitor%derived('least_steps', of_the_deck)
