@@ -19,8 +19,8 @@ module first_step_force
 
 contains
 
-  !> `known` is false where the old mesh has made too few steps, the new one none, the force is low before or after the remesh, or the
-  !> table is not to be read.
+  !> `known` is false where the old mesh has made too few steps, the new one none, the force is low before or after the remesh, or
+  !> the table is not to be read.
   pure subroutine first_step_change(table, first, last, change, known)
     character(len=*), intent(in) :: table   !! text of history.csv
     integer, intent(in) :: first, last      !! step at which the old mesh began, and its last one
