@@ -5,7 +5,7 @@ usage: scenes_study.py [NAME... | all] [--ladder F,F,...]      all: an hour or m
 
 Each scene is run as it is, and on first meshes of squares of one size, F times the largest size of the deck's own (default 1, 0.67, 0.44, 0.3). The error is the
 root mean square of the difference of the force from that of the finest uniform mesh which comes to the end, at 40 instants of its last four fifths, over
-its largest; it cannot tell errors below those of that mesh. The seconds a uniform mesh of the same error takes lie on the straight line through those runs, in logarithms; `<` and
+its largest; it cannot tell errors below those of that mesh. Seconds are those of processor. The seconds a uniform mesh of the same error takes lie on the straight line through those runs, in logarithms; `<` and
 `>`: outside of them. Scenes that no uniform mesh finishes are named. Prints the table and draws out/bench/scenes.png. Ends with 1 when fewer than 8 in 12 of
 the scenes that uniform meshes finish are done in half of their seconds.
 """
@@ -75,7 +75,7 @@ def study(name, ladder):
     """A row of the table, the ratio (None where no uniform mesh finishes), and what is drawn."""
     cycle = run_scene(name, os.path.join(OUT, name))
     if cycle["code"] != DONE:
-        return f"| {name} | {cycle['steps']} | | {cycle['seconds']:.0f} | the cycle ended with {cycle['code']} | | |", None, None
+        return f"| {name} | {cycle['steps']} | | {cycle['processor']:.0f} | the cycle ended with {cycle['code']} | | |", None, None
     largest = float(re.search(r"elements of [-+.eE0-9]+ to ([-+.eE0-9]+)", checked(name))[1])
     uniform = []
     for factor in ladder:
@@ -86,14 +86,14 @@ def study(name, ladder):
             uniform.append(run_scene(name, os.path.join(folder, name), deck=deck))
     ended = [found for found in uniform if found["code"] == DONE]
     if len(ended) < 2:
-        return f"| {name} | {cycle['steps']} | | {cycle['seconds']:.0f} | none comes to the end | | |", None, None
+        return f"| {name} | {cycle['steps']} | | {cycle['processor']:.0f} | none comes to the end | | |", None, None
     error = error_of(cycle, ended[-1])
-    points = [(error_of(found, ended[-1]), found["seconds"]) for found in ended[:-1]]
+    points = [(error_of(found, ended[-1]), found["processor"]) for found in ended[:-1]]
     seconds, sign = at_equal_error(error, points)
-    words = ", ".join(f"{100 * e:.2f} in {s:.0f}" for e, s in points) + f", the finest in {ended[-1]['seconds']:.0f}"
-    ratio = cycle["seconds"] / seconds
-    return (f"| {name} | {cycle['steps']} | {100 * error:.2f} | {cycle['seconds']:.0f} | {words} | {sign}{seconds:.0f} | {ratio:.2f} |", ratio,
-            (name, (error, cycle["seconds"]), points))
+    words = ", ".join(f"{100 * e:.2f} in {s:.0f}" for e, s in points) + f", the finest in {ended[-1]['processor']:.0f}"
+    ratio = cycle["processor"] / seconds
+    return (f"| {name} | {cycle['steps']} | {100 * error:.2f} | {cycle['processor']:.0f} | {words} | {sign}{seconds:.0f} | {ratio:.2f} |", ratio,
+            (name, (error, cycle["processor"]), points))
 
 
 def draw(drawn):

@@ -54,9 +54,10 @@ def asks_by_remsh_alone(path):
 def run_scene(name, out, parameters=None, deck=None):
     """One scene by lagacycle: what came of it."""
     words = [word for key, value in (parameters or {}).items() for word in ("-p", f"{key}={value!r}")]
-    begun = time.monotonic()
+    begun, processor = time.monotonic(), spent()
     result = cycle(deck or deck_of(name), out, "--fresh", "--quiet", *words)
     found = {"name": name, "code": result.returncode, "seconds": time.monotonic() - begun, "said": said(result).strip(), "out": out}
+    found["processor"] = spent() - processor
     rows = tries(out)
     found["meshes"] = sum(row["accepted"] == "y" and row["action"] != "old mesh" for row in rows)
     found["refused"] = sum(row["accepted"] == "n" for row in rows)
@@ -72,6 +73,12 @@ def run_scene(name, out, parameters=None, deck=None):
     if glob.glob(os.path.join(out, "summary.json")):
         found["drift"] = 100 * drift_of(summary(out))
     return found
+
+
+def spent():
+    """Seconds of processor of all programs that this one called and that have ended."""
+    told = os.times()
+    return told.children_user + told.children_system
 
 
 def drift_of(told):
