@@ -13,7 +13,7 @@ module cycle_answer
   use cycle_action, only: act_check, act_end, act_refuse, act_remesh, act_resume, act_start, action_t, is_inner
   use cycle_bookkeeping, only: carry_out
   use cycle_decision, only: next_action
-  use cycle_folder, only: read_situation
+  use cycle_folder, only: read_situation, seen_files_t
   use cycle_options, only: cycle_options_t, read_cycle_options
   use cycle_situation, only: ended_known, situation_t
   use errors, only: error_t, exit_bug, exit_done, fail
@@ -33,6 +33,7 @@ contains
     integer, intent(out) :: code   !! with which the cycle ends; 0: it goes on, or is done
     type(error_t), allocatable, intent(out) :: error
     type(cycle_options_t) :: options
+    type(seen_files_t) :: seen
     type(situation_t) :: situation
     type(action_t) :: action
     character(len=:), allocatable :: line
@@ -42,7 +43,7 @@ contains
     call read_cycle_options(options, error)
     do k = 1, most_in_a_row
       if (allocated(error)) return
-      call read_situation(options, situation, error)
+      call read_situation(options, seen, situation, error)
       if (allocated(error)) return
       action = next_action(situation)
       call carry_out(situation, action, line, error)

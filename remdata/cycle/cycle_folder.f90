@@ -6,19 +6,31 @@ module cycle_folder
     is_due, is_first_mesh, is_read, mesh_name, made_mesh_t, situation_t, try_name
   use cycle_table, only: number_refused, parse_table, try_row_t
   use errors, only: error_t, exit_machine, exit_no_convergence
-  use exchange, only: read_facts
+  use exchange, only: checkpoint_facts_t, read_facts
   use json_lookup, only: json_number, json_text, read_json
   use kinds, only: wp
   use system, only: directory_of, file_exists, join_path, remove_file
   implicit none
   private
-  public :: read_situation, most_tries
+  public :: read_situation, seen_files_t, most_tries
+
+  !> A checkpoint that was found whole.
+  type :: seen_file_t
+    character(len=:), allocatable :: bytes
+    type(checkpoint_facts_t) :: facts
+  end type seen_file_t
+
+  !> Checkpoints that were found whole, so that none is checked again that has the same bytes, under its name or another.
+  type :: seen_files_t
+    type(seen_file_t), allocatable :: file(:)   !! (nfile)
+  end type seen_files_t
 
 contains
 
   !> Only what the decision may ask for is read: checkpoints are large, and every one is checked as a whole.
-  subroutine read_situation(options, s, error)
+  subroutine read_situation(options, seen, s, error)
     type(cycle_options_t), intent(in) :: options
+    type(seen_files_t), intent(inout) :: seen
     type(situation_t), intent(out) :: s
     type(error_t), allocatable, intent(out) :: error
 
@@ -30,26 +42,44 @@ contains
     s%ended = options%ended
     allocate (s%rows(0))
     s%new = no_mesh()
-    call look(s%stem//'.'//current_name, s%current)
-    if (.not. is_read(s%current)) call look(s%stem//'.'//previous_name(current_name), s%previous)
+    call look(s%stem//'.'//current_name, seen, s%current)
+    if (.not. is_read(s%current)) call look(s%stem//'.'//previous_name(current_name), seen, s%previous)
     if (s%ended%program == ended_nothing .or. .not. is_read(s%current)) return
     call read_table(s%table, s%rows, error)
     if (allocated(error)) return
-    call read_new_mesh(s)
+    call read_new_mesh(seen, s)
     s%finished = is_finished(s)
     if (s%ended%program == ended_remdata .and. s%ended%code == exit_machine) s%has_room = room_for_copy(s%stem)
   end subroutine read_situation
 
   !> A checkpoint: is it there, is it whole, what does it hold?
-  subroutine look(path, file)
+  subroutine look(path, seen, file)
     character(len=*), intent(in) :: path
+    type(seen_files_t), intent(inout) :: seen
     type(checkpoint_file_t), intent(out) :: file
+    type(seen_file_t) :: new
     type(error_t), allocatable :: error
+    integer :: k
 
     file%found = file_exists(path)
     if (.not. file%found) return
+    if (.not. allocated(seen%file)) allocate (seen%file(0))
+    call read_text(path, new%bytes, error)
+    if (.not. allocated(error)) then
+      do k = 1, size(seen%file)
+        if (len(seen%file(k)%bytes) /= len(new%bytes)) cycle
+        if (seen%file(k)%bytes /= new%bytes) cycle
+        file%facts = seen%file(k)%facts
+        return
+      end do
+    end if
     call read_facts(path, file%facts, error)
-    if (allocated(error)) file%refused = first_line(error%message)
+    if (allocated(error)) then
+      file%refused = first_line(error%message)
+    else
+      new%facts = file%facts
+      seen%file = [seen%file, new]
+    end if
   end subroutine look
 
   subroutine read_table(path, rows, error)
@@ -65,7 +95,8 @@ contains
 
   !> The mesh that the run is on while its try is still there: its first steps are done, or the run failed in them.
   !> Otherwise the one that is due.
-  subroutine read_new_mesh(s)
+  subroutine read_new_mesh(seen, s)
+    type(seen_files_t), intent(inout) :: seen
     type(situation_t), intent(inout) :: s
     logical :: due, has_tries, judged
 
@@ -74,23 +105,24 @@ contains
       judged = s%current%facts%probation == 0 .or. failed(s%ended)
       has_tries = generation > 1 .and. judged
       new%generation = generation
-      if (has_tries) call find_tries(s, new%generation, has_tries)
+      if (has_tries) call find_tries(s, seen, new%generation, has_tries)
       new%has_tries = has_tries
       if (has_tries) then
-        call look(s%stem//'.'//mesh_name(new%generation - 1, 'end.h5'), new%old_end)
+        call look(s%stem//'.'//mesh_name(new%generation - 1, 'end.h5'), seen, new%old_end)
       else
         new%generation = generation + 1
         if (due) s%end_is_kept = is_same(s%stem//'.'//current_name, s%stem//'.'//mesh_name(generation, 'end.h5'))
         if (s%end_is_kept) new%old_end = s%current
       end if
-      if (is_read(new%old_end)) call read_try(s%stem, s%rows, new)
+      if (is_read(new%old_end)) call read_try(s%stem, s%rows, seen, new)
     end associate
   end subroutine read_new_mesh
 
   !> The mesh whose tries are still there: that of the run; or, where an operation has begun since, one of an operation before.
   !> Tries that were refused before an operation began are none of its mesh, on which no run was restarted.
-  subroutine find_tries(s, generation, found)
+  subroutine find_tries(s, seen, generation, found)
     type(situation_t), intent(in) :: s
+    type(seen_files_t), intent(inout) :: seen
     integer, intent(inout) :: generation   !! that of the run on entry
     logical, intent(out) :: found
     type(checkpoint_file_t) :: old_end
@@ -103,7 +135,7 @@ contains
       found = any_try(s, g)
       restarted = file_exists(s%stem//'.'//mesh_name(g, 'restart.json'))
       if (found .and. s%current%facts%operation > 1 .and. .not. restarted) then
-        call look(s%stem//'.'//mesh_name(g - 1, 'end.h5'), old_end)
+        call look(s%stem//'.'//mesh_name(g - 1, 'end.h5'), seen, old_end)
         found = is_read(old_end)
         if (found) found = is_first_mesh(old_end%facts)
       end if
@@ -114,17 +146,18 @@ contains
   end subroutine find_tries
 
   !> The try at hand: the one after those that were refused at this stop.
-  subroutine read_try(stem, rows, new)
+  subroutine read_try(stem, rows, seen, new)
     character(len=*), intent(in) :: stem
     type(try_row_t), intent(in) :: rows(:)   !! (ntry)
+    type(seen_files_t), intent(inout) :: seen
     type(made_mesh_t), intent(inout) :: new
     character(len=:), allocatable :: json, path
 
     new%number = number_refused(rows, new%generation, new%old_end%facts%step) + 1
     ! the earlier save is never the first way
-    if (new%number > 1) call look(stem//'.'//mesh_name(new%generation - 1, 'end.1.h5'), new%old_earlier)
+    if (new%number > 1) call look(stem//'.'//mesh_name(new%generation - 1, 'end.1.h5'), seen, new%old_earlier)
     path = stem//'.'//try_name(new%generation, new%number)
-    call look(path, new%made)
+    call look(path, seen, new%made)
     new%has_facts = file_exists(path//'.json')
     call read_json(path//'.json', json)
     new%made_stage = json_text(json, 'stage')

@@ -34,6 +34,11 @@ module hdf5_file
     logical, private :: writable = .false.
     character(len=:), allocatable, private :: file_path
     type(error_t), allocatable, private :: first_error
+    !> Dataset or group used last, left open: its attributes, and its extents and values, are asked for one after the other.
+    integer(hid_t), private :: object = closed
+    character(len=:), allocatable, private :: object_path
+    !> How groups and datasets are made, and the extent of single values; of files open for writing.
+    integer(hid_t), private :: group_properties = closed, dataset_properties = closed, single_value = closed
   contains
     procedure :: create
     procedure :: open => open_to_read
@@ -50,6 +55,8 @@ module hdf5_file
     procedure :: remove
     procedure :: require_shape
     procedure :: check_structure
+    procedure, private :: open_object
+    procedure, private :: keep_object
     procedure, private :: write_hash
     procedure, private :: check_hash
 
@@ -179,6 +186,19 @@ module hdf5_file
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
     end subroutine remove
+
+    !> Open the dataset or group `path`, unless it is the one used last; `self%object` is `closed` where there is none.
+    module subroutine open_object(self, path)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+    end subroutine open_object
+
+    !> An object just made, or `closed`, takes the place of the one used last.
+    module subroutine keep_object(self, path, object)
+      class(hdf5_file_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      integer(hid_t), intent(in) :: object
+    end subroutine keep_object
   end interface
 
   ! The hash of all bytes: hdf5_file_hash.

@@ -1,31 +1,38 @@
 !> Opening, closing, groups and names of HDF5 files.
 submodule(hdf5_file) hdf5_file_access
   use hdf5, only: h5_index_name_f, h5_iter_inc_f, h5dont_atexit_f, h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, &
-    h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_local_f, h5fclose_f, h5fcreate_f, h5fflush_f, h5fopen_f, &
-    h5gclose_f, h5gcreate_f, h5gn_members_f, h5iis_valid_f, h5lcreate_external_f, h5ldelete_f, h5lexists_f, &
-    h5lget_name_by_idx_f, h5open_f, h5p_file_access_f, h5p_file_create_f, h5p_link_create_f, h5pclose_f, &
-    h5pcreate_f, h5pset_create_inter_group_f, h5pset_fclose_degree_f, h5pset_userblock_f, h5t_native_double, &
-    hsize_t
+    h5f_acc_trunc_f, h5f_close_strong_f, h5f_libver_latest_f, h5f_libver_v18_f, h5f_scope_local_f, h5fclose_f, h5fcreate_f, &
+    h5fflush_f, h5fopen_f, h5gcreate_f, h5gn_members_f, h5iis_valid_f, h5lcreate_external_f, h5ldelete_f, h5lexists_f, &
+    h5lget_name_by_idx_f, h5oclose_f, h5oopen_f, h5open_f, h5p_dataset_create_f, h5p_file_access_f, h5p_file_create_f, &
+    h5p_group_create_f, h5pclose_f, h5pcreate_f, h5pset_attr_phase_change_f, &
+    h5pset_fclose_degree_f, h5pset_libver_bounds_f, h5pset_link_phase_change_f, h5pset_obj_track_times_f, h5pset_userblock_f, &
+    h5s_scalar_f, h5sclose_f, h5screate_f, h5t_native_double, hsize_t
   use errors, only: exit_bug, exit_input, exit_machine, fail
   use system, only: set_environment
   implicit none
+
+  !> Links or attributes of a group from which on HDF5 keeps them in a tree of their own; it allows no more.
+  integer, parameter :: most_in_header = 65535
 
 contains
 
   module procedure create
     integer(hid_t) :: access, creation
-    integer :: flag(5)
+    integer :: flag(4)
 
     call begin(self, path, .true.)
     call make_access(access)
     call h5pcreate_f(h5p_file_create_f, creation, flag(2))
     call h5pset_userblock_f(creation, int(user_block_length, hsize_t), flag(3))
+    call set_compact(creation)
     call h5fcreate_f(path, h5f_acc_trunc_f, self%id, flag(1), creation_prp=creation, access_prp=access)
     call h5pclose_f(creation, flag(4))
-    call h5pclose_f(access, flag(5))
+    call h5pclose_f(access, flag(4))
     if (flag(1) /= 0) then
       self%id = closed
       call self%record_error(exit_machine, 'cannot be made (no such directory, no permission, or open elsewhere)')
+    else
+      call make_properties(self)
     end if
     call self%status(error)
   end procedure create
@@ -56,6 +63,8 @@ contains
     if (flag /= 0) then
       self%id = closed
       call self%record_error(exit_input, 'HDF5 cannot open it (no permission, or a damaged file)')
+    else if (self%writable) then
+      call make_properties(self)
     end if
   end subroutine open_existing
 
@@ -90,20 +99,77 @@ contains
     call h5eset_auto_f(0, flag)
   end subroutine start_library
 
-  !> Access properties: closing the file closes all that is open in it.
+  !> Access properties: closing the file closes all that is open in it. The format is that of HDF5 1.8, whose groups and attributes
+  !> take a third of the room and of the time of the first one.
   subroutine make_access(access)
     integer(hid_t), intent(out) :: access
     integer :: flag
 
     call h5pcreate_f(h5p_file_access_f, access, flag)
     call h5pset_fclose_degree_f(access, h5f_close_strong_f, flag)
+    call h5pset_libver_bounds_f(access, h5f_libver_v18_f, h5f_libver_latest_f, flag)
   end subroutine make_access
+
+  !> Groups keep their links and attributes in their header, whatever their number, and no times.
+  subroutine set_compact(properties)
+    integer(hid_t), intent(in) :: properties   !! for groups, or for a file: those of its root
+    integer :: flag
+
+    call h5pset_link_phase_change_f(properties, most_in_header, most_in_header, flag)
+    call h5pset_attr_phase_change_f(properties, most_in_header, most_in_header, flag)
+    call h5pset_obj_track_times_f(properties, .false., flag)
+  end subroutine set_compact
+
+  !> What is made once for all objects of a file. HDF5 refuses the handle of whatever could not be made where it is used.
+  subroutine make_properties(self)
+    class(hdf5_file_t), intent(inout) :: self
+    integer :: flag
+
+    call h5pcreate_f(h5p_group_create_f, self%group_properties, flag)
+    call set_compact(self%group_properties)
+    call h5pcreate_f(h5p_dataset_create_f, self%dataset_properties, flag)
+    call h5pset_obj_track_times_f(self%dataset_properties, .false., flag)
+    call h5screate_f(h5s_scalar_f, self%single_value, flag)
+  end subroutine make_properties
+
+  subroutine close_properties(self)
+    class(hdf5_file_t), intent(inout) :: self
+    integer :: flag
+
+    if (self%group_properties == closed) return
+    call h5pclose_f(self%group_properties, flag)
+    call h5pclose_f(self%dataset_properties, flag)
+    call h5sclose_f(self%single_value, flag)
+    self%group_properties = closed
+  end subroutine close_properties
+
+  module procedure open_object
+    integer(hid_t) :: object
+    integer :: flag
+
+    if (self%object /= closed) then
+      if (self%object_path == path) return
+    end if
+    call h5oopen_f(self%id, path, object, flag)
+    if (flag /= 0) object = closed
+    call self%keep_object(path, object)
+  end procedure open_object
+
+  module procedure keep_object
+    integer :: flag
+
+    if (self%object /= closed) call h5oclose_f(self%object, flag)
+    self%object = object
+    self%object_path = path
+  end procedure keep_object
 
   module procedure close_file
     integer :: flag(2)
 
     if (self%id /= closed) then
       flag = 0
+      call self%keep_object('', closed)
+      call close_properties(self)
       if (self%writable) call h5fflush_f(self%id, h5f_scope_local_f, flag(1))
       call h5fclose_f(self%id, flag(2))
       self%id = closed
@@ -132,29 +198,31 @@ contains
   end procedure path_of_file
 
   module procedure group
-    integer(hid_t) :: links, id
-    integer :: flag(4)
+    integer(hid_t) :: id
+    integer :: flag
 
-    if (self%failed()) return
-    if (self%has(path)) return
-    call h5pcreate_f(h5p_link_create_f, links, flag(1))
-    call h5pset_create_inter_group_f(links, 1, flag(2))
-    call h5gcreate_f(self%id, path, id, flag(3), lcpl_id=links)
-    if (flag(3) == 0) call h5gclose_f(id, flag(3))
-    call h5pclose_f(links, flag(4))
-    if (any(flag /= 0)) call self%record_error(exit_machine, "the group '"//path//"' cannot be made")
+    if (self%failed() .or. path == '') return
+    call h5gcreate_f(self%id, path, id, flag, gcpl_id=self%group_properties)
+    if (flag /= 0) then
+      if (self%has(path)) return
+      ! groups that HDF5 makes on the way to another one have not these properties
+      call self%group(path(:index(path, '/', back=.true.) - 1))
+      call h5gcreate_f(self%id, path, id, flag, gcpl_id=self%group_properties)
+    end if
+    if (flag == 0) then
+      call self%keep_object(path, id)
+    else
+      call self%record_error(exit_machine, "the group '"//path//"' cannot be made")
+    end if
   end procedure group
 
   module procedure link
-    integer(hid_t) :: links
-    integer :: flag(4)
+    integer :: flag
 
+    call self%group(path(:index(path, '/', back=.true.) - 1))
     if (self%failed()) return
-    call h5pcreate_f(h5p_link_create_f, links, flag(1))
-    call h5pset_create_inter_group_f(links, 1, flag(2))
-    call h5lcreate_external_f(other_file, '/', self%id, path, flag(3), lcpl_id=links)
-    call h5pclose_f(links, flag(4))
-    if (any(flag /= 0)) call self%record_error(exit_machine, "the link '"//path//"' cannot be made")
+    call h5lcreate_external_f(other_file, '/', self%id, path, flag)
+    if (flag /= 0) call self%record_error(exit_machine, "the link '"//path//"' cannot be made")
   end procedure link
 
   module procedure has
@@ -198,6 +266,7 @@ contains
     if (self%failed()) return
     if (.not. self%has(path)) return
     flag = -1
+    call self%keep_object('', closed)
     if (self%writable) call h5ldelete_f(self%id, path, flag)
     if (flag /= 0) call self%record_error(exit_bug, "cannot remove '"//path//"'")
   end procedure remove

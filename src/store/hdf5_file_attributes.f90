@@ -3,7 +3,7 @@ submodule(hdf5_file) hdf5_file_attributes
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use, intrinsic :: iso_c_binding, only: c_loc, c_ptr
   use hdf5, only: h5aclose_f, h5acreate_f, h5adelete_f, h5aexists_f, h5aget_space_f, h5aget_type_f, h5aopen_f, h5aread_f, &
-    h5awrite_f, h5oclose_f, h5oopen_f, h5s_scalar_f, h5sclose_f, h5screate_f, h5sget_simple_extent_ndims_f, h5t_float_f, &
+    h5awrite_f, h5oclose_f, h5oopen_f, h5sclose_f, h5sget_simple_extent_ndims_f, h5t_float_f, &
     h5t_ieee_f64le, h5t_integer_f, h5t_native_double, h5t_native_integer, h5t_std_i32le, h5t_string_f, h5tclose_f, &
     h5tget_class_f, h5tget_size_f, h5tis_variable_str_f, size_t
   use errors, only: exit_bug, exit_input, exit_machine
@@ -99,28 +99,26 @@ contains
     integer(hid_t), intent(in) :: file_type, memory_type
     type(c_ptr), intent(in) :: address
     type(c_ptr) :: source_address
-    integer(hid_t) :: object, space, attribute
-    integer :: flag(8)
-    logical :: exists
+    integer(hid_t) :: attribute
+    integer :: flag(3)
 
     if (self%failed()) return
-    if (.not. self%has(path) .or. .not. self%writable) then
+    if (self%writable) call self%open_object(path)
+    if (self%object == closed .or. .not. self%writable) then
       call self%record_error(exit_bug, "attribute '"//name//"': there is no '"//path//"', or the file is not open for writing")
       return
     end if
-    flag = 0
     source_address = address
-    call h5oopen_f(self%id, path, object, flag(1))
-    call h5aexists_f(object, name, exists, flag(2))
-    if (exists .and. flag(2) == 0) call h5adelete_f(object, name, flag(3))
-    call h5screate_f(h5s_scalar_f, space, flag(4))
-    call h5acreate_f(object, name, file_type, space, attribute, flag(5))
-    if (flag(5) == 0) then
-      call h5awrite_f(attribute, memory_type, source_address, flag(6))
-      call h5aclose_f(attribute, flag(7))
+    call h5acreate_f(self%object, name, file_type, self%single_value, attribute, flag(1))
+    if (flag(1) /= 0) then   ! an older one, perhaps
+      call h5adelete_f(self%object, name, flag(1))
+      call h5acreate_f(self%object, name, file_type, self%single_value, attribute, flag(1))
     end if
-    call h5sclose_f(space, flag(8))
-    call h5oclose_f(object, flag(4))
+    flag(2:) = 0
+    if (flag(1) == 0) then
+      call h5awrite_f(attribute, memory_type, source_address, flag(2))
+      call h5aclose_f(attribute, flag(3))
+    end if
     if (any(flag /= 0)) &
       call self%record_error(exit_machine, "attribute '"//name//"' of '"//path//"' cannot be written (disk full?)")
   end subroutine write_value
@@ -132,7 +130,7 @@ contains
     integer, intent(in) :: class
     integer(hid_t), intent(out) :: attribute
     integer, intent(out) :: width
-    integer(hid_t) :: object, type, space
+    integer(hid_t) :: type, space
     integer(size_t) :: bytes
     integer :: flag, found, rank
     logical :: variable
@@ -140,7 +138,11 @@ contains
     attribute = closed
     width = 0
     if (self%failed()) return
-    if (.not. self%has_attribute(path, name)) then
+    call self%open_object(path)
+    flag = -1
+    if (self%object /= closed) call h5aopen_f(self%object, name, attribute, flag)
+    if (flag /= 0) then
+      attribute = closed
       call self%record_error(exit_input, "attribute '"//name//"' of '"//path//"' is missing")
       return
     end if
@@ -148,8 +150,6 @@ contains
     bytes = 0
     rank = -1
     variable = .false.
-    call h5oopen_f(self%id, path, object, flag)
-    call h5aopen_f(object, name, attribute, flag)
     call h5aget_space_f(attribute, space, flag)
     call h5sget_simple_extent_ndims_f(space, rank, flag)
     call h5sclose_f(space, flag)
@@ -158,7 +158,6 @@ contains
     call h5tget_size_f(type, bytes, flag)
     if (found == h5t_string_f) call h5tis_variable_str_f(type, variable, flag)
     call h5tclose_f(type, flag)
-    call h5oclose_f(object, flag)
     width = int(bytes)
     if (found == class .and. rank == 0 .and. .not. variable .and. .not. (class == h5t_integer_f .and. width > 4)) return
     call self%record_error(exit_input, "attribute '"//name//"' of '"//path//"' is not of the type wanted")

@@ -2,9 +2,9 @@
 submodule(hdf5_file) hdf5_file_read
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use, intrinsic :: iso_c_binding, only: c_loc, c_ptr
-  use hdf5, only: h5dclose_f, h5dget_space_f, h5dget_type_f, h5dopen_f, h5dread_f, h5sclose_f, h5sget_simple_extent_dims_f, &
-    h5sget_simple_extent_ndims_f, h5t_float_f, h5t_integer_f, h5t_native_double, h5t_native_integer, h5t_string_f, h5tclose_f, &
-    h5tget_class_f, h5tget_size_f, h5tis_variable_str_f, hsize_t, size_t
+  use hdf5, only: h5dget_space_f, h5dget_type_f, h5dread_f, h5i_dataset_f, h5iget_type_f, h5sclose_f, &
+    h5sget_simple_extent_dims_f, h5sget_simple_extent_ndims_f, h5t_float_f, h5t_integer_f, h5t_native_double, h5t_native_integer, &
+    h5t_string_f, h5tclose_f, h5tget_class_f, h5tget_size_f, h5tis_variable_str_f, hsize_t, size_t
   use errors, only: exit_input
   use hdf5_text, only: get_words, make_text_type
   use kinds, only: i8
@@ -117,26 +117,18 @@ contains
 
   module procedure require_shape
     integer(hsize_t) :: extent(32), largest(32)
-    integer(hid_t) :: dataset, space
+    integer(hid_t) :: space
     character(len=:), allocatable :: found
     integer :: rank, k, flag
 
     if (self%failed()) return
-    if (.not. self%has(path)) then
-      call self%record_error(exit_input, "dataset '"//path//"' is missing")
-      return
-    end if
-    call h5dopen_f(self%id, path, dataset, flag)
-    if (flag /= 0) then
-      call self%record_error(exit_input, "'"//path//"' is not a dataset, or a damaged one")
-      return
-    end if
-    call h5dget_space_f(dataset, space, flag)
+    call open_found(self, path)
+    if (self%failed()) return
+    call h5dget_space_f(self%object, space, flag)
     call h5sget_simple_extent_ndims_f(space, rank, flag)
     if (flag /= 0) rank = 0
     if (rank > 0) call h5sget_simple_extent_dims_f(space, extent, largest, flag)
     call h5sclose_f(space, flag)
-    call h5dclose_f(dataset, flag)
     if (rank == size(wanted)) then
       if (all(extent(:rank) == wanted .or. wanted < 0)) return
     end if
@@ -163,6 +155,23 @@ contains
     end do
   end function extents_in_words
 
+  !> Make the dataset `path` the object used last, or record why that is not possible.
+  subroutine open_found(self, path)
+    class(hdf5_file_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    integer :: kind, flag
+
+    call self%open_object(path)
+    kind = -1
+    if (self%object /= closed) call h5iget_type_f(self%object, kind, flag)
+    if (kind == h5i_dataset_f) return
+    if (self%has(path)) then
+      call self%record_error(exit_input, "'"//path//"' is not a dataset, or a damaged one")
+    else
+      call self%record_error(exit_input, "dataset '"//path//"' is missing")
+    end if
+  end subroutine open_found
+
   !> Open the dataset `path` and learn its `extent`, whose size is the rank wanted. When the dataset
   !> is not there or is something else, `dataset` is `closed` and the extent zero.
   subroutine open_dataset(self, path, class, extent, dataset)
@@ -174,22 +183,14 @@ contains
     integer(hsize_t) :: found_extent(32), largest(32)
     integer(hid_t) :: type, space
     integer(size_t) :: width, wanted_width
-    integer :: found_class, found_rank, flag(9)
+    integer :: found_class, found_rank, flag(8)
 
     extent = 0
     dataset = closed
     if (self%failed()) return
-    if (.not. self%has(path)) then
-      call self%record_error(exit_input, "dataset '"//path//"' is missing")
-      return
-    end if
-
-    call h5dopen_f(self%id, path, dataset, flag(1))
-    if (flag(1) /= 0) then
-      call self%record_error(exit_input, "'"//path//"' is not a dataset, or a damaged one")
-      dataset = closed
-      return
-    end if
+    call open_found(self, path)
+    if (self%failed()) return
+    dataset = self%object
     found_class = -1
     found_rank = -1
     width = 0
@@ -211,7 +212,6 @@ contains
     if (found_class == class .and. found_rank == size(extent) .and. width <= wanted_width) return
     call self%record_error(exit_input, "dataset '"//path//"' is "//described(found_class, int(width), found_rank)// &
       ', where '//described(class, int(wanted_width), size(extent))//' is wanted')
-    call h5dclose_f(dataset, flag(9))
     dataset = closed
     extent = 0
   end subroutine open_dataset
@@ -233,23 +233,22 @@ contains
     words = words//' of rank '//to_text(rank)
   end function described
 
-  !> Fill memory from an open dataset, and close it.
+  !> Fill memory from an open dataset.
   subroutine read_block(self, path, dataset, memory_type, address)
     class(hdf5_file_t), intent(inout) :: self
     character(len=*), intent(in) :: path
     integer(hid_t), intent(in) :: dataset, memory_type
     type(c_ptr), intent(in) :: address
     type(c_ptr) :: target_address
-    integer :: flag, ignored
+    integer :: flag
 
     if (dataset == closed) return
     target_address = address
     call h5dread_f(dataset, memory_type, target_address, flag)
-    call h5dclose_f(dataset, ignored)
     if (flag /= 0) call self%record_error(exit_input, "dataset '"//path//"' cannot be read: the file is damaged")
   end subroutine read_block
 
-  !> Fill `words` from an open dataset of text, and close it; the words are empty when that fails.
+  !> Fill `words` from an open dataset of text; they are empty when that fails.
   subroutine read_letters(self, path, dataset, words)
     class(hdf5_file_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -272,10 +271,7 @@ contains
     if (variable) then
       call self%record_error(exit_input, "dataset '"//path//"' is text of variable length, where fixed length is wanted")
     end if
-    if (variable .or. size(words) == 0) then
-      call h5dclose_f(dataset, flag)
-      return
-    end if
+    if (variable .or. size(words) == 0) return
     allocate (letters(width*size(words)))
     call make_text_type(int(width), type)
     call read_block(self, path, dataset, type, c_loc(letters))

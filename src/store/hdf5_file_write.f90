@@ -1,10 +1,8 @@
 !> Writing datasets.
 submodule(hdf5_file) hdf5_file_write
   use, intrinsic :: iso_c_binding, only: c_loc, c_ptr
-  use hdf5, only: h5dclose_f, h5dcreate_f, h5dwrite_f, h5p_dataset_create_f, h5p_link_create_f, h5pclose_f, h5pcreate_f, &
-    h5pset_chunk_f, h5pset_create_inter_group_f, h5pset_deflate_f, h5pset_obj_track_times_f, h5pset_shuffle_f, h5s_scalar_f, &
-    h5sclose_f, h5screate_f, h5screate_simple_f, h5t_ieee_f64le, h5t_native_double, h5t_native_integer, h5t_std_i32le, h5tclose_f, &
-    hsize_t
+  use hdf5, only: h5dcreate_f, h5dwrite_f, h5pclose_f, h5pcopy_f, h5pset_chunk_f, h5pset_deflate_f, h5pset_shuffle_f, h5sclose_f, &
+    h5screate_simple_f, h5t_ieee_f64le, h5t_native_double, h5t_native_integer, h5t_std_i32le, h5tclose_f, hsize_t
   use errors, only: exit_bug, exit_machine
   use hdf5_text, only: letters_of, make_text_type
   implicit none
@@ -76,46 +74,46 @@ contains
     integer(hid_t), intent(in) :: file_type, memory_type
     integer(hsize_t), intent(in) :: extent(:)
     type(c_ptr), intent(in) :: address
-    integer(hid_t) :: space, links, properties, dataset
+    integer(hid_t) :: space, properties, dataset
     integer(hsize_t) :: chunk(size(extent))
-    integer :: flag(14), rank
+    integer :: flag(9), rank
+    logical :: compressed
 
     if (self%failed()) return
     if (.not. self%writable .or. self%id == closed) then
       call self%record_error(exit_bug, "'"//path//"' was to be written, but the file is not open for writing")
       return
     end if
-    if (self%has(path)) then
-      call self%record_error(exit_bug, "'"//path//"' is already there")
-      return
-    end if
 
     flag = 0
     rank = size(extent)
-    if (rank == 0) then
-      call h5screate_f(h5s_scalar_f, space, flag(1))
-    else
-      call h5screate_simple_f(rank, extent, space, flag(1))
-    end if
-    call h5pcreate_f(h5p_link_create_f, links, flag(2))
-    call h5pset_create_inter_group_f(links, 1, flag(3))
-    call h5pcreate_f(h5p_dataset_create_f, properties, flag(4))
-    call h5pset_obj_track_times_f(properties, .false., flag(5))
-    if (self%compression > 0 .and. rank > 0 .and. product(extent) > 0) then
+    space = self%single_value
+    if (rank > 0) call h5screate_simple_f(rank, extent, space, flag(1))
+    properties = self%dataset_properties
+    compressed = self%compression > 0 .and. rank > 0 .and. product(extent) > 0
+    if (compressed) then
+      call h5pcopy_f(self%dataset_properties, properties, flag(2))
       chunk = extent
       chunk(rank) = max(1_hsize_t, min(extent(rank), chunk_size/product(extent(:rank - 1))))
-      call h5pset_chunk_f(properties, rank, chunk, flag(6))
-      call h5pset_shuffle_f(properties, flag(7))
-      call h5pset_deflate_f(properties, self%compression, flag(8))
+      call h5pset_chunk_f(properties, rank, chunk, flag(3))
+      call h5pset_shuffle_f(properties, flag(4))
+      call h5pset_deflate_f(properties, self%compression, flag(5))
     end if
-    call h5dcreate_f(self%id, path, file_type, space, dataset, flag(9), dcpl_id=properties, lcpl_id=links)
-    if (flag(9) == 0) then
-      if (product(extent) > 0) call h5dwrite_f(dataset, memory_type, address, flag(10))
-      call h5dclose_f(dataset, flag(11))
+    call h5dcreate_f(self%id, path, file_type, space, dataset, flag(6), dcpl_id=properties)
+    if (flag(6) /= 0) then
+      if (self%has(path)) then
+        call self%record_error(exit_bug, "'"//path//"' is already there")
+      else
+        call self%group(path(:index(path, '/', back=.true.) - 1))
+        call h5dcreate_f(self%id, path, file_type, space, dataset, flag(6), dcpl_id=properties)
+      end if
     end if
-    call h5pclose_f(properties, flag(12))
-    call h5pclose_f(links, flag(13))
-    call h5sclose_f(space, flag(14))
+    if (flag(6) == 0) then
+      if (product(extent) > 0) call h5dwrite_f(dataset, memory_type, address, flag(7))
+      call self%keep_object(path, dataset)
+    end if
+    if (compressed) call h5pclose_f(properties, flag(8))
+    if (rank > 0) call h5sclose_f(space, flag(9))
     if (any(flag /= 0)) call self%record_error(exit_machine, "the dataset '"//path//"' cannot be written (disk full?)")
   end subroutine write_block
 
