@@ -4,10 +4,10 @@
 !>     call file%write(...)
 !>     call commit_atomic(file, error, keep_previous=.true.)
 !>
-!> Every file carries a hash of all its bytes (hdf5_file). `commit_atomic` reads the closed file back before it takes the place of
-!> the older one; `open_verified` opens a file whose hash is right and in which there is nothing that this program does not write.
-!> Hash and structure are two checks: the first finds every accidental change, however HDF5 would read it; the second holds also
-!> for a file that was written by another program, with a valid hash.
+!> Every file carries a hash of all its bytes (hdf5_file). `commit_atomic` reads the closed file back and opens it before it takes
+!> the place of the older one; `open_verified` opens a file whose hash is right and in which there is nothing that this program
+!> does not write. Hash and structure are two checks: the first finds every accidental change, however HDF5 would read it; the
+!> second holds also for a file that was written by another program, with a valid hash.
 module hdf5_atomic
   use atomic, only: refuse_place, replace_file, temporary_name
   use errors, only: error_t, exit_bug, exit_machine
@@ -64,13 +64,13 @@ contains
     if (allocated(error)) call file%close(ignored)
   end subroutine open_verified
 
-  !> Can the file be read back as it was written?
+  !> Can the file be read back as it was written? What is in it was written by this program a moment ago.
   subroutine verify(path, error)
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
     type(hdf5_file_t) :: file
 
-    call open_verified(file, path, error)
+    call file%open(path, error)
     if (.not. allocated(error)) call file%close(error)
   end subroutine verify
 

@@ -199,9 +199,14 @@ contains
 
   module procedure group
     integer(hid_t) :: id
-    integer :: flag
+    integer :: flag, last
 
     if (self%failed() .or. path == '') return
+    last = len(path)
+    if (path(last:) == '/') then
+      call self%group(path(:last - 1))
+      return
+    end if
     call h5gcreate_f(self%id, path, id, flag, gcpl_id=self%group_properties)
     if (flag /= 0) then
       if (self%has(path)) return

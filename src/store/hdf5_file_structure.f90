@@ -26,11 +26,11 @@ submodule(hdf5_file) hdf5_file_structure
   end type room_t
 
   !> Names in a group or of attributes, in alphabetic order, gathered in one pass: by their numbers HDF5 would begin anew for each.
-  type :: names_t
+  type :: name_list_t
     integer :: number = 0
     type(string_t), allocatable :: name(:)   !! (number or more)
     logical, allocatable :: hard(:)          !! (number or more); of links
-  end type names_t
+  end type name_list_t
 
   interface
     function c_aiterate(object, index, order, place, visit, names) bind(c, name='H5Aiterate2') result(status)
@@ -91,7 +91,7 @@ contains
     character(len=*), intent(in) :: path
     integer, intent(in) :: depth
     type(room_t), intent(inout) :: room
-    type(names_t), target :: members
+    type(name_list_t), target :: members
     character(len=:), allocatable :: below
     type(c_funptr) :: visit
     integer(hsize_t) :: place
@@ -133,7 +133,7 @@ contains
     integer(hid_t), value :: group
     type(c_ptr), value :: name, info, names
     integer(c_int) :: status
-    type(names_t), pointer :: list
+    type(name_list_t), pointer :: list
     integer(c_int), pointer :: kind
 
     call c_f_pointer(names, list)
@@ -147,7 +147,7 @@ contains
     integer(hid_t), value :: object
     type(c_ptr), value :: name, info, names
     integer(c_int) :: status
-    type(names_t), pointer :: list
+    type(name_list_t), pointer :: list
 
     call c_f_pointer(names, list)
     call add_name(list, text_of_c(name), .true.)
@@ -155,10 +155,10 @@ contains
   end function note_attribute
 
   subroutine add_name(list, name, hard)
-    type(names_t), intent(inout) :: list
+    type(name_list_t), intent(inout) :: list
     character(len=*), intent(in) :: name
     logical, intent(in) :: hard
-    type(names_t) :: longer
+    type(name_list_t) :: longer
 
     if (.not. allocated(list%name)) allocate (list%name(16), list%hard(16))
     if (list%number == size(list%name)) then
@@ -206,7 +206,7 @@ contains
     character(len=*), intent(in) :: path
     type(h5o_info_t) :: info
     type(room_t) :: room
-    type(names_t), target :: names
+    type(name_list_t), target :: names
     integer(hid_t) :: attribute, space, type
     integer(hsize_t) :: stored, place
     integer :: i, flag
