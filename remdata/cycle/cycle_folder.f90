@@ -5,8 +5,8 @@ module cycle_folder
   use cycle_situation, only: checkpoint_file_t, current_name, ended_lagamine, ended_nothing, ended_remdata, ended_t, first_line, &
     is_due, is_first_mesh, is_read, mesh_name, made_mesh_t, situation_t, try_name
   use cycle_table, only: number_refused, parse_table, try_row_t
-  use errors, only: error_t, exit_machine, exit_no_convergence
-  use exchange, only: checkpoint_facts_t, read_facts
+  use errors, only: error_t, exit_done, exit_machine, exit_no_convergence, exit_remesh
+  use exchange, only: checkpoint_facts_t, read_facts, read_facts_alone
   use json_lookup, only: json_number, json_text, read_json
   use kinds, only: wp
   use system, only: directory_of, file_exists, join_path, remove_file
@@ -23,6 +23,8 @@ module cycle_folder
   !> Checkpoints that were found whole, so that none is checked again that has the same bytes, under its name or another.
   type :: seen_files_t
     type(seen_file_t), allocatable :: file(:)   !! (nfile)
+    !> Programs of this cycle have just written them: what is in them is not doubted, if their hash is right.
+    logical :: are_ours = .false.
   end type seen_files_t
 
 contains
@@ -40,6 +42,8 @@ contains
     s%tries = options%tries
     s%fresh = options%fresh
     s%ended = options%ended
+    seen%are_ours = (s%ended%program == ended_lagamine .and. any(s%ended%code == [exit_done, exit_remesh])) .or. &
+                    (s%ended%program == ended_remdata .and. s%ended%code == exit_done)
     allocate (s%rows(0))
     s%new = no_mesh()
     call look(s%stem//'.'//current_name, seen, s%current)
@@ -73,7 +77,11 @@ contains
         return
       end do
     end if
-    call read_facts(path, file%facts, error)
+    if (seen%are_ours) then
+      call read_facts_alone(path, file%facts, error)
+    else
+      call read_facts(path, file%facts, error)
+    end if
     if (allocated(error)) then
       file%refused = first_line(error%message)
     else

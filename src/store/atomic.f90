@@ -6,6 +6,7 @@ module atomic
   use file_kinds, only: file_kind, kind_in_words, nothing, refuse_to_replace, regular_file
   use kinds, only: i8
   use system, only: directory_of, file_exists, flush_to_disk, link_file, remove_file, rename_file
+  use text, only: string_t
   implicit none
   private
   public :: temporary_name, previous_name, refuse_place, replace_file, copy_to_temporary, write_text, read_text
@@ -45,10 +46,13 @@ contains
 
   !> Put `temporary_name(path)`, written and closed, in the place of `path`. With `keep_previous`
   !> the older file stays as `previous_name(path)`; a file called `path` is there at every moment.
-  subroutine replace_file(path, error, keep_previous)
+  !> Files `unnamed` that only the older one names are removed at once: a kill before that would leave them for ever.
+  subroutine replace_file(path, error, keep_previous, unnamed)
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: keep_previous
+    type(string_t), intent(in), optional :: unnamed(:)   !! (nfile) paths
+    integer :: k
     logical :: keep
 
     keep = .false.
@@ -62,6 +66,12 @@ contains
     end if
     call rename_file(temporary_name(path), path, error)
     if (allocated(error)) return
+    if (present(unnamed)) then
+      do k = 1, size(unnamed)
+        call remove_file(unnamed(k)%s, error)
+        if (allocated(error)) return
+      end do
+    end if
     call flush_directory(path)
   end subroutine replace_file
 

@@ -3,15 +3,18 @@ module exchange_facts
   use errors, only: error_t
   use exchange_read, only: read_bare_scene, read_state
   use exchange_schema, only: open_checkpoint
+  use facts_reader, only: facts_reader_t
   use kinds, only: wp
   use member_reader, only: member_reader_t
   use remesher_options, only: as_it_comes, has_zones
   use scene, only: is_solid, scene_t
   use solution, only: solution_t, start_solution
   use text, only: string_t
+  use visit_scene, only: visit_scene_members
+  use visit_solution, only: visit_solution_members
   implicit none
   private
-  public :: checkpoint_facts_t, read_facts
+  public :: checkpoint_facts_t, read_facts, read_facts_alone
 
   !> A checkpoint in short: where the run stands, on which mesh, and why a new one is due (no triggers: it is not).
   type :: checkpoint_facts_t
@@ -34,6 +37,7 @@ module exchange_facts
 
 contains
 
+  !> Facts about a checkpoint whose contents are checked as a whole.
   subroutine read_facts(path, facts, error)
     character(len=*), intent(in) :: path
     type(checkpoint_facts_t), intent(out) :: facts
@@ -42,7 +46,6 @@ contains
     type(scene_t) :: scene
     type(solution_t) :: solution
     type(error_t), allocatable :: ignored
-    integer :: g, k
 
     call open_checkpoint(path, reader, error)
     if (allocated(error)) return
@@ -52,7 +55,35 @@ contains
       call read_state(reader, scene, solution, error)
     end if
     call reader%file%close(ignored)
+    if (.not. allocated(error)) call take_facts(scene, solution, facts)
+  end subroutine read_facts
+
+  !> The same of one that a program of ours has just written: its hash is compared, and no more is read than the facts are made of.
+  subroutine read_facts_alone(path, facts, error)
+    character(len=*), intent(in) :: path
+    type(checkpoint_facts_t), intent(out) :: facts
+    type(error_t), allocatable, intent(out) :: error
+    type(facts_reader_t) :: reader
+    type(scene_t) :: scene
+    type(solution_t) :: solution
+    type(error_t), allocatable :: ignored
+
+    call open_checkpoint(path, reader, error, is_ours=.true.)
     if (allocated(error)) return
+    call visit_scene_members(reader, scene)
+    allocate (solution%fields(0), solution%groups(0), solution%pairs(0), solution%cuts(0), solution%estimate%triggers(0))
+    call visit_solution_members(reader, solution)
+    call reader%file%status(error)
+    call reader%file%close(ignored)
+    if (.not. allocated(error)) call take_facts(scene, solution, facts)
+  end subroutine read_facts_alone
+
+  subroutine take_facts(scene, solution, facts)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(checkpoint_facts_t), intent(inout) :: facts
+    integer :: g, k
+
     facts%generation = scene%generation
     facts%operation = scene%operation
     facts%remeshings = scene%generation - max(scene%operation, 1)
@@ -78,6 +109,6 @@ contains
       facts%values = triggers%value
       facts%limits = triggers%limit
     end associate
-  end subroutine read_facts
+  end subroutine take_facts
 
 end module exchange_facts

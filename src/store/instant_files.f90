@@ -48,7 +48,7 @@ contains
     integer, intent(out) :: saved
     type(error_t), allocatable, intent(out) :: error
     type(hdf5_file_t) :: file
-    type(string_t), allocatable :: names(:)
+    type(string_t), allocatable :: names(:), paths(:)
     logical, allocatable :: gone(:)
     integer :: k, number, status
 
@@ -73,10 +73,11 @@ contains
     do k = 1, size(names)
       if (gone(k)) call file%remove('steps/'//names(k)%s)
     end do
-    call put_in_place(file, path, error)
+    allocate (paths(count(gone)))
     do k = 1, size(names)
-      if (gone(k) .and. .not. allocated(error)) call remove_file(instant_path(folder, names(k)%s), error)
+      if (gone(k)) paths(count(gone(:k)))%s = instant_path(folder, names(k)%s)
     end do
+    call put_in_place(file, path, error, unnamed=paths)
   end subroutine forget_later_steps
 
   !> Enter an instant in the file of its mesh.
@@ -107,14 +108,16 @@ contains
   end subroutine begin_file
 
   !> Close a file written under its temporary name and give it its own; after an error the older one is there as it was.
-  subroutine put_in_place(file, path, error)
+  !> Files `unnamed` are no longer named in it, and are removed.
+  subroutine put_in_place(file, path, error, unnamed)
     type(hdf5_file_t), intent(inout) :: file
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
+    type(string_t), intent(in), optional :: unnamed(:)   !! (nfile) paths
     type(error_t), allocatable :: ignored
 
     call file%close(error)
-    if (.not. allocated(error)) call replace_file(path, error)
+    if (.not. allocated(error)) call replace_file(path, error, unnamed=unnamed)
     if (allocated(error)) call remove_file(temporary_name(path), ignored)
   end subroutine put_in_place
 

@@ -9,9 +9,9 @@ program checkpoint_reader
   use contact_ends, only: contact_end_t
   use deck_reader, only: deck_t, fingerprint_text, read_deck
   use diagnostics, only: diagnostics_t
-  use errors, only: error_t, exit_done, exit_input, fail
+  use errors, only: error_t, exit_bug, exit_done, exit_input, fail
   use exchange, only: checkpoint_facts_t, open_checkpoint, read_bare_scene, read_contact_ends, read_deck_of_checkpoint, &
-    read_facts, read_remesh, read_state
+    read_facts, read_facts_alone, read_remesh, read_state
   use member_reader, only: member_reader_t
   use remesh, only: remesh_t
   use scene, only: lacks_mesh, scene_t
@@ -74,13 +74,33 @@ contains
     call reader%file%close(ignored)
   end subroutine as_remesher
 
+  !> What is read alone of a file that is taken for good is what is read of all of it.
   subroutine about(path, error)
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
-    type(checkpoint_facts_t) :: facts
+    type(checkpoint_facts_t) :: facts, alone
 
     call read_facts(path, facts, error)
+    if (allocated(error)) return
+    call read_facts_alone(path, alone, error)
+    if (allocated(error)) return
+    if (.not. are_same(facts, alone)) call fail(error, exit_bug, 'read_facts and read_facts_alone differ')
   end subroutine about
+
+  pure function are_same(a, b)
+    type(checkpoint_facts_t), intent(in) :: a, b
+    logical :: are_same
+    integer :: k
+
+    are_same = all([a%generation, a%step, a%elements, a%operation, a%remeshings, a%transfer, a%probation, a%tries] == &
+                   [b%generation, b%step, b%elements, b%operation, b%remeshings, b%transfer, b%probation, b%tries]) &
+               .and. .not. any([a%time, a%error_stress, a%error_strain] /= [b%time, b%error_stress, b%error_strain]) &
+               .and. all([a%unbalanced, a%has_zones] .eqv. [b%unbalanced, b%has_zones]) &
+               .and. size(a%triggers) == size(b%triggers)
+    if (.not. are_same) return
+    are_same = .not. any(a%values /= b%values .or. a%limits /= b%limits) .and. &
+               all([(a%triggers(k)%s == b%triggers(k)%s, k=1, size(a%triggers))])
+  end function are_same
 
   subroutine as_solver(path, error)
     character(len=*), intent(in) :: path
