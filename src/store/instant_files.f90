@@ -50,7 +50,7 @@ contains
     type(hdf5_file_t) :: file
     type(string_t), allocatable :: names(:), paths(:)
     logical, allocatable :: gone(:)
-    integer :: k, number, status
+    integer :: k, n, number, status
 
     saved = -1
     allocate (names(0))
@@ -74,8 +74,11 @@ contains
       if (gone(k)) call file%remove('steps/'//names(k)%s)
     end do
     allocate (paths(count(gone)))
+    n = 0
     do k = 1, size(names)
-      if (gone(k)) paths(count(gone(:k)))%s = instant_path(folder, names(k)%s)
+      if (.not. gone(k)) cycle
+      n = n + 1
+      paths(n)%s = instant_path(folder, names(k)%s)
     end do
     call put_in_place(file, path, error, unnamed=paths)
   end subroutine forget_later_steps
