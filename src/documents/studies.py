@@ -51,7 +51,7 @@ STUDIES: List[Study] = [
         # sizes are to decide, not the number of elements
     Study("forging_rib/forging_rib_remesh", ["nx=8,11,16,23 ny=4,6,8,12 smallest=1.,0.7,0.5,0.35 largest=2.8,2.,1.4,1."], ["external_work", "rim"], seconds=False,
           changes=[("   COUNT", "   COUNT 6000")]),
-    # the limits of shape and contact are those of REMSH alone
+    # the limits are those of REMSH alone
     Study("can/can", ["size=1.4,1,0.7,0.5"], ["force_y_punch", "external_work"], seconds=False, changes=[
         ("PARAM  travel", "PARAM  travel 6\nPARAM  size 1"),
         ("REMSH", "REMSH\n   ANGLE 15. 165.\n   MIDDLE 0.4\n   SCALED 0.2\n   ASPECT 10.\n   CONTACT 50.\n   DISTRESS 4\n   LEAST 5\n"
