@@ -2,8 +2,10 @@
 !>
 !> It goes straight on, while points that slide on a die follow its bends: after a slip s on a fillet of radius r they are
 !> s^2/2r off it, open or far too deep. Where that changes a penetration much, the first correction is found with the points that
-!> were in contact kept there, their law linearised at the depth they had (`kept` of instant_t): it brings them back to
-!> the die, and the body behind them with them, while slip and flow go on as they were.
+!> were in contact kept there, their law linearised at the depth they had (`kept` of instant_t): it brings them back to the
+!> die, and the body behind them with them, while slip and flow go on as they were. Where no support and no die is driven
+!> there is no motion that goes on: only the onset of it is kept, and the matrix there (with the contacts of now) spreads the
+!> rest.
 !>
 !> Where a die turns back the step starts a little way back along that motion: the matrix there is that of unloading.
 !>
@@ -29,7 +31,7 @@ module predictor
 
   !> Change of penetration, as a share of the side, below which contact goes on as before.
   real(wp), parameter :: smooth_contact = 2.0e-3_wp
-  !> Share of the last motion, backwards, by which points unload.
+  !> Share of the last motion that shows which points load; backwards, which unload.
   real(wp), parameter :: onset = 0.02_wp
   !> A missing motion below this share of the motion is round-off: of times, and of their differences.
   real(wp), parameter :: round_off = 1.0e-10_wp
@@ -74,8 +76,8 @@ contains
     kept = .false.
     call start_from(ratio)
     if (.not. back .and. report%status == block_done .and. report%event >= 1 .and. report%jump > smooth_contact) then
-      kept = .true.
-      call start_from(ratio)
+      kept = any(abs(motion) > 0)
+      call start_from(merge(ratio, onset*ratio, kept))
     end if
     if (report%status /= block_done .and. abs(ratio) > 0) then
       kept = .false.

@@ -255,7 +255,7 @@ def main():
     rows["travel"] = [-u for u in rows["displacement_y_upper"]]
     checks.that(abs(rows["travel"][-1] - TRAVEL) < 1e-9, "the die has come to its end", rows["travel"][-1])
     within_limits(checks, out)
-    forces_go_on(checks, out, TIMES_ORDINARY, LARGEST_BIAS)
+    forces_go_on(checks, out, TIMES_ORDINARY, LARGEST_BIAS, drops=True)
     lines = new_meshes(checks, out, rows) + [""] + filling(checks, out) + [""] + against_one_mesh(checks, rows)
     worst, deep = true_contact(checks, out), summary(out)["checks"]
     checks.that(deep["max_penetration_over_allowed"] < 1 + 1e-6, "the solver too: no point deeper than allowed, in any step",
