@@ -1,6 +1,6 @@
 !> Allowed contents of a file: a tree of groups and datasets as this module writes them, and nothing else.
 submodule(hdf5_file) hdf5_file_structure
-  use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_funloc, c_funptr, c_int, c_loc, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_funloc, c_funptr, c_int, c_int64_t, c_loc, c_ptr
   use hdf5, only: h5_index_name_f, h5_iter_inc_f, h5aclose_f, h5aget_space_f, h5aget_storage_size_f, h5aget_type_f, h5aopen_f, &
     h5d_compact_f, h5d_contiguous_f, h5dget_create_plist_f, h5dget_space_f, h5dget_storage_size_f, h5dget_type_f, h5gn_members_f, &
     h5i_dataset_f, h5i_group_f, h5iget_type_f, h5l_type_hard_f, h5literate_f, h5o_info_basic_f, h5o_info_t, h5oclose_f, &
@@ -34,10 +34,10 @@ submodule(hdf5_file) hdf5_file_structure
 
   interface
     function c_aiterate(object, index, order, place, visit, names) bind(c, name='H5Aiterate2') result(status)
-      import :: c_funptr, c_int, c_ptr, hid_t, hsize_t
-      integer(hid_t), value :: object
+      import :: c_funptr, c_int, c_int64_t, c_ptr
+      integer(c_int64_t), value :: object   ! hid_t
       integer(c_int), value :: index, order
-      integer(hsize_t), intent(inout) :: place
+      integer(c_int64_t), intent(inout) :: place   ! hsize_t
       type(c_funptr), value :: visit
       type(c_ptr), value :: names
       integer(c_int) :: status
@@ -130,7 +130,7 @@ contains
 
   !> Called by HDF5 for each link: a H5L_info_t begins with the type of the link.
   function note_link(group, name, info, names) bind(c) result(status)
-    integer(hid_t), value :: group
+    integer(c_int64_t), value :: group   ! hid_t
     type(c_ptr), value :: name, info, names
     integer(c_int) :: status
     type(name_list_t), pointer :: list
@@ -144,7 +144,7 @@ contains
 
   !> Called by HDF5 for each attribute.
   function note_attribute(object, name, info, names) bind(c) result(status)
-    integer(hid_t), value :: object
+    integer(c_int64_t), value :: object   ! hid_t
     type(c_ptr), value :: name, info, names
     integer(c_int) :: status
     type(name_list_t), pointer :: list
