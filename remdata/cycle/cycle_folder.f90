@@ -85,6 +85,7 @@ contains
     if (allocated(error)) then
       file%refused = first_line(error%message)
     else
+      if (.not. allocated(new%bytes)) return
       new%facts = file%facts
       seen%file = [seen%file, new]
     end if

@@ -9,7 +9,7 @@ module heat_check
   use heat_contact_point, only: touching_still
   use kinds, only: wp
   use law_api, only: find_parameter, heat_law, law_t
-  use loads, only: by_convection
+  use loads, only: by_convection, multiplier_at
   use scene, only: group_t, host_of, lacks_mesh, role_heat_contact, scene_t
   use state_variables, only: find_variable
   use steels, only: first_diffusive, kinetics_none, last_diffusive, martensite, phase_names, prop_hardness, steel_t
@@ -25,6 +25,8 @@ module heat_check
   real(wp), parameter :: expected_share = 0.9_wp
   !> A side beside a die by less than this share of its length was meant to lie on it.
   real(wp), parameter :: nearly = 0.05_wp
+  !> Half of a largest value is meant to be half.
+  real(wp), parameter :: round_off = 1.0e-9_wp
 
 contains
 
@@ -85,7 +87,7 @@ contains
     end associate
   end subroutine judge_start
 
-  !> A side that two cards of convection name: their exchanges add up.
+  !> A side that two cards of convection name, at one time: their exchanges add up.
   subroutine judge_exchange(scene, g, warnings)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g   !! number of the group
@@ -95,6 +97,7 @@ contains
     if (.not. cools_side(scene%groups(g))) return
     do k = 1, g - 1
       if (.not. cools_side(scene%groups(k))) cycle
+      if (.not. act_together(scene, scene%groups(g)%exchange%multiplier, scene%groups(k)%exchange%multiplier)) cycle
       associate (here => scene%groups(g)%connectivity, there => scene%groups(k)%connectivity)
         n = 0
         do s = 1, size(here, 2)
@@ -105,6 +108,34 @@ contains
                           //' sides of elements are on both, and have the sum of both exchanges')
     end do
   end subroutine judge_exchange
+
+  !> Two multipliers are above half of their largest values at one time; one alone may be on while the other fades.
+  pure function act_together(scene, one, other) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: one, other   !! 0 for one that is always on
+    logical :: yes
+    real(wp), allocatable :: times(:)
+    integer :: i, j
+
+    yes = one == 0 .or. other == 0 .or. one == other
+    if (yes) return
+    allocate (times, source=[scene%multipliers(one)%time, scene%multipliers(other)%time])
+    do i = 1, size(times)
+      do j = 1, i
+        yes = yes .or. (is_on(one, 0.5_wp*(times(i) + times(j))) .and. is_on(other, 0.5_wp*(times(i) + times(j))))
+      end do
+    end do
+
+  contains
+
+    pure function is_on(k, time)
+      integer, intent(in) :: k
+      real(wp), intent(in) :: time
+      logical :: is_on
+
+      is_on = 2*abs(multiplier_at(scene%multipliers(k), time)) > maxval(abs(scene%multipliers(k)%value))*(1 + round_off)
+    end function is_on
+  end function act_together
 
   pure function cools_side(group) result(yes)
     type(group_t), intent(in) :: group

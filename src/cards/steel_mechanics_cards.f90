@@ -72,7 +72,8 @@ contains
     case (prop_lambda)
       most = 5.0e3_wp
     case (prop_rhoc)
-      most = 100.0_wp
+      ! heat of melting within a few kelvin included
+      most = 1.0e4_wp
     case (prop_content, prop_latent)
       most = 1.0e6_wp
     case (prop_hardness)

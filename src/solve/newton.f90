@@ -24,7 +24,7 @@ module newton
   use linear_solver, only: return_to_chosen
   use line_search, only: manner_t, search_along
   use path_record, only: path_step_t
-  use predictor, only: leaving_dies, predict, work_of_dies
+  use predictor, only: lagging_dies, leaving_dies, predict, work_of_dies
   use scene, only: scene_t
   use solution, only: solution_t
   use text, only: to_text
@@ -85,6 +85,7 @@ contains
     logical, allocatable :: held(:, :)
     integer :: touched(size(scene%dies))
     real(wp) :: work(size(scene%dies))
+    logical :: lags(size(scene%dies)), left_by(size(scene%dies))
     logical :: changed, followed, again, kept, steep
     integer :: first
 
@@ -98,7 +99,11 @@ contains
       call set_cause(report, outcome)
       return
     end if
-    if (dt > scene%strategy%least_step) outcome%event = min(report%event, report%passed)
+    if (dt > scene%strategy%least_step) then
+      outcome%event = report%event
+      ! the motion of a prediction that keeps contact goes straight on where that will follow the die
+      if (.not. kept) outcome%event = min(outcome%event, report%passed)
+    end if
     if (outcome%event < 1) then
       outcome%event_reason = 'contact begins'
       return
@@ -111,6 +116,7 @@ contains
     correction = 0
     allocate (contact, source=contact_set(scene, solution))
     held = equations%wall%held
+    left_by = .false.
     do
       residual = external - equations%force
       if (size(outcome%history) == 0) call weigh_quantities(equations, external, residual)
@@ -163,6 +169,7 @@ contains
       if (any(abs(missing) > 0)) then
         touched = touching_dies(scene, solution)
         work = work_of_dies(equations, missing)
+        lags = lagging_dies(equations, missing)
       end if
       ! between the two states contact may be as in neither
       if (goes_to_and_fro(outcome%history(first:))) correction = 0.5_wp*correction
@@ -206,15 +213,16 @@ contains
 
     !> Where dies leave the part, or it cannot follow those that withdraw: once more, with these dies where they go.
     subroutine follow_dies()
-      logical :: left(size(touched))
+      logical :: leaving(size(touched))
       integer :: now(size(touched))
 
       now = 0
       if (abs(line%line_search) > 0) now = touching_dies(scene, solution)
       missing = 0
-      left = leaving_dies(work, touched, now)
-      if (.not. any(left)) return
-      call predict(scene, equations, solution, dt, given, go_on, outcome%du, missing, kept, report, left)
+      leaving = leaving_dies(lags, work, touched, now) .and. .not. left_by
+      if (.not. any(leaving)) return
+      left_by = left_by .or. leaving
+      call predict(scene, equations, solution, dt, given, go_on, outcome%du, missing, kept, report, left_by)
       line%line_search = merge(1.0_wp, 0.0_wp, report%status == block_done)
       correction = 0
     end subroutine follow_dies

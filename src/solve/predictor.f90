@@ -27,7 +27,7 @@ module predictor
   use solution, only: solution_t
   implicit none
   private
-  public :: predict, proportion, leaving_dies, work_of_dies
+  public :: predict, proportion, lagging_dies, leaving_dies, work_of_dies
 
   !> Change of penetration, as a share of the side, below which contact goes on as before.
   real(wp), parameter :: smooth_contact = 2.0e-3_wp
@@ -51,15 +51,16 @@ contains
     logical, intent(out) :: kept
     type(report_t), intent(out) :: report
     logical, intent(in), optional :: left(:)     !! (ndie) dies that leave the part: they start where they go
-    logical :: fixed(size(du)), at_place(size(du)), back
+    logical :: fixed(size(du)), at_place(size(du)), back, found
     real(wp) :: motion(size(equations%dofs%prescribed))
     real(wp) :: ratio
     integer :: k
 
     call prescribed_motion(scene, equations%dofs, solution%fields,.not. solution%last_step > 0, solution%time, &
                            solution%time + dt, motion)
-    fixed = .not. equations%solves(equations%now)%is_own
-    if (present(go_on)) fixed = fixed .or. go_on
+    found = .false.
+    if (present(go_on)) found = go_on
+    fixed = .not. equations%solves(equations%now)%is_own .or. found
     at_place = .false.
     if (present(left)) then
       associate (pilot => equations%dofs%fields(pilot_field)%number)
@@ -71,12 +72,12 @@ contains
     ratio = 0
     if (solution%last_step > 0) ratio = dt/solution%last_step
     back = present(left)
-    if (.not. back .and. ratio > 0) back = turns_back()
+    if (.not. (back .or. found) .and. ratio > 0) back = turns_back()
     if (back) ratio = -onset*ratio
     kept = .false.
     call start_from(ratio)
-    if (.not. back .and. report%status == block_done .and. report%event >= 1 .and. report%jump > smooth_contact) then
-      kept = any(abs(motion) > 0)
+    if (.not. (back .or. found) .and. report%status == block_done .and. report%event >= 1 .and. report%jump > smooth_contact) then
+      kept = is_driven()
       call start_from(merge(ratio, onset*ratio, kept))
     end if
     if (report%status /= block_done .and. abs(ratio) > 0) then
@@ -96,6 +97,19 @@ contains
     end do
 
   contains
+
+    !> A support or a die is moved in the step.
+    function is_driven()
+      logical :: is_driven
+      integer :: i
+
+      is_driven = .false.
+      do i = 1, size(motion)
+        associate (q => equations%dofs%quantity(equations%dofs%prescribed(i)%dof))
+          if (equations%dofs%quantities(q)%s == 'motion') is_driven = is_driven .or. abs(motion(i)) > 0
+        end associate
+      end do
+    end function is_driven
 
     !> A die goes the other way than in the last step.
     function turns_back()
@@ -151,14 +165,29 @@ contains
     end associate
   end function work_of_dies
 
+  !> Dies that still miss a part of their motion (ndie).
+  pure function lagging_dies(equations, missing) result(lag)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: missing(:)   !! (ndof) [unknown]
+    logical :: lag(size(equations%dofs%fields(pilot_field)%number, 2))
+    integer :: k
+
+    associate (pilot => equations%dofs%fields(pilot_field)%number)
+      do k = 1, size(lag)
+        lag(k) = any(abs(missing(pack(pilot(:, k), pilot(:, k) > 0))) > 0)
+      end do
+    end associate
+  end function lagging_dies
+
   !> Dies that leave the part: those that withdraw and lose more than half of their points in the first iteration, or all of them.
   !> Without a force, as at the start, it is not known which way a die goes, but one that presses does not lose all points.
-  elemental function leaving_dies(work, before, now) result(leaving)
+  elemental function leaving_dies(lags, work, before, now) result(leaving)
+    logical, intent(in) :: lags             !! of lagging_dies
     real(wp), intent(in) :: work            !! of work_of_dies [energy]
     integer, intent(in) :: before, now      !! points that touch the die in the prediction, and after the iteration
     logical :: leaving
 
-    leaving = work < 0 .and. 2*now < before .or. .not. abs(work) > 0 .and. now == 0 .and. before > 0
+    leaving = lags .and. (work < 0 .and. 2*now < before .or. .not. abs(work) > 0 .and. now == 0 .and. before > 0)
   end function leaving_dies
 
   !> The last accepted motion of all unknowns times `ratio`.

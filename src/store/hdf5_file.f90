@@ -156,7 +156,7 @@ module hdf5_file
     end function path_of_file
 
     !> Make a group and those above it; one that is there already is fine.
-    module subroutine group(self, path)
+    recursive module subroutine group(self, path)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
     end subroutine group

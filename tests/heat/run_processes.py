@@ -133,6 +133,12 @@ def told(checks):
         for words in ("bar: it begins as austenite at 0, below Ms of the steel s (300 degC)", "2 sides of elements are on both",
                       "the steel s has no hardness"):
             checks.that(sum(words in line["text"] for line in warnings) == 1, f"told: {words}", warnings)
+    # air until water comes: never both
+    run = Run(checks, "in-turns", "TITLE in turns\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+              "   2 1.   2 1.\nLAW hot HEAT\n   30. 4.5\nSTART T 100.\nLIC air\n   0. 1.   1. 1.   1.1 0.   2. 0.\nLIC water\n   0. 0.   1. 0.   1.1 1.   2. 1.\n"
+              "CONVE bar 2 H 1. air TS 20.\nCONVE bar 2 3 H 5. water TS 20.\nSTRAT 1. 1. 1. 4 3\nSTOP 2.\nEND\n")
+    if run.ok:
+        checks.that(not summary(run)["warnings"], "in turns: nothing is told", summary(run)["warnings"])
 
 
 if __name__ == "__main__":

@@ -221,6 +221,21 @@ def lifts_off(checks):
     return cuts
 
 
+def lifted_off(checks):
+    """A block is lifted by its top off a fixed die or another body, at once or after it has lain there: no force, few steps are cut."""
+    cuts, worst = 0, 0.0
+    for k, (way, below) in enumerate((("0. 0. 1. 0.1", "SEGM -5. 0. 13. 0.\n"), ("0. 0. 1. 0. 1.5 0.1 2. 0.2", "SEGM -5. 0. 13. 0.\n"),
+                                      ("0. 0. 1. 0.1", "SIDES low 3\n"))):
+        low = block("-2. -4. 10. -4. 10. 0. -2. 0.", "9 1. 4 1.").replace("BLOCK b", "BLOCK low") if "low" in below else ""
+        run = checks.run(f"lifted-{k}", deck(
+            "PLSTN", "LOG", block("0. 0. 8. 0. 8. 4. 0. 4.", "8 1. 4 1.") + low, PLASTIC.replace("PHI 0.2", "PHI 0.1 AUGMENT 20"),
+            ("FIXED low 1 XY\n" if low else "") + f"DIE d{' ' if low else chr(10) + '   '}{below}CNT2D b 1 d k\nFIXED b 3 X\nMOVE b 3 Y go\nLIC go\n {way}\n"
+            "PROBE f REACT Y b 3\n", "STRAT 0.1 1.E-6 0.1 5 3"))
+        cuts += report(run)["cutbacks"]
+        worst = max(worst, *abs(run.history["f"]))
+    return max(cuts - 5, worst/1000)
+
+
 def past_the_end(checks):
     """A block under a weight dragged over the open end of its table and back: it stays whole, and the force is friction's."""
     run = checks.run("past-the-end", deck(
@@ -388,7 +403,7 @@ CASES = (
     Case("middle nodes off centre", off_centre, 1e-9), Case("change of units", units, 1e-9), Case("threads", threads, 0.0),
     Case("steps far too long", long_steps, 0.02), Case("mirror image", mirrored, 1e-7),
     Case("held by friction alone", friction_alone, 1e-2), Case("contact again", contact_again, 0.01),
-    Case("released and pressed again", released, 1e-9), Case("lifts off", lifts_off, 0),
+    Case("released and pressed again", released, 1e-9), Case("lifts off", lifts_off, 0), Case("lifted off", lifted_off, 1e-9),
     Case("past a die's end", past_the_end, 1e-2), Case("round a fillet", round_a_fillet, 5.0),
     Case("stick-slip reversal", stick_slip, 1e-3),
     Case("bent round a pin", round_a_pin, 0.25), Case("bent between three rollers", three_point_bending, 0.2),
