@@ -14,7 +14,7 @@ module heat_check
   use state_variables, only: find_variable
   use steels, only: first_diffusive, kinetics_none, last_diffusive, martensite, phase_names, prop_hardness, steel_t
   use temperature_curves, only: is_given
-  use text, only: string_t, to_text
+  use text, only: add => add_text, string_t, to_text
   use vectors, only: length_of
   use weld_sources, only: power_in_plane
   implicit none
@@ -259,12 +259,5 @@ contains
     if (way > axis) call add(warnings, 'GOLDAK '//to_text(k)//': it goes '//to_text(way/axis, 3) &
       //' times its shorter semi-axis in the largest step (STRAT): the heat of single steps shows')
   end subroutine judge_torch
-
-  subroutine add(list, line)
-    type(string_t), allocatable, intent(inout) :: list(:)
-    character(len=*), intent(in) :: line
-
-    list = [list, string_t(line)]
-  end subroutine add
 
 end module heat_check

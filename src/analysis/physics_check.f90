@@ -8,7 +8,7 @@ module physics_check
   use law_api, only: driver_count, law_t
   use scene, only: group_t, lacks_mesh, role_heat_contact, role_side_load, role_volume_load, scene_t
   use supports, only: free_motions
-  use text, only: string_t, to_text
+  use text, only: add => add_text, string_t, to_text
   implicit none
   private
   public :: check_physics
@@ -160,12 +160,5 @@ contains
       yes = yes .or. maxval(abs(scene%multipliers(k)%value)) > 0
     end do
   end function anything_acts
-
-  subroutine add(list, line)
-    type(string_t), allocatable, intent(inout) :: list(:)
-    character(len=*), intent(in) :: line
-
-    list = [list, string_t(line)]
-  end subroutine add
 
 end module physics_check
