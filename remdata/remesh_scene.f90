@@ -27,7 +27,7 @@ module remesh_scene
   use part_contour, only: build_contours, contour_options_t, contour_t
   use remesh_facts, only: begin_task, end_task, remesh_facts_t
   use remesh_options, only: remesh_options_t
-  use remesher_options, only: by_free, by_gmsh, remesher_options_t
+  use remesher_options, only: by_free, by_gmsh, remesher_options_t, smallest_anywhere
   use scene, only: axisymmetric, is_solid, lacks_mesh, scene_t
   use size_field, only: size_field_t
   use sizes_of_scene, only: requested_sizes
@@ -61,6 +61,7 @@ contains
     type(new_mesh_t) :: mesh
     character(len=:), allocatable :: deck_path, deck_text
     real(wp), allocatable :: moved(:, :)
+    real(wp) :: smallest
     type(remesher_options_t) :: as_the_deck_says
     logical :: first, is_cut
 
@@ -77,11 +78,12 @@ contains
     facts%generation = old%generation + 1
 
     call begin_task(facts, 'contour', 'contour')
+    smallest = max(smallest_anywhere(old%remesher), 0.0_wp)
     if (first) then
       call contours_of_cards(old, contours, facts%contour, error)
     else
-      call build_contours(old, before, ends, contour_options_t(least_free=least_free*max(old%remesher%smallest, 0.0_wp), &
-                                                               longest_lap=longest_lap*max(old%remesher%smallest, 0.0_wp)), &
+      call build_contours(old, before, ends, contour_options_t(least_free=least_free*smallest, &
+                                                               longest_lap=longest_lap*smallest), &
                           contours, facts%contour, error)
     end if
     if (allocated(error)) return

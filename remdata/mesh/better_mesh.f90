@@ -18,7 +18,7 @@ module better_mesh
 contains
 
   !> Where a mesh is of poor shape: is the one without zones of better shape? Else: is that by zones expected to have the larger
-  !> error? Errors below the limit the sizes were requested for are all good.
+  !> error, in the whole or in the windows? Errors below the limit the sizes were requested for are all good.
   pure function free_mesh_is_better(zones, zones_expected, free, free_expected) result(better)
     type(mesh_check_t), intent(in) :: zones, free
     type(prediction_t), intent(in) :: zones_expected, free_expected
@@ -27,7 +27,8 @@ contains
     if (min(zones%scaled_jacobian, free%scaled_jacobian) < good_shape) then
       better = free%scaled_jacobian > zones%scaled_jacobian
     else
-      better = zones_expected%mean > larger_error*max(1.0_wp, free_expected%mean)
+      better = zones_expected%mean > larger_error*max(1.0_wp, free_expected%mean) &
+               .or. zones_expected%in_windows > larger_error*max(1.0_wp, free_expected%in_windows)
     end if
   end function free_mesh_is_better
 

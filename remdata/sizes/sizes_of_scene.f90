@@ -1,4 +1,4 @@
-!> The element sizes that a scene asks for: by errors, by bends of the contour and of dies, by contact.
+!> The element sizes that a scene asks for: by errors, by bends of the contour and of dies, by contact, in windows.
 module sizes_of_scene
   use arcs_on_die, only: placed_piece
   use block_mesh, only: polygon_area
@@ -10,6 +10,7 @@ module sizes_of_scene
   use part_contour, only: contour_t
   use scene, only: axisymmetric, scene_t
   use size_field, only: need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t
+  use size_windows, only: limits_around, place_window, size_window_t
   use solution, only: solution_t
   use state_pieces, only: mesh_of, solid_pieces, state_pieces_t
   use transfer_mesh, only: transfer_mesh_t
@@ -36,7 +37,8 @@ contains
     type(state_pieces_t) :: pieces
     type(transfer_mesh_t) :: mesh
     type(old_mesh_t) :: old
-    type(size_limits_t) :: limits
+    type(size_limits_t) :: limits, wide
+    type(size_window_t), allocatable :: windows(:)
     type(geometry_settings_t) :: settings
     type(need_t), allocatable :: needs(:), bends(:), more(:)
     real(wp) :: error, now
@@ -45,6 +47,8 @@ contains
 
     if (scene%remesher%smallest > 0) limits%smallest = scene%remesher%smallest
     if (scene%remesher%largest > 0) limits%largest = scene%remesher%largest
+    call place_windows(scene, solution, windows)
+    wide = limits_around(limits, windows)
     settings%across = scene%remesher%across_contact
     settings%turn = scene%remesher%turn
     allocate (needs(0), bends(0))
@@ -52,19 +56,19 @@ contains
       if (is_deformable(scene%dies(d))) cycle
       call needs_of_die([(placed_piece(scene%dies(d), solution%fields(pilot_field)%value(:, d), k), &
                           k=1, size(scene%dies(d)%pieces, 3))], &
-                        scene%dies(d)%closed, settings, limits, more)
+                        scene%dies(d)%closed, settings, wide, more)
       bends = [bends, more]
     end do
     do c = 1, size(contours)
-      call needs_of_boundary(contours(c)%boundary, settings, limits, more, bends)
+      call needs_of_boundary(contours(c)%boundary, settings, wide, more, bends)
       needs = [needs, more]
     end do
     if (first) then
-      call set_up_sizes(limits, needs, sizes)
+      call set_up_sizes(limits, needs, sizes, windows=windows)
       return
     end if
     call needs_of_misfits(scene, solution, more)
-    more%size = max(more%size, limits%smallest)
+    more%size = max(more%size, wide%smallest)
     needs = [needs, more]
     call solid_pieces(scene, pieces, solution)
     pieces%axisymmetric = .false.
@@ -89,7 +93,30 @@ contains
         if (.not. shown) old%requested(e) = min(old%requested(e), now)
       end do
     end if
-    call set_up_sizes(limits, needs, sizes, old)
+    if (size(windows) > 0) old%origin = scene%mesh%origin
+    call set_up_sizes(limits, needs, sizes, old, windows)
   end subroutine requested_sizes
+
+  !> Windows of the deck where they are now.
+  subroutine place_windows(scene, solution, windows)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(size_window_t), allocatable, intent(out) :: windows(:)   !! (nwindow)
+    real(wp) :: start(3), now(3)
+    integer :: k
+
+    allocate (windows(size(scene%remesher%windows)))
+    do k = 1, size(windows)
+      associate (box => scene%remesher%windows(k))
+        start = 0
+        now = 0
+        if (box%die > 0) then
+          start = scene%dies(box%die)%pilot
+          now = solution%fields(pilot_field)%value(:, box%die)
+        end if
+        windows(k) = place_window(box, start, now)
+      end associate
+    end do
+  end subroutine place_windows
 
 end module sizes_of_scene

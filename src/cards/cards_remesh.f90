@@ -10,6 +10,7 @@ module cards_remesh
   use remesh_defaults, only: set_default_limits, set_default_sizes
   use remesher_options, only: has_contours
   use remesher_rows, only: complete_options, make_sizes_finer, read_remesher_row, remesher_words
+  use remesher_windows, only: read_window
   use scene_draft, only: close_card, draft_t, only_card, words_of
   use state_variables, only: name_of_ratio, state_variable, state_variable_t, total_components, transfer_scalar
   use text, only: string_t, to_text
@@ -19,7 +20,7 @@ module cards_remesh
 
   !> Rows of REMSH with limits for a new mesh, one word each, and all rows.
   character(len=*), parameter :: limit_rows = 'ERROR ANGLE MIDDLE JACOB SCALED ASPECT CONTACT DISTRESS TIMES STROKE'
-  character(len=*), parameter :: rows = limit_rows//' BAD LEAST '//remesher_words
+  character(len=*), parameter :: rows = limit_rows//' BAD LEAST WINDOW '//remesher_words
   !> The middle third of a side.
   real(wp), parameter :: middle_third = 1.0_wp/3.0_wp
 
@@ -32,7 +33,7 @@ contains
     type(cursor_t) :: cursor
     integer :: k
 
-    allocate (draft%scene%remesh%times(0), draft%scene%remesh%strokes(0))
+    allocate (draft%scene%remesh%times(0), draft%scene%remesh%strokes(0), draft%scene%remesher%windows(0))
     call only_card(deck, 'ESTIM', .false., diagnostics, k)
     if (k > 0) then
       call cursor%open(deck%cards(k), diagnostics)
@@ -72,8 +73,8 @@ contains
     end do
   end subroutine keep_volume_ratios
 
-  !> Each row once, but STROKE. Without a limit among them the default ones hold, except where rows ask for nothing but the first
-  !> mesh of contours.
+  !> Each row once, but STROKE and WINDOW. Without a limit among them the default ones hold, except where rows ask for nothing but
+  !> the first mesh of contours.
   subroutine read_rows(cursor, draft)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
@@ -90,7 +91,7 @@ contains
       call cursor%next_row('one of '//rows)
       call cursor%name('one of '//rows, words, k)
       if (k == 0) return
-      if (given(k) .and. words(k)%s /= 'STROKE') call cursor%fail(words(k)%s//' is given twice')
+      if (given(k) .and. all(words(k)%s /= ['STROKE', 'WINDOW'])) call cursor%fail(words(k)%s//' is given twice')
       given(k) = .true.
       asked = asked .or. index(' '//limit_rows//' ', ' '//words(k)%s//' ') > 0
       call read_row(cursor, draft, words(k)%s)
@@ -157,6 +158,8 @@ contains
         call read_strokes(cursor, draft)
       case ('LEAST')
         call cursor%integer('the least number of steps between two new meshes', rules%least_steps, lower=1)
+      case ('WINDOW')
+        call read_window(cursor, draft)
       case default
         call read_remesher_row(cursor, word, draft%scene%remesher)
       end select

@@ -166,6 +166,8 @@ contains
     options%smallest = options%smallest/factor
     options%largest = options%largest/factor
     options%most_elements = nint(options%most_elements*factor**2)
+    options%windows%smallest = options%windows%smallest/factor
+    options%windows%largest = options%windows%largest/factor
     options%strain_error = options%strain_error/factor**2
     options%across_contact = nint(options%across_contact*factor)
     options%turn = options%turn/factor

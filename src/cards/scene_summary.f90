@@ -7,6 +7,7 @@ module scene_summary
   use linear_api, only: solver_row_t
   use linear_registry, only: list_solvers
   use quadrature, only: rule_along, rule_equidistant, rule_t
+  use remesher_windows, only: window_text
   use remeshing, only: criterion_names, is_upper, ncriteria, never
   use scene, only: axisymmetric, generalised_plane_strain, group_t, lacks_mesh, plane_state_names, scene_t
   use sections, only: section_drive_t, section_forced, section_moved, section_names
@@ -91,6 +92,9 @@ contains
       associate (wish => scene%remesher)
         call put('new mesh   elements of '//to_text(wish%smallest, 4)//' to '//to_text(wish%largest, 4) &
                  //most_text(wish%most_elements)//', error of the strain '//to_text(100*wish%strain_error)//' %')
+        do k = 1, size(wish%windows)
+          call put('window     '//window_text(wish%windows(k), name_of_die(wish%windows(k)%die)))
+        end do
       end associate
     end if
     do k = 1, size(scene%effects)
@@ -118,6 +122,14 @@ contains
 
       call put('remesh     '//padded(name, 24)//limit)
     end subroutine put_limit
+
+    pure function name_of_die(die) result(name)
+      integer, intent(in) :: die   !! 0 for none
+      character(len=:), allocatable :: name
+
+      name = ''
+      if (die > 0) name = scene%dies(die)%name
+    end function name_of_die
 
     pure function most_text(most) result(s)
       integer, intent(in) :: most

@@ -3,10 +3,11 @@ module remesher_options
   use acceptance, only: acceptance_t
   use cuts, only: cut_t
   use kinds, only: pi, wp
+  use mesh_windows, only: mesh_window_t
   use zone_marks, only: contour_card_t, zone_card_t, zone_mark_t
   implicit none
   private
-  public :: own_mesh_t, remesher_options_t, has_zones, has_contours, elements_allowed, number_of_cuts
+  public :: own_mesh_t, remesher_options_t, has_zones, has_contours, elements_allowed, number_of_cuts, smallest_anywhere
   public :: as_it_comes, by_zones, by_gmsh, by_free
 
   !> Mesher: zones, and where they fail the free mesher, then Gmsh; zones alone; Gmsh alone; the free mesher alone.
@@ -31,6 +32,8 @@ module remesher_options
     !> Error of the strains an element is made for, elements at most.
     real(wp) :: strain_error = 0.05_wp
     integer :: most_elements = 0
+    !> Sizes in windows; empty without any.
+    type(mesh_window_t), allocatable :: windows(:)
     !> Elements across a contact interval (0: as they come), angle a side of an element may turn by [radian].
     integer :: across_contact = 4
     real(wp) :: turn = pi/12
@@ -69,6 +72,19 @@ contains
     most = huge(most)
     if (options%most_elements > 0) most = int(min(options%most_elements*max(1.0_wp, finer)**2, real(huge(most), wp)))
   end function elements_allowed
+
+  !> The smallest size that elements may have at any place [length].
+  pure function smallest_anywhere(options) result(smallest)
+    type(remesher_options_t), intent(in) :: options
+    real(wp) :: smallest
+    integer :: k
+
+    smallest = options%smallest
+    if (.not. allocated(options%windows)) return
+    do k = 1, size(options%windows)
+      smallest = min(smallest, options%windows(k)%smallest)
+    end do
+  end function smallest_anywhere
 
   pure function number_of_cuts(options) result(n)
     type(remesher_options_t), intent(in) :: options

@@ -4,6 +4,7 @@ module visit_remesher
   use kinds, only: pi, wp
   use remesher_options, only: by_free, own_mesh_t, remesher_options_t
   use visit_cuts, only: visit_cut_list
+  use visit_windows, only: visit_window_list
   use visitors, only: kept, not_carried, visitor_t
   use zone_marks, only: contour_card_t, mark_corner, mark_inside, name_length, zone_card_t, zone_mark_t
   implicit none
@@ -38,6 +39,7 @@ contains
     call visitor%member('turn', self%turn, kept, 'radian', low=tiny(1.0_wp), high=pi/2)
     call visitor%member('mesher', self%mesher, kept, low=0, high=by_free)
     call visitor%member('tries', self%tries, kept, low=0)
+    call visit_window_list(visitor, self%windows)
     call visitor%enter('own_mesh')
     call visit_own_mesh(visitor, self%own_mesh)
     call visitor%leave('own_mesh')

@@ -35,7 +35,7 @@ contains
       call require_range(file, 'fixations/'//to_text(k)//'/nodes', scene%fixations(k)%nodes, 1, nnode)
     end do
     call check_fields(file, scene%fields)
-    call check_remesher(file, scene%remesher)
+    call check_remesher(file, size(scene%dies), scene%remesher)
     do k = 1, size(scene%dies)
       if (.not. file%failed()) call check_die(file, 'dies/'//to_text(k), nnode, scene%dies(k))
     end do
@@ -64,13 +64,21 @@ contains
     end do
   end subroutine check_fields
 
-  subroutine check_remesher(file, options)
+  subroutine check_remesher(file, ndie, options)
     type(hdf5_file_t), intent(inout) :: file
+    integer, intent(in) :: ndie
     type(remesher_options_t), intent(in) :: options
     character(len=:), allocatable :: place
     integer :: k
 
     call require(file, 'remesher/smallest', options%smallest <= options%largest, 'is above remesher/largest')
+    do k = 1, size(options%windows)
+      place = 'remesher/windows/'//to_text(k)
+      call require(file, place//'/low', all(options%windows(k)%low < options%windows(k)%high), 'is not below '//place//'/high')
+      call require(file, place//'/smallest', options%windows(k)%smallest <= options%windows(k)%largest, &
+                   'is above '//place//'/largest')
+      call require_range(file, place//'/die', options%windows(k)%die, 0, ndie)
+    end do
     do k = 1, size(options%zones)
       call require_range(file, 'remesher/zones/'//to_text(k)//'/points', options%zones(k)%marks, 1, size(options%marks))
     end do

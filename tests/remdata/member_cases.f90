@@ -16,6 +16,7 @@ module member_cases
     transfer_tensor
   use text, only: to_text
   use visitors, only: visitor_t
+  use mesh_windows, only: mesh_window_t
   use zone_marks, only: contour_card_t, mark_crossing, zone_card_t, zone_mark_t
   implicit none
   private
@@ -190,6 +191,8 @@ contains
         options%turn = 0.4_wp
         options%mesher = by_gmsh
         options%tries = 6
+        options%windows = [mesh_window_t(low=[0.1_wp, 0.2_wp], high=[0.3_wp, 0.5_wp], smallest=0.02_wp, largest=0.04_wp, &
+                                         by_matter=.true., die=1)]
         options%own_mesh = own_mesh_t(12, 0.3_wp, 0.6_wp)
         allocate (options%marks(1), options%zones(1), options%contours(1), options%cuts(1))
         options%marks(1) = zone_mark_t(name='corner', form=mark_crossing, x=[0.3_wp, 0.4_wp], axis=1, pick=-1, by_matter=.true., &
