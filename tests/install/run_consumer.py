@@ -39,9 +39,9 @@ def call(*command, **more):
                           timeout=600, check=False, **more)
 
 
-def cache(name):
-    """An entry of the build's CMakeCache.txt; empty where there is none."""
-    with open(os.path.join(BUILD, "CMakeCache.txt"), encoding="utf-8") as file:
+def cache(name, build=BUILD):
+    """An entry of a build's CMakeCache.txt; empty where there is none."""
+    with open(os.path.join(build, "CMakeCache.txt"), encoding="utf-8") as file:
         found = re.search(rf"^{name}:\w+=(.*)$", file.read(), re.M)
     return found.group(1) if found else ""
 
@@ -149,6 +149,15 @@ def check_folders(folder):
         for program in ("lagareport", "lagaimport", "lagastudy"):
             said = call(os.path.join(prefix, FOLDERS["bin"], program), "--version")
             check(said.returncode == 0, f"{program} from other folders", said.stdout)
+    check_archives(build)
+
+
+def check_archives(build):
+    """What was found of the archives of one HDF5 is not taken for those of another."""
+    found = cache("HDF5_ARCHIVES_LINK", build)
+    made = call(CMAKE, build, "-D", f"HDF5_ARCHIVES_LINK:INTERNAL={'' if found else '1'}", "-D", "HDF5_ARCHIVES_TRIED:INTERNAL=elsewhere.a")
+    check(made.returncode == 0 and cache("HDF5_ARCHIVES_LINK", build) == found, "archives of another HDF5 are tried anew",
+          (found, cache("HDF5_ARCHIVES_LINK", build), made.stdout[-400:]))
 
 
 def main():
