@@ -23,6 +23,9 @@ module judge_remesh
 
   !> Largest limit of the change of a force where the deck gives none, over the default.
   real(wp), parameter :: most_wrong = 2.0_wp
+  !> The same where other new meshes agree on the change. Where an old mesh made half of the force, or as much too much, its
+  !> estimated error, by recovery, is no measure of its error.
+  real(wp), parameter :: most_agreed = 5.0_wp
   !> Changes are over the force of now, or over this share of the largest so far where the load is light: the tenth part of nothing
   !> says nothing about a mesh.
   real(wp), parameter :: light_load = 0.2_wp
@@ -94,8 +97,8 @@ contains
   end function force_along
 
   !> Does nothing but the force of a die speak against the mesh, with an energy that goes with the square of the force, and is the
-  !> change within the error of the stress on the old mesh? Then it may be the old mesh that was wrong: other new ones show it. A
-  !> limit that the deck gives holds in any case.
+  !> change within the error of the stress on the old mesh, and no larger than may be agreed on? Then it may be the old mesh that
+  !> was wrong: other new ones show it. A limit that the deck gives holds in any case.
   pure function force_alone(accept, balance) result(alone)
     type(acceptance_t), intent(in) :: accept
     type(balance_t), intent(in) :: balance
@@ -106,7 +109,7 @@ contains
     alone = .false.
     if (accept%force_is_given .or. .not. balance%restored) return
     if (.not. balance%shape >= bad_shape .or. .not. force_change(balance) > force_limit(accept, balance)) return
-    if (force_change(balance) > balance%old_error) return
+    if (force_change(balance) > min(balance%old_error, most_agreed*accept%force_change)) return
     other = accept
     other%force_is_given = .true.
     other%force_change = force_change(balance)
@@ -173,6 +176,9 @@ contains
     end if
     balance%refused = len(what) > 0
     if (.not. balance%refused) return
+    if (agreed .and. .not. scene%remesher%accept%force_is_given &
+        .and. force_change(balance) > most_agreed*scene%remesher%accept%force_change) &
+      what = what//' (where new meshes agree, at most '//to_text(100*most_agreed*scene%remesher%accept%force_change, 3)//' %)'
     balance%stage = responsible_stage(scene, balance)
     call fail(error, exit_no_convergence, 'mesh '//to_text(scene%generation)//' refused at step '//to_text(solution%step)//': ' &
               //what//'; responsible stage: '//balance%stage, advice_after_refusal)

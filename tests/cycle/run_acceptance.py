@@ -176,10 +176,10 @@ def number_of_tries(checks, text):
                     f"TRIES 1 {' '.join(options)}: {number} made", said(result))
 
 
-def softer(wrong, *more):
-    """Seven tenths of the stress are left, and the old mesh is said to have had this error of the stress; further faults."""
+def softer(wrong, *more, left=0.7):
+    """This share of the stress is left, and the old mesh is said to have had this error of the stress; further faults."""
     def fault(file):
-        scale_state(file, 1, ("stress", "elastic_strain"), 0.7)
+        scale_state(file, 1, ("stress", "elastic_strain"), left)
         file["estimate"].attrs["previous_stress"] = wrong
         for one in more:
             one(file)
@@ -188,12 +188,13 @@ def softer(wrong, *more):
 
 def agreed(checks, text):
     """`--agreed`: a mesh that the force of a die alone refuses is taken up, with a warning, where the stress of the old mesh was as
-    wrong; not where the pressures speak against it too, nor where the deck gives the limit of the force."""
+    wrong; not where the pressures speak against it too, where the deck gives the limit of the force, or beyond half of the force."""
     force = "the force of a die changes"
     for name, card, fault, options, phrase in (
             ("agreed", "", softer(0.5), ("--agreed",), ""), ("not asked for", "", softer(0.5), (), force),
             ("a good old mesh", "", softer(0.1), ("--agreed",), force),
             ("no pressure", "", softer(0.5, no_pressure), ("--agreed",), "the pressures carried over miss"),
+            ("more than half", "", softer(0.9, left=0.4), ("--agreed",), "where new meshes agree, at most 50 %"),
             ("limit of the deck", "\n   ACCEPT FORCE 0.1", softer(0.5), ("--agreed",), force)):
         folder = checks.path("agreed", name.replace(" ", "-"))
         deck = write(os.path.join(folder, "case.lag"), text.replace("   TIMES 0.1 0.25", "   TIMES 0.1 0.25" + card))
