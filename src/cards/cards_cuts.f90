@@ -1,5 +1,6 @@
 !> TRIM and PIERC: a body is cut along a line, or parts where a web under a die has become thin.
 module cards_cuts
+  use bodies, only: elements_at_middles
   use card_places, only: read_rigid_die
   use card_points, only: read_xy
   use cuts, only: cut_t
@@ -45,6 +46,7 @@ contains
         call read_pierce(cursor, draft, cut)
       end if
       call refuse_without_free_mesh(cursor, draft)
+      call refuse_shared_sides(cursor, draft, cut%group)
       call close_card(draft, cursor, deck%cards(i))
       list = [list, cut]
     end do
@@ -147,5 +149,23 @@ contains
       end if
     end associate
   end subroutine refuse_without_free_mesh
+
+  !> A cut would leave a part of the sides that a body shares with another one open.
+  subroutine refuse_shared_sides(cursor, draft, group)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    integer, intent(in) :: group   !! place among the groups
+    integer :: own(size(draft%scene%mesh%coordinates, 2)), g
+
+    if (cursor%failed() .or. .not. draft%mesh_sound) return
+    own = elements_at_middles(draft%scene, only_of=group)
+    do g = 1, size(draft%scene%groups)
+      if (g == group .or. .not. is_solid(draft%scene%groups(g))) cycle
+      if (.not. any(own([draft%scene%groups(g)%connectivity(5:8, :)]) > 0)) cycle
+      call cursor%fail(''''//draft%scene%groups(group)%name//''' shares sides with '''//draft%scene%groups(g)%name &
+                       //''': expected a body that stands alone')
+      return
+    end do
+  end subroutine refuse_shared_sides
 
 end module cards_cuts

@@ -24,7 +24,7 @@ sys.dont_write_bytecode = True
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path[:0] = [os.path.join(TESTS, folder) for folder in ("runs", "cycle", "patch")]
 from remeshed import CYCLE, cycle, tries  # noqa: E402
-from support import DONE, Checks, history, summary, with_h5py, write  # noqa: E402
+from support import DONE, Checks, history, run, summary, with_h5py, write  # noqa: E402
 
 INPUT = 2
 FLASH = """TITLE  Disc pressed, trimmed, pressed on
@@ -293,13 +293,14 @@ def refused(checks):
 
 
 def joined(checks):
-    """A body that shares its sides with another one of the same law is not cut."""
+    """A body that shares its sides with another one of the same law is not cut: the deck is refused before anything runs."""
     blocks = ("BLOCK  fork PL8TM 4 metal BILINEAR\n   0. 0.   6. 0.   6. 3.   0. 3.\n   6 1.   3 1.\n"
               "BLOCK  top PL8TM 4 metal BILINEAR\n   0. 3.   6. 3.   6. 6.   0. 6.\n   6 1.   3 1.\nJOIN   fork 3 top 1\n")
     text = FORK[:FORK.index("BODY")] + blocks + FORK[FORK.index("LAW "):]
     deck = write(os.path.join(checks.folder, "joined.lag"), text.replace("CUT", "TRIM   fork 5. -1. 5. 7. KEEP 0. 0."))
-    result = cycle(deck, checks.path("joined"), "--quiet")
-    checks.that(result.returncode == INPUT and "fork shares sides with another body" in result.stderr, "joined: refused", (result.returncode, result.stderr))
+    for result in (run([deck, "--check"]), cycle(deck, checks.path("joined"), "--quiet")):
+        checks.that(result.returncode == INPUT and "'fork' shares sides with 'top'" in result.stderr, "joined: refused",
+                    (result.returncode, result.stderr))
 
 
 def main():
