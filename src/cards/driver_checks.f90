@@ -35,7 +35,7 @@ contains
       end if
       if (name /= '' .or. draft%scene%strategy%coupling /= coupling_monolithic) cycle
       name = driver_of_others(draft%scene, draft%laws, g)
-      if (name /= '') call refuse(''' of another element, which forms under the stress that it drives: SOLVE MONOLITHIC cannot '// &
+      if (name /= '') call refuse(''' of another element, which answers to the body that it drives: SOLVE MONOLITHIC cannot '// &
                                   'follow both; expected SOLVE ONCE, or a law that finds it by itself (TIME)')
     end do
 

@@ -17,7 +17,6 @@ module driver_slopes
   use point_temperatures, only: temperature_field
   use scene, only: host_of, scene_t
   use solution, only: solution_t
-  use state_variables, only: total_components
   implicit none
   private
   public :: fill_slopes
@@ -46,7 +45,7 @@ contains
     do k = 1, size(drivers(g)%source)
       if (drivers(g)%source(k)%kind == from_state) other = drivers(g)%source(k)%group(body)
     end do
-    n = total_components(laws(scene%materials(scene%groups(other)%material)%law_id)%history)
+    n = size(solution%groups(other)%committed, 1)
     allocate (high(n), low(n))
     do e = 1, size(drivers(g)%value, 4)
       call slopes_of_element(field_at_points(scene%fields(f), solution%fields(f)%value(1, :), scene%groups(other), e), &
@@ -114,7 +113,7 @@ contains
 
       associate (material => scene%materials(scene%groups(other)%material), committed => solution%groups(other)%committed, &
                  sources => drivers(other)%source)
-        n = total_components(laws(material%law_id)%history)
+        n = size(committed, 1)
         allocate (state(n))
         do p = 1, size(before)
           given = drivers(other)%value(:, :2, p, e)

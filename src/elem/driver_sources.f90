@@ -153,8 +153,8 @@ contains
     end associate
   end function missing_driver
 
-  !> The first driver of a law for solids that is a state of another formulation whose law is driven by the stress of this one, ''
-  !> where there is none.
+  !> The first driver of a law for solids that is a state of another formulation whose law is driven by the stress or a state of
+  !> this one, '' where there is none.
   pure function driver_of_others(scene, laws, g) result(name)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)   !! (nlaw)
@@ -170,12 +170,32 @@ contains
       do k = 1, driver_count(law) - 1
         source = source_of(scene, g, law%drivers(k)%name)
         if (source%kind /= from_state) cycle
-        if (.not. is_stressed(scene, laws, source%group(host_of(scene, g)))) cycle
+        if (.not. is_driven_by(scene, laws, source%group(host_of(scene, g)), g)) cycle
         name = law%drivers(k)%name
         return
       end do
     end associate
   end function driver_of_others
+
+  !> The law of a group is driven by the stress or a state of a body.
+  pure function is_driven_by(scene, laws, g, body) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: g      !! number of the group
+    integer, intent(in) :: body   !! that of the body
+    logical :: yes
+    type(driver_source_t) :: source
+    integer :: k
+
+    yes = is_stressed(scene, laws, g)
+    associate (law => laws(scene%materials(scene%groups(g)%material)%law_id))
+      do k = 1, driver_count(law) - 1
+        if (.not. is_asked_for(scene, g, law%drivers(k))) cycle
+        source = source_of(scene, g, law%drivers(k)%name)
+        if (source%kind == from_state) yes = yes .or. source%group(body) == body
+      end do
+    end associate
+  end function is_driven_by
 
   !> The law of a group is driven by stress.
   pure function is_stressed(scene, laws, g) result(yes)

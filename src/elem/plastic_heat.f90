@@ -10,7 +10,7 @@ module plastic_heat
   use elem_api, only: instant_t, layout_t, mode_advance
   use elem_pl8tm, only: functions_of, functions_t
   use fields, only: displacement_field
-  use heat_sources, only: share_of_work
+  use heat_sources, only: share_of_work, work_heated
   use kinds, only: wp
   use point_temperatures, only: nodal_temperatures, projected_functions, temperature_place
   use quad8_geometry, only: derivatives, quad8_rule_t
@@ -27,23 +27,23 @@ module plastic_heat
 
 contains
 
-  !> The material for heat on a body whose plastic work becomes heat in the solve under way; 0 where there is none.
-  pure function heated_by_work(scene, group, layout, instant) result(material)
+  !> The formulation of heat on a body whose plastic work becomes heat in the solve under way; 0 where there is none.
+  pure function heated_by_work(scene, group, layout, instant) result(heated)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group   !! of the body
     type(layout_t), intent(in) :: layout
     type(instant_t), intent(in) :: instant
-    integer :: material                  !! place in the scene's list
+    integer :: heated                    !! place among the groups
     integer :: g
 
-    material = 0
+    heated = 0
     if (instant%mode /= mode_advance .or. .not. instant%content .or. temperature_place(layout) == 0) return
     if (.not. (instant%solved(layout%field(temperature_place(layout))) .and. instant%solved(displacement_field))) return
     if (find_variable(group%variables, 'plastic_work') == 0) return
     do g = 1, size(scene%groups)
       if (scene%groups(g)%role /= role_second .or. scene%groups(g)%elem /= 'PL8TM') cycle
       if (scene%groups(scene%groups(g)%host)%name /= group%name) cycle
-      if (find_variable(scene%groups(g)%variables, 'work_heated') > 0) material = scene%groups(g)%material
+      if (find_variable(scene%groups(g)%variables, work_heated) > 0) heated = g
     end do
   end function heated_by_work
 
@@ -78,16 +78,18 @@ contains
     real(wp), intent(in) :: start(:, :)    !! (ndof, nelem) values at the start of the step [unknown]
     real(wp), intent(out) :: share(:, :)   !! (npoint, nelem) [-]
     type(functions_t) :: own
-    integer :: u, n, e, p, at, material
+    integer :: u, n, e, p, at, g, place
 
-    material = heated_by_work(scene, group, layout, instant)
+    g = heated_by_work(scene, group, layout, instant)
+    place = scene%groups(g)%variables(find_variable(scene%groups(g)%variables, work_heated))%needs
     u = temperature_place(layout)
     n = layout%count(u)
     at = layout%first(1, u) - 1
     call functions_of(n == 4, rule, own)
     do e = 1, size(share, 2)
       do p = 1, rule%npoint
-        share(p, e) = share_of_work(scene%materials(material), dot_product(own%phi(:n, p), start(at + 1:at + n, e)))
+        share(p, e) = share_of_work(scene%materials(scene%groups(g)%material), place, &
+                                    dot_product(own%phi(:n, p), start(at + 1:at + n, e)))
       end do
     end do
   end subroutine shares_of_work

@@ -1,4 +1,4 @@
-!> The numbers of the laws HEAT and HEATH that heat within a body comes from: SOURCE, heat that a change of volume takes up, and
+!> The numbers of laws for heat that heat within a body comes from: SOURCE, heat that a change of volume takes up, and
 !> QUINNEY, the share of the plastic work that becomes heat (G.I. Taylor, H. Quinney, Proc. Roy. Soc. A 143 (1934) 307-326).
 module heat_sources
   use kinds, only: wp
@@ -6,9 +6,12 @@ module heat_sources
   use materials, only: material_t, values_at
   implicit none
   private
-  public :: heat_source_parameters, place_source, place_share, share_of_work, source_of_volume
+  public :: heat_source_parameters, place_source, place_share, share_of_work, source_of_volume, work_heated
 
-  !> Places among the values of a material, after conductivity and capacity.
+  !> The work that has become heat, of laws with QUINNEY: none is lost where the motion is solved for after the temperature, and its
+  !> heat comes a step later.
+  character(len=*), parameter :: work_heated = 'work_heated'
+  !> Places among the values of HEAT and HEATH, after conductivity and capacity.
   integer, parameter :: place_source = 3, place_share = 4
 
 contains
@@ -24,14 +27,15 @@ contains
   end function heat_source_parameters
 
   !> QUINNEY: it changes little with the temperature, that of the start of the step.
-  pure function share_of_work(material, temperature) result(share)
+  pure function share_of_work(material, place, temperature) result(share)
     type(material_t), intent(in) :: material
+    integer, intent(in) :: place          !! of QUINNEY among the values of the material
     real(wp), intent(in) :: temperature   !! at the start of the step [temperature]
     real(wp) :: share                     !! [-]
     real(wp) :: values(size(material%values))
 
     call values_at(material, temperature, values)
-    share = values(place_share)
+    share = values(place)
   end function share_of_work
 
   !> SOURCE, at the temperature of the start of the step.

@@ -7,7 +7,7 @@
 !> SOURCE is the heat that a change of volume takes up, per volume and unit of volume strain: 3 K ALPHA T of thermoelasticity
 !> (W. Thomson 1855; J.M.C. Duhamel). QUINNEY turns plastic work of the body into heat.
 module law_heat
-  use heat_sources, only: heat_source_parameters, place_share, share_of_work, source_of_volume
+  use heat_sources, only: heat_source_parameters, place_share, share_of_work, source_of_volume, work_heated
   use kinds, only: wp
   use law_api, only: driver_temperature, heat_law, law_line, law_t, parameter
   use materials, only: bracket_temperature, integral_over_temperature, material_t
@@ -56,7 +56,7 @@ contains
     row%effects = ''
     row%symmetric_by_temperature = .false.
     allocate (row%history(1), row%drivers(1))
-    row%history(1) = state_variable('work_heated', 'stress', transfer_scalar, needs=place_share)
+    row%history(1) = state_variable(work_heated, 'stress', transfer_scalar, needs=place_share)
     row%drivers(driver_work - 1)%name = 'plastic_work'
     row%drivers(driver_work - 1)%needs = place_share
     row%conduct => conduct
@@ -140,8 +140,7 @@ contains
     k = size(t) - 1
   end function interval
 
-  !> The share QUINNEY of the plastic work (G.I. Taylor, H. Quinney 1934) that has not become heat yet: `work_heated` is the work
-  !> that has, so that none is lost where the motion is solved for after the temperature, and its heat comes a step later.
+  !> The share QUINNEY of the plastic work (G.I. Taylor, H. Quinney 1934) that has not become heat yet.
   pure subroutine release(material, dt, drivers, committed, released, slope, history)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt, drivers(:, :), committed(:)
@@ -151,7 +150,8 @@ contains
     slope = 0
     if (size(history) == 0) return
     history(1) = drivers(driver_work, 2)
-    released = share_of_work(material, drivers(driver_temperature, 1))*(drivers(driver_work, 2) - committed(1))
+    released = share_of_work(material, place_share, drivers(driver_temperature, 1)) &
+               *(drivers(driver_work, 2) - committed(1))
   end subroutine release
 
 end module law_heat

@@ -6,10 +6,11 @@
 !> latent heat are released at the points, with the exact derivative by the temperature at the end. A steel whose heat content H
 !> holds the latent heat already has none beside.
 !> The data are in the units of the steel's file: ENERGY is 1 MJ/m3 in the deck's [energy/length^3], CONDUCT 1 W/m/K in its unit of
-!> conductivity, TIME the seconds of its unit of time, ZERO what makes its temperatures degC.
+!> conductivity, TIME the seconds of its unit of time, ZERO what makes its temperatures degC. QUINNEY turns plastic work into heat.
 !> Source: S. Denis, D. Farias, A. Simon, ISIJ Int. 32 (1992) 316; kinetics: where they stand.
 module law_meta
   use heat_of_phases, only: heat_taken, lacking_heat_data, mixture_conductivity
+  use heat_sources, only: share_of_work, work_heated
   use kinds, only: wp
   use law_api, only: driver_t, driver_temperature, heat_law, law_line, law_t, parameter, parameter_t
   use materials, only: has_number, material_t
@@ -23,9 +24,10 @@ module law_meta
   public :: law_meta_row, law_metamec_row
 
   !> Places among the values of a material; place of the first fraction among the drivers.
-  integer, parameter :: place_energy = 1, place_conduct = 2, place_time = 3, place_zero = 4, place_source = 5, driver_fraction = 2
+  integer, parameter :: place_energy = 1, place_conduct = 2, place_time = 3, place_zero = 4, place_source = 5, place_share = 6, &
+                        driver_fraction = 2
   !> Those of METAMEC alone, and its first driver by stress.
-  integer, parameter :: place_stress = 6, place_isig = 7, driver_stress = driver_fraction + phase_count
+  integer, parameter :: place_stress = 7, place_isig = 8, driver_stress = driver_fraction + phase_count
 
 contains
 
@@ -42,7 +44,7 @@ contains
     row%of_steel = .true.
     row%symmetric_by_temperature = .false.
     allocate (row%lines, source=[law_line(units(), pairs=.true.)])
-    allocate (row%history(state_size), row%drivers(phase_count))
+    allocate (row%history(state_size + 1), row%drivers(phase_count + 1))
     do k = 1, state_size
       row%history(k) = state_variable(trim(state_names(k)), trim(state_units(k)), &
                                       merge(transfer_fraction, transfer_scalar//'  ', k < first_fraction + phase_count))
@@ -50,9 +52,11 @@ contains
     end do
     row%history(austenite)%initial = 1
     row%history(at_coldest)%initial = never_cold
+    row%history(state_size + 1) = state_variable(work_heated, 'stress', transfer_scalar, needs=place_share)
     do k = 1, phase_count
       row%drivers(k)%name = trim(state_names(k))
     end do
+    row%drivers(phase_count + 1) = driver_t('plastic_work', place_share)
     row%conduct => conduct
     row%store => store
     row%swell => swell
@@ -71,21 +75,25 @@ contains
     row%lines(1)%parameters = [row%lines(1)%parameters, &
         parameter('STRESS', 'stress', 'that of 1 MPa in units of the deck', above=0.0_wp), &
         parameter('ISIG', '-', '1: stress acts on the kinetics, 0: it does not', lower=0.0_wp, upper=1.0_wp, whole=.true.)]
-    row%drivers = [row%drivers, driver_t('mean_stress', place_isig), driver_t('mises', place_isig)]
+    ! the plastic work stays the last one
+    row%drivers = [row%drivers(:phase_count), driver_t('mean_stress', place_isig), driver_t('mises', place_isig), &
+                   row%drivers(phase_count + 1)]
     row%check => check_stress
   end function law_metamec_row
 
-  !> Units of the steel's file in those of the deck, and SOURCE.
+  !> Units of the steel's file in those of the deck, SOURCE and QUINNEY.
   function units() result(list)
     type(parameter_t), allocatable :: list(:)
 
-    allocate (list(5))
+    allocate (list(6))
     list(place_energy) = parameter('ENERGY', 'energy/length^3', 'that of 1 MJ/m3 in units of the deck', above=0.0_wp)
     list(place_conduct) = parameter('CONDUCT', '-', 'conductivity of 1 W/m/K in units of the deck', above=0.0_wp, default=1.0_wp)
     list(place_time) = parameter('TIME', '-', 'seconds of a unit of time', above=0.0_wp, default=1.0_wp)
     list(place_zero) = parameter('ZERO', 'temperature', 'what is added to make temperatures degC', default=0.0_wp)
     list(place_source) = parameter('SOURCE', 'energy/length^3', 'heat taken up by a change of volume, per volume strain', &
                                    default=0.0_wp)
+    list(place_share) = parameter('QUINNEY', '-', 'share of the plastic work that becomes heat', lower=0.0_wp, upper=1.0_wp, &
+                                  default=0.0_wp, turns_on=.true.)
   end function units
 
   !> Conductivity of the mixture at the start of the step.
@@ -118,7 +126,8 @@ contains
     capacity = capacity*material%values(place_energy)
   end subroutine store
 
-  !> Phases at the end of the step, their latent heat, and by how much they take up less heat than austenite.
+  !> Phases at the end of the step, their latent heat, by how much they take up less heat than austenite, and the share of the
+  !> plastic work that has not become heat yet.
   pure subroutine release(material, dt, drivers, committed, released, slope, history)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt, drivers(:, :), committed(:)
@@ -126,15 +135,15 @@ contains
     real(wp) :: start(state_size), changes(state_size), t(2), taken, capacity, own(2), mean, stresses(2, 2)
     integer :: i
 
-    start = committed
+    start = committed(:state_size)
     if (.not. start(at_grain) > 0) start(at_grain) = material%steel%grain
     t = drivers(driver_temperature, :) + material%values(place_zero)
     stresses = 0
     if (size(drivers, 1) > driver_stress) then
       if (has_number(material, place_isig)) stresses = drivers(driver_stress:driver_stress + 1, :)/material%values(place_stress)
     end if
-    call advance_phases(material%steel, dt*material%values(place_time), t(1), t(2), start, history, changes, released, slope, &
-                        stresses)
+    call advance_phases(material%steel, dt*material%values(place_time), t(1), t(2), start, history(:state_size), changes, &
+                        released, slope, stresses)
     if (.not. material%steel%one_heat) then
       call heat_taken(material%steel, austenite, t(1), t(2), taken, capacity)
       do i = 1, phase_count
@@ -147,6 +156,12 @@ contains
     end if
     released = released*material%values(place_energy)
     slope = slope*material%values(place_energy)
+    if (.not. has_number(material, place_share)) return
+    associate (work => drivers(size(drivers, 1), 2), heated => history(state_size + 1))
+      released = released + share_of_work(material, place_share, drivers(driver_temperature, 1)) &
+                 *(work - committed(state_size + 1))
+      heated = work
+    end associate
   end subroutine release
 
   !> SOURCE.
