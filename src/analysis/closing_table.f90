@@ -181,7 +181,7 @@ contains
     if (closing%path) &
       call row('in time', 'path: motion '//percent(closing%motion)//', stress '//percent(closing%path_stress)//' at this motion', &
                times(closing%path_cost)//' the time: half the steps'' length')
-    if (closing%warm .and. closing%heat_steps == 0) call row('in time', 'heat: not estimated (TOL of THETA)', '')
+    if (closing%warm .and. closing%heat_steps == 0) call row('in time', 'heat: not estimated (THETA)', '')
     if (closing%heat_steps > 0) &
       call row('in time', 'heat: '//to_text(closing%heat, 3)//' [temperature] in sum', &
                times(closing%heat_cost)//' the time: shorter steps')

@@ -117,8 +117,8 @@ contains
     equations%remedy = remedy_none
   end subroutine keep_to_bounds
 
-  !> A step of the theta scheme; with its error where the deck states how large that may be, or the scheme is implicit Euler in the
-  !> place of TR-BDF2.
+  !> A step of the theta scheme; with its error where it is implicit Euler. Where no step depends on the error, factors of the last
+  !> iteration do for it.
   subroutine solve_one_stage(scene, equations, solution, dt, outcome, given, go_on)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -130,7 +130,7 @@ contains
     real(wp), dimension(equations%dofs%ndof) :: rest, before, after
     type(evaluation_t) :: kept
 
-    if (.not. (scene%strategy%scheme == scheme_tr_bdf2 .or. scene%strategy%time_tolerance > 0)) then
+    if (.not. (scene%strategy%scheme == scheme_tr_bdf2 .or. scene%strategy%theta >= 1)) then
       call solve_step(scene, equations, solution, dt, outcome, given=given, go_on=go_on)
       return
     end if
@@ -140,7 +140,8 @@ contains
     if (.not. outcome%converged) return
     call keep_evaluation(equations, kept)
     call flows(scene, equations, solution, dt, outcome%du, after)
-    call estimate(scene, equations, solution, 0.5_wp*(after - before), outcome)
+    call estimate(scene, equations, solution, 0.5_wp*(after - before), outcome, &
+                  at_hand=.not. scene%strategy%time_tolerance > 0 .and. outcome%iterations > 0)
     call return_to(kept, equations)
   end subroutine solve_one_stage
 
@@ -256,15 +257,16 @@ contains
   end subroutine take_passed
 
   !> Solve for the error and measure it.
-  subroutine estimate(scene, equations, solution, rates, outcome)
+  subroutine estimate(scene, equations, solution, rates, outcome, at_hand)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: rates(:)   !! (ndof) error of the heat contents over the length that the matrix divides them by [power]
     type(outcome_t), intent(inout) :: outcome
+    logical, intent(in), optional :: at_hand   !! by the factors of the last iteration
     real(wp) :: temperatures(size(rates))
 
-    call solve_correction(equations, rates, temperatures, outcome%error)
+    call solve_correction(equations, rates, temperatures, outcome%error, at_hand)
     if (allocated(outcome%error)) then
       outcome%converged = .false.
       return

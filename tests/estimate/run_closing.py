@@ -75,10 +75,13 @@ class Closing(unittest.TestCase):
         self.assertTrue(0.16 < share < 0.26, share)
 
     def test_heat(self):
-        """Where its steps are not chosen by their errors nothing is known; otherwise the sum of them."""
-        summary, listing, _, _ = self.run_deck("heat_wall/heat_wall", "step=0.8")
+        """The sum of the steps' errors by implicit Euler, about halved with the step; nothing is known between the ends of a step."""
+        summary, listing, _, _ = self.run_deck("heat_wall/heat_wall", "step=0.8", "theta=0.5")
         self.assertEqual({}, summary["accuracy"])
-        self.assertIn("heat: not estimated (TOL of THETA)", listing)
+        self.assertIn("heat: not estimated (THETA)", listing)
+        long, short = (self.run_deck("heat_wall/heat_wall", f"step={step}")[0]["accuracy"]["heat"] for step in (0.04, 0.02))
+        self.assertTrue(0.5 < short["sum"]/long["sum"] < 0.6, (short, long))   # the first corner of the wave falls more slowly
+        self.assertAlmostEqual(2.0, long["half_costs"], places=12)
         summary, listing, _, out = self.run_deck("radiation/radiation_cooling")
         heat = summary["accuracy"]["heat"]
         self.assertEqual(summary["checks"]["error_in_time_sum"], heat["sum"])
