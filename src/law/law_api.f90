@@ -386,7 +386,8 @@ contains
     type(material_t), intent(in) :: material
     logical :: yes
 
-    yes = law%symmetric .and. (law%symmetric_by_temperature .or. .not. allocated(material%temperatures))
+    yes = law%symmetric .and. (law%symmetric_by_temperature &
+                               .or. .not. (allocated(material%temperatures) .or. allocated(material%steel)))
     if (yes) yes = tangent_rows(law, material) == 4
   end function has_symmetric_tangent
 

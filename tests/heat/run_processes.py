@@ -10,6 +10,7 @@ usage: run_processes.py [-v] [-k]
   grows by 2 Y (1 - 2 sqrt((1 - X)/Y)) times the yield strain in a cycle.
 - `waits`: a section before its torch comes, in which nothing moves yet: as few steps as elsewhere.
 - `probes`: the mean temperature of a body is the heat that it took up over its capacity; the extremes are those of its nodes.
+- `mirrored`: a quench of a tooth and of its mirror image, whose nodes are numbered otherwise: the same steps, iterations and temperatures.
 - `told`: warnings before a run.
 """
 import json
@@ -27,6 +28,17 @@ EXPAND TOTAL 0
 PHASE  AUSTENITE
    LAMBDA 50
    RHOC   3.6
+   E      200000
+   NU     0.3
+   ALPHA  1.E-5
+   SY     200
+   ET     0
+STEEL  r
+SOURCE 'conductivity that falls to a third, as that of martensite beside austenite'
+EXPAND TOTAL 0
+PHASE  AUSTENITE
+   LAMBDA TABLE 20 45 860 15
+   RHOC   4.5
    E      200000
    NU     0.3
    ALPHA  1.E-5
@@ -121,6 +133,28 @@ def probes(checks):
         checks.that(last(run, "most") >= last(run, "skin") > last(run, "bore") >= last(run, "least") > 20, f"{run.name}: extremes")
 
 
+def mirrored(checks):
+    """The conductivity of a steel changes with its temperature, and its matrix is not symmetric: Newton's method must not depend on
+    which half of it the numbers of the nodes put above the diagonal."""
+    runs = []
+    for sign in (1, -1):
+        corners = [(0, 0), (3, 0), (1.5, 6), (0, 6)]
+        if sign < 0:
+            corners = [(-corners[k][0], corners[k][1]) for k in (1, 0, 3, 2)]
+        flank = 2 if sign > 0 else 4
+        points = " ".join(f"{x} {y}" for x, y in corners)
+        runs.append(Run(checks, f"mirrored-{'right' if sign > 0 else 'left'}", f"TITLE mirrored\nSTATE PLSTN\nKINEM SMALL\n"
+                        f"BLOCK tooth PL8TM 4 heat BILINEAR\n   {points}\n   4 1. 6 0.5\nLAW heat META\n   STEEL steel.met r\n   ENERGY 1.\n"
+                        f"START T 860.\nCONVE tooth {flank} 3 H 4. TS 60.\nSTRAT 0.05 1.E-5 1. 4 3\nSTOP 10.\nPROBE t NODE T 0. 0.\nEND\n"))
+    if all(run.ok for run in runs):
+        right, left = (run.history for run in runs)
+        checks.that(not summary(runs[0])["symmetric"], "mirrored: the matrix is not symmetric")
+        checks.that(len(right["t"]) == len(left["t"]) and all(right["iterations"] == left["iterations"]), "mirrored: the same steps and iterations",
+                    (list(right["iterations"]), list(left["iterations"])))
+        checks.small(abs(right["t"][-1] - left["t"][-1]), 1e-6, f"mirrored: {right['t'][-1]:.6f} degC, in K")
+        checks.that(max(right["iterations"]) <= 3, "mirrored: quadratic convergence", list(right["iterations"]))
+
+
 def told(checks):
     steel = "STEEL s\nSOURCE 'round numbers'\nTEMPS MS 300\nMARTEN BETA 0.011\nPHASE ALL\n   LAMBDA 30\n   RHOC 4.5\nEND\n"
     with open(os.path.join(checks.folder, "soft.met"), "w") as file:
@@ -144,6 +178,6 @@ def told(checks):
 if __name__ == "__main__":
     all_checks = Checks()
     law_file(all_checks)
-    for case in (melting, bree, waits, probes, told):
+    for case in (melting, bree, waits, probes, mirrored, told):
         case(all_checks)
     sys.exit(all_checks.end())
