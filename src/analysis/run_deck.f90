@@ -31,6 +31,7 @@ module run_deck
   use next_operation, only: begin_operation
   use passed_planes, only: warn_of_passed_planes
   use remeshing, only: drop_triggers
+  use run_facts, only: run_facts_t
   use run_input, only: read_input, read_next_operation
   use run_options, only: run_options_t, stem_of
   use run_record, only: run_t
@@ -39,7 +40,8 @@ module run_deck
   use scene_summary, only: scene_lines
   use solution, only: solution_t, start_solution
   use standard_streams, only: print_line, print_lines
-  use summary, only: run_facts_t, summary_lines, write_summary
+  use summary, only: write_summary
+  use summary_table, only: summary_lines
   use system, only: catch_signals, caught_signal, cpu_seconds, directory_exists, join_path, make_directory, &
                     remove_file, wall_seconds
   use text, only: add_text, join, nearest_word, string_t, to_text

@@ -1,0 +1,48 @@
+!> What is known of a run when it ends, beside its state: for its summary.
+module run_facts
+  use closing_table, only: closing_t
+  use elem_api, only: totals_t
+  use kinds, only: wp
+  use scene, only: is_solid, scene_t
+  use solution, only: solution_t
+  use text, only: string_t
+  implicit none
+  private
+  public :: run_facts_t, solid_elements, unloaded_drift
+
+  !> Facts of the run.
+  type :: run_facts_t
+    character(len=:), allocatable :: version, deck, deck_text, status, stop_reason, blas
+    !> Parameters set on the command line, NAME=VALUE.
+    type(string_t), allocatable :: overrides(:)
+    !> What is seldom meant of the deck (physics_check).
+    type(string_t), allocatable :: warnings(:)
+    integer :: exit_code = 0, threads = 1
+    real(wp) :: wall = 0.0_wp
+    !> Errors that are estimated, and what half of them costs.
+    type(closing_t) :: closing
+  end type run_facts_t
+
+contains
+
+  !> Change of volume without elastic strain and thermal expansion, over the first one.
+  pure function unloaded_drift(solution, totals) result(share)
+    type(solution_t), intent(in) :: solution
+    type(totals_t), intent(in) :: totals
+    real(wp) :: share
+
+    share = (totals%unloaded_volume - solution%work%grown)/solution%initial_volume - 1
+  end function unloaded_drift
+
+  pure function solid_elements(scene) result(n)
+    type(scene_t), intent(in) :: scene
+    integer :: n
+    integer :: g
+
+    n = 0
+    do g = 1, size(scene%groups)
+      if (is_solid(scene%groups(g))) n = n + size(scene%groups(g)%connectivity, 2)
+    end do
+  end function solid_elements
+
+end module run_facts
