@@ -20,7 +20,7 @@ module closing_table
   use heat_books, only: has_heat
   use json_writer, only: json_t
   use kinds, only: wp
-  use path_record, only: motion_error, stress_error
+  use path_record, only: motion_error, stress_error, whole_stress_error
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use strategy, only: order_in_time
@@ -35,9 +35,10 @@ module closing_table
     !> Errors of the stress and of the strain by patch recovery; the latter is a sum over the steps, where ESTIM or REMSH asks.
     logical :: space = .false., strain_known = .false.
     real(wp) :: stress = 0.0_wp, strain = 0.0_wp, space_cost = 1.0_wp
-    !> A law flows. Errors of the path within steps, where estimated (NORMS): of the motion in sum, of the stress at the end.
-    logical :: flows = .false., path = .false.
-    real(wp) :: motion = 0.0_wp, path_stress = 0.0_wp, path_cost = 2.0_wp
+    !> A law flows. Errors of the path within steps, where estimated (NORMS): of the motion in sum, of the stress at the end
+    !> with what it owes to the motion (where that is known), and at this motion.
+    logical :: flows = .false., path = .false., whole_known = .false.
+    real(wp) :: motion = 0.0_wp, path_stress = 0.0_wp, stress_at_motion = 0.0_wp, path_cost = 2.0_wp
     !> There is heat. Its errors in time, where they are estimated (THETA): sum over the steps [temperature], and how many have one.
     logical :: warm = .false.
     integer :: heat_steps = 0
@@ -68,7 +69,9 @@ contains
     closing%flows = any([(scene%effects(k)%on .and. scene%effects(k)%name == 'plasticity', k=1, size(scene%effects))])
     closing%path = solution%path%estimated > 0
     closing%motion = motion_error(solution%path)
-    closing%path_stress = stress_error(solution%path)
+    closing%path_stress = whole_stress_error(solution%path)
+    closing%stress_at_motion = stress_error(solution%path)
+    closing%whole_known = solution%path%stress_whole > 0
     closing%warm = has_heat(scene)
     closing%heat_steps = solution%heat%estimated
     closing%heat = solution%heat%error_sum
@@ -179,7 +182,8 @@ contains
     end if
     if (closing%flows .and. .not. closing%path) call row('in time', 'path within steps: not estimated (NORMS)', '')
     if (closing%path) &
-      call row('in time', 'path: motion '//percent(closing%motion)//', stress '//percent(closing%path_stress)//' at this motion', &
+      call row('in time', 'path: motion '//percent(closing%motion)//', stress '//percent(closing%path_stress) &
+               //trim(merge('               ', ' at this motion', closing%whole_known)), &
                times(closing%path_cost)//' the time: half the steps'' length')
     if (closing%warm .and. closing%heat_steps == 0) call row('in time', 'heat: not estimated (THETA)', '')
     if (closing%heat_steps > 0) &
@@ -272,6 +276,7 @@ contains
       call json%begin_object('path')
       call json%add('motion_pct', 100*closing%motion)
       call json%add('stress_pct', 100*closing%path_stress)
+      call json%add('stress_at_motion_pct', 100*closing%stress_at_motion)
       call json%add('half_costs', closing%path_cost)
       call json%end_object()
     end if

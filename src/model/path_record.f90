@@ -6,7 +6,7 @@ module path_record
   private
   public :: path_record_t, path_step_t
   public :: mean_square, motion_error, note_attempt, note_path_step, settle_path, start_path, &
-            stress_before, stress_error, stress_scale
+            stress_before, stress_error, stress_scale, whole_stress_error
 
   type :: path_step_t
     !> Its errors were estimated, or are taken from those of steps before and after it; one is above what the deck allows.
@@ -17,6 +17,9 @@ module path_record
     real(wp), allocatable :: error(:, :)
     !> Root of the elastic energy, its error by this step, and how much is left at the end of the step of an error at its start.
     real(wp) :: stress = 0.0_wp, stress_error = 0.0_wp, left = 1.0_wp
+    !> The error of the stress at the end of this step, with what it owes to that of the motion; 0 where it is not estimated
+    !> [energy^0.5].
+    real(wp) :: stress_whole = 0.0_wp
     !> Its errors, of motion and of stress, as they are bounded; it must be shortened by them.
     real(wp) :: sizes(2) = 0.0_wp
     logical :: too_long = .false.
@@ -36,8 +39,8 @@ module path_record
     real(wp), allocatable :: error(:, :)
     !> Root of the elastic energy: its recent mean, its error now, and the largest that was of that over the scale.
     real(wp) :: stress_recent = 0.0_wp, stress_error = 0.0_wp, stress_worst = 0.0_wp
-    !> The last root itself.
-    real(wp) :: stress = 0.0_wp
+    !> The last root itself, and the error of the stress then with what it owes to that of the motion (0: not estimated).
+    real(wp) :: stress = 0.0_wp, stress_whole = 0.0_wp
     !> Steps with an estimate, attempts shortened by it, and steps above what is allowed.
     integer :: estimated = 0, shortened = 0, above = 0
     !> Steps still to come whose lengths are not bounded by their errors, and how many after the next that is shortened in vain.
@@ -123,6 +126,7 @@ contains
     real(wp) :: before, share, rate, least
 
     record%tried_length = 0
+    record%stress_whole = 0
     if (step%interpolated) then
       record%quiet = record%quiet - 1
       record%pending_time = record%pending_time + dt
@@ -157,6 +161,7 @@ contains
     record%moved_error = max(before + mean_square(record%error), 0.0_wp)
     record%stress_error = stress_before(step, dt, record) + step%stress_error
     record%stress = step%stress
+    record%stress_whole = step%stress_whole
     call remember(step%stress, dt, time, record%stress_recent)
     record%stress_worst = max(record%stress_worst, stress_error(record))
     if (step%above) record%above = record%above + 1
@@ -214,6 +219,17 @@ contains
     share = 0
     if (scale > 0) share = abs(record%stress_error)/scale
   end function stress_error
+
+  !> The same with what it owes to the error of the motion, where that is known; the one that creep leaves is a part of it.
+  pure function whole_stress_error(record) result(share)
+    type(path_record_t), intent(in) :: record
+    real(wp) :: share
+    real(wp) :: scale
+
+    scale = stress_scale(record, record%stress)
+    share = stress_error(record)
+    if (scale > 0) share = max(share, record%stress_whole/scale)
+  end function whole_stress_error
 
   !> What an error of the stress is compared with: the stress now, or a share of its recent mean where that is more, as when a load
   !> passes through zero.

@@ -112,6 +112,7 @@ contains
     call visitor%member('stress_error', self%stress_error, kept, 'energy^0.5')
     call visitor%member('stress_worst', self%stress_worst, kept, '-', low=0.0_wp)
     call visitor%member('stress', self%stress, kept, 'energy^0.5', low=0.0_wp)
+    call visitor%member('stress_whole', self%stress_whole, kept, 'energy^0.5', low=0.0_wp)
     call visitor%member('estimated', self%estimated, kept, low=0)
     call visitor%member('shortened', self%shortened, kept, low=0)
     call visitor%member('above', self%above, kept, low=0)

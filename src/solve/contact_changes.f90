@@ -11,7 +11,7 @@ module contact_changes
   use state_variables, only: find_variable
   implicit none
   private
-  public :: contact_set, note_contact, loses_a_die, touching_dies
+  public :: contact_differs, contact_set, note_contact, loses_a_die, touching_dies
 
 contains
 
@@ -91,15 +91,38 @@ contains
     allocate (set(0))
     do g = 1, size(scene%groups)
       if (scene%groups(g)%die == 0 .or. scene%groups(g)%material == 0) cycle
-      associate (variables => scene%groups(g)%variables, state => solution%groups(g)%trial)
-        set = [set, ways(state(variables(find_variable(variables, 'contact_status'))%first, :, :), &
-                         state(variables(find_variable(variables, 'friction'))%first, :, :))]
-        if (find_variable(variables, 'corner_place') == 0) cycle
-        set = [set, ways(state(variables(find_variable(variables, 'corner_contact_status'))%first, :, :), &
-                         state(variables(find_variable(variables, 'corner_friction'))%first, :, :))]
-      end associate
+      set = [set, set_of_group(scene%groups(g), solution%groups(g)%trial)]
     end do
   end function contact_set
+
+  !> Some point of contact is another way at the end of the step than at its start.
+  pure function contact_differs(scene, solution) result(differs)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    logical :: differs
+    integer :: g
+
+    differs = .false.
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%die == 0 .or. scene%groups(g)%material == 0) cycle
+      differs = differs .or. any(set_of_group(scene%groups(g), solution%groups(g)%committed) &
+                                 /= set_of_group(scene%groups(g), solution%groups(g)%trial))
+    end do
+  end function contact_differs
+
+  pure function set_of_group(group, state) result(set)
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: state(:, :, :)   !! (component, point, element)
+    integer, allocatable :: set(:)
+
+    associate (variables => group%variables)
+      set = ways(state(variables(find_variable(variables, 'contact_status'))%first, :, :), &
+                 state(variables(find_variable(variables, 'friction'))%first, :, :))
+      if (find_variable(variables, 'corner_place') == 0) return
+      set = [set, ways(state(variables(find_variable(variables, 'corner_contact_status'))%first, :, :), &
+                       state(variables(find_variable(variables, 'corner_friction'))%first, :, :))]
+    end associate
+  end function set_of_group
 
   pure function ways(status, friction)
     real(wp), intent(in) :: status(:, :), friction(:, :)

@@ -60,7 +60,7 @@ contains
       call equations%timers%stop(timer)
       return
     end if
-    call estimate_path(scene, equations, solution, dt, at_hand, outcome, done)
+    call estimate_path(scene, equations, solution, dt, at_hand, is_last(), outcome, done)
     call equations%timers%stop(timer)
     if (.not. outcome%converged) return
     outcome%path%estimated = done
@@ -82,12 +82,17 @@ contains
 
       associate (record => solution%path)
         yes = record%quiet > 0 .and. dt <= record%quiet_length .and. outcome%path%bend <= record%quiet_bend &
-              .and. .not. record%tried_length > 0 .and. solution%time + dt < scene%strategy%end_time*(1 - 64*eps)
+              .and. .not. (record%tried_length > 0 .or. is_last())
         ! on a new mesh in any case
         if (yes .and. record%quiet_bend < huge(record%quiet_bend)) &
           yes = .not. (at_corner(scene, solution%time) .or. at_corner(scene, solution%time + dt))
       end associate
     end function is_quiet
+
+    !> The end of the scene.
+    pure logical function is_last()
+      is_last = .not. solution%time + dt < scene%strategy%end_time*(1 - 64*eps)
+    end function is_last
 
     !> Error of the motion over the motion, or over what it is in the mean of the time where that is more; error of the stress over
     !> what the deck allows.

@@ -11,26 +11,21 @@
 !> the stress is counted as that of the root of the elastic energy. What becomes in a step of an error at its start is found by
 !> the laws, from a state with elastic strains a little larger: creep forgets it, elastic unloading does not.
 module path_error
-  use axis_wall, only: press_on_axis
   use corrections, only: solve_correction
-  use dofs, only: move_fields
   use drivers, only: drivers_of_half, drivers_t
-  use elem_api, only: block_done, instant_t, report_t, totals_t
-  use element_loop, only: gather_forces, group_geometry, run_elements
   use equations, only: equations_t, take_turn
   use errors, only: exit_no_convergence
-  use fields, only: displacement_field, section_field
+  use fields, only: displacement_field
   use kinds, only: eps, wp
   use kinematics_api, only: first_history
-  use law_api, only: law_t, solid_law
   use newton, only: outcome_t
   use path_record, only: mean_square, path_step_t, stress_scale
+  use path_states, only: advance_beside, begin_beside, has_path, root_energy, unbalanced_forces
+  use path_stress, only: stress_with_motion
   use predictor, only: proportion
   use round_off_floors, only: round_off_motion
   use scene, only: scene_t
-  use solution, only: group_state_t, solution_t
-  use step_instants, only: make_instant
-  use timers, only: ledger_t
+  use solution, only: solution_t
   implicit none
   private
   public :: at_corner, bend_of, estimate_path, on_nodes
@@ -42,29 +37,14 @@ module path_error
 
 contains
 
-  !> Groups of bodies whose laws flow (ngroup).
-  pure function has_path(scene, laws) result(yes)
-    type(scene_t), intent(in) :: scene
-    type(law_t), intent(in) :: laws(:)
-    logical :: yes(size(scene%groups))
-    integer :: g
-
-    yes = .false.
-    do g = 1, size(scene%groups)
-      if (scene%groups(g)%material == 0) cycle
-      associate (law => laws(scene%materials(scene%groups(g)%material)%law_id))
-        yes(g) = law%kind == solid_law .and. associated(law%flow_stress)
-      end associate
-    end do
-  end function has_path
-
   !> Errors of a step that has converged. `done` is false where the two halves cannot be made.
-  subroutine estimate_path(scene, equations, solution, dt, at_hand, outcome, done)
+  subroutine estimate_path(scene, equations, solution, dt, at_hand, last, outcome, done)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(in) :: solution   !! its trial state is that of the step
     real(wp), intent(in) :: dt        !! [time]
     logical, intent(in) :: at_hand    !! factors of a matrix of this step are
+    logical, intent(in) :: last       !! the run ends with this step: the error of the stress with the motion's is estimated
     type(outcome_t), intent(inout) :: outcome
     logical, intent(out) :: done
     type(solution_t) :: other
@@ -79,15 +59,15 @@ contains
     ! the books want the element forces of the step
     element_force = equations%buffers%force
     call motion_of_first_half(scene, equations, solution, dt, outcome%du, first)
-    call begin(other)
+    call begin_beside(solution, other)
     call drivers_of_half(equations%drivers, other%groups, .false., drivers)
-    call advance(first, 0.5_wp*dt)
+    call advance_beside(scene, equations, active, drivers, first, 0.5_wp*dt, other, done)
     if (done) then
       do g = 1, size(active)
         if (active(g)) other%groups(g)%committed = other%groups(g)%trial
       end do
       call drivers_of_half(equations%drivers, other%groups, .true., drivers)
-      call advance(outcome%du - first, 0.5_wp*dt)
+      call advance_beside(scene, equations, active, drivers, outcome%du - first, 0.5_wp*dt, other, done)
     end if
     if (done) then
       associate (step => outcome%path)
@@ -98,11 +78,12 @@ contains
         step%motion = mean_square(on_nodes(equations, outcome%du))
         allocate (step%error, source=on_nodes(equations, error))
         step%motion_error = mean_square(step%error)
+        if (last) call stress_with_motion(scene, equations, solution, active, dt, error, other%groups, outcome, step%stress_whole)
         call drop_round_off(equations, solution, step)
         if (max(abs(step%stress_error), abs(solution%path%stress_error)) &
             > negligible*stress_scale(solution%path, step%stress)) then
           before = root_energy(scene, equations, active, solution, solution%groups, committed=.true.)
-          call begin(other)
+          call begin_beside(solution, other)
           do g = 1, size(active)
             if (active(g)) other%groups(g)%committed(:first_history - 1, :, :) &
               = (1 + enlarged)*other%groups(g)%committed(:first_history - 1, :, :)
@@ -110,7 +91,7 @@ contains
           deallocate (drivers)
           allocate (drivers, source=equations%drivers)
           drivers%vary = .false.
-          call advance(outcome%du, dt)
+          call advance_beside(scene, equations, active, drivers, outcome%du, dt, other, done)
           if (done .and. before > 0) then
             after = root_energy(scene, equations, active, other, other%groups)
             ! loads that go on do not make more of it
@@ -126,40 +107,9 @@ contains
     if (outcome%error%code /= exit_no_convergence) return
     outcome%reason = outcome%error%message
     deallocate (outcome%error)
-
-  contains
-
-    !> The start of the step.
-    subroutine begin(state)
-      type(solution_t), intent(out) :: state
-
-      state = solution
-      ! nothing of contact is computed
-      deallocate (state%pairs)
-      allocate (state%pairs(0))
-    end subroutine begin
-
-    !> Trial states after a motion, and the geometry.
-    subroutine advance(motion, length)
-      real(wp), intent(in) :: motion(:)   !! (ndof) [unknown]
-      real(wp), intent(in) :: length      !! [time]
-      type(instant_t) :: instant
-      type(report_t) :: report
-      type(ledger_t) :: within
-      real(wp) :: none(0, 0)
-
-      call make_instant(scene, equations, other, length, motion, .false., instant)
-      call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, active, &
-                        equations%solves(equations%now)%pattern, instant, motion, none, other, drivers, equations%buffers, &
-                        within, report)
-      done = report%status == block_done
-      call move_fields(equations%dofs, motion, other%fields)
-      other%time = other%time + length
-    end subroutine advance
-
   end subroutine estimate_path
 
-  !> Where hardly anything moves yet, as before a torch comes near, both errors are round-off of places and stresses: none.
+  !> Where hardly anything moves yet, as before a torch comes near, errors are round-off of places and stresses: none.
   pure subroutine drop_round_off(equations, solution, step)
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
@@ -170,6 +120,7 @@ contains
     energy = 0.5_wp*solution%fields(displacement_field)%floor*motion
     if (step%motion_error <= motion) step%motion_error = 0
     if (abs(step%stress_error) <= sqrt(energy)) step%stress_error = 0
+    if (step%stress_whole <= sqrt(energy)) step%stress_whole = 0
   end subroutine drop_round_off
 
   !> Motion of the first half: velocities are linear in time, with the mean v(n) of the step before and v of this one in their
@@ -228,67 +179,6 @@ contains
       yes = yes .or. any(abs(scene%multipliers(k)%time - time) <= 64*eps*abs(scene%strategy%end_time))
     end do
   end function at_corner
-
-  !> Forces of the step less those that the stresses of both halves make in its end, on the unknowns of mechanics.
-  subroutine unbalanced_forces(scene, equations, solution, du, residual)
-    type(scene_t), intent(in) :: scene
-    type(equations_t), intent(inout) :: equations   !! element forces are those of both halves
-    type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: du(:)
-    real(wp), intent(out) :: residual(:)
-    type(report_t) :: unused
-    real(wp), dimension(size(du)) :: force, magnitude
-    integer :: f, k, c
-
-    residual = 0
-    force = equations%force
-    associate (solve => equations%solves(equations%now))
-      call press_on_axis(scene, equations%dofs, solve%pattern, solve%active, solution%fields(displacement_field)%value, du, &
-                         .false., equations%wall, equations%buffers%force, equations%buffers%matrix, unused)
-      call gather_forces(solve%pattern, equations%buffers, solve%is_own, force, magnitude)
-    end associate
-    do f = 1, size(solution%fields)
-      if (solution%fields(f)%quantity /= 'motion') cycle
-      associate (number => equations%dofs%fields(f)%number)
-        do k = 1, size(number, 2)
-          do c = 1, size(number, 1)
-            if (number(c, k) > 0) residual(number(c, k)) = equations%force(number(c, k)) - force(number(c, k))
-          end do
-        end do
-      end associate
-    end do
-  end subroutine unbalanced_forces
-
-  !> Root of the elastic energy of the bodies that flow.
-  function root_energy(scene, equations, active, place, groups, committed) result(root)
-    type(scene_t), intent(in) :: scene
-    type(equations_t), intent(in) :: equations
-    logical, intent(in) :: active(:)
-    type(solution_t), intent(in) :: place           !! with the geometry
-    type(group_state_t), intent(in) :: groups(:)    !! with the states
-    logical, intent(in), optional :: committed      !! of the committed states, not the trial ones
-    real(wp) :: root
-    type(totals_t) :: totals
-    real(wp), allocatable :: x(:, :, :)
-    integer :: g
-
-    root = 0
-    do g = 1, size(active)
-      if (.not. active(g)) cycle
-      associate (group => scene%groups(g), row => equations%elems(scene%groups(g)%elem_id), &
-                 law => equations%laws(scene%materials(scene%groups(g)%material)%law_id), &
-                 section => place%fields(section_field)%value(:, 1))
-        call group_geometry(scene, group, row, place%fields(displacement_field)%value, x)
-        if (present(committed)) then
-          call row%measure(scene, group, law, section, x, groups(g)%committed, groups(g)%committed, totals)
-        else
-          call row%measure(scene, group, law, section, x, groups(g)%trial, groups(g)%trial, totals)
-        end if
-      end associate
-      root = root + totals%elastic_energy
-    end do
-    root = sqrt(max(root, 0.0_wp))
-  end function root_energy
 
   !> The part of a motion of unknowns that is of the displacements of nodes.
   pure function on_nodes(equations, motion) result(displacement)

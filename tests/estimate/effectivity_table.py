@@ -4,7 +4,7 @@
 usage: effectivity_table.py [--runs DIR] [SCENE...]     some minutes
 
 Space: the stress of a run, within each element the polynomial through its points, against the stress at the points of a run with more
-elements, steps and penetration the same. Time: against the same mesh with much shorter steps, at the points. Both in the norm of elastic
+elements, steps and penetration the same. Time: against the same mesh with much shorter steps, at the points, for steps of several lengths. Both in the norm of elastic
 energy over that of the stress, at the end; where meshes are made as the part changes (can) at the same places. Runs are those of
 `--fineness` (elements along a line, steps, penetration, over the deck's); those in DIR (default: out/effectivity) are not made again. Ends with 1
 where an effectivity is beyond its limits: 0.8 to 1.25 from the second mesh on against exact stresses, a factor 2 against finest runs.
@@ -31,12 +31,15 @@ NEAREST = 9             # elements among which a place is looked for, by their m
 OUTSIDE = 1.2           # in the element's own coordinates: a place farther out is none of the body
 FACTOR, EXACT = (0.5, 2.0), (0.8, 1.25)
 SCENES = {
-    # deck, body, E, nu, parameters, meshes, finest mesh and its steps, the truth in space, and those of the truth in time
-    "lame": ("thick_cylinder/thick_cylinder", "ring", 1000.0, 0.3, [], (1, 2, 4), None, None),
-    "billet to 25 %": ("upsetting/upsetting", "billet", 200000.0, 0.3, ["nx=6", "ny=9", "travel=3.75"], (1, 2), (4, 1), (1, 0.125)),
-    "billet to 60 %": ("upsetting/upsetting", "billet", 200000.0, 0.3, ["nx=6", "ny=9"], (1, 2), (4, 1), (1, 0.125)),
-    "quench": ("quench_bar_trip/quench_bar_trip", "bar", 200000.0, 0.3, [], (1, 2), (4, 1), (1, 0.125)),
-    "can": ("can/can", "billet", 70000.0, 0.33, [], (0.75, 1), (2, 1), None),
+    # deck, body, E, nu, parameters, meshes, finest mesh and its steps, the truth in space; in time steps, of each mesh, and their truth
+    "lame": ("thick_cylinder/thick_cylinder", "ring", 1000.0, 0.3, [], (1, 2, 4), None, ()),
+    "billet to 25 %": ("upsetting/upsetting", "billet", 200000.0, 0.3, ["nx=6", "ny=9", "travel=3.75"], (1, 2), (4, 1),
+                       ((1, 1, 1/32), (1, 0.5, 1/32), (1, 0.25, 1/32), (2, 1, 1/32))),
+    "billet to 60 %": ("upsetting/upsetting", "billet", 200000.0, 0.3, ["nx=6", "ny=9"], (1, 2), (4, 1), ((1, 1, 1/32), (1, 0.5, 1/32), (1, 0.25, 1/32), (2, 1, 1/32))),
+    "necking": ("necking/necking", "bar", 206900.0, 0.29, ["nx=4", "ny=12", "dt=0.02"], (), None, ((1, 1, 1/32), (1, 0.5, 1/32), (1, 0.25, 1/32))),
+    "ring": ("ring/ring", "ring", 200000.0, 0.3, [], (), None, ((1, 1, 1/16), (1, 0.5, 1/16), (1, 0.25, 1/16))),
+    "quench": ("quench_bar_trip/quench_bar_trip", "bar", 200000.0, 0.3, [], (1, 2), (4, 1), ((1, 1, 0.125),)),
+    "can": ("can/can", "billet", 70000.0, 0.33, [], (0.75, 1), (2, 1), ()),
 }
 
 
@@ -126,7 +129,7 @@ def norm(stress, volumes, young, nu):
 
 def rows_of(scene, runs):
     """Kind, run, elements, true error, estimate, limits."""
-    _, body, young, nu, _, meshes, fine, short = SCENES[scene]
+    _, body, young, nu, _, meshes, fine, lengths = SCENES[scene]
     if fine:
         truth = made(scene, runs, *fine)[0]
         places, stress, volumes = state(truth, body)
@@ -143,15 +146,20 @@ def rows_of(scene, runs):
         true = norm((own - stress)[there], volumes[there], young, nu)/norm(stress[there], volumes[there], young, nu)
         yield ("space", f"elements along a line x {mesh:g}", len(nodes_of(run, body)), true, told["space"]["stress_pct"]/100,
                FACTOR if fine else EXACT if k else None)
-    if short:
-        run, told = made(scene, runs, short[0], 1)
-        better, _ = made(scene, runs, *short)
-        _, own, volumes = state(run, body)
-        x, stress, _ = state(better, body)
-        volumes = volumes*x[..., 0]
-        true = norm(own - stress, volumes, young, nu)/norm(stress, volumes, young, nu)
+    for each, steps, short in lengths:
+        run, told = made(scene, runs, each, steps)
+        true, elements = error_of_steps(scene, run, made(scene, runs, each, short)[0])
         guess = told.get("path", {}).get("stress_pct")
-        yield ("time", "steps of the deck", len(nodes_of(run, body)), true, guess/100 if guess is not None else float("nan"), FACTOR)
+        yield ("time", f"elements along a line x {each:g}, steps x {steps:g}", elements, true, guess/100 if guess is not None else float("nan"), FACTOR)
+
+
+def error_of_steps(scene, run, better):
+    """The difference of the stress to that of a run with shorter steps on the same mesh, over the latter; elements."""
+    _, body, young, nu, _, _, _, _ = SCENES[scene]
+    _, own, _ = state(run, body)
+    x, stress, volumes = state(better, body)
+    volumes = volumes*x[..., 0]
+    return norm(own - stress, volumes, young, nu)/norm(stress, volumes, young, nu), len(own)
 
 
 def refined(x):
