@@ -27,7 +27,6 @@ module quad_smoothing
     real(wp) :: energy = 0.0_wp, slope(2) = 0.0_wp
     real(wp) :: matrix(3) = 0.0_wp         !! second derivatives xx, xy, yy
     real(wp) :: least = huge(1.0_wp)       !! smallest area between two sides
-    logical :: valid = .true.              !! no area is negative, or none is taken as it is
   end type sums_t
 
 contains
@@ -80,8 +79,8 @@ contains
     type(quad_mesh_t), intent(inout) :: mesh
     integer, intent(in) :: point
     real(wp), intent(out) :: moved   !! over the mean side
-    real(wp) :: ring(2, 3, size(mesh%around, 1)), matrix(3), step(2), start(2), x(2), det, side, delta
-    type(sums_t) :: sums, trial
+    real(wp) :: ring(2, 3, size(mesh%around, 1)), matrix(3), step(2), start(2), x(2), det, side, delta, energy
+    type(sums_t) :: sums
     integer :: i, n, k
 
     n = mesh%count(point)
@@ -120,8 +119,8 @@ contains
     step = -[matrix(3)*sums%slope(1) - matrix(2)*sums%slope(2), matrix(1)*sums%slope(2) - matrix(2)*sums%slope(1)]/det
     if (length_of(step) > longest) step = longest*step/length_of(step)
     do k = 1, halvings
-      trial = evaluate(ring(:, :, :n), x + step, delta)
-      if (trial%valid .and. trial%energy < sums%energy) then
+      energy = energy_at(ring(:, :, :n), x + step, delta)
+      if (energy < sums%energy) then
         mesh%x(:, point) = start + side*step
         moved = length_of(step)
         return
@@ -156,6 +155,36 @@ contains
     end do
   end function evaluate
 
+  !> The energy of `evaluate` alone, a fifth of its work: huge where an area is negative and is taken as it is.
+  pure function energy_at(ring, x, delta) result(energy)
+    real(wp), intent(in) :: ring(:, :, :)   !! (2, 3, n)
+    real(wp), intent(in) :: x(2), delta
+    real(wp) :: energy
+    real(wp) :: u(2), v(2), w(2), z(2), n(3), d(3)
+    integer :: i, k
+
+    energy = 0
+    do i = 1, size(ring, 3)
+      associate (a => ring(:, 1, i), b => ring(:, 2, i), c => ring(:, 3, i))
+        u = a - x
+        v = c - x
+        w = b - a
+        z = b - c
+        n = [sum(u*u) + sum(v*v), sum(w*w) + sum(u*u), sum(z*z) + sum(v*v)]
+        d = [cross(u, v), cross(u, w), cross(z, v)]
+      end associate
+      do k = 1, 3
+        if (delta > 0) then
+          d(k) = 0.5_wp*(d(k) + sqrt(d(k)*d(k) + 4*delta*delta))
+        else if (.not. d(k) > 0) then
+          energy = huge(energy)
+          return
+        end if
+        energy = energy + (0.5_wp*n(k)/d(k))**4
+      end do
+    end do
+  end function energy_at
+
   !> f = n/(2 d): n has the slope dn and the second derivative ddn in both directions, d the constant slope dd.
   pure subroutine add_corner(n, dn, ddn, d, dd, delta, sums)
     real(wp), intent(in) :: n, dn(2), ddn, d, dd(2), delta
@@ -173,7 +202,6 @@ contains
       h1 = 1
       h2 = 0
     else
-      sums%valid = .false.
       return
     end if
     f = 0.5_wp*n/h
