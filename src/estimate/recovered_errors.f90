@@ -119,7 +119,8 @@ contains
         do q = 1, npoint
           a = [dot_product(x(1, :), f%points%dphi(1, :, q)), dot_product(x(2, :), f%points%dphi(1, :, q))]
           b = [dot_product(x(1, :), f%points%dphi(2, :, q)), dot_product(x(2, :), f%points%dphi(2, :, q))]
-          dv = cross(a, b)*f%points%weight(q)*thickness_at(section, here(:, q))
+          ! a worn element may have turned over beyond its own points: a measure of squares is positive there too
+          dv = abs(cross(a, b))*f%points%weight(q)*thickness_at(section, here(:, q))
           missing(:, e) = missing(:, e) + dv*squares(better(:, q) - own(:, q), weights(:, e))
           whole(:, e) = whole(:, e) + dv*squares(better(:, q), weights(:, e))
           volume(e) = volume(e) + dv
