@@ -5,7 +5,7 @@ module acceptance
   implicit none
   private
   public :: acceptance_t, probation_t
-  public :: begin_probation, end_probation, is_on_probation, note_cutback, note_step, probation_steps, step_ratio
+  public :: begin_probation, end_probation, is_first_step, is_on_probation, note_cutback, note_step, probation_steps, step_ratio
 
   !> Steps after a remesh that are compared with as many before it.
   integer, parameter :: probation_steps = 5
@@ -86,6 +86,14 @@ contains
 
     yes = probation%left > 0
   end function is_on_probation
+
+  !> No step has been made on the new mesh.
+  pure function is_first_step(probation) result(yes)
+    type(probation_t), intent(in) :: probation
+    logical :: yes
+
+    yes = probation%left == probation_steps
+  end function is_first_step
 
   !> Least length on the new mesh over the least before it; above 1 where steps grow.
   pure function step_ratio(probation) result(ratio)

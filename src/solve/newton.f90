@@ -10,7 +10,6 @@ module newton
   use convergence, only: heat_in_balance, pilots_in_equilibrium, relative_motion, relative_residual, weigh_quantities
   use corrections, only: solve_correction
   use elem_api, only: block_done, block_inverted, block_without_source, report_t
-  use element_loop, only: add_prescribed
   use equations, only: equations_t
   use errors, only: error_t, exit_no_convergence
   use evaluation, only: evaluate
@@ -23,6 +22,7 @@ module newton
   use kinds, only: wp
   use linear_solver, only: return_to_chosen
   use line_search, only: manner_t, search_along
+  use onset_motion, only: add_missing
   use path_record, only: path_step_t
   use predictor, only: lagging_dies, leaving_dies, predict, work_of_dies
   use scene, only: scene_t
@@ -94,7 +94,7 @@ contains
     call return_to_chosen(equations%solves(equations%now)%solver)
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     if (present(left)) external = external - left
-    call predict(scene, equations, solution, dt, given, go_on, outcome%du, missing, kept, report)
+    call predict(scene, equations, solution, dt, external, given, go_on, outcome%du, missing, kept, report)
     if (report%status /= block_done) then
       call set_cause(report, outcome)
       return
@@ -222,7 +222,7 @@ contains
       leaving = leaving_dies(lags, work, touched, now) .and. .not. left_by
       if (.not. any(leaving)) return
       left_by = left_by .or. leaving
-      call predict(scene, equations, solution, dt, given, go_on, outcome%du, missing, kept, report, left_by)
+      call predict(scene, equations, solution, dt, external, given, go_on, outcome%du, missing, kept, report, left_by)
       line%line_search = merge(1.0_wp, 0.0_wp, report%status == block_done)
       correction = 0
     end subroutine follow_dies
@@ -241,21 +241,6 @@ contains
       held = equations%wall%held
     end subroutine start_again
   end subroutine solve_step
-
-  !> The forces of missing prescribed motions, by the matrix.
-  subroutine add_missing(equations, missing, residual)
-    type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: missing(:)
-    real(wp), intent(inout) :: residual(:)
-    real(wp) :: force(size(residual))
-
-    if (.not. any(abs(missing) > 0)) return
-    force = 0
-    associate (solve => equations%solves(equations%now))
-      call add_prescribed(equations%dofs, solve%active, solve%pattern, equations%buffers, missing, force)
-    end associate
-    residual = residual - force
-  end subroutine add_missing
 
   !> Cause of a failed step: the element, and what failed in it.
   subroutine set_cause(report, outcome)

@@ -7,6 +7,8 @@
 !> there is no motion that goes on: only the onset of it is kept, and the matrix there (with the contacts of now) spreads the
 !> rest.
 !>
+!> On a new mesh the last motion is none of its own: the first step starts at the motion of its onset (onset_motion).
+!>
 !> Where a die turns back the step starts a little way back along that motion: the matrix there is that of unloading.
 !>
 !> The first iteration takes contacts as they are: a die that withdraws would pull the part along, by more than it can bear. Where
@@ -16,12 +18,14 @@
 !> A body that nothing holds starts at rest (resting_bodies). What prescribed unknowns still miss is left for the first iteration
 !> to spread.
 module predictor
+  use acceptance, only: is_first_step
   use dofs, only: dofs_t, prescribed_motion
   use elem_api, only: block_done, report_t
   use equations, only: equations_t
   use evaluation, only: evaluate
-  use fields, only: field_t, pilot_field
+  use fields, only: displacement_field, field_t, pilot_field
   use kinds, only: wp
+  use onset_motion, only: extend_onset
   use resting_bodies, only: leave_at_rest
   use scene, only: scene_t
   use solution, only: solution_t
@@ -40,18 +44,19 @@ contains
 
   !> Start `du` and what prescribed unknowns miss of their motion; forces and matrices are evaluated there. With `kept` they
   !> are not those of the motion: contact is as it was.
-  subroutine predict(scene, equations, solution, dt, given, go_on, du, missing, kept, report, left)
+  subroutine predict(scene, equations, solution, dt, external, given, go_on, du, missing, kept, report, left)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt
+    real(wp), intent(in) :: external(:)          !! (ndof) forces at the end of the step [residual]
     real(wp), intent(in), optional :: given(:)   !! (ndof) motion of the unknowns of other solves [unknown]
     logical, intent(in), optional :: go_on       !! start from `given` for the own unknowns too
     real(wp), intent(out) :: du(:), missing(:)   !! (ndof) [unknown]
     logical, intent(out) :: kept
     type(report_t), intent(out) :: report
     logical, intent(in), optional :: left(:)     !! (ndie) dies that leave the part: they start where they go
-    logical :: fixed(size(du)), at_place(size(du)), back, found
+    logical :: fixed(size(du)), at_place(size(du)), back, found, begun
     real(wp) :: motion(size(equations%dofs%prescribed))
     real(wp) :: ratio
     integer :: k
@@ -74,29 +79,53 @@ contains
     back = present(left)
     if (.not. (back .or. found) .and. ratio > 0) back = turns_back()
     if (back) ratio = -onset*ratio
-    kept = .false.
-    call start_from(ratio)
-    if (.not. (back .or. found) .and. report%status == block_done .and. report%event >= 1 .and. report%jump > smooth_contact) then
-      kept = is_driven()
-      call start_from(merge(ratio, onset*ratio, kept))
+    begun = .false.
+    if (is_first_step(solution%probation) .and. .not. (back .or. found) .and. ratio > 0 &
+        .and. equations%solves(equations%now)%own(displacement_field)) call start_on_new_mesh()
+    if (.not. begun) then
+      kept = .false.
+      call start_from(ratio)
+      if (.not. (back .or. found) .and. report%status == block_done .and. report%event >= 1 .and. report%jump > smooth_contact) then
+        kept = is_driven()
+        call start_from(merge(ratio, onset*ratio, kept))
+      end if
     end if
     if (report%status /= block_done .and. abs(ratio) > 0) then
       kept = .false.
       call start_from(0.0_wp)
     end if
 
-    missing = 0
-    do k = 1, size(motion)
-      associate (d => equations%dofs%prescribed(k)%dof)
-        if (.not. equations%solves(equations%now)%is_own(d)) cycle
-        missing(d) = motion(k) - du(d)
-        if (abs(missing(d)) > round_off*abs(motion(k))) cycle
-        du(d) = motion(k)
-        missing(d) = 0
-      end associate
-    end do
+    call find_missing()
 
   contains
+
+    !> Start at the motion of the onset, with contact kept; `begun` where there is one.
+    subroutine start_on_new_mesh()
+      kept = is_driven()
+      if (.not. kept) return
+      call start_from(onset*ratio)
+      if (report%status /= block_done) return
+      call find_missing()
+      call extend_onset(equations, external, missing, du, begun)
+      if (begun) call evaluate(scene, equations, solution, dt, du, .true., report, predicted=.true., kept=kept)
+      begun = begun .and. report%status == block_done
+    end subroutine start_on_new_mesh
+
+    !> What prescribed unknowns miss of their motion; a rest that is round-off is made now.
+    subroutine find_missing()
+      integer :: i
+
+      missing = 0
+      do i = 1, size(motion)
+        associate (d => equations%dofs%prescribed(i)%dof)
+          if (.not. equations%solves(equations%now)%is_own(d)) cycle
+          missing(d) = motion(i) - du(d)
+          if (abs(missing(d)) > round_off*abs(motion(i))) cycle
+          du(d) = motion(i)
+          missing(d) = 0
+        end associate
+      end do
+    end subroutine find_missing
 
     !> A support or a die is moved in the step.
     function is_driven()

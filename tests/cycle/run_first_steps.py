@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+"""First steps on new meshes, and a mesh that is worn to the end.
+
+usage: run_first_steps.py [-v] [-k]
+
+The first step on a new mesh starts at the motion of its onset there, not at the one that was interpolated from the old mesh: a block that is indented by
+rounded edges, where sides roll onto the punch, needs no more of its iterations than of ordinary ones, twice, and steps go on as long as they were.
+A mesh that is never replaced turns over at corners of elements, where errors are estimated beyond the points of the element: the run comes to its end.
+"""
+import os
+import re
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from scenes import deck_of, run_scene  # noqa: E402
+from support import DONE, Checks, write  # noqa: E402
+
+MOST_ITERATIONS, MOST_CUTBACKS = 2.0, 0.25   # of an ordinary step; of a new mesh
+
+
+def steps_of(out, name):
+    """Of every step in the listing: (first on a new mesh, iterations, cutbacks)."""
+    found, first, cutbacks = [], False, 0
+    with open(os.path.join(out, name + ".log"), encoding="utf-8") as file:
+        for line in file:
+            first = first or bool(re.match(r"mesh \d+ +after step", line))
+            cutbacks += line.startswith("cutback: step")
+            step = re.match(r"step \d+ .* iterations (\d+)", line)
+            if step:
+                found.append((first, int(step[1]), cutbacks))
+                first, cutbacks = False, 0
+    return found
+
+
+def mean(values):
+    return sum(values) / len(values)
+
+
+def first_steps(checks):
+    found = run_scene("indentation", checks.path("indentation"))
+    if not checks.that(found["code"] == DONE, "indentation: the cycle ends with 0", found["said"]):
+        return
+    steps = steps_of(found["out"], "indentation")
+    firsts, others = ([step for step in steps if step[0] == new] for new in (True, False))
+    checks.that(len(firsts) > 2, "new meshes", len(firsts))
+    iterations = [mean([step[1] for step in some]) for some in (firsts, others)]
+    checks.that(iterations[0] <= MOST_ITERATIONS * iterations[1], f"at most {MOST_ITERATIONS:g} times the iterations of ordinary steps", iterations)
+    cutbacks = mean([step[2] for step in firsts])
+    checks.that(cutbacks <= MOST_CUTBACKS, f"at most {MOST_CUTBACKS:g} cutbacks a new mesh", cutbacks)
+
+
+def worn_mesh(checks):
+    with open(deck_of("can"), encoding="utf-8") as file:
+        text = re.sub(r"^REMSH.*\n", "REMSH\n   SIZE 0.8 0.8\n   COUNT 1000000\n", file.read(), flags=re.MULTILINE)
+    found = run_scene("can", checks.path("worn"), deck=write(checks.path("worn.lag"), text))
+    checks.that(found["code"] == DONE and found["meshes"] == 1, "a mesh that is worn comes to the end", found["said"])
+
+
+def main():
+    checks = Checks()
+    first_steps(checks)
+    worn_mesh(checks)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
