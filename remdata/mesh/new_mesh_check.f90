@@ -1,7 +1,7 @@
 !> Acceptance of a new mesh: shape of the elements, distance to the contour, nodes at the ends of contact.
 !>
 !> At a corner of the contour that is sharper than the limits no element can be better than the corner itself: there the limits are
-!> a share of its own angle and sine.
+!> a share of its own angle and sine. So it is in the corner of a material, where an interface meets the contour or another one.
 module new_mesh_check
   use boundary_curves, only: closest_position, joint_point, kind_entry, kind_exit, point_on, size_of_boundary
   use errors, only: error_t, exit_no_convergence, fail
@@ -24,7 +24,7 @@ module new_mesh_check
     real(wp) :: off_contour = 0.0_wp
     !> Largest distance from an end of contact to a node that is an end of sides, a share of the contour.
     real(wp) :: off_ends = 0.0_wp
-    !> Angle between two sides of the sharpest corner of the contour [degree].
+    !> Angle between two sides of the sharpest corner of the contour, or of a material [degree].
     real(wp) :: sharpest_corner = 180.0_wp
   end type mesh_check_t
 
@@ -91,20 +91,21 @@ contains
     type(new_mesh_t), intent(in) :: mesh
     type(mesh_check_t), intent(inout) :: check
     type(error_t), allocatable, intent(out) :: error
-    real(wp), allocatable :: measures(:, :), corner(:)
+    real(wp), allocatable :: measures(:, :)
+    real(wp) :: corner(size(mesh%connectivity, 2))
     real(wp) :: jacobian_limit(size(mesh%connectivity, 2)), angle_limit(size(mesh%connectivity, 2)), angle
     integer :: e, worst
 
-    allocate (measures(ncriteria, size(mesh%connectivity, 2)), corner(size(mesh%coordinates, 2)))
+    allocate (measures(ncriteria, size(mesh%connectivity, 2)))
     call mesh_shape(mesh%coordinates, mesh%connectivity, measures)
-    call contour_corners(mesh, corner)
+    call sharpest_corners(mesh, corner)
     check%scaled_jacobian = minval(measures(scaled_jacobian, :))
     check%least_angle = minval(measures(least_angle, :))
     check%largest_angle = maxval(measures(largest_angle, :))
     check%middle_share = maxval(measures(middle_share, :))
     check%sharpest_corner = minval(corner)
     do e = 1, size(angle_limit)
-      angle = share_of_corner*minval(corner(mesh%connectivity(1:4, e)))
+      angle = share_of_corner*corner(e)
       angle_limit(e) = min(least_angle_allowed, angle)
       jacobian_limit(e) = least_scaled_jacobian
       if (angle < least_angle_allowed) jacobian_limit(e) = min(least_scaled_jacobian, sin(angle*pi/180))
@@ -137,25 +138,108 @@ contains
 
   end subroutine check_shape
 
-  !> Angle inside the part between the two sides of the contour that meet at a node; 180 at all other nodes.
-  pure subroutine contour_corners(mesh, angle)
+  !> The sharpest corner of its material that an element lies in; 180 where it lies in none [degree].
+  pure subroutine sharpest_corners(mesh, sharpest)
     type(new_mesh_t), intent(in) :: mesh
-    real(wp), intent(out) :: angle(:)   !! (nnode) [degree]
+    real(wp), intent(out) :: sharpest(:)   !! (nelem) [degree]
+    integer :: material(size(sharpest)), e, m
+    integer, allocatable :: sides(:, :), side_of(:)
+    real(wp) :: angle(size(mesh%coordinates, 2))
+
+    material = materials_of(mesh)
+    call outer_sides(mesh, material, sides, side_of)
+    sharpest = 180
+    do m = minval(material), maxval(material)
+      if (.not. any(material == m)) cycle
+      call corners_of(mesh%coordinates, sides(:, pack([(e, e=1, size(side_of))], side_of == m)), angle)
+      do e = 1, size(sharpest)
+        if (material(e) == m) sharpest(e) = minval(angle(mesh%connectivity(1:4, e)))
+      end do
+    end do
+  end subroutine sharpest_corners
+
+  !> Number of the material of each element; one for all where no zones are known.
+  pure function materials_of(mesh) result(material)
+    type(new_mesh_t), intent(in) :: mesh
+    integer :: material(size(mesh%connectivity, 2))
+
+    material = 1
+    if (allocated(mesh%zone) .and. allocated(mesh%layout%zones)) material = mesh%layout%zones(mesh%zone)%material
+  end function materials_of
+
+  !> Sides around each material, which lies on their left: of the contour, and of elements that share them with another material.
+  pure subroutine outer_sides(mesh, material, sides, side_of)
+    type(new_mesh_t), intent(in) :: mesh
+    integer, intent(in) :: material(:)                 !! (nelem)
+    integer, allocatable, intent(out) :: sides(:, :)   !! (3, nside)
+    integer, allocatable, intent(out) :: side_of(:)    !! the material (nside)
+    integer :: leaving(size(mesh%coordinates, 2)), next(4*size(material)), e, k, n, other
+    integer :: interface_sides(3, 4*size(material)), interface_of(4*size(material))
+
+    leaving = 0
+    do e = 1, size(material)
+      do k = 1, 4
+        n = 4*(e - 1) + k
+        next(n) = leaving(mesh%connectivity(k, e))
+        leaving(mesh%connectivity(k, e)) = n
+      end do
+    end do
+    n = 0
+    do e = 1, size(material)
+      do k = 1, 4
+        ! the same side of the neighbour begins where this one ends
+        other = element_at(mesh%connectivity(mod(k, 4) + 1, e), mesh%connectivity(4 + k, e))
+        if (other == 0) cycle
+        if (material(other) == material(e)) cycle
+        n = n + 1
+        interface_sides(:, n) = mesh%connectivity([k, 4 + k, mod(k, 4) + 1], e)
+        interface_of(n) = material(e)
+      end do
+    end do
+    allocate (sides(3, size(mesh%sides) + n), side_of(size(mesh%sides) + n))
+    do k = 1, size(mesh%sides)
+      sides(:, k) = mesh%sides(k)%nodes
+      side_of(k) = material(element_at(mesh%sides(k)%nodes(1), mesh%sides(k)%nodes(2)))
+    end do
+    sides(:, size(mesh%sides) + 1:) = interface_sides(:, :n)
+    side_of(size(mesh%sides) + 1:) = interface_of(:n)
+
+  contains
+
+    !> Element with a side that begins at a node and has this middle node; 0 for none.
+    pure function element_at(begins, middle) result(element)
+      integer, intent(in) :: begins, middle
+      integer :: element
+      integer :: i
+
+      element = 0
+      i = leaving(begins)
+      do while (i > 0)
+        if (mesh%connectivity(5 + mod(i - 1, 4), (i + 3)/4) == middle) element = (i + 3)/4
+        i = next(i)
+      end do
+    end function element_at
+
+  end subroutine outer_sides
+
+  !> Angle on the left between the two sides that meet at a node; 180 at all other nodes.
+  pure subroutine corners_of(x, sides, angle)
+    real(wp), intent(in) :: x(:, :)        !! (2, nnode) [length]
+    integer, intent(in) :: sides(:, :)     !! (3, nside)
+    real(wp), intent(out) :: angle(:)      !! (nnode) [degree]
     real(wp) :: leaving(2, size(angle)), arriving(2, size(angle))
     logical, dimension(size(angle)) :: leaves, arrives
     integer :: k, n
 
     leaves = .false.
     arrives = .false.
-    do k = 1, size(mesh%sides)
-      associate (nodes => mesh%sides(k)%nodes)
-        ! tangents of the parabola through three nodes at its ends
-        associate (x => mesh%coordinates(:, nodes))
-          leaving(:, nodes(1)) = 4*x(:, 2) - 3*x(:, 1) - x(:, 3)
-          arriving(:, nodes(3)) = 3*x(:, 3) + x(:, 1) - 4*x(:, 2)
-        end associate
-        leaves(nodes(1)) = .true.
-        arrives(nodes(3)) = .true.
+    do k = 1, size(sides, 2)
+      ! tangents of the parabola through three nodes at its ends
+      associate (first => sides(1, k), middle => sides(2, k), last => sides(3, k))
+        leaving(:, first) = 4*x(:, middle) - 3*x(:, first) - x(:, last)
+        arriving(:, last) = 3*x(:, last) + x(:, first) - 4*x(:, middle)
+        leaves(first) = .true.
+        arrives(last) = .true.
       end associate
     end do
     angle = 180
@@ -163,6 +247,6 @@ contains
       if (.not. (leaves(n) .and. arrives(n))) cycle
       angle(n) = 180 - 180/pi*atan2(cross(arriving(:, n), leaving(:, n)), dot_product(arriving(:, n), leaving(:, n)))
     end do
-  end subroutine contour_corners
+  end subroutine corners_of
 
 end module new_mesh_check
