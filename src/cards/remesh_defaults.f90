@@ -17,6 +17,9 @@ module remesh_defaults
   !> Depth of sides between their points over what the law allows: 5 % of a side where PENETR is 1e-3. What a finer mesh can mend
   !> begins there; sides that roll onto a die are as deep as 1 % on any mesh.
   real(wp), parameter :: depth = 50.0_wp
+  !> Error of the stress, and the strain of an element since its mesh began from which on it counts: on meshes that are worn so far
+  !> the force is too high, and drops on the next one (remdata/README.md). New meshes begin with about half of this error.
+  real(wp), parameter :: stress_error = 0.05_wp, error_strain = 0.4_wp
   !> Cutbacks in a row; steps between two meshes.
   integer, parameter :: cutbacks = 4, steps = 5
 
@@ -38,6 +41,8 @@ contains
     rules%shape(middle_share) = middle
     rules%shape(scaled_jacobian) = least_scaled
     rules%shape(aspect_ratio) = aspect
+    rules%stress_error = stress_error
+    rules%error_strain = error_strain
     if (.not. has_steps) rules%least_steps = steps
     rules%distress = cutbacks
     if (has_dies) rules%contact = depth

@@ -20,6 +20,8 @@ module triggers
 
   !> The error and bad elements of a new mesh grow to this multiple before another one is due.
   real(wp), parameter :: worse = 1.5_wp
+  !> An error counts as so many times its limit at most.
+  real(wp), parameter :: most_errors = 3.0_wp
 
 contains
 
@@ -28,17 +30,21 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(trigger_t), allocatable, intent(out) :: found(:)   !! (ntrigger)
+    type(trigger_t), allocatable :: others(:)
     real(wp) :: limit
     integer :: k
 
     allocate (found(0))
     if (was_good(scene, solution)) then
+      allocate (others(0))
+      if (any(abs(scene%remesh%shape) < never)) call find_bad_shapes(scene, solution, others)
+      if (scene%remesh%contact < never) call find_misfits(scene, solution, others)
       limit = scene%remesh%stress_error
       if (solution%estimate%first_stress > limit) limit = worse*solution%estimate%first_stress
-      if (solution%estimate%stress > limit .and. .not. worst_strain(solution) < scene%remesh%error_strain) &
+      ! where the mesh is due anyhow its error is a reason from the first strain on
+      if (solution%estimate%stress > limit .and. (size(others) > 0 .or. error_counts(solution, limit, scene%remesh%error_strain))) &
         call add(found, 'stress_error', solution%estimate%stress, limit)
-      if (any(abs(scene%remesh%shape) < never)) call find_bad_shapes(scene, solution, found)
-      if (scene%remesh%contact < never) call find_misfits(scene, solution, found)
+      found = [found, others]
     else if (any(abs(scene%remesh%shape) < never) .and. is_on_probation(solution%probation)) then
       call find_bad_shapes(scene, solution, found, only_turned_over=.true.)
     end if
@@ -96,6 +102,17 @@ contains
 
     good = solution%step - solution%estimate%last_stop >= scene%remesh%least_steps
   end function was_good
+
+  !> So much strain went with the error as makes it count: what a wrong stress leaves in the state goes with the error and with the
+  !> strain, so that twice the limit counts from half the strain on. Where contact begins at a point the error is large on any mesh:
+  !> no error counts from less than a third of the strain on.
+  pure function error_counts(solution, limit, strain) result(counts)
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: limit, strain   !! the error at its limit counts from this strain on
+    logical :: counts
+
+    counts = min(solution%estimate%stress, most_errors*limit)*worst_strain(solution) >= limit*strain
+  end function error_counts
 
   !> Equivalent strain of the most strained element, summed over the steps since the mesh began.
   pure function worst_strain(solution) result(strain)

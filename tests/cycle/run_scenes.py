@@ -18,7 +18,7 @@ from support import DONE, Checks  # noqa: E402
 
 QUICK = ("bimetal", "side_pressing", "teeth")
 DRIFT, SMALLEST, REFUSED = 0.1, 1e-3, 0.05
-LIMITS = ("least_angle", "largest_angle", "middle_share", "scaled_jacobian", "aspect_ratio", "contact", "distress", "new mesh   elements of")
+LIMITS = ("stress_error", "least_angle", "largest_angle", "middle_share", "scaled_jacobian", "aspect_ratio", "contact", "distress", "new mesh   elements of")
 
 
 def force(found, share):
