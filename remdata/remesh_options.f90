@@ -20,6 +20,8 @@ module remesh_options
     real(wp) :: finer = 1.0_wp
     !> The requested sizes are those of the old elements.
     logical :: same_sizes = .false.
+    !> Checkpoint of a run on the first mesh, by whose errors it is made again; not allocated: none.
+    character(len=:), allocatable :: sizes_of
     !> What the files of the run begin with whose cost grows by that of this program; not allocated: none.
     character(len=:), allocatable :: cost
     !> Time limit for Gmsh to make a mesh [s].
@@ -88,6 +90,8 @@ contains
         end select
       case ('--same-sizes')
         options%same_sizes = .true.
+      case ('--sizes-of')
+        call value_of(word, k, options%sizes_of, error)
       case ('--limit')
         call value_of('--limit', k, word, error)
         if (allocated(error)) exit
@@ -98,8 +102,8 @@ contains
         if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
           call refuse_option(word, [string_t('--help'), string_t('--version'), string_t('--quiet'), string_t('--out'), &
                                     string_t('--cost'), string_t('--transfer'), string_t('--finer'), string_t('--mesher'), &
-                                    string_t('--same-sizes'), string_t('--limit'), string_t('--about'), &
-                                    string_t('--schema')], 'remdata', error)
+                                    string_t('--same-sizes'), string_t('--sizes-of'), string_t('--limit'), &
+                                    string_t('--about'), string_t('--schema')], 'remdata', error)
         else if (allocated(options%checkpoint)) then
           call fail(error, exit_input, 'one checkpoint at a time: found '''//options%checkpoint//''' and '''//word//'''')
         else
@@ -125,8 +129,8 @@ contains
     character(len=*), parameter :: nl = new_line('a')
 
     text = 'remdata: a new mesh and the state on it, from a checkpoint of lagamine'//nl//nl// &
-           'remdata CHECKPOINT --out NEW [--transfer N] [--finer F] [--mesher M] [--same-sizes] [--limit SECONDS]'//nl// &
-           '        [--cost DIR/NAME] [--quiet]'//nl// &
+           'remdata CHECKPOINT --out NEW [--transfer N] [--finer F] [--mesher M] [--same-sizes] [--sizes-of RUN]'//nl// &
+           '        [--limit SECONDS] [--cost DIR/NAME] [--quiet]'//nl// &
            'remdata --about CHECKPOINT'//nl// &
            'remdata --schema'//nl// &
            'remdata --next DIR/NAME [--tries N] [--fresh] [--ran WHAT --code N --said FILE [--from NAME] [--late S]]'//nl// &
@@ -136,6 +140,7 @@ contains
            '  --finer F       divide the wanted sizes of elements by F'//nl// &
            '  --mesher M      zones, free or gmsh (default: MESHER of the deck); free and gmsh do without its zones'//nl// &
            '  --same-sizes    elements of the size of the old ones in each place, not as the error and the shape want them'//nl// &
+           '  --sizes-of RUN  a first mesh made again, as the errors in RUN want it: a checkpoint of a run on it'//nl// &
            '  --limit SECONDS longest time for Gmsh, where it makes the mesh (default 300)'//nl// &
            '  --cost DIR/NAME add the seconds of this program to DIR/NAME.cost, if the run of deck NAME has that file'//nl// &
            '  --about         check the file and print what it holds, a word and its value a line'//nl// &

@@ -1,8 +1,9 @@
 !> The remesher's algorithm: from the checkpoint of an old mesh to that of a new one.
 !>
 !> contour -> sizes -> zones -> mesh, or a mesh without zones -> state -> checkpoint (annex 2; chapter 12). Bodies without a mesh
-!> get their first one in the same way, from the contours of their cards and without state. A failure ends in an error that names
-!> its stage; the old checkpoint is never modified.
+!> get their first one in the same way, from the contours of their cards and without state; made again, after a run on it has shown
+!> its errors (`sizes_of_run`), it is the mesh of a later generation. A failure ends in an error that names its stage; the old
+!> checkpoint is never modified.
 module remesh_scene
   use axis_nodes, only: put_on_axis
   use body_seams, only: find_seams, seams_t
@@ -13,23 +14,24 @@ module remesh_scene
   use contour_volume, only: volume_inside
   use cuts, only: stage_of_cuts
   use errors, only: error_t, exit_input, fail
-  use exchange, only: open_checkpoint, read_bare_scene, read_contact_ends, read_deck_of_checkpoint, read_state, write_checkpoint
+  use exchange, only: write_checkpoint
   use fields, only: displacement_field, pilot_field
   use first_contours, only: contours_of_cards
   use fold_closing, only: close_folds
   use kinds, only: pi, wp
   use material_interfaces, only: group_interfaces, interface_t, interfaces_of
-  use member_reader, only: member_reader_t
   use mesh_choice, only: make_free_mesh, make_mesh, materials_of, may_be_free, needs_free_mesh, take_better_mesh
   use new_mesh_check, only: check_shape
   use new_scene, only: set_up_new_scene
+  use old_checkpoint, only: read_old_checkpoint
   use pair_fit, only: fit_pairs, update_closest_points
   use part_contour, only: build_contours, contour_options_t, contour_t
   use remesh_facts, only: begin_task, end_task, remesh_facts_t
   use remesh_options, only: remesh_options_t
   use remesher_options, only: by_free, by_gmsh, remesher_options_t, smallest_anywhere
   use scene, only: axisymmetric, is_solid, lacks_mesh, scene_t
-  use size_field, only: size_field_t
+  use size_field, only: old_mesh_t, size_field_t
+  use sizes_of_run, only: learn_sizes
   use sizes_of_scene, only: requested_sizes
   use solution, only: present_coordinates, solution_t, start_solution
   use zone_mesh, only: new_mesh_t
@@ -58,6 +60,8 @@ contains
     type(seams_t) :: seams
     type(plan_t) :: plan
     type(size_field_t) :: sizes
+    type(old_mesh_t), allocatable :: learned
+    type(contour_options_t) :: as_it_bends
     type(new_mesh_t) :: mesh
     character(len=:), allocatable :: deck_path, deck_text
     real(wp), allocatable :: moved(:, :)
@@ -67,7 +71,7 @@ contains
 
     facts%mesher = 'zones'
     call begin_task(facts, 'checkpoint', 'read')
-    call read_all(options%checkpoint, deck_path, deck_text, old, before, ends, error)
+    call read_old_checkpoint(options%checkpoint, deck_path, deck_text, old, before, ends, error)
     if (allocated(error)) return
     first = lacks_mesh(old)
     as_the_deck_says = old%remesher
@@ -76,15 +80,23 @@ contains
     facts%step = before%step
     facts%time = before%time
     facts%generation = old%generation + 1
+    smallest = max(smallest_anywhere(old%remesher), 0.0_wp)
+    as_it_bends = contour_options_t(least_free=least_free*smallest, longest_lap=longest_lap*smallest)
+    if (allocated(options%sizes_of)) then
+      call begin_task(facts, 'mesh', 'sizes')
+      if (first) then
+        call learn_sizes(options%sizes_of, deck_text, as_it_bends, learned, facts%generation, error)
+      else
+        call fail(error, exit_input, '--sizes-of: '//options%checkpoint//' has a mesh: only a first one is made again')
+      end if
+      if (allocated(error)) return
+    end if
 
     call begin_task(facts, 'contour', 'contour')
-    smallest = max(smallest_anywhere(old%remesher), 0.0_wp)
     if (first) then
       call contours_of_cards(old, contours, facts%contour, error)
     else
-      call build_contours(old, before, ends, contour_options_t(least_free=least_free*smallest, &
-                                                               longest_lap=longest_lap*smallest), &
-                          contours, facts%contour, error)
+      call build_contours(old, before, ends, as_it_bends, contours, facts%contour, error)
     end if
     if (allocated(error)) return
     call interfaces_of(old, before, contours, interfaces)
@@ -92,7 +104,7 @@ contains
     if (allocated(error)) return
     call find_seams(old, before, contours, seams)
     call begin_task(facts, 'mesh', 'sizes')
-    call requested_sizes(old, before, contours, first, options%same_sizes, sizes)
+    call requested_sizes(old, before, contours, first, options%same_sizes, sizes, learned)
     if (all(old%remesher%mesher /= [by_free, by_gmsh]) .and. .not. is_cut) then
       call begin_task(facts, 'mesh', 'zones')
       call plan_zones(old, present_coordinates(old, before), before%fields(pilot_field)%value, materials_of(old, before), &
@@ -109,6 +121,7 @@ contains
     if (old%plane_state == axisymmetric) call put_on_axis(mesh%coordinates)
     call set_up_new_scene(old, contours, plan, mesh, new, error)
     if (allocated(error)) return
+    new%generation = facts%generation
     call fit_pairs(contours, mesh, new, facts%fit)
     if (allocated(facts%contour%opened)) call close_folds(contours, facts%contour%opened, mesh, new)
     if (facts%fit > 0 .or. allocated(facts%contour%opened)) call check_shape(mesh, facts%mesh, error)
@@ -175,27 +188,6 @@ contains
     after%cuts = facts%cuts
     if (old%plane_state == axisymmetric) facts%removed = 2*pi*facts%removed
   end subroutine note_cuts
-
-  !> Read the whole checkpoint; it is opened, and its hash compared, once.
-  subroutine read_all(path, deck_path, deck_text, scene, solution, ends, error)
-    character(len=*), intent(in) :: path
-    character(len=:), allocatable, intent(out) :: deck_path, deck_text
-    type(scene_t), intent(out) :: scene
-    type(solution_t), intent(out) :: solution
-    type(contact_end_t), allocatable, intent(out) :: ends(:)
-    type(error_t), allocatable, intent(out) :: error
-    type(member_reader_t) :: reader
-    type(error_t), allocatable :: ignored
-
-    call open_checkpoint(path, reader, error)
-    if (allocated(error)) return
-    call read_deck_of_checkpoint(reader, deck_path, deck_text, error)
-    if (.not. allocated(error)) call read_bare_scene(reader, scene, error)
-    if (.not. allocated(error)) call start_solution(scene, solution)
-    if (.not. allocated(error)) call read_state(reader, scene, solution, error)
-    if (.not. allocated(error)) call read_contact_ends(reader, scene, ends, error)
-    call reader%file%close(ignored)
-  end subroutine read_all
 
   !> With small strains the geometry is that of the start: bodies are meshed in their initial position, and their displacements
   !> `moved` are transferred as other nodal fields. Bodies in contact with dies are meshed in their present position.

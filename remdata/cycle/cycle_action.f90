@@ -20,6 +20,8 @@ module cycle_action
     integer :: kind = act_end
     !> Checkpoint to begin with, and file for the new mesh, as their names end; '' for none.
     character(len=:), allocatable :: from, new
+    !> Checkpoint of a run on a first mesh that is made again, as its name ends; '' for none.
+    character(len=:), allocatable :: sizes
     !> In place of the deck's: method of transfer (negative: the deck's), divisor of sizes (0: none).
     integer :: transfer = -1
     real(wp) :: finer = 0.0_wp
@@ -49,6 +51,7 @@ contains
     action%kind = kind
     action%from = ''
     action%new = ''
+    action%sizes = ''
     action%say = ''
     if (present(from)) action%from = from
     if (present(new)) action%new = new

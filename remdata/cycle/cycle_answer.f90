@@ -4,6 +4,7 @@
 !>     error TEXT          for the user too: why the cycle ends, with the exit code of this program
 !>     from NAME           checkpoint to begin with, as its name ends (ckp.h5, g01.end.h5)
 !>     new NAME            file for the new mesh, the same way
+!>     sizes NAME          checkpoint of the run whose errors the new mesh is made by, the same way
 !>     transfer N          options of the remesher
 !>     finer F
 !>     mesher free
@@ -69,6 +70,7 @@ contains
 
     if (action%from /= '') call print_word('from', action%from, error)
     if (action%new /= '') call print_word('new', action%new, error)
+    if (action%sizes /= '') call print_word('sizes', action%sizes, error)
     if (action%transfer >= 0) call print_word('transfer', to_text(action%transfer), error)
     if (action%finer > 0) call print_word('finer', to_text(action%finer), error)
     if (action%without_zones) call print_word('mesher', 'free', error)

@@ -8,8 +8,8 @@ module cycle_decision
   use cycle_refusal, only: refuse_first_steps, refuse_made, refuse_restart
   use cycle_situation, only: current_name, due_reason, ended_check, ended_lagamine, ended_nothing, ended_remdata, is_due, &
     is_first_mesh, is_read, mesh_name, situation_t, try_name
-  use cycle_table, only: agreed_way, any_agreed, way_agreed, way_coarser, way_earlier, way_finer, way_mesher, way_old_mesh, &
-                         way_transfer
+  use cycle_table, only: agreed_way, any_agreed, way_agreed, way_anew, way_coarser, way_earlier, way_finer, way_mesher, &
+                         way_old_mesh, way_transfer
   use cycle_ways, only: is_whole, next_way, old_mesh_goes_on, old_state
   use cuts, only: stage_of_cuts
   use errors, only: exit_done, exit_input, exit_machine, exit_no_convergence, exit_remesh, exit_signal
@@ -167,6 +167,10 @@ contains
       if (made_by == way_finer) action%finer = finer_by
       action%without_zones = made_by == way_mesher
       if (made_by == way_coarser) action%finer = 1/coarser_by
+      if (way == way_anew) then
+        action%from = mesh_name(s%new%generation - 2, 'end.h5')
+        action%sizes = mesh_name(s%new%generation - 1, 'end.h5')
+      end if
       if (way == way_earlier) action%from = mesh_name(s%new%generation - 1, 'end.1.h5')
     end if
   end function make_new_mesh

@@ -123,6 +123,7 @@ contains
         if (due) s%end_is_kept = is_same(s%stem//'.'//current_name, s%stem//'.'//mesh_name(generation, 'end.h5'))
         if (s%end_is_kept) new%old_end = s%current
       end if
+      if (new%generation == 3) call look(s%stem//'.'//mesh_name(1, 'end.h5'), seen, new%old_source)
       if (is_read(new%old_end)) call read_try(s%stem, s%rows, seen, new)
     end associate
   end subroutine read_new_mesh

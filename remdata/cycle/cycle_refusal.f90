@@ -2,7 +2,7 @@
 module cycle_refusal
   use cycle_action, only: act_refuse, action_t, new_action
   use cycle_situation, only: first_line, is_first_mesh, mesh_name, situation_t
-  use cycle_table, only: way_earlier
+  use cycle_table, only: way_anew, way_earlier
   use cycle_ways, only: next_way
   use errors, only: exit_done, exit_input, exit_signal
   use text, only: to_text
@@ -54,6 +54,10 @@ contains
     if (index(s%ended%said, s%stem//'.'//s%ended%from) > 0) stage = 'checkpoint'
     action = refuse(s, next_way(s), 'lagamine: exit code '//to_text(s%ended%code)//' at restart', stage, first_line(s%ended%said))
     action%with_restart = .false.
+    if (action%way /= way_anew) return
+    ! the scene began anew, and the results with it: they are made again on the mesh before
+    action%back = .true.
+    action%from = mesh_name(s%new%generation - 1, 'start.h5')
   end function refuse_restart
 
   !> The mesh reached equilibrium, but failed in its first steps. The old mesh is restored before the row is written: after a kill

@@ -10,7 +10,7 @@ module cycle_situation
   private
   public :: checkpoint_file_t, ended_t, made_mesh_t, situation_t
   public :: ended_nothing, ended_check, ended_lagamine, ended_remdata, ended_known
-  public :: due_reason, is_due, must_be_replaced, is_first_mesh, is_read, first_line
+  public :: due_reason, is_due, is_due_by, must_be_replaced, is_first_mesh, is_read, first_line
   public :: try_name, mesh_name, current_name
 
   !> What was called last: nothing yet, `lagamine --check`, the solver, the remesher; or its end has been dealt with.
@@ -44,8 +44,9 @@ module cycle_situation
   !> The new mesh in question: the one that is due, or the one the run is on as long as it is not entered in the table.
   type :: made_mesh_t
     integer :: generation = 0
-    !> Checkpoint where the old mesh stopped, and the save before it.
-    type(checkpoint_file_t) :: old_end, old_earlier
+    !> Checkpoint where the old mesh stopped, and the save before it; and the one that the old mesh was made from, where it is the
+    !> third generation's: without a mesh if the old one was a first mesh.
+    type(checkpoint_file_t) :: old_end, old_earlier, old_source
     !> Number of the try at hand, and its checkpoint.
     integer :: number = 1
     type(checkpoint_file_t) :: made
@@ -109,17 +110,21 @@ contains
   pure function must_be_replaced(facts) result(yes)
     type(checkpoint_facts_t), intent(in) :: facts
     logical :: yes
+
+    yes = is_due_by(facts, 'distress') .or. is_due_by(facts, trim_trigger) .or. is_due_by(facts, web_trigger)
+  end function must_be_replaced
+
+  !> This limit has been passed.
+  pure function is_due_by(facts, trigger) result(yes)
+    type(checkpoint_facts_t), intent(in) :: facts
+    character(len=*), intent(in) :: trigger
+    logical :: yes
     integer :: k
 
     yes = .false.
     if (.not. allocated(facts%triggers)) return
-    do k = 1, size(facts%triggers)
-      select case (facts%triggers(k)%s)
-      case ('distress', trim_trigger, web_trigger)
-        yes = .true.
-      end select
-    end do
-  end function must_be_replaced
+    yes = any([(facts%triggers(k)%s == trigger, k=1, size(facts%triggers))])
+  end function is_due_by
 
   !> Why a new mesh is due, '' if it is not.
   pure function due_reason(facts) result(why)

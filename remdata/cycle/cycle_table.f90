@@ -7,16 +7,17 @@ module cycle_table
   implicit none
   private
   public :: try_row_t, table_heading, number_of_columns, parse_table, line_of_cells
-  public :: way_deck, way_transfer, way_finer, way_mesher, way_coarser, way_earlier, way_old_mesh, way_agreed
+  public :: way_deck, way_transfer, way_finer, way_mesher, way_coarser, way_earlier, way_old_mesh, way_agreed, way_anew
   public :: agreed_way, any_agreed, first_step_of, number_refused, was_refused, has_new_mesh, keeps_old_mesh, &
             transfer_is_responsible, mesh_is_responsible, took_earlier
 
   !> What is done for a new mesh, as the column `action` names it: as the deck says, another state transfer, finer or coarser
   !> elements, the free mesher instead of the deck's zones, from the checkpoint one save earlier; the old mesh goes on for a while;
-  !> or the best of several tries, refused by the force of a die alone and agreed on it, is made again and taken up.
+  !> the best of several tries, refused by the force of a die alone and agreed on it, is made again and taken up; or the first mesh
+  !> is made again as the errors of the run on it want it, and the scene begins anew.
   character(len=*), parameter :: way_deck = 'as the deck says', way_transfer = 'other transfer', way_finer = 'finer', &
                                  way_mesher = 'without zones', way_coarser = 'coarser', way_earlier = 'earlier', &
-                                 way_old_mesh = 'old mesh', way_agreed = 'agreed force'
+                                 way_old_mesh = 'old mesh', way_agreed = 'agreed force', way_anew = 'first mesh again'
 
   character(len=*), parameter :: table_heading = &
     'generation [-],try [-],stop_step [-],stop_time [time],step [-],trigger,action,result,accepted,stage,'// &

@@ -1,9 +1,9 @@
 !> Ways to a new mesh, in the order they are tried at a stop of the old one, and whether the try at hand is there.
 module cycle_ways
-  use cycle_situation, only: checkpoint_file_t, is_first_mesh, is_read, must_be_replaced, situation_t
+  use cycle_situation, only: checkpoint_file_t, is_due_by, is_first_mesh, is_read, must_be_replaced, situation_t
   use cycle_table, only: agreed_way, keeps_old_mesh, mesh_is_responsible, number_refused, took_earlier, transfer_is_responsible, &
-                         was_refused, way_agreed, way_coarser, way_deck, way_earlier, way_finer, way_mesher, way_old_mesh, &
-                         way_transfer
+                         was_refused, way_agreed, way_anew, way_coarser, way_deck, way_earlier, way_finer, way_mesher, &
+                         way_old_mesh, way_transfer
   implicit none
   private
   public :: next_way, old_state, old_mesh_goes_on, is_whole
@@ -14,8 +14,8 @@ contains
   pure function next_way(s) result(way)
     type(situation_t), intent(in) :: s
     character(len=:), allocatable :: way
-    character(len=*), parameter :: ways(*) = [character(len=16) :: way_deck, way_transfer, way_finer, way_mesher, way_agreed, &
-                                                                way_earlier, way_coarser, way_agreed, way_old_mesh]
+    character(len=*), parameter :: ways(*) = [character(len=16) :: way_anew, way_deck, way_transfer, way_finer, way_mesher, &
+                                                                way_agreed, way_earlier, way_coarser, way_agreed, way_old_mesh]
     integer :: k, most
 
     associate (generation => s%new%generation, stop_step => s%new%old_end%facts%step)
@@ -34,6 +34,7 @@ contains
         end if
         if (way == way_agreed .and. agreed_way(s%rows, generation, stop_step) == '') cycle
         if (way == way_earlier .and. .not. has_earlier(s)) cycle
+        if (way == way_anew .and. .not. first_mesh_erred(s)) cycle
         ! once, and not where the old mesh could go no further or there is none
         if (way == way_old_mesh) then
           if (cannot_go_on(s) .or. keeps_old_mesh(s%rows, generation)) cycle
@@ -43,6 +44,17 @@ contains
     end associate
     way = ''
   end function next_way
+
+  !> Did a first mesh, made from contours alone, stop with an error of the stress beyond its limit? It was wrong from the beginning,
+  !> and there is nothing yet that is worth a transfer: the scene begins anew on a better one, once.
+  pure function first_mesh_erred(s) result(erred)
+    type(situation_t), intent(in) :: s
+    logical :: erred
+
+    erred = is_read(s%new%old_source) .and. s%new%old_end%facts%operation <= 1
+    if (erred) erred = is_first_mesh(s%new%old_source%facts) .and. is_due_by(s%new%old_end%facts, 'stress_error') &
+                       .and. .not. must_be_replaced(s%new%old_end%facts)
+  end function first_mesh_erred
 
   !> Is there a save of the old mesh before the last one? Not a second time for the same stop: a mesh made from there may stop here
   !> too.
@@ -66,6 +78,7 @@ contains
 
     file = s%new%old_end
     if (way == way_earlier) file = s%new%old_earlier
+    if (way == way_anew) file = s%new%old_source
   end function old_state
 
   pure function cannot_go_on(s)
@@ -96,7 +109,7 @@ contains
     old = old_state(s, way)
     associate (made => s%new%made%facts)
       whole = made%generation == s%new%generation .and. made%step == old%facts%step &
-              .and. (made%unbalanced .or. is_first_mesh(s%new%old_end%facts))
+              .and. (made%unbalanced .or. is_first_mesh(old%facts))
     end associate
   end function is_whole
 

@@ -27,13 +27,14 @@ module sizes_of_scene
 contains
 
   !> Sizes by the error of the strains, by the curvature of the contour and of nearby dies, and by contact intervals.
-  subroutine requested_sizes(scene, solution, contours, first, same, sizes)
+  subroutine requested_sizes(scene, solution, contours, first, same, sizes, learned)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(contour_t), intent(in) :: contours(:)   !! (ncontour)
     logical, intent(in) :: first   !! there is no mesh yet: largest elements except where the geometry requires smaller ones
     logical, intent(in) :: same    !! those of the old elements, whatever the error and the geometry ask for
     type(size_field_t), intent(out) :: sizes
+    type(old_mesh_t), intent(in), optional :: learned   !! with `first`: sizes that a run on such a mesh has asked for
     type(state_pieces_t) :: pieces
     type(transfer_mesh_t) :: mesh
     type(old_mesh_t) :: old
@@ -64,7 +65,7 @@ contains
       needs = [needs, more]
     end do
     if (first) then
-      call set_up_sizes(limits, needs, sizes, windows=windows)
+      call set_up_sizes(limits, needs, sizes, learned, windows)
       return
     end if
     call needs_of_misfits(scene, solution, more)

@@ -7,7 +7,7 @@ module cycle_cases
   use text, only: string_t, to_text
   implicit none
   private
-  public :: fresh_folder, on_the_way, at_a_stop, at_first_mesh, on_new_mesh
+  public :: fresh_folder, on_the_way, at_a_stop, at_first_mesh, on_first_mesh, on_new_mesh
   public :: with_try, whole, broken, ended_as, with_rows, row_text, row
 
 contains
@@ -65,6 +65,20 @@ contains
     s%new%old_end = s%current
     s%new%old_earlier = checkpoint_file_t()
   end function at_first_mesh
+
+  !> A first mesh, made from contours, has stopped after step 6.
+  function on_first_mesh(trigger) result(s)
+    character(len=*), intent(in) :: trigger
+    type(situation_t) :: s
+
+    s = at_a_stop(trigger)
+    s%current%facts%generation = 2
+    s%new%generation = 3
+    s%new%old_end = s%current
+    s%new%old_earlier = checkpoint_file_t()
+    s%new%old_source = whole(1, 0)
+    s%new%old_source%facts%elements = 0
+  end function on_first_mesh
 
   !> The run is on mesh 2 after step 8, and its try is still there; so many of its first steps are to come.
   function on_new_mesh(steps_to_come) result(s)
