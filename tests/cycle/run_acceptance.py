@@ -4,7 +4,7 @@
 usage: run_acceptance.py [-v] [-k]       -v prints every check, -k keeps the results
 
 The faults are made in the checkpoint of the first try, with a hash that is right. Tries after it are sound: the cycle ends,
-killed on its way or not.
+killed on its way or not. And a first mesh of contours that is made again, sound or not.
 """
 import math
 import os
@@ -22,16 +22,17 @@ with_h5py()
 from run_cycle import kills  # noqa: E402
 from sealed import alter, columns_of  # noqa: E402
 
+CAN = os.path.join(os.path.dirname(os.path.dirname(UPSETTING)), "can", "can.lag")
 KILLS = 2
 REMESH_DUE = 4
 REMDATA = os.path.join(os.path.abspath(BIN), "remdata")
-# The remesher with a fault in the first mesh it makes; as ever, that mesh is there as a whole or not.
+# The remesher with a fault in one mesh it makes, the first unless it is named; as ever, that mesh is there as a whole or not.
 FAULTY = """#!{python}
 import os, subprocess, sys
 sys.dont_write_bytecode = True
 words = list(sys.argv[1:])
 place = words.index("--out") + 1 if "--out" in words else 0
-if not (place and words[place].endswith(".g02.try1.h5")):
+if not (place and words[place].endswith(os.environ.get("FAULT_IN", ".g02.try1.h5"))):
     os.execv(os.environ["REAL"], [os.environ["REAL"]] + words)
 sys.path[:] = {places!r}
 import run_acceptance
@@ -209,6 +210,25 @@ def agreed(checks, text):
         checks.that(len(warned) == (not phrase), f"--agreed, {name}: the warning", warned)
 
 
+def first_mesh_again(checks):
+    """A first mesh that errs is made again and the scene begins anew; where that fails, the first one is taken up again, and the ways go on."""
+    deck = write(checks.path("again", "case.lag"), add_cards(deck_text(CAN), "STOP 0.1"))
+    for name, fault, expected in (("made again", "none", [("as the deck says", "y"), ("first mesh again", "y")]),
+                                  ("fails", "nan", [("as the deck says", "y"), ("first mesh again", "n"), ("as the deck says", "y")])):
+        out = checks.path("again", name.replace(" ", "-"))
+        result = cycle(deck, out, **environment(checks, fault), FAULT_IN=".g03.try1.h5")
+        checks.that(result.returncode == DONE, f"first mesh, {name}: the cycle ends", said(result))
+        rows = tries(out)
+        checks.that([(row["action"], row["accepted"]) for row in rows[:len(expected)]] == expected, f"first mesh, {name}: the tries",
+                    [(row["action"], row["accepted"], row["reason"]) for row in rows])
+        again = next(row for row in rows if row["action"] == "first mesh again")
+        checks.that(again["generation [-]"] == "3" and again["step [-]"] == "0" and int(again["stop_step [-]"]) > 0
+                    and "stress_error" in again["trigger"], f"first mesh, {name}: from the start", again)
+        steps = history(out)["step"]
+        checks.that(steps == list(range(1, len(steps) + 1)), f"first mesh, {name}: one row of the history a step", steps)
+        checks.that(os.path.exists(os.path.join(out, "case.g02.h5")) == (fault != "none"), f"first mesh, {name}: results are of the run that goes on")
+
+
 def main():
     checks = Checks()
     text = add_cards(deck_text(UPSETTING).replace("SAVE   20", "SAVE   3").replace("travel 9", "travel 4"),
@@ -221,6 +241,7 @@ def main():
     kills(checks, random.Random(1), deck, checks.path("fault", "strength"), KILLS, 2.0, **environment(checks, "strength"))
     number_of_tries(checks, text)
     agreed(checks, text)
+    first_mesh_again(checks)
     checks.end()
 
 
