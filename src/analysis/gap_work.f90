@@ -5,7 +5,8 @@
 !> -f(n).(du_die - du_side)/2 by the rule, and in truth what its penalties gave back (contact_work). The difference belongs to
 !> neither the part nor its contact. Without it the work of a die that lifts off grows with the length of the step.
 module gap_work
-  use contact_point, only: area_at, at_piece, at_pressure, at_status, at_tau, at_xi, contact_block, penalties, side_length
+  use axis_contact, only: area_at_corner
+  use contact_point, only: at_piece, at_pressure, at_status, at_tau, at_xi, contact_block, penalties, side_length
   use contact_work, only: kept_work
   use corner_contact, only: interval_before
   use dies, only: is_deformable
@@ -95,7 +96,7 @@ contains
 
     subroutine add_point(old, now, place, share)
       real(wp), intent(in) :: old(:), now(:), place, share
-      real(wp) :: phi(3), dphi(3), tangent(2), traction(2), penalty(2), side
+      real(wp) :: phi(3), dphi(3), tangent(2), traction(2), penalty(2), side, area
       logical :: held
 
       if (.not. opens(old(at_status), now(at_status))) return
@@ -107,7 +108,8 @@ contains
         side = side_length(scene, group%connectivity(:, e))
         penalty = penalties(scene%materials(group%material), group%modulus, side)
         held = soft_depth(group%rule, scene%materials(group%material), side) > 0
-        work = work + share*area_at(place, solution%fields(section_field)%value(:, 1), side_of) &
+        area = area_at_corner(place, share, solution%fields(section_field)%value(:, 1), side_of, side)
+        work = work + area &
                *(0.5_wp*dot_product(traction, motion_of_die(scene, solution, group, old, matmul(side_of, phi)) - matmul(du, phi)) &
                  + kept_work(old, now, penalty, held))
       end associate

@@ -3,6 +3,7 @@
 !> The state of a point is that of contact_point; behind it there may be the same of a corner of the
 !> die, and its position on the side (corner_contact).
 module contact_measure
+  use axis_contact, only: area_at_corner
   use contact_penalties, only: allowed_penetration, penalties_of_card, penalties_t
   use contact_point, only: area_at, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_work, contact_block, &
                            dissipated, penalties, side_length
@@ -129,26 +130,26 @@ contains
         case default
           totals%open = totals%open + 1
         end select
-        call add_point(state(:n, p, e), before(:n, p, e), xi(p), weight(p))
+        call add_point(state(:n, p, e), before(:n, p, e), weight(p)*area_at(xi(p), section, x(:, :, e)))
         if (.not. corners) cycle
         call interval_before(xi, p, from, to)
-        call add_point(state(n + 1:2*n, p, e), before(n + 1:2*n, p, e), state(2*n + 1, p, e), to - from)
+        call add_point(state(n + 1:2*n, p, e), before(n + 1:2*n, p, e), &
+                       area_at_corner(state(2*n + 1, p, e), to - from, section, x(:, :, e), side))
       end do
     end do
 
   contains
 
     !> Penetration and friction of a point of side e.
-    subroutine add_point(now, old, place, share)
-      real(wp), intent(in) :: now(:), old(:), place, share
-      real(wp) :: allowed, area, lost
+    subroutine add_point(now, old, area)
+      real(wp), intent(in) :: now(:), old(:), area
+      real(wp) :: allowed, lost
 
       allowed = allowed_penetration(scene%materials(group%material))*side
       if (nint(now(at_status)) /= contact_open) then
         totals%max_penetration = max(totals%max_penetration, now(at_penetration))
         if (allowed > 0) totals%penetration_ratio = max(totals%penetration_ratio, now(at_penetration)/allowed)
       end if
-      area = area_at(place, section, x(:, :, e))*share
       lost = dissipated(old, now, penalty(2))
       totals%friction_work = totals%friction_work + area*now(at_work)
       totals%contact_work = totals%contact_work + area*kept_work(old, now, penalty, held)

@@ -10,13 +10,14 @@
 !> begins inside the step only the share d/(d - d_start) of it counts.
 !>
 !> A corner of the die between two integration points is one more point of contact of the side
-!> (corner_contact).
+!> (corner_contact); so is the node of a side on the axis (axis_contact).
 !>
 !> The work of friction is kept per present area: it decreases where the side stretches.
 !>
 !> Forces are integrated consistently over the side. The reaction acts on the pilot: force, and
 !> moment about it. Everything is linearised exactly, the curvature of the die included.
 module elem_cnt2d
+  use axis_contact, only: press_axis
   use closest_point, only: closest_point_t, closest_within_piece
   use contact_measure, only: augment, measure
   use contact_point, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, contact_point_t, no_surface, &
@@ -132,6 +133,8 @@ contains
         end do
         call press_corners(die, law, material, drivers(:, :, :, e), axisym, side, xi, committed(:, :, e), trial(:, :, e), f, k, &
                            report)
+        if (axisym) call press_axis(die, law, material, drivers(:, :, :, e), side, xi, committed(:, :, e), trial(:, :, e), f, k, &
+                                    report)
         force(:, e) = f(:n)
         if (instant%tangent) stiffness(:, :, e) = k(:n, :n)
         if (axisym) call show_on_axis(xi, x(1, :, e) + du(1:3, e), side%length, trial(:, :, e))
