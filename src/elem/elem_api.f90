@@ -22,7 +22,7 @@ module elem_api
   public :: elem_compute_i, elem_variables_i, elem_measure_i, elem_augment_i
   public :: block_done, block_inverted, block_law_failed, block_without_source
   public :: acts_on, add_totals, applies, declare_fields, first_unknown, group_temperature, has_unknown, layout_of, section_motion
-  public :: of_displacement, of_pilot, of_section, that_reads, field_nodes, no_variables
+  public :: goes_on, of_displacement, of_pilot, of_section, that_reads, field_nodes, no_variables
   public :: mode_advance, mode_error, mode_restore
   public :: most_components
 
@@ -89,6 +89,8 @@ module elem_api
     logical :: predicted = .false.
     !> Points in contact at the start of the step are kept there: their law is linearised at the depth they had then.
     logical :: kept = .false.
+    !> But not with these dies, which turn back (ndie): what touches them goes back anyway, and its jump does not count.
+    logical, allocatable :: turning(:)
     real(wp), allocatable :: corrected_from(:, :)
     real(wp) :: section_from(3) = 0.0_wp
     !> Values of all unknowns at the start of the step (ndof); not allocated where mechanics is all there is.
@@ -462,5 +464,15 @@ contains
     sum%stick = sum%stick + part%stick
     sum%slip = sum%slip + part%slip
   end subroutine add_totals
+
+  !> Contact with a die is not with one that turns back.
+  pure function goes_on(instant, die)
+    type(instant_t), intent(in) :: instant
+    integer, intent(in) :: die   !! number of the die
+    logical :: goes_on
+
+    goes_on = .true.
+    if (allocated(instant%turning)) goes_on = .not. instant%turning(die)
+  end function goes_on
 
 end module elem_api

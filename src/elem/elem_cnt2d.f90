@@ -29,7 +29,7 @@ module elem_cnt2d
   use die_sweep, only: share_to_pass
   use held_depth, only: soft_depth
   use dies, only: die_t
-  use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_pilot, of_section, report_t, section_motion
+  use elem_api, only: elem_t, goes_on, instant_t, layout_t, of_displacement, of_pilot, of_section, report_t, section_motion
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_law, contact_open, law_t
@@ -140,6 +140,7 @@ contains
         if (axisym) call show_on_axis(xi, x(1, :, e) + du(1:3, e), side%length, trial(:, :, e))
       end do
     end associate
+    if (.not. goes_on(instant, group%die)) report%jump = 0
   end subroutine compute
 
   !> The side of an element in the step.
@@ -164,7 +165,7 @@ contains
     side%pilot(:, 2) = side%pilot(:, 1) + du(7:9)
     side%dt = instant%dt
     side%tangent = instant%tangent
-    side%kept = instant%kept
+    side%kept = instant%kept .and. goes_on(instant, group%die)
   end subroutine begin_side
 
   !> States without contact; the work of friction goes with the area.

@@ -29,7 +29,7 @@ module elem_cntdf
   use corner_faces, only: closest_on_piece
   use curve_search, only: box_distance, closest_facing_point, closest_opposed_point, follow_closest_point, looks_at
   use dies, only: die_t
-  use elem_api, only: elem_t, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
+  use elem_api, only: elem_t, goes_on, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
   use elem_cnt2d, only: elem_cnt2d_row
   use kinds, only: eps, wp
   use kinematics_api, only: kinematics_t
@@ -160,7 +160,7 @@ contains
           place(7:12) = [at + 1, at + 2, at + 3, nnode + at + 1, nnode + at + 2, nnode + at + 3]
           call line3(closest%xi, psi, dpsi)
           call meet(closest, matmul(x(:, 1:3, e), phi), x(:, at + 1:at + 3, e), du(place(7:12), e), point, meeting, dxi)
-          meeting%kept = instant%kept
+          meeting%kept = instant%kept .and. goes_on(instant, group%die)
           call act(law, scene%materials(group%material), instant%dt, drivers(:, :, p, e), &
                    penalties(scene%materials(group%material), group%modulus, side), point, meeting, weight(p), instant%tangent, &
                    committed(:, p, e), trial(:, p, e), q, dq)
@@ -180,6 +180,7 @@ contains
         if (axisym) call show_on_axis(xi, x(1, 1:3, e) + du(1:3, e), side, trial(:, :, e))
       end do
     end associate
+    if (.not. goes_on(instant, group%die)) report%jump = 0
   end subroutine compute
 
   !> Smallest box around the nodes of a side (xmin, ymin, xmax, ymax).

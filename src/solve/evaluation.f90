@@ -21,7 +21,8 @@ contains
 
   !> Internal force, and matrices when wanted, at the motion `du` of the step. Points that meet pieces of deformable dies
   !> beyond their pairs get new ones, and all is computed again: no contact is lost, no step cut back.
-  subroutine evaluate(scene, equations, solution, dt, du, tangent, report, predicted, kept, corrected_from)
+  subroutine evaluate(scene, equations, solution, dt, du, tangent, report, predicted, kept, turning, &
+                      corrected_from)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -31,6 +32,7 @@ contains
     type(report_t), intent(out) :: report
     logical, intent(in), optional :: predicted              !! the motion is a prediction
     logical, intent(in), optional :: kept                   !! contact of the start of the step is kept
+    logical, intent(in), optional :: turning(:)             !! (ndie) not with these dies
     real(wp), intent(in), optional :: corrected_from(:)     !! (ndof) motion before the correction that led to it [unknown]
     type(instant_t) :: instant
     real(wp), allocatable :: now(:, :)
@@ -40,6 +42,7 @@ contains
     call make_instant(scene, equations, solution, dt, du, tangent, instant)
     if (present(predicted)) instant%predicted = predicted
     if (present(kept)) instant%kept = kept
+    if (present(turning)) instant%turning = turning
     if (present(corrected_from)) call note_correction(scene, equations%dofs, corrected_from, instant)
     call driving_values(scene, equations, solution, du, now)
     do

@@ -86,7 +86,8 @@ contains
     integer :: touched(size(scene%dies))
     real(wp) :: work(size(scene%dies))
     logical :: lags(size(scene%dies)), left_by(size(scene%dies))
-    logical :: changed, followed, again, kept, steep
+    logical :: staying(equations%dofs%ndof)
+    logical :: changed, followed, again, kept, steep, afresh
     integer :: first
 
     allocate (outcome%history(0), outcome%du(equations%dofs%ndof))
@@ -94,7 +95,7 @@ contains
     call return_to_chosen(equations%solves(equations%now)%solver)
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     if (present(left)) external = external - left
-    call predict(scene, equations, solution, dt, external, given, go_on, outcome%du, missing, kept, report)
+    call predict(scene, equations, solution, dt, external, given, go_on, outcome%du, missing, kept, staying, report)
     if (report%status /= block_done) then
       call set_cause(report, outcome)
       return
@@ -117,6 +118,7 @@ contains
     allocate (contact, source=contact_set(scene, solution))
     held = equations%wall%held
     left_by = .false.
+    afresh = .false.
     do
       residual = external - equations%force
       if (size(outcome%history) == 0) call weigh_quantities(equations, external, residual)
@@ -125,7 +127,7 @@ contains
       outcome%history = [outcome%history, line]
       outcome%iterations = size(outcome%history) - 1
       if (.not. any(abs(missing) > 0)) then
-        if (has_converged(scene, outcome%history(first:), again .or. (kept .and. outcome%iterations == 0)) &
+        if (has_converged(scene, outcome%history(first:), again .or. kept .and. (outcome%iterations == 0 .or. afresh)) &
             .and. pilots_in_equilibrium(equations, solution%fields, external, residual) &
             .and. (heat_in_balance(equations, residual, dt) .or. was_given_time(scene, outcome%history(first:)))) then
           if (made%times == 0) outcome%first_iterations = outcome%iterations
@@ -160,6 +162,9 @@ contains
       manner = manner_t(whole=caught(outcome%history(first:)), &
                         closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
       if (steep) manner = manner_t(exactly=.true.)
+      ! forces with contact kept are no measure of those without
+      if (kept .and. afresh) manner%whole = .true.
+      afresh = .false.
       ! past a limit point the way to equilibrium leads up and down
       if (scene%load_factor%multiplier > 0) manner%whole = .true.
       if (followed) then
@@ -167,6 +172,8 @@ contains
         if (in_circles(outcome%history(first:))) correction = 0.5_wp*correction
       end if
       if (any(abs(missing) > 0)) then
+        ! a missing motion is taken without search, by what it moves alone
+        where (staying) correction = 0
         touched = touching_dies(scene, solution)
         work = work_of_dies(equations, missing)
         lags = lagging_dies(equations, missing)
@@ -222,7 +229,8 @@ contains
       leaving = leaving_dies(lags, work, touched, now) .and. .not. left_by
       if (.not. any(leaving)) return
       left_by = left_by .or. leaving
-      call predict(scene, equations, solution, dt, external, given, go_on, outcome%du, missing, kept, report, left_by)
+      call predict(scene, equations, solution, dt, external, given, go_on, outcome%du, missing, kept, staying, report, left_by)
+      afresh = .true.
       line%line_search = merge(1.0_wp, 0.0_wp, report%status == block_done)
       correction = 0
     end subroutine follow_dies

@@ -9,7 +9,8 @@
 !>
 !> On a new mesh the last motion is none of its own: the first step starts at the motion of its onset (onset_motion).
 !>
-!> Where a die turns back the step starts a little way back along that motion: the matrix there is that of unloading.
+!> Where a die, or the support of a body that nothing touches, turns back the step starts, for the bodies that it moves
+!> (turning_back), a little way back along that motion: the matrix there is that of unloading.
 !>
 !> The first iteration takes contacts as they are: a die that withdraws would pull the part along, by more than it can bear. Where
 !> most points that touched such a die no longer do after it, the step starts again so, with the die where it goes: contact is then
@@ -29,6 +30,7 @@ module predictor
   use resting_bodies, only: leave_at_rest
   use scene, only: scene_t
   use solution, only: solution_t
+  use turning_back, only: reversed_unknowns, turn_back
   implicit none
   private
   public :: predict, proportion, lagging_dies, leaving_dies, work_of_dies
@@ -44,7 +46,7 @@ contains
 
   !> Start `du` and what prescribed unknowns miss of their motion; forces and matrices are evaluated there. With `kept` they
   !> are not those of the motion: contact is as it was.
-  subroutine predict(scene, equations, solution, dt, external, given, go_on, du, missing, kept, report, left)
+  subroutine predict(scene, equations, solution, dt, external, given, go_on, du, missing, kept, staying, report, left)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -54,10 +56,11 @@ contains
     logical, intent(in), optional :: go_on       !! start from `given` for the own unknowns too
     real(wp), intent(out) :: du(:), missing(:)   !! (ndof) [unknown]
     logical, intent(out) :: kept
+    logical, intent(out) :: staying(:)           !! (ndof) motion of bodies and dies that do not turn back, where others do
     type(report_t), intent(out) :: report
     logical, intent(in), optional :: left(:)     !! (ndie) dies that leave the part: they start where they go
-    logical :: fixed(size(du)), at_place(size(du)), back, found, begun
-    real(wp) :: motion(size(equations%dofs%prescribed))
+    logical :: fixed(size(du)), at_place(size(du)), back(size(du)), turning(size(du)), dies(size(scene%dies)), found, begun
+    real(wp) :: motion(size(equations%dofs%prescribed)), before(size(du))
     real(wp) :: ratio
     integer :: k
 
@@ -76,16 +79,22 @@ contains
     end if
     ratio = 0
     if (solution%last_step > 0) ratio = dt/solution%last_step
-    back = present(left)
-    if (.not. (back .or. found) .and. ratio > 0) back = turns_back()
-    if (back) ratio = -onset*ratio
+    back = at_place
+    if (.not. found .and. ratio > 0) then
+      call proportion(equations%dofs, solution%fields, ratio, before)
+      back = back .or. reversed_unknowns(equations%dofs, before, motion)
+    end if
+    call turn_back(scene, equations%dofs, solution, back, turning, dies)
+    back = turning
+    staying = .false.
+    if (any(back)) staying = is_motion() .and. .not. back
     begun = .false.
-    if (is_first_step(solution%probation) .and. .not. (back .or. found) .and. ratio > 0 &
+    if (is_first_step(solution%probation) .and. .not. (any(back) .or. found) .and. ratio > 0 &
         .and. equations%solves(equations%now)%own(displacement_field)) call start_on_new_mesh()
     if (.not. begun) then
       kept = .false.
       call start_from(ratio)
-      if (.not. (back .or. found) .and. report%status == block_done .and. report%event >= 1 .and. report%jump > smooth_contact) then
+      if (.not. found .and. report%status == block_done .and. report%event >= 1 .and. report%jump > smooth_contact) then
         kept = is_driven()
         call start_from(merge(ratio, onset*ratio, kept))
       end if
@@ -127,6 +136,20 @@ contains
       end do
     end subroutine find_missing
 
+    !> Unknowns of nodes and of dies that are motions (ndof).
+    function is_motion() result(yes)
+      logical :: yes(size(du))
+      integer :: f
+
+      yes = .false.
+      do f = 1, size(equations%dofs%fields)
+        if (f /= displacement_field .and. f /= pilot_field) cycle
+        associate (number => equations%dofs%fields(f)%number)
+          yes(pack(number, number > 0)) = .true.
+        end associate
+      end do
+    end function is_motion
+
     !> A support or a die is moved in the step.
     function is_driven()
       logical :: is_driven
@@ -140,29 +163,12 @@ contains
       end do
     end function is_driven
 
-    !> A die goes the other way than in the last step.
-    function turns_back()
-      logical :: turns_back, reversed(size(du))
-      real(wp) :: before(size(du))
-      integer :: i
-
-      call proportion(equations%dofs, solution%fields, ratio, before)
-      reversed = .false.
-      do i = 1, size(motion)
-        associate (d => equations%dofs%prescribed(i)%dof)
-          reversed(d) = motion(i)*before(d) < 0
-        end associate
-      end do
-      associate (pilot => equations%dofs%fields(pilot_field)%number)
-        turns_back = any(reversed(pack(pilot, pilot > 0)))
-      end associate
-    end function turns_back
-
     !> Evaluate at the last motion times a share; what is given is taken as it is.
     subroutine start_from(share)
       real(wp), intent(in) :: share
 
       call proportion(equations%dofs, solution%fields, share, du)
+      where (back) du = -onset*du
       call leave_at_rest(scene, equations%dofs, equations%loose, solution, solution%time + dt, du, &
                          equations%resting)
       if (present(given)) du = merge(given, du, fixed)
@@ -171,7 +177,7 @@ contains
           if (p%history > 0 .or. at_place(p%dof)) du(p%dof) = motion(k)
         end associate
       end do
-      call evaluate(scene, equations, solution, dt, du, .true., report, predicted=.true., kept=kept)
+      call evaluate(scene, equations, solution, dt, du, .true., report, predicted=.true., kept=kept, turning=dies)
     end subroutine start_from
 
   end subroutine predict

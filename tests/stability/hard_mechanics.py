@@ -221,6 +221,25 @@ def lifts_off(checks):
     return cuts
 
 
+def another_press_turns(checks):
+    """A punch with a fillet goes on into one part, another press to and fro on a second one; a bar is pulled to and fro by its end."""
+    law = PLASTIC.replace("200000. 0.3\n LINEAR 300. 500.", "70000. 0.33\n LINEAR 200. 100.").replace("PHI 0.2", "PHI 0.1")
+    strat = "STRAT 0.01 1.E-6 0.02 6 3"
+    part = block("0. 0. 10. 0. 10. 10. 0. 10.", "6 1. 6 1.")
+    other = block("20. 0. 30. 0. 30. 10. 20. 10.", "6 1. 6 1.").replace("BLOCK b", "BLOCK c")
+    runs = (checks.run("another-press", deck(
+        "PLSTN", "LOG", part + other, law,
+        "DIE one PILOT 0. 10.\n SEGM 8. 30. 8. 10.\n FILLT 2. 1.E-3\n SEGM 8. 10. -5. 10.\n"
+        "DIE two PILOT 20. 10.\n SEGM 35. 10. 15. 10.\nCNT2D b 3 one -3 k\nCNT2D c 3 two -3 k\nFIXED b 1 XY\nFIXED c 1 XY\n"
+        "LIC go\n 0. 0. 1. -4.\nLIC turn\n 0. 0. .2 -.5 .3 -.48 .4 -.8 .5 -.78 .6 -1.1 .7 -1.08 .8 -1.4 .9 -1.38 1. -1.7\n"
+        "MOVE one Y go\nMOVE two Y turn\n", strat)),
+        checks.run("pulled-often", deck(
+            "PLSTN", "LOG", block("0. 0. 10. 0. 10. 10. 0. 10.", "4 1. 4 1."), "LAW m EPLA\n 70000. 0.33\n LINEAR 200. 100.\n",
+            "FIXED b 1 XY\nMOVE b 3 Y go\nLIC go\n 0. 0. .1 .5 .2 .48 .3 .8 .4 .3 .5 1. .6 .5 .8 1.3 1. -.5\n", strat)))
+    # 240 and 170; 319 and 182 where all went back with a die that turns, and none with a support
+    return max(report(run)["iterations"]/most for run, most in zip(runs, (280, 176)))
+
+
 def lifted_off(checks):
     """A block is lifted by its top off a fixed die or another body, at once or after it has lain there: no force, few steps are cut."""
     cuts, worst = 0, 0.0
@@ -404,6 +423,7 @@ CASES = (
     Case("steps far too long", long_steps, 0.02), Case("mirror image", mirrored, 1e-7),
     Case("held by friction alone", friction_alone, 1e-2), Case("contact again", contact_again, 0.01),
     Case("released and pressed again", released, 1e-9), Case("lifts off", lifts_off, 0), Case("lifted off", lifted_off, 1e-9),
+    Case("another press turns back", another_press_turns, 1.0),
     Case("past a die's end", past_the_end, 1e-2), Case("round a fillet", round_a_fillet, 5.0),
     Case("stick-slip reversal", stick_slip, 1e-3),
     Case("bent round a pin", round_a_pin, 0.25), Case("bent between three rollers", three_point_bending, 0.2),
