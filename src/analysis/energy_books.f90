@@ -214,6 +214,9 @@ contains
     advice = ''
     if (abs(energy_imbalance(solution)) > largest_imbalance) &
       advice = 'motion and forces are not straight within a step: take smaller steps (STRAT) and compare, half the step halves it'
+    ! without inertia there is no kinetic energy that it could become
+    if (energy_imbalance(solution) > largest_imbalance) &
+      advice = advice//'; what stays was released suddenly, as by a part that snaps free: it would be kinetic energy'
   end function imbalance_advice
 
   !> Energy that springs of dies and of bodies hold [energy]. They stand outside: what dies do to the part is the work of dies, what
