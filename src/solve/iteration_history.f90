@@ -27,6 +27,10 @@ module iteration_history
   !> Beyond the largest number of iterations the residual falls on when the best of the last `patience` is below this share of the
   !> best before.
   real(wp), parameter :: falling = 0.7_wp
+  !> As long as a sheet peels off a die, point by point, contact changes in each iteration, corrections are whole, and the best of
+  !> the last `peeling_window` is below this share of the best before: the number of points ends it.
+  real(wp), parameter :: peeling = 0.97_wp
+  integer, parameter :: peeling_window = 3*patience
   !> Residuals of one state that comes again differ by this share at most.
   real(wp), parameter :: same_state = 2.0e-3_wp
   !> So many more iterations are made for the balance of heat.
@@ -148,9 +152,12 @@ contains
 
     n = size(history)
     falls_on = n > 2*patience
-    if (falls_on) falls_on = any(history(n - patience + 1:)%contact_changed) &
-                             .and. minval(history(n - patience + 1:)%force_norm) &
-                             < falling*minval(history(2:n - patience)%force_norm)
+    if (.not. falls_on) return
+    associate (now => history(n - patience + 1:), norms => history%force_norm)
+      falls_on = any(now%contact_changed) .and. minval(now%force_norm) < falling*minval(norms(2:n - patience))
+      if (n > peeling_window + 2) falls_on = falls_on .or. all(now%contact_changed .and. now%line_search >= 1) .and. &
+                                             minval(norms(n - peeling_window + 1:)) < peeling*minval(norms(2:n - peeling_window))
+    end associate
   end function falls_on
 
   !> Contact changes to and fro between two states, and whole corrections lead from each to the other.

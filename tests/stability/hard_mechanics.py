@@ -240,6 +240,17 @@ def another_press_turns(checks):
     return max(report(run)["iterations"]/most for run, most in zip(runs, (280, 176)))
 
 
+def wall_peels(checks):
+    """A slender wall that lies on its punch meets a ring and peels off, point by point: in one step, whose iterations go on."""
+    run = checks.run("wall-peels", deck(
+        "PLSTN", "LOG", block("0. 0. 1. 0. 1. 30. 0. 30.", "4 1. 60 1."),
+        "LAW m EPLA\n 200000. 0.3\n LINEAR 300. 500.\nLAW k COUL2D\n PENETR 1.E-3 PHI 0.05 AUGMENT 10\n",
+        "DIE punch PILOT 0. 0.\n SEGM 0. 60. 0. -5.\nDIE ring\n SEGM .85 -40. .85 -3.\n FILLT 2. 1.E-3\n"
+        " SEGM .85 -3. 2.5 -3+1.65/tan(12*pi/180)\nCNT2D b 4 punch k\nCNT2D b 2 ring k\nMOVE punch Y go\nMOVE b 1 Y go\n"
+        "LIC go\n 0. 0. 1. -25.\nSTOP .1\n", "STRAT 0.002 1.E-7 0.01 6 3"))
+    return report(run)["cutbacks"]
+
+
 def lifted_off(checks):
     """A block is lifted by its top off a fixed die or another body, at once or after it has lain there: no force, few steps are cut."""
     cuts, worst = 0, 0.0
@@ -423,7 +434,7 @@ CASES = (
     Case("steps far too long", long_steps, 0.02), Case("mirror image", mirrored, 1e-7),
     Case("held by friction alone", friction_alone, 1e-2), Case("contact again", contact_again, 0.01),
     Case("released and pressed again", released, 1e-9), Case("lifts off", lifts_off, 0), Case("lifted off", lifted_off, 1e-9),
-    Case("another press turns back", another_press_turns, 1.0),
+    Case("wall that peels off", wall_peels, 1), Case("another press turns back", another_press_turns, 1.0),
     Case("past a die's end", past_the_end, 1e-2), Case("round a fillet", round_a_fillet, 5.0),
     Case("stick-slip reversal", stick_slip, 1e-3),
     Case("bent round a pin", round_a_pin, 0.25), Case("bent between three rollers", three_point_bending, 0.2),
