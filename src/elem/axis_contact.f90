@@ -55,7 +55,6 @@ contains
     type(closest_point_t) :: closest, next
     real(wp), parameter :: ends(2) = [-1.0_wp, 1.0_wp]
     real(wp) :: before(size(committed, 1)/2)
-    real(wp) :: slope
     integer :: k, p, q, n, at_place
 
     at_place = size(trial, 1)
@@ -67,7 +66,7 @@ contains
       p = merge(1, size(xi), k == 1)
       q = p
       if (abs(xi(p)) >= 1) q = p + merge(1, -1, k == 1)
-      call meet_along_axis(die, side, ends(k), committed(n + 1:2*n, p), point, closest, slope)
+      call meet_along_axis(die, side, ends(k), committed(n + 1:2*n, p), point, closest)
       if (closest%piece == 0) cycle
       associate (now => trial(n + 1:2*n, p))
         ! a corner of the die in the same interval that is deeper
@@ -101,17 +100,15 @@ contains
   end subroutine forget
 
   !> How the node meets the die: the closest point with its depth and normal taken along the axis.
-  pure subroutine meet_along_axis(die, side, place, committed, point, closest, slope)
+  pure subroutine meet_along_axis(die, side, place, committed, point, closest)
     type(die_t), intent(in) :: die
     type(side_t), intent(in) :: side
     real(wp), intent(in) :: place                    !! of the node on the side, -1 or 1
     real(wp), intent(in) :: committed(:)             !! (nstate) [unit of each component]
     type(contact_point_t), intent(out) :: point
     type(closest_point_t), intent(out) :: closest    !! in the pilot's axes
-    real(wp), intent(out) :: slope                   !! depth along the axis over that along the die's normal
     real(wp) :: normal(2)
 
-    slope = 1
     call place_point(side, place, point)
     call closest_or_followed(die, turned(point%x - side%pilot(1:2, 2), -side%pilot(3, 2)), &
                              turned(point%e_r, -side%pilot(3, 2)), side%length, committed, closest)
@@ -122,8 +119,7 @@ contains
       return
     end if
     ! before contact the gap is the distance
-    if (closest%d > 0) slope = 1/abs(normal(2))
-    closest%d = slope*closest%d
+    if (closest%d > 0) closest%d = closest%d/abs(normal(2))
     closest%normal = turned([0.0_wp, sign(1.0_wp, normal(2))], -side%pilot(3, 2))
     closest%turn = 0
   end subroutine meet_along_axis
