@@ -4,6 +4,7 @@ module carry_solution
   use fields, only: displacement_field, on_nodes
   use kept_members, only: member_memory_t
   use kinds, only: wp
+  use remeshing, only: carry_error
   use scene, only: scene_t
   use solution, only: solution_t
   use state_pieces, only: change_volume_ratios, mesh_of, solid_pieces, state_pieces_t, store_states, take_values
@@ -32,6 +33,7 @@ contains
     call visit_solution_members(memory, after)
     after%estimate%last_stop = before%step
     after%estimate%previous_stress = before%estimate%stress
+    call carry_error(before%estimate, after%estimate)
     after%unbalanced = .true.
   end subroutine carry_progress
 

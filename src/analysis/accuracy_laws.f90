@@ -14,7 +14,7 @@ module accuracy_laws
   implicit none
   private
   public :: accuracy_law_t, sample_t
-  public :: asked_for, choose_fineness, difference, errors_of, expected_seconds, grown_seconds, measure_laws
+  public :: asked_for, choose_fineness, difference, elements_of, errors_of, expected_seconds, grown_seconds, measure_laws
 
   !> Orders in space that are believed: of the stress what a crack leaves at least; of forces, work and motions twice that
   !> (J. Nitsche, Abh. Math. Sem. Hamburg 36 (1971) 9-15); and the order of the stress where it is smooth. Without a third mesh
@@ -306,6 +306,35 @@ contains
       end associate
     end associate
   end subroutine expected_seconds
+
+  !> Elements of a run with so many of the deck's along a line: those of the pilot with that mesh, otherwise as they grow between
+  !> the two finest ones. Blocks have the square; meshes of contours are finer where sides bend whatever else is asked, so that theirs
+  !> grow by less.
+  pure function elements_of(pilots, mesh) result(elements)
+    type(sample_t), intent(in) :: pilots(:)   !! (npilot)
+    real(wp), intent(in) :: mesh              !! factor of the elements along a line
+    integer :: elements
+    real(wp) :: exponent
+    integer :: k, finest, coarser
+
+    finest = maxloc(pilots%fineness%mesh, 1)
+    coarser = 0
+    do k = 1, size(pilots)
+      if (abs(pilots(k)%fineness%mesh - mesh) <= 0) then
+        elements = pilots(k)%elements
+        return
+      end if
+      if (.not. pilots(k)%fineness%mesh < pilots(finest)%fineness%mesh) cycle
+      if (coarser == 0) coarser = k
+      if (pilots(k)%fineness%mesh > pilots(coarser)%fineness%mesh) coarser = k
+    end do
+    exponent = 2
+    associate (fine => pilots(finest))
+      if (coarser > 0) exponent = growth(real(pilots(coarser)%elements, wp), real(fine%elements, wp), &
+                                         fine%fineness%mesh/pilots(coarser)%fineness%mesh, 2.0_wp)
+      elements = nint(fine%elements*(mesh/fine%fineness%mesh)**exponent)
+    end associate
+  end function elements_of
 
   !> Seconds by tasks with so many times the elements, in as many steps and iterations [s].
   pure function grown_seconds(seconds, factor) result(grown)

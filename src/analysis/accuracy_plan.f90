@@ -1,6 +1,7 @@
 !> A run of a deck with ACCURACY: how fine it is, what is expected of it, and what it has reached.
 module accuracy_plan
-  use accuracy_laws, only: accuracy_law_t, asked_for, choose_fineness, difference, errors_of, expected_seconds, sample_t
+  use accuracy_laws, only: accuracy_law_t, asked_for, choose_fineness, difference, elements_of, errors_of, expected_seconds, &
+                           sample_t
   use accuracy_rules, only: fineness_t
   use json_writer, only: json_t
   use kinds, only: wp
@@ -51,25 +52,24 @@ module accuracy_plan
 
 contains
 
-  !> Errors, steps and seconds that the laws foretell of the plan's fineness with so many elements.
-  pure subroutine expect(plan, elements)
+  !> Errors, steps and seconds that the laws foretell of the plan's fineness.
+  pure subroutine expect(plan)
     type(accuracy_plan_t), intent(inout) :: plan
-    integer, intent(in) :: elements
     real(wp), dimension(size(plan%names)) :: space, time, depth
     type(fineness_t) :: finer
     real(wp) :: seconds
     integer :: steps, k
     logical :: met
 
-    plan%elements = elements
+    plan%elements = elements_of(plan%pilots, plan%fineness%mesh)
     call errors_of(plan%law, plan%fineness, space, time, depth)
     k = maxloc(space + time + depth, 1)
     plan%expected = parts_of(plan%names(k)%s, space(k), time(k), depth(k))
-    call expected_seconds(plan%pilots, plan%fineness, elements, plan%seconds, plan%steps)
+    call expected_seconds(plan%pilots, plan%fineness, plan%elements, plan%seconds, plan%steps)
     call choose_fineness(plan%law, asked_for(total(plan%expected)/2), plan%divisible, finer, met, plan%parts)
     plan%half_costs = 0
     if (.not. (met .and. plan%seconds > 0 .and. total(plan%expected) > 0)) return
-    call expected_seconds(plan%pilots, finer, nint(elements*(finer%mesh/plan%fineness%mesh)**2), seconds, steps)
+    call expected_seconds(plan%pilots, finer, elements_of(plan%pilots, finer%mesh), seconds, steps)
     plan%half_costs = seconds/plan%seconds
   end subroutine expect
 

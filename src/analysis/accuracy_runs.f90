@@ -110,7 +110,7 @@ contains
 
     !> The laws of all pilots so far, and what they allow.
     subroutine choose()
-      integer :: finest, elements
+      integer :: finest
 
       if (size(plan%pilots) == 0) then
         call fail(error, exit_no_convergence, 'ACCURACY: the deck has no run to its end, on its own mesh with its own steps', &
@@ -123,8 +123,7 @@ contains
       call measure_laws(plan%pilots, plan%scales, scene%accuracy%stress, is_smooth(scene), time_order(scene), plan%law)
       call choose_fineness(plan%law, plan%asked, plan%divisible .and. plan%law%space_known, plan%fineness, plan%met, &
                             plan%parts)
-      elements = nint(plan%pilots(finest)%elements*(plan%fineness%mesh/plan%pilots(finest)%fineness%mesh)**2)
-      call expect(plan, elements)
+      call expect(plan)
     end subroutine choose
 
     !> One pilot, made where it is not there; `there` is false where it did not reach its end.

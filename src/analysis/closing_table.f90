@@ -21,6 +21,7 @@ module closing_table
   use json_writer, only: json_t
   use kinds, only: wp
   use path_record, only: motion_error, stress_error, whole_stress_error
+  use remeshing, only: stress_error_of_all
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use strategy, only: order_in_time
@@ -35,6 +36,8 @@ module closing_table
     !> Errors of the stress and of the strain by patch recovery; the latter is a sum over the steps, where ESTIM or REMSH asks.
     logical :: space = .false., strain_known = .false.
     real(wp) :: stress = 0.0_wp, strain = 0.0_wp, space_cost = 1.0_wp
+    !> What the first has of errors of earlier meshes.
+    real(wp) :: stress_carried = 0.0_wp
     !> A law flows. Errors of the path within steps, where estimated (NORMS): of the motion in sum, of the stress at the end
     !> with what it owes to the motion (where that is known), and at this motion.
     logical :: flows = .false., path = .false., whole_known = .false.
@@ -131,7 +134,8 @@ contains
     closing%space = .true.
     closing%strain_known = scene%remesh%estimate
     closing%space_cost = cost_of_elements(equations%timers, 2.0_wp)
-    closing%stress = solution%estimate%stress
+    closing%stress = stress_error_of_all(solution%estimate, solution%estimate%stress)
+    closing%stress_carried = solution%estimate%carried_stress*solution%estimate%stress_left
     closing%strain = solution%estimate%strain
     if (scene%remesh%estimate) return
     call set_up_estimator(scene, equations%laws, estimator)
@@ -175,6 +179,7 @@ contains
     call put('  accuracy (estimates)                                    half of it costs')
     if (closing%space) then
       words = 'stress '//percent(closing%stress)
+      if (closing%stress_carried > 0) words = words//' (of it '//percent(closing%stress_carried)//' of earlier meshes)'
       if (closing%strain_known) words = words//', strain '//percent(closing%strain)
       call row('in space', words, times(closing%space_cost)//' the time: twice the elements')
       if (closing%meshes > 1) call row('', on_all_meshes(), to_text(sum(closing%seconds), 3)//' s of processor in all, ' &
@@ -264,6 +269,7 @@ contains
     if (closing%space) then
       call json%begin_object('space')
       call json%add('stress_pct', 100*closing%stress)
+      if (closing%stress_carried > 0) call json%add('stress_carried_pct', 100*closing%stress_carried)
       if (closing%strain_known) call json%add('strain_pct', 100*closing%strain)
       if (closing%meshes > 1) then
         if (closing%errors_of_all) call json%add('stress_worst_pct', 100*closing%stress_worst)

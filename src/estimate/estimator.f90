@@ -3,6 +3,10 @@
 !> Stress: eta = ||sigma* - sigma_h|| / ||sigma*|| in the norm of the elastic complementary energy, s:s/(4 G) + p^2/(2 K); where
 !> some solid law has no elastic moduli the norm is s:s for all. Strain: in every step the recovered less the computed strain
 !> increment, in the norm of its deviator; errors and increments of an element are summed over the steps since the mesh began.
+!> An error that the stress had when the mesh began goes where the body flows: with a flow of the strain de against the direction of
+!> the stress s, 2 G de/|s| is the logarithm by which a deviation from it falls, as ds = 2 G (de - de_p) and de_p = |de_p| s/|s|
+!> for a flow along the deviator (R. Hill, The Mathematical Theory of Plasticity, 1950, II.3). Pressures follow by balance. Elastic
+!> parts keep it: the strain of which the stress is elastic is taken off.
 !> Recovery (patch_recovery) goes over all elements of one material, and not across the line to another.
 module estimator
   use elasticity, only: moduli
@@ -124,9 +128,11 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
     real(wp), dimension(2, size(solution%estimate%stress_of)) :: missing, whole
-    real(wp) :: volume(size(missing, 2)), stiffness
+    real(wp), dimension(size(missing, 2)) :: volume, elastic, energy
+    real(wp) :: stiffness
 
-    call gather_squares(self, scene, solution, missing, whole, volume, stiffness)
+    call gather_squares(self, scene, solution, missing, whole, volume, elastic, stiffness)
+    energy = whole(1, :)
     associate (estimate => solution%estimate)
       call relate(missing(1, :), whole(1, :), volume, sum(whole(1, :)) > at_rest**2*stiffness, estimate%stress, estimate%stress_of)
       estimate%strain_sums = estimate%strain_sums + sqrt(reshape([missing(2, :)/volume, whole(2, :)/volume], &
@@ -135,8 +141,29 @@ contains
       whole(2, :) = volume*estimate%strain_sums(2, :)**2
       call relate(missing(2, :), whole(2, :), volume, sum(whole(2, :)) > at_rest**2*sum(volume), estimate%strain, &
                   estimate%strain_of)
+      estimate%stress_left = left_of_stress(energy, elastic, estimate%strain_sums(2, :))
     end associate
   end subroutine estimate_errors
+
+  !> Share that is left of an error that the stress had when the mesh began, in the norm of its energy: of an error that was spread
+  !> as the energy is now.
+  pure function left_of_stress(energy, elastic, strain) result(left)
+    real(wp), intent(in) :: energy(:)    !! (nelem) of the stress [energy]
+    real(wp), intent(in) :: elastic(:)   !! (nelem) strain of which the deviator is elastic [-]; 0 where not known
+    real(wp), intent(in) :: strain(:)    !! (nelem) sum of the increments of the deviator since then [-]
+    real(wp) :: left
+    real(wp) :: flow(size(energy))
+
+    left = 0
+    if (.not. sum(energy) > 0) return
+    flow = huge(flow)
+    where (strain <= elastic)
+      flow = 0
+    else where (elastic > 0)
+      flow = strain/elastic - 1
+    end where
+    left = sqrt(sum(energy*exp(-min(2*flow, -log(tiny(left)))))/sum(energy))
+  end function left_of_stress
 
   !> Error of the stress at an instant, where no step before it was followed.
   pure subroutine stress_error_now(self, scene, solution, error)
@@ -144,23 +171,24 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     real(wp), intent(out) :: error   !! share of the stress, in its norm
-    real(wp), allocatable :: missing(:, :), whole(:, :), volume(:), error_of(:)
+    real(wp), allocatable :: missing(:, :), whole(:, :), volume(:), error_of(:), elastic(:)
     real(wp) :: stiffness
     integer :: n, k
 
     n = sum([(size(self%parts(k)%place), k=1, size(self%parts))])
-    allocate (missing(2, n), whole(2, n), volume(n), error_of(n))
-    call gather_squares(self, scene, solution, missing, whole, volume, stiffness)
+    allocate (missing(2, n), whole(2, n), volume(n), error_of(n), elastic(n))
+    call gather_squares(self, scene, solution, missing, whole, volume, elastic, stiffness)
     call relate(missing(1, :), whole(1, :), volume, sum(whole(1, :)) > at_rest**2*stiffness, error, error_of)
   end subroutine stress_error_now
 
   !> Squares of the errors (missing) of stress and strain increments and of these themselves (whole), and volumes, of all elements.
-  pure subroutine gather_squares(self, scene, solution, missing, whole, volume, stiffness)
+  pure subroutine gather_squares(self, scene, solution, missing, whole, volume, elastic, stiffness)
     type(estimator_t), intent(in) :: self
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     real(wp), intent(out) :: missing(:, :), whole(:, :)   !! stress and strain of each element (2, nelem)
     real(wp), intent(out) :: volume(:)                    !! (nelem) [volume]
+    real(wp), intent(out) :: elastic(:)                   !! (nelem) strain of which the deviator is elastic; 0 without moduli [-]
     real(wp), intent(out) :: stiffness                    !! sum of G V [energy], or of the largest stress squared
     real(wp) :: x(2, size(scene%mesh%coordinates, 2)), section(3)
     integer :: k
@@ -173,7 +201,7 @@ contains
     end if
     stiffness = 0
     do k = 1, size(self%parts)
-      call of_part(self, self%parts(k), scene, solution, x, section, missing, whole, volume, stiffness)
+      call of_part(self, self%parts(k), scene, solution, x, section, missing, whole, volume, elastic, stiffness)
     end do
   end subroutine gather_squares
 
@@ -192,13 +220,13 @@ contains
 
   !> Squares of the elements of one material, and the sum of G V to compare energies with (without moduli: of the largest stress,
   !> squared).
-  pure subroutine of_part(self, part, scene, solution, x, section, missing, whole, volume, stiffness)
+  pure subroutine of_part(self, part, scene, solution, x, section, missing, whole, volume, elastic, stiffness)
     type(estimator_t), intent(in) :: self
     type(part_t), intent(in) :: part
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: x(:, :), section(3)
-    real(wp), intent(inout) :: missing(:, :), whole(:, :), volume(:), stiffness
+    real(wp), intent(inout) :: missing(:, :), whole(:, :), volume(:), elastic(:), stiffness
     real(wp) :: value(ncomp, npoint, size(part%place)), weights(2, size(part%place)), shear
     real(wp) :: missing_here(2, size(part%place)), whole_here(2, size(part%place)), volume_here(size(part%place))
     integer :: e, g, n
@@ -215,6 +243,7 @@ contains
                         solution%fields(displacement_field)%last_increment(:, nodes), value(5:8, :n, e))
       end associate
       weights(:, e) = energy_weights(self, scene, g, solution%time)
+      elastic(part%place(e)) = merge(2*weights(1, e)*root_of_deviator(value(1:4, :n, e)), 0.0_wp, self%elastic)
     end do
     call missing_squares(part%patches, self%fields, part%rule, section, x, part%connectivity, value, weights, &
                          missing_here, whole_here, volume_here)
@@ -224,6 +253,17 @@ contains
     if (self%elastic) shear = 0.25_wp/minval(weights(1, :))
     stiffness = stiffness + shear*sum(volume_here)
   end subroutine of_part
+
+  !> Root of s:s of the stress deviator, in the mean square over points.
+  pure function root_of_deviator(stress) result(root)
+    real(wp), intent(in) :: stress(:, :)   !! xx, yy, xy, zz (4, npoint) [stress]
+    real(wp) :: root
+    real(wp) :: mean(size(stress, 2))
+
+    mean = (stress(1, :) + stress(2, :) + stress(4, :))/3
+    root = sqrt(sum((stress(1, :) - mean)**2 + (stress(2, :) - mean)**2 + (stress(4, :) - mean)**2 + 2*stress(3, :)**2) &
+                /size(mean))
+  end function root_of_deviator
 
   !> 1/(4 G) and 1/(2 K) of a group at its temperature.
   pure function energy_weights(self, scene, g, time) result(weights)

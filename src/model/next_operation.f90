@@ -76,6 +76,8 @@ contains
     after%friction_apart = 0
     after%path%error = fresh%path%error
     after%estimate = fresh%estimate
+    ! what this mesh errs is seen on it later too
+    after%estimate%carried_stress = before%estimate%carried_stress*before%estimate%stress_left
     after%cuts = fresh%cuts
     after%estimate%last_stop = before%step
     after%fields = fresh%fields

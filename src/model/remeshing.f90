@@ -5,7 +5,7 @@ module remeshing
   use text, only: to_text
   implicit none
   private
-  public :: remesh_rules_t, stroke_t, trigger_t, estimate_t
+  public :: carry_error, remesh_rules_t, stroke_t, stress_error_of_all, trigger_t, estimate_t
   public :: drop_triggers, trigger_words
   public :: ncriteria, criterion_names, is_upper, never
   public :: least_angle, largest_angle, middle_share, jacobian_ratio, scaled_jacobian, aspect_ratio
@@ -66,11 +66,33 @@ module remeshing
     real(wp) :: previous_stress = 0.0_wp
     !> Error of the stress with which a new mesh began; 0 for the deck's own mesh.
     real(wp) :: first_stress = 0.0_wp
+    !> Error of the stress with which the mesh before left it, those of older meshes in it (0 for the deck's own mesh), and the
+    !> share of that which is still there: flow forgets it, elastic parts keep it.
+    real(wp) :: carried_stress = 0.0_wp, stress_left = 1.0_wp
     !> Why a new mesh is due; none while the present one is good.
     type(trigger_t), allocatable :: triggers(:)
   end type estimate_t
 
 contains
+
+  !> Error of the stress that comes of this mesh and of those before it: a new mesh gets the stress of the old one with its error,
+  !> and what its own elements add knows nothing of that.
+  pure function stress_error_of_all(estimate, stress) result(error)
+    type(estimate_t), intent(in) :: estimate
+    real(wp), intent(in) :: stress   !! error of this mesh [-]
+    real(wp) :: error
+
+    error = hypot(stress, estimate%carried_stress*estimate%stress_left)
+  end function stress_error_of_all
+
+  !> The error of the stress goes on to a new mesh.
+  pure subroutine carry_error(before, after)
+    type(estimate_t), intent(in) :: before
+    type(estimate_t), intent(inout) :: after
+
+    after%carried_stress = stress_error_of_all(before, before%stress)
+    after%stress_left = 1
+  end subroutine carry_error
 
   !> Why a new mesh is due: `aspect_ratio 12.3 (limit 10)`.
   pure function trigger_words(name, value, limit) result(words)
