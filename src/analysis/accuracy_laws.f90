@@ -308,8 +308,8 @@ contains
   end subroutine expected_seconds
 
   !> Elements of a run with so many of the deck's along a line: those of the pilot with that mesh, otherwise as they grow between
-  !> the two finest ones. Blocks have the square; meshes of contours are finer where sides bend whatever else is asked, so that theirs
-  !> grow by less.
+  !> the two finest ones. Blocks have the square; meshes of contours are finer where sides bend, whatever else is asked, so that
+  !> theirs grow by less.
   pure function elements_of(pilots, mesh) result(elements)
     type(sample_t), intent(in) :: pilots(:)   !! (npilot)
     real(wp), intent(in) :: mesh              !! factor of the elements along a line

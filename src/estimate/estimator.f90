@@ -156,12 +156,8 @@ contains
 
     left = 0
     if (.not. sum(energy) > 0) return
-    flow = huge(flow)
-    where (strain <= elastic)
-      flow = 0
-    else where (elastic > 0)
-      flow = strain/elastic - 1
-    end where
+    flow = merge(0.0_wp, huge(left), strain <= elastic)
+    where (strain > elastic .and. elastic > 0) flow = strain/elastic - 1
     left = sqrt(sum(energy*exp(-min(2*flow, -log(tiny(left)))))/sum(energy))
   end function left_of_stress
 
