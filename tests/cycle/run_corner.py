@@ -4,7 +4,8 @@
 usage: run_corner.py [-v] [-k]
 
 The ends of both sides lie in the corner, a little in the die or out of it. Each keeps to the face that its side lies on, so that both ways of
-saying it give the same force, and no new mesh is refused.
+saying it give the same force, and no new mesh is refused. The limits are those of REMSH alone but for ERROR: an error that passes its limit a step
+sooner or later by round-off makes other meshes of the two runs, whose forces differ by a per cent where they rise steeply.
 """
 import os
 import sys
@@ -23,15 +24,16 @@ FLOOR = """DIE    floor
    SEGM   -1. -20.   9. -20.
 CNT2D  rod 1 floor film
 """
+LIMITS = "REMSH\n   ANGLE 15. 165.\n   MIDDLE 0.4\n   SCALED 0.2\n   ASPECT 10.\n   CONTACT 50.\n   DISTRESS 4\n   LEAST 5\n"
 SAME = 1e-3
 
 
 def main():
     checks = Checks()
     with open(deck_of("heading"), encoding="utf-8") as file:
-        one = file.read()
+        one = file.read().replace("REMSH\n", LIMITS)
     two = one.replace(CORNER, WALL).replace("CNT2D  rod 1 2 matrix film\n", "CNT2D  rod 2 matrix film\n" + FLOOR)
-    checks.that(CORNER in one and FLOOR in two, "the deck has floor and wall in one curve")
+    checks.that(LIMITS in one and CORNER in one and FLOOR in two, "the deck has floor and wall in one curve")
     forces = {}
     for name, text in (("one curve", one), ("two dies", two)):
         found = run_scene("heading", checks.path(name.replace(" ", "_")), deck=write(checks.path(name.replace(" ", "_") + ".lag"), text))
