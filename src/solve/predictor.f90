@@ -7,7 +7,9 @@
 !> there is no motion that goes on: only the onset of it is kept, and the matrix there (with the contacts of now) spreads the
 !> rest.
 !>
-!> On a new mesh the last motion is none of its own: the first step starts at the motion of its onset (onset_motion).
+!> On a new mesh the last motion is none of its own: the first step starts at the motion of its onset (onset_motion), but where it
+!> shows that contact begins, to which the step is shortened first, and where temperatures are solved for too, which have their own
+!> last change.
 !>
 !> Where a die, or the support of a body that nothing touches, turns back the step starts, for the bodies that it moves
 !> (turning_back), a little way back along that motion: the matrix there is that of unloading.
@@ -22,7 +24,7 @@ module predictor
   use acceptance, only: is_first_step
   use dofs, only: dofs_t, prescribed_motion
   use elem_api, only: block_done, report_t
-  use equations, only: equations_t
+  use equations, only: equations_t, solves_heat
   use evaluation, only: evaluate
   use fields, only: displacement_field, field_t, pilot_field
   use kinds, only: wp
@@ -88,16 +90,16 @@ contains
     back = turning
     staying = .false.
     if (any(back)) staying = is_motion() .and. .not. back
+    kept = .false.
+    call start_from(ratio)
     begun = .false.
-    if (is_first_step(solution%probation) .and. .not. (any(back) .or. found) .and. ratio > 0 &
-        .and. equations%solves(equations%now)%own(displacement_field)) call start_on_new_mesh()
-    if (.not. begun) then
-      kept = .false.
-      call start_from(ratio)
-      if (.not. found .and. report%status == block_done .and. report%event >= 1 .and. report%jump > smooth_contact) then
-        kept = is_driven()
-        call start_from(merge(ratio, onset*ratio, kept))
-      end if
+    if (is_first_step(solution%probation) .and. .not. (any(back) .or. found) .and. ratio > 0 .and. report%event >= 1 &
+        .and. .not. solves_heat(scene, equations) .and. equations%solves(equations%now)%own(displacement_field)) &
+      call start_on_new_mesh()
+    if (.not. (begun .or. found) .and. report%status == block_done .and. report%event >= 1 &
+        .and. report%jump > smooth_contact) then
+      kept = is_driven()
+      call start_from(merge(ratio, onset*ratio, kept))
     end if
     if (report%status /= block_done .and. abs(ratio) > 0) then
       kept = .false.
@@ -108,16 +110,20 @@ contains
 
   contains
 
-    !> Start at the motion of the onset, with contact kept; `begun` where there is one.
+    !> Start at the motion of the onset, with contact kept; where there is none, as on any mesh.
     subroutine start_on_new_mesh()
-      kept = is_driven()
-      if (.not. kept) return
+      if (.not. is_driven()) return
+      kept = .true.
       call start_from(onset*ratio)
-      if (report%status /= block_done) return
-      call find_missing()
-      call extend_onset(equations, external, missing, du, begun)
-      if (begun) call evaluate(scene, equations, solution, dt, du, .true., report, predicted=.true., kept=kept)
-      begun = begun .and. report%status == block_done
+      if (report%status == block_done) then
+        call find_missing()
+        call extend_onset(equations, external, missing, du, begun)
+        if (begun) call evaluate(scene, equations, solution, dt, du, .true., report, predicted=.true., kept=.true.)
+        begun = begun .and. report%status == block_done
+      end if
+      if (begun) return
+      kept = .false.
+      call start_from(ratio)
     end subroutine start_on_new_mesh
 
     !> What prescribed unknowns miss of their motion; a rest that is round-off is made now.
