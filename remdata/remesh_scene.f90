@@ -29,7 +29,7 @@ module remesh_scene
   use remesh_facts, only: begin_task, end_task, remesh_facts_t
   use remesh_options, only: remesh_options_t
   use remesher_options, only: by_free, by_gmsh, remesher_options_t, smallest_anywhere
-  use scene, only: axisymmetric, is_solid, lacks_mesh, scene_t
+  use scene, only: axisymmetric, lacks_mesh, scene_t, solid_elements
   use size_field, only: old_mesh_t, size_field_t
   use sizes_of_run, only: learn_sizes
   use sizes_of_scene, only: requested_sizes
@@ -138,8 +138,8 @@ contains
     new%remesher = as_the_deck_says
     call write_checkpoint(options%out, deck_path, deck_text, new, after, [contact_end_t ::], error)
     call end_task(facts)
-    facts%old_elements = count_elements(old)
-    facts%new_elements = count_elements(new)
+    facts%old_elements = solid_elements(old)
+    facts%new_elements = solid_elements(new)
   end subroutine remesh_checkpoint
 
   !> Make the cuts that are due. The facts have what came of all cuts of the scene.
@@ -233,16 +233,5 @@ contains
     if (options%transfer >= 0) remesher%transfer = options%transfer
     if (options%mesher >= 0) remesher%mesher = options%mesher
   end subroutine apply_options
-
-  pure function count_elements(scene) result(n)
-    type(scene_t), intent(in) :: scene
-    integer :: n
-    integer :: g
-
-    n = 0
-    do g = 1, size(scene%groups)
-      if (is_solid(scene%groups(g))) n = n + size(scene%groups(g)%connectivity, 2)
-    end do
-  end function count_elements
 
 end module remesh_scene

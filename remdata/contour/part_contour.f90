@@ -19,7 +19,7 @@ module part_contour
   use die_closest_points, only: point_on_side
   use errors, only: error_t, exit_bug, exit_no_convergence, fail
   use kinds, only: wp
-  use scene, only: axisymmetric, is_solid, scene_t
+  use scene, only: axisymmetric, is_solid, scene_t, solid_elements
   use short_free_sides, only: drop_short_sides
   use small_laps, only: cut_small_laps
   use side_tags, only: find_tags, held_nodes, side_tags_t
@@ -188,11 +188,7 @@ contains
     integer, allocatable, intent(out) :: connectivity(:, :)
     integer :: g, n
 
-    n = 0
-    do g = 1, size(scene%groups)
-      if (is_solid(scene%groups(g))) n = n + size(scene%groups(g)%connectivity, 2)
-    end do
-    allocate (connectivity(8, n))
+    allocate (connectivity(8, solid_elements(scene)))
     n = 0
     do g = 1, size(scene%groups)
       if (.not. is_solid(scene%groups(g))) cycle

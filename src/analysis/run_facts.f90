@@ -3,12 +3,11 @@ module run_facts
   use closing_table, only: closing_t
   use elem_api, only: totals_t
   use kinds, only: wp
-  use scene, only: is_solid, scene_t
-  use solution, only: solution_t
+    use solution, only: solution_t
   use text, only: string_t
   implicit none
   private
-  public :: run_facts_t, solid_elements, unloaded_drift
+  public :: run_facts_t, unloaded_drift
 
   !> Facts of the run.
   type :: run_facts_t
@@ -33,16 +32,5 @@ contains
 
     share = (totals%unloaded_volume - solution%work%grown)/solution%initial_volume - 1
   end function unloaded_drift
-
-  pure function solid_elements(scene) result(n)
-    type(scene_t), intent(in) :: scene
-    integer :: n
-    integer :: g
-
-    n = 0
-    do g = 1, size(scene%groups)
-      if (is_solid(scene%groups(g))) n = n + size(scene%groups(g)%connectivity, 2)
-    end do
-  end function solid_elements
 
 end module run_facts

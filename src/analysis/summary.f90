@@ -13,8 +13,8 @@ module summary
   use law_api, only: find_parameter
   use restart_report, only: add_restart
   use restore_balance, only: balance_t
-  use run_facts, only: run_facts_t, solid_elements
-  use scene, only: scene_t
+  use run_facts, only: run_facts_t
+  use scene, only: scene_t, solid_elements
   use solution, only: solution_t
   use steel_diagrams, only: add_diagrams
   use summary_checks, only: add_advice, add_checks, add_estimate

@@ -12,8 +12,8 @@ module summary_table
   use path_advice, only: motion_advice, stress_advice
   use path_record, only: motion_error, stress_error
   use penetration_advice, only: advice_at_points, advice_between_points, sides_that_span, states_penetration
-  use run_facts, only: run_facts_t, solid_elements, unloaded_drift
-  use scene, only: scene_t
+  use run_facts, only: run_facts_t, unloaded_drift
+  use scene, only: scene_t, solid_elements
   use solution, only: solution_t
   use spring_check, only: has_body_springs, spring_advice, spring_force, spring_share
   use system, only: cpu_seconds, peak_memory_mb

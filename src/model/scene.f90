@@ -20,7 +20,7 @@ module scene
   use weld_sources, only: weld_source_t
   implicit none
   private
-  public :: scene_t, group_t, plane_state_names, host_of, is_solid, lacks_mesh
+  public :: scene_t, group_t, plane_state_names, host_of, is_solid, lacks_mesh, solid_elements
   public :: role_body, role_second, role_contact, role_side_load, role_volume_load, role_spring, role_heat_contact, role_die_heat
   public :: role_load_factor
   public :: plane_strain, axisymmetric, plane_stress, generalised_plane_strain
@@ -141,6 +141,18 @@ contains
 
     yes = group%role == role_body
   end function is_solid
+
+  !> Elements of all bodies.
+  pure function solid_elements(scene) result(n)
+    type(scene_t), intent(in) :: scene
+    integer :: n
+    integer :: g
+
+    n = 0
+    do g = 1, size(scene%groups)
+      if (is_solid(scene%groups(g))) n = n + size(scene%groups(g)%connectivity, 2)
+    end do
+  end function solid_elements
 
   !> The body whose elements a group has: its own, or those of its host.
   pure function host_of(scene, g) result(host)
