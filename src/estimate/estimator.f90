@@ -51,6 +51,8 @@ module estimator
   !> Stress over the shear modulus (over the largest stress where there are no moduli), or strain, below which it counts as zero:
   !> round-off of a stress that is zero.
   real(wp), parameter :: at_rest = 1.0e-9_wp
+  !> A new mesh shows an error of its own when less than this share is left of those of the stress that was carried to it.
+  real(wp), parameter :: forgotten = 0.1_wp
 
 contains
 
@@ -129,10 +131,11 @@ contains
     type(solution_t), intent(inout) :: solution
     real(wp), dimension(2, size(solution%estimate%stress_of)) :: missing, whole
     real(wp), dimension(size(missing, 2)) :: volume, elastic, energy
-    real(wp) :: stiffness
+    real(wp) :: stiffness, left
 
     call gather_squares(self, scene, solution, missing, whole, volume, elastic, stiffness)
     energy = whole(1, :)
+    left = solution%estimate%stress_left
     associate (estimate => solution%estimate)
       call relate(missing(1, :), whole(1, :), volume, sum(whole(1, :)) > at_rest**2*stiffness, estimate%stress, estimate%stress_of)
       estimate%strain_sums = estimate%strain_sums + sqrt(reshape([missing(2, :)/volume, whole(2, :)/volume], &
@@ -142,6 +145,8 @@ contains
       call relate(missing(2, :), whole(2, :), volume, sum(whole(2, :)) > at_rest**2*sum(volume), estimate%strain, &
                   estimate%strain_of)
       estimate%stress_left = left_of_stress(energy, elastic, estimate%strain_sums(2, :))
+      if (estimate%first_stress > 0 .and. left > forgotten .and. solution%step - estimate%last_stop <= scene%remesh%least_steps) &
+        estimate%first_stress = estimate%stress
     end associate
   end subroutine estimate_errors
 

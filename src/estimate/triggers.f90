@@ -1,8 +1,9 @@
 !> Why a new mesh is due at an accepted instant: every limit of the card REMSH that is passed.
 !>
 !> Errors, shapes, contacts and distress wait until the mesh has made its least number of steps; times and strokes do not, nor an
-!> element of a new mesh that is turned over in its first steps: it takes its neighbours along, until the contour laps. Where a new
-!> mesh has itself an error or bad elements beyond the limit, another one would be no better: it is due when they are worse by half.
+!> element of a new mesh that is turned over in its first steps: it takes its neighbours along, until the contour laps. What another
+!> mesh would gain is known from the present one: it would begin with the error that this one has shown first. It is due when the
+!> error is above the limit and worse by half than that; so are bad elements where a new mesh has them beyond the limit.
 module triggers
   use acceptance, only: is_on_probation
   use contact_quality, only: measure_misfit, misfit_t
@@ -39,8 +40,7 @@ contains
       allocate (others(0))
       if (any(abs(scene%remesh%shape) < never)) call find_bad_shapes(scene, solution, others)
       if (scene%remesh%contact < never) call find_misfits(scene, solution, others)
-      limit = scene%remesh%stress_error
-      if (solution%estimate%first_stress > limit) limit = worse*solution%estimate%first_stress
+      limit = max(scene%remesh%stress_error, worse*solution%estimate%first_stress)
       ! where the mesh is due anyhow its error is a reason from the first strain on
       if (solution%estimate%stress > limit .and. (size(others) > 0 .or. error_counts(solution, limit, scene%remesh%error_strain))) &
         call add(found, 'stress_error', solution%estimate%stress, limit)

@@ -64,7 +64,8 @@ module remeshing
     integer :: last_stop = 0
     !> Error of the stress on the mesh before, when it was replaced; 0 for the deck's own mesh.
     real(wp) :: previous_stress = 0.0_wp
-    !> Error of the stress with which a new mesh began; 0 for the deck's own mesh.
+    !> Error of the stress that a new mesh has shown first: when it began, then when its flow has forgotten the stresses carried to
+    !> it, which the transfer has smoothed; 0 for the deck's own mesh.
     real(wp) :: first_stress = 0.0_wp
     !> Error of the stress with which the mesh before left it, those of older meshes in it (0 for the deck's own mesh), and the
     !> share of that which is still there: flow forgets it, elastic parts keep it.
