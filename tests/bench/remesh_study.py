@@ -88,7 +88,7 @@ def remesh_deck(number, first, smallest, largest, error):
     with open(os.path.join(ROOT, "decks", "upsetting_remesh", "upsetting_remesh.lag"), encoding="utf-8") as file:
         text = file.read()
     for old, new in (("PARAM  nx 12", f"PARAM  nx {first[0]}"), ("PARAM  ny 18", f"PARAM  ny {first[1]}"),
-                     ("   ERROR 0.1", f"   ERROR {error}"), ("   SIZE 0.5 1.25", f"   SIZE {smallest} {largest}")):
+                     ("   ERROR 0.1", f"   ERROR {error}"), ("   SIZE 0.2 0.5", f"   SIZE {smallest} {largest}")):
         if old not in text:
             sys.exit(f"the deck has no '{old}'")
         text = text.replace(old, new)
