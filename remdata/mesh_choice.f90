@@ -4,6 +4,7 @@ module mesh_choice
   use body_seams, only: seams_t
   use boundary_curves, only: boundary_curve_t
   use errors, only: error_t, exit_input
+  use fields, only: field_t, on_nodes
   use gmsh_call, only: find_gmsh
   use kinds, only: wp
   use material_volumes, only: compare_materials, materials_kept_t
@@ -120,7 +121,8 @@ contains
                                  error)
     if (.not. allocated(error)) call compare_materials(old, before, free_plan, free, kept, error)
     if (allocated(error)) return
-    if (.not. free_mesh_is_better(facts%mesh, facts%expected, check, predict(free, sizes, strain_order))) return
+    if (.not. free_mesh_is_better(facts%mesh, facts%expected, check, predict(free, sizes, strain_order), &
+                                  .not. any(is_other_unknown(old%fields)))) return
     plan = free_plan
     mesh = free
     facts%materials = kept
@@ -128,6 +130,14 @@ contains
     facts%mesh = check
     call note_free_mesh(mesh, sizes, facts)
   end subroutine take_better_mesh
+
+  !> A field that is solved for on nodes beside the motion, as the temperature: of its errors nothing is known here.
+  elemental function is_other_unknown(field) result(yes)
+    type(field_t), intent(in) :: field
+    logical :: yes
+
+    yes = field%declared .and. field%place == on_nodes .and. .not. field%given .and. field%quantity /= 'motion'
+  end function is_other_unknown
 
   !> A mesh without zones: by the free mesher, or by Gmsh where it is requested or the free mesher failed. Where both fail, the
   !> error of the free mesher is the one to report.

@@ -21,18 +21,20 @@ module better_mesh
 contains
 
   !> Where a mesh is of poor shape: is the one without zones of better shape? Else: is that by zones expected to have the larger
-  !> error, in the whole or in the windows; or, where neither is, more elements? Errors below the limit the sizes were requested for
-  !> are all good.
-  pure function free_mesh_is_better(zones, zones_expected, free, free_expected) result(better)
+  !> error, in the whole or in the windows; or, where neither is and no other field would miss them, more elements? Errors below the
+  !> limit the sizes were requested for are all good.
+  pure function free_mesh_is_better(zones, zones_expected, free, free_expected, strains_only) result(better)
     type(mesh_check_t), intent(in) :: zones, free
     type(prediction_t), intent(in) :: zones_expected, free_expected
+    logical, intent(in) :: strains_only   !! nothing is solved for but the motion: sizes by the error of the strains suit all
     logical :: better
 
     if (min(zones%scaled_jacobian, free%scaled_jacobian) < good_shape) then
       better = free%scaled_jacobian > zones%scaled_jacobian
     else
       better = is_worse(zones_expected, free_expected) &
-               .or. (zones_expected%elements > larger*free_expected%elements .and. .not. is_worse(free_expected, zones_expected))
+               .or. (strains_only .and. zones_expected%elements > larger*free_expected%elements &
+                     .and. .not. is_worse(free_expected, zones_expected))
     end if
   end function free_mesh_is_better
 
