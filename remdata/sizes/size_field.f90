@@ -4,6 +4,7 @@
 !> with a size requirement (a bend of the contour, contact): the required size, growing with the distance. Limited by the smallest
 !> and largest size, those of its window for a point in one, and from one element to the next by the gradation.
 module size_field
+  use block_mesh, only: polygon_area
   use box_tree, only: box_tree_t, build_tree, nearest_items
   use graded_sizes, only: grade, slope_of
   use kinds, only: wp
@@ -13,7 +14,7 @@ module size_field
   use transfer_mesh, only: build_element_trees, set_up_mesh, transfer_mesh_t
   implicit none
   private
-  public :: size_limits_t, need_t, size_field_t, old_mesh_t, requested_size, set_up_sizes, size_at, is_in_window
+  public :: size_limits_t, need_t, size_field_t, old_mesh_t, requested_size, set_up_sizes, size_at, is_in_window, elements_needed
 
   !> A point where the geometry requires a size.
   type :: need_t
@@ -129,6 +130,21 @@ contains
     h = min(h, size_by_windows(field%limits, field%windows, x, origin))
     h = within(limits_at(field, x, origin), h)
   end function size_at
+
+  !> Elements that the sizes need, by the elements of the old mesh: the integral of 1/h^2. 0 where there is no old mesh.
+  pure function elements_needed(field) result(number)
+    type(size_field_t), intent(in) :: field
+    real(wp) :: number
+    real(wp) :: x(2, 4)
+    integer :: e
+
+    number = 0
+    if (.not. field%has_mesh) return
+    do e = 1, size(field%mesh%material)
+      x = field%mesh%nodes(:, field%mesh%connectivity(1:4, e))
+      number = number + max(polygon_area(x), 0.0_wp)/size_at(field, field%mesh%material(e), 0.25_wp*sum(x, 2))**2
+    end do
+  end function elements_needed
 
   !> A point of a material is in a window.
   pure function is_in_window(field, material, x) result(yes)
