@@ -4,6 +4,10 @@
 !> element of a new mesh that is turned over in its first steps: it takes its neighbours along, until the contour laps. What another
 !> mesh would gain is known from the present one: it would begin with the error that this one has shown first. It is due when the
 !> error is above the limit and worse by half than that; so are bad elements where a new mesh has them beyond the limit.
+!>
+!> Where what is left of the scene takes two more steps at most the mesh that is there makes them: a new one would hardly be used, and the
+!> equilibrium it begins with would be found in steps that have no others behind them. Elements that are turned over, cutbacks, times,
+!> strokes and cuts do not wait for the end.
 module triggers
   use acceptance, only: is_on_probation
   use contact_quality, only: measure_misfit, misfit_t
@@ -23,6 +27,8 @@ module triggers
   real(wp), parameter :: worse = 1.5_wp
   !> An error counts as so many times its limit at most.
   real(wp), parameter :: most_errors = 3.0_wp
+  !> So many steps to the end are made on the mesh that is there.
+  real(wp), parameter :: last_steps = 2.0_wp
 
 contains
 
@@ -36,7 +42,7 @@ contains
     integer :: k
 
     allocate (found(0))
-    if (was_good(scene, solution)) then
+    if (was_good(scene, solution) .and. .not. nears_end(scene, solution)) then
       allocate (others(0))
       if (any(abs(scene%remesh%shape) < never)) call find_bad_shapes(scene, solution, others)
       if (scene%remesh%contact < never) call find_misfits(scene, solution, others)
@@ -45,7 +51,7 @@ contains
       if (solution%estimate%stress > limit .and. (size(others) > 0 .or. error_counts(solution, limit, scene%remesh%error_strain))) &
         call add(found, 'stress_error', solution%estimate%stress, limit)
       found = [found, others]
-    else if (any(abs(scene%remesh%shape) < never) .and. is_on_probation(solution%probation)) then
+    else if (any(abs(scene%remesh%shape) < never) .and. (was_good(scene, solution) .or. is_on_probation(solution%probation))) then
       call find_bad_shapes(scene, solution, found, only_turned_over=.true.)
     end if
     do k = 1, size(scene%remesh%times)
@@ -102,6 +108,15 @@ contains
 
     good = solution%step - solution%estimate%last_stop >= scene%remesh%least_steps
   end function was_good
+
+  !> The step strategy reaches the end of the scene in a few steps as long as it wants the next one.
+  pure function nears_end(scene, solution)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    logical :: nears_end
+
+    nears_end = scene%strategy%end_time - solution%time <= last_steps*min(solution%next_step, scene%strategy%largest_step)
+  end function nears_end
 
   !> So much strain went with the error as makes it count: what a wrong stress leaves in the state goes with the error and with the
   !> strain, so that twice the limit counts from half the strain on. Where contact begins at a point the error is large on any mesh:
