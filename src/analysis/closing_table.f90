@@ -42,10 +42,11 @@ module closing_table
     !> with what it owes to the motion (where that is known), and at this motion.
     logical :: flows = .false., path = .false., whole_known = .false.
     real(wp) :: motion = 0.0_wp, path_stress = 0.0_wp, stress_at_motion = 0.0_wp, path_cost = 2.0_wp
-    !> There is heat. Its errors in time, where they are estimated (THETA): sum over the steps [temperature], and how many have one.
+    !> There is heat. Its errors in time, where they are estimated (THETA): sum over the steps; of all steps at the end, and
+    !> the largest at any time, in the mean square of the volume [temperature]; and how many have one.
     logical :: warm = .false.
     integer :: heat_steps = 0
-    real(wp) :: heat = 0.0_wp, heat_cost = 2.0_wp
+    real(wp) :: heat = 0.0_wp, heat_now = 0.0_wp, heat_largest = 0.0_wp, heat_cost = 2.0_wp
     !> Depth of the part in its dies, at points of contact and between them [length], over what is allowed (0: nothing states that).
     logical :: contact = .false.
     real(wp) :: depth = 0.0_wp, depth_share = 0.0_wp
@@ -78,6 +79,8 @@ contains
     closing%warm = has_heat(scene)
     closing%heat_steps = solution%heat%estimated
     closing%heat = solution%heat%error_sum
+    closing%heat_now = solution%heat%error_now
+    closing%heat_largest = solution%heat%error_largest
     closing%heat_cost = 2.0_wp**(1.0_wp/order_in_time(scene%strategy))
     closing%contact = size(scene%dies) > 0 .and. closing%space
     closing%depth = max(solution%worst_penetration, solution%worst_sample)
@@ -192,7 +195,8 @@ contains
                times(closing%path_cost)//' the time: half the steps'' length')
     if (closing%warm .and. closing%heat_steps == 0) call row('in time', 'heat: not estimated (THETA)', '')
     if (closing%heat_steps > 0) &
-      call row('in time', 'heat: '//to_text(closing%heat, 3)//' [temperature] in sum', &
+      call row('in time', 'heat: '//to_text(closing%heat_now, 3)//' [temperature] at the end, at most ' &
+               //to_text(closing%heat_largest, 3), &
                times(closing%heat_cost)//' the time: shorter steps')
     if (closing%contact) then
       words = 'depth '//to_text(closing%depth, 3)
@@ -288,6 +292,8 @@ contains
     end if
     if (closing%heat_steps > 0) then
       call json%begin_object('heat')
+      call json%add('end', closing%heat_now)
+      call json%add('largest', closing%heat_largest)
       call json%add('sum', closing%heat)
       call json%add('half_costs', closing%heat_cost)
       call json%end_object()

@@ -61,6 +61,8 @@ contains
     if (heat%estimated > 0) then
       call json%add('error_in_time_worst', heat%error_worst)
       call json%add('error_in_time_sum', heat%error_sum)
+      call json%add('error_in_time_end', heat%error_now)
+      call json%add('error_in_time_largest', heat%error_largest)
       call json%add('steps_shortened_by_error', heat%shortened)
       call json%add('least_steps_above_error', heat%above)
     end if

@@ -103,7 +103,8 @@ contains
 
       if (heat%estimated > 0) &
         call put('  estimated error in time: largest of a step '//to_text(heat%error_worst, 3)//', sum of all ' &
-                 //to_text(heat%error_sum, 3)//'; '//to_text(heat%shortened)//' attempts shortened for it, ' &
+                 //to_text(heat%error_sum, 3)//', at the end '//to_text(heat%error_now, 3)//', at most ' &
+                 //to_text(heat%error_largest, 3)//'; '//to_text(heat%shortened)//' attempts shortened for it, ' &
                  //to_text(heat%above)//' steps of the least length above what is allowed')
       if (heat%outside + heat%fallbacks > 0) &
         call put('  temperatures beyond those around them in '//to_text(heat%outside)//' steps, by up to ' &

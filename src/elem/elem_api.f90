@@ -134,8 +134,9 @@ module elem_api
     real(wp) :: source = 0.0_wp
     !> Heat that the elements took up in the step, and that sources released in them [energy].
     real(wp) :: heat_stored = 0.0_wp, heat_released = 0.0_wp
-    !> In mode_error: integral of the square of the error, and the volume [temperature^2 volume], [volume].
-    real(wp) :: error_square = 0.0_wp, error_volume = 0.0_wp
+    !> In mode_error: integrals of the squares of the error of the heat content, over the least capacity, and of the temperature,
+    !> and the volume [temperature^2 volume], [volume].
+    real(wp) :: error_square = 0.0_wp, temperature_square = 0.0_wp, error_volume = 0.0_wp
   end type report_t
 
   !> Sums over a group at an accepted instant (per radian when axisymmetric), and extremes.

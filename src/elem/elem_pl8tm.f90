@@ -281,7 +281,8 @@ contains
     end if
   end subroutine add_content
 
-  !> Square of an error of the heat content over the least heat capacity of the material, so that latent heat counts as heat.
+  !> Square of an error of the heat content over the least heat capacity of the material, so that latent heat counts as heat; and of
+  !> the temperatures themselves.
   pure subroutine add_error(law, material, npoint, own, lumped, place, drivers, change, now, report)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
@@ -309,6 +310,7 @@ contains
       volume(:npoint) = place%dv0(:npoint)
     end if
     call law%store(material, given(:, :m), given(:, :m), taken(:m), capacity(:m))
+    report%temperature_square = report%temperature_square + sum(volume(:m)*error(:m)**2)
     error(:m) = error(:m)*capacity(:m)/least_capacity(law, material, given(:, 1))
     report%error_square = report%error_square + sum(volume(:m)*error(:m)**2)
     report%error_volume = report%error_volume + sum(volume(:m))

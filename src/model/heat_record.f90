@@ -10,6 +10,9 @@ module heat_record
     !> is above what the deck allows.
     logical :: estimated = .false.
     real(wp) :: error = 0.0_wp
+    !> Error at its end, of all steps so far on the mesh: heat of the nodes (nnode) [energy], and temperature, in the mean square.
+    real(wp), allocatable :: content_error(:)
+    real(wp) :: error_now = 0.0_wp
     logical :: above = .false.
     !> It must be shortened by its error; largest factor for the step that follows.
     logical :: too_long = .false.
@@ -23,6 +26,10 @@ module heat_record
     !> Sum and largest of the estimated errors of the steps [temperature], and how many were estimated.
     real(wp) :: error_sum = 0.0_wp, error_worst = 0.0_wp
     integer :: estimated = 0
+    !> What the steps have left of their errors: of the heat of the nodes, by those on the present mesh (nnode, of none where there
+    !> is no temperature) [energy]; of the temperature, in the mean square: by these, by all, and the largest so far [temperature].
+    real(wp), allocatable :: content_error(:)
+    real(wp) :: error_of_mesh = 0.0_wp, error_now = 0.0_wp, error_largest = 0.0_wp
     !> Attempts shortened by their error; steps of the least length that are above it.
     integer :: shortened = 0, above = 0
     !> Steps with temperatures beyond those that can be there, and the farthest [temperature]; steps made again for that.
@@ -42,6 +49,11 @@ contains
       record%estimated = record%estimated + 1
       record%error_sum = record%error_sum + step%error
       record%error_worst = max(record%error_worst, step%error)
+      ! what came on earlier meshes stays beside that of this one
+      record%error_now = max(record%error_now - record%error_of_mesh, 0.0_wp) + step%error_now
+      record%error_of_mesh = step%error_now
+      record%error_largest = max(record%error_largest, record%error_now)
+      record%content_error = step%content_error
       if (step%above) record%above = record%above + 1
     end if
     if (step%fell_back) record%fallbacks = record%fallbacks + 1

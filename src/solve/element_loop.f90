@@ -88,6 +88,7 @@ contains
           report%heat_stored = report%heat_stored + reports(b)%heat_stored
           report%heat_released = report%heat_released + reports(b)%heat_released
           report%error_square = report%error_square + reports(b)%error_square
+          report%temperature_square = report%temperature_square + reports(b)%temperature_square
           report%error_volume = report%error_volume + reports(b)%error_volume
           report%unpaired = report%unpaired .or. reports(b)%unpaired
           if (report%status /= block_done .or. reports(b)%status == block_done) cycle

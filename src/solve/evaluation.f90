@@ -79,14 +79,15 @@ contains
   end subroutine evaluate
 
   !> An error of the heat content at the end of a step, in the mean square of the volume of the bodies, over the least heat capacity
-  !> of each. It is given by the temperatures that it belongs to.
-  subroutine measure_error(scene, equations, solution, du, temperatures, error)
+  !> of each; and that of the temperatures that it belongs to, by which it is given.
+  subroutine measure_error(scene, equations, solution, du, temperatures, error, of_temperature)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: du(:)             !! (ndof) motion of the step [unknown]
     real(wp), intent(in) :: temperatures(:)   !! (ndof) the error [unknown]
     real(wp), intent(out) :: error            !! [temperature]
+    real(wp), intent(out) :: of_temperature   !! [temperature]
     type(instant_t) :: instant
     type(report_t) :: report
     real(wp), allocatable :: now(:, :)
@@ -99,7 +100,10 @@ contains
                       equations%solves(equations%now)%active, equations%solves(equations%now)%pattern, instant, temperatures, now, &
                       solution, equations%drivers, equations%buffers, equations%timers, report)
     error = 0
-    if (report%error_volume > 0) error = sqrt(report%error_square/report%error_volume)
+    of_temperature = 0
+    if (.not. report%error_volume > 0) return
+    error = sqrt(report%error_square/report%error_volume)
+    of_temperature = sqrt(report%temperature_square/report%error_volume)
   end subroutine measure_error
 
 end module evaluation

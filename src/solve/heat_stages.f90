@@ -5,18 +5,14 @@
 !> Math. 20 (1996) 21-37) has stages at the start, after 2 D dt, and at the end, D = 1 - 1/sqrt(2), W = sqrt(2)/4:
 !>   (H1 - Hn)/(D dt) + G0 + G1 = 0,   (H2 - Hn)/(D dt) + (W/D)(G0 + G1) + G2 = 0.
 !> It is of second order and L-stable, and both stages have the same matrix. The difference to its embedded formula of third order
-!> is its error, sum of E_k G_k dt; of implicit Euler it is the difference to the trapezoidal rule, (G1 - G0) dt/2. Both are
-!> divided by the matrix of the step as Hosea and Shampine do, so that stiff parts, which the step damps, do not count; and measured
-!> as heat content.
+!> is its error, sum of E_k G_k dt; of implicit Euler it is the difference to the trapezoidal rule, (G1 - G0) dt/2 (heat_error).
 !> A first step is of implicit Euler: what was started with need not agree with what is imposed, which would cost TR-BDF2 an order.
 module heat_stages
-  use corrections, only: solve_correction
-  use elem_api, only: report_t
   use equations, only: equations_t, remedy_euler, remedy_monotone, remedy_none, stage_t
-  use evaluation, only: evaluate, measure_error
   use external_loads, only: external_forces
   use fields, only: find_field
   use heat_bounds, only: excess_of_temperature, has_bounds, on_corners_alone
+  use heat_error, only: diagonal, estimate_error, flows, weight
   use kinds, only: wp
   use newton, only: outcome_t, solve_step
   use scene, only: role_heat_contact, scene_t
@@ -27,8 +23,7 @@ module heat_stages
   private
   public :: is_heat_alone, solve_heat
 
-  !> D and W above, the weights of the stages, and those of the error.
-  real(wp), parameter :: diagonal = 1 - 1/sqrt(2.0_wp), weight = sqrt(2.0_wp)/4
+  !> The weights of the stages, and those of the error.
   real(wp), parameter :: weights(0:2) = [weight, weight, diagonal]
   real(wp), parameter :: error_weights(0:2) = weights - [(1 - weight)/3, (3*weight + 1)/3, diagonal/3]
   !> A step is made so much shorter than its error asks for, and at least and at most this factor after one that is too long.
@@ -140,8 +135,8 @@ contains
     if (.not. outcome%converged) return
     call keep_evaluation(equations, kept)
     call flows(scene, equations, solution, dt, outcome%du, after)
-    call estimate(scene, equations, solution, 0.5_wp*(after - before), outcome, &
-                  at_hand=.not. scene%strategy%time_tolerance > 0 .and. outcome%iterations > 0)
+    call estimate_error(scene, equations, solution, dt, 0.5_wp*(after - before), after, .false., outcome, &
+                        at_hand=.not. scene%strategy%time_tolerance > 0 .and. outcome%iterations > 0)
     call return_to(kept, equations)
   end subroutine solve_one_stage
 
@@ -191,29 +186,9 @@ contains
     call take_passed(scene, equations, passed, kept%element_force)
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     kept%force = merge(external + diagonal*(kept%force + left - external), kept%force, equations%solves(equations%now)%is_own)
-    call estimate(scene, equations, solution, matmul(g, error_weights)/diagonal, outcome)
+    call estimate_error(scene, equations, solution, dt, matmul(g, error_weights)/diagonal, g(:, 2), .true., outcome)
     call return_to(kept, equations)
   end subroutine solve_two_stages
-
-  !> Flows out of the nodes less the loads at an instant of the step, without what is taken up and released.
-  subroutine flows(scene, equations, solution, dt, du, g, reach)
-    type(scene_t), intent(in) :: scene
-    type(equations_t), intent(inout) :: equations
-    type(solution_t), intent(inout) :: solution
-    real(wp), intent(in) :: dt      !! to the instant [time]
-    real(wp), intent(in) :: du(:)   !! (ndof) motion to there [unknown]
-    real(wp), intent(out) :: g(:)   !! (ndof), 0 for the unknowns of other solves [power]
-    real(wp), intent(in), optional :: reach   !! share of the step; the end, or the start for dt = 0, where absent
-    real(wp) :: external(size(du))
-    type(report_t) :: report
-
-    equations%stage = stage_t(content=.false., reach=merge(1.0_wp, 0.0_wp, dt > 0))
-    if (present(reach)) equations%stage%reach = reach
-    call evaluate(scene, equations, solution, dt, du, .false., report)
-    equations%stage = stage_t()
-    call external_forces(scene, equations%dofs, solution%time + dt, external)
-    g = merge(equations%force - external, 0.0_wp, equations%solves(equations%now)%is_own)
-  end subroutine flows
 
   !> Add the element forces of what brings heat in, of the present solve.
   pure subroutine add_passed(scene, equations, share, passed)
@@ -255,25 +230,6 @@ contains
       force(m + 1:m + n) = passed(m + 1:m + n)
     end do
   end subroutine take_passed
-
-  !> Solve for the error and measure it.
-  subroutine estimate(scene, equations, solution, rates, outcome, at_hand)
-    type(scene_t), intent(in) :: scene
-    type(equations_t), intent(inout) :: equations
-    type(solution_t), intent(inout) :: solution
-    real(wp), intent(in) :: rates(:)   !! (ndof) error of the heat contents over the length that the matrix divides them by [power]
-    type(outcome_t), intent(inout) :: outcome
-    logical, intent(in), optional :: at_hand   !! by the factors of the last iteration
-    real(wp) :: temperatures(size(rates))
-
-    call solve_correction(equations, rates, temperatures, outcome%error, at_hand)
-    if (allocated(outcome%error)) then
-      outcome%converged = .false.
-      return
-    end if
-    call measure_error(scene, equations, solution, outcome%du, temperatures, outcome%heat%error)
-    outcome%heat%estimated = .true.
-  end subroutine estimate
 
   !> By the error the step is accepted or must be shortened, and the next may be so much longer.
   subroutine judge(scene, solution, dt, outcome)

@@ -89,6 +89,10 @@ class Closing(unittest.TestCase):
         summary, listing, _, out = self.run_deck("radiation/radiation_cooling")
         heat = summary["accuracy"]["heat"]
         self.assertEqual(summary["checks"]["error_in_time_sum"], heat["sum"])
+        self.assertEqual(summary["checks"]["error_in_time_end"], heat["end"])
+        self.assertEqual(summary["checks"]["error_in_time_largest"], heat["largest"])
+        self.assertTrue(0 < heat["end"] <= heat["largest"] <= heat["sum"], heat)
+        self.assertIn("[temperature] at the end, at most ", listing)
         self.assertGreater(heat["sum"], 0)
         self.assertAlmostEqual(2**0.5, heat["half_costs"], places=12)
         self.assertNotIn("space", summary["accuracy"])

@@ -9,6 +9,8 @@ usage: run_schemes.py [-v] [-k]
 - `t3` (NAFEMS T3): 36.603 after 32 s.
 - `error`: the estimate of a smooth problem falls with the third power of the step (second: implicit Euler), and the sum of all is no
   less than the error of the run; TOL is met, and the error falls with it.
+- `carried`: the estimate of what all steps have left at the end is half to twice the error of the run, by both schemes: with numbers by
+  temperature, latent heat, motion and after a shock.
 - `bounds`: a body of Biot number 1000 on a coarse mesh: with BILINEAR no temperature is outside at any step, TR-BDF2 falls back to
   implicit Euler and says how often; with eight temperatures an element the steps outside are counted. On skew and on flat elements, with
   numbers by temperature, every scheme makes steps again, in the end without flows against the fall of the temperature: none is outside.
@@ -91,6 +93,20 @@ def t3(checks):
     run = Run(checks, "t3", WAVE + wave + steps(128, 32.0) + "THETA TRBDF2\nEND\n")
     if run.ok:
         checks.small(abs(run.history["a"][-1]/36.60312 - 1), 1e-4, "t3: 36.603")
+
+
+def carried(checks):
+    """What earlier steps have left of their errors, at the end: against runs of short steps."""
+    for name, (text, time, counts) in dict(CASES, smooth=(SMOOTH, 40.0, (64,)), shock=(EXCHANGE, 40.0, (64,))).items():
+        exact = Run(checks, f"{name}-short", text + steps(16*counts[-1], time) + "THETA TRBDF2\nEND\n")
+        for scheme in ("1.", "TRBDF2"):
+            run = Run(checks, f"{name}-carried-{scheme.strip('.')}", text + steps(counts[-1]//2, time) + f"THETA {scheme}\nEND\n")
+            if not (run.ok and exact.ok):
+                continue
+            true = np.sqrt(np.mean((temperatures(run)[1] - temperatures(exact)[1])**2))
+            found = checks_of(run)["error_in_time_end"]
+            checks.that(0.5*true <= found <= 2*true, f"{run.name}: estimated error at the end", f"{found:.3g}, error {true:.3g}")
+            checks.that(found <= checks_of(run)["error_in_time_largest"], f"{run.name}: the largest is no less", checks_of(run))
 
 
 def error(checks):
@@ -270,6 +286,7 @@ def main():
     order(checks)
     t3(checks)
     error(checks)
+    carried(checks)
     bounds(checks)
     bounds_of_any(checks)
     latent(checks)

@@ -10,7 +10,7 @@ from .words import brief
 ROWS: List[Tuple[str, str, Dict[str, str]]] = [
     ("space", "in space", {"stress_pct": "stress {} %", "strain_pct": "strain {} %"}),
     ("path", "in time, by the path within steps", {"motion_pct": "motion {} % in sum", "stress_pct": "stress {} % at the end"}),
-    ("heat", "in time, of heat", {"sum": "{} [temperature], sum of all steps"}),
+    ("heat", "in time, of heat", {"end": "{} [temperature] at the end", "largest": "at most {}"}),
     ("contact", "at contact", {"depth": "depth {} [length]", "over_allowed": "{} of the allowed"}),
 ]
 HOW = {"space": "twice the elements", "path": "shorter steps", "heat": "shorter steps"}

@@ -1,0 +1,130 @@
+!> Error in time of the balance of heat: of a step, and at its end of all steps so far.
+!>
+!> What a step errs in the heat of the nodes (heat_stages) is divided by the matrix of the step, M, as M.E. Hosea and
+!> L.F. Shampine do (Appl. Numer. Math. 20 (1996) 21-37), so that stiff parts, which the step damps, do not count.
+!>
+!> Errors of earlier steps go on as temperatures do: they are conducted, and die away where those do. With d the error of the heat
+!> of the nodes (heat that phases release counts as heat), e that of the temperatures, K the matrix of the flows, and dt r what the
+!> step errs itself, a step of implicit Euler makes of d0
+!>   M e1 = d0/dt + r,   d1 = d0 + dt r - dt K e1;
+!> one of TR-BDF2 (D and W as there) first makes the same of its first stage, M s = 2 d0/(D dt), dm = d0 - D dt K s, and then
+!>   M e1 = ((1 - W/D) d0 + W/D dm)/(D dt) + r.
+!> The flows K e are those of the elements, by their difference along a small part of e. So latent heat and numbers by temperature
+!> are as in the step. (Global errors by the linearised equation with the local ones as its sources: R.D. Skeel, Thirteen ways to
+!> estimate global error, Numer. Math. 48 (1986) 1-20.)
+module heat_error
+  use corrections, only: solve_correction
+  use elem_api, only: report_t
+  use equations, only: equations_t, stage_t
+  use evaluation, only: evaluate, measure_error
+  use external_loads, only: external_forces
+  use fields, only: find_field
+  use kinds, only: wp
+  use newton, only: outcome_t
+  use scene, only: scene_t
+  use solution, only: solution_t
+  implicit none
+  private
+  public :: diagonal, estimate_error, flows, weight
+
+  !> D and W of TR-BDF2.
+  real(wp), parameter :: diagonal = 1 - 1/sqrt(2.0_wp), weight = sqrt(2.0_wp)/4
+  !> Share of an error along which flows are taken as linear.
+  real(wp), parameter :: small = 2.0_wp**(-10)
+
+contains
+
+  !> Error of a step, and what it makes of those before it.
+  subroutine estimate_error(scene, equations, solution, dt, rates, after, two_stages, outcome, at_hand)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt         !! [time]
+    real(wp), intent(in) :: rates(:)   !! (ndof) error of the heat contents over the length that the matrix divides them by [power]
+    real(wp), intent(in) :: after(:)   !! (ndof) flows at the end of the step [power]
+    logical, intent(in) :: two_stages  !! the step is one of TR-BDF2
+    type(outcome_t), intent(inout) :: outcome
+    logical, intent(in), optional :: at_hand   !! by the factors of the last iteration
+    real(wp) :: temperatures(size(rates)), of_temperature
+
+    call solve_correction(equations, rates, temperatures, outcome%error, at_hand)
+    if (.not. allocated(outcome%error)) then
+      call measure_error(scene, equations, solution, outcome%du, temperatures, outcome%heat%error, of_temperature)
+      outcome%heat%estimated = .true.
+      call carry_errors(scene, equations, solution, dt, rates, after, two_stages, outcome)
+    end if
+    if (allocated(outcome%error)) outcome%converged = .false.
+  end subroutine estimate_error
+
+  !> Errors of all steps at the end of this one, by the factors at hand.
+  subroutine carry_errors(scene, equations, solution, dt, rates, after, two_stages, outcome)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt                  !! [time]
+    real(wp), intent(in) :: rates(:), after(:)  !! (ndof) as those of estimate_error [power]
+    logical, intent(in) :: two_stages
+    type(outcome_t), intent(inout) :: outcome
+    real(wp), dimension(size(rates)) :: heat, middle, temperatures
+    real(wp) :: length, unused
+    integer :: f, n, d
+
+    f = find_field(scene%fields, 'temperature')
+    length = merge(diagonal, 1.0_wp, two_stages)*dt
+    associate (number => equations%dofs%fields(f)%number(1, :), equation => equations%solves(equations%now)%equation)
+      heat = 0
+      do n = 1, size(number)
+        d = number(n)
+        if (d == 0) cycle
+        if (equation(d) > 0) heat(d) = solution%heat%content_error(n)
+      end do
+      if (two_stages .and. any(abs(heat) > 0)) then
+        call solve_correction(equations, 2*heat/length, temperatures, outcome%error, at_hand=.true.)
+        if (allocated(outcome%error)) return
+        middle = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures)
+        heat = heat + (weight/diagonal)*(middle - heat)
+      end if
+      heat = heat + length*rates
+      call solve_correction(equations, heat/length, temperatures, outcome%error, at_hand=.true.)
+      if (allocated(outcome%error)) return
+      heat = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures)
+      call measure_error(scene, equations, solution, outcome%du, temperatures, unused, outcome%heat%error_now)
+      where (equation == 0) heat = 0
+      outcome%heat%content_error = [(merge(heat(max(number(n), 1)), 0.0_wp, number(n) > 0), n=1, size(number))]
+    end associate
+  end subroutine carry_errors
+
+  !> Flows out of the nodes that come with a small change of the temperatures, at the end of the step.
+  function flows_of(scene, equations, solution, dt, du, after, temperatures) result(g)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt
+    real(wp), intent(in) :: du(:), after(:), temperatures(:)   !! (ndof) motion, its flows [power], the change [temperature]
+    real(wp) :: g(size(du))   !! [power]
+
+    call flows(scene, equations, solution, dt, du + small*temperatures, g)
+    g = (g - after)/small
+  end function flows_of
+
+  !> Flows out of the nodes less the loads at an instant of the step, without what is taken up and released.
+  subroutine flows(scene, equations, solution, dt, du, g, reach)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt      !! to the instant [time]
+    real(wp), intent(in) :: du(:)   !! (ndof) motion to there [unknown]
+    real(wp), intent(out) :: g(:)   !! (ndof), 0 for the unknowns of other solves [power]
+    real(wp), intent(in), optional :: reach   !! share of the step; the end, or the start for dt = 0, where absent
+    real(wp) :: external(size(du))
+    type(report_t) :: report
+
+    equations%stage = stage_t(content=.false., reach=merge(1.0_wp, 0.0_wp, dt > 0))
+    if (present(reach)) equations%stage%reach = reach
+    call evaluate(scene, equations, solution, dt, du, .false., report)
+    equations%stage = stage_t()
+    call external_forces(scene, equations%dofs, solution%time + dt, external)
+    g = merge(equations%force - external, 0.0_wp, equations%solves(equations%now)%is_own)
+  end subroutine flows
+
+end module heat_error
