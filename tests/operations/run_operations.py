@@ -6,6 +6,7 @@ usage: run_operations.py [-v] [-k]
 - `split`: a stroke in two operations, the die of the second where that of the first has stopped, is the stroke in one.
 - `release`: an operation without dies leaves the part as a die that is lifted does.
 - `heat`, `pair`: heat alone; bodies in contact in generalised plane strain, which the next operation finds as they were.
+- `at_once`: a multiplier that begins an operation with another value than 0.
 - `strokes`: press, release, press with another die; stopped anywhere and resumed to the same bits; with a new mesh in each
   operation the same part, by one command, also where that is stopped.
 """
@@ -201,6 +202,17 @@ def others(checks):
     checks.that(rows["iterations"][change] <= 1, "pair: nothing is to be found again", rows["iterations"][change])
 
 
+def at_once(checks):
+    """What an operation moves at once is moved once, in its first step."""
+    parts = "OPERA  pull\nLIC    way\n   0. 0.  1. 0.1\nMOVE   block 3 Y way\nOPERA  more\nLIC    way\n   0. 0.1\nMOVE   block 3 Y way\nSTOP   1.\n"
+    head = HEAD.replace("LAW    film COUL2D\n   PENETR 1.E-3   PHI 0.1   AUGMENT 10\n", "")
+    _, out = done(checks, "at_once", head + STEP + parts)
+    rows = history(out)
+    change = rows["operation"].index(2)
+    for row, way in ((change - 1, 0.1), (change, 0.2), (-1, 0.2)):
+        checks.that(abs(rows["corner"][row]/way - 1) < 1e-9, f"at once: {way}", rows["corner"][row])
+
+
 def checked(checks):
     """--check shows every operation."""
     deck, folder = write(checks.path("checked.lag"), HEAD + STROKES + "END\n"), checks.path("scenes")
@@ -218,6 +230,7 @@ def main():
     split(checks)
     strokes(checks)
     others(checks)
+    at_once(checks)
     checked(checks)
     checks.end()
 
