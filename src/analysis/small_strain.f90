@@ -64,7 +64,7 @@ contains
   end subroutine refuse_large_strain
 
   !> Volume of an element, that of its points whose principal strains are above the bound, and the largest of these by size; from
-  !> its displacement since the mesh began.
+  !> its displacement since the mesh began, or since it was laid down.
   pure function strains_of_element(scene, solution, g, e) result(part)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -79,6 +79,9 @@ contains
       call quad8_rule(group%rule%n, rule)
       x = scene%mesh%coordinates(:, group%connectivity(:, e))
       u = solution%fields(displacement_field)%value(:, group%connectivity(:, e))
+      if (allocated(solution%groups(g)%laid)) then
+        if (size(solution%groups(g)%laid) > 0) u = u - solution%groups(g)%laid(:, :, e)
+      end if
       do p = 1, group%rule%n
         call derivatives(rule%dphi(:, :, p), x, nx, ny, detj)
         here = matmul(x, rule%phi(:, p))

@@ -102,7 +102,12 @@ contains
     after%pairs = fresh%pairs
     do g = 1, size(new%groups)
       k = same_group(old, before, new, fresh, g)
-      if (k == 0) cycle
+      if (k == 0) then
+        if (is_solid(new%groups(g)) .and. .not. new%finite) &
+          call note_laid(new%groups(g), after%fields(displacement_field)%value, after%groups(g)%laid)
+        cycle
+      end if
+      if (allocated(before%groups(k)%laid)) after%groups(g)%laid = before%groups(k)%laid
       call take_state(old%groups(k), before%groups(k)%committed, new%groups(g), after%groups(g)%committed)
       after%groups(g)%trial = after%groups(g)%committed
       if (new%groups(g)%pairs == 0 .or. new%groups(g)%host > 0 .or. old%groups(k)%pairs == 0) cycle
@@ -110,6 +115,20 @@ contains
         after%pairs(new%groups(g)%pairs)%piece = before%pairs(old%groups(k)%pairs)%piece
     end do
   end subroutine begin_operation
+
+  !> Where the nodes of a body are that comes: it has no strain there.
+  pure subroutine note_laid(group, displacement, laid)
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: displacement(:, :)            !! (2, nnode), of no nodes where nothing moves [length]
+    real(wp), allocatable, intent(out) :: laid(:, :, :)   !! (2, node, element) [length]
+    integer :: e
+
+    if (size(displacement, 2) == 0) return
+    allocate (laid(2, size(group%connectivity, 1), size(group%connectivity, 2)))
+    do e = 1, size(laid, 3)
+      laid(:, :, e) = displacement(:, group%connectivity(:, e))
+    end do
+  end subroutine note_laid
 
   !> Bodies that come fit those that were there: displacements of their nodes are the means of their neighbours' (Laplace's equation
   !> on the elements, by Jacobi's iterations), those of shared nodes and of supports are given.

@@ -21,6 +21,9 @@ module solution
   type :: group_state_t
     real(wp), allocatable :: committed(:, :, :)
     real(wp), allocatable :: trial(:, :, :)
+    !> Displacements of its nodes when it came, of a body that was laid down (ASLEEP) where strains are small (2, node, element);
+    !> not allocated, or of no elements, where it was there from the start [length].
+    real(wp), allocatable :: laid(:, :, :)
   end type group_state_t
 
   type :: solution_t

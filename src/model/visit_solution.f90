@@ -149,6 +149,7 @@ contains
     type(group_state_t), intent(inout) :: self
 
     call visitor%member('state', self%committed, by_variable, 'component, point, element')
+    call visitor%member('laid', self%laid, of_the_mesh, 'component, node, element', 'length')
     call visitor%derived('trial', 'every step begins it as the committed state')
   end subroutine visit_group_state
 

@@ -70,6 +70,7 @@ contains
     character(len=*), intent(in), optional :: unit
     real(wp), intent(in), optional :: low, high
 
+    if (.not. allocated(values)) allocate (values(0, 0, 0))
     call self%file%write(self%path(name), values)
     call self%describe(name, carried, unit)
   end subroutine visit_reals_3

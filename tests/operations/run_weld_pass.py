@@ -6,6 +6,8 @@ usage: run_weld_pass.py [-v] [-k]
 - `bar`: between two walls a bar is laid at a high temperature beside another; both come to one temperature, then to that of the
   start. Elastic: the mean temperature and the stress are the integrals of what was laid (closed form). Stopped and resumed: the same
   bits. Put to sleep again, it leaves the other bar without stress.
+- `gap`: the first bar has come nearer by 15 % of the other's length before that is laid: no strain of it (KINEM SMALL), before and after
+  a stop. Pressed by 12 % more it is refused.
 """
 import os
 import signal
@@ -14,7 +16,7 @@ import sys
 sys.dont_write_bytecode = True
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path[:0] = [os.path.join(TESTS, "runs")]
-from support import DONE, SIGNAL, Checks, history, result_differences, run, said, start, stop_after, with_h5py, write  # noqa: E402
+from support import DONE, NO_CONVERGENCE, SIGNAL, Checks, history, result_differences, run, said, start, stop_after, with_h5py, write  # noqa: E402
 
 E, ALPHA, LAID, N = 200000.0, 1e-5, 1020.0, 8
 BAR = f"""TITLE  A bar laid on hot beside another, between walls
@@ -96,10 +98,38 @@ def bar(checks):
         checks.that(abs(history(out)["stress"][-1]) < 1e-6*exact, "parted: no stress is left", history(out)["stress"][-1])
 
 
+def shifted(checks, name, after):
+    """The bar that is there has come nearer by 1.5 of 10 before the other is laid; it comes by `after` more then."""
+    text = BAR.replace("FIXED  parent 4 X", "MOVE   parent 4 X shift").replace("STOP   1.\nSTRAT  0.5", "STOP   1.\nLIC    shift\n   0. 0.  1. 1.5\nSTRAT  0.5")
+    text = text.replace("OPERA  laid\n", "OPERA  laid\nLIC    shift\n   0. 0.\n")
+    text = text.replace("OPERA  cold\n", f"OPERA  cold\nLIC    shift\n   0. {after!r}\n")
+    deck, out = write(checks.path(f"{name}.lag"), text + "END\n"), checks.path(name)
+    return run([deck, "--out", out, "--threads", "1"]), deck, out
+
+
+def gap(checks):
+    """Small strains of a body that is laid down count from there; its own are judged as those of others."""
+    result, deck, out = shifted(checks, "gap", 0.0)
+    if checks.that(result.returncode == DONE, "gap: laid without strain", said(result)):
+        exact = E*ALPHA*(LAID - 20)*10/20
+        checks.that(abs(history(out)["stress"][-1]/exact - 1) < 1e-8, "gap: stress of the shrinking", history(out)["stress"][-1])
+        again = checks.path("gap-again")
+        code, _, stderr = stop_after(start([deck, "--out", again, "--threads", "1"]), again, 5, signal.SIGTERM, 0)
+        checks.that(code in (SIGNAL + signal.SIGTERM, DONE), "gap: stopped", f"{code} {stderr}")
+        if code != DONE:
+            result = run([deck, "--out", again, "--threads", "1", "--resume", os.path.join(again, "gap.ckp.h5")])
+            checks.that(result.returncode == DONE, "gap: resumed", said(result))
+        wrong = result_differences(out, again)
+        checks.that(not wrong, "gap: resumed as in one go", "; ".join(wrong))
+    result, _, _ = shifted(checks, "pressed", 2.5)
+    checks.that(result.returncode == NO_CONVERGENCE and "large strain in KINEM SMALL" in result.stderr, "pressed: refused", said(result))
+
+
 def main():
     with_h5py()
     checks = Checks()
     bar(checks)
+    gap(checks)
     checks.end()
 
 
