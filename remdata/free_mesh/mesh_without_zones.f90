@@ -11,7 +11,7 @@ module mesh_without_zones
   use part_contour, only: contour_t
   use remesher_options, only: elements_allowed
   use scene, only: scene_t
-  use size_field, only: size_field_t
+  use size_field, only: elements_needed, size_field_t
   use zone_mesh, only: mesh_settings_t, new_mesh_t
   use zones, only: plan_t
   implicit none
@@ -22,6 +22,10 @@ module mesh_without_zones
   !> of twice the size that are split are quadrilaterals in any case.
   real(wp), parameter :: finer_by(7) = [1.0_wp, 1.05_wp, 1.0_wp, 1.12_wp, 1.12_wp, 1.25_wp, 2.0_wp]
   logical, parameter :: split(7) = [.false., .false., .true., .false., .true., .true., .true.]
+  !> Where the number of elements is limited other sizes are larger ones, by these factors at most.
+  real(wp), parameter :: coarser_by = 1.25_wp
+  !> Sizes for a limited number of elements are larger by this than by the number that the sizes need.
+  real(wp), parameter :: reserve = 1.02_wp
   !> Elements are untangled below this sine: their corners are not constrained by a grid.
   real(wp), parameter :: least_sine = 0.6_wp
 
@@ -43,6 +47,7 @@ contains
     type(outline_t), allocatable :: outlines(:)
     type(mesh_settings_t) :: settings
     type(boundary_curve_t) :: boundaries(size(contours))
+    real(wp) :: limited
     integer :: attempt, c
 
     call find_outlines(scene, material, contours, outlines, error, seams)
@@ -52,9 +57,11 @@ contains
     end do
     settings%least_sine = least_sine
     settings%division%most_elements = min(settings%division%most_elements, elements_allowed(scene%remesher, finer))
+    limited = reserve*sqrt(elements_needed(sizes)/settings%division%most_elements)
     do attempt = 1, size(finer_by)
       if (allocated(error)) deallocate (error)
       settings%division%refine = finer*finer_by(attempt)
+      if (limited*settings%division%refine > 1) settings%division%refine = 1/(limited*min(finer_by(attempt), coarser_by))
       call mesh_outlines(boundaries, outlines, sizes, settings, split(attempt), mesher, mesh, error, seams)
       if (.not. allocated(error)) call check_new_mesh(contours, mesh, check, error)
       if (.not. allocated(error) .or. .not. mesher%gmsh%available .or. mesher%gmsh%late) exit

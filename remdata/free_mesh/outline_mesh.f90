@@ -19,7 +19,7 @@ module outline_mesh
   use side_curves, only: curve_t
   use side_middles, only: place_middle
   use size_cells, only: cover
-  use size_field, only: elements_needed, size_field_t
+  use size_field, only: size_field_t
   use split_cells, only: split_into_quads
   use text, only: to_text
   use untangle_elements, only: untangle
@@ -35,8 +35,8 @@ module outline_mesh
     type(gmsh_t) :: gmsh
   end type mesher_t
 
-  !> The limit on the number of elements is met by increasing the sizes, by a little more than the square root, in several attempts;
-  !> the first one by the number that the sizes need.
+  !> The limit on the number of elements is met by increasing the sizes, by more than the square root, in several attempts: each
+  !> time by a little more, as a limit that is just missed would be missed again.
   real(wp), parameter :: growth = 1.02_wp
   integer, parameter :: attempts = 8
 
@@ -62,13 +62,12 @@ contains
 
     call lay_out_outlines(boundaries, outlines, mesh%layout, seams)
     factor = 1/settings%division%refine
-    factor = max(factor, growth*sqrt(elements_needed(field)/settings%division%most_elements))
     do attempt = 1, attempts
       call divide_outlines(boundaries, outlines, mesh%layout, field, factor, split, curves, mesh%division, first, ends)
       call make_corners(boundaries, outlines, field, mesh%layout, curves, factor, split, first, ends, mesher, draft, error)
       if (allocated(error)) return
       if (size(draft%zone) <= settings%division%most_elements) exit
-      factor = growth*factor*sqrt(real(size(draft%zone), wp)/settings%division%most_elements)
+      factor = growth**attempt*factor*sqrt(real(size(draft%zone), wp)/settings%division%most_elements)
     end do
     mesh%division%nelem = size(draft%zone)
     call complete(boundaries, curves, first, ends, name_of(mesher), draft, mesh, error)
