@@ -4,19 +4,19 @@
 usage: scenes_study.py [NAME... | all] [--limit SECONDS] [--fresh] [--write]      all: an hour or two, by hand; without names: two_strokes
 
 Each scene is run on cycles of meshes and on first meshes that are kept. The cycles are the deck as it is (`REMSH` alone) and the same with the sizes that
-`--check` prints times 2 and 1.41, with the number of elements to match and the same limits: what a user has who begins with a coarser mesh; and with the
+`--check` prints times 2 and 1.41, with the number of elements to match and the same limits of shape and contact: what a user has who begins with a coarser mesh; and with the
 smallest size of the deck, twice the largest, two thirds of the elements and an ERROR of 0.1 and of 0.05. Uniform meshes
 are squares of 2, 1.5, 1, 0.67, 0.44 and 0.3 times the largest size of the deck. The reference is the finest run: a cycle with half of the deck's sizes, whose
 elements are the smallest where sides meet dies; with 0.7 times those sizes where that one does not come to the end, otherwise the finest uniform mesh.
 
 Error: root mean square of the difference of the force from the reference at 40 instants of the last four fifths, over the largest force; the force is the
-largest along y on any die. Instants are left out within a largest step of one where the reference's force changes by a fifth of its largest in a step, as where
-a die withdraws: what is found there is how long steps are. Seconds are those of processor, programs and files and all. The seconds that a uniform mesh
+largest along y on any die. Instants are left out where the reference's force changes by a fifth of its largest within a largest step to either side, as where a die
+withdraws or comes back: what is found there is how long steps are. Seconds are those of processor, programs and files and all. The seconds that a uniform mesh
 takes for the error of a cycle lie on straight lines in logarithms through those uniform meshes that are better than all that are cheaper. An error that none of
 them reaches takes more than the best of them (`<` before the ratio), and one that the cheapest stays below takes less (`>`). A run that takes longer than --limit (default 600 s on the wall) is none.
 
-Runs of the same deck are not made again, unless with --fresh, and the table is written after every scene. --write puts the rows of these scenes into
-tests/bench/README.md, and draws tests/bench/scenes.svg. Ends with 1 when in fewer than 8 in 12 of the scenes that uniform meshes finish a cycle takes half of
+Runs of the same deck are not made again, unless with --fresh, and the table is written after every scene. --write puts the rows of these scenes in place of
+theirs in tests/bench/README.md, and draws tests/bench/scenes.svg. Ends with 1 when in fewer than 8 in 12 of the scenes that uniform meshes finish a cycle takes half of
 their seconds at most.
 """
 import json
@@ -114,9 +114,13 @@ def forces_of(rows):
 def places_of(rows):
     """Instants at which forces are compared."""
     forces, times, end = forces_of(rows), rows["time"], rows["time"][-1]
-    jumps = [k for k in range(1, len(forces)) if abs(forces[k] - forces[k - 1]) > JUMP * max(forces)]
     largest = max(b - a for a, b in zip([0.0] + times, times))
-    return [place * end for place in PLACES if all(not times[k - 1] - largest <= place * end <= times[k] + largest for k in jumps)]
+
+    def change(place):
+        around = [force_at(rows, place - largest), force_at(rows, min(place + largest, end))]
+        around += [force for time, force in zip(times, forces) if abs(time - place) <= largest]
+        return max(around) - min(around)
+    return [place * end for place in PLACES if not change(place * end) > JUMP * max(forces)]
 
 
 def force_at(rows, wanted):
@@ -152,7 +156,7 @@ def at_equal_error(error, points):
 
 
 def study(name, limit, fresh):
-    """The row of the table, the ratios of the cycles that come to the end (None where no uniform mesh does), and what is drawn."""
+    """The row of the table, and what is drawn."""
     cycles = [(kind, made(name, f"cycle_{factor}" + (f"_error_{error}" if error else ""), cycle_deck(name, factor, error), limit, fresh))
               for kind, (factor, error) in CYCLES.items()]
     uniform = [(f"uniform {factor:g}", made(name, f"uniform_{factor}", uniform_deck(name, factor), limit, fresh)) for factor in UNIFORM]
@@ -160,7 +164,7 @@ def study(name, limit, fresh):
     cycles, uniform = ([one for one in runs if one[1]["code"] == DONE] for runs in (cycles, uniform))
     if not uniform:
         spent_by = ", ".join(f"{found['seconds']:.1f} s" for _, found in cycles)
-        return f"| {name} | none | {spent_by} | | | {'; '.join(failed)} |", None, None
+        return f"| {name} | none | {spent_by} | | | {'; '.join(failed)} |", None
     for factor in FINEST:
         finest = made(name, f"cycle_{factor}", cycle_deck(name, factor), limit, fresh)
         if finest["code"] == DONE:
@@ -173,14 +177,14 @@ def study(name, limit, fresh):
     ours = [(error_of(found, finest), found["seconds"]) for _, found in cycles]
     words = [", ".join(f"{100 * e:.2f} in {s:.1f}" for e, s in row) for row in (points, ours)]
     if not points or not ours:
-        return f"| {name} | {words[0] or 'none'} | {words[1]} | | | {'; '.join(failed)} |", None, (name, points, ours)
+        return f"| {name} | {words[0] or 'none'} | {words[1]} | | | {'; '.join(failed)} |", (name, points, ours)
     equal = [at_equal_error(error, points) for error, _ in ours]
     ratios = {kind: seconds / there for (kind, _), (_, seconds), (there, _) in zip(cycles, ours, equal)}
     # "takes more than" of the uniform mesh is "less than" of the ratio
     signs = {kind: {">": "<", "<": ">"}.get(sign, "") for (kind, _), (_, sign) in zip(cycles, equal)}
     least = min(ratios, key=ratios.get)
     told = [f"{signs[kind]}{ratios[kind]:.2f}" if kind in ratios else "" for kind in (least, "REMSH alone")]
-    return f"| {name} | {words[0]} | {words[1]} | {told[0]} ({least}) | {told[1]} | {'; '.join(failed)} |", ratios, (name, points, ours)
+    return f"| {name} | {words[0]} | {words[1]} | {told[0]} ({least}) | {told[1]} | {'; '.join(failed)} |", (name, points, ours)
 
 
 def draw(drawn, path):
@@ -214,13 +218,36 @@ def draw(drawn, path):
     plt.close(figure)
 
 
-def summed_up(ratios, names):
-    """How many scenes are done in half of the seconds, and which are not."""
-    halved = [name for name in ratios if min(ratios[name].values()) <= SAVED]
-    alone = [name for name in ratios if ratios[name].get("REMSH alone", math.inf) <= SAVED]
-    return halved, [f"In half of the seconds of a uniform mesh of the same error, or less: {len(halved)} of {len(ratios)} scenes that uniform meshes finish by the "
-                    f"best of the cycles, {len(alone)} by `REMSH` alone. More: {', '.join(name for name in ratios if name not in halved) or 'none'}. Not finished by "
-                    f"uniform meshes: {', '.join(name for name in names if name not in ratios) or 'none'}."]
+def kept_rows(names):
+    """Rows of the table in the README of scenes that were not run now, by name."""
+    with open(README, encoding="utf-8") as file:
+        rows = file.read().split(MARK)[1].split("\n")
+    cells = {row.split("|")[1].strip(): row for row in rows if row.startswith("| ") and row.count("|") >= 7}
+    return {name: row for name, row in cells.items() if name in SCENES and name not in names}
+
+
+def ratios_in(row):
+    """The two ratios of a row of the table: of the best of the cycles, and of REMSH alone; None where uniform meshes do not come to the end."""
+    found = [re.match(r"[<>]?([0-9.]+)", cell.strip()) for cell in row.split("|")[4:6]]
+    return tuple(float(match[1]) if match else math.inf for match in found) if found[0] else None
+
+
+def points_in(cell):
+    """Errors and seconds of a cell of the table."""
+    return [(float(error) / 100, float(seconds)) for error, seconds in re.findall(r"([0-9.]+) in ([0-9.]+)", cell)]
+
+
+def summed_up(rows):
+    """How many scenes are done in half of the seconds, and which are not; rows by name."""
+    ratios = {name: ratios_in(row) for name, row in rows.items()}
+    others = [name for name in ratios if not ratios[name]]
+    ratios = {name: pair for name, pair in ratios.items() if pair}
+    halved = [name for name in ratios if ratios[name][0] <= SAVED]
+    alone = [name for name in ratios if ratios[name][1] <= SAVED]
+    return len(halved), len(ratios), [
+        f"In half of the seconds of a uniform mesh of the same error, or less: {len(halved)} of {len(ratios)} scenes that uniform meshes finish by the "
+        f"best of the cycles, {len(alone)} by `REMSH` alone. More: {', '.join(name for name in ratios if name not in halved) or 'none'}. Not finished by "
+        f"uniform meshes: {', '.join(others) or 'none'}."]
 
 
 def main():
@@ -235,23 +262,25 @@ def main():
     names = list(SCENES) if names == ["all"] else names
     os.makedirs(OUT, exist_ok=True)
     print("\n".join(HEAD), flush=True)
-    lines, ratios, drawn = list(HEAD), {}, []
+    rows, drawn = {}, []
     for name in names:
-        row, found, picture = study(name, limit, fresh)
-        print(row, flush=True)
-        lines.append(row)
-        if found:
-            ratios[name] = found
+        rows[name], picture = study(name, limit, fresh)
+        print(rows[name], flush=True)
         if picture:
             drawn.append(picture)
-        write(os.path.join(OUT, "scenes.md"), "\n".join(lines) + "\n")
-    halved, words = summed_up(ratios, names)
+        write(os.path.join(OUT, "scenes.md"), "\n".join(HEAD + list(rows.values())) + "\n")
+    if to_write:
+        kept = kept_rows(names)
+        drawn += [(name, *(points_in(cell) for cell in row.split("|")[2:4])) for name, row in kept.items() if ratios_in(row)]
+        drawn.sort(key=lambda one: list(SCENES).index(one[0]))
+        rows = {name: {**kept, **rows}[name] for name in SCENES if name in kept or name in rows}
+    halved, counted, words = summed_up(rows)
     print("\n".join(words))
     if drawn:
         draw(drawn, PICTURE if to_write else os.path.join(os.path.dirname(OUT), "scenes.png"))
     if to_write:
-        put_table(README, MARK, lines + [""] + words)
-    sys.exit(0 if ratios and len(halved) >= ENOUGH * len(ratios) else 1)
+        put_table(README, MARK, HEAD + list(rows.values()) + [""] + words)
+    sys.exit(0 if counted and halved >= ENOUGH * counted else 1)
 
 
 if __name__ == "__main__":
