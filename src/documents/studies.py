@@ -48,6 +48,8 @@ STUDIES: List[Study] = [
     Study("necking/necking", ["nx=4,8,16 ny=12,24,48", "dt=0.02,0.01,0.005,0.0025,0.00125"], ["force", "neck"], parameters=["dt=0.01"], short=["pull=0.5"]),
     Study("quench_16mnd5/quench_16mnd5", ["nr=5,10,20 nz=3,6,12", "step=2,1,0.5,0.25"], ["side", "core"],
           parameters=["nr=10", "nz=6", "step=0.5", "finish=100"], short=["finish=4"]),
+    Study("residual_stress/residual_stress", ["nr=8,16,32", "step=0.8,0.4,0.2,0.1"], ["side", "core_h"], parameters=["nr=16", "step=0.35"],
+          short=["step=2"]),
         # sizes are to decide, not the number of elements
     Study("forging_rib/forging_rib_remesh", ["nx=8,11,16,23 ny=4,6,8,12 smallest=1.,0.7,0.5,0.35 largest=2.8,2.,1.4,1."], ["external_work", "rim"], seconds=False,
           changes=[("   COUNT", "   COUNT 6000")]),
