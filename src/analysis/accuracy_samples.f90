@@ -19,8 +19,11 @@ module accuracy_samples
   private
   public :: add_cost, join_forces, key_of, range_of, read_sample, select_columns
 
-  !> A quantity that changes by less than this share of the largest change in its unit is none by itself.
+  !> A quantity that changes by less than this share of the largest change in its unit is none by itself: the work of supports that
+  !> hold a part which is quenched is what equilibrium is off by.
   real(wp), parameter :: hardly = 1.0e-3_wp
+  !> Energies that are no quantities themselves, but tell how small a work is.
+  character(len=*), parameter :: energies(3) = [character(len=14) :: 'elastic_energy', 'plastic_work', 'friction_work']
   !> Beginnings of columns that are judged where the card names none, with the probes that are no extremes: those jump from point
   !> to point, and grow without bound at sharp corners.
   character(len=*), parameter :: usual(8) = [character(len=14) :: 'external_work', 'force_', 'moment_', 'displacement_', &
@@ -195,7 +198,7 @@ contains
       do i = 1, size(titles)
         if (.not. chosen(i)) cycle
         do k = 1, size(titles)
-          if (.not. chosen(k)) cycle
+          if (.not. (chosen(k) .or. any(name_of(titles(k)%s) == energies))) cycle
           if (unit_of(titles(k)%s) == unit_of(titles(i)%s)) chosen(i) = chosen(i) .and. scales(i) > hardly*scales(k)
         end do
       end do

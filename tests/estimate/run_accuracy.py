@@ -195,6 +195,17 @@ def told_where_it_is_not(checks):
                 "a mesh that is written out is named", warned)
 
 
+def none_of_supports(checks):
+    """A tube that cools, free but for the plane of symmetry: the work of its supports is what equilibrium is off by, and not judged."""
+    text = ("TITLE a tube cools\nSTATE AXISYM\nKINEM SMALL\nBLOCK tube PL8LS 4 m\n   30. 0.   40. 0.   40. 30.   30. 30.\n   4 1.   4 1.\n"
+            "LAW m ELATH\n   200000. 0.3 1.2E-5\nADDEL tube PL8TM h BILINEAR\nLAW h HEAT\n   40. 4.\nSTART T 500.\nFIXED tube 1 Y\n"
+            "CONVE tube 2 H 2. TS 20.\nSTRAT 1. 1.E-3 2. 8 4\nSTOP 20.\nPROBE out NODE UX 40. 0.\nPROBE t NODE T 40. 0.\nACCURACY 2 %\nEND\n")
+    _, summary, folder = call(checks, "cooled", text)
+    asked = summary["accuracy"]["asked"]
+    with open(os.path.join(folder, "cooled.log"), encoding="utf-8") as file:
+        checks.that("2 % asked of out, t\n" in file.read() and asked["met"] and asked["reached"]["error_pct"] <= 2, "the work of supports is not judged", asked)
+
+
 def main():
     checks = Checks()
     names = [word for word in sys.argv[1:] if not word.startswith("-")]
@@ -212,6 +223,7 @@ def main():
                 once_more(checks, scene, asked, folder, history)
     if not names:
         told_where_it_is_not(checks)
+        none_of_supports(checks)
     print("scene            asked %   true %  of               expected %  reached %  elements  mesh  steps  depth  steps: spent expected   seconds: spent expected  pilots")
     for name, asked, true, of, told, elements in rows:
         print(f"{name:16s} {asked:7} {true:8.3f}  {of:16s} {told['expected']['error_pct']:10.3f} {told['reached']['error_pct']:10.3f} {elements:9d} {told['mesh']:5g} "
