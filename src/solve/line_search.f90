@@ -23,18 +23,9 @@
 !> as where a side lifts off a die it was bent around. If the whole of it is no better, the correction is reversed (s = -1): the
 !> forces drive the body in that direction, whatever the residual. Equilibrium is further on, and no shorter step would find it
 !> nearer (J.J. More, D.C. Sorensen, Math. Programming 16 (1979) 1-20: directions of negative curvature).
-!>
-!> Of a matrix that is not symmetric, as under friction, that work tells less: Newton's correction is a direction of descent of
-!> the residual's norm whatever its work (C.T. Kelley, Iterative Methods for Linear and Nonlinear Equations, SIAM 1995, sec. 8.1).
-!> So shares are halved there while the norm does not fall, and it is reversed only when none of them has less.
-!>
-!> A correction that is longer than the motion of the step so far comes of a matrix that hardly resists it: where all points of a part
-!> that friction alone holds slip the same way (a strip between rolls), nothing but the next change of direction of slip does. How
-!> long it is means nothing then, nor does the norm; but friction acts against slip, so the residual's work changes its sign where
-!> equilibrium is. That zero is sought, on the side that the residual points to, whatever was to be taken.
 module line_search
   use contact_changes, only: loses_a_die
-  use convergence, only: free_force, relative_motion, slope_along
+  use convergence, only: free_force, slope_along
   use elem_api, only: block_done, report_t
   use equations, only: equations_t
   use evaluation, only: evaluate
@@ -53,13 +44,9 @@ module line_search
   !> A search that ends below this share of the correction is short.
   real(wp), parameter :: short_share = 0.2_wp
   real(wp), parameter :: search_above = 0.8_wp, search_closely_above = 0.3_wp, search_exactly_above = 0.02_wp
-  !> A correction is long above this share of the motion of the step so far; how closely the zero along it is sought.
-  real(wp), parameter :: long_correction = 1.0_wp, search_long_above = 0.1_wp
-  !> A share of a correction that the residual does negative work on is taken when the norm falls by this part of the share.
-  real(wp), parameter :: some_fall = 0.1_wp
   !> A share of the correction is taken when the whole residual falls to this part of what it was.
   real(wp), parameter :: real_fall = 0.5_wp
-  integer, parameter :: max_searches = 6, max_touches = 12, max_long_searches = 12, max_exact_searches = 30
+  integer, parameter :: max_searches = 6, max_touches = 12, max_exact_searches = 30
   !> From one share to the next, where a die was lost; there are `max_touches` of them at most.
   real(wp), parameter :: tenth = 0.1_wp
   !> A share that touches the die is short enough when one that does not is longer than this part of it.
@@ -81,26 +68,15 @@ contains
     real(wp), intent(inout) :: du(:)   !! (ndof) [unknown]
     real(wp), intent(out) :: s
     type(report_t), intent(out) :: report
-    real(wp) :: start(size(du)), way, trial, slope0, slope, enough, best, norm, norm0, near(2), far(2), touching, missed
-    logical :: ascent, long, halves, whole, accepted, lost
+    real(wp) :: start(size(du)), trial, slope0, slope, enough, best, norm, norm0, near(2), far(2), touching, missed
+    logical :: ascent, accepted, lost
     integer :: k, most
 
     start = du
     trial = 1
-    way = 1
     slope0 = slope_along(equations, correction, residual)
-    lost = loses_a_die(scene, solution)
-    associate (symmetric => equations%solves(equations%now)%pattern%symmetric)
-      long = any(abs(du) > 0) .and. .not. (symmetric .or. any(abs(missing) > 0))
-      if (long) long = relative_motion(equations, solution%fields, correction, du) > long_correction
-      if (long .and. slope0 < 0) way = -1
-      slope0 = way*slope0
-      ascent = slope0 < 0
-      halves = ascent .and. .not. (symmetric .or. lost)
-    end associate
-    whole = manner%whole .and. .not. long
+    ascent = slope0 < 0
     enough = merge(search_closely_above, search_above, manner%closely)
-    if (long) enough = search_long_above
     if (manner%exactly) enough = search_exactly_above
     norm0 = free_force(equations, residual)
     near = [0.0_wp, slope0]
@@ -109,34 +85,29 @@ contains
     s = 0
     touching = 0
     missed = 0
+    lost = loses_a_die(scene, solution)
     most = merge(max_touches, max_searches, lost)
-    if (long) most = max_long_searches
     if (manner%exactly) most = max_exact_searches
     do k = 1, most
-      du = start + way*trial*correction + missing
+      du = start + trial*correction + missing
       call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
       if (report%status /= block_done) then
         trial = 0.5_wp*(near(1) + trial)
         far = 0
         cycle
       end if
-      slope = way*slope_along(equations, correction, external - equations%force)
+      slope = slope_along(equations, correction, external - equations%force)
       norm = free_force(equations, external - equations%force)
       if (abs(slope) < best) then
         best = abs(slope)
-        s = way*trial
+        s = trial
       end if
-      accepted = whole .or. any(abs(missing) > 0) .or. (norm < real_fall*norm0 .and. .not. manner%exactly)
+      accepted = manner%whole .or. any(abs(missing) > 0) .or. (norm < real_fall*norm0 .and. .not. manner%exactly)
       if (.not. ascent) accepted = accepted .or. abs(slope) <= enough*slope0 &
-                                      .or. (k == 1 .and. norm < norm0 .and. .not. (manner%exactly .or. long))
-      if (halves) accepted = accepted .or. norm < (1 - some_fall*trial)*norm0
+                                      .or. (k == 1 .and. norm < norm0 .and. .not. manner%exactly)
       if (accepted) then
-        s = way*trial
+        s = trial
         return
-      end if
-      if (halves .and. k < most) then
-        trial = 0.5_wp*trial
-        cycle
       end if
       if (lost) then
         if (.not. loses_a_die(scene, solution)) touching = trial
@@ -148,7 +119,7 @@ contains
           cycle
         end if
       end if
-      if (ascent .and. (k == 1 .or. halves)) then
+      if (ascent .and. k == 1) then
         du = start - correction
         call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
         if (report%status == block_done) then
@@ -161,7 +132,7 @@ contains
       end if
       call narrow(trial, slope, near, far)
     end do
-    if (abs(touching) > 0) s = way*touching
+    if (abs(touching) > 0) s = touching
     if (.not. abs(s) > 0) return
     du = start + s*correction + missing
     call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
