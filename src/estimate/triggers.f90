@@ -5,9 +5,9 @@
 !> mesh would gain is known from the present one: it would begin with the error that this one has shown first. It is due when the
 !> error is above the limit and worse by half than that; so are bad elements where a new mesh has them beyond the limit.
 !>
-!> Where what is left of the scene takes two more steps at most the mesh that is there makes them: a new one would hardly be used, and the
-!> equilibrium it begins with would be found in steps that have no others behind them. Elements that are turned over, cutbacks, times,
-!> strokes and cuts do not wait for the end.
+!> Where what is left of the scene takes two more steps at most the mesh that is there makes them: a new one would hardly be
+!> used, and the equilibrium it begins with would be found in steps that have no others behind them. Elements that are turned
+!> over, cutbacks, times, strokes and cuts do not wait for the end.
 module triggers
   use acceptance, only: is_on_probation
   use contact_quality, only: measure_misfit, misfit_t
