@@ -3,7 +3,7 @@ module run_facts
   use closing_table, only: closing_t
   use elem_api, only: totals_t
   use kinds, only: wp
-    use solution, only: solution_t
+  use solution, only: solution_t
   use text, only: string_t
   implicit none
   private
