@@ -185,6 +185,10 @@ contains
     call require_range(file, 'progress/spurious_group', solution%spurious_group, 0, size(scene%groups))
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
+        associate (laid => solution%groups(g)%laid)
+          call require(file, group_place(g)//'/laid', all(shape(laid) == 0) .or. &
+                       all(shape(laid) == [2, shape(group%connectivity)]), 'has not the extents of the group''s connectivity')
+        end associate
         if (group%die > 0) call check_contact(file, group_place(g)//'/state', scene, group, solution%groups(g)%committed)
         if (group%pairs > 0) call require_range(file, 'pairs/'//to_text(group%pairs)//'/piece', &
                                                 pack(solution%pairs(group%pairs)%piece, .true.), 0, &

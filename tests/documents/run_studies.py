@@ -12,7 +12,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.abspath(os.environ.get("LAGAMINE_SOURCE") or os.path.dirname(os.path.dirname(HERE)))
 BIN = os.path.abspath(os.environ.get("LAGAMINE_BIN") or os.path.join(SOURCE, "build", "bin"))
 PYTHON = os.environ.get("LAGAMINE_PYTHON") or sys.executable
-RUNS = {"thick_cylinder_plastic": 4, "hertz": 4, "finite_cylinder": 8, "upsetting": 4, "necking": 8, "quench_16mnd5": 8}
+RUNS = {"thick_cylinder_plastic": 4, "hertz": 4, "finite_cylinder": 8, "upsetting": 4, "necking": 8, "quench_16mnd5": 8, "residual_stress": 8}
 
 
 class Studies(unittest.TestCase):

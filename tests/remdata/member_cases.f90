@@ -228,8 +228,12 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(out) :: solution
     type(filler_t) :: filler
+    integer :: g
 
     call start(scene, solution)
+    do g = 1, size(scene%groups)
+      allocate (solution%groups(g)%laid(2, size(scene%groups(g)%connectivity, 1), size(scene%groups(g)%connectivity, 2)))
+    end do
     call fill(filler, solution)
     solution%spurious_group = 2
     if (allocated(solution%cuts)) deallocate (solution%cuts)
