@@ -89,8 +89,8 @@ contains
     call place_point(side, corner%place, point)
     if (axisym .and. point%x(1) <= no_surface*side%length) return
     allowed = corner_share*allowed_penetration(material)*side%length
-    if (.not. committed(at_augmentation) + side%penalty(1)*(corner%d - allowed) > 0) then
-      ! its gap is known
+    if (.not. (committed(at_augmentation) + side%penalty(1)*(corner%d - allowed) > 0 .and. share_of(corner%place) > 0)) then
+      ! its gap is known; at the very end of the side the next one has it
       trial([at_penetration, at_piece, at_xi]) = [corner%d, real(corner%piece, wp), corner%xi]
       return
     end if
