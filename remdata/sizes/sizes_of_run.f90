@@ -77,11 +77,15 @@ contains
     type(old_mesh_t), intent(in) :: began
     real(wp), intent(in) :: moved(:, :)      !! (2, nnode) where the nodes are now [length]
     real(wp) :: back(size(began%material))   !! (nelem) [length]
+    real(wp) :: area
     integer :: e
 
     do e = 1, size(back)
       associate (corners => began%connectivity(1:4, e))
-        back(e) = 0.25_wp*sum(sizes(corners))*sqrt(polygon_area(began%nodes(:, corners))/polygon_area(moved(:, corners)))
+        back(e) = 0.25_wp*sum(sizes(corners))
+        area = polygon_area(moved(:, corners))
+        ! one that has turned over says nothing of how sizes have changed
+        if (area > 0) back(e) = back(e)*sqrt(polygon_area(began%nodes(:, corners))/area)
       end associate
     end do
   end function taken_back

@@ -72,10 +72,8 @@ contains
         ! a corner of the die in the same interval that is deeper
         if (nint(now(at_status)) /= contact_open .and. now(at_penetration) >= closest%d) cycle
         before = committed(n + 1:2*n, p)
-        if (abs(committed(at_place, p)) < 1) then
-          ! the state was that of a corner
-          call forget(before)
-        end if
+        ! the state was that of a corner; one of an open corner has nothing to forget but the multiplier found in this step
+        if (abs(committed(at_place, p)) < 1 .and. nint(before(at_status)) /= contact_open) call forget(before)
         call forget(now)
         trial(at_place, p) = ends(k)
         call place_point(side, xi(q), beside)

@@ -157,13 +157,14 @@ contains
     real(wp), intent(in) :: elastic(:)   !! (nelem) strain of which the deviator is elastic [-]; 0 where not known
     real(wp), intent(in) :: strain(:)    !! (nelem) sum of the increments of the deviator since then [-]
     real(wp) :: left
+    real(wp), parameter :: forgotten_flow = -0.5_wp*log(tiny(1.0_wp))
     real(wp) :: flow(size(energy))
 
     left = 0
     if (.not. sum(energy) > 0) return
-    flow = merge(0.0_wp, huge(left), strain <= elastic)
-    where (strain > elastic .and. elastic > 0) flow = strain/elastic - 1
-    left = sqrt(sum(energy*exp(-min(2*flow, -log(tiny(left)))))/sum(energy))
+    flow = merge(0.0_wp, forgotten_flow, strain <= elastic)
+    where (strain > elastic .and. elastic > 0) flow = min(strain/elastic - 1, forgotten_flow)
+    left = sqrt(sum(energy*exp(-2*flow))/sum(energy))
   end function left_of_stress
 
   !> Error of the stress at an instant, where no step before it was followed.

@@ -109,13 +109,16 @@ contains
     good = solution%step - solution%estimate%last_stop >= scene%remesh%least_steps
   end function was_good
 
-  !> The step strategy reaches the end of the scene in a few steps as long as it wants the next one.
+  !> The step strategy reaches the end of the scene in a few steps as long as it wants the next one. After another operation the
+  !> mesh goes on.
   pure function nears_end(scene, solution)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     logical :: nears_end
 
-    nears_end = scene%strategy%end_time - solution%time <= last_steps*min(solution%next_step, scene%strategy%largest_step)
+    nears_end = scene%operation >= scene%operations &
+                .and. scene%strategy%end_time - solution%time &
+                <= last_steps*min(solution%next_step, scene%strategy%largest_step)
   end function nears_end
 
   !> So much strain went with the error as makes it count: what a wrong stress leaves in the state goes with the error and with the

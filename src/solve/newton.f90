@@ -128,6 +128,7 @@ contains
       outcome%iterations = size(outcome%history) - 1
       if (.not. any(abs(missing) > 0)) then
         if (has_converged(scene, outcome%history(first:), again .or. kept .and. (outcome%iterations == 0 .or. afresh)) &
+            .and. .not. (kept .and. afresh .and. line%force_norm > 0) &
             .and. pilots_in_equilibrium(equations, solution%fields, external, residual) &
             .and. (heat_in_balance(equations, residual, dt) .or. was_given_time(scene, outcome%history(first:)))) then
           if (made%times == 0) outcome%first_iterations = outcome%iterations
