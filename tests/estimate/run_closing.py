@@ -109,8 +109,8 @@ class Closing(unittest.TestCase):
         self.assertIn("path: motion ", listing)
 
     def test_stress_of_the_path_with_the_motion(self):
-        """The billet pressed to a quarter, and the necking bar: within a factor 2 of the difference to steps of an eighth."""
-        for scene in ("billet to 25 %", "necking"):
+        """The billet pressed to a quarter, the necking bar and the forged rib: within a factor 2 of the difference to steps of an eighth."""
+        for scene in ("billet to 25 %", "necking", "forging rib"):
             run, told = effectivity_table.made(scene, self.folder, 1, 1)
             true, _ = effectivity_table.error_of_steps(scene, run, effectivity_table.made(scene, self.folder, 1, 0.125)[0])
             self.assertTrue(0.5 < told["path"]["stress_pct"]/(100*true) < 2, (scene, told["path"], true))
