@@ -92,7 +92,7 @@ contains
     type(totals_t), intent(in) :: totals
 
     write (listing%unit, '(a)') 'step '//to_text(solution%step)//'  time '//to_text(solution%time)//'  length ' &
-      //to_text(solution%last_step)//'  iterations '//to_text(outcome%iterations)
+      //to_text(solution%last_step)//'  iterations '//to_text(outcome%iterations)//parts_of(outcome)
     call list_iterations(listing, outcome)
     if (outcome%gave_way) write (listing%unit, '(a)') '  augmentation '//to_text(outcome%augmentations + 1) &
       //' of contact had no equilibrium: the one before it was kept'
@@ -101,6 +101,15 @@ contains
       //to_text(totals%max_penetration, 3)//'  linear residual '//to_text(outcome%linear_residual, 2)
     flush (listing%unit)
   end subroutine list_step
+
+  !> A first step on a new mesh that was found in parts.
+  pure function parts_of(outcome) result(words)
+    type(outcome_t), intent(in) :: outcome
+    character(len=:), allocatable :: words
+
+    words = ''
+    if (outcome%parts > 1) words = ' in '//to_text(outcome%parts)//' parts'
+  end function parts_of
 
   subroutine list_iterations(listing, outcome)
     type(listing_t), intent(in) :: listing

@@ -9,7 +9,7 @@ module newton
   use contact_heat_tangent, only: follow_contact
   use convergence, only: heat_in_balance, pilots_in_equilibrium, relative_motion, relative_residual, weigh_quantities
   use corrections, only: solve_correction
-  use elem_api, only: block_done, block_inverted, block_without_source, report_t
+  use elem_api, only: block_done, block_inverted, block_without_source, mode_advance, report_t
   use equations, only: equations_t
   use errors, only: error_t, exit_no_convergence
   use evaluation, only: evaluate
@@ -39,6 +39,8 @@ module newton
     integer :: group = 0, element = 0
     !> Iterations in all, and those before the first augmentation: the difficulty of the step.
     integer :: iterations = 0, first_iterations = 0
+    !> It was found in so many parts (first_step_parts).
+    integer :: parts = 1
     type(iteration_t), allocatable :: history(:)
     !> The step should be no longer than this share of it; why.
     real(wp) :: event = 1.0_wp
@@ -209,7 +211,9 @@ contains
         outcome%event_reason = 'a die would go through a side'
       end if
     end if
-    if (outcome%converged .and. outcome%strain > scene%strategy%strain_bound) then
+    ! who leaves a part of the residual judges the strain of his parts
+    if (outcome%converged .and. outcome%strain > scene%strategy%strain_bound &
+        .and. .not. (present(left) .and. equations%mode == mode_advance)) then
       outcome%converged = .false.
       outcome%reason = 'strain increment '//to_text(outcome%strain, 3)//' above '//to_text(scene%strategy%strain_bound, 3)
     end if

@@ -121,6 +121,8 @@ contains
         call extend_onset(equations, external, missing, du, begun)
         if (begun) call evaluate(scene, equations, solution, dt, du, .true., report, predicted=.true., kept=.true.)
         begun = begun .and. report%status == block_done
+        ! what the new mesh moves at once, however short the step, is no way to a contact
+        if (begun) report%event = 1
       end if
       if (begun) return
       kept = .false.

@@ -6,9 +6,10 @@
 module step_solves
   use equations, only: equations_t
   use fields, only: displacement_field
+  use first_step_parts, only: solve_motion
   use heat_stages, only: is_heat_alone, solve_heat
   use kinds, only: wp
-  use newton, only: outcome_t, solve_step
+  use newton, only: outcome_t
   use own_crossings, only: find_own_crossing, own_crossing_t
   use path_bounds, only: judge_path
   use predictor, only: proportion
@@ -95,7 +96,7 @@ contains
       if (is_heat_alone(scene, equations)) then
         call solve_heat(scene, equations, solution, dt, outcome)
       else
-        call solve_step(scene, equations, solution, dt, outcome)
+        call solve_motion(scene, equations, solution, dt, outcome)
       end if
       return
     end if
@@ -113,7 +114,7 @@ contains
         if (is_heat_alone(scene, equations)) then
           call solve_heat(scene, equations, solution, dt, own, given=motion, go_on=turn > 1)
         else
-          call solve_step(scene, equations, solution, dt, own, given=motion, go_on=turn > 1)
+          call solve_motion(scene, equations, solution, dt, own, given=motion, go_on=turn > 1)
         end if
         call add_outcome(equations%solves(s)%name, is_heat_alone(scene, equations), own, outcome)
         if (.not. own%converged) return
@@ -158,6 +159,7 @@ contains
     all%converged = all%converged .and. own%converged
     all%iterations = all%iterations + own%iterations
     all%first_iterations = max(all%first_iterations, own%first_iterations)
+    all%parts = max(all%parts, own%parts)
     all%event = min(all%event, own%event)
     if (allocated(own%event_reason)) all%event_reason = own%event_reason
     if (is_heat) all%heat = own%heat

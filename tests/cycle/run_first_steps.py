@@ -5,6 +5,8 @@ usage: run_first_steps.py [-v] [-k]
 
 The first step on a new mesh starts at the motion of its onset there, not at the one that was interpolated from the old mesh: a block that is indented by
 rounded edges, where sides roll onto the punch, needs no more of its iterations than of ordinary ones, twice, and steps go on as long as they were.
+Beside a bore that closes, where the old mesh is too coarse to close it, the new one moves far at once, however short its first step: that is found in
+parts, so that no mesh is refused for it.
 A mesh that is never replaced turns over at corners of elements, where errors are estimated beyond the points of the element: the run comes to its end.
 """
 import os
@@ -51,6 +53,15 @@ def first_steps(checks):
     checks.that(cutbacks <= MOST_CUTBACKS, f"at most {MOST_CUTBACKS:g} cutbacks a new mesh", cutbacks)
 
 
+def closing_bore(checks):
+    found = run_scene("ring_70", checks.path("bore"), {"mu": 0.35})
+    checks.that(found["code"] == DONE, "a bore that closes: the cycle ends with 0", found["said"])
+    checks.that(found["refused"] == 0, "no new mesh is refused", found["refused"])
+    with open(os.path.join(found["out"], "ring_70.log"), encoding="utf-8") as file:
+        parts = re.findall(r"^step .* iterations \d+ in \d+ parts$", file.read(), re.MULTILINE)
+    checks.that(parts, "first steps in parts", parts)
+
+
 def worn_mesh(checks):
     with open(deck_of("can"), encoding="utf-8") as file:
         text = re.sub(r"^REMSH.*\n", "REMSH\n   SIZE 0.8 0.8\n   COUNT 1000000\n", file.read(), flags=re.MULTILINE)
@@ -61,6 +72,7 @@ def worn_mesh(checks):
 def main():
     checks = Checks()
     first_steps(checks)
+    closing_bore(checks)
     worn_mesh(checks)
     checks.end()
 
