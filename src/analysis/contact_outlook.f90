@@ -7,6 +7,7 @@ module contact_outlook
   use dies, only: die_t, in_pilot_axes, is_deformable, present_die
   use kinds, only: wp
   use loads, only: multiplier_at
+  use piecewise_curves, only: adjacent_piece
   use plane_vectors, only: turned
   use scene, only: group_t, scene_t
   use shape_functions, only: line3
@@ -171,10 +172,25 @@ contains
     chord = local(:, 3) - local(:, 1)
     side = length_of(chord)
     call closest_facing_point(die, matmul(local, phi), [-chord(2), chord(1)]/side, reach, closest)
-    faces = closest%piece > 0
+    faces = closest%piece > 0 .and. .not. lies_beyond_end(die, matmul(local, phi), closest%d)
     depth = closest%d
     over_side = depth/side
   end subroutine depth_of
+
+  !> An end of an open curve is nearer to a point than the depth at which it lies behind a piece: the point is beside the die, as a
+  !> wire before a drawing die is far below the face at its exit, and not in its body.
+  pure function lies_beyond_end(die, place, depth) result(yes)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: place(2)   !! in the pilot's axes [length]
+    real(wp), intent(in) :: depth      !! below 0 for a gap [length]
+    logical :: yes
+    integer :: npiece
+
+    npiece = size(die%pieces, 3)
+    yes = .false.
+    if (adjacent_piece(die, npiece, 1) > 0) return
+    yes = min(length_of(place - die%pieces(:, 1, 1)), length_of(place - die%pieces(:, 3, npiece))) < depth*(1 - lies_on)
+  end function lies_beyond_end
 
   !> Points behind the sides that lie in the die's body: on the right of the curve.
   pure subroutine count_inside(behind, die, outlook)
@@ -188,7 +204,7 @@ contains
     do e = 1, size(behind, 2)
       place = turned(behind(:, e) - die%pilot(1:2), -die%pilot(3))
       call closest_on_pieces(die, place, 1, size(die%pieces, 3), closest)
-      if (closest%piece == 0) cycle
+      if (closest%piece == 0 .or. lies_beyond_end(die, place, closest%d)) cycle
       outlook%seen = outlook%seen + 1
       if (closest%d > 0) outlook%inside = outlook%inside + 1
     end do

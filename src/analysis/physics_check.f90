@@ -6,7 +6,7 @@ module physics_check
   use heat_check, only: check_heat
   use kinds, only: wp
   use law_api, only: driver_count, law_t
-  use scene, only: group_t, lacks_mesh, role_heat_contact, role_side_load, role_volume_load, scene_t
+  use scene, only: axisymmetric, group_t, lacks_mesh, role_heat_contact, role_side_load, role_volume_load, scene_t
   use supports, only: free_motions
   use text, only: add => add_text, string_t, to_text
   implicit none
@@ -17,6 +17,8 @@ module physics_check
   real(wp), parameter :: largest_overlap = 0.01_wp
   !> Metals yield at less than this share of Young's modulus: the strongest steels and glassy metals at 0.01 to 0.02.
   real(wp), parameter :: largest_yield = 0.03_wp
+  !> Ends and middle of a side of an element.
+  integer, parameter :: nodes_of_side = 3
 
 contains
 
@@ -32,6 +34,9 @@ contains
 
     allocate (table(0), warnings(0))
     call check_heat(scene, laws, table, warnings)
+    do g = 1, size(scene%groups)
+      call judge_axis(scene, scene%groups(g), warnings)
+    end do
     if (.not. scene%fields(displacement_field)%declared) return
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
@@ -48,6 +53,22 @@ contains
     if (.not. anything_acts(scene)) &
       call add(warnings, 'nothing moves and no load acts: all multipliers (LIC) are zero at all times')
   end subroutine check_physics
+
+  !> Loads and exchanges of heat on sides of the axis of rotation, where there is no area: they do nothing.
+  subroutine judge_axis(scene, group, warnings)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    logical :: on_axis(size(group%connectivity, 2))
+    integer :: e
+
+    if (scene%plane_state /= axisymmetric .or. lacks_mesh(scene) .or. size(on_axis) == 0) return
+    if (group%role /= role_side_load .and. (group%exchange%kind == 0 .or. size(group%connectivity, 1) /= nodes_of_side)) return
+    do e = 1, size(on_axis)
+      on_axis(e) = .not. maxval(abs(scene%mesh%coordinates(1, group%connectivity(:nodes_of_side, e)))) > 0
+    end do
+    if (all(on_axis)) call add(warnings, group%name//': its sides lie on the axis, where there is no area: it does nothing')
+  end subroutine judge_axis
 
   !> How a group stands to its die.
   function words_of(scene, group, outlook) result(words)
