@@ -9,6 +9,7 @@ module history
   use fields, only: displacement_field, find_field, pilot_field, section_field
   use heat_books, only: has_heat, heat_imbalance
   use heat_flows, only: heat_flow_names
+  use history_columns, only: columns_of_die_heat, columns_of_steps
   use kinds, only: pi, wp
   use newton, only: outcome_t
   use path_record, only: motion_error, stress_error
@@ -18,7 +19,7 @@ module history
   use sections, only: thickness_at
   use solution, only: solution_t
   use stress_measures, only: stress_measure
-  use text, only: string_t
+  use text, only: add_text, string_t
   implicit none
   private
   public :: open_history, write_row, circumference, add_columns
@@ -87,83 +88,19 @@ contains
     type(scene_t), intent(in) :: scene
     type(string_t), allocatable, intent(out) :: columns(:)
     type(string_t), allocatable :: flows(:)
-    integer :: k, n
+    integer :: k
 
     allocate (flows, source=heat_flow_names(scene))
-    allocate (columns(14 + merge(1, 0, scene%operation > 0) + merge(1, 0, scene%load_factor%multiplier > 0) &
-                      + 6*size(scene%dies) - 3*count(is_deformable(scene%dies)) &
-                      + merge(6, 0, scene%plane_state == generalised_plane_strain) &
-                      + merge(2, 0, scene%follows_path) + merge(2, 0, scene%remesh%estimate) &
-                      + merge(4, 0, has_heat(scene)) + size(flows) + 2*size(scene%die_heats) &
-                      + size(scene%probes)))
-    n = 0
-    call add('time [time]')
-    call add('step [-]')
-    if (scene%operation > 0) call add('operation [-]')
-    call add('step_length [time]')
-    call add('iterations [-]')
-    call add('cutbacks [-]')
-    call add('strain_increment [-]')
-    call add('external_work [energy]')
-    call add('elastic_energy [energy]')
-    call add('plastic_work [energy]')
-    call add('friction_work [energy]')
-    call add('volume_drift [-]')
-    call add('max_penetration [length]')
-    call add('points_sticking [-]')
-    call add('points_slipping [-]')
-    if (scene%load_factor%multiplier > 0) call add(scene%multipliers(scene%load_factor%multiplier)%name//' [-]')
-    do k = 1, size(scene%dies)
-      call add('force_x_'//scene%dies(k)%name//' [force]')
-      call add('force_y_'//scene%dies(k)%name//' [force]')
-      call add('moment_'//scene%dies(k)%name//' [force*length]')
-      if (is_deformable(scene%dies(k))) cycle
-      call add('displacement_x_'//scene%dies(k)%name//' [length]')
-      call add('displacement_y_'//scene%dies(k)%name//' [length]')
-      call add('rotation_'//scene%dies(k)%name//' [rad]')
-    end do
-    if (scene%plane_state == generalised_plane_strain) then
-      call add('section_strain [-]')
-      call add('section_curvature_x [1/length]')
-      call add('section_curvature_y [1/length]')
-      call add('section_force [force]')
-      call add('section_moment_x [force*length]')
-      call add('section_moment_y [force*length]')
-    end if
-    if (scene%follows_path) then
-      call add('path_error_motion [-]')
-      call add('path_error_stress [-]')
-    end if
-    if (scene%remesh%estimate) then
-      call add('error_stress [-]')
-      call add('error_strain [-]')
-    end if
-    if (has_heat(scene)) then
-      call add('heat_stored [energy]')
-      call add('heat_in [energy]')
-      call add('heat_released [energy]')
-      call add('heat_imbalance [-]')
-    end if
+    call columns_of_steps(scene, has_heat(scene), .false., columns)
     do k = 1, size(flows)
-      call add('heat_through_'//flows(k)%s//' [power]')
+      call add_text(columns, 'heat_through_'//flows(k)%s//' [power]')
     end do
     do k = 1, size(scene%die_heats)
-      call add('temperature_'//scene%dies(scene%die_heats(k)%die)%name//' [temperature]')
-      call add('heat_flow_'//scene%dies(scene%die_heats(k)%die)%name//' [power]')
+      call columns_of_die_heat(scene%dies(scene%die_heats(k)%die)%name, columns)
     end do
     do k = 1, size(scene%probes)
-      call add(scene%probes(k)%name//' ['//scene%probes(k)%unit//']')
+      call add_text(columns, scene%probes(k)%name//' ['//scene%probes(k)%unit//']')
     end do
-
-  contains
-
-    subroutine add(name)
-      character(len=*), intent(in) :: name
-
-      n = n + 1
-      columns(n)%s = name
-    end subroutine add
-
   end subroutine name_columns
 
   !> The row of the step just accepted. A die's force is what the part does to it.

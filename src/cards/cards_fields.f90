@@ -145,6 +145,7 @@ contains
       call cursor%open(deck%cards(i), diagnostics)
       call read_place(cursor, draft, .false., place)
       call read_field(cursor, draft, f)
+      if (f == 0) call cursor%leave()
       if (f > 0) call refuse_without_field(cursor, draft, f, place%nodes, place%label, own=.true.)
       call draft%multipliers%find(cursor, 'the name of a LIC', k)
       fixation%amplitude = 1

@@ -6,6 +6,7 @@ module cards_load_factor
   use diagnostics, only: diagnostics_t
   use field_places, only: refuse_without_field
   use fields, only: displacement_field
+  use history_columns, only: own_columns_named
   use kinds, only: pi, wp
   use loads, only: multiplier_t
   use scene, only: axisymmetric, group_t
@@ -54,6 +55,8 @@ contains
     call words_of('WORK', work)
     call cursor%open(deck%cards(card), diagnostics)
     call cursor%word('the name of the multiplier', name)
+    if (own_columns_named(draft%scene, name) > 1) &
+      call cursor%fail('the history has a column '''//name//''' of its own, take another name')
     associate (factor => draft%scene%load_factor)
       if (cursor%peek_word() == 'WORK') then
         call cursor%name('WORK', work, k)

@@ -6,6 +6,7 @@ module cards_probes
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
   use field_places, only: refuse_without_field
+  use history_columns, only: own_columns_named
   use kinds, only: wp
   use mesh, only: nearest_node
   use probe_components, only: find_component, read_component, set_component
@@ -40,6 +41,8 @@ contains
       call cursor%open(deck%cards(i), diagnostics)
       probe = none
       call draft%probes%define(cursor, 'the name of the probe', 'PROBE', size(draft%scene%probes) + 1, diagnostics, probe%name)
+      if (.not. cursor%failed() .and. own_columns_named(draft%scene, probe%name) > 0) &
+        call cursor%fail('the history has a column '''//probe%name//''' of its own, take another name')
       call cursor%name('a kind of probe', kinds_of_probe, probe%kind)
       allocate (probe%nodes(0))
       probe%unit = '-'

@@ -84,6 +84,7 @@ contains
           draft%scene%starts = [draft%scene%starts, start]
         end if
       end if
+      if (f == 0) call cursor%leave()
       call close_card(draft, cursor, deck%cards(i))
     end do
     if (draft%mesh_sound .and. draft%groups_sound .and. size(cards) == size(draft%scene%starts)) then

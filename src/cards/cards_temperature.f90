@@ -56,7 +56,8 @@ contains
       draft%scene%groups(g)%temperature_amplitude = amplitude
       draft%scene%groups(g)%temperature_multiplier = draft%multipliers%item(k)
     end do
-    if (diagnostics%count() == before) call refuse_bodies_without(draft, diagnostics)
+    ! a body whose ADDEL card has a mistake may have been meant to have one
+    if (diagnostics%count() == before .and. draft%groups_sound) call refuse_bodies_without(draft, diagnostics)
   end subroutine read_temperatures_of_bodies
 
   !> `FROM file`: the temperatures of another run. Nodes of the body then have a temperature that is given.

@@ -48,6 +48,7 @@ module deck_cursor
     procedure :: next_row
     procedure :: end_card
     procedure :: fail => fail_here
+    procedure :: leave
     procedure :: failed
     procedure :: where => place_of_last
     procedure, private :: nfield
@@ -339,7 +340,14 @@ contains
     self%silent = .true.
   end subroutine fail_here
 
-  !> A mistake on this card has been recorded.
+  !> Judge no more of this card: what it means is not known, because of mistakes on other cards.
+  subroutine leave(self)
+    class(cursor_t), intent(inout) :: self
+
+    self%silent = .true.
+  end subroutine leave
+
+  !> A mistake on this card has been recorded, or it was left because of others.
   pure function failed(self) result(yes)
     class(cursor_t), intent(in) :: self
     logical :: yes
