@@ -5,7 +5,7 @@ module physics_check
   use fields, only: displacement_field
   use heat_check, only: check_heat
   use kinds, only: wp
-  use law_api, only: driver_count, law_t
+  use law_api, only: driver_count, find_parameter, law_t
   use scene, only: axisymmetric, group_t, lacks_mesh, role_heat_contact, role_side_load, role_volume_load, scene_t
   use supports, only: free_motions
   use text, only: add => add_text, string_t, to_text
@@ -17,6 +17,8 @@ module physics_check
   real(wp), parameter :: largest_overlap = 0.01_wp
   !> Metals yield at less than this share of Young's modulus: the strongest steels and glassy metals at 0.01 to 0.02.
   real(wp), parameter :: largest_yield = 0.03_wp
+  !> Dry metals rub at less, hot ones that stick at their shear flow stress (M).
+  real(wp), parameter :: largest_friction = 1.0_wp
   !> Ends and middle of a side of an element.
   integer, parameter :: nodes_of_side = 3
 
@@ -49,6 +51,7 @@ contains
     if (.not. lacks_mesh(scene)) call free_motions(scene, outlook, warnings)
     do g = 1, size(scene%materials)
       call judge_yield(scene, laws, g, warnings)
+      call judge_friction(scene, laws, g, warnings)
     end do
     if (.not. anything_acts(scene)) &
       call add(warnings, 'nothing moves and no load acts: all multipliers (LIC) are zero at all times')
@@ -165,6 +168,24 @@ contains
         //' of E, metals below '//to_text(largest_yield)//': are E and stresses in one unit?')
     end associate
   end subroutine judge_yield
+
+  !> A coefficient of friction that no pair of metals has, and nothing beside it that bounds friction: a percentage.
+  subroutine judge_friction(scene, laws, m, warnings)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: m
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    real(wp) :: phi
+
+    associate (material => scene%materials(m), law => laws(scene%materials(m)%law_id))
+      if (find_parameter(law, 'PHI') == 0) return
+      phi = material%values(find_parameter(law, 'PHI'))
+      if (.not. (phi > largest_friction .and. phi < huge(phi))) return
+      if (min(material%values(find_parameter(law, 'M')), material%values(find_parameter(law, 'TAUMAX'))) < huge(phi)) return
+      call add(warnings, 'law '//material%name//': its coefficient of friction is '//to_text(phi, 3)//', of metals below ' &
+               //to_text(largest_friction)//': is it in percent? Above 1 an equilibrium need not exist (what sticks: GLUE2D)')
+    end associate
+  end subroutine judge_friction
 
   !> A multiplier is not zero at some time, or the scene needs none: heat acts by itself, and one without multipliers has none to be
   !> zero.

@@ -94,12 +94,17 @@ def balance(checks):
 
 
 def friction_factor(checks):
-    """A die slides over a block that has not hardened: friction m sigma_y/sqrt(3) on the face, whatever the pressure."""
-    for m in (0.3, 1.0):
-        rows = run_deck(checks, f"factor_{m}", law="EPLA\n   1000. 0.3\n   LINEAR 10. 0.", skin=f"PENETR 1.E-3 M {m} AKTAU 1.E4",
+    """A die slides over a block that has not hardened: friction m sigma_y/sqrt(3) on the face from this pressure on, else the
+    pressure; at any pressure with a steep coefficient."""
+    for m, phi, depth in ((0.3, "", 0.02), (1.0, "", 0.02), (1.0, "", 0.04), (1.0, "PHI 5.", 0.02)):
+        rows = run_deck(checks, f"factor_{m}_{phi[4:]}_{depth}", law="EPLA\n   1000. 0.3\n   LINEAR 10. 0.",
+                        skin=f"PENETR 1.E-3 M {m} {phi} AKTAU 1.E4",
                         fixed="FIXED  block 1 XY\nFIXED  block 2 X\nFIXED  block 4 X\nFIXED  block 3 X",
-                        cards="MOVE   press Y load -0.02\nMOVE   press X load 0.5")
-        close(checks, f"friction by the factor {m}", -rows["force_x_press"][-1], m * 10 / math.sqrt(3) * 10, 1e-9)
+                        cards=f"MOVE   press Y load -{depth}\nMOVE   press X load 0.5")
+        friction, pressed = m*10/math.sqrt(3)*10, abs(rows["force_y_press"][-1])
+        checks.that((pressed < friction) == (m > 0.5 and depth < 0.03), "on both sides of the limit", (pressed, friction))
+        close(checks, f"friction by the factor {m} {phi}, depth {depth}", -rows["force_x_press"][-1],
+              friction if phi else min(friction, pressed), 1e-9)
 
 
 def lost(checks):

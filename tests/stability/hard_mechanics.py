@@ -356,6 +356,21 @@ def rolling(checks):
     return max(abs(run.history["h"][-1]/2*lengths[-1]/lengths[0] - 1), abs(run.history["h"][-1]/1.6 - 1))
 
 
+def rocking_die(checks):
+    """A block between dies of constant-factor friction, the upper one rocking while it comes down: corners slide, stick and slide
+    back. It goes to the end on two meshes, with the force of both."""
+    forces = []
+    for name, divisions, m in (("coarse", "20 1. 8 1.", 0.2), ("fine", "30 1. 12 1.", 0.2), ("rough", "20 1. 8 1.", 0.6)):
+        run = checks.run("rocking-die-" + name, deck(
+            "PLSTN", "LOG", block("-10. 0. 10. 0. 10. 8. -10. 8.", divisions),
+            f"LAW m EPLA\n 70000. 0.33\n SWIFT 200. 0.02 0.15\nLAW k COUL2D\n PENETR 1.E-3 M {m}\n",
+            "DIE up PILOT 0. 8.\n SEGM 40. 8. -40. 8.\nDIE low\n SEGM -40. 0. 40. 0.\nCNT2D b 2 3 4 up k\nCNT2D b 1 2 4 low k\n"
+            "FIXED POINT 0. 0. X\nMOVE up Y down\nMOVE up A rock\nLIC down\n 0. 0. 2. -2.\nLIC rock\n 0. 0. 0.5 0.05 1.5 -0.05 2. 0.\n",
+            "STRAT 0.01 1.E-7 0.05 5 3"))
+        forces.append(run.history["force_y_up"][-1])
+    return abs(forces[0]/forces[1] - 1)
+
+
 def nearly_incompressible(checks):
     """Lame's cylinder, nu = 0.49999: the displacement of the bore is that of the closed form."""
     nu, young, a, b, p = 0.49999, 1000.0, 4.0, 10.0, 10.0
@@ -439,7 +454,8 @@ CASES = (
     Case("stick-slip reversal", stick_slip, 1e-3),
     Case("bent round a pin", round_a_pin, 0.25), Case("bent between three rollers", three_point_bending, 0.2),
     Case("blank under a holder", under_a_holder, 1e-4),
-    Case("rolling", rolling, 0.01, LONG), Case("S-shaped dies", s_shaped, 1e-3), Case("rib thinner than elements", thin_rib, 0.5, LONG),
+    Case("rolling", rolling, 0.01, LONG), Case("rocking die", rocking_die, 0.02),
+    Case("S-shaped dies", s_shaped, 1e-3), Case("rib thinner than elements", thin_rib, 0.5, LONG),
     Case("nearly incompressible", nearly_incompressible, 1e-9), Case("past the peak", past_the_peak, 1e-9),
     Case("another solver", other_solver, 1e-6), Case("three blocks for one", joined, 1e-8), Case("pressed often", pressed_often, 1e-5),
     Case("one step or many", one_step_or_many, 1e-9))
