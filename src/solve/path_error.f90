@@ -69,16 +69,19 @@ contains
       call drivers_of_half(equations%drivers, other%groups, .true., drivers)
       call advance_beside(scene, equations, active, drivers, outcome%du - first, 0.5_wp*dt, other, done)
     end if
-    if (done) then
+    estimate: if (done) then
       associate (step => outcome%path)
         step%stress = root_energy(scene, equations, active, other, solution%groups)
         step%stress_error = 2*(root_energy(scene, equations, active, other, other%groups) - step%stress)
         call unbalanced_forces(scene, equations, solution, outcome%du, residual)
         call solve_correction(equations, 2*residual, error, outcome%error, at_hand=at_hand)
+        ! what follows is of no use then, and may not take the error's place
+        if (allocated(outcome%error)) exit estimate
         step%motion = mean_square(on_nodes(equations, outcome%du))
         allocate (step%error, source=on_nodes(equations, error))
         step%motion_error = mean_square(step%error)
         if (last) call stress_with_motion(scene, equations, solution, active, dt, error, other%groups, outcome, step%stress_whole)
+        if (allocated(outcome%error)) exit estimate
         call drop_round_off(equations, solution, step)
         if (max(abs(step%stress_error), abs(solution%path%stress_error)) &
             > negligible*stress_scale(solution%path, step%stress)) then
@@ -100,7 +103,7 @@ contains
           done = .true.
         end if
       end associate
-    end if
+    end if estimate
     equations%buffers%force = element_force
     if (.not. allocated(outcome%error)) return
     outcome%converged = .false.

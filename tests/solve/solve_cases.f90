@@ -8,14 +8,15 @@ module solve_cases
   use element_loop, only: element_buffers_t
   use fields, only: mechanical_fields
   use kinds, only: wp
-  use law_cases, only: contact_material, elastic_material
+  use kinematics_api, only: solid_variables
+  use law_cases, only: contact_material, elastic_material, law_row
   use sample_numbers, only: sample_t
-  use scene, only: plane_strain, role_body, role_contact, scene_t
+  use scene, only: axisymmetric, group_t, plane_strain, role_body, role_contact, scene_t
   use solves, only: number_equations, solve_t
   use sparsity, only: pattern_t
   implicit none
   private
-  public :: whole_solve, two_elements, elements_of, random_buffers, dense_matrix, matrix_of_pattern
+  public :: bar, whole_solve, two_elements, elements_of, random_buffers, dense_matrix, matrix_of_pattern
 
 contains
 
@@ -104,6 +105,30 @@ contains
     scene%forces(1)%multiplier = 1
     scene%strategy%end_time = 2
   end subroutine two_elements
+
+  !> The two elements alone, a bar along y about the axis; multiplier 1 stretches it: top nodes go up by -1 times it.
+  subroutine bar(scene)
+    type(scene_t), intent(out) :: scene
+    type(group_t) :: group
+
+    call two_elements(scene)
+    scene%plane_state = axisymmetric
+    scene%section = [0.0_wp, 1.0_wp, 0.0_wp]
+    group = scene%groups(1)
+    call solid_variables(law_row('ELA'), group%variables)
+    deallocate (scene%groups)
+    allocate (scene%groups(1), source=[group])
+    scene%mesh%coordinates = scene%mesh%coordinates(:, :13)
+    scene%fixations(2)%amplitude = -1
+    scene%fixations = [scene%fixations, scene%fixations(1)]
+    scene%fixations(3)%nodes = [1, 2, 3, 4, 5]
+    scene%fixations(3)%component = 2
+    deallocate (scene%die_motions, scene%forces)
+    allocate (scene%die_motions(0), scene%forces(0))
+    scene%strategy%least_step = 1.0e-3_wp
+    scene%strategy%strain_bound = 1
+    scene%strategy%force_norm = 1.0e-9_wp
+  end subroutine bar
 
   function elements_of() result(elems)
     type(elem_t), allocatable :: elems(:)
