@@ -148,7 +148,9 @@ contains
       if (.not. allocated(error)) call refine(solver, pattern, rhs, x, error)
     end if
     if (allocated(error)) return
-    if (.not. solver%residual <= linear_tolerance) then
+    if (.not. solver%sound) then
+      call fail(error, exit_no_convergence, 'the matrix has no factors: its factorisation failed')
+    else if (.not. solver%residual <= linear_tolerance) then
       call fail(error, exit_no_convergence, 'linear residual '//to_text(solver%residual, 3)//' above ' &
                 //to_text(linear_tolerance, 3))
     end if
