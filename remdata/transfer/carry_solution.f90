@@ -31,6 +31,7 @@ contains
     call visit_solution_members(memory, shown)
     memory%gives = .true.
     call visit_solution_members(memory, after)
+    after%estimate%began = before%step
     after%estimate%last_stop = before%step
     after%estimate%previous_stress = before%estimate%stress
     call carry_error(before%estimate, after%estimate)

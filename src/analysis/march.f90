@@ -206,7 +206,6 @@ contains
     end if
     run%totals = balance%after
     call estimate_stress(scene, run%estimator, solution)
-    solution%estimate%first_stress = solution%estimate%stress
   end subroutine release_part
 
   !> Equilibrium on a new mesh, judged; later steps begin from it.

@@ -145,7 +145,7 @@ contains
       call relate(missing(2, :), whole(2, :), volume, sum(whole(2, :)) > at_rest**2*sum(volume), estimate%strain, &
                   estimate%strain_of)
       estimate%stress_left = left_of_stress(energy, elastic, estimate%strain_sums(2, :))
-      if (estimate%first_stress > 0 .and. left > forgotten .and. solution%step - estimate%last_stop <= scene%remesh%least_steps) &
+      if (estimate%first_stress > 0 .and. left > forgotten .and. solution%step - estimate%began <= scene%remesh%least_steps) &
         estimate%first_stress = estimate%stress
     end associate
   end subroutine estimate_errors

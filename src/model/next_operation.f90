@@ -78,6 +78,8 @@ contains
     after%estimate = fresh%estimate
     ! what this mesh errs is seen on it later too
     after%estimate%carried_stress = before%estimate%carried_stress*before%estimate%stress_left
+    after%estimate%began = before%estimate%began
+    after%estimate%first_stress = before%estimate%first_stress
     after%cuts = fresh%cuts
     after%estimate%last_stop = before%step
     after%fields = fresh%fields

@@ -60,8 +60,8 @@ module remeshing
     real(wp), allocatable :: stress_of(:), strain_of(:)   !! (nelem)
     !> Sums over the steps since the mesh began, of the error of the strain increment and of the increment (2, nelem).
     real(wp), allocatable :: strain_sums(:, :)
-    !> Step at which the mesh began, or at which a new one was due last.
-    integer :: last_stop = 0
+    !> Step at which the mesh began; step at which it, or the operation, began or a new mesh was due last.
+    integer :: began = 0, last_stop = 0
     !> Error of the stress on the mesh before, when it was replaced; 0 for the deck's own mesh.
     real(wp) :: previous_stress = 0.0_wp
     !> Error of the stress that a new mesh has shown first: when it began, then when its flow has forgotten the stresses carried to

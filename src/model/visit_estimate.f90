@@ -23,6 +23,7 @@ contains
     call visitor%member('stress_of', self%stress_of, of_the_mesh, 'element', '-')
     call visitor%member('strain_of', self%strain_of, of_the_mesh, 'element', '-')
     call visitor%member('strain_sums', self%strain_sums, of_the_mesh, '2, element', '-', low=0.0_wp)
+    call visitor%member('began', self%began, recomputed, low=0)
     call visitor%member('last_stop', self%last_stop, recomputed, low=0)
     call visitor%member('first_stress', self%first_stress, recomputed, '-', low=0.0_wp)
     call visitor%member('previous_stress', self%previous_stress, recomputed, '-', low=0.0_wp)
