@@ -16,7 +16,7 @@ module heat_check
   use temperature_curves, only: is_given
   use text, only: add => add_text, string_t, to_text
   use vectors, only: length_of
-  use weld_sources, only: power_in_plane
+  use weld_sources, only: felt_ahead, power_in_plane
   implicit none
   private
   public :: check_heat
@@ -236,7 +236,8 @@ contains
     associate (source => scene%sources(k), path => scene%sources(k)%path)
       axis = min(source%front, source%rear)
       way = 0
-      if (source%crosses) way = source%speed*scene%strategy%largest_step
+      ! steps end where the torch begins to be felt, crosses, and is gone
+      if (source%crosses) way = min(source%speed*scene%strategy%largest_step, felt_ahead*axis)
       least = huge(least)
       at = 0
       do i = 1, size(path, 2)
@@ -250,14 +251,16 @@ contains
           least = min(share, least)
         end do
         if (i == 1 .or. source%crosses) cycle
-        way = max(way, length_of(path(2:3, i) - path(2:3, i - 1))/(path(1, i) - path(1, i - 1))*scene%strategy%largest_step)
+        ! and at the rows of the path
+        way = max(way, length_of(path(2:3, i) - path(2:3, i - 1)) &
+                  *min(scene%strategy%largest_step/(path(1, i) - path(1, i - 1)), 1.0_wp))
       end do
     end associate
     if (least < expected_share) call add(warnings, 'GOLDAK '//to_text(k)//': at time '//to_text(at, 3)//' only ' &
       //to_text(100*least, 3)//' % of half its ellipse is found in its bodies, which take all of the power: it ends outside them ' &
       //'(half a weld, of half the power, does), or elements are longer than its semi-axes')
     if (way > axis) call add(warnings, 'GOLDAK '//to_text(k)//': it goes '//to_text(way/axis, 3) &
-      //' times its shorter semi-axis in the largest step (STRAT): the heat of single steps shows')
+      //' times its shorter semi-axis in a step (STRAT): the heat of single steps shows')
   end subroutine judge_torch
 
 end module heat_check

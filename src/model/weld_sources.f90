@@ -14,10 +14,12 @@ module weld_sources
   implicit none
   private
   public :: weld_source_t
-  public :: has_front, plane_integral, power_in_plane, reaches, shape_at, times_to_hit
+  public :: felt_ahead, has_front, plane_integral, power_in_plane, reaches, shape_at, times_to_hit
 
   !> Beyond this exponent the source is less than round-off of its centre, and nothing is released.
   real(wp), parameter :: largest_exponent = 45.0_wp
+  !> A torch that crosses the plane is felt from so many semi-axes before it to as many behind it.
+  real(wp), parameter :: felt_ahead = 1.5_wp
 
   type :: weld_source_t
     !> Power times multiplier (0 for none) times efficiency.
@@ -108,7 +110,8 @@ contains
     real(wp), allocatable :: times(:)   !! [time]
 
     times = source%path(1, :)
-    if (source%crosses) times = [times, source%crossing_time + [-1.5_wp*source%front, 0.0_wp, 1.5_wp*source%rear]/source%speed]
+    if (source%crosses) times = [times, source%crossing_time + &
+                                  [-felt_ahead*source%front, 0.0_wp, felt_ahead*source%rear]/source%speed]
   end function times_to_hit
 
   !> The path goes along the direction that front and rear stand on; otherwise nothing says which is which.

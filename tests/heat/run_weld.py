@@ -240,6 +240,30 @@ def off(checks):
         checks.that("% of half its ellipse is found in its bodies" in listing, "off: warned before")
 
 
+def long_steps(checks):
+    """Steps end where a torch begins to be felt, crosses, and is gone: what is warned of is how far it goes in such a step."""
+    front, speed, at = 0.004, 0.005, 2.0
+    for step, times in ((0.8, None), (1.0, 1.25), (8.0, 1.5)):
+        name = f"long-{step:g}"
+        run = Run(checks, name, HEAD.format(title="long", state="PLSTN")
+                  + "BLOCK bar PL8TM 4 steel\n   0. -0.02 0.02 -0.02 0.02 0. 0. 0.\n   10 1. 10 1.\n" + LAW
+                  + f"GOLDAK bar P {POWER} ETA {ETA} {AXES} WIDTH {WIDTH} INTO 0. -1. CROSS {speed} {at}\n   0. 0. 0.\n"
+                  + steps(step, 8.0) + "END\n")
+        if not run.ok:
+            continue
+        with open(os.path.join(run.out, f"{name}.log"), encoding="utf-8") as file:
+            said = [line for line in file if "its shorter semi-axis" in line]
+        checks.that(bool(said) == (times is not None), f"{name}: warned or not", said)
+        if times is None:
+            continue
+        checks.that(f"it goes {times:g} times its shorter semi-axis" in said[0], f"{name}: {times:g} times", said)
+        if step < 8:
+            continue
+        time = run.history["time"]
+        before = np.diff(time)[(time[1:] <= at*(1 + 1e-9)) & (time[:-1] >= at - 1.5*front/speed - 1e-9)]
+        checks.small(abs(before.max()*speed/front/times - 1), 1e-9, f"{name}: the longest step as it comes near")
+
+
 def main():
     """All of them."""
     checks = Checks()
@@ -249,6 +273,7 @@ def main():
     laws(checks)
     motion(checks)
     off(checks)
+    long_steps(checks)
     checks.end()
 
 
