@@ -54,7 +54,8 @@ contains
     end do
   end function limits_around
 
-  !> Limits at a point: those of the window it is in, of the finer one where several overlap.
+  !> Limits at a point: those of the window it is in, of the finer one where several overlap. Beside a window that is finer than
+  !> the rest of the mesh they reach down to its smallest size, grown with the distance, so that sizes do not jump at its border.
   pure function limits_within(limits, windows, x, origin) result(own)
     type(size_limits_t), intent(in) :: limits
     type(size_window_t), intent(in) :: windows(:)   !! (nwindow)
@@ -71,6 +72,10 @@ contains
       own%smallest = windows(k)%box%smallest
       own%largest = windows(k)%box%largest
       inside = .true.
+    end do
+    if (inside) return
+    do k = 1, size(windows)
+      own%smallest = min(own%smallest, windows(k)%box%smallest + slope_of(limits%gradation)*distance_to(windows(k), x, origin))
     end do
   end function limits_within
 
