@@ -10,13 +10,14 @@
 !> Source of nodal constraints beside integrated ones: P. Wriggers, Computational Contact Mechanics, 2nd ed., Springer 2006,
 !> sec. 6.3.
 !>
-!> Its state is that of the corner in the interval at the node (corner_contact), whichever of both is deeper; its place is exactly
-!> -1 or 1.
+!> Its state is that of the corner in the interval at the node (corner_contact). One of both acts, the node where it is deeper and
+!> presses: their areas are the same part of the side. Its place is exactly -1 or 1.
 module axis_contact
   use closest_point, only: closest_point_t
   use contact_penalties, only: allowed_penetration
   use contact_point, only: area_at, at_augmentation, at_penetration, at_piece, at_status, at_xi, contact_block, &
                            contact_point_t, no_surface, rest, share_to_contact
+  use corner_contact, only: end_on_axis, press_corner
   use dies, only: die_t
   use elem_api, only: report_t
   use kinds, only: wp
@@ -38,7 +39,8 @@ module axis_contact
 
 contains
 
-  !> Contact of the ends of a side that lie on the axis. States are of all points of the side (nstate, npoint).
+  !> Contact of the end of a side that lies on the axis, or of the corner beside it. States are of all points of the side
+  !> (nstate, npoint).
   pure subroutine press_axis(die, law, material, drivers, side, xi, committed, trial, force, stiffness, report)
     type(die_t), intent(in) :: die
     type(law_t), intent(in) :: law
@@ -51,41 +53,82 @@ contains
     real(wp), intent(inout) :: force(ndof)             !! [force]
     real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
     type(report_t), intent(inout) :: report
+    type(report_t) :: of_corner, of_node
+    real(wp), dimension(size(trial, 1)) :: node
+    real(wp) :: f(ndof, 2), matrix(ndof, ndof, 2)
+    integer :: k, p, n
+    logical :: met, corner_acts, node_acts
+
+    k = end_on_axis(side)
+    if (k == 0) return
+    p = merge(1, size(xi), k == 1)
+    n = contact_block(.true., size(trial, 1))
+    f = 0
+    matrix = 0
+    node = trial(:, p)
+    call press_corner(die, law, material, drivers(:, :, p), .true., side, xi, p, committed(:, p), trial(:, p), f(:, 1), &
+                      matrix(:, :, 1), of_corner)
+    call press_node(die, law, material, drivers(:, :, p), side, xi, k, committed, node, f(:, 2), matrix(:, :, 2), of_node, met)
+    corner_acts = nint(trial(n + at_status, p)) /= contact_open
+    node_acts = met .and. nint(node(n + at_status)) /= contact_open
+    if (corner_acts .and. node_acts) node_acts = node(n + at_penetration) > trial(n + at_penetration, p)
+    if (met .and. (node_acts .or. .not. corner_acts)) then
+      trial(:, p) = node
+      force = force + f(:, 2)
+      stiffness = stiffness + matrix(:, :, 2)
+      report%jump = max(report%jump, of_node%jump)
+      report%event = min(report%event, of_node%event)
+    end if
+    if (node_acts) return
+    force = force + f(:, 1)
+    stiffness = stiffness + matrix(:, :, 1)
+    report%jump = max(report%jump, of_corner%jump)
+    report%event = min(report%event, of_corner%event)
+  end subroutine press_axis
+
+  !> Contact of the node at one end, with what it does to its state; `met` is false where it faces no die.
+  pure subroutine press_node(die, law, material, drivers, side, xi, k, committed, trial, force, stiffness, report, met)
+    type(die_t), intent(in) :: die
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) of the law [unit of each driver]
+    type(side_t), intent(in) :: side
+    real(wp), intent(in) :: xi(:)                      !! (npoint) [-]
+    integer, intent(in) :: k                           !! end of the side
+    real(wp), intent(in) :: committed(:, :)            !! (nstate, npoint) [unit of each component]
+    real(wp), intent(inout) :: trial(:)                !! (nstate) of the point at this end [unit of each component]
+    real(wp), intent(inout) :: force(ndof)             !! [force]
+    real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
+    type(report_t), intent(inout) :: report
+    logical, intent(out) :: met
     type(contact_point_t) :: point, beside
     type(closest_point_t) :: closest, next
     real(wp), parameter :: ends(2) = [-1.0_wp, 1.0_wp]
     real(wp) :: before(size(committed, 1)/2)
-    integer :: k, p, q, n, at_place
+    integer :: p, q, n, at_place
 
-    at_place = size(trial, 1)
+    at_place = size(trial)
     n = contact_block(.true., at_place)
-    do k = 1, 2
-      if (max(side%x(1, 2*k - 1), side%x(1, 2*k - 1) + side%du(2*k - 1)) > no_surface*side%length) cycle
-      ! a side along the axis has no surface at all
-      if (min(side%x(1, 2), side%x(1, 2) + side%du(2)) <= no_surface*side%length) cycle
-      p = merge(1, size(xi), k == 1)
-      q = p
-      if (abs(xi(p)) >= 1) q = p + merge(1, -1, k == 1)
-      call meet_along_axis(die, side, ends(k), committed(n + 1:2*n, p), point, closest)
-      if (closest%piece == 0) cycle
-      associate (now => trial(n + 1:2*n, p))
-        ! a corner of the die in the same interval that is deeper
-        if (nint(now(at_status)) /= contact_open .and. now(at_penetration) >= closest%d) cycle
-        before = committed(n + 1:2*n, p)
-        ! the state was that of a corner; one of an open corner has nothing to forget but the multiplier found in this step
-        if (abs(committed(at_place, p)) < 1 .and. nint(before(at_status)) /= contact_open) call forget(before)
-        call forget(now)
-        trial(at_place, p) = ends(k)
-        call place_point(side, xi(q), beside)
-        call closest_or_followed(die, turned(beside%x - side%pilot(1:2, 2), -side%pilot(3, 2)), &
-                                 turned(beside%e_r, -side%pilot(3, 2)), side%length, committed(:n, q), next)
-        call hold(law, material, drivers(:, :, p), side, ends(k), point, closest, beside, next, before, now, force, stiffness)
-        if (nint(before(at_status)) /= contact_open) &
-          report%jump = max(report%jump, abs(now(at_penetration) - before(at_penetration))/side%length)
-        report%event = min(report%event, share_to_contact(before, now, side%length))
-      end associate
-    end do
-  end subroutine press_axis
+    p = merge(1, size(xi), k == 1)
+    q = p
+    if (abs(xi(p)) >= 1) q = p + merge(1, -1, k == 1)
+    call meet_along_axis(die, side, ends(k), committed(n + 1:2*n, p), point, closest)
+    met = closest%piece > 0
+    if (.not. met) return
+    associate (now => trial(n + 1:2*n))
+      before = committed(n + 1:2*n, p)
+      ! the state was that of a corner; one of an open corner has nothing to forget but the multiplier found in this step
+      if (abs(committed(at_place, p)) < 1 .and. nint(before(at_status)) /= contact_open) call forget(before)
+      trial(at_place) = ends(k)
+      call place_point(side, xi(q), beside)
+      call closest_or_followed(die, turned(beside%x - side%pilot(1:2, 2), -side%pilot(3, 2)), &
+                               turned(beside%e_r, -side%pilot(3, 2)), side%length, committed(:n, q), next)
+      call hold(law, material, drivers, side, ends(k), point, closest, beside, next, before, now, force, stiffness)
+      if (nint(before(at_status)) /= contact_open) &
+        report%jump = max(report%jump, abs(now(at_penetration) - before(at_penetration))/side%length)
+      report%event = min(report%event, share_to_contact(before, now, side%length))
+    end associate
+  end subroutine press_node
 
   !> No contact; the work of friction stays.
   pure subroutine forget(state)

@@ -5,7 +5,7 @@
 !> a side that lies on the die by a corner has its points for that. Toward an end of the side the weight
 !> goes to zero: the load of a corner that a node slides past goes over to the node gradually, and back
 !> again; a sudden change would leave positions without equilibrium. The normal force of a corner is
-!> pressure only, whatever the law.
+!> pressure only, whatever the law. In the interval at a node on the axis either the corner acts or that node (axis_contact).
 module corner_contact
   use contact_point, only: at_augmentation, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, most_unknowns, &
                            contact_block, no_surface, share_to_contact, thinning
@@ -21,7 +21,7 @@ module corner_contact
   use side_corners, only: closest_at_corner, corner_t, deepest_corner
   implicit none
   private
-  public :: press_corners, interval_before
+  public :: end_on_axis, press_corner, press_corners, interval_before
 
   !> A corner acts on what is deeper than this share of the allowed penetration.
   real(wp), parameter :: corner_share = 0.5_wp
@@ -30,7 +30,8 @@ module corner_contact
 
 contains
 
-  !> Contact of a side with the corners of a die. States are of all points of the side (nstate, npoint).
+  !> Contact of a side with the corners of a die, but in the interval at the axis. States are of all points of the side
+  !> (nstate, npoint).
   pure subroutine press_corners(die, law, material, drivers, axisym, side, xi, committed, trial, force, stiffness, report)
     type(die_t), intent(in) :: die
     type(law_t), intent(in) :: law
@@ -44,33 +45,71 @@ contains
     real(wp), intent(inout) :: force(ndof)             !! [force]
     real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
     type(report_t), intent(inout) :: report
-    type(corner_t) :: corner
-    real(wp) :: nodes(2, 3), from, to, worn(1)
-    integer :: p, k, n, at_place
+    integer :: p, apart
 
     if (size(die%corners, 2) == 0 .or. .not. allowed_penetration(material) > 0) return
-    at_place = size(trial, 1)
+    apart = 0
+    if (axisym) apart = end_on_axis(side)
+    if (apart > 0) apart = merge(1, size(xi), apart == 1)
+    do p = 1, size(xi)
+      if (p /= apart) call press_corner(die, law, material, drivers(:, :, p), axisym, side, xi, p, committed(:, p), trial(:, p), &
+                                        force, stiffness, report)
+    end do
+  end subroutine press_corners
+
+  !> End of a side that is a node on the axis: 1 or 2, 0 for none. A side along the axis has no surface at all.
+  pure function end_on_axis(side) result(k)
+    type(side_t), intent(in) :: side
+    integer :: k
+
+    if (min(side%x(1, 2), side%x(1, 2) + side%du(2)) > no_surface*side%length) then
+      do k = 1, 2
+        if (max(side%x(1, 2*k - 1), side%x(1, 2*k - 1) + side%du(2*k - 1)) <= no_surface*side%length) return
+      end do
+    end if
+    k = 0
+  end function end_on_axis
+
+  !> Contact with the deepest corner of a die in the interval before a point.
+  pure subroutine press_corner(die, law, material, drivers, axisym, side, xi, p, committed, trial, force, stiffness, report)
+    type(die_t), intent(in) :: die
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) of the law [unit of each driver]
+    logical, intent(in) :: axisym
+    type(side_t), intent(in) :: side
+    real(wp), intent(in) :: xi(:)                      !! (npoint) [-]
+    integer, intent(in) :: p
+    real(wp), intent(in) :: committed(:)               !! (nstate) of the point [unit of each component]
+    real(wp), intent(inout) :: trial(:)                !! (nstate) of the point [unit of each component]
+    real(wp), intent(inout) :: force(ndof)             !! [force]
+    real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
+    type(report_t), intent(inout) :: report
+    type(corner_t) :: corner
+    real(wp) :: nodes(2, 3), from, to, worn(1)
+    integer :: k, n, at_place
+
+    if (size(die%corners, 2) == 0 .or. .not. allowed_penetration(material) > 0) return
+    call interval_before(xi, p, from, to)
+    if (.not. to > from) return
+    at_place = size(trial)
     n = contact_block(.true., at_place)
     do k = 1, 3
       nodes(:, k) = turned([side%x(1, k) + side%du(k), side%x(2, k) + side%du(k + 3)] - side%pilot(1:2, 2), -side%pilot(3, 2))
     end do
-    do p = 1, size(xi)
-      call interval_before(xi, p, from, to)
-      if (.not. to > from) cycle
-      call deepest_corner(die, nodes, from, to, side%length, corner)
-      if (.not. corner%found) cycle
-      trial(at_place, p) = corner%place
-      associate (before => committed(n + 1:2*n, p), now => trial(n + 1:2*n, p))
-        worn = thinning(committed([at_place], p), [corner%place], side%section, side%thickening, side%x, side%du(1:6))
-        now(at_work) = before(at_work)*worn(1)
-        call corner_at(law, material, drivers(:, :, p), axisym, side, corner, to - from, before, now, force, stiffness)
-        if (nint(before(at_status)) /= contact_open) then
-          report%jump = max(report%jump, abs(now(at_penetration) - before(at_penetration))/side%length)
-        end if
-        report%event = min(report%event, share_to_contact(before, now, side%length))
-      end associate
-    end do
-  end subroutine press_corners
+    call deepest_corner(die, nodes, from, to, side%length, corner)
+    if (.not. corner%found) return
+    trial(at_place) = corner%place
+    associate (before => committed(n + 1:2*n), now => trial(n + 1:2*n))
+      worn = thinning(committed([at_place]), [corner%place], side%section, side%thickening, side%x, side%du(1:6))
+      now(at_work) = before(at_work)*worn(1)
+      call corner_at(law, material, drivers, axisym, side, corner, to - from, before, now, force, stiffness)
+      if (nint(before(at_status)) /= contact_open) then
+        report%jump = max(report%jump, abs(now(at_penetration) - before(at_penetration))/side%length)
+      end if
+      report%event = min(report%event, share_to_contact(before, now, side%length))
+    end associate
+  end subroutine press_corner
 
   !> Contact at one corner: state, forces, matrix.
   pure subroutine corner_at(law, material, drivers, axisym, side, corner, weight, committed, trial, force, stiffness)
