@@ -10,8 +10,9 @@ module heat_record
     !> is above what the deck allows.
     logical :: estimated = .false.
     real(wp) :: error = 0.0_wp
-    !> Error at its end, of all steps so far on the mesh: heat of the nodes (nnode) [energy], and temperature, in the mean square.
-    real(wp), allocatable :: content_error(:)
+    !> Error at its end, of all steps so far on the mesh: heat of the nodes (nnode) and of the dies (ndie) [energy], and
+    !> temperature, in the mean square.
+    real(wp), allocatable :: content_error(:), die_error(:)
     real(wp) :: error_now = 0.0_wp
     logical :: above = .false.
     !> It must be shortened by its error; largest factor for the step that follows.
@@ -26,9 +27,10 @@ module heat_record
     !> Sum and largest of the estimated errors of the steps [temperature], and how many were estimated.
     real(wp) :: error_sum = 0.0_wp, error_worst = 0.0_wp
     integer :: estimated = 0
-    !> What the steps have left of their errors: of the heat of the nodes, by those on the present mesh (nnode, of none where there
-    !> is no temperature) [energy]; of the temperature, in the mean square: by these, by all, and the largest so far [temperature].
-    real(wp), allocatable :: content_error(:)
+    !> What the steps have left of their errors: of the heat of the nodes and of the dies, by those on the present mesh (nnode and
+    !> ndie, of none where there is no temperature) [energy]; of the temperature, in the mean square: by these, by all, and the
+    !> largest so far [temperature].
+    real(wp), allocatable :: content_error(:), die_error(:)
     real(wp) :: error_of_mesh = 0.0_wp, error_now = 0.0_wp, error_largest = 0.0_wp
     !> Attempts shortened by their error; steps of the least length that are above it.
     integer :: shortened = 0, above = 0
@@ -54,6 +56,7 @@ contains
       record%error_of_mesh = step%error_now
       record%error_largest = max(record%error_largest, record%error_now)
       record%content_error = step%content_error
+      record%die_error = step%die_error
       if (step%above) record%above = record%above + 1
     end if
     if (step%fell_back) record%fallbacks = record%fallbacks + 1

@@ -75,6 +75,8 @@ contains
     after%largest_force = 0
     after%friction_apart = 0
     after%path%error = fresh%path%error
+    ! the dies are others, with temperatures of their own
+    after%heat%die_error = fresh%heat%die_error
     after%estimate = fresh%estimate
     ! what this mesh errs is seen on it later too
     after%estimate%carried_stress = before%estimate%carried_stress*before%estimate%stress_left

@@ -87,7 +87,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(out) :: solution
     real(wp), intent(in), optional :: time   !! at which the scene begins, 0 where it is not given [time]
-    integer :: f, g, v, c, npoint, nsolid, nheated
+    integer :: f, g, v, c, npoint, nsolid, nheated, nwarm
 
     if (present(time)) solution%time = time
     call start_fields(scene, solution%time, solution%fields)
@@ -97,7 +97,10 @@ contains
     f = find_field(scene%fields, 'temperature')
     nheated = 0
     if (f > 0) nheated = merge(size(scene%mesh%coordinates, 2), 0, scene%fields(f)%declared)
-    allocate (solution%heat%content_error(nheated), source=0.0_wp)
+    f = find_field(scene%fields, 'die_temperature')
+    nwarm = 0
+    if (f > 0) nwarm = merge(size(scene%dies), 0, scene%fields(f)%declared)
+    allocate (solution%heat%content_error(nheated), solution%heat%die_error(nwarm), source=0.0_wp)
     allocate (solution%groups(size(scene%groups)))
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g), state => solution%groups(g))

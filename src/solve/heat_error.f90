@@ -10,8 +10,8 @@
 !> one of TR-BDF2 (D and W as there) first makes the same of its first stage, M s = 2 d0/(D dt), dm = d0 - D dt K s, and then
 !>   M e1 = ((1 - W/D) d0 + W/D dm)/(D dt) + r.
 !> The flows K e are those of the elements, by their difference along a small part of e. So latent heat and numbers by temperature
-!> are as in the step. (Global errors by the linearised equation with the local ones as its sources: R.D. Skeel, Thirteen ways to
-!> estimate global error, Numer. Math. 48 (1986) 1-20.)
+!> are as in the step; dies with a heat capacity of their own have errors as nodes do. (Global errors by the linearised equation with
+!> the local ones as its sources: R.D. Skeel, Thirteen ways to estimate global error, Numer. Math. 48 (1986) 1-20.)
 module heat_error
   use corrections, only: solve_correction
   use elem_api, only: report_t
@@ -67,32 +67,58 @@ contains
     type(outcome_t), intent(inout) :: outcome
     real(wp), dimension(size(rates)) :: heat, middle, temperatures
     real(wp) :: length, unused
-    integer :: f, n, d
 
-    f = find_field(scene%fields, 'temperature')
     length = merge(diagonal, 1.0_wp, two_stages)*dt
-    associate (number => equations%dofs%fields(f)%number(1, :), equation => equations%solves(equations%now)%equation)
-      heat = 0
-      do n = 1, size(number)
-        d = number(n)
-        if (d == 0) cycle
-        if (equation(d) > 0) heat(d) = solution%heat%content_error(n)
-      end do
-      if (two_stages .and. any(abs(heat) > 0)) then
-        call solve_correction(equations, 2*heat/length, temperatures, outcome%error, at_hand=.true.)
-        if (allocated(outcome%error)) return
-        middle = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures)
-        heat = heat + (weight/diagonal)*(middle - heat)
-      end if
-      heat = heat + length*rates
-      call solve_correction(equations, heat/length, temperatures, outcome%error, at_hand=.true.)
+    heat = 0
+    call take(equations, find_field(scene%fields, 'temperature'), solution%heat%content_error, heat)
+    call take(equations, find_field(scene%fields, 'die_temperature'), solution%heat%die_error, heat)
+    if (two_stages .and. any(abs(heat) > 0)) then
+      call solve_correction(equations, 2*heat/length, temperatures, outcome%error, at_hand=.true.)
       if (allocated(outcome%error)) return
-      heat = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures)
-      call measure_error(scene, equations, solution, outcome%du, temperatures, unused, outcome%heat%error_now)
-      where (equation == 0) heat = 0
-      outcome%heat%content_error = [(merge(heat(max(number(n), 1)), 0.0_wp, number(n) > 0), n=1, size(number))]
-    end associate
+      middle = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures)
+      heat = heat + (weight/diagonal)*(middle - heat)
+    end if
+    heat = heat + length*rates
+    call solve_correction(equations, heat/length, temperatures, outcome%error, at_hand=.true.)
+    if (allocated(outcome%error)) return
+    heat = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures)
+    call measure_error(scene, equations, solution, outcome%du, temperatures, unused, outcome%heat%error_now)
+    where (equations%solves(equations%now)%equation == 0) heat = 0
+    outcome%heat%content_error = solution%heat%content_error
+    outcome%heat%die_error = solution%heat%die_error
+    call leave(equations, find_field(scene%fields, 'temperature'), heat, outcome%heat%content_error)
+    call leave(equations, find_field(scene%fields, 'die_temperature'), heat, outcome%heat%die_error)
   end subroutine carry_errors
+
+  !> Errors at the places of a field as those of its unknowns, where these are solved for.
+  pure subroutine take(equations, field, at_places, heat)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: field            !! in the list of the scene
+    real(wp), intent(in) :: at_places(:)    !! (nplace), of none where the field is not declared [energy]
+    real(wp), intent(inout) :: heat(:)      !! (ndof) [energy]
+    integer :: n, d
+
+    do n = 1, size(at_places)
+      d = equations%dofs%fields(field)%number(1, n)
+      if (d == 0) cycle
+      if (equations%solves(equations%now)%equation(d) > 0) heat(d) = at_places(n)
+    end do
+  end subroutine take
+
+  !> Errors of the unknowns at the places of their field; none where there is no unknown.
+  pure subroutine leave(equations, field, heat, at_places)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: field               !! in the list of the scene
+    real(wp), intent(in) :: heat(:)            !! (ndof) [energy]
+    real(wp), intent(inout) :: at_places(:)    !! (nplace), of none where the field is not declared [energy]
+    integer :: n, d
+
+    do n = 1, size(at_places)
+      d = equations%dofs%fields(field)%number(1, n)
+      at_places(n) = 0
+      if (d > 0) at_places(n) = heat(d)
+    end do
+  end subroutine leave
 
   !> Flows out of the nodes that come with a small change of the temperatures, at the end of the step.
   function flows_of(scene, equations, solution, dt, du, after, temperatures) result(g)

@@ -11,6 +11,7 @@ usage: run_schemes.py [-v] [-k]
   less than the error of the run; TOL is met, and the error falls with it.
 - `carried`: the estimate of what all steps have left at the end is half to twice the error of the run, by both schemes: with numbers by
   temperature, latent heat, motion and after a shock.
+- `dies`: of a slab and a die with heat of its own it is 0.9 to 1.15 times the error against the closed form.
 - `bounds`: a body of Biot number 1000 on a coarse mesh: with BILINEAR no temperature is outside at any step, TR-BDF2 falls back to
   implicit Euler and says how often; with eight temperatures an element the steps outside are counted. On skew and on flat elements, with
   numbers by temperature, every scheme makes steps again, in the end without flows against the fall of the temperature: none is outside.
@@ -107,6 +108,23 @@ def carried(checks):
             found = checks_of(run)["error_in_time_end"]
             checks.that(0.5*true <= found <= 2*true, f"{run.name}: estimated error at the end", f"{found:.3g}, error {true:.3g}")
             checks.that(found <= checks_of(run)["error_in_time_largest"], f"{run.name}: the largest is no less", checks_of(run))
+
+
+def dies(checks):
+    """Two lumps that exchange heat, a slab of good conductivity and a die with heat of its own: both keep their errors."""
+    h = 0.5
+    for slab, die in ((0.2, 0.3), (2.0, 0.1), (0.2, 3.0)):
+        mean = (slab*1000 + die*20)/(slab + die)
+        exact = mean + (1000 - mean)*math.exp(-h*(1/slab + 1/die))
+        for scheme in ("1.", "TRBDF2"):
+            run = Run(checks, f"die-{slab}-{die}-{scheme.strip('.')}", HEAD.format(title="die", state="PLSTN")
+                      + "BLOCK slab PL8TM 9 steel BILINEAR\n   0. 0. 1. 0. 1. 0.1 0. 0.1\n   2 1. 2 1.\n"
+                      + f"LAW steel HEAT\n   1.E9 {slab/0.1!r}\nDIE cold\n   SEGM -1. 0. 2. 0.\nTDIE cold T 20. C {die}\n"
+                      + f"COU2DC slab 1 cold H {h}\nSTART T 1000.\nPROBE top NODE T 0. 0.1\nSTRAT 0.02 1.E-6 0.02 4 3\nSTOP 1.\n"
+                      + f"THETA {scheme}\n" + TIGHT + "END\n")
+            if run.ok:
+                true, found = abs(run.history["top"][-1] - exact), checks_of(run)["error_in_time_end"]
+                checks.that(0.9*true <= found <= 1.15*true, f"{run.name}: estimated error at the end", f"{found:.3g}, error {true:.3g}")
 
 
 def error(checks):
@@ -287,6 +305,7 @@ def main():
     t3(checks)
     error(checks)
     carried(checks)
+    dies(checks)
     bounds(checks)
     bounds_of_any(checks)
     latent(checks)
