@@ -36,8 +36,9 @@ module closing_table
     !> Errors of the stress and of the strain by patch recovery; the latter is a sum over the steps, where ESTIM or REMSH asks.
     logical :: space = .false., strain_known = .false.
     real(wp) :: stress = 0.0_wp, strain = 0.0_wp, space_cost = 1.0_wp
-    !> What the first has of errors of earlier meshes.
+    !> What the first has of errors of earlier meshes; it is not known of an operation without ESTIM and REMSH after others.
     real(wp) :: stress_carried = 0.0_wp
+    logical :: carried_unknown = .false.
     !> A law flows. Errors of the path within steps, where estimated (NORMS): of the motion in sum, of the stress at the end
     !> with what it owes to the motion (where that is known), and at this motion.
     logical :: flows = .false., path = .false., whole_known = .false.
@@ -141,6 +142,9 @@ contains
     closing%stress_carried = solution%estimate%carried_stress*solution%estimate%stress_left
     closing%strain = solution%estimate%strain
     if (scene%remesh%estimate) return
+    ! nobody has followed what the flow of this operation forgets of it
+    closing%carried_unknown = closing%stress_carried > 0
+    closing%stress_carried = 0
     call set_up_estimator(scene, equations%laws, estimator)
     call stress_error_now(estimator, scene, solution, closing%stress)
   end subroutine close_space
@@ -183,6 +187,7 @@ contains
     if (closing%space) then
       words = 'stress '//percent(closing%stress)
       if (closing%stress_carried > 0) words = words//' (of it '//percent(closing%stress_carried)//' of earlier meshes)'
+      if (closing%carried_unknown) words = words//' (what earlier meshes left: not followed, ESTIM)'
       if (closing%strain_known) words = words//', strain '//percent(closing%strain)
       call row('in space', words, times(closing%space_cost)//' the time: twice the elements')
       if (closing%meshes > 1) call row('', on_all_meshes(), to_text(sum(closing%seconds), 3)//' s of processor in all, ' &
@@ -274,6 +279,7 @@ contains
       call json%begin_object('space')
       call json%add('stress_pct', 100*closing%stress)
       if (closing%stress_carried > 0) call json%add('stress_carried_pct', 100*closing%stress_carried)
+      if (closing%carried_unknown) call json%add('stress_carried_known', .false.)
       if (closing%strain_known) call json%add('strain_pct', 100*closing%strain)
       if (closing%meshes > 1) then
         if (closing%errors_of_all) call json%add('stress_worst_pct', 100*closing%stress_worst)

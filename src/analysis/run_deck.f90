@@ -297,7 +297,9 @@ contains
     facts%blas = blas_words(blas_build(), blas_core_name())
     facts%wall = wall_seconds() - started
     call close_run(scene, run%equations, solution, facts%closing)
-    if (scene%remesh%on .or. (scene%accuracy%asked > 0 .and. allocated(options%fineness))) &
+    ! of an operation without REMSH too, where those before it had other meshes
+    if (scene%remesh%on .or. scene%generation > max(scene%operation, 1) &
+        .or. (scene%accuracy%asked > 0 .and. allocated(options%fineness))) &
       call close_cost(options, scene, solution, cpu_seconds() - processor, run, facts, late)
     call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
     call list_lines(run%listing, lines)
@@ -375,7 +377,7 @@ contains
                   run%exit_code == exit_done .and. scene%operation >= scene%operations, &
                   run%begins_operation .or. allocated(options%resume), cost, error)
     if (allocated(error)) return
-    if (scene%remesh%on) call close_cycle(scene, cost, join_path(run%folder, 'history.csv'), facts%closing)
+    call close_cycle(scene, cost, join_path(run%folder, 'history.csv'), facts%closing)
     if (.not. (cost%finished .and. allocated(run%plan))) return
     call read_sample(options, run%deck_text, options%fineness, run%plan%columns, sample, there)
     if (.not. there) return

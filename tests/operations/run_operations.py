@@ -9,6 +9,7 @@ usage: run_operations.py [-v] [-k]
 - `at_once`: a multiplier that begins an operation with another value than 0.
 - `strokes`: press, release, press with another die; stopped anywhere and resumed to the same bits; with a new mesh in each
   operation the same part, by one command, also where that is stopped.
+- `closing`: an operation without REMSH after one with it: what its table of accuracy says.
 """
 import os
 import signal
@@ -140,6 +141,23 @@ def meshes(checks, plain):
     checks.that(not wrong, "stopped cycle as in one go", "; ".join(wrong))
 
 
+def closing(checks):
+    """What an operation without REMSH says of accuracy after one with it: the meshes and seconds of all, and that nobody has followed
+    the error of the meshes before."""
+    text = HEAD.replace("CKPT   4\n", "") + "OPERA  upset\n" + flat(10.0, 1.0) + STEP + REMESH + "0.5\n" + RELEASE + "END\n"
+    deck, out = write(checks.path("closing.lag"), text), checks.path("closing")
+    result = cycle(deck, out, "--quiet")
+    if not checks.that(result.returncode == DONE, "closing ends", said(result)):
+        return
+    before, told = summary(out, "summary.upset.json")["accuracy"], summary(out)["accuracy"]
+    checks.that(before["space"]["stress_carried_pct"] > 0, "the second mesh has errors of the first", before)
+    checks.that(told["space"].get("stress_carried_known") is False and "stress_carried_pct" not in told["space"], "not followed", told)
+    checks.that(told.get("cycle", {}).get("meshes") == 2, "meshes of all operations", told)
+    if "cycle" in told:
+        checks.that(told["cycle"]["processor_s"] > before["cycle"]["processor_s"], "seconds of all operations", told["cycle"])
+        checks.that(told["space"]["strain_worst_pct"] >= before["space"]["strain_worst_pct"], "largest errors of all operations", told)
+
+
 def start_cycle(deck, out):
     """lagacycle, started."""
     import subprocess
@@ -232,6 +250,7 @@ def main():
     others(checks)
     at_once(checks)
     checked(checks)
+    closing(checks)
     checks.end()
 
 
