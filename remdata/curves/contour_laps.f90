@@ -22,6 +22,8 @@ module contour_laps
 
   !> Distance, in depths, from a corner in contact to where its free side leaves the die: sides at 20 degrees or more to it.
   real(wp), parameter :: oblique = 3.0_wp
+  !> Distance of the points of contact on a side that faces a body, over the side (contact_rule: 33 points at least).
+  real(wp), parameter :: pitch = 1.0_wp/32
 
 contains
 
@@ -58,7 +60,7 @@ contains
         one%arcs = arc_of([i, k])
         if (may_touch(boundaries, on_die, faces, one)) cycle
         call find_crossing(boundaries(one%boundaries(1)), boundaries(one%boundaries(2)), one, crossed)
-        if (crossed) crossed = .not. is_end_of_die(boundaries, on_die, one)
+        if (crossed) crossed = .not. (is_end_of_die(boundaries, on_die, one) .or. is_end_of_pair(boundaries, on_die, faces, one))
         if (crossed) laps = [laps, one]
       end do
     end do
@@ -108,6 +110,57 @@ contains
       end associate
     end do
   end function is_end_of_die
+
+  !> Two bodies cross beside the end of what they touch with: a corner of one is in the side of the other, or both corners overlap.
+  !> The points of contact, a pitch apart, need not see it, and it may be no contact interval.
+  pure function is_end_of_pair(boundaries, on_die, faces, lap) result(yes)
+    type(boundary_curve_t), intent(in) :: boundaries(:)
+    integer, intent(in) :: on_die(:, :)
+    logical, intent(in) :: faces(:, :, :)
+    type(lap_t), intent(in) :: lap
+    logical :: yes
+    integer :: k, d, i, j, sides(3, 2)
+
+    yes = .false.
+    if (lap%boundaries(1) == lap%boundaries(2)) return
+    do k = 1, 2
+      sides(:, k) = sides_beside(boundaries(lap%boundaries(k)), lap%arcs(k), lap%point)
+    end do
+    do k = 1, 2
+      do i = 1, 3
+        do j = 1, 3
+          if (sides(i, k) == 0 .or. sides(j, 3 - k) == 0) cycle
+          d = on_die(sides(j, 3 - k), lap%boundaries(3 - k))
+          if (d > 0) yes = yes .or. faces(d, sides(i, k), lap%boundaries(k))
+        end do
+      end do
+    end do
+  end function is_end_of_pair
+
+  !> Sides of an arc and of those before and after it whose joint is near a point, 0 where it is not.
+  pure function sides_beside(boundary, k, point) result(sides)
+    type(boundary_curve_t), intent(in) :: boundary
+    integer, intent(in) :: k
+    real(wp), intent(in) :: point(2)   !! [length]
+    integer :: sides(3)
+    integer :: before, next
+
+    before = modulo(k - 2, size(boundary%arcs)) + 1
+    next = joint_after(boundary, k)
+    sides = [0, boundary%arcs(k)%side, 0]
+    if (is_near(k, before)) sides(1) = boundary%arcs(before)%side
+    if (is_near(next, next)) sides(3) = boundary%arcs(next)%side
+
+  contains
+
+    pure function is_near(joint, other) result(near)
+      integer, intent(in) :: joint, other   !! the arc that begins at the joint, the arc beyond it
+      logical :: near
+
+      near = length_of(joint_point(boundary, joint) - point) <= pitch*min(extent(boundary%arcs(k)), extent(boundary%arcs(other)))
+    end function is_near
+
+  end function sides_beside
 
   !> The first crossing of two arcs, other than a joint that they share, or a point in which two bodies only touch.
   pure subroutine find_crossing(boundary, other, lap, crossed)
