@@ -4,6 +4,7 @@ module run_stop
   use errors, only: error_t, exit_done, exit_no_convergence, exit_remesh, exit_signal, fail
   use fields, only: displacement_field
   use kinds, only: wp
+  use law_api, only: find_parameter, law_t
   use newton, only: outcome_t
   use results, only: save_failure
   use run_record, only: run_t, save_all, at_end
@@ -44,6 +45,8 @@ contains
     if (index(outcome%reason, 'singular') > 0 .and. any(may_stand_alone(scene%groups))) advice = advice//'; a body of few ' &
       //'elements with 4 integration points has a motion that nothing resists, 9 points with MEAN have none'
     what = 'no convergence'
+    if (is_steep(scene, run%equations%laws)) advice = advice//'; friction by M has no bound by the pressure but PHI: PHI 1 ' &
+      //'beside M, above which an equilibrium need not exist'
     if (outcome%passes_itself) then
       what = 'a body passes through itself'
       advice = 'sides of one body that meet need contact as those of two bodies do, DIE name SIDES place and CNT2D place name law'
@@ -54,6 +57,23 @@ contains
               advice)
     if (allocated(late)) error%advice = error%advice//' (and '//late%message//')'
   end subroutine stop_here
+
+  !> A law of contact has friction by M, with a coefficient PHI above 1 or none of the deck.
+  pure function is_steep(scene, laws)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    logical :: is_steep
+    integer :: m
+
+    is_steep = .false.
+    do m = 1, size(scene%materials)
+      associate (material => scene%materials(m), law => laws(scene%materials(m)%law_id))
+        if (find_parameter(law, 'M') == 0 .or. find_parameter(law, 'PHI') == 0) cycle
+        is_steep = is_steep .or. (material%values(find_parameter(law, 'M')) < huge(1.0_wp) &
+                                  .and. material%values(find_parameter(law, 'PHI')) > 1)
+      end associate
+    end do
+  end function is_steep
 
   !> Residual of the free unknowns of the nodes; where the motion is given it is a reaction, left out.
   pure subroutine residual_at_nodes(equations, residual, at_nodes)

@@ -3,9 +3,10 @@
 !> p = augmentation + AKP d where positive; stick dtau = AKTAU ds; slip |tau| = min(PHI p + PBOUE, TAUMAX,
 !> M flow_stress/sqrt3), each limit where it is given (M: constant-factor law, Tresca's friction). Where M stands without PHI, PHI
 !> is `steepest`: a point that just touches would have all of its friction at once, and a step in which its pressure goes to zero
-!> need not have an equilibrium; nor need it with coefficients of friction that are larger: in the plane one is known to exist below
+!> need not have an equilibrium; nor need it with large coefficients of friction: in the plane one is known to exist below
 !> sqrt(3 - 4 nu)/(2 - 2 nu) (C. Eck, J. Jarusek, Math. Models Methods Appl. Sci. 8 (1998) 445), .96 at nu = .3 and 1 where
-!> volume cannot change, as in flow. With 5 a die that rocks on a block found none at any step;
+!> volume cannot change, as in flow. A die that rocks on a block finds none at any step with 5, but does with PHI 1 beside M: what a
+!> run that stops gives as advice (run_stop). It is no default: walls that are hardly pressed, as of a container, would rub less than M says;
 !> non-associated: no opening by slip. The slip tangent dtau = PHI AKP sign(tau) dd is unsymmetric.
 module law_coul2d
   use contact_penalties, only: penalty_parameters, penalty_problems
@@ -20,8 +21,8 @@ module law_coul2d
   !> Numbers among the values of a material, after the penalties; and that of the flow stress among the drivers.
   integer, parameter :: place_phi = 5, place_cohesion = 6, place_largest = 7, place_factor = 8, driver_flow = 2
 
-  !> Coefficient of friction up to the limit M where PHI is not given: the limit holds from M flow_stress/sqrt3 of pressure on.
-  real(wp), parameter :: steepest = 1.0_wp
+  !> Coefficient of friction up to the limit M where PHI is not given: friction is the limit from M flow_stress/8.7 of pressure on.
+  real(wp), parameter :: steepest = 5.0_wp
 
 contains
 
@@ -34,7 +35,7 @@ contains
     row%purpose = 'contact with Coulomb friction'
     row%source = 'Charlier; seed, annex 3'
     allocate (row%lines, source=[law_line([penalty_parameters(), &
-                                           parameter('PHI', '-', 'friction coefficient (1 where M stands alone)', lower=0.0_wp, &
+                                           parameter('PHI', '-', 'friction coefficient (5 where M stands alone)', lower=0.0_wp, &
                                                      default=huge(1.0_wp)), &
                                            parameter('PBOUE', 'stress', 'cohesion', lower=0.0_wp, default=0.0_wp), &
                                            parameter('TAUMAX', 'stress', 'largest friction stress', &

@@ -94,9 +94,9 @@ def balance(checks):
 
 
 def friction_factor(checks):
-    """A die slides over a block that has not hardened: friction m sigma_y/sqrt(3) on the face from this pressure on, else the
-    pressure; at any pressure with a steep coefficient."""
-    for m, phi, depth in ((0.3, "", 0.02), (1.0, "", 0.02), (1.0, "", 0.04), (1.0, "PHI 5.", 0.02)):
+    """A die slides over a block that has not hardened: friction m sigma_y/sqrt(3) on the face, whatever the pressure; with PHI 1
+    from this pressure on, else the pressure."""
+    for m, phi, depth in ((0.3, "", 0.02), (1.0, "", 0.02), (1.0, "PHI 1.", 0.02), (1.0, "PHI 1.", 0.04)):
         rows = run_deck(checks, f"factor_{m}_{phi[4:]}_{depth}", law="EPLA\n   1000. 0.3\n   LINEAR 10. 0.",
                         skin=f"PENETR 1.E-3 M {m} {phi} AKTAU 1.E4",
                         fixed="FIXED  block 1 XY\nFIXED  block 2 X\nFIXED  block 4 X\nFIXED  block 3 X",
@@ -104,17 +104,19 @@ def friction_factor(checks):
         friction, pressed = m*10/math.sqrt(3)*10, abs(rows["force_y_press"][-1])
         checks.that((pressed < friction) == (m > 0.5 and depth < 0.03), "on both sides of the limit", (pressed, friction))
         close(checks, f"friction by the factor {m} {phi}, depth {depth}", -rows["force_x_press"][-1],
-              friction if phi else min(friction, pressed), 1e-9)
+              min(friction, pressed) if phi else friction, 1e-9)
 
 
 def lost(checks):
-    """A free die that touches nothing cannot be solved for: the run says what to do."""
-    deck = checks.path("lost.lag")
-    write(deck, BLOCK.format(title="lost", state="PLSTN", kinematics="SMALL", law=ELASTIC, skin=SMOOTH, pilot="5. 6.",
-                             fixed="FIXED  block 1 Y\nFIXED  block 4 X", cards="FORCE  press Y -1. load").replace(
-                                 "SEGM  40. 5.   -20. 5.", "SEGM  40. 6.   -20. 6."))
-    result = run([deck, "--out", checks.path("lost")])
-    checks.that(result.returncode == 3 and "SPRNG" in result.stderr, "a die that touches nothing is reported", said(result))
+    """A free die that touches nothing cannot be solved for: the run says what to do; and of friction by M alone, what bounds it."""
+    for name, skin, word, told in (("lost", SMOOTH, "SPRNG", True), ("by_factor", "PENETR 1.E-3 M 0.3", "PHI 1 beside M", True),
+                                   ("by_both", "PENETR 1.E-3 M 0.3 PHI 1.", "PHI 1 beside M", False)):
+        deck = checks.path(name + ".lag")
+        write(deck, BLOCK.format(title=name, state="PLSTN", kinematics="SMALL", law="EPLA\n   1000. 0.3\n   LINEAR 10. 0.", skin=skin,
+                                 pilot="5. 6.", fixed="FIXED  block 1 Y\nFIXED  block 4 X", cards="FORCE  press Y -1. load").replace(
+                                     "SEGM  40. 5.   -20. 5.", "SEGM  40. 6.   -20. 6."))
+        result = run([deck, "--out", checks.path(name)])
+        checks.that(result.returncode == 3 and (word in result.stderr) == told, f"a die that touches nothing is reported, {skin}", said(result))
 
 
 def main():

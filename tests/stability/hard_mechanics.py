@@ -358,12 +358,12 @@ def rolling(checks):
 
 def rocking_die(checks):
     """A block between dies of constant-factor friction, the upper one rocking while it comes down: corners slide, stick and slide
-    back. It goes to the end on two meshes, with the force of both."""
+    back. With PHI 1 it goes to the end on two meshes, with the force of both (with M alone there need not be an equilibrium)."""
     forces = []
     for name, divisions, m in (("coarse", "20 1. 8 1.", 0.2), ("fine", "30 1. 12 1.", 0.2), ("rough", "20 1. 8 1.", 0.6)):
         run = checks.run("rocking-die-" + name, deck(
             "PLSTN", "LOG", block("-10. 0. 10. 0. 10. 8. -10. 8.", divisions),
-            f"LAW m EPLA\n 70000. 0.33\n SWIFT 200. 0.02 0.15\nLAW k COUL2D\n PENETR 1.E-3 M {m}\n",
+            f"LAW m EPLA\n 70000. 0.33\n SWIFT 200. 0.02 0.15\nLAW k COUL2D\n PENETR 1.E-3 M {m} PHI 1.\n",
             "DIE up PILOT 0. 8.\n SEGM 40. 8. -40. 8.\nDIE low\n SEGM -40. 0. 40. 0.\nCNT2D b 2 3 4 up k\nCNT2D b 1 2 4 low k\n"
             "FIXED POINT 0. 0. X\nMOVE up Y down\nMOVE up A rock\nLIC down\n 0. 0. 2. -2.\nLIC rock\n 0. 0. 0.5 0.05 1.5 -0.05 2. 0.\n",
             "STRAT 0.01 1.E-7 0.05 5 3"))
