@@ -5,7 +5,7 @@ module physics_check
   use fields, only: displacement_field
   use heat_check, only: check_heat
   use kinds, only: wp
-  use law_api, only: driver_count, find_parameter, law_t
+  use law_api, only: driver_count, find_parameter, law_t, solid_law
   use scene, only: axisymmetric, group_t, lacks_mesh, role_heat_contact, role_side_load, role_volume_load, scene_t
   use supports, only: free_motions
   use text, only: add => add_text, string_t, to_text
@@ -53,6 +53,7 @@ contains
       call judge_yield(scene, laws, g, warnings)
       call judge_friction(scene, laws, g, warnings)
     end do
+    call judge_expansion(scene, laws, warnings)
     if (.not. anything_acts(scene)) &
       call add(warnings, 'nothing moves and no load acts: all multipliers (LIC) are zero at all times')
   end subroutine check_physics
@@ -66,7 +67,7 @@ contains
     integer :: e
 
     if (scene%plane_state /= axisymmetric .or. lacks_mesh(scene) .or. size(on_axis) == 0) return
-    if (group%role /= role_side_load .and. (group%exchange%kind == 0 .or. size(group%connectivity, 1) /= nodes_of_side)) return
+    if (group%role /= role_side_load) return
     do e = 1, size(on_axis)
       on_axis(e) = .not. maxval(abs(scene%mesh%coordinates(1, group%connectivity(:nodes_of_side, e)))) > 0
     end do
@@ -130,20 +131,42 @@ contains
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: die
     logical :: yes
+
+    yes = unloaded(scene, die) .and. .not. has_temperature(scene)
+  end function alone
+
+  !> A field beside the motion.
+  pure function has_temperature(scene) result(yes)
+    type(scene_t), intent(in) :: scene
+    logical :: yes
+    integer :: k
+
+    yes = any([(scene%fields(k)%declared .and. scene%fields(k)%quantity /= 'motion', k=1, size(scene%fields))])
+  end function has_temperature
+
+  !> Nothing but this die moves by what the deck gives, and no load acts; heat that passes is none.
+  pure function unloaded(scene, die) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: die   !! 0 for none
+    logical :: yes
+    character(len=6), parameter :: heating(*) = ['FLUX  ', 'CONVE ', 'RADIA ', 'HEATS ', 'GOLDAK']
     integer :: k
 
     yes = size(scene%die_forces) == 0 .and. size(scene%forces) == 0 &
-          .and. .not. any(scene%groups%role == role_side_load .or. scene%groups%role == role_volume_load)
+          .and. all(scene%section_drives%multiplier == 0) .and. scene%load_factor%multiplier == 0
+    do k = 1, size(scene%groups)
+      associate (group => scene%groups(k))
+        if (group%role /= role_side_load .and. group%role /= role_volume_load) cycle
+        yes = yes .and. any(heating == group%elem)
+      end associate
+    end do
     do k = 1, size(scene%dies)
       if (k /= die) yes = yes .and. .not. moves(scene, k)
-    end do
-    do k = 1, size(scene%fields)
-      yes = yes .and. (scene%fields(k)%quantity == 'motion' .or. .not. scene%fields(k)%declared)
     end do
     do k = 1, size(scene%fixations)
       yes = yes .and. (scene%fixations(k)%multiplier == 0 .or. scene%fixations(k)%field /= displacement_field)
     end do
-  end function alone
+  end function unloaded
 
   !> A yield stress that no metal has beside its modulus: units mixed.
   subroutine judge_yield(scene, laws, m, warnings)
@@ -187,6 +210,31 @@ contains
     end associate
   end subroutine judge_friction
 
+  !> Bodies that temperatures alone should strain, and no law of which expands.
+  subroutine judge_expansion(scene, laws, warnings)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    character(len=6), parameter :: rigid(*) = [character(len=6) :: 'ELA', 'EPLA', 'EVP-NH', 'GSELL']
+    logical :: warm
+    integer :: k
+
+    warm = has_temperature(scene)
+    do k = 1, size(scene%groups)
+      associate (group => scene%groups(k))
+        warm = warm .or. max(group%temperature_multiplier, group%temperature_history) > 0
+        if (group%material == 0) cycle
+        if (group%die > 0) return
+        associate (law => laws(scene%materials(group%material)%law_id))
+          if (law%kind == solid_law .and. .not. any(rigid == law%name)) return
+        end associate
+      end associate
+    end do
+    if (warm .and. unloaded(scene, 0)) &
+      call add(warnings, 'nothing but temperatures acts on the bodies, and none of their laws expands (ELATH and ARBTHMET do): ' &
+               //'no stress, no motion')
+  end subroutine judge_expansion
+
   !> A multiplier is not zero at some time, or the scene needs none: heat acts by itself, and one without multipliers has none to be
   !> zero.
   pure function anything_acts(scene) result(yes)
@@ -194,10 +242,7 @@ contains
     logical :: yes
     integer :: k
 
-    yes = size(scene%multipliers) == 0
-    do k = 1, size(scene%fields)
-      yes = yes .or. scene%fields(k)%declared .and. scene%fields(k)%quantity /= 'motion'
-    end do
+    yes = size(scene%multipliers) == 0 .or. has_temperature(scene)
     do k = 1, size(scene%multipliers)
       yes = yes .or. maxval(abs(scene%multipliers(k)%value)) > 0
     end do

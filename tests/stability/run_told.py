@@ -66,9 +66,16 @@ WRONG = {
 }
 WRONG["pressed on the axis"] = ({"PLSTN": "AXISYM", "-5. 15.": "0. 15.", "LIC    press": "PRES2D billet 4 3 10. press\nLIC    press"},
                                 "billet.4/press: its sides lie on the axis")
+# A body that is heated, and does not expand.
+HEATED = {"CNT2D  billet 3 upper -3 rough\n": "", "DIE    upper\n": "", "   SEGM  30. 15.   -5. 15.\n": "", "LAW    rough COUL2D\n": "",
+          "   PENETR 1.E-3   PHI 0.3\n": "", "MOVE   upper Y press\n": "ADDEL  billet PL8TM hot\nLAW    hot HEAT\n   50. 3.6\nHEATS  billet Q 5.\nCONVE  billet 2 H 1. TS 0.\n",
+          "LIC    press\n": "", "   0. 0.   1. -2.\n": "STOP   1.\n"}
+WRONG["welded by EPLA"] = (HEATED, "none of their laws expands")
 WRONG["friction in percent"] = ({"PHI 0.3": "PHI 30."}, "its coefficient of friction is 30")
 # What is changed in the base, and means what it says: far below the face at the exit of a drawing die is not in its body.
-RIGHT = {"friction up to a limit": {"PHI 0.3": "PHI 5.   M 0.3"}, "below a drawing die": {"0. 0.   10. 0.   10. 15.   0. 15.": "0. -100.   10. -100.   9.5 0.   0. 0.", "2 1.   3 1.": "2 1.   20 1.",
+RIGHT = {"heated and expanding": {**HEATED, "steel EPLA": "steel ELATH", "200000. 0.3\n": "200000. 0.3 1.E-5\n", "   LINEAR 700. 300.\n": ""},
+         "heated and pressed": {**HEATED, "LIC    press\n": "PRES2D billet 3 3 1. press\nLIC    press\n", "   0. 0.   1. -2.\n": "   0. 0.   1. 5.\n"},
+         "friction up to a limit": {"PHI 0.3": "PHI 5.   M 0.3"}, "below a drawing die": {"0. 0.   10. 0.   10. 15.   0. 15.": "0. -100.   10. -100.   9.5 0.   0. 0.", "2 1.   3 1.": "2 1.   20 1.",
                                  "30. 15.   -5. 15.": "11. -10.   9. 5.\n   SEGM  9. 5.   9. 10.\n   SEGM  9. 10.   12. 10.",
                                  "CNT2D  billet 3 upper": "CNT2D  billet 2 upper", "FIXED  billet 1 Y\n": "", "upper Y press": "billet 3 Y press -1."}}
 # The same as a contour, of which the remesher makes the first mesh.
