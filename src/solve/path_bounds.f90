@@ -141,18 +141,28 @@ contains
       end associate
     end subroutine bound_stress
 
-    !> How many times as long the step could be, for errors no larger than by default.
+    !> How many times as long the step could be, for errors no larger than by default, or than the deck allows.
     subroutine find_spare()
       type(strategy_t) :: default
       real(wp) :: room
 
       associate (step => outcome%path)
-        if (step%motion_error > 0) step%spare = aim*default%path_bound*step%motion/step%motion_error
+        if (step%motion_error > 0) &
+          step%spare = aim*tighter(default%path_bound, scene%strategy%path_bound)*step%motion/step%motion_error
         if (.not. abs(step%stress_error) > 0) return
-        room = default%rate_bound*stress_scale(solution%path, step%stress)
+        room = tighter(default%rate_bound, scene%strategy%rate_bound)*stress_scale(solution%path, step%stress)
         step%spare = min(step%spare, sqrt(aim*room/abs(step%stress_error)))
       end associate
     end subroutine find_spare
+
+    !> The smaller bound; 0 is none.
+    pure function tighter(default, of_deck) result(bound)
+      real(wp), intent(in) :: default, of_deck   !! [-]
+      real(wp) :: bound
+
+      bound = default
+      if (of_deck > 0) bound = min(default, of_deck)
+    end function tighter
 
     subroutine bound(allowed, factor, which, name)
       real(wp), intent(in) :: allowed

@@ -26,13 +26,14 @@ module path_error
   use round_off_floors, only: round_off_motion
   use scene, only: scene_t
   use solution, only: solution_t
+  use strategy, only: strategy_t
   implicit none
   private
   public :: at_corner, bend_of, estimate_path, on_nodes
 
   !> Elastic strains are enlarged by this share; what is left of an error is found to about as much.
   real(wp), parameter :: enlarged = 1.0e-3_wp
-  !> An error of the stress below this share is carried on as it is.
+  !> An error of the stress below this share, or below as much of a bound that is tighter than by default, is carried on as it is.
   real(wp), parameter :: negligible = 3.0e-4_wp
 
 contains
@@ -84,7 +85,7 @@ contains
         if (allocated(outcome%error)) exit estimate
         call drop_round_off(equations, solution, step)
         if (max(abs(step%stress_error), abs(solution%path%stress_error)) &
-            > negligible*stress_scale(solution%path, step%stress)) then
+            > least_share(scene%strategy)*stress_scale(solution%path, step%stress)) then
           before = root_energy(scene, equations, active, solution, solution%groups, committed=.true.)
           call begin_beside(solution, other)
           do g = 1, size(active)
@@ -111,6 +112,16 @@ contains
     outcome%reason = outcome%error%message
     deallocate (outcome%error)
   end subroutine estimate_path
+
+  !> Share of the stress below which its error is carried on as it is: what is not forgotten must not use up the bound.
+  pure function least_share(strategy) result(share)
+    type(strategy_t), intent(in) :: strategy
+    real(wp) :: share
+    type(strategy_t) :: default
+
+    share = negligible
+    if (strategy%rate_bound > 0) share = negligible*min(strategy%rate_bound/default%rate_bound, 1.0_wp)
+  end function least_share
 
   !> Where hardly anything moves yet, as before a torch comes near, errors are round-off of places and stresses: none.
   pure subroutine drop_round_off(equations, solution, step)

@@ -8,7 +8,7 @@ usage: run_path.py [-v] [-k] [--cost]       -v prints every check, -k keeps the 
 against the law's own differential equation (Runge and Kutta), with steps that are not bounded by them (`before`: PATH 0 RATE 0),
 and by default. `estimated`: the same and an upset billet with steps of one length, PATH and RATE being wide: what the run tells
 over the error against a run of short steps (`effectivity`), of the motion in the mean square over the nodes, of the stress as its own.
-`free`: elastic and uniform plastic bars take the steps they take without bounds, elastic ones on any way. Long steps that a deck allows end with a warning.
+`tight`: bounds of 1/16 and 1/64. `free`: elastic and uniform plastic bars take the steps they take without bounds, elastic ones on any way. Long steps that a deck allows end with a warning.
 """
 import csv
 import json
@@ -195,6 +195,27 @@ def estimated(checks):
                 row(name, steps, abs(run.history["force"][-1]/true - 1), values["path_error_stress"])
 
 
+def tight(checks):
+    """Bounds of 1/16 and 1/64 of the default: they are kept, at four times the steps, and few attempts are made in vain."""
+    print(f"\n{'tight':22s} {'bound':>9s} {'steps':>6s} {'in vain':>8s} {'told':>9s} {'error':>9s}")
+    for name, law, flow in (CREEP[0], CREEP[2]):
+        steps, errors = [], []
+        for factor in (16, 64):
+            path, rate = 0.04/factor, 0.008/factor
+            run = Run(checks, "tight", held(law, 0.1, f"NORMS  PATH {path} RATE {rate}\n"))
+            if not run.ok:
+                return
+            values, count, _ = summary(run)
+            steps.append(count)
+            errors.append(abs(run.history["force"][-1]/relaxed(flow) - 1))
+            vain = values["steps_shortened_by_path"]
+            print(f"{name:22s} {rate:9.6f} {count:6d} {vain:8d} {values['path_error_stress']:9.6f} {errors[-1]:9.6f}")
+            checks.that(values["path_error_stress"] <= 1.001*rate, f"{name} / {factor}: the bound is kept", values["path_error_stress"])
+            checks.small(errors[-1], 1.1*rate, f"{name} / {factor}: the error of the force too")
+            checks.that(vain <= 0.15*count, f"{name} / {factor}: attempts in vain", (vain, count))
+        checks.that(steps[1] <= 4.5*steps[0], f"{name}: a quarter of the error in four times the steps", steps)
+
+
 def free(checks):
     """Steps of runs without such errors."""
     for state in ("PLSTN", "AXISYM", "PLSTS"):
@@ -271,6 +292,7 @@ def main():
     else:
         bounded(checks)
         estimated(checks)
+        tight(checks)
         free(checks)
         warned(checks)
     checks.end()
