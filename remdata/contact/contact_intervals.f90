@@ -15,7 +15,8 @@ module contact_intervals
   use side_tags, only: side_tags_t
   implicit none
   private
-  public :: side_point_t, contact_interval_t, find_intervals, along, coincide, sort_intervals, wrap_start, is_shared
+  public :: side_point_t, contact_interval_t
+  public :: along, coincide, find_intervals, is_before_corner, is_shared, sort_intervals, wrap_start
 
   !> A point on a side of a loop. An interval across the start of the loop counts sides on beyond the last one.
   type :: side_point_t
@@ -30,6 +31,8 @@ module contact_intervals
     type(side_point_t) :: from, to
     !> Ends as the solver found them, which may differ by less than the shortest interval.
     type(side_point_t) :: found(2)
+    !> It was extended from these ends to a corner of the die in contact (die_corner_contact).
+    logical :: to_corner(2) = .false.
     !> A small gap follows: contact with the same die continues behind it (contact_gaps).
     logical :: small_gap = .false.
   end type contact_interval_t
@@ -115,6 +118,16 @@ contains
       shared = shared .or. abs(modulo(apart + 0.5_wp, real(nside, wp)) - 0.5_wp) <= coincidence_tolerance
     end do
   end function is_shared
+
+  !> A point between the last one in contact and a corner of the die to which an interval was extended: it is open.
+  pure function is_before_corner(interval, side_point) result(yes)
+    type(contact_interval_t), intent(in) :: interval
+    type(side_point_t), intent(in) :: side_point
+    logical :: yes
+
+    yes = (interval%to_corner(1) .and. along(side_point) < along(interval%found(1))) &
+          .or. (interval%to_corner(2) .and. along(side_point) > along(interval%found(2)))
+  end function is_before_corner
 
   !> Intervals of one group: each beginning is paired with the next end around the loop.
   pure subroutine pair_ends(group, number, side_at, nside, ends, list, n)

@@ -17,8 +17,8 @@ module corner_ends
 
 contains
 
-  !> Move ends of intervals to the re-entrant corners of the part that are nearer than `least`, as long as no other interval is
-  !> between them.
+  !> Move ends of intervals, but those in corners of a die already, to the re-entrant corners of the part that are nearer than
+  !> `least`, as long as no other interval is between them.
   pure subroutine end_in_corners(loop, tags, x, turn, least, intervals)
     type(loop_t), intent(in) :: loop
     type(side_tags_t), intent(in) :: tags
@@ -36,6 +36,7 @@ contains
     do k = 1, size(intervals)
       other = modulo(k, size(intervals)) + 1
       call find_corner(intervals(k)%to, 1, corner, found)
+      found = found .and. .not. intervals(k)%to_corner(2)
       if (found .and. is_before(corner, intervals(other)%from, other <= k)) then
         corner%piece = intervals(k)%to%piece
         intervals(k)%to = corner
@@ -43,6 +44,7 @@ contains
       end if
       other = modulo(k - 2, size(intervals)) + 1
       call find_corner(intervals(k)%from, -1, corner, found)
+      found = found .and. .not. intervals(k)%to_corner(1)
       if (found .and. is_before(intervals(other)%to, corner, other >= k)) then
         corner%piece = intervals(k)%from%piece
         intervals(k)%from = corner

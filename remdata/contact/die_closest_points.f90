@@ -11,7 +11,7 @@ module die_closest_points
   use arcs, only: arc_t
   use boundary_sides, only: loop_t
   use closest_point, only: closest_point_t, closest_within_piece
-  use contact_intervals, only: along, contact_interval_t, side_point_t
+  use contact_intervals, only: along, contact_interval_t, is_before_corner, side_point_t
   use curve_search, only: closest_on_pieces
   use dies, only: die_t
   use kinds, only: eps, wp
@@ -179,13 +179,14 @@ contains
       call line_rule(rule, xi, weight)
       n = 1
       list(1) = start
-      call follow(interval%found(1), first, last, finish, list, n)
+      if (.not. interval%to_corner(1)) call follow(interval%found(1), first, last, finish, list, n)
       do k = first%side, last%side
         do p = 1, size(xi)
+          if (is_before_corner(interval, side_point_t(k, xi(p)))) cycle
           call follow(side_point_t(k, xi(p)), first, last, finish, list, n)
         end do
       end do
-      call follow(interval%found(2), first, last, finish, list, n)
+      if (.not. interval%to_corner(2)) call follow(interval%found(2), first, last, finish, list, n)
       n = n + 1
       list(n) = finish
       allocate (closest_points, source=list(:n))

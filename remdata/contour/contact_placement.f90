@@ -5,6 +5,7 @@ module contact_placement
   use contact_gaps, only: close_gaps, mark_small_gaps
   use contact_intervals, only: contact_interval_t, find_intervals, is_shared
   use contour_assembly, only: contact_t
+  use die_corner_contact, only: extend_to_corners
   use corner_ends, only: end_in_corners
   use die_closest_points, only: section_t, sections_of_interval, start_at_contact_point
   use dies, only: present_die
@@ -62,6 +63,7 @@ contains
     turn = kept_corner_share*options%corner_turn
     call find_intervals(scene, loop, tags, kept_corners(loop, tags, x, turn), ends, closed_groups(scene, solution), &
                    options%least_contact, intervals)
+    call extend_to_corners(scene, solution, loop, options%small_gap_length, intervals)
     if (options%least_free > 0) call end_in_corners(loop, tags, x, options%corner_turn, options%least_free, intervals)
     call close_gaps(scene, solution, loop, tags, x, options%narrow_gap, intervals)
     call mark_small_gaps(scene, solution, loop, x, options%small_gap_width, options%small_gap_length, intervals)

@@ -20,6 +20,7 @@ module part_contour
   use errors, only: error_t, exit_bug, exit_no_convergence, fail
   use kinds, only: wp
   use scene, only: axisymmetric, is_solid, scene_t, solid_elements
+  use short_die_arcs, only: drop_short_die_arcs
   use short_free_sides, only: drop_short_sides
   use small_laps, only: cut_small_laps
   use side_tags, only: find_tags, held_nodes, side_tags_t
@@ -255,7 +256,10 @@ contains
     type(contour_t), intent(inout) :: contour
 
     call assemble_boundary(contour%loop, contour%tags, x, options%corner_turn, joints, contour%contacts, contour%boundary)
-    if (options%least_free > 0) call drop_short_sides(options%least_free, contour%tags, contour%contacts, contour%boundary)
+    if (options%least_free > 0) then
+      call drop_short_die_arcs(options%least_free, contour%tags, contour%contacts, contour%boundary)
+      call drop_short_sides(options%least_free, contour%tags, contour%contacts, contour%boundary)
+    end if
     contour%laps = [fold_t ::]
     if (options%longest_lap > 0) &
       call cut_small_laps(options%longest_lap, contour%tags, contour%contacts, contour%boundary, contour%laps)

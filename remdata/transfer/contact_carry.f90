@@ -3,7 +3,8 @@ module contact_carry
   use arcs, only: arc_t
   use boundary_curves, only: arc_length_at, boundary_length
   use boundary_sides, only: loop_t
-  use contact_intervals, only: contact_interval_t
+  use contact_intervals, only: contact_interval_t, is_before_corner, side_point_t
+  use corner_weights, only: corner_weight
   use kinds, only: wp
   use new_scene, only: middle_position
   use offset_parabolas, only: length_between
@@ -27,6 +28,8 @@ module contact_carry
     real(wp) :: length = 0.0_wp                !! of the interval [length]
     real(wp), allocatable :: s(:), weight(:)   !! [length], times the radius when axisymmetric
     integer, allocatable :: point(:), element(:)
+    !> What is added to the numbers of components: 0, or for a corner of the die those of its own state.
+    integer, allocatable :: offset(:)
   end type interval_points_t
 
   !> Arc lengths from the start of an interval are equal to this share of it.
@@ -44,7 +47,7 @@ contains
     type(solution_t), intent(inout) :: to
     type(carried_quantity_t), allocatable, intent(out) :: rows(:)   !! (nrow) integrals; over the length, or per radian
     real(wp) :: x(2, size(old%mesh%coordinates, 2))
-    type(interval_points_t) :: row_old, row_new
+    type(interval_points_t) :: row_old, row_new, row_of_points
     integer, allocatable :: carried(:)
     logical, allocatable :: conserved(:)
     integer :: c, k, g, h, i
@@ -54,11 +57,14 @@ contains
     do c = 1, size(contours)
       do k = 1, size(contours(c)%contacts)
         g = contours(c)%contacts(k)%interval%group
-        call old_row(old, g, contours(c)%loop, contours(c)%contacts(k)%interval, x, row_old)
+        call old_row(old, g, contours(c)%loop, contours(c)%contacts(k)%interval, x, from%groups(g)%committed, .true., row_old)
+        call old_row(old, g, contours(c)%loop, contours(c)%contacts(k)%interval, x, from%groups(g)%committed, .false., &
+                     row_of_points)
         call new_row(new, g, contours, c, k, mesh, row_new)
         ! the group, and heat through its points
         do h = 1, size(old%groups)
           if (h /= g .and. .not. (old%groups(h)%role == role_heat_contact .and. old%groups(h)%host == g)) cycle
+          if (h /= g) row_old = row_of_points
           call list_carried(old, h, carried, conserved)
           call carry_interval(carried, conserved, row_old, row_new, from%groups(h)%committed, status_row(old, h), &
                               to%groups(h)%committed)
@@ -103,19 +109,20 @@ contains
     end do
   end subroutine list_carried
 
-  !> Old points of a group in an interval.
-  pure subroutine old_row(scene, g, loop, interval, x, row)
+  !> Old points of a group in an interval, and corners of the die that press between them.
+  pure subroutine old_row(scene, g, loop, interval, x, state, with_corners, row)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g
     type(loop_t), intent(in) :: loop
     type(contact_interval_t), intent(in) :: interval
-    real(wp), intent(in) :: x(:, :)
+    real(wp), intent(in) :: x(:, :), state(:, :, :)
+    logical, intent(in) :: with_corners
     type(interval_points_t), intent(out) :: row
     real(wp), allocatable :: xi(:), weight(:)
     type(arc_t) :: part
     integer :: side, number, e, p
 
-    allocate (row%s(0), row%weight(0), row%point(0), row%element(0))
+    allocate (row%s(0), row%weight(0), row%point(0), row%element(0), row%offset(0))
     call line_rule(scene%groups(g)%rule, xi, weight)
     if (.not. interval%from%xi > -1) call add_neighbour(scene, g, loop, x, interval%from%side - 1, 1.0_wp, row)
     do side = interval%from%side, interval%to%side
@@ -127,7 +134,9 @@ contains
         if (side == interval%to%side) part%range(2) = interval%to%xi
         e = findloc(scene%groups(g)%connectivity(2, :), loop%sides(2, number), 1)
         do p = 1, size(xi)
+          if (e > 0 .and. with_corners) call add_corner(scene, g, nodes, part, xi, p, e, state, row)
           if (e == 0 .or. xi(p) < part%range(1) .or. xi(p) > part%range(2)) cycle
+          if (is_before_corner(interval, side_point_t(side, xi(p)))) cycle
           call add_point(row%length + length_between(part, part%range(1), xi(p)), &
                          weight(p)*line_jacobian(nodes, xi(p), scene%plane_state == axisymmetric), p, e, row)
         end do
@@ -136,6 +145,29 @@ contains
     end do
     if (.not. interval%to%xi < 1) call add_neighbour(scene, g, loop, x, interval%to%side + 1, -1.0_wp, row)
   end subroutine old_row
+
+  !> The corner of the die in contact in the interval before a point, where it is on a part of a side.
+  pure subroutine add_corner(scene, g, nodes, part, xi, p, e, state, row)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g, p, e
+    real(wp), intent(in) :: nodes(2, 3), xi(:), state(:, :, :)
+    type(arc_t), intent(in) :: part
+    type(interval_points_t), intent(inout) :: row
+    real(wp) :: place
+
+    associate (variables => scene%groups(g)%variables)
+      if (find_variable(variables, 'corner_place') == 0) return
+      place = state(variables(find_variable(variables, 'corner_place'))%first, p, e)
+      ! zero when open
+      if (nint(state(variables(find_variable(variables, 'corner_contact_status'))%first, p, e)) == 0) return
+      ! at an end of the side it is the state of a node on the axis, which has no surface
+      if (place < part%range(1) .or. place > part%range(2) .or. .not. abs(place) < 1) return
+      call add_point(row%length + length_between(part, part%range(1), place), &
+                     corner_weight(xi, p, place)*line_jacobian(nodes, place, scene%plane_state == axisymmetric), p, e, row, &
+                     variables(find_variable(variables, 'corner_pressure'))%first &
+                     - variables(find_variable(variables, 'pressure'))%first)
+    end associate
+  end subroutine add_corner
 
   !> The integration point of an adjacent side in the node where the interval begins or ends.
   pure subroutine add_neighbour(scene, g, loop, x, side, at, row)
@@ -202,15 +234,20 @@ contains
     if (round) jacobian = jacobian*dot_product(x(1, :), phi)
   end function line_jacobian
 
-  pure subroutine add_point(s, weight, point, element, row)
+  pure subroutine add_point(s, weight, point, element, row, offset)
     real(wp), intent(in) :: s, weight
     integer, intent(in) :: point, element
     type(interval_points_t), intent(inout) :: row
+    integer, intent(in), optional :: offset
+    integer :: added
 
     row%s = [row%s, s]
     row%weight = [row%weight, weight]
     row%point = [row%point, point]
     row%element = [row%element, element]
+    added = 0
+    if (present(offset)) added = offset
+    row%offset = [row%offset, added]
   end subroutine add_point
 
   !> New points of a group on the arcs of an interval.
@@ -227,7 +264,7 @@ contains
     logical :: taken((size(mesh%sides) + 2)*scene%groups(g)%rule%n)
     integer :: k, e, p
 
-    allocate (unsorted%s(0), unsorted%weight(0), unsorted%point(0), unsorted%element(0))
+    allocate (unsorted%s(0), unsorted%weight(0), unsorted%point(0), unsorted%element(0), unsorted%offset(0))
     call line_rule(scene%groups(g)%rule, xi, weight)
     associate (boundary => contours(c)%boundary, contact => contours(c)%contacts(interval))
       total = boundary_length(boundary)
@@ -268,6 +305,7 @@ contains
     row%weight = unsorted%weight(order)
     row%point = unsorted%point(order)
     row%element = unsorted%element(order)
+    row%offset = unsorted%offset(order)
   end subroutine new_row
 
   pure subroutine carry_interval(carried, conserved, row_old, row_new, before, status, after)
@@ -282,7 +320,7 @@ contains
 
     if (size(row_old%s) == 0) return
     do p = 1, size(row_old%s)
-      old(:, p) = before(carried, row_old%point(p), row_old%element(p))
+      old(:, p) = before(carried + row_old%offset(p), row_old%point(p), row_old%element(p))
     end do
     do v = 1, size(carried)
       call carry_along(row_old%length, row_old%s, old(v:v, :), row_old%weight, row_new%length, row_new%s, row_new%weight, 2, &
@@ -292,7 +330,8 @@ contains
       after(carried, row_new%point(p), row_new%element(p)) = new(:, p)
       if (status == 0) cycle
       nearest = minloc(abs(row_old%s*row_new%length - row_new%s(p)*row_old%length), 1)
-      after(status, row_new%point(p), row_new%element(p)) = before(status, row_old%point(nearest), row_old%element(nearest))
+      after(status, row_new%point(p), row_new%element(p)) = before(status + row_old%offset(nearest), &
+                                                                     row_old%point(nearest), row_old%element(nearest))
     end do
   end subroutine carry_interval
 
@@ -314,13 +353,13 @@ contains
         row%transfer = kind_contact
         r = row_of(rows, row%name)
         if (r > size(rows)) rows = [rows, row]
-        rows(r)%before = rows(r)%before + sum_along(row_old, before(component, :, :))
-        rows(r)%after = rows(r)%after + sum_along(row_new, after(component, :, :))
+        rows(r)%before = rows(r)%before + sum_along(row_old, component, before)
+        rows(r)%after = rows(r)%after + sum_along(row_new, component, after)
         rows(r)%carried = rows(r)%after
         rows(r)%limited = rows(r)%after
-        rows(r)%magnitude = rows(r)%magnitude + sum_along(row_old, abs(before(component, :, :)))
-        rows(r)%largest_before = max(rows(r)%largest_before, largest_along(row_old, before(component, :, :)))
-        rows(r)%largest_after = max(rows(r)%largest_after, largest_along(row_new, after(component, :, :)))
+        rows(r)%magnitude = rows(r)%magnitude + sum_along(row_old, component, abs(before))
+        rows(r)%largest_before = max(rows(r)%largest_before, largest_along(row_old, component, before))
+        rows(r)%largest_after = max(rows(r)%largest_after, largest_along(row_new, component, after))
       end associate
     end do
   end subroutine add_integrals
@@ -336,27 +375,29 @@ contains
     end do
   end function row_of
 
-  pure function sum_along(row, values) result(total)
+  pure function sum_along(row, component, values) result(total)
     type(interval_points_t), intent(in) :: row
-    real(wp), intent(in) :: values(:, :)   !! (point, element)
+    integer, intent(in) :: component
+    real(wp), intent(in) :: values(:, :, :)   !! (component, point, element)
     real(wp) :: total
     integer :: p
 
     total = 0
     do p = 1, size(row%s)
-      total = total + row%weight(p)*values(row%point(p), row%element(p))
+      total = total + row%weight(p)*values(component + row%offset(p), row%point(p), row%element(p))
     end do
   end function sum_along
 
-  pure function largest_along(row, values) result(largest)
+  pure function largest_along(row, component, values) result(largest)
     type(interval_points_t), intent(in) :: row
-    real(wp), intent(in) :: values(:, :)   !! (point, element)
+    integer, intent(in) :: component
+    real(wp), intent(in) :: values(:, :, :)   !! (component, point, element)
     real(wp) :: largest
     integer :: p
 
     largest = 0
     do p = 1, size(row%s)
-      largest = max(largest, abs(values(row%point(p), row%element(p))))
+      largest = max(largest, abs(values(component + row%offset(p), row%point(p), row%element(p))))
     end do
   end function largest_along
 

@@ -8,7 +8,7 @@ module gap_work
   use axis_contact, only: area_at_corner
   use contact_point, only: at_piece, at_pressure, at_status, at_tau, at_xi, contact_block, penalties, side_length
   use contact_work, only: kept_work
-  use corner_contact, only: interval_before
+  use corner_weights, only: interval_before
   use dies, only: is_deformable
   use element_loop, only: group_geometry
   use equations, only: equations_t

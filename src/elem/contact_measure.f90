@@ -8,7 +8,7 @@ module contact_measure
   use contact_point, only: area_at, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_work, contact_block, &
                            dissipated, penalties, side_length
   use contact_work, only: kept_work
-  use corner_contact, only: interval_before
+  use corner_weights, only: interval_before
   use elem_api, only: totals_t
   use held_depth, only: soft_depth
   use kinds, only: wp

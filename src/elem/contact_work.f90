@@ -7,7 +7,7 @@
 !> 2006 (energies of penalty and augmented Lagrange methods).
 module contact_work
   use contact_point, only: area_at, at_augmentation, at_penetration, at_pressure, at_status, at_tau
-  use corner_contact, only: interval_before
+  use corner_weights, only: interval_before
   use kinds, only: wp
   use law_api, only: contact_open
   implicit none

@@ -3,13 +3,13 @@
 !> The deepest corner in the interval between two points (side_corners) acts there with the length of
 !> the interval as its weight, on what is deeper than half the allowed penetration, where one is given:
 !> a side that lies on the die by a corner has its points for that. Toward an end of the side the weight
-!> goes to zero: the load of a corner that a node slides past goes over to the node gradually, and back
-!> again; a sudden change would leave positions without equilibrium. The normal force of a corner is
-!> pressure only, whatever the law. In the interval at a node on the axis either the corner acts or that node (axis_contact).
+!> goes to zero (corner_weights). The normal force of a corner is pressure only, whatever the law. In the interval at a node on
+!> the axis either the corner acts or that node (axis_contact).
 module corner_contact
   use contact_point, only: at_augmentation, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, most_unknowns, &
                            contact_block, no_surface, share_to_contact, thinning
   use contact_penalties, only: allowed_penetration
+  use corner_weights, only: interval_before, share_of_corner
   use dies, only: die_t
   use elem_api, only: report_t
   use kinds, only: wp
@@ -21,12 +21,10 @@ module corner_contact
   use side_corners, only: closest_at_corner, corner_t, deepest_corner
   implicit none
   private
-  public :: end_on_axis, press_corner, press_corners, interval_before
+  public :: end_on_axis, press_corner, press_corners
 
   !> A corner acts on what is deeper than this share of the allowed penetration.
   real(wp), parameter :: corner_share = 0.5_wp
-  !> A corner nearer than this to an end of the side, in xi, has lost a part of its weight to the node there.
-  real(wp), parameter :: handing_over = 0.05_wp
 
 contains
 
@@ -128,7 +126,7 @@ contains
     call place_point(side, corner%place, point)
     if (axisym .and. point%x(1) <= no_surface*side%length) return
     allowed = corner_share*allowed_penetration(material)*side%length
-    if (.not. (committed(at_augmentation) + side%penalty(1)*(corner%d - allowed) > 0 .and. share_of(corner%place) > 0)) then
+    if (.not. (committed(at_augmentation) + side%penalty(1)*(corner%d - allowed) > 0 .and. share_of_corner(corner%place) > 0)) then
       ! its gap is known; at the very end of the side the next one has it
       trial([at_penetration, at_piece, at_xi]) = [corner%d, real(corner%piece, wp), corner%xi]
       return
@@ -136,20 +134,12 @@ contains
     call follow_corner(side, corner, point, drift)
     before = force
     call press(law, material, drivers, side, corner%place, point, closest_at_corner(corner), allowed, &
-               weight*share_of(corner%place), committed, trial, force, stiffness, drift)
-    if (.not. (side%tangent .and. share_of(corner%place) < 1)) return
+               weight*share_of_corner(corner%place), committed, trial, force, stiffness, drift)
+    if (.not. (side%tangent .and. share_of_corner(corner%place) < 1)) return
     ! the share changes with the position: d(ln share) = -sign(place)/(1 - |place|) d(place)
     toward_end = sign(1.0_wp, corner%place)/(1 - abs(corner%place))
     stiffness = stiffness - toward_end*spread(force - before, 2, ndof)*spread(drift%dxi, 1, ndof)
   end subroutine corner_at
-
-  !> Share of its weight that a corner at a position on the side has.
-  pure function share_of(place) result(share)
-    real(wp), intent(in) :: place
-    real(wp) :: share
-
-    share = min(1.0_wp, (1 - abs(place))/handing_over)
-  end function share_of
 
   !> The position of a corner on the side moves with nodes and pilot, and the point with it: from (V - y).y' = 0,
   !> ((V - y).y'' - y'.y') dxi = -(dV - dy).y' - (V - y).dy'.
@@ -186,17 +176,5 @@ contains
       drift%spin(j) = dot_product(point%e_r, dtangent(:, j) + bend*drift%dxi(j))/point%length
     end do
   end subroutine follow_corner
-
-  !> The part of the side between a point and the one before; the last one goes on to the end of the side.
-  pure subroutine interval_before(xi, p, from, to)
-    real(wp), intent(in) :: xi(:)   !! (npoint) [-]
-    integer, intent(in) :: p
-    real(wp), intent(out) :: from, to   !! [-]
-
-    from = -1
-    if (p > 1) from = xi(p - 1)
-    to = xi(p)
-    if (p == size(xi)) to = 1
-  end subroutine interval_before
 
 end module corner_contact

@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
-"""A part that fills a corner of a die, through new meshes: floor and wall as one curve, and as two dies.
+"""Corners of dies through new meshes: a part that fills one, floor and wall as one curve and as two dies, and a part that flows around one.
 
 usage: run_corner.py [-v] [-k]
 
 The ends of both sides lie in the corner, a little in the die or out of it. Each keeps to the face that its side lies on, so that both ways of
 saying it give the same force, and no new mesh is refused. The limits are those of REMSH alone but for ERROR: an error that passes its limit a step
 sooner or later by round-off makes other meshes of the two runs, whose forces differ by a per cent where they rise steeply.
+
+A flat punch with sharp edges: matter flows around them. Each new contour goes through the edge, where contact ends; the cycle comes to the end.
 """
 import os
+import re
 import sys
 
 sys.dont_write_bytecode = True
@@ -26,6 +29,18 @@ CNT2D  rod 1 floor film
 """
 LIMITS = "REMSH\n   ANGLE 15. 165.\n   MIDDLE 0.4\n   SCALED 0.2\n   ASPECT 10.\n   CONTACT 50.\n   DISTRESS 4\n   LEAST 5\n"
 SAME = 1e-3
+# New meshes that are refused, as a share of all.
+REFUSED = 0.05
+
+
+def sharp_edge(checks):
+    with open(deck_of("indentation"), encoding="utf-8") as file:
+        rounded = file.read()
+    sharp = re.sub(r"^ *FILLT .*\n|^PARAM +edge .*\n", "", rounded, flags=re.MULTILINE)
+    checks.that(len(sharp.splitlines()) == len(rounded.splitlines()) - 2, "the deck has one rounded edge")
+    found = run_scene("indentation", checks.path("sharp"), deck=write(checks.path("sharp.lag"), sharp))
+    checks.that(found["code"] == DONE, "sharp edge: the cycle ends with 0", found["said"])
+    checks.that(found["refused"] <= REFUSED * found["meshes"], "sharp edge: tries refused", (found["refused"], found["meshes"]))
 
 
 def main():
@@ -45,6 +60,7 @@ def main():
     if len(forces) == 2:
         ratio = forces["one curve"] / forces["two dies"]
         checks.that(abs(ratio - 1) < SAME, "the same force at the end", ratio)
+    sharp_edge(checks)
     checks.end()
 
 
