@@ -6,7 +6,8 @@
 !> need not have an equilibrium; nor need it with large coefficients of friction: in the plane one is known to exist below
 !> sqrt(3 - 4 nu)/(2 - 2 nu) (C. Eck, J. Jarusek, Math. Models Methods Appl. Sci. 8 (1998) 445), .96 at nu = .3 and 1 where
 !> volume cannot change, as in flow. A die that rocks on a block finds none at any step with 5, but does with PHI 1 beside M: what a
-!> run that stops gives as advice (run_stop). It is no default: walls that are hardly pressed, as of a container, would rub less than M says;
+!> run that stops gives as advice (run_stop). It is no default: walls that are hardly pressed, as of a container, would rub less
+!> than M says;
 !> non-associated: no opening by slip. The slip tangent dtau = PHI AKP sign(tau) dd is unsymmetric.
 module law_coul2d
   use contact_penalties, only: penalty_parameters, penalty_problems

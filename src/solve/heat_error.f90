@@ -10,8 +10,8 @@
 !> one of TR-BDF2 (D and W as there) first makes the same of its first stage, M s = 2 d0/(D dt), dm = d0 - D dt K s, and then
 !>   M e1 = ((1 - W/D) d0 + W/D dm)/(D dt) + r.
 !> The flows K e are those of the elements, by their difference along a small part of e. So latent heat and numbers by temperature
-!> are as in the step; dies with a heat capacity of their own have errors as nodes do. (Global errors by the linearised equation with
-!> the local ones as its sources: R.D. Skeel, Thirteen ways to estimate global error, Numer. Math. 48 (1986) 1-20.)
+!> are as in the step; dies with a heat capacity of their own have errors as nodes do. (Global errors by the linearised equation
+!> with the local ones as its sources: R.D. Skeel, Thirteen ways to estimate global error, Numer. Math. 48 (1986) 1-20.)
 module heat_error
   use corrections, only: solve_correction
   use elem_api, only: report_t
