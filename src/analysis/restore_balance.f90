@@ -23,6 +23,7 @@ module restore_balance
   use linear_solver, only: return_to_chosen
   use newton, only: outcome_t, solve_step
   use path_record, only: settle_path
+  use residual_parts, only: first_parts, next_part, residual_parts_t
   use residual_place, only: least_shape, place_residual, residual_place_t
   use scene, only: scene_t
   use solution, only: solution_t
@@ -100,7 +101,8 @@ contains
     type(balance_t), intent(inout) :: balance   !! `before` is known
     type(outcome_t), intent(out) :: outcome
     real(wp), dimension(equations%dofs%ndof) :: external, rest
-    real(wp) :: left, part, started, work
+    type(residual_parts_t) :: parts
+    real(wp) :: started, work
     type(report_t) :: report
     integer :: k
 
@@ -123,10 +125,9 @@ contains
     where (equations%solves(equations%now)%equation == 0) rest = 0
     call place_residual(scene, equations%dofs, external, equations%magnitude, rest, balance%place)
     call work_of_correction(equations, rest, work)
-    left = 1
-    part = 1
-    do while (left > 0)
-      call solve_step(scene, equations, solution, 0.0_wp, outcome, (left - part)*rest)
+    parts = first_parts(1.0_wp, smallest_part)
+    do while (parts%goes_on)
+      call solve_step(scene, equations, solution, 0.0_wp, outcome, (parts%left - parts%part)*rest)
       if (allocated(outcome%error)) return
       balance%iterations_in_all = balance%iterations_in_all + outcome%iterations
       balance%iterations = balance%iterations + merge(outcome%first_iterations, outcome%iterations, &
@@ -134,15 +135,11 @@ contains
       if (outcome%converged) then
         call accept_balance(scene, equations, outcome, solution, balance%after, outcome%error)
         if (allocated(outcome%error)) return
-        balance%parts = balance%parts + 1
-        left = left - part
-        part = min(2*part, left)
-      else
-        part = 0.5_wp*part
-        if (part < smallest_part) exit
       end if
+      call next_part(parts, outcome%converged)
+      balance%parts = parts%number
     end do
-    balance%restored = .not. left > 0
+    balance%restored = .not. parts%left > 0
     balance%largest_force = solution%largest_force
     balance%old_error = solution%estimate%previous_stress
     balance%first_residual = relative_distance(work, max(balance%before%elastic_energy, balance%after%elastic_energy))

@@ -3,8 +3,7 @@
 !> Stresses that were carried balance elastically (restore_balance), but some are outside the yield surface: their return leaves a
 !> residual that is there however short the step. Where it moves the part far, as beside a gap that closes, which the old mesh was
 !> too coarse to close, Newton's method may not find the way at once, and shorter steps have the same way to go. So a share of that
-!> residual is left as an external force, and taken back part by part, each from the motion of the one before: a continuation in
-!> the load (E.L. Allgower, K. Georg, Numerical Continuation Methods, Springer 1990, ch. 2), at the end of which nothing is left.
+!> residual is left as an external force, and taken back part by part (residual_parts), each from the motion of the one before.
 module first_step_parts
   use acceptance, only: is_first_step
   use elem_api, only: block_done, report_t
@@ -14,6 +13,7 @@ module first_step_parts
   use fields, only: displacement_field
   use kinds, only: wp
   use newton, only: outcome_t, solve_step
+  use residual_parts, only: first_parts, next_part, residual_parts_t
   use scene, only: scene_t
   use solution, only: group_state_t, solution_t
   use text, only: to_text
@@ -55,9 +55,10 @@ contains
     type(outcome_t) :: one
     type(group_state_t) :: before(size(solution%groups))
     real(wp), dimension(equations%dofs%ndof) :: rest, motion
-    real(wp) :: left, part, strain
+    type(residual_parts_t) :: parts
+    real(wp) :: strain
     logical :: found
-    integer :: g, iterations, parts
+    integer :: g, iterations
 
     motion = 0
     if (present(given)) motion = merge(0.0_wp, given, equations%solves(equations%now)%is_own)
@@ -67,13 +68,11 @@ contains
       before(g)%committed = solution%groups(g)%committed
     end do
     iterations = outcome%iterations
-    left = 1
-    part = first_part
+    parts = first_parts(first_part, smallest_part)
     strain = 0
-    parts = 0
     found = .false.
-    do while (left > 0)
-      call solve_step(scene, equations, solution, dt, one, (left - part)*rest, motion, found)
+    do while (parts%goes_on)
+      call solve_step(scene, equations, solution, dt, one, (parts%left - parts%part)*rest, motion, found)
       iterations = iterations + one%iterations
       if (allocated(one%error)) exit
       if (one%converged .and. one%strain - strain > scene%strategy%strain_bound) then
@@ -83,24 +82,19 @@ contains
       end if
       if (one%converged) then
         strain = one%strain
-        parts = parts + 1
         motion = one%du
         found = .true.
-        left = left - part
-        part = min(2*part, left)
-      else
-        part = 0.5_wp*part
-        if (part < smallest_part) exit
       end if
+      call next_part(parts, one%converged)
     end do
-    if (left > 0) then
+    if (parts%left > 0) then
       do g = 1, size(before)
         solution%groups(g)%committed = before(g)%committed
       end do
     end if
     one%history = [outcome%history, one%history]
     outcome = one
-    outcome%parts = parts
+    outcome%parts = parts%number
     outcome%iterations = iterations
     outcome%first_iterations = iterations
   end subroutine solve_in_parts
