@@ -6,6 +6,7 @@
 !> neither the part nor its contact. Without it the work of a die that lifts off grows with the length of the step.
 module gap_work
   use axis_contact, only: area_at_corner
+  use contact_areas, only: area_of_point
   use contact_point, only: at_piece, at_pressure, at_status, at_tau, at_xi, contact_block, penalties, side_length
   use contact_work, only: kept_work
   use corner_weights, only: interval_before
@@ -18,7 +19,7 @@ module gap_work
   use law_api, only: contact_open
   use parabolas, only: tangent_on
   use plane_vectors, only: turned
-  use quadrature, only: line_rule
+  use quadrature, only: line_rule, rule_control
   use scene, only: group_t, role_contact, scene_t
   use shape_functions, only: line3
   use solution, only: solution_t
@@ -69,7 +70,7 @@ contains
     integer, intent(in) :: g           !! place of the group
     real(wp), intent(out) :: work      !! per radian when axisymmetric [energy]
     real(wp), allocatable :: xi(:), weight(:), x(:, :, :)
-    real(wp) :: du(2, 3), from, to
+    real(wp) :: du(2, 3), from, to, area
     integer :: e, p, n
     logical :: corners
 
@@ -84,31 +85,39 @@ contains
         du = u%last_increment(:, group%connectivity(1:3, e))
         if (scene%finite) x(:, :3, e) = x(:, :3, e) - du
         do p = 1, size(xi)
-          call add_point(before(:n, p, e), after(:n, p, e), xi(p), weight(p))
+          area = area_of_point(group%rule, xi, weight, p, solution%fields(section_field)%value(:, 1), x(:, :3, e))
+          if (group%rule%family == rule_control .and. p == 2) then
+            call add_point(before(:n, p, e), after(:n, p, e), xi(p), area, shares=[-0.5_wp, 2.0_wp, -0.5_wp])
+          else
+            call add_point(before(:n, p, e), after(:n, p, e), xi(p), area)
+          end if
           if (.not. corners) cycle
           call interval_before(xi, p, from, to)
-          call add_point(before(n + 1:2*n, p, e), after(n + 1:2*n, p, e), before(2*n + 1, p, e), to - from)
+          call add_point(before(n + 1:2*n, p, e), after(n + 1:2*n, p, e), before(2*n + 1, p, e), &
+                         area_at_corner(before(2*n + 1, p, e), to - from, solution%fields(section_field)%value(:, 1), x(:, :3, e), &
+                                        side_length(scene, group%connectivity(:, e))))
         end do
       end do
     end associate
 
   contains
 
-    subroutine add_point(old, now, place, share)
-      real(wp), intent(in) :: old(:), now(:), place, share
-      real(wp) :: phi(3), dphi(3), tangent(2), traction(2), penalty(2), side, area
+    subroutine add_point(old, now, place, area, shares)
+      real(wp), intent(in) :: old(:), now(:), place, area
+      real(wp), intent(in), optional :: shares(3)   ! of the nodes in its motion
+      real(wp) :: phi(3), dphi(3), tangent(2), traction(2), penalty(2), side
       logical :: held
 
       if (.not. opens(old(at_status), now(at_status))) return
       associate (group => scene%groups(g), side_of => x(:, :3, e))
         call line3(place, phi, dphi)
+        if (present(shares)) phi = shares
         tangent = tangent_of_die(scene, solution, group, old, matmul(side_of, dphi))
         ! walking along the die the part is on the left: the inner normal of the die is on the right
         traction = old(at_pressure)*[tangent(2), -tangent(1)] + old(at_tau)*tangent
         side = side_length(scene, group%connectivity(:, e))
         penalty = penalties(scene%materials(group%material), group%modulus, side)
         held = soft_depth(group%rule, scene%materials(group%material), side) > 0
-        area = area_at_corner(place, share, solution%fields(section_field)%value(:, 1), side_of, side)
         work = work + area &
                *(0.5_wp*dot_product(traction, motion_of_die(scene, solution, group, old, matmul(side_of, phi)) - matmul(du, phi)) &
                  + kept_work(old, now, penalty, held))

@@ -69,9 +69,9 @@ contains
     end do
     if (solution%worst_sample_ratio <= max(bound, solution%worst_penetration_ratio) + slack) return
     if (gauss) then
-      advice = 'CNT2D with ALONG, or with -3 points, which are the nodes; '
+      advice = 'CNT2D with BEZIER or ALONG, or with -3 points, which are the nodes; '
     else if (few) then
-      advice = 'CNT2D with ALONG, or with -9 or -17 points; '
+      advice = 'CNT2D with BEZIER or ALONG, or with -9 or -17 points; '
     end if
     if (any_law(scene, at_augment, without=.true.)) advice = advice//'AUGMENT 20 in the contact law; '
     advice = advice//shorter

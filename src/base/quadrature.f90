@@ -4,12 +4,13 @@ module quadrature
   use kinds, only: wp
   implicit none
   private
-  public :: rule_t, rule_gauss, rule_equidistant, rule_along
+  public :: rule_t, rule_gauss, rule_equidistant, rule_along, rule_control
   public :: line_rule, gauss_line, square_rule, rule_number, rule_of_number
 
   !> Families of rules: Gauss; points at equal distances, the ends among them (Lobatto's with 3, then Simpson's on equal parts);
-  !> the same of so many points that contact is seen along the whole side (ALONG).
-  integer, parameter :: rule_gauss = 1, rule_equidistant = 2, rule_along = 3
+  !> the same of so many points that contact is seen along the whole side (ALONG); the nodes of a side whose contact is that of
+  !> its ends and its control point, 3 as Lobatto's.
+  integer, parameter :: rule_gauss = 1, rule_equidistant = 2, rule_along = 3, rule_control = 4
   !> More points than these are no rule of Gauss here.
   integer, parameter :: most_gauss = 4
 
@@ -26,7 +27,7 @@ contains
     type(rule_t), intent(in) :: rule
     integer :: number
 
-    number = merge(-rule%n, rule%n, rule%family == rule_equidistant)
+    number = merge(-rule%n, rule%n, rule%family == rule_equidistant .or. rule%family == rule_control)
   end function rule_number
 
   elemental function rule_of_number(number) result(rule)

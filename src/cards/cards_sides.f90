@@ -9,7 +9,7 @@ module cards_sides
   use dies, only: is_deformable
   use kinds, only: wp
   use law_api, only: contact_law, find_parameter, is_complete, law_of_material
-  use quadrature, only: rule_along, rule_of_number, rule_t
+  use quadrature, only: rule_along, rule_control, rule_of_number, rule_t
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, find_elem
   use text, only: to_text, upper_case
@@ -54,11 +54,14 @@ contains
         call read_rule(cursor, group%rule)
       else if (cursor%peek_word() == 'ALONG') then
         call read_along(cursor, group)
+      else if (cursor%peek_word() == 'BEZIER') then
+        call read_bezier(cursor, group)
       else if (.not. cursor%failed()) then
         group%rule = chosen_rule(draft%scene, group)
         group%rule_is_chosen = .true.
       end if
       call read_material(cursor, draft, contact_law, group%material)
+      if (.not. cursor%failed()) call refuse_glued_control_points(cursor, draft, group)
       if (.not. cursor%failed()) call refuse_second_contact(cursor, draft, group, diagnostics)
       if (.not. cursor%failed()) call refuse_bodies_without_flow(cursor, draft, group)
       call close_card(draft, cursor, deck%cards(i))
@@ -75,6 +78,18 @@ contains
       call append_group(draft, group, cursor%where())
     end do
   end subroutine read_contacts
+
+  !> Contact by end nodes and control points is one that opens: what is glued does not fold.
+  subroutine refuse_glued_control_points(cursor, draft, group)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(group_t), intent(in) :: group
+
+    if (group%rule%family /= rule_control) return
+    associate (law => draft%laws(draft%scene%materials(group%material)%law_id))
+      if (law%lasts) call cursor%fail('BEZIER is for laws whose contact opens, '//law%name//' holds what it has touched: -3')
+    end associate
+  end subroutine refuse_glued_control_points
 
   !> A word is the name of a die made of sides.
   pure function is_side_die(draft, word) result(yes)
@@ -201,6 +216,17 @@ contains
     if (group%pairs > 0) call cursor%fail('ALONG is for rigid dies; against a body the points are chosen without it')
     group%rule = rule_t(rule_along, along)
   end subroutine read_along
+
+  !> The word for the nodes of a side with a control point in place of the middle one.
+  subroutine read_bezier(cursor, group)
+    type(cursor_t), intent(inout) :: cursor
+    type(group_t), intent(inout) :: group
+    character(len=:), allocatable :: word
+
+    call cursor%word('BEZIER', word)
+    if (group%pairs > 0) call cursor%fail('BEZIER is for rigid dies; against a body the points are chosen without it')
+    group%rule = rule_t(rule_control, 3)
+  end subroutine read_bezier
 
   subroutine read_rule(cursor, rule)
     type(cursor_t), intent(inout) :: cursor

@@ -6,7 +6,7 @@ module scene_summary
   use kinds, only: wp
   use linear_api, only: solver_row_t
   use linear_registry, only: list_solvers
-  use quadrature, only: rule_along, rule_equidistant, rule_t
+  use quadrature, only: rule_along, rule_control, rule_equidistant, rule_t
   use remesher_windows, only: window_text
   use remeshing, only: criterion_names, is_upper, ncriteria, never
   use scene, only: axisymmetric, generalised_plane_strain, group_t, lacks_mesh, plane_state_names, scene_t
@@ -255,6 +255,7 @@ contains
 
       s = ''
       if (rule%family == rule_along) s = ' equidistant'
+      if (rule%family == rule_control) s = ' Bezier'
       if (rule%family == rule_equidistant) s = trim(merge(' Lobatto    ', ' equidistant', rule%n == 3))
     end function rule_of
 

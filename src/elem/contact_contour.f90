@@ -10,7 +10,7 @@ module contact_contour
   use dies, only: die_t, in_pilot_axes
   use kinds, only: wp
   use law_api, only: contact_open
-  use quadrature, only: line_rule
+  use quadrature, only: line_rule, rule_control
   use scene, only: group_t
   use vectors, only: length_of
   implicit none
@@ -45,6 +45,8 @@ contains
     n = size(xi)
     allocate (closed(n, size(status, 2)))
     closed = status /= contact_open
+    ! a control point holds the direction in which a side leaves the die at its end: contact ends there
+    if (group%rule%family == rule_control) closed(2, :) = merge(all(closed([1, 3], :), 1), closed(2, :), any(closed([1, 3], :), 1))
     do e = 1, size(status, 2)
       side = side_of(group, e, pilot, first, x)
       if (closed(1, e) .and. neighbour(group, e, -1) == 0) call add(side, -1.0_wp, -1.0_wp, [1.0_wp, 1.0_wp], .true.)

@@ -4,8 +4,9 @@
 !> die, and its position on the side (corner_contact).
 module contact_measure
   use axis_contact, only: area_at_corner
+  use contact_areas, only: area_of_point
   use contact_penalties, only: allowed_penetration, penalties_of_card, penalties_t
-  use contact_point, only: area_at, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_work, contact_block, &
+  use contact_point, only: at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_work, contact_block, &
                            dissipated, penalties, side_length
   use contact_work, only: kept_work
   use corner_weights, only: interval_before
@@ -130,7 +131,7 @@ contains
         case default
           totals%open = totals%open + 1
         end select
-        call add_point(state(:n, p, e), before(:n, p, e), weight(p)*area_at(xi(p), section, x(:, :, e)))
+        call add_point(state(:n, p, e), before(:n, p, e), area_of_point(group%rule, xi, weight, p, section, x(:, :, e)))
         if (.not. corners) cycle
         call interval_before(xi, p, from, to)
         call add_point(state(n + 1:2*n, p, e), before(n + 1:2*n, p, e), &

@@ -17,7 +17,7 @@ module contact_point
   use vectors, only: length_of
   implicit none
   private
-  public :: contact_point_t, meeting_t, side_point, act, penalties, share_to_contact, show_on_axis, side_length
+  public :: contact_point_t, meeting_t, side_point, act, answer, penalties, share_to_contact, show_on_axis, side_length
   public :: area_at, dissipated, point_variables, rest, thinning, contact_block
   public :: at_pressure, at_tau, at_penetration, at_status, at_slip, at_augmentation, at_work, at_piece, at_xi, &
             npoint_state
@@ -127,8 +127,6 @@ contains
 
   !> Force on what is met, the opposite of that on the side: traction p n + tau t times length, weight and
   !> thickness. The state of the point goes on from committed to trial.
-  !>
-  !> When contact begins inside the step only the share d/(d - d_start) of the way counts as slip.
   pure subroutine act(law, material, dt, drivers, penalty, point, meeting, weight, tangent_wanted, committed, trial, q, dq)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
@@ -143,11 +141,48 @@ contains
     real(wp), intent(inout) :: trial(:)             !! (nstate) [unit of each component]
     real(wp), intent(out) :: q(2)                   !! per radian when axisymmetric [force]
     real(wp), intent(out) :: dq(2, most_unknowns)   !! set where the tangent is wanted and there is contact [force/unknown]
-    real(wp) :: dslip(most_unknowns), t(2), slip, depth, slope, gap, share, pressure, stress(2), law_tangent(3, 3), area
-    real(wp) :: traction(2), dp, dtau, change
-    integer :: status, j
+    real(wp) :: dslip(most_unknowns), t(2), slope, pressure, tau, law_tangent(2, 2), area, traction(2), dp, dtau
+    logical :: open
+    integer :: j
 
     q = 0
+    call answer(law, material, dt, drivers, penalty, meeting, committed, trial, pressure, tau, law_tangent, slope, dslip, open)
+    if (open) return
+
+    t = [-meeting%normal(2), meeting%normal(1)]
+    area = point%length*weight*point%thickness
+    traction = -(pressure*meeting%normal + tau*t)
+    q = traction*area
+    if (.not. tangent_wanted) return
+    do j = 1, most_unknowns
+      dp = law_tangent(1, 1)*slope*meeting%dd(j) + law_tangent(1, 2)*dslip(j)
+      dtau = law_tangent(2, 1)*slope*meeting%dd(j) + law_tangent(2, 2)*dslip(j)
+      dq(:, j) = -(dp*meeting%normal + dtau*t + meeting%turn(j)*(pressure*t - tau*meeting%normal))*area &
+                 + traction*weight*(point%dlength(j)*point%thickness + point%length*point%dthickness(j))
+    end do
+  end subroutine act
+
+  !> Pressure and friction of a meeting, and their derivatives by depth and slip; the state of the point goes on from committed to
+  !> trial.
+  !>
+  !> When contact begins inside the step only the share d/(d - d_start) of the way counts as slip.
+  pure subroutine answer(law, material, dt, drivers, penalty, meeting, committed, trial, pressure, tau, tangent, slope, dslip, open)
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: dt              !! length of the step [time]
+    real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) of the law at both ends of the step [unit of each driver]
+    real(wp), intent(in) :: penalty(2)      !! normal and tangential [stress/length]
+    type(meeting_t), intent(in) :: meeting
+    real(wp), intent(in) :: committed(:)    !! (nstate) [unit of each component]
+    real(wp), intent(inout) :: trial(:)     !! (nstate) [unit of each component]
+    real(wp), intent(out) :: pressure, tau   !! [stress]
+    real(wp), intent(out) :: tangent(2, 2)   !! of both by depth, to be multiplied by `slope`, and slip [stress/length]
+    real(wp), intent(out) :: slope           !! [-]
+    real(wp), intent(out) :: dslip(most_unknowns)   !! derivatives of the slip that counts [length/unknown]
+    logical, intent(out) :: open
+    real(wp) :: slip, depth, gap, share, stress(2), law_tangent(3, 3), change
+    integer :: status
+
     slip = meeting%slip
     dslip = meeting%dslip
     depth = meeting%d - meeting%allowed
@@ -171,26 +206,17 @@ contains
                    committed(npoint_state + 1:), pressure, stress, trial(npoint_state + 1:), law_tangent, status)
     pressure = pressure + law_tangent(1, 1)*change
     stress(1) = stress(1) + law_tangent(2, 1)*change
+    tau = stress(1)
+    tangent = law_tangent(:2, :2)
     trial(at_pressure) = pressure
-    trial(at_tau) = stress(1)
+    trial(at_tau) = tau
     trial(at_status) = status
-    if (status == contact_open) return
+    open = status == contact_open
+    if (open) return
     trial(at_augmentation) = next_multiplier(committed(at_augmentation), penalty(1), depth, meeting%soft)
     trial(at_slip) = committed(at_slip) + slip
     trial(at_work) = trial(at_work) + dissipated(committed, trial, penalty(2))
-
-    t = [-meeting%normal(2), meeting%normal(1)]
-    area = point%length*weight*point%thickness
-    traction = -(pressure*meeting%normal + stress(1)*t)
-    q = traction*area
-    if (.not. tangent_wanted) return
-    do j = 1, most_unknowns
-      dp = law_tangent(1, 1)*slope*meeting%dd(j) + law_tangent(1, 2)*dslip(j)
-      dtau = law_tangent(2, 1)*slope*meeting%dd(j) + law_tangent(2, 2)*dslip(j)
-      dq(:, j) = -(dp*meeting%normal + dtau*t + meeting%turn(j)*(pressure*t - stress(1)*meeting%normal))*area &
-                 + traction*weight*(point%dlength(j)*point%thickness + point%length*point%dthickness(j))
-    end do
-  end subroutine act
+  end subroutine answer
 
   !> Work that friction took in a step, per present area: the part of the slip that the tangential penalty does not store.
   pure function dissipated(before, after, penalty) result(work)

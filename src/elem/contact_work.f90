@@ -6,10 +6,12 @@
 !> the tangential penalty keeps tau**2/(2 AKTAU). Source: P. Wriggers, Computational Contact Mechanics, 2nd ed., Springer
 !> 2006 (energies of penalty and augmented Lagrange methods).
 module contact_work
+  use contact_areas, only: area_of_point
   use contact_point, only: area_at, at_augmentation, at_penetration, at_pressure, at_status, at_tau
   use corner_weights, only: interval_before
   use kinds, only: wp
   use law_api, only: contact_open
+  use quadrature, only: rule_t
   implicit none
   private
   public :: friction_energy, kept_work
@@ -44,8 +46,9 @@ contains
 
   !> Work that friction has done so far at a point of a side and at the corner of the die in the interval before it, at the start
   !> and at the end of a step.
-  pure function friction_energy(xi, weight, p, work, section, x) result(energy)
-    real(wp), intent(in) :: xi(:), weight(:)   !! (npoint) [-]
+  pure function friction_energy(rule, xi, weight, p, work, section, x) result(energy)
+    type(rule_t), intent(in) :: rule
+    real(wp), intent(in) :: xi(:), weight(:)   !! (npoint) its points and weights [-]
     integer, intent(in) :: p                   !! the point
     real(wp), intent(in) :: work(3, 2)         !! per present area of the point and of the corner [stress*length], place of that [-]
     real(wp), intent(in) :: section(3, 2)      !! thickness at the origin [length], and its slopes [-]
@@ -56,7 +59,7 @@ contains
 
     call interval_before(xi, p, from, to)
     do k = 1, 2
-      energy(k) = work(1, k)*weight(p)*area_at(xi(p), section(:, k), x(:, :, k))
+      energy(k) = work(1, k)*area_of_point(rule, xi, weight, p, section(:, k), x(:, :, k))
       if (work(2, k) > 0) energy(k) = energy(k) + work(2, k)*(to - from)*area_at(work(3, k), section(:, k), x(:, :, k))
     end do
   end function friction_energy

@@ -4,17 +4,17 @@
 !> point (corner_contact). A pressure that ended at once would leave positions without equilibrium. So the face goes on beyond
 !> its corner, as the line along its tangent, for `releasing` of half a side, and the pressure falls to zero on that way.
 module corner_release
-  use closest_point, only: closest_point_t
-  use contact_point, only: at_piece, at_status, contact_point_t
+  use closest_point, only: closest_point_t, closest_within_piece
+  use contact_point, only: at_penetration, at_piece, at_status, at_xi, contact_point_t
   use dies, only: die_t
   use kinds, only: wp
   use law_api, only: contact_open
   use piecewise_curves, only: adjacent_piece
-  use plane_vectors, only: right_of, turned
+  use plane_vectors, only: cross, right_of, turned
   use rigid_contact, only: ndof, side_t
   implicit none
   private
-  public :: release_t, slide_past_corner, motion_past_corner
+  public :: release_t, slide_past_corner, slide_beyond, motion_past_corner, passes_corner
 
   !> Way past a corner over half the side on which a point loses its pressure: that on which a corner gains it.
   real(wp), parameter :: releasing = 0.05_wp
@@ -22,6 +22,10 @@ module corner_release
   !> A point that comes to a corner is on the face when it is less deep than this share of its side, and its side lies along the
   !> face within this cosine: one that has risen beside the corner is not.
   real(wp), parameter :: shallow = 0.01_wp, facing = 0.7_wp
+
+  !> A die that turns by more than this sine on the way of a point has a corner there: parabolas that follow a curve within a
+  !> tolerance turn by less.
+  real(wp), parameter :: blunt = 0.1_wp
 
   !> What is left of the pressure, and its change with the way past the corner [1/length]; the tangent of the face that way.
   type :: release_t
@@ -79,6 +83,46 @@ contains
       piece = adjacent_piece(die, piece, 1)
     end if
   end function face_at
+
+  !> A point has lost depth on a way along the die that passes a corner.
+  pure function passes_corner(die, committed, closest) result(yes)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: committed(:)             !! (nstate) of the point [unit of each component]
+    type(closest_point_t), intent(in) :: closest     !! at the end of the step
+    logical :: yes
+    type(closest_point_t) :: before
+
+    yes = .false.
+    if (nint(committed(at_piece)) == 0 .or. closest%d >= committed(at_penetration)) return
+    associate (piece => die%pieces(:, :, nint(committed(at_piece))))
+      call closest_within_piece(piece, piece(:, 2), committed(at_xi), before)
+    end associate
+    yes = abs(cross(before%normal, closest%normal)) > blunt
+  end function passes_corner
+
+  !> What is left of the pressure of a point that goes on beyond the corner at the end of its face.
+  pure subroutine slide_beyond(die, point, length, closest, release)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: point(2)                 !! in the pilot's axes [length]
+    real(wp), intent(in) :: length                   !! of the side [length]
+    type(closest_point_t), intent(in) :: closest     !! on the face
+    type(release_t), intent(out) :: release
+    real(wp) :: way, outward(2)
+    integer :: k, side
+
+    do k = 1, size(die%corners, 2)
+      do side = 1, 2
+        if (face_at(die, k, side) == 0 .or. face_at(die, k, side) /= closest%piece) cycle
+        outward = merge(die%corners(3:4, k), -die%corners(5:6, k), side == 1)
+        way = dot_product(point - die%corners(1:2, k), outward)
+        if (.not. way > 0) cycle
+        release%slope = -2/(releasing*length)
+        release%share = max(0.0_wp, 1 + release%slope*way)
+        release%tangent = outward
+        return
+      end do
+    end do
+  end subroutine slide_beyond
 
   !> Derivatives of the way past the corner.
   pure function motion_past_corner(side, point, release) result(motion)

@@ -19,12 +19,14 @@
 module elem_cnt2d
   use axis_contact, only: press_axis
   use closest_point, only: closest_point_t, closest_within_piece
+  use contact_areas, only: areas_with_control
   use contact_measure, only: augment, measure
-  use contact_point, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, contact_point_t, no_surface, &
+  use contact_point, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, &
+                           contact_point_t, no_surface, &
                            penalties, point_variables, rest, share_to_contact, show_on_axis, side_length, &
                            thinning, touching
   use corner_contact, only: press_corners
-  use corner_release, only: motion_past_corner, release_t, slide_past_corner
+  use corner_release, only: motion_past_corner, passes_corner, release_t, slide_past_corner
   use curve_search, only: box_distance
   use die_sweep, only: share_to_pass
   use held_depth, only: soft_depth
@@ -35,17 +37,14 @@ module elem_cnt2d
   use law_api, only: contact_law, contact_open, law_t
   use materials, only: material_t
   use plane_vectors, only: cross, turned
-  use quadrature, only: line_rule
+  use quadrature, only: line_rule, rule_control
+  use side_contact, only: press_side
   use rigid_contact, only: closest_or_followed, ndof, place_point, press, side_t
   use scene, only: axisymmetric, group_t, role_contact, scene_t
   use state_variables, only: state_variable, state_variable_t, transfer_recompute
   implicit none
   private
   public :: elem_cnt2d_row
-
-  !> A die that turns by more than this sine on the way of a point has a corner there: parabolas that follow a curve within a
-  !> tolerance turn by less.
-  real(wp), parameter :: blunt = 0.1_wp
 
 contains
 
@@ -107,25 +106,32 @@ contains
     real(wp) :: f(ndof), k(ndof, ndof)
     type(side_t) :: side
     integer :: e, p, n, own
-    logical :: axisym
+    logical :: axisym, whole
 
     n = size(du, 1)
     own = contact_block(.true., size(trial, 1))
     axisym = scene%plane_state == axisymmetric
+    whole = group%rule%family == rule_control
     call line_rule(group%rule, xi, weight)
     associate (die => scene%dies(group%die), material => scene%materials(group%material))
       do e = 1, size(x, 3)
         force(:, e) = 0
         if (instant%tangent) stiffness(:, :, e) = 0
         call begin_side(scene, group, instant, layout, first + e - 1, x(:, :, e), du(:, e), side)
-        call begin_states(side, xi, committed(:, :, e), trial(:, :, e))
+        call begin_states(side, xi, whole, committed(:, :, e), trial(:, :, e))
         report%passed = min(report%passed, share_to_pass(die, side))
         if (far(die, side)) cycle
         f = 0
         k = 0
+        if (whole) then
+          call press_side(die, law, material, drivers(:, :, :, e), side, committed(:own, :, e), trial(:own, :, e), f, k)
+        else
+          do p = 1, size(xi)
+            call contact_at(die, law, material, drivers(:, :, p, e), axisym, side, xi(p), weight(p), committed(:own, p, e), &
+                            trial(:own, p, e), f, k)
+          end do
+        end if
         do p = 1, size(xi)
-          call contact_at(die, law, material, drivers(:, :, p, e), axisym, side, xi(p), weight(p), committed(:own, p, e), &
-                          trial(:own, p, e), f, k)
           if (nint(committed(at_status, p, e)) /= contact_open) then
             report%jump = max(report%jump, abs(trial(at_penetration, p, e) - committed(at_penetration, p, e))/side%length)
           end if
@@ -133,11 +139,11 @@ contains
         end do
         call press_corners(die, law, material, drivers(:, :, :, e), axisym, side, xi, committed(:, :, e), trial(:, :, e), f, k, &
                            report)
-        if (axisym) call press_axis(die, law, material, drivers(:, :, :, e), side, xi, committed(:, :, e), trial(:, :, e), f, k, &
-                                    report)
+        if (axisym) call press_axis(die, law, material, drivers(:, :, :, e), side, xi, committed(:, :, e), &
+                                                      trial(:, :, e), f, k, report)
         force(:, e) = f(:n)
         if (instant%tangent) stiffness(:, :, e) = k(:n, :n)
-        if (axisym) call show_on_axis(xi, x(1, :, e) + du(1:3, e), side%length, trial(:, :, e))
+        if (axisym .and. .not. whole) call show_on_axis(xi, x(1, :, e) + du(1:3, e), side%length, trial(:, :, e))
       end do
     end associate
     if (.not. goes_on(instant, group%die)) report%jump = 0
@@ -169,8 +175,9 @@ contains
   end subroutine begin_side
 
   !> States without contact; the work of friction goes with the area.
-  pure subroutine begin_states(side, xi, committed, trial)
+  pure subroutine begin_states(side, xi, control, committed, trial)
     type(side_t), intent(in) :: side
+    logical, intent(in) :: control
     real(wp), intent(in) :: xi(:), committed(:, :)
     real(wp), intent(inout) :: trial(:, :)
     integer :: n
@@ -179,7 +186,12 @@ contains
     trial = committed
     call rest(trial(:n, :))
     call rest(trial(n + 1:2*n, :))
-    trial(at_work, :) = committed(at_work, :)*thinning(xi, xi, side%section, side%thickening, side%x, side%du(1:6))
+    if (control) then
+      trial(at_work, :) = committed(at_work, :)*areas_with_control(side%section - side%thickening, side%x) &
+                          /areas_with_control(side%section, side%x + reshape(side%du([1, 4, 2, 5, 3, 6]), [2, 3]))
+    else
+      trial(at_work, :) = committed(at_work, :)*thinning(xi, xi, side%section, side%thickening, side%x, side%du(1:6))
+    end if
     associate (place => committed(2*n + 1, :), work => committed(n + at_work, :))
       trial(n + at_work, :) = work*thinning(place, place, side%section, side%thickening, side%x, side%du(1:6))
     end associate
@@ -198,22 +210,6 @@ contains
     end do
     skipped = box_distance(die, [minval(y(1, :)), minval(y(2, :)), maxval(y(1, :)), maxval(y(2, :))]) > side%length
   end function far
-
-  !> A point has lost depth on a way along the die that passes a corner.
-  pure function passes_corner(die, committed, closest) result(yes)
-    type(die_t), intent(in) :: die
-    real(wp), intent(in) :: committed(:)             !! (nstate) of the point [unit of each component]
-    type(closest_point_t), intent(in) :: closest     !! at the end of the step
-    logical :: yes
-    type(closest_point_t) :: before
-
-    yes = .false.
-    if (nint(committed(at_piece)) == 0 .or. closest%d >= committed(at_penetration)) return
-    associate (piece => die%pieces(:, :, nint(committed(at_piece))))
-      call closest_within_piece(piece, piece(:, 2), committed(at_xi), before)
-    end associate
-    yes = abs(cross(before%normal, closest%normal)) > blunt
-  end function passes_corner
 
   !> Contact at one integration point: state, forces, matrix.
   pure subroutine contact_at(die, law, material, drivers, axisym, side, xi, weight, committed, trial, force, stiffness)

@@ -17,7 +17,7 @@ module rigid_contact
   use shape_functions, only: line3
   implicit none
   private
-  public :: side_t, drift_t, place_point, press, outer, closest_or_followed
+  public :: side_t, drift_t, place_point, press, meet, outer, closest_or_followed
   public :: ndof
 
   !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle, section; the last three are

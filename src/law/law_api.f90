@@ -99,6 +99,8 @@ module law_api
     type(state_variable_t), allocatable :: history(:)
     !> Its drivers after the temperature; not allocated where it has none.
     type(driver_t), allocatable :: drivers(:)
+    !> Contact that has begun lasts: it pulls where the gap opens.
+    logical :: lasts = .false.
     !> Its tangent is symmetric.
     logical :: symmetric = .true.
     !> Index of the number of a material with which the volume free of stress depends on the stress: the tangent is not symmetric

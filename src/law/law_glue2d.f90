@@ -24,6 +24,7 @@ contains
     row%source = 'COUL2D''s stick equations without its limits'
     allocate (row%lines, source=[law_line(penalty_parameters(), pairs=.true.)])
     allocate (row%history(0))
+    row%lasts = .true.
     row%symmetric = .false.
     row%effects = 'contact'
     row%slide => slide

@@ -1,6 +1,6 @@
 !> The members of a group of elements and of the declared state of its points (visitors).
 module visit_group
-  use quadrature, only: rule_along, rule_gauss, rule_t
+  use quadrature, only: rule_control, rule_gauss, rule_t
   use scene, only: group_t, role_body, role_load_factor
   use state_variables, only: state_variable_t
   use visitors, only: kept, of_the_mesh, visitor_t
@@ -58,7 +58,7 @@ contains
     class(visitor_t), intent(inout) :: visitor
     type(rule_t), intent(inout) :: self
 
-    call visitor%member('rule', self%family, kept, low=rule_gauss, high=rule_along)
+    call visitor%member('rule', self%family, kept, low=rule_gauss, high=rule_control)
     call visitor%member('npoint', self%n, kept, low=0, high=most_points)
   end subroutine visit_rule
 

@@ -15,6 +15,7 @@ measured by this script; the upper block faces the lower one with -3 points ther
   pressed over a shoulder, whose sides span its fillet. `depth`: the largest depth of 65 places of each side in all saved steps, over
   the penetration allowed, found from nodes and die alone (tests/runs/die_depth.py). `flat`: a ring under friction whose sides follow
   their die; the force on it beside that of -3 points, in all steps.
+- `bezier`: the billet that folds on two meshes, its free side with BEZIER, and the ring; numbers as in `along`.
 - `augmented`: a billet between dies with much friction and a small allowed depth, whose multipliers are carried forward up to 20 or 50
   times a step. `cutbacks`: steps that were cut back though they had been in equilibrium, for an augmentation after it had none.
 """
@@ -41,9 +42,11 @@ PUNCHES = {"elastic": ("ELA", 0.02, -3, "", 5, (0.021, 0.040)), "elastic AUGMENT
 AUGMENTED = {"1e-4 phi .2": ("1.E-4", 0.2, 20, 1), "1e-5 phi .3": ("1.E-5", 0.3, 50, 1)}
 # Elements along radius and height, radius, height, law, die, contact, travel; before: with -3 points.
 FOLD = ("DIE d PILOT 0. 15.\n   SEGM 30. 15. -1. 15.\n", "CNT2D b 3 d {points} glue\nCNT2D b 2 d {points} film\n")
+FOLD_BEZIER = (FOLD[0], "CNT2D b 3 d -3 glue\nCNT2D b 2 d {points} film\n")
 SHOULDER = ("DIE d PILOT 0. 10.\n   SEGM 30. 10. 7. 10.\n   FILLT 2. 1.E-3\n   SEGM 7. 10. 7. 20.\n", "CNT2D b 2 3 d {points} film\n")
 RING = ("DIE d PILOT 0. 7.\n   SEGM 30. 7. -1. 7.\n", "CNT2D b 2 3 4 d {points} film\n")
 ALONG = {"fold 6x9": ("6 1. 9 1.", 0, 10, 15, FOLD, -9, 23.1), "shoulder": ("8 1. 6 1.", 0, 14, 10, SHOULDER, -3, 76.3)}
+BEZIER = {"fold 6x9": ("6 1. 9 1.", 0, 10, 15, FOLD_BEZIER, -9, 23.1), "fold 12x18": ("12 1. 18 1.", 0, 10, 15, FOLD_BEZIER, -9, 30.7)}
 MATERIALS = {"ELA": "LAW m ELA\n   200000. 0.3\n", "HARD": "LAW m EPLA\n   200000. 0.3\n   LINEAR 300. 500.\n",
              "PLASTIC": "LAW m EPLA\n   200000. 0.3\n   LINEAR 300. 0.\n"}
 
@@ -110,20 +113,31 @@ def billet(checks, name, points, mesh, inner, outer, height, parts, travel):
     return Run(checks, name, text)
 
 
-def along(checks):
-    """Rows of the table: sides that do not follow their die, and sides that do."""
+def whole_sides(checks, word, cases):
+    """Rows of the table: sides that do not follow their die, and sides that do, with a word that sees the whole side."""
     rows = []
-    for name, (*setting, before) in ALONG.items():
-        run = billet(checks, name.replace(" ", "-"), "ALONG", *setting)
+    kind = word.lower()
+    for name, (*setting, before) in cases.items():
+        run = billet(checks, f"{kind}-{name.replace(' ', '-')}", word, *setting)
         if run.ok:
             deepest = max(row["share"] for row in sampled(os.path.join(run.out, run.name + ".g01.h5"), 65))
-            rows.append((f"along {name}", "depth", before, deepest/1.0e-3))
-    flat = [billet(checks, f"flat-{kind}", points, "6 1. 6 1.", 6, 12, 7, RING, -2) for kind, points in (("along", "ALONG"), ("nodes", "-3"))]
+            rows.append((f"{kind} {name}", "depth", before, deepest/1.0e-3))
+    flat = [billet(checks, f"flat-{kind}-{points}", points, "6 1. 6 1.", 6, 12, 7, RING, -2) for points in (word, "-3")]
     if all(run.ok for run in flat):
         new, old = (run.history for run in flat)
         force = np.interp(-old["displacement_y_d"], -new["displacement_y_d"], new["force_y_d"])
-        rows.append(("along ring", "flat", 0.0, np.abs(force/old["force_y_d"] - 1)[old["displacement_y_d"] < -0.2].max()))
+        rows.append((f"{kind} ring", "flat", 0.0, np.abs(force/old["force_y_d"] - 1)[old["displacement_y_d"] < -0.2].max()))
     return rows
+
+
+def along(checks):
+    """Rows of the table: ALONG."""
+    return whole_sides(checks, "ALONG", ALONG)
+
+
+def bezier(checks):
+    """Rows of the table: BEZIER."""
+    return whole_sides(checks, "BEZIER", BEZIER)
 
 
 def cutbacks_after_equilibrium(listing):
@@ -142,7 +156,7 @@ def cutbacks_after_equilibrium(listing):
 def main():
     checks = Checks()
     print(f"{'case':24s} {'number':8s} {'before':>9s} {'now':>9s} {'bound':>9s} {'margin':>7s}")
-    for part in (unlike_sides, corners, along, augmented):
+    for part in (unlike_sides, corners, along, bezier, augmented):
         for case, what, before, now in part(checks):
             bound = BOUND[what]
             print(f"{case:24s} {what:8s} {before:9.2g} {now:9.2g} {bound:9.2g} {1 - now/bound:7.2f}", flush=True)
