@@ -128,6 +128,7 @@ contains
       code = exit_remesh
     else
       if (operations%count > 0) allocate (run%columns, source=operations%columns)
+      run%has_new_meshes = operations%remeshed
       call run_and_report(options, scene, solution, run, error)
       code = run%exit_code
       if (operations%count > 0) call go_on(options, deck, diagnostics, operations, scene, solution, run, &
@@ -190,6 +191,7 @@ contains
       allocate (run%columns, source=first%columns)
       run%resume = .true.
       run%begins_operation = .true.
+      run%has_new_meshes = first%has_new_meshes
       call run_and_report(options, next, after, run, error)
       code = run%exit_code
       scene = next
@@ -297,9 +299,8 @@ contains
     facts%blas = blas_words(blas_build(), blas_core_name())
     facts%wall = wall_seconds() - started
     call close_run(scene, run%equations, solution, facts%closing)
-    ! of an operation without REMSH too, where those before it had other meshes
-    if (scene%remesh%on .or. scene%generation > max(scene%operation, 1) &
-        .or. (scene%accuracy%asked > 0 .and. allocated(options%fineness))) &
+    ! of an operation without REMSH too, where others have it
+    if (run%has_new_meshes .or. (scene%accuracy%asked > 0 .and. allocated(options%fineness))) &
       call close_cost(options, scene, solution, cpu_seconds() - processor, run, facts, late)
     call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
     call list_lines(run%listing, lines)
