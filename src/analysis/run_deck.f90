@@ -17,6 +17,7 @@ module run_deck
   use diagnostics, only: diagnostics_t
   use errors, only: error_t, exit_done, exit_input, exit_no_convergence, exit_remesh, exit_signal, fail
   use exchange, only: read_state, write_checkpoint
+  use floating_bodies, only: warn_of_floating_bodies
   use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
   use judge_remesh, only: agreed_words
   use kinds, only: wp
@@ -286,7 +287,10 @@ contains
       if (run%balance%agreed) call add_text(facts%warnings, agreed_words(run%balance))
     end if
     call warn_of_passed_planes(scene, solution, facts%warnings)
-    if (run%exit_code == exit_done) call warn_of_webs(scene, solution, facts%warnings)
+    if (run%exit_code == exit_done) then
+      call warn_of_webs(scene, solution, facts%warnings)
+      call warn_of_floating_bodies(scene, run%equations%loose, solution, facts%warnings)
+    end if
     facts%version = version_text
     facts%deck = options%deck
     facts%deck_text = run%deck_text

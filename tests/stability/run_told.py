@@ -6,6 +6,7 @@ usage: run_told.py [-v] [-k]       -v prints every check, -k keeps the results
 - Decks that are read without a mistake and mean something else than their author: `--check` warns in one line of each, with the words
   that the table prints; the deck that they are made from, and all decks of the project, are told nothing.
 - A body that passes the plane in which it is held: in the summary.
+- A body that its dies have let go, so that nothing holds it: in the summary; not one that still lies against a die.
 - `KINEM SMALL` at large strain, with a body that flows and one that locks beyond its limit load, ends with code 3.
 - Probes of measures of stress against the components of the same point; of nodes that stand at one place.
 """
@@ -214,6 +215,22 @@ def passed_planes(checks):
         checks.that(len(told) == behind and all(words in text for text in told), f"{name}: told" if behind else f"{name}: nothing is told", told)
 
 
+def let_go(checks):
+    """A billet between two dies, without supports: both go away; one does, and it lies against the other; springs hold it."""
+    free = {"FIXED  billet 1 Y\n": TABLE.replace("-1.", "0."), "FIXED  billet 4 X\n": "",
+            "1. -2.": "0.4 -0.5   1. 2."}
+    away = {"END\n": "MOVE   lower Y down\nLIC    down\n   0. 0.   0.4 0.   1. -2.\nEND\n"}
+    for name, changes, told in (("both go away", {**free, **away}, True), ("on its anvil", {key: value for key, value in free.items() if "4 X" not in key}, False),
+                                ("on springs", {**free, "END\n": "SPRNG  billet X 1.E-3\nSPRNG  billet Y 1.E-3\n" + away["END\n"]}, False)):
+        run = Run(checks, name.replace(" ", "-"), changed(checks, changes))
+        if not run.ok:
+            continue
+        with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as summary:
+            said = [warning["text"] for warning in json.load(summary)["warnings"]]
+        checks.that(len(said) == told and all("billet: at the end nothing holds it, no support and no contact (the nearest die" in text
+                                              for text in said), f"{name}: told" if told else f"{name}: nothing is told", said)
+
+
 def small(checks):
     """SMALL ends where strains are large."""
     half = changed(checks, {"KINEM  LOG": "KINEM  SMALL", "1. -2.": "1. -9."})
@@ -252,6 +269,7 @@ def main():
     stopped_run(checks)
     warned_cycle(checks)
     passed_planes(checks)
+    let_go(checks)
     small(checks)
     probes(checks)
     checks.end()
