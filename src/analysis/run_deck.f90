@@ -20,6 +20,7 @@ module run_deck
   use floating_bodies, only: warn_of_floating_bodies
   use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
   use judge_remesh, only: agreed_words
+  use heated_steels, only: warn_of_missing_austenite
   use kinds, only: wp
   use laid_bodies, only: share_heat
   use law_api, only: law_t
@@ -289,6 +290,7 @@ contains
     call warn_of_passed_planes(scene, solution, facts%warnings)
     if (run%exit_code == exit_done) then
       call warn_of_webs(scene, solution, facts%warnings)
+      call warn_of_missing_austenite(scene, solution, facts%warnings)
       call warn_of_floating_bodies(scene, run%equations%loose, solution, facts%warnings)
     end if
     facts%version = version_text
