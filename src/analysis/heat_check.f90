@@ -16,13 +16,15 @@ module heat_check
   use temperature_curves, only: is_given
   use text, only: add => add_text, string_t, to_text
   use vectors, only: length_of
-  use weld_sources, only: felt_ahead, power_in_plane
+  use weld_sources, only: felt_ahead, power_in_plane, share_within
   implicit none
   private
   public :: check_heat
 
   !> A torch with less of half its ellipse in its bodies is not where it was meant to be, or the mesh too coarse for it.
   real(wp), parameter :: expected_share = 0.9_wp
+  !> One that crosses with less of its heat between start and end of the run is cut off.
+  real(wp), parameter :: whole_share = 0.99_wp
   !> A side beside a die by less than this share of its length was meant to lie on it.
   real(wp), parameter :: nearly = 0.05_wp
   !> Half of a largest value is meant to be half.
@@ -259,6 +261,12 @@ contains
     if (least < expected_share) call add(warnings, 'GOLDAK '//to_text(k)//': at time '//to_text(at, 3)//' only ' &
       //to_text(100*least, 3)//' % of half its ellipse is found in its bodies, which take all of the power: it ends outside them ' &
       //'(half a weld, of half the power, does), or elements are longer than its semi-axes')
+    if (scene%sources(k)%crosses) then
+      share = share_within(scene%sources(k), 0.0_wp, scene%strategy%end_time)
+      if (share < whole_share) call add(warnings, 'GOLDAK '//to_text(k)//': from the start to the end of the run it leaves ' &
+        //to_text(100*share, 3)//' % of its heat in the plane: it crosses at time '//to_text(scene%sources(k)%crossing_time, 3) &
+        //', too early or too late (CROSS, STOP)')
+    end if
     if (way > axis) call add(warnings, 'GOLDAK '//to_text(k)//': it goes '//to_text(way/axis, 3) &
       //' times its shorter semi-axis in a step (STRAT): the heat of single steps shows')
   end subroutine judge_torch

@@ -11,6 +11,7 @@ module march
   use errors, only: error_t, exit_no_convergence, fail
   use fields, only: displacement_field
   use estimator, only: set_up_estimator
+  use heated_steels, only: note_missing_austenite
   use history, only: open_history
   use judge_remesh, only: limit_lines, refuse_remesh
   use kinds, only: eps, wp
@@ -85,6 +86,7 @@ contains
                                         min(outcome%heat%growth, outcome%path%growth))
       call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
       if (allocated(error)) exit
+      call note_missing_austenite(scene, run%equations%laws, solution)
       cutbacks = 0
       call note_step(solution%probation, length)
       call estimate(scene, run%estimator, run%equations%timers, solution)

@@ -17,8 +17,10 @@ module run_deck
   use diagnostics, only: diagnostics_t
   use errors, only: error_t, exit_done, exit_input, exit_no_convergence, exit_remesh, exit_signal, fail
   use exchange, only: read_state, write_checkpoint
+  use floating_bodies, only: warn_of_floating_bodies
   use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
   use judge_remesh, only: agreed_words
+  use heated_steels, only: warn_of_missing_austenite
   use kinds, only: wp
   use laid_bodies, only: share_heat
   use law_api, only: law_t
@@ -128,6 +130,7 @@ contains
       code = exit_remesh
     else
       if (operations%count > 0) allocate (run%columns, source=operations%columns)
+      run%has_new_meshes = operations%remeshed
       call run_and_report(options, scene, solution, run, error)
       code = run%exit_code
       if (operations%count > 0) call go_on(options, deck, diagnostics, operations, scene, solution, run, &
@@ -190,6 +193,7 @@ contains
       allocate (run%columns, source=first%columns)
       run%resume = .true.
       run%begins_operation = .true.
+      run%has_new_meshes = first%has_new_meshes
       call run_and_report(options, next, after, run, error)
       code = run%exit_code
       scene = next
@@ -284,7 +288,11 @@ contains
       if (run%balance%agreed) call add_text(facts%warnings, agreed_words(run%balance))
     end if
     call warn_of_passed_planes(scene, solution, facts%warnings)
-    if (run%exit_code == exit_done) call warn_of_webs(scene, solution, facts%warnings)
+    if (run%exit_code == exit_done) then
+      call warn_of_webs(scene, solution, facts%warnings)
+      call warn_of_missing_austenite(scene, solution, facts%warnings)
+      call warn_of_floating_bodies(scene, run%equations%loose, solution, facts%warnings)
+    end if
     facts%version = version_text
     facts%deck = options%deck
     facts%deck_text = run%deck_text
@@ -297,9 +305,8 @@ contains
     facts%blas = blas_words(blas_build(), blas_core_name())
     facts%wall = wall_seconds() - started
     call close_run(scene, run%equations, solution, facts%closing)
-    ! of an operation without REMSH too, where those before it had other meshes
-    if (scene%remesh%on .or. scene%generation > max(scene%operation, 1) &
-        .or. (scene%accuracy%asked > 0 .and. allocated(options%fineness))) &
+    ! of an operation without REMSH too, where others have it
+    if (run%has_new_meshes .or. (scene%accuracy%asked > 0 .and. allocated(options%fineness))) &
       call close_cost(options, scene, solution, cpu_seconds() - processor, run, facts, late)
     call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
     call list_lines(run%listing, lines)

@@ -35,6 +35,8 @@ module run_record
     logical :: resume = .false.
     !> An operation begins with the state that the one before has left.
     logical :: begins_operation = .false.
+    !> The deck has new meshes, in this operation or in another one: what it costs is added up over all of them.
+    logical :: has_new_meshes = .false.
     !> Columns of the history of all operations; not allocated for a deck without any.
     type(string_t), allocatable :: columns(:)
     type(equations_t) :: equations

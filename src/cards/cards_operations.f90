@@ -36,6 +36,8 @@ module cards_operations
     real(wp), allocatable :: ends(:)
     !> Columns of the history of all of them.
     type(string_t), allocatable :: columns(:)
+    !> One of them has new meshes, or the deck without any.
+    logical :: remeshed = .false.
     !> How fine all of them are made, over what the deck says.
     type(fineness_t) :: fineness
   end type operations_t
@@ -51,12 +53,10 @@ contains
     type(names_t) :: names
     type(cursor_t) :: cursor
     type(string_t) :: word(1)
-    logical :: remeshed
     integer :: i
 
-    remeshed = .false.
     do i = 1, size(deck%cards)
-      remeshed = remeshed .or. any(deck%cards(i)%keyword == ['REMSH', 'BODY '])
+      operations%remeshed = operations%remeshed .or. any(deck%cards(i)%keyword == ['REMSH', 'BODY '])
     end do
     call names%clear()
     call list_refused(refused)
@@ -65,7 +65,7 @@ contains
       if (deck%cards(i)%keyword == sleep_keyword) then
         if (operations%count == 0) call diagnostics%add(head_location(deck%cards(i)), sleep_keyword, &
           'bodies sleep in an operation: expected behind an OPERA card')
-        if (remeshed) call diagnostics%add(head_location(deck%cards(i)), sleep_keyword, &
+        if (operations%remeshed) call diagnostics%add(head_location(deck%cards(i)), sleep_keyword, &
           'a body that is asleep keeps the elements of the deck: expected no REMSH and no BODY card')
       end if
       if (deck%cards(i)%keyword == trim_keyword .and. operations%count < 2) call diagnostics%add(head_location(deck%cards(i)), &

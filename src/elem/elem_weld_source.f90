@@ -13,7 +13,7 @@ module elem_weld_source
   use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
   use scene, only: axisymmetric, group_t, role_volume_load, scene_t
   use sections, only: thickness_at
-  use weld_sources, only: plane_integral, power_in_plane, reaches, shape_at
+  use weld_sources, only: plane_integral, reaches, shape_at
   implicit none
   private
   public :: elem_goldak_row, source_factors, source_share
@@ -93,24 +93,25 @@ contains
   end subroutine compute
 
   !> What makes the power of a source that of the elements, for each source at one time; negative where it has no place.
-  pure subroutine source_factors(scene, section, coordinates, time, factors)
+  pure subroutine source_factors(scene, section, coordinates, time, power, factors)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: section(3)          !! at the start of the step (sections)
     real(wp), intent(in) :: coordinates(:, :)   !! (2, nnode) at the start of the step [length]
     real(wp), intent(in) :: time                !! [time]
+    real(wp), intent(in) :: power(:)            !! (nsource) of each then [power]
     real(wp), intent(out) :: factors(:)         !! (nsource) heat per volume at the centre [power/volume]
-    real(wp) :: power, area, volume
+    real(wp) :: own, area, volume
     integer :: k
 
     do k = 1, size(scene%sources)
       factors(k) = 0
       ! per radian where the scene is axisymmetric, as volumes are
-      power = power_in_plane(scene%sources(k), scene%multipliers, time, scene%section(1))
-      if (scene%plane_state == axisymmetric) power = power/(2*pi)
-      if (.not. power > 0) cycle
+      own = power(k)
+      if (scene%plane_state == axisymmetric) own = own/(2*pi)
+      if (.not. own > 0) cycle
       call integrate(scene, k, section, coordinates, time, area, volume)
       factors(k) = no_place
-      if (volume > 0 .and. area > least_share*plane_integral(scene%sources(k))) factors(k) = power/volume
+      if (volume > 0 .and. area > least_share*plane_integral(scene%sources(k))) factors(k) = own/volume
     end do
   end subroutine source_factors
 

@@ -70,6 +70,8 @@ module solution
     integer :: spurious_group = 0, spurious_element = 0
     !> By how much fractions of phases have left [0, 1], or their sum 1.
     real(wp) :: worst_fraction = 0.0_wp
+    !> Largest share of an element that should have become austenite on heating, of a steel without its kinetics (heated_steels).
+    real(wp) :: missing_austenite = 0.0_wp
     !> Largest depth of a side in a die anywhere along it, and over what the side allows.
     real(wp) :: worst_sample = 0.0_wp, worst_sample_ratio = 0.0_wp
     !> Largest force on a die so far where meshes are replaced, or on one made of sides; per radian when axisymmetric.

@@ -46,6 +46,7 @@ contains
     call visitor%member('least_dissipation', self%least_dissipation, kept, 'energy')
     call visitor%member('worst_spurious', self%worst_spurious, kept, '-')
     call visitor%member('worst_fraction', self%worst_fraction, kept, '-', low=0.0_wp)
+    call visitor%member('missing_austenite', self%missing_austenite, kept, '-', low=0.0_wp)
     call visitor%member('spurious_group', self%spurious_group, kept, low=0)
     call visitor%member('spurious_element', self%spurious_element, of_the_mesh, low=0)
     call visitor%member('worst_sample', self%worst_sample, kept, 'length')

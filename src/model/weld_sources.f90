@@ -14,7 +14,7 @@ module weld_sources
   implicit none
   private
   public :: weld_source_t
-  public :: felt_ahead, has_front, plane_integral, power_in_plane, reaches, shape_at, times_to_hit
+  public :: felt_ahead, has_front, mean_power, plane_integral, power_in_plane, reaches, share_within, shape_at, times_to_hit
 
   !> Beyond this exponent the source is less than round-off of its centre, and nothing is released.
   real(wp), parameter :: largest_exponent = 45.0_wp
@@ -88,6 +88,78 @@ contains
       power = 0
     end if
   end function power_in_plane
+
+  !> Mean over a step of the power that the elements of the plane take. A torch that crosses may do so within a single step: the
+  !> integral of its Gaussian by the multiplier, which is linear within a step, is the error function's, so that the heat is the
+  !> stated one however long the steps are.
+  pure function mean_power(source, multipliers, from, to, thickness) result(power)
+    type(weld_source_t), intent(in) :: source
+    type(multiplier_t), intent(in) :: multipliers(:)   !! (nmultiplier)
+    real(wp), intent(in) :: from, to                   !! start and end of the step [time]
+    real(wp), intent(in) :: thickness                  !! of the section [length]
+    real(wp) :: power                                  !! [power]
+    real(wp) :: factors(2), slope, weight, centre
+
+    factors = 1
+    if (source%multiplier > 0) &
+      factors = [multiplier_at(multipliers(source%multiplier), from), multiplier_at(multipliers(source%multiplier), to)]
+    slope = (factors(2) - factors(1))/(to - from)
+    call integrate_crossing(source, from, to, weight, centre)
+    power = source%efficiency*source%power*thickness*(factors(1)*weight + slope*(centre - from*weight))/(to - from)
+  end function mean_power
+
+  !> Share of the heat of a torch that crosses the plane which it leaves there between two times.
+  pure function share_within(source, from, to) result(share)
+    type(weld_source_t), intent(in) :: source
+    real(wp), intent(in) :: from, to   !! [time]
+    real(wp) :: share
+    real(wp) :: weight, centre
+
+    call integrate_crossing(source, from, to, weight, centre)
+    share = weight*source%speed
+  end function share_within
+
+  !> Integrals over time of g(t), the heat that a torch which crosses leaves per length of its way, and of t g(t).
+  pure subroutine integrate_crossing(source, from, to, weight, centre)
+    type(weld_source_t), intent(in) :: source
+    real(wp), intent(in) :: from, to   !! [time]
+    real(wp), intent(out) :: weight, centre   !! [time/length], [time^2/length]
+    real(wp) :: axis, low, high, part, moment
+    integer :: side
+
+    weight = 0
+    centre = 0
+    do side = 1, 2
+      ! u = sqrt(3) v (t - t0)/c, by the front before the crossing and by the rear after it
+      axis = merge(source%front, source%rear, side == 1)/(sqrt(3.0_wp)*source%speed)
+      low = (from - source%crossing_time)/axis
+      high = (to - source%crossing_time)/axis
+      if (side == 1) then
+        low = min(low, 0.0_wp)
+        high = min(high, 0.0_wp)
+      else
+        low = max(low, 0.0_wp)
+        high = max(high, 0.0_wp)
+      end if
+      if (.not. high > low) cycle
+      ! between places on one side of the crossing, differences of what is small far from it
+      if (side == 1) then
+        part = 0.5_wp*sqrt(pi)*(erfc(-high) - erfc(-low))
+      else
+        part = 0.5_wp*sqrt(pi)*(erfc(low) - erfc(high))
+      end if
+      moment = 0.5_wp*(exp(-low**2) - exp(-high**2))
+      weight = weight + axis*part
+      centre = centre + axis*(source%crossing_time*part + axis*moment)
+    end do
+    weight = weight*2*sqrt(3/pi)/(source%front + source%rear)
+    ! what is round-off of the whole
+    if (weight*source%speed < epsilon(weight)) then
+      weight = 0
+      centre = 0
+    end if
+    centre = centre*2*sqrt(3/pi)/(source%front + source%rear)
+  end subroutine integrate_crossing
 
   !> Something may be released within the box around some points.
   pure function reaches(source, time, points) result(yes)

@@ -10,7 +10,7 @@ module austenite_kinetics
   use steels, only: celsius_zero, steel_t
   implicit none
   private
-  public :: form_austenite, grow_grains
+  public :: equilibrium_austenite, form_austenite, grow_grains
 
 contains
 

@@ -16,6 +16,7 @@ module equations
   use solves, only: solve_t
   use threads, only: team_t
   use timers, only: ledger_t
+  use torch_steps, only: torch_step_t
   implicit none
   private
   public :: remedy_none, remedy_euler, remedy_monotone, equations_t, stage_t, take_turn, solves_heat
@@ -43,6 +44,8 @@ module equations
     !> Mode of the elements (elem_api).
     integer :: mode = mode_advance
     type(stage_t) :: stage
+    !> Powers of torches in a step of several stages; not allocated in others, whose instants tell them (step_instants).
+    type(torch_step_t), allocatable :: torches
     integer :: remedy = remedy_none
     type(element_buffers_t) :: buffers
     !> Sides that must not cross the axis, and what holds them.

@@ -19,12 +19,14 @@ module heat_stages
   use solution, only: solution_t
   use strategy, only: scheme_tr_bdf2
   use text, only: to_text
+  use torch_steps, only: torch_step
   implicit none
   private
   public :: is_heat_alone, solve_heat
 
-  !> The weights of the stages, and those of the error.
+  !> The weights of the stages, the shares of the step at which they end, and the weights of the error.
   real(wp), parameter :: weights(0:2) = [weight, weight, diagonal]
+  real(wp), parameter :: instants(0:2) = [0.0_wp, 2*diagonal, 1.0_wp]
   real(wp), parameter :: error_weights(0:2) = weights - [(1 - weight)/3, (3*weight + 1)/3, diagonal/3]
   !> A step is made so much shorter than its error asks for, and at least and at most this factor after one that is too long.
   real(wp), parameter :: safety = 0.9_wp, least_factor = 0.1_wp
@@ -70,7 +72,12 @@ contains
     bounded = has_bounds(scene, equations)
     two_stages = scene%strategy%scheme == scheme_tr_bdf2 .and. solution%last_step > 0
     if (two_stages) then
+      if (allocated(scene%sources)) then
+        allocate (equations%torches)
+        call torch_step(scene, solution%time, dt, instants, weights, equations%torches)
+      end if
       call solve_two_stages(scene, equations, solution, dt, outcome, given)
+      if (allocated(equations%torches)) deallocate (equations%torches)
     else
       call solve_one_stage(scene, equations, solution, dt, outcome, given, go_on)
     end if

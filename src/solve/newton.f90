@@ -97,7 +97,9 @@ contains
     call return_to_chosen(equations%solves(equations%now)%solver)
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     if (present(left)) external = external - left
-    call predict(scene, equations, solution, dt, external, given, go_on, outcome%du, missing, kept, staying, report)
+    call predict(scene, equations, solution, dt, external, given, go_on, outcome%du, missing, kept, staying, report, &
+                 outcome%error)
+    if (allocated(outcome%error)) return
     if (report%status /= block_done) then
       call set_cause(report, outcome)
       return
@@ -186,6 +188,7 @@ contains
       call search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, outcome%du, &
                         line%line_search, report)
       if (any(abs(missing) > 0)) call follow_dies()
+      if (allocated(outcome%error)) exit
       if (.not. abs(line%line_search) > 0) then
         call set_cause(report, outcome)
         if (made%times == 0) exit
@@ -234,7 +237,9 @@ contains
       leaving = leaving_dies(lags, work, touched, now) .and. .not. left_by
       if (.not. any(leaving)) return
       left_by = left_by .or. leaving
-      call predict(scene, equations, solution, dt, external, given, go_on, outcome%du, missing, kept, staying, report, left_by)
+      call predict(scene, equations, solution, dt, external, given, go_on, outcome%du, missing, kept, staying, report, &
+                   outcome%error, left_by)
+      if (allocated(outcome%error)) return
       afresh = .true.
       line%line_search = merge(1.0_wp, 0.0_wp, report%status == block_done)
       correction = 0

@@ -10,7 +10,7 @@ module onset_motion
   use corrections, only: solve_correction
   use element_loop, only: add_prescribed
   use equations, only: equations_t
-  use errors, only: error_t
+  use errors, only: error_t, exit_no_convergence
   use kinds, only: wp
   implicit none
   private
@@ -34,20 +34,24 @@ contains
   end subroutine add_missing
 
   !> From the onset of a motion, at which forces and matrix are, to the whole of it.
-  subroutine extend_onset(equations, external, missing, du, found)
+  subroutine extend_onset(equations, external, missing, du, found, error)
     type(equations_t), intent(inout) :: equations
     real(wp), intent(in) :: external(:)   !! (ndof) [residual]
     real(wp), intent(in) :: missing(:)    !! (ndof) prescribed motion beyond the onset [unknown]
     real(wp), intent(inout) :: du(:)      !! (ndof) [unknown]
     logical, intent(out) :: found         !! the matrix could be factorised; otherwise `du` stays
+    type(error_t), allocatable, intent(out) :: error   !! the machine has failed; a matrix without factors is no error
     real(wp), dimension(size(du)) :: residual, correction
-    type(error_t), allocatable :: error
 
     residual = external - equations%force
     call add_missing(equations, missing, residual)
     call solve_correction(equations, residual, correction, error)
     found = .not. allocated(error)
-    if (found) du = du + correction + missing
+    if (found) then
+      du = du + correction + missing
+    else if (error%code == exit_no_convergence) then
+      deallocate (error)
+    end if
   end subroutine extend_onset
 
 end module onset_motion

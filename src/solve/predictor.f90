@@ -25,6 +25,7 @@ module predictor
   use dofs, only: dofs_t, prescribed_motion
   use elem_api, only: block_done, report_t
   use equations, only: equations_t, solves_heat
+  use errors, only: error_t
   use evaluation, only: evaluate
   use fields, only: displacement_field, field_t, pilot_field
   use kinds, only: wp
@@ -48,7 +49,7 @@ contains
 
   !> Start `du` and what prescribed unknowns miss of their motion; forces and matrices are evaluated there. With `kept` they
   !> are not those of the motion: contact is as it was.
-  subroutine predict(scene, equations, solution, dt, external, given, go_on, du, missing, kept, staying, report, left)
+  subroutine predict(scene, equations, solution, dt, external, given, go_on, du, missing, kept, staying, report, error, left)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -60,6 +61,7 @@ contains
     logical, intent(out) :: kept
     logical, intent(out) :: staying(:)           !! (ndof) motion of bodies and dies that do not turn back, where others do
     type(report_t), intent(out) :: report
+    type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: left(:)     !! (ndie) dies that leave the part: they start where they go
     logical :: fixed(size(du)), at_place(size(du)), back(size(du)), turning(size(du)), dies(size(scene%dies)), found, begun
     real(wp) :: motion(size(equations%dofs%prescribed)), before(size(du))
@@ -97,6 +99,7 @@ contains
     if (is_first_step(solution%probation) .and. .not. (any(back) .or. found) .and. ratio > 0 .and. report%event >= 1 &
         .and. .not. solves_heat(scene, equations) .and. equations%solves(equations%now)%own(displacement_field)) &
       call start_on_new_mesh()
+    if (allocated(error)) return
     if (.not. (begun .or. found) .and. report%status == block_done .and. report%event >= 1 &
         .and. report%jump > smooth_contact) then
       kept = is_driven()
@@ -118,7 +121,8 @@ contains
       call start_from(onset*ratio)
       if (report%status == block_done) then
         call find_missing()
-        call extend_onset(equations, external, missing, du, begun)
+        call extend_onset(equations, external, missing, du, begun, error)
+        if (allocated(error)) return
         if (begun) call evaluate(scene, equations, solution, dt, du, .true., report, predicted=.true., kept=.true.)
         begun = begun .and. report%status == block_done
         ! what the new mesh moves at once, however short the step, is no way to a contact

@@ -20,7 +20,7 @@ module resting_bodies
   use state_variables, only: find_variable
   implicit none
   private
-  public :: find_loose_bodies, leave_at_rest, hold_resting, hold_loose, motion_of_loose
+  public :: find_loose_bodies, leave_at_rest, hold_resting, hold_loose, mark_acted_on, motion_of_loose
 
   !> What is added to a diagonal, over it: hardly felt by motions that strain the body.
   real(wp), parameter :: hold = 1.0e-6_wp
@@ -73,9 +73,7 @@ contains
     integer :: k, c
 
     if (size(loose) == 0) return
-    acted_on = .false.
-    call mark_contacts(scene, solution, .false., loose, acted_on)
-    call mark_loads(scene, loose, time, acted_on)
+    call mark_acted_on(scene, solution, loose, time, acted_on)
     if (size(resting) /= dofs%ndof) deallocate (resting)
     if (.not. allocated(resting)) allocate (resting(dofs%ndof))
     resting = .false.
@@ -170,6 +168,19 @@ contains
       if (pattern%row(k) == pattern%column(k) .and. held(pattern%row(k))) values(k) = (1 + hold)*values(k)
     end do
   end subroutine enlarge
+
+  !> Bodies that a contact at the start of a step, or a load at its end, acts on.
+  subroutine mark_acted_on(scene, solution, loose, time, acted_on)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: loose(:)           !! (nnode) of find_loose_bodies
+    real(wp), intent(in) :: time              !! [time]
+    logical, intent(out) :: acted_on(0:)      !! (0:nnode) by the number of the body
+
+    acted_on = .false.
+    call mark_contacts(scene, solution, .false., loose, acted_on)
+    call mark_loads(scene, loose, time, acted_on)
+  end subroutine mark_acted_on
 
   !> Bodies with a point, or a place between points, in contact, on either side, at the start of the step or in its trial state.
   subroutine mark_contacts(scene, solution, trial, loose, acted_on)

@@ -14,6 +14,7 @@ module step_instants
   use scene, only: scene_t
   use solution, only: present_coordinates, solution_t
   use strategy, only: strategy_t
+  use torch_steps, only: torch_powers, torch_step, torch_step_t
   implicit none
   private
   public :: make_instant, note_correction, driving_values
@@ -56,7 +57,7 @@ contains
         instant%flow%multipliers(k, c) = multiplier_at(scene%multipliers(k), solution%time + instant%flow%share(c)*dt)
       end do
     end do
-    if (any(scene%groups%source > 0)) call set_sources(scene, solution, dt, instant)
+    if (any(scene%groups%source > 0)) call set_sources(scene, equations, solution, dt, instant)
     if (size(solution%fields) > size(mechanical_fields())) call list_values(equations%dofs, solution%fields, instant%values)
     if (size(solution%pairs) == 0) return
     coordinates = present_coordinates(scene, solution)
@@ -90,12 +91,14 @@ contains
   end subroutine set_load_factor
 
   !> Factors of the sources of torches at the instants at which heat flows, on the places of the start of the step.
-  subroutine set_sources(scene, solution, dt, instant)
+  subroutine set_sources(scene, equations, solution, dt, instant)
     type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: dt   !! [time]
     type(instant_t), intent(inout) :: instant
-    real(wp) :: coordinates(2, size(scene%mesh%coordinates, 2)), section(3)
+    real(wp) :: coordinates(2, size(scene%mesh%coordinates, 2)), section(3), power(size(scene%sources))
+    type(torch_step_t) :: step
     integer :: k
 
     coordinates = scene%mesh%coordinates
@@ -106,9 +109,19 @@ contains
     end if
     instant%flow%times = solution%time + instant%flow%share(:instant%flow%n)*dt
     allocate (instant%flow%source_factors(size(scene%sources), instant%flow%n))
-    do k = 1, instant%flow%n
-      call source_factors(scene, section, coordinates, instant%flow%times(k), instant%flow%source_factors(:, k))
-    end do
+    associate (flow => instant%flow)
+      do k = 1, flow%n
+        if (allocated(equations%torches)) then
+          power = torch_powers(scene, flow%times(k), equations%torches)
+        else if (instant%content .and. dt > 0) then
+          call torch_step(scene, solution%time, dt, flow%share(:flow%n), flow%weight(:flow%n), step)
+          power = torch_powers(scene, flow%times(k), step)
+        else
+          power = torch_powers(scene, flow%times(k))
+        end if
+        call source_factors(scene, section, coordinates, flow%times(k), power, flow%source_factors(:, k))
+      end do
+    end associate
   end subroutine set_sources
 
   !> The displacements and the motion of the section from which a correction began, where geometry follows the displacements.

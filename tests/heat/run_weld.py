@@ -15,6 +15,8 @@ Gaussians (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, sec. 10.2; f
 - `ring`: all of the power of a ring, through its LIC, at the end of a bar, half of it outside; two bodies share a source as one does.
 - `laws`: enthalpy with latent heat by TRBDF2, and phases of a steel: books of heat.
 - `motion`: a billet pressed flat (LOG) while a ring heats it, on one mesh and on three: the heat is still the stated one.
+- `whole`: a torch that crosses leaves its heat whatever the step and the scheme, exact to round-off, with a multiplier too; one that begins
+  or ends in the plane is told.
 - `off`: a torch that leaves its body with power on stops the run and says why.
 """
 import csv
@@ -264,6 +266,36 @@ def long_steps(checks):
         checks.small(abs(before.max()*speed/front/times - 1), 1e-9, f"{name}: the longest step as it comes near")
 
 
+def whole(checks):
+    """A crossing within a few steps, or one: the heat is the integral of power over time."""
+    speed, end = 0.005, 12.0
+
+    def run(name, step, theta, at, lic, width=0.03):
+        return Run(checks, name, HEAD.format(title="whole", state="PLSTN")
+                   + f"BLOCK bar PL8TM 4 steel BILINEAR\n   0. -0.02 {width} -0.02 {width} 0. 0. 0.\n   12 1. 8 1.\n" + LAW
+                   + f"GOLDAK bar P {POWER/2} {'on' if lic else ''} ETA {ETA} {AXES} WIDTH {WIDTH} INTO 0. -1. CROSS {speed} {at}\n   0. 0. 0.\n"
+                   + ("LIC on\n   0. 0. 4. 1. 12. 0.\n" if lic else "") + f"THETA {theta}\n" + steps(step, end) + "END\n")
+
+    times = np.linspace(0, end, 1200001)
+    axis = np.where(times < 3, FRONT, REAR)
+    rate = ETA*POWER/2*2*math.sqrt(3/math.pi)/(FRONT + REAR)*np.exp(-3*(speed*(3 - times)/axis)**2)
+    for lic in (False, True):
+        values = rate*(np.interp(times, [0, 4, 12], [0, 1, 0]) if lic else 1)
+        heat = float(np.sum(0.5*(values[1:] + values[:-1])*np.diff(times)))
+        for theta in ("1.", "0.5 MEAN", "TRBDF2"):
+            for step in (0.3, 2.0, 8.0):
+                one = run(f"whole-{theta}-{step}-{lic:d}".replace(" ", "").replace(".", ""), step, theta, 3.0, lic)
+                if one.ok:
+                    books(checks, one, heat, 1e-9, "heat of a crossing within few steps")
+    for name, at, share in (("begins", 0.2, "82 %"), ("ends", 12.0, "33.3 %"), ("inside", 3.0, None)):
+        one = run(f"whole-{name}", 0.1, "1.", at, False)
+        if not one.ok:
+            continue
+        with open(os.path.join(one.out, f"whole-{name}.log"), encoding="utf-8") as file:
+            said = [line for line in file if "of its heat in the plane" in line]
+        checks.that(bool(said) == (share is not None) and all(share in line for line in said), f"whole: a torch that {name}: told or not", said)
+
+
 def main():
     """All of them."""
     checks = Checks()
@@ -274,6 +306,7 @@ def main():
     motion(checks)
     off(checks)
     long_steps(checks)
+    whole(checks)
     checks.end()
 
 

@@ -10,6 +10,7 @@ usage: run_operations.py [-v] [-k]
 - `strokes`: press, release, press with another die; stopped anywhere and resumed to the same bits; with a new mesh in each
   operation the same part, by one command, also where that is stopped.
 - `closing`: an operation without REMSH after one with it: what its table of accuracy says.
+- `first_without`: one without before the first with it: its seconds are in the cost of the whole.
 """
 import os
 import signal
@@ -158,6 +159,21 @@ def closing(checks):
         checks.that(told["space"]["strain_worst_pct"] >= before["space"]["strain_worst_pct"], "largest errors of all operations", told)
 
 
+def first_without(checks):
+    """An operation without REMSH before the first one with it: the cost of the whole has its seconds."""
+    text = HEAD.replace("CKPT   4\n", "") + "OPERA  upset\n" + flat(10.0, 1.0) + STEP.replace("0.05", "0.01")
+    text += "OPERA  indent\n" + PUNCH + STEP + REMESH + "0.9\nEND\n"
+    deck, out = write(checks.path("later.lag"), text), checks.path("later")
+    result = cycle(deck, out, "--quiet")
+    if not checks.that(result.returncode == DONE, "later ends", said(result)):
+        return
+    before, told = summary(out, "summary.upset.json"), summary(out)
+    first, whole = before["cpu_s"], told["accuracy"].get("cycle", {}).get("processor_s", 0)
+    checks.that("cycle" in before["accuracy"] or os.path.exists(os.path.join(out, "later.cost")), "later: a cost is kept")
+    # the last call of the solver alone is that of the second mesh; the remesher and the stroke before it come on top
+    checks.that(whole > 0.9*first + told["cpu_s"], "later: seconds of the first operation too", (first, told["cpu_s"], whole))
+
+
 def start_cycle(deck, out):
     """lagacycle, started."""
     import subprocess
@@ -251,6 +267,7 @@ def main():
     at_once(checks)
     checked(checks)
     closing(checks)
+    first_without(checks)
     checks.end()
 
 

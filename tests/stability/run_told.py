@@ -6,6 +6,8 @@ usage: run_told.py [-v] [-k]       -v prints every check, -k keeps the results
 - Decks that are read without a mistake and mean something else than their author: `--check` warns in one line of each, with the words
   that the table prints; the deck that they are made from, and all decks of the project, are told nothing.
 - A body that passes the plane in which it is held: in the summary.
+- A body that its dies have let go, so that nothing holds it: in the summary; not one that still lies against a die.
+- A steel without kinetics of austenite that is heated above Ac1: in the summary; not one that has them, nor one that only cools.
 - `KINEM SMALL` at large strain, with a body that flows and one that locks beyond its limit load, ends with code 3.
 - Probes of measures of stress against the components of the same point; of nodes that stand at one place.
 """
@@ -214,6 +216,66 @@ def passed_planes(checks):
         checks.that(len(told) == behind and all(words in text for text in told), f"{name}: told" if behind else f"{name}: nothing is told", told)
 
 
+def let_go(checks):
+    """A billet between two dies, without supports: both go away; one does, and it lies against the other; springs hold it."""
+    free = {"FIXED  billet 1 Y\n": TABLE.replace("-1.", "0."), "FIXED  billet 4 X\n": "",
+            "1. -2.": "0.4 -0.5   1. 2."}
+    away = {"END\n": "MOVE   lower Y down\nLIC    down\n   0. 0.   0.4 0.   1. -2.\nEND\n"}
+    for name, changes, told in (("both go away", {**free, **away}, True), ("on its anvil", {key: value for key, value in free.items() if "4 X" not in key}, False),
+                                ("on springs", {**free, "END\n": "SPRNG  billet X 1.E-3\nSPRNG  billet Y 1.E-3\n" + away["END\n"]}, False)):
+        run = Run(checks, name.replace(" ", "-"), changed(checks, changes))
+        if not run.ok:
+            continue
+        with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as summary:
+            said = [warning["text"] for warning in json.load(summary)["warnings"]]
+        checks.that(len(said) == told and all("billet: at the end nothing holds it, no support and no contact (the nearest die" in text
+                                              for text in said), f"{name}: told" if told else f"{name}: nothing is told", said)
+
+
+HEATED_STEEL = '''STEEL  base
+SOURCE 'an example'
+TEMPS  AC1 730 AC3 850 MS 300
+MARTEN BETA 0.011
+%sPHASE  ALL
+   LAMBDA 30
+   RHOC   4.5
+END
+'''
+FURNACE = '''TITLE  A plate in a furnace
+STATE  PLSTN
+KINEM  SMALL
+BLOCK  plate PL8TM 4 heat BILINEAR
+   0. 0.   4. 0.   4. 1.   0. 1.
+   4 1.   1 1.
+LAW    heat META
+   STEEL %s base
+   ENERGY 1.
+START  T %s
+%sCONVE  plate 2 4 H 1. TS %s
+STRAT  0.1 1.E-4 5.   5 3
+STOP   100.
+END
+'''
+
+
+def heated(checks):
+    """Ferrite in a furnace at 900 degC; the same by a steel with AUSTEN; austenite that is quenched."""
+    for name, card, begins, phases, ends, told in (
+            ("without kinetics", "", 20.0, "START  PHASES FERRITE 1.\n", 900.0, True),
+            ("with kinetics", "AUSTEN 5. 1.\n", 20.0, "START  PHASES FERRITE 1.\n", 900.0, False),
+            ("below Ac1", "", 20.0, "START  PHASES FERRITE 1.\n", 700.0, False), ("quenched", "", 900.0, "", 20.0, False)):
+        met = name.replace(" ", "-") + ".met"
+        with open(os.path.join(checks.folder, met), "w", encoding="utf-8") as file:
+            file.write(HEATED_STEEL % card)
+        run = Run(checks, name.replace(" ", "-"), FURNACE % (met, begins, phases, ends))
+        if not run.ok:
+            continue
+        with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as summary:
+            said = [warning["text"] for warning in json.load(summary)["warnings"]]
+        checks.that(len(said) == told and all("which has no kinetics of austenite (AUSTEN): 100 %" in text for text in said),
+                    f"{name}: told" if told else f"{name}: nothing is told", said)
+
+
 def small(checks):
     """SMALL ends where strains are large."""
     half = changed(checks, {"KINEM  LOG": "KINEM  SMALL", "1. -2.": "1. -9."})
@@ -252,6 +314,8 @@ def main():
     stopped_run(checks)
     warned_cycle(checks)
     passed_planes(checks)
+    let_go(checks)
+    heated(checks)
     small(checks)
     probes(checks)
     checks.end()

@@ -1,0 +1,106 @@
+!> Bodies that nothing holds when a run ends: let go by their dies, they float.
+!>
+!> Such a body rests where it was let go (resting_bodies): no force says where it would be. One that still lies against a die, as a
+!> forging on its anvil when the punch has gone up, is where it would be anyway, and is not told.
+module floating_bodies
+  use contact_outlook, only: gaps_at_rest
+  use dies, only: is_deformable
+  use fields, only: displacement_field, pilot_field
+  use kinds, only: wp
+  use resting_bodies, only: mark_acted_on
+  use scene, only: group_t, is_solid, role_contact, scene_t
+  use solution, only: present_coordinates, solution_t
+  use text, only: add_text, string_t, to_text
+  implicit none
+  private
+  public :: warn_of_floating_bodies
+
+  !> A side lies on a die where the gap is below this share of its length.
+  real(wp), parameter :: lies_on = 1.0e-3_wp
+
+contains
+
+  !> A line for each body that neither a support, a spring, a load nor a contact acts on, added to the warnings of a run at its end.
+  subroutine warn_of_floating_bodies(scene, loose, solution, warnings)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: loose(:)   !! (nnode) the body of every node that supports do not hold, 0 for others; or of no size
+    type(solution_t), intent(in) :: solution
+    type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning) lines
+    logical :: acted_on(0:size(loose)), told(0:size(loose))
+    real(wp) :: gap, over_side
+    integer :: g
+
+    if (size(loose) == 0) return
+    call mark_acted_on(scene, solution, loose, solution%time, acted_on)
+    told = acted_on
+    told(0) = .true.
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%elem == 'BSPRG') told(loose(group%connectivity(1, 1))) = .true.
+      end associate
+    end do
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (.not. is_solid(group)) cycle
+        if (told(loose(group%connectivity(1, 1)))) cycle
+        told(loose(group%connectivity(1, 1))) = .true.
+        call nearest_die(scene, solution, loose, loose(group%connectivity(1, 1)), gap, over_side)
+        if (over_side < lies_on) cycle
+        call add_text(warnings, group%name//': at the end nothing holds it, no support and no contact'//beside(gap)// &
+                      ': it rests where it was let go, and no force says that it would')
+      end associate
+    end do
+
+  contains
+
+    !> How far away the nearest die is, where it faces any.
+    pure function beside(gap) result(words)
+      real(wp), intent(in) :: gap
+      character(len=:), allocatable :: words
+
+      words = ''
+      if (gap < huge(gap)) words = ' (the nearest die is '//to_text(gap, 3)//' away)'
+    end function beside
+  end subroutine warn_of_floating_bodies
+
+  !> Least gap between a body and the dies that its contacts name, or the bodies that face it; huge where there is none.
+  subroutine nearest_die(scene, solution, loose, body, gap, over_side)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: loose(:), body   !! (nnode) bodies of the nodes; the number of one
+    real(wp), intent(out) :: gap            !! [length]
+    real(wp), intent(out) :: over_side      !! over the length of the side
+    type(scene_t) :: now
+    real(wp), allocatable :: gaps(:, :), over_sides(:, :)
+    integer :: g, k
+
+    now = scene
+    now%mesh%coordinates = present_coordinates(scene, solution)
+    do k = 1, size(now%dies)
+      if (.not. is_deformable(now%dies(k))) now%dies(k)%pilot = solution%fields(pilot_field)%value(:, k)
+    end do
+    gap = huge(gap)
+    over_side = huge(over_side)
+    do g = 1, size(now%groups)
+      if (now%groups(g)%role /= role_contact) cycle
+      if (.not. is_of(now%groups(g))) cycle
+      call gaps_at_rest(now, now%groups(g), gaps, over_sides)
+      if (size(gaps) == 0) cycle
+      gap = min(gap, minval(gaps))
+      over_side = min(over_side, minval(over_sides))
+    end do
+
+  contains
+
+    !> A contact of the body, or one that faces it.
+    pure function is_of(group) result(yes)
+      type(group_t), intent(in) :: group
+      logical :: yes
+
+      yes = loose(group%connectivity(1, 1)) == body
+      if (yes .or. .not. is_deformable(scene%dies(group%die))) return
+      yes = loose(scene%dies(group%die)%nodes(1, 1)) == body
+    end function is_of
+  end subroutine nearest_die
+
+end module floating_bodies
