@@ -1,5 +1,5 @@
-!> What PL8LS computes for every element in every iteration: motion of its points, internal force and matrix of its nodes (elem_pl8ls
-!> has the formulas). Loops over nodes and points have fixed lengths where that lets the compiler use vector instructions.
+!> What PL8LS computes for every element in every iteration: motion of its points, internal force and matrix of its nodes. The
+!> formulas stand in elem_pl8ls. Loops over nodes have a fixed length, which lets the compiler use vector instructions.
 module solid_kernels
   use kinds, only: wp
   use quad8_geometry, only: max_points, places, quad8_rule_t, slopes

@@ -190,7 +190,8 @@ contains
     !> Evaluate at the last motion times a share; what is given is taken as it is.
     subroutine start_from(share, alone)
       real(wp), intent(in) :: share
-      logical, intent(in), optional :: alone   !! contact alone
+      logical, intent(in), optional :: alone   !! contact alone, without matrices
+      logical :: whole
 
       call proportion(equations%dofs, solution%fields, share, du)
       where (back) du = -onset*du
@@ -202,8 +203,9 @@ contains
           if (p%history > 0 .or. at_place(p%dof)) du(p%dof) = motion(k)
         end associate
       end do
-      call evaluate(scene, equations, solution, dt, du, .not. present(alone), report, predicted=.true., kept=kept, &
-                    turning=dies, contact_alone=alone)
+      whole = .not. present(alone)
+      call evaluate(scene, equations, solution, dt, du, whole, report, predicted=.true., kept=kept, turning=dies, &
+                    contact_alone=alone)
     end subroutine start_from
 
   end subroutine predict
