@@ -22,7 +22,8 @@ module elem_pl8ls
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
   use scene, only: generalised_plane_strain, group_t, plane_stress, role_body, scene_t
   use sections, only: thickness_at
-  use solid_terms, only: add_section, first_element, geometric, local_gradient, mean_element
+  use solid_kernels, only: internal_force, motion, tangent_matrix
+  use solid_terms, only: add_section, first_element, local_gradient, mean_element
   use state_variables, only: find_variable, state_variable, state_variable_t, transfer_scalar
   implicit none
   private
@@ -100,17 +101,15 @@ contains
     call quad8_rule(group%rule%n, rule)
     do e = 1, nb
       call sections_of_step(scene, kinematics%finite, instant, layout, du(:, e), section)
-      do p = 1, group%rule%n
-        call motion(rule, p, section, kinematics%finite, x(:, :, e), du(:, e), nx(:, p, e), ny(:, p, e), zx(:, p, e), &
-                    dv(p, e), f(:, p, e), strain, valid)
-        report%strain = max(report%strain, strain)
-        if (.not. valid) then
-          report%status = block_inverted
-          report%element = first + e - 1
-          force = 0
-          return
-        end if
-      end do
+      call motion(rule, section, kinematics%finite, x(:, :, e), du(:, e), nx(:, :, e), ny(:, :, e), zx(:, :, e), dv(:, e), &
+                  f(:, :, e), strain, valid)
+      report%strain = max(report%strain, strain)
+      if (.not. valid) then
+        report%status = block_inverted
+        report%element = first + e - 1
+        force = 0
+        return
+      end if
       if (.not. group%option == mean_option) cycle
       call first_element(scene, rule, group%connectivity(:, first + e - 1), own)
       call share_dilatation(kinematics%finite, own, dv(:, e), f(:, :, e), valid)
@@ -350,92 +349,6 @@ contains
     section(:, 1) = scene%section
     if (finite) section(:, 1) = instant%section + section(:, 2)
   end subroutine sections_of_step
-
-  !> Derivatives of the shape functions, volume, gradient f of the step at one point, and size of its strain increment.
-  !> `zx` = d h_zz / d(ux of the nodes). In plane stress f(5) comes later, and the volume is that of the thickness at the start.
-  pure subroutine motion(rule, p, section, finite, x, du, nx, ny, zx, dv, f, strain, valid)
-    type(quad8_rule_t), intent(in) :: rule
-    integer, intent(in) :: p
-    logical, intent(in) :: finite
-    real(wp), intent(in) :: section(3, 2), x(2, 8), du(:)
-    real(wp), intent(out) :: nx(8), ny(8), zx(8), dv, f(5), strain
-    logical, intent(out) :: valid
-    real(wp) :: y(2, 8), here(2), g(4), detj, thickness, det
-
-    y = x
-    if (finite) then
-      y(1, :) = x(1, :) + du(1:8)
-      y(2, :) = x(2, :) + du(9:16)
-    end if
-    call derivatives(rule%dphi(:, :, p), y, nx, ny, detj)
-    g = [dot_product(nx, du(1:8)), dot_product(ny, du(1:8)), dot_product(nx, du(9:16)), dot_product(ny, du(9:16))]
-    here = matmul(y, rule%phi(:, p))
-    thickness = thickness_at(section(:, 1), here)
-    valid = detj > 0 .and. thickness > 0
-    dv = detj*rule%weight(p)*thickness
-    zx = section(2, 1)*rule%phi(:, p)/thickness
-    if (finite) then
-      f(5) = thickness/thickness_at(section(:, 1) - section(:, 2), matmul(x, rule%phi(:, p)))
-    else
-      f(5) = 1 + dot_product(zx, du(1:8)) + (section(3, 1)*dot_product(rule%phi(:, p), du(9:16)) &
-                                             + thickness_at(section(:, 2), here))/thickness
-    end if
-    strain = sqrt(g(1)**2 + g(4)**2 + 0.5_wp*(g(2) + g(3))**2 + (f(5) - 1)**2)
-    if (finite) then
-      ! dx(n)/dx(n+1) = 1 - g; f is its inverse
-      det = (1 - g(1))*(1 - g(4)) - g(2)*g(3)
-      valid = valid .and. det > 0
-      f(1:4) = [1 - g(4), g(2), g(3), 1 - g(1)]/det
-    else
-      f(1:4) = [1 + g(1), g(2), g(3), 1 + g(4)]
-    end if
-  end subroutine motion
-
-  !> F_i = sum B_i^T sigma dv.
-  pure subroutine internal_force(nx, ny, zx, dv, stress, force)
-    real(wp), intent(in), contiguous :: dv(:)
-    real(wp), intent(in) :: nx(8, size(dv)), ny(8, size(dv)), zx(8, size(dv)), stress(:, :)
-    real(wp), intent(out) :: force(16)
-    real(wp) :: s(4)
-    integer :: p
-
-    force = 0
-    do p = 1, size(dv)
-      s = stress(:, p)*dv(p)
-      force(1:8) = force(1:8) + s(1)*nx(:, p) + s(3)*ny(:, p) + s(4)*zx(:, p)
-      force(9:16) = force(9:16) + s(3)*nx(:, p) + s(2)*ny(:, p)
-    end do
-  end subroutine internal_force
-
-  !> K = sum G^T M G dv without the section. Rows of M: the factors of nx (in Fx), ny (Fx), nx (Fy), ny (Fy), zx (Fx).
-  pure subroutine tangent_matrix(condense, finite, nx, ny, zx, dv, stress, tangent, stiffness)
-    logical, intent(in) :: condense, finite
-    real(wp), intent(in), contiguous :: dv(:)
-    real(wp), intent(in) :: nx(8, size(dv)), ny(8, size(dv)), zx(8, size(dv)), stress(:, :), tangent(4, 5, size(dv))
-    real(wp), intent(out) :: stiffness(16, 16)
-    real(wp) :: m(5, 5), qx(5), qy(5)
-    integer :: p, j
-
-    stiffness = 0
-    do p = 1, size(dv)
-      m = tangent([1, 3, 3, 2, 4], :, p)
-      if (finite) m = m + geometric(stress(:, p))
-      if (condense) then
-        do j = 1, 4
-          m(1:4, j) = m(1:4, j) - m(1:4, 5)*(tangent(4, j, p)/tangent(4, 5, p))
-        end do
-      end if
-      m = m*dv(p)
-      do j = 1, 8
-        qx = m(:, 1)*nx(j, p) + m(:, 2)*ny(j, p) + m(:, 5)*zx(j, p)
-        qy = m(:, 3)*nx(j, p) + m(:, 4)*ny(j, p)
-        stiffness(1:8, j) = stiffness(1:8, j) + qx(1)*nx(:, p) + qx(2)*ny(:, p) + qx(5)*zx(:, p)
-        stiffness(9:16, j) = stiffness(9:16, j) + qx(3)*nx(:, p) + qx(4)*ny(:, p)
-        stiffness(1:8, j + 8) = stiffness(1:8, j + 8) + qy(1)*nx(:, p) + qy(2)*ny(:, p) + qy(5)*zx(:, p)
-        stiffness(9:16, j + 8) = stiffness(9:16, j + 8) + qy(3)*nx(:, p) + qy(4)*ny(:, p)
-      end do
-    end do
-  end subroutine tangent_matrix
 
   !> Volumes and energies. Work densities are per stress-free volume, dv/J with J = exp(tr e). A law's `plastic_work` is what
   !> is dissipated, its `stored_work` what is kept beside the elastic energy and counted with it.

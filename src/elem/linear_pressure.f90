@@ -13,7 +13,7 @@ module linear_pressure
   use elem_api, only: instant_t
   use kinds, only: wp
   use mean_dilatation, only: dilatation_t, hidden_change, mean_volumes
-  use quad8_geometry, only: derivatives, quad8_rule_t
+  use quad8_geometry, only: max_points, places, quad8_rule_t, slopes
   use sections, only: thickness_at
   implicit none
   private
@@ -43,24 +43,32 @@ contains
     real(wp), intent(inout) :: stress(:, :)       !! (4, npoint) [stress]
     type(dilatation_t), intent(in), optional :: own   !! with mean dilatation
     real(wp), dimension(size(dv)) :: linear, exact, before
-    real(wp) :: y(2, 8), part(2, 8), from(3), nx(8), ny(8), detj, here(2), thickness
+    real(wp) :: y1(8), y2(8), part1(8), part2(8), from(3), detj, thickness
+    real(wp), dimension(max_points, 4) :: jacobian, parent
+    real(wp), dimension(max_points, 2) :: here, away
     integer :: p
 
     if (instant%predicted) then
       stress([1, 2, 4], :) = stress([1, 2, 4], :) + spread(sum(committed([1, 2, 4], :) - stress([1, 2, 4], :), 1)/3, 1, 3)
       return
     end if
-    y = x + instant%corrected_from(:, nodes)
-    part(1, :) = x(1, :) + du(1:8) - y(1, :)
-    part(2, :) = x(2, :) + du(9:16) - y(2, :)
+    y1 = x(1, :) + instant%corrected_from(1, nodes)
+    y2 = x(2, :) + instant%corrected_from(2, nodes)
+    part1 = x(1, :) + du(1:8) - y1
+    part2 = x(2, :) + du(9:16) - y2
     from = section(:, 1) - section(:, 2) + instant%section_from
+    call slopes(rule, y1, y2, jacobian)
+    call slopes(rule, part1, part2, parent)
+    call places(rule, y1, y2, here)
+    call places(rule, part1, part2, away)
     do p = 1, size(dv)
-      call derivatives(rule%dphi(:, :, p), y, nx, ny, detj)
-      here = matmul(y, rule%phi(:, p))
-      thickness = thickness_at(from, here)
+      detj = jacobian(p, 1)*jacobian(p, 4) - jacobian(p, 3)*jacobian(p, 2)
+      thickness = thickness_at(from, here(p, :))
       before(p) = detj*rule%weight(p)*thickness
-      linear(p) = dot_product(nx, part(1, :)) + dot_product(ny, part(2, :)) &
-                  + (thickness_at(section(:, 1) - from, here) + dot_product(from(2:3), matmul(part, rule%phi(:, p))))/thickness
+      ! trace of the gradient of the correction
+      linear(p) = (jacobian(p, 4)*parent(p, 1) - jacobian(p, 3)*parent(p, 2) + jacobian(p, 1)*parent(p, 4) &
+                   - jacobian(p, 2)*parent(p, 3))/detj &
+                  + (thickness_at(section(:, 1) - from, here(p, :)) + dot_product(from(2:3), away(p, :)))/thickness
     end do
     if (present(own)) then
       linear = linear - hidden_change(own, before, linear)

@@ -37,9 +37,9 @@ contains
     real(wp) :: e(4, n), de(4, 5, n), tau(4, n), elastic(4, n), history(nstate - first_history + 1, n)
     real(wp) :: law_tangent(tangent_rows(law, material), 4, n)
     type(frame_t) :: frame(n)
-    real(wp) :: fixed(4, n), volume
+    real(wp) :: fixed(4, n), less
     logical :: turning
-    integer :: i, j
+    integer :: i, j, k
 
     do i = 1, n
       call half_log(push_forward(f(:, i), exp_twice(committed(5:8, i))), e(:, i), de(:, :, i))
@@ -60,19 +60,22 @@ contains
         call turn_answer(frame(i), fixed(:, i), de(:, 1:4, i), law_tangent(:, :, i), tau(:, i), elastic(:, i), tangent(:, 1:4, i))
         law_tangent(:4, 4, i) = turned(frame(i), law_tangent(:4, 4, i))
       end if
-      volume = exp(elastic(1, i) + elastic(2, i) + elastic(4, i))
-      trial(1:4, i) = tau(:, i)/volume
-      trial(5:8, i) = elastic(:, i)*[1.0_wp, 1.0_wp, 0.5_wp, 1.0_wp]
+      ! 1/J
+      less = exp(-elastic(1, i) - elastic(2, i) - elastic(4, i))
+      trial(1:4, i) = tau(:, i)*less
+      trial(5:8, i) = [elastic(1, i), elastic(2, i), 0.5_wp*elastic(3, i), elastic(4, i)]
       trial(first_history:, i) = history(:, i)
       if (turning) then
-        tangent(:, 1:4, i) = tangent(:, 1:4, i)/volume
+        tangent(:, 1:4, i) = tangent(:, 1:4, i)*less
       else
         do j = 1, 4
-          tangent(:, j, i) = (law_tangent(:4, 1, i)*de(1, j, i) + law_tangent(:4, 2, i)*de(2, j, i) &
-                              + law_tangent(:4, 3, i)*de(3, j, i))/volume
+          do k = 1, 4
+            tangent(k, j, i) = (law_tangent(k, 1, i)*de(1, j, i) + law_tangent(k, 2, i)*de(2, j, i) &
+                                + law_tangent(k, 3, i)*de(3, j, i))*less
+          end do
         end do
       end if
-      tangent(:, 5, i) = law_tangent(:4, 4, i)/volume
+      tangent(:, 5, i) = law_tangent(:4, 4, i)*less
       if (size(law_tangent, 1) > 4) then
         ! the elastic volume depends on the stress
         do j = 1, 4

@@ -20,7 +20,7 @@ contains
     real(wp), intent(in) :: b(4)        !! [-]
     real(wp), intent(out) :: e(4)       !! [-]
     real(wp), intent(out) :: de(4, 5)   !! [-]
-    real(wp) :: m, q, s, det, t2, c, gamma, r2
+    real(wp) :: m, q, s, det, t2, c, gamma, r2, inverse, mean
     real(wp) :: dm(4), dq(4), ds(4), da(4), dc(4)
 
     m = 0.5_wp*(b(1) + b(2))
@@ -36,16 +36,18 @@ contains
       c = atanh(sqrt(t2))/sqrt(r2)
       gamma = (m/det - c)/r2
     end if
-    e(1) = 0.25_wp*log(det) + 0.5_wp*c*q
-    e(2) = 0.25_wp*log(det) - 0.5_wp*c*q
+    mean = 0.25_wp*log(det)
+    e(1) = mean + 0.5_wp*c*q
+    e(2) = mean - 0.5_wp*c*q
     e(3) = 0.5_wp*c*s
     e(4) = 0.5_wp*log(b(4))
 
     dm = [b(1), b(3), b(3), b(2)]
     dq = [b(1), b(3), -b(3), -b(2)]
     ds = [b(3), b(2), b(1), b(3)]
-    da = (m*dm - q*dq - s*ds)/det
-    dc = gamma*(q*dq + s*ds) - dm/det
+    inverse = 1/det
+    da = (m*dm - q*dq - s*ds)*inverse
+    dc = gamma*(q*dq + s*ds) - dm*inverse
     de = 0
     de(1, 1:4) = 0.5_wp*(da + c*dq + q*dc)
     de(2, 1:4) = 0.5_wp*(da - c*dq - q*dc)

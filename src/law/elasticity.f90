@@ -24,23 +24,23 @@ contains
     real(wp) :: volume
 
     volume = strain(1) + strain(2) + strain(4)
-    stress = 2*shear*strain
+    stress(1) = 2*shear*strain(1) + (bulk - 2*shear/3)*volume
+    stress(2) = 2*shear*strain(2) + (bulk - 2*shear/3)*volume
     stress(3) = shear*strain(3)
-    stress([1, 2, 4]) = stress([1, 2, 4]) + (bulk - 2*shear/3)*volume
+    stress(4) = 2*shear*strain(4) + (bulk - 2*shear/3)*volume
   end function hooke_stress
 
   pure function hooke_tangent(bulk, shear) result(tangent)
     real(wp), intent(in) :: bulk, shear
     real(wp) :: tangent(4, 4)
-    integer, parameter :: normal(3) = [1, 2, 4]
-    integer :: i
+    real(wp) :: across, along
 
-    tangent = 0
-    tangent(normal, normal) = bulk - 2*shear/3
-    do i = 1, 3
-      tangent(normal(i), normal(i)) = tangent(normal(i), normal(i)) + 2*shear
-    end do
-    tangent(3, 3) = shear
+    across = bulk - 2*shear/3
+    along = across + 2*shear
+    tangent(:, 1) = [along, across, 0.0_wp, across]
+    tangent(:, 2) = [across, along, 0.0_wp, across]
+    tangent(:, 3) = [0.0_wp, 0.0_wp, shear, 0.0_wp]
+    tangent(:, 4) = [across, across, 0.0_wp, along]
   end function hooke_tangent
 
 end module elasticity

@@ -64,7 +64,7 @@ contains
     if (flow%rate_row > 0 .and. dt > 0) history(flow%rate_row) = 0
 
     mean = (stress(1) + stress(2) + stress(4))/3
-    driving = stress - mean*[1, 1, 0, 1]
+    driving = [stress(1) - mean, stress(2) - mean, stress(3), stress(4) - mean]
     g3 = 3*flow%shear
     start = 0
     if (flow%back_row > 0) then
@@ -98,8 +98,10 @@ contains
         return
       end if
     end if
-    stress = mean*[1, 1, 0, 1] + driving*(sy/q)
-    elastic_strain = trial_strain - (1.5_wp*dp/q)*driving*[1, 1, 2, 1]
+    factor = sy/q
+    stress = [mean + driving(1)*factor, mean + driving(2)*factor, driving(3)*factor, mean + driving(4)*factor]
+    factor = 1.5_wp*dp/q
+    elastic_strain = trial_strain - factor*[driving(1), driving(2), 2*driving(3), driving(4)]
     history(1) = committed(1) + dp
     history(2) = committed(2) + 0.5_wp*(start + sy)*dp
     if (flow%back_row > 0) then
@@ -218,14 +220,17 @@ contains
   pure function consistent_tangent(bulk, shear, direction, dp, q, slope) result(tangent)
     real(wp), intent(in) :: bulk, shear, direction(4), dp, q, slope
     real(wp) :: tangent(4, 4)
-    real(wp) :: theta, theta_bar
-    integer :: j
+    real(wp) :: theta, theta_bar, along
+    integer :: i, j
 
     theta = 1 - 3*shear*dp/q
     theta_bar = 3*shear/(3*shear + slope) - (1 - theta)
     tangent = hooke_tangent(bulk, shear*theta)
     do j = 1, 4
-      tangent(:, j) = tangent(:, j) - 2*shear*theta_bar*direction*direction(j)
+      along = 2*shear*theta_bar*direction(j)
+      do i = 1, 4
+        tangent(i, j) = tangent(i, j) - along*direction(i)
+      end do
     end do
   end function consistent_tangent
 

@@ -224,17 +224,20 @@ contains
     integer, intent(in) :: row_start(:)   !! nonzeros of row i: row_start(i) ... row_start(i+1)-1
     real(wp), intent(in) :: a(:), rhs(:), x(:)
     real(wp), intent(out) :: residual(:), scale
-    real(wp) :: magnitude(size(rhs))
+    real(wp) :: magnitude(size(rhs)), left, large, product
     integer :: k, i, j
 
-    !$omp parallel do private(k) schedule(static) if (pattern%nnz > worth_threads)
+    !$omp parallel do private(k, left, large, product) schedule(static) if (pattern%nnz > worth_threads)
     do i = 1, pattern%neq
-      residual(i) = rhs(i)
-      magnitude(i) = abs(rhs(i))
+      left = rhs(i)
+      large = abs(rhs(i))
       do k = row_start(i), row_start(i + 1) - 1
-        residual(i) = residual(i) - a(k)*x(pattern%column(k))
-        magnitude(i) = magnitude(i) + abs(a(k)*x(pattern%column(k)))
+        product = a(k)*x(pattern%column(k))
+        left = left - product
+        large = large + abs(product)
       end do
+      residual(i) = left
+      magnitude(i) = large
     end do
     !$omp end parallel do
     if (pattern%symmetric) then

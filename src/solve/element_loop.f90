@@ -188,14 +188,17 @@ contains
     type(pattern_t), intent(in) :: pattern
     type(element_buffers_t), intent(in) :: buffers
     real(wp), intent(out) :: values(:)   !! (nnz) [residual/unknown]
+    real(wp) :: total
     integer :: n, k
 
-    !$omp parallel do private(k) schedule(static) if (pattern%nnz > worth_gathering)
+    !$omp parallel do private(k, total) schedule(static) if (pattern%nnz > worth_gathering)
     do n = 1, pattern%nnz
-      values(n) = 0
-      do k = pattern%first(n), pattern%first(n + 1) - 1
-        values(n) = values(n) + buffers%matrix(pattern%entry(k))
+      ! most nonzeros have one entry; none has less
+      total = buffers%matrix(pattern%entry(pattern%first(n)))
+      do k = pattern%first(n) + 1, pattern%first(n + 1) - 1
+        total = total + buffers%matrix(pattern%entry(k))
       end do
+      values(n) = total
     end do
     !$omp end parallel do
   end subroutine gather_matrix

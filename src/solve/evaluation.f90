@@ -15,14 +15,14 @@ module evaluation
   use threads, only: fit_to_load
   implicit none
   private
-  public :: evaluate, measure_error
+  public :: evaluate, is_apart, measure_error
 
 contains
 
   !> Internal force, and matrices when wanted, at the motion `du` of the step. Points that meet pieces of deformable dies
   !> beyond their pairs get new ones, and all is computed again: no contact is lost, no step cut back.
   subroutine evaluate(scene, equations, solution, dt, du, tangent, report, predicted, kept, turning, &
-                      corrected_from)
+                      corrected_from, contact_alone)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -34,8 +34,10 @@ contains
     logical, intent(in), optional :: kept                   !! contact of the start of the step is kept
     logical, intent(in), optional :: turning(:)             !! (ndie) not with these dies
     real(wp), intent(in), optional :: corrected_from(:)     !! (ndof) motion before the correction that led to it [unknown]
+    logical, intent(in), optional :: contact_alone          !! all but contact is as it was evaluated last, or of no interest
     type(instant_t) :: instant
     real(wp), allocatable :: now(:, :)
+    logical :: active(size(scene%groups))
     integer :: timer
 
     call fit_to_load(equations%team)
@@ -45,12 +47,16 @@ contains
     if (present(turning)) instant%turning = turning
     if (present(corrected_from)) call note_correction(scene, equations%dofs, corrected_from, instant)
     call driving_values(scene, equations, solution, du, now)
+    active = equations%solves(equations%now)%active
+    if (present(contact_alone)) then
+      if (contact_alone) active = active .and. is_contact(scene, equations)
+    end if
     do
       call pair_up(scene, solution%pairs, equations)
       instant%pairs = solution%pairs
-      call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, &
-                        equations%solves(equations%now)%active, equations%solves(equations%now)%pattern, instant, du, now, &
-                        solution, equations%drivers, equations%buffers, equations%timers, report)
+      call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, active, &
+                        equations%solves(equations%now)%pattern, instant, du, now, solution, equations%drivers, &
+                        equations%buffers, equations%timers, report)
       if (report%status /= block_done) return
       if (.not. report%unpaired) exit
       call renew_pairs(scene, equations%solves(equations%now)%active, solution)
@@ -77,6 +83,27 @@ contains
     end associate
     call equations%timers%stop(timer)
   end subroutine evaluate
+
+  !> Groups whose multipliers are carried forward.
+  pure function is_contact(scene, equations) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    logical :: yes(size(scene%groups))
+    integer :: g
+
+    do g = 1, size(yes)
+      yes(g) = associated(equations%elems(scene%groups(g)%elem_id)%augment)
+    end do
+  end function is_contact
+
+  !> Contact can be evaluated alone: nothing else follows from it, and the wall of the axis has added nothing to element forces.
+  pure function is_apart(scene, equations) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    logical :: yes
+
+    yes = size(equations%solves) == 1 .and. .not. solves_heat(scene, equations) .and. .not. any(equations%wall%held)
+  end function is_apart
 
   !> An error of the heat content at the end of a step, in the mean square of the volume of the bodies, over the least heat capacity
   !> of each; and that of the temperatures that it belongs to, by which it is given.

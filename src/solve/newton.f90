@@ -12,7 +12,7 @@ module newton
   use elem_api, only: block_done, block_inverted, block_without_source, mode_advance, report_t
   use equations, only: equations_t
   use errors, only: error_t, exit_no_convergence
-  use evaluation, only: evaluate
+  use evaluation, only: evaluate, is_apart
   use external_loads, only: external_forces
   use fields, only: displacement_field
   use heat_correction, only: follow_content, is_steep
@@ -140,7 +140,7 @@ contains
           if (.not. changed) exit
           first = size(outcome%history) + 1
           correction = 0
-          call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
+          call evaluate_multipliers()
           cycle
         end if
       end if
@@ -225,6 +225,15 @@ contains
     call put_back(made, solution)
 
   contains
+
+    !> Multipliers are others, the motion is the same: so is all but contact, whose strains are none.
+    subroutine evaluate_multipliers()
+      real(wp) :: strain
+
+      strain = report%strain
+      call evaluate(scene, equations, solution, dt, outcome%du, .true., report, contact_alone=is_apart(scene, equations))
+      report%strain = max(report%strain, strain)
+    end subroutine evaluate_multipliers
 
     !> Where dies leave the part, or it cannot follow those that withdraw: once more, with these dies where they go.
     subroutine follow_dies()

@@ -26,7 +26,7 @@ module predictor
   use elem_api, only: block_done, report_t
   use equations, only: equations_t, solves_heat
   use errors, only: error_t
-  use evaluation, only: evaluate
+  use evaluation, only: evaluate, is_apart
   use fields, only: displacement_field, field_t, pilot_field
   use kinds, only: wp
   use onset_motion, only: extend_onset
@@ -94,7 +94,7 @@ contains
     staying = .false.
     if (any(back)) staying = is_motion() .and. .not. back
     kept = .false.
-    call start_from(ratio)
+    call try_from(ratio)
     begun = .false.
     if (is_first_step(solution%probation) .and. .not. (any(back) .or. found) .and. ratio > 0 .and. report%event >= 1 &
         .and. .not. solves_heat(scene, equations) .and. equations%solves(equations%now)%own(displacement_field)) &
@@ -113,6 +113,21 @@ contains
     call find_missing()
 
   contains
+
+    !> Start from a share of the last motion. Where contact alone tells that it is not to be begun with, for another evaluation
+    !> follows, or the step is cut short where contact begins, nothing else is evaluated.
+    subroutine try_from(share)
+      real(wp), intent(in) :: share
+
+      if (.not. (present(given) .or. found .or. any(back) .or. is_first_step(solution%probation)) &
+          .and. abs(share) > 0 .and. dt > scene%strategy%least_step .and. is_apart(scene, equations)) then
+        if (is_driven()) then
+          call start_from(share, alone=.true.)
+          if (report%status == block_done .and. (report%event < 1 .or. report%jump > smooth_contact)) return
+        end if
+      end if
+      call start_from(share)
+    end subroutine try_from
 
     !> Start at the motion of the onset, with contact kept; where there is none, as on any mesh.
     subroutine start_on_new_mesh()
@@ -177,8 +192,10 @@ contains
     end function is_driven
 
     !> Evaluate at the last motion times a share; what is given is taken as it is.
-    subroutine start_from(share)
+    subroutine start_from(share, alone)
       real(wp), intent(in) :: share
+      logical, intent(in), optional :: alone   !! contact alone, without matrices
+      logical :: whole
 
       call proportion(equations%dofs, solution%fields, share, du)
       where (back) du = -onset*du
@@ -190,7 +207,9 @@ contains
           if (p%history > 0 .or. at_place(p%dof)) du(p%dof) = motion(k)
         end associate
       end do
-      call evaluate(scene, equations, solution, dt, du, .true., report, predicted=.true., kept=kept, turning=dies)
+      whole = .not. present(alone)
+      call evaluate(scene, equations, solution, dt, du, whole, report, predicted=.true., kept=kept, turning=dies, &
+                    contact_alone=alone)
     end subroutine start_from
 
   end subroutine predict
