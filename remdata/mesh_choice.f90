@@ -17,7 +17,7 @@ module mesh_choice
   use remesh_options, only: remesh_options_t
   use remesher_options, only: as_it_comes, by_free, by_gmsh, elements_allowed, has_zones, remesher_options_t
   use scene, only: scene_t
-  use size_field, only: size_field_t
+  use size_field, only: of_squares, size_field_t
   use sizes_of_scene, only: strain_order
   use solution, only: solution_t
   use state_pieces, only: solid_pieces, state_pieces_t
@@ -47,7 +47,8 @@ contains
     end do
   end function materials_of
 
-  !> Mesh the zones; a mesh of bad shape is smoothed with more passes, then refined.
+  !> Mesh the zones, with elements longer than wide where these are asked for, else of squares.
+  !> A mesh of bad shape is smoothed with more passes, then refined.
   subroutine make_mesh(scene, before, contours, plan, sizes, finer, mesh, facts, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: before
@@ -60,21 +61,24 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(mesh_settings_t) :: settings
     type(boundary_curve_t) :: boundaries(size(contours))
+    type(size_field_t) :: now
     integer :: attempt, c
 
     do c = 1, size(contours)
       boundaries(c) = contours(c)%boundary
     end do
+    now = sizes
     settings%division%refine = finer
     settings%division%most_elements = min(settings%division%most_elements, elements_allowed(scene%remesher, finer))
-    do attempt = 1, attempts
+    do attempt = merge(0, 1, sizes%is_directed), attempts
       if (allocated(error)) deallocate (error)
+      if (attempt == 1) now = of_squares(sizes)
       if (attempt == 2) settings%passes = 4*settings%passes
       if (attempt == 3) settings%division%refine = 1.5_wp*settings%division%refine
-      call mesh_zones(boundaries, plan%points, plan%zones, sizes, settings, mesh, error, plan%paths)
+      call mesh_zones(boundaries, plan%points, plan%zones, now, settings, mesh, error, plan%paths)
       if (allocated(error)) return
       facts%coarser = mesh%division%factor
-      facts%expected = predict(mesh, sizes, strain_order)
+      facts%expected = predict(mesh, now, strain_order)
       call check_new_mesh(contours, mesh, facts%mesh, error)
       if (.not. allocated(error)) call compare_materials(scene, before, plan, mesh, facts%materials, error)
       if (.not. allocated(error)) return

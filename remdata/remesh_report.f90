@@ -143,6 +143,7 @@ contains
     call json%add('scaled_jacobian', facts%mesh%scaled_jacobian)
     call json%add('least_angle', facts%mesh%least_angle)
     call json%add('largest_angle', facts%mesh%largest_angle)
+    call json%add('aspect_ratio', facts%mesh%aspect_ratio)
     call json%add('sharpest_corner', facts%mesh%sharpest_corner)
     call json%add('off_contour', facts%mesh%off_contour)
     call json%add('off_ends', facts%mesh%off_ends)

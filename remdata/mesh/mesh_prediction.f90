@@ -4,8 +4,9 @@
 !> follow every size, and the number of elements may be limited: the prediction shows the effect of both.
 module mesh_prediction
   use block_mesh, only: polygon_area
+  use directed_sizes, only: ratio_of
   use kinds, only: wp
-  use size_field, only: is_in_window, size_at, size_field_t
+  use size_field, only: directed_size_at, is_in_window, size_field_t
   use zone_mesh, only: new_mesh_t
   implicit none
   private
@@ -27,7 +28,7 @@ contains
     type(size_field_t), intent(in) :: field
     real(wp), intent(in) :: order
     type(prediction_t) :: prediction
-    real(wp) :: x(2, 4), middle(2), area, total, within, requested, ratio
+    real(wp) :: x(2, 4), middle(2), area, total, within, across, stretch(2), ratio
     integer :: e
 
     total = 0
@@ -36,8 +37,8 @@ contains
       x = mesh%coordinates(:, mesh%connectivity(1:4, e))
       area = polygon_area(x)
       middle = 0.25_wp*sum(x, 2)
-      requested = size_at(field, mesh%layout%zones(mesh%zone(e))%material, middle)
-      ratio = sqrt(max(area, 0.0_wp))/requested
+      call directed_size_at(field, mesh%layout%zones(mesh%zone(e))%material, middle, across, stretch)
+      ratio = sqrt(max(area, 0.0_wp)/ratio_of(stretch))/across
       prediction%mean = prediction%mean + area*ratio**(2*order)
       prediction%worst = max(prediction%worst, ratio**order)
       prediction%elements = prediction%elements + ratio**2

@@ -9,7 +9,7 @@ module new_mesh_check
   use mesh_quality, only: mesh_shape
   use part_contour, only: contour_t
   use plane_vectors, only: cross
-  use remeshing, only: largest_angle, least_angle, middle_share, ncriteria, scaled_jacobian
+  use remeshing, only: aspect_ratio, largest_angle, least_angle, middle_share, ncriteria, scaled_jacobian
   use text, only: to_text
   use vectors, only: length_of
   use zone_mesh, only: new_mesh_t
@@ -20,6 +20,8 @@ module new_mesh_check
   type :: mesh_check_t
     !> Worst of all elements.
     real(wp) :: scaled_jacobian = 1.0_wp, least_angle = 90.0_wp, largest_angle = 90.0_wp, middle_share = 0.0_wp
+    !> Largest ratio of the medians of an element.
+    real(wp) :: aspect_ratio = 1.0_wp
     !> Largest distance of a node of the contour from it, over the length of its side.
     real(wp) :: off_contour = 0.0_wp
     !> Largest distance from an end of contact to a node that is an end of sides, a share of the contour.
@@ -102,6 +104,7 @@ contains
     check%scaled_jacobian = minval(measures(scaled_jacobian, :))
     check%least_angle = minval(measures(least_angle, :))
     check%largest_angle = maxval(measures(largest_angle, :))
+    check%aspect_ratio = maxval(measures(aspect_ratio, :))
     check%middle_share = maxval(measures(middle_share, :))
     check%sharpest_corner = minval(corner)
     do e = 1, size(angle_limit)

@@ -8,7 +8,8 @@ module side_curves
                              kind_joint, point_on, position_at_arc_length, position_t
   use kinds, only: wp
   use offset_parabolas, only: exact_point, length_between, point_at, xi_at_length
-  use size_field, only: size_at, size_field_t
+  use directed_sizes, only: size_along
+  use size_field, only: directed_size_at, size_at, size_field_t
   use vectors, only: length_of
   use zones, only: coordinates_of, follows_contour, follows_interface, on_boundary, runs_curved, side_arc_lengths, zone_layout_t, &
                    zone_point_t, zone_side_t, zone_t
@@ -220,7 +221,7 @@ contains
     type(curve_t), intent(inout) :: curve
     integer, optional, intent(in) :: other   !! material on the other side: the smaller size of both is used
     real(wp), allocatable :: at(:), count(:)
-    real(wp) :: h, h_next, s, step, part, x(2)
+    real(wp) :: h, h_next, s, step, part, x(2), last(2)
     type(position_t) :: position
     integer :: p, n
 
@@ -231,6 +232,7 @@ contains
     n = 0
     call curve_point(boundaries, curve, 0.0_wp, x, position)
     h = requested(x)
+    last = x
     do p = 1, ubound(curve%breaks, 1)
       part = curve%breaks(p) - curve%breaks(p - 1)
       do
@@ -242,8 +244,9 @@ contains
         h_next = requested(x)
         n = n + 1
         at(n) = s
-        count(n) = count(n - 1) + 0.5_wp*(s - at(n - 1))*(1/h + 1/h_next)
+        count(n) = count(n - 1) + 0.5_wp*(s - at(n - 1))*(1/along(last, x - last, h) + 1/along(x, x - last, h_next))
         h = h_next
+        last = x
         if (.not. s < curve%breaks(p)) exit
       end do
       curve%needs(p) = count(n) - sum(curve%needs(:p - 1))
@@ -260,6 +263,21 @@ contains
       size = size_at(field, material, point)
       if (present(other)) size = min(size, size_at(field, other, point))
     end function requested
+
+    !> Size along the curve, where elements may be longer than wide.
+    pure function along(point, direction, square) result(size)
+      real(wp), intent(in) :: point(2), direction(2), square   !! `requested` there
+      real(wp) :: size
+      real(wp) :: across, stretch(2)
+
+      size = square
+      if (.not. field%is_directed) return
+      call directed_size_at(field, material, point, across, stretch)
+      size = size_along(across, stretch, direction)
+      if (.not. present(other)) return
+      call directed_size_at(field, other, point, across, stretch)
+      size = min(size, size_along(across, stretch, direction))
+    end function along
 
   end subroutine measure_density
 

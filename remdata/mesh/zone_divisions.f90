@@ -9,7 +9,8 @@ module zone_divisions
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
   use side_curves, only: curve_point, curve_t, has_course
-  use size_field, only: size_at, size_field_t
+  use directed_sizes, only: size_along
+  use size_field, only: directed_size_at, size_field_t
   use text, only: to_text
   use vectors, only: length_of
   use zones, only: zone_layout_t
@@ -157,7 +158,7 @@ contains
     type(curve_t), intent(in) :: curves(:)
     integer, intent(in) :: zone
     real(wp), intent(out) :: line(:, :)
-    real(wp) :: c(2, 0:steps, 4), x(2), last(2), h, last_h, s, t
+    real(wp) :: c(2, 0:steps, 4), x(2), last(2), h, last_h, stretch(2), last_stretch(2), s, t
     type(position_t) :: position
     integer :: i, j, k, side
 
@@ -181,10 +182,12 @@ contains
           else
             x = coons(j*steps/(lines + 1), i, t, s)
           end if
-          h = size_at(field, layout%zones(zone)%material, x)
-          if (i > 0) line(j, k) = line(j, k) + 0.5_wp*length_of(x - last)*(1/h + 1/last_h)
+          call directed_size_at(field, layout%zones(zone)%material, x, h, stretch)
+          if (i > 0) line(j, k) = line(j, k) + 0.5_wp*length_of(x - last)*(1/size_along(h, stretch, x - last) &
+                                                                          + 1/size_along(last_h, last_stretch, x - last))
           last = x
           last_h = h
+          last_stretch = stretch
         end do
       end do
     end do

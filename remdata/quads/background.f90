@@ -5,11 +5,12 @@
 !> for a side has a whole number of them, limit the size around by the gradation.
 module background
   use cross_directions, only: align_directions
+  use directed_sizes, only: no_stretch, size_along
   use exact_signs, only: on_grid
   use graded_sizes, only: slope_of
   use kinds, only: wp
   use plane_vectors, only: cross
-  use size_field, only: size_at, size_field_t
+  use size_field, only: directed_size_at, size_field_t
   use triangulation, only: add_point, after, before, find_triangle, triangulation_t
   use vectors, only: length_of
   implicit none
@@ -25,7 +26,9 @@ module background
 
   type :: background_t
     type(triangulation_t) :: mesh
-    real(wp), allocatable :: h(:)         !! (npoint) [length]
+    real(wp), allocatable :: h(:)         !! (npoint), of squares; else the root of width times length [length]
+    !> Along and across the directions, in which elements are longer than wide (2, npoint) [-].
+    real(wp), allocatable :: stretch(:, :)
     !> Cosine and sine of four times the angle of the directions (2, npoint).
     real(wp), allocatable :: fourfold(:, :)
   end type background_t
@@ -37,7 +40,7 @@ contains
     type(triangulation_t), intent(in) :: contours
     integer, intent(in) :: sides(:, :)          !! ends of kept sides, points of the triangulation (2, nside)
     type(size_field_t), intent(in) :: sizes
-    integer, intent(in) :: material             !! as `size_at` takes it
+    integer, intent(in) :: material             !! as `directed_size_at` takes it
     real(wp), intent(in) :: factor              !! ratio of the sizes to those of the field
     type(background_t), intent(out) :: field
     real(wp), allocatable :: h(:)
@@ -47,14 +50,51 @@ contains
     n = contours%npoint
     allocate (h(2*n))
     do k = 5, n
-      h(k) = factor*size_at(sizes, material, contours%x(:, k))
+      h(k) = factor*width_at(sizes, material, contours%x(:, k))
     end do
     call refine(field%mesh, sizes, material, factor, h)
     allocate (field%h, source=h(:field%mesh%npoint))
-    call respect_sides(field%mesh, sides, field%h)
-    call grade_sizes(field%mesh, slope_of(sizes%limits%gradation), field%h)
+    allocate (field%stretch(2, field%mesh%npoint), source=0.0_wp)
     call align_directions(field%mesh, sides, field%fourfold)
+    if (sizes%is_directed) call stretch_along_directions(sizes, material, factor, field)
+    call respect_sides(field%mesh, sides, field%fourfold, field%h, field%stretch)
+    call grade_sizes(field%mesh, slope_of(sizes%limits%gradation), field%h)
   end subroutine set_up_background
+
+  !> Sizes along both directions: the mean, and the stretch between them.
+  pure subroutine stretch_along_directions(sizes, material, factor, field)
+    type(size_field_t), intent(in) :: sizes
+    integer, intent(in) :: material
+    real(wp), intent(in) :: factor
+    type(background_t), intent(inout) :: field
+    real(wp) :: across, stretch(2), d(2), h(2)
+    integer :: k
+
+    do k = 5, field%mesh%npoint
+      call directed_size_at(sizes, material, field%mesh%x(:, k), across, stretch)
+      d = direction_of(field%fourfold(:, k))
+      h = [size_along(across, stretch, d), size_along(across, stretch, [-d(2), d(1)])]
+      field%h(k) = factor*sqrt(h(1)*h(2))
+      field%stretch(:, k) = 0.5_wp*log(h(1)/h(2))*twofold(d)
+    end do
+  end subroutine stretch_along_directions
+
+  !> Direction of a fourfold angle.
+  pure function direction_of(fourfold) result(direction)
+    real(wp), intent(in) :: fourfold(2)   !! [-]
+    real(wp) :: direction(2), angle
+
+    angle = 0.25_wp*atan2(fourfold(2), fourfold(1))
+    direction = [cos(angle), sin(angle)]
+  end function direction_of
+
+  !> Cosine and sine of twice the angle of a unit vector.
+  pure function twofold(d) result(double)
+    real(wp), intent(in) :: d(2)   !! [-]
+    real(wp) :: double(2)
+
+    double = [d(1)**2 - d(2)**2, 2*d(1)*d(2)]
+  end function twofold
 
   pure subroutine refine(mesh, sizes, material, factor, h)
     type(triangulation_t), intent(inout) :: mesh
@@ -83,7 +123,7 @@ contains
             u = t
           end if
         end associate
-        here = factor*size_at(sizes, material, centre)
+        here = factor*width_at(sizes, material, centre)
         if (radius <= largest_radius*here) cycle
         call add_point(mesh, centre, u, point)
         if (point == 0) cycle
@@ -97,6 +137,16 @@ contains
       if (mesh%npoint == old) exit
     end do
   end subroutine refine
+
+  !> Width of elements.
+  pure function width_at(sizes, material, x) result(h)
+    type(size_field_t), intent(in) :: sizes
+    integer, intent(in) :: material
+    real(wp), intent(in) :: x(2)
+    real(wp) :: h, stretch(2)
+
+    call directed_size_at(sizes, material, x, h, stretch)
+  end function width_at
 
   !> Centre and radius of the circle through three points.
   pure subroutine circle(a, b, c, centre, radius)
@@ -118,22 +168,47 @@ contains
     radius = length_of(r)
   end subroutine circle
 
-  !> At kept sides the size is no larger than the mean of the sides there.
-  pure subroutine respect_sides(mesh, sides, h)
+  !> At kept sides the size is no larger than the mean of the sides there; where sizes differ by direction, that along each
+  !> direction than the mean of the sides nearest to it. Where there is none, elements keep their shape or become squares.
+  pure subroutine respect_sides(mesh, sides, fourfold, h, stretch)
     type(triangulation_t), intent(in) :: mesh
     integer, intent(in) :: sides(:, :)
-    real(wp), intent(inout) :: h(:)
-    real(wp) :: total(size(h)), length
-    integer :: number(size(h)), s
+    real(wp), intent(in) :: fourfold(:, :)
+    real(wp), intent(inout) :: h(:), stretch(:, :)
+    real(wp) :: total(2, size(h)), length, way(2), d(2), double(2), size_now(2), most(2)
+    integer :: number(2, size(h)), s, i, k, n
 
     total = 0
     number = 0
     do s = 1, size(sides, 2)
-      length = length_of(mesh%x(:, sides(2, s)) - mesh%x(:, sides(1, s)))
-      total(sides(:, s)) = total(sides(:, s)) + length
-      number(sides(:, s)) = number(sides(:, s)) + 1
+      way = mesh%x(:, sides(2, s)) - mesh%x(:, sides(1, s))
+      length = length_of(way)
+      do i = 1, 2
+        associate (point => sides(i, s))
+          d = direction_of(fourfold(:, point))
+          k = merge(1, 2, abs(dot_product(d, way)) >= abs(cross(d, way)))
+          total(k, point) = total(k, point) + length
+          number(k, point) = number(k, point) + 1
+        end associate
+      end do
     end do
-    where (number > 0) h = min(h, total/max(number, 1))
+    do i = 1, size(h)
+      n = sum(number(:, i))
+      if (n == 0) cycle
+      if (.not. any(abs(stretch(:, i)) > 0)) then
+        h(i) = min(h(i), sum(total(:, i))/n)
+        cycle
+      end if
+      double = twofold(direction_of(fourfold(:, i)))
+      size_now = h(i)*exp(dot_product(stretch(:, i), double)*[1, -1])
+      do k = 1, 2
+        most(k) = total(k, i)/max(number(k, i), 1)
+        if (number(k, i) == 0) most(k) = total(3 - k, i)/number(3 - k, i)*max(1.0_wp, size_now(k)/size_now(3 - k))
+      end do
+      size_now = min(size_now, most)
+      h(i) = sqrt(size_now(1)*size_now(2))
+      stretch(:, i) = 0.5_wp*log(size_now(1)/size_now(2))*double
+    end do
   end subroutine respect_sides
 
   !> No size is larger than another one by more than the slope times their distance, along the triangles' sides.
@@ -165,16 +240,18 @@ contains
 
   !> Size and direction at a place; `near` is a triangle to search from (0: any), and then the one that contains the place, or 0
   !> outside the body.
-  pure subroutine look_up(field, x, near, h, direction)
+  pure subroutine look_up(field, x, near, h, direction, stretch)
     type(background_t), intent(in) :: field
     real(wp), intent(in) :: x(2)             !! [length]
     integer, intent(inout) :: near
-    real(wp), intent(out) :: h               !! [length]
+    real(wp), intent(out) :: h               !! root of width times length [length]
     real(wp), intent(out) :: direction(2)    !! unit vector [-]
-    real(wp) :: share(3), fourfold(2), angle
+    real(wp), intent(out) :: stretch(2)      !! along or across the direction [-]
+    real(wp) :: share(3), fourfold(2), double(2)
     integer :: t, k
 
     h = 0
+    stretch = no_stretch
     direction = [1.0_wp, 0.0_wp]
     call find_triangle(field%mesh, on_grid(field%mesh%frame, x), max(near, 1), t)
     near = 0
@@ -187,9 +264,11 @@ contains
       share = share/max(sum(share), tiny(1.0_wp))
       h = dot_product(share, field%h(node))
       fourfold = matmul(field%fourfold(:, node), share)
+      stretch = matmul(field%stretch(:, node), share)
     end associate
-    angle = 0.25_wp*atan2(fourfold(2), fourfold(1))
-    direction = [cos(angle), sin(angle)]
+    direction = direction_of(fourfold)
+    double = twofold(direction)
+    stretch = dot_product(stretch, double)*double
   end subroutine look_up
 
 end module background

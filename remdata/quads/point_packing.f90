@@ -8,6 +8,7 @@
 !> of its own, so that their number, and the work, is bounded by the area.
 module point_packing
   use background, only: background_t, look_up
+  use directed_sizes, only: no_stretch, to_squares
   use errors, only: error_t, exit_no_convergence, fail
   use exact_signs, only: on_grid
   use kinds, only: pi, wp
@@ -39,7 +40,7 @@ contains
     type(triangulation_t), intent(inout) :: mesh
     type(error_t), allocatable, intent(out) :: error
     integer, allocatable :: near(:), stamp(:)
-    real(wp) :: h, direction(2), x(2), ahead, d(2), there(2)
+    real(wp) :: h, direction(2), x(2), ahead, d(2), there(2), mean, own(2), stretch(2)
     integer :: k, point, new, t, u, place
     logical :: taken
 
@@ -54,23 +55,25 @@ contains
                   'ask for larger elements')
         return
       end if
-      call look_up(field, mesh%x(:, point), near(point), h, direction)
+      call look_up(field, mesh%x(:, point), near(point), mean, direction, own)
       do k = 0, 3
         d = direction
         if (mod(k, 2) == 1) d = [-d(2), d(1)]
         if (k >= 2) d = -d
+        h = mean*along(own, d)
         ! the mean size on the way
         u = near(point)
-        call look_up(field, mesh%x(:, point) + h*d, u, ahead, there)
+        call look_up(field, mesh%x(:, point) + h*d, u, ahead, there, stretch)
         if (u == 0) cycle
+        ahead = ahead*along(stretch, d)
         x = mesh%x(:, point) + 0.5_wp*(h + ahead)*d
         place = near(point)
-        call look_up(field, x, place, ahead, there)
+        call look_up(field, x, place, ahead, there, stretch)
         if (place == 0) cycle
         call find_triangle(mesh, on_grid(mesh%frame, x), mesh%triangle_at(point), t)
         if (.not. mesh%inside(t)) cycle
         call grow(stamp, size(mesh%node, 2))
-        call find_neighbours(mesh, x, there, ahead, t, 4*point + k, stamp, taken)
+        call find_neighbours(mesh, x, there, ahead, stretch, t, 4*point + k, stamp, taken)
         if (taken) cycle
         call add_point(mesh, x, t, new)
         if (new == 0) cycle
@@ -104,7 +107,7 @@ contains
       end associate
       if (.not. mesh%inside(t)) cycle
       call grow(stamp, size(mesh%node, 2))
-      call find_neighbours(mesh, x, to/length_of(to), corner_share*h, t, -s, stamp, taken)
+      call find_neighbours(mesh, x, to/length_of(to), corner_share*h, no_stretch, t, -s, stamp, taken)
       if (.not. taken) call add_point(mesh, x, t, new)
     end do
   end subroutine fill_corners
@@ -122,15 +125,17 @@ contains
 
   !> Is a place too close to points or kept sides? Triangles are visited from the one it lies in, as far as the distance reaches
   !> and no kept side hides them; `stamp` remembers the visit.
-  pure subroutine find_neighbours(mesh, x, direction, h, first, visit, stamp, taken)
+  pure subroutine find_neighbours(mesh, x, direction, h, stretch, first, visit, stamp, taken)
     type(triangulation_t), intent(in) :: mesh
     real(wp), intent(in) :: x(2), direction(2), h   !! [length]
+    real(wp), intent(in) :: stretch(2)              !! [-]
     integer, intent(in) :: first, visit
     integer, intent(inout) :: stamp(:)
     logical, intent(out) :: taken
     integer :: stack(most_visits), n, t, k
-    real(wp) :: reach(2), gap
+    real(wp) :: reach(2), gap, square(2, 2), ends(2, 3)
 
+    square = to_squares(stretch)
     taken = .true.
     n = 1
     stack(1) = first
@@ -139,11 +144,12 @@ contains
       t = stack(n)
       n = n - 1
       do k = 1, 3
-        reach = mesh%x(:, mesh%node(k, t)) - x
+        reach = matmul(square, mesh%x(:, mesh%node(k, t)) - x)
+        ends(:, k) = reach
         if (max(abs(dot_product(direction, reach)), abs(cross(direction, reach))) < closest*h) return
       end do
       do k = 1, 3
-        gap = distance_to_side(x, mesh%x(:, mesh%node(after(k), t)), mesh%x(:, mesh%node(before(k), t)))
+        gap = distance_to_side(ends(:, after(k)), ends(:, before(k)))
         if (mesh%kept(k, t)) then
           if (gap < closest_side*h) return
           cycle
@@ -158,13 +164,22 @@ contains
     taken = .false.
   end subroutine find_neighbours
 
-  pure function distance_to_side(x, a, b) result(distance)
-    real(wp), intent(in) :: x(2), a(2), b(2)
+  !> Distance of a side between two points from the origin.
+  pure function distance_to_side(a, b) result(distance)
+    real(wp), intent(in) :: a(2), b(2)
     real(wp) :: distance
-    real(wp) :: along(2)
+    real(wp) :: way(2)
 
-    along = b - a
-    distance = length_of(a + min(max(dot_product(x - a, along)/dot_product(along, along), 0.0_wp), 1.0_wp)*along - x)
+    way = b - a
+    distance = length_of(a + min(max(-dot_product(a, way)/dot_product(way, way), 0.0_wp), 1.0_wp)*way)
   end function distance_to_side
+
+  !> Size in a unit direction, along or across the stretch, over the mean one.
+  pure function along(stretch, d) result(ratio)
+    real(wp), intent(in) :: stretch(2), d(2)
+    real(wp) :: ratio
+
+    ratio = exp(stretch(1)*(d(1)**2 - d(2)**2) + 2*stretch(2)*d(1)*d(2))
+  end function along
 
 end module point_packing

@@ -129,7 +129,7 @@ contains
       call put_quad(mesh, right, ring(1:4))
       call put_quad(mesh, left, ring([4, 5, 6, 1]))
     else
-      call add_quad_point(mesh, sum(mesh%x(:, ring), 2)/6, new, e)
+      call add_quad_point(mesh, sum(mesh%x(:, ring), 2)/6, ring, new, e)
       if (new == 0) return
       call remove_quad(mesh, left)
       call put_quad(mesh, right, [ring(1:3), new])
@@ -175,7 +175,7 @@ contains
       middle = middle + sum(mesh%x(:, mesh%corner(:, quads(modulo(k - 1, n) + 1))), 2)/(4*m)
     end do
     middle = 0.75_wp*mesh%x(:, point) + 0.25_wp*(middle - mesh%x(:, point))
-    call add_quad_point(mesh, middle, new, e)
+    call add_quad_point(mesh, middle, [point], new, e)
     if (new == 0) return
     do k = i, i + m - 1
       associate (f => quads(modulo(k - 1, n) + 1))

@@ -46,7 +46,7 @@ contains
       call remember(mesh, quad, memory)
       if (memory%nquad == 0) return
       do i = 1, last
-        call add_quad_point(mesh, 0.5_wp*mesh%x(:, quad(i)) + 0.125_wp*sum(mesh%x(:, quad), 2), new(i), more(i))
+        call add_quad_point(mesh, 0.5_wp*mesh%x(:, quad(i)) + 0.125_wp*sum(mesh%x(:, quad), 2), quad, new(i), more(i))
         if (new(i) > 0) cycle
         call restore(mesh, memory)
         return

@@ -17,6 +17,8 @@ module quad_mesh
     integer, allocatable :: around(:, :)    !! (most_around, npoint) these
     logical, allocatable :: fixed(:)        !! (npoint) on a contour or an inner curve
     real(wp), allocatable :: ideal(:)       !! (npoint) angle of the body there, in right angles
+    !> By which quadrilaterals around each point are longer than wide (`directed_sizes`): 0 for squares (2, npoint) [-].
+    real(wp), allocatable :: stretch(:, :)
   end type quad_mesh_t
 
 contains
@@ -37,6 +39,7 @@ contains
     mesh%nquad = nq
     allocate (mesh%x(2, 2*np), mesh%corner(4, 2*nq), mesh%count(2*np), mesh%around(most_around, 2*np), mesh%fixed(2*np), &
               mesh%ideal(2*np))
+    allocate (mesh%stretch(2, 2*np), source=0.0_wp)
     mesh%x(:, :np) = x
     mesh%corner = 0
     mesh%count = 0
@@ -107,9 +110,10 @@ contains
   end subroutine remove_quad
 
   !> One more point that may move, and one more quadrilateral, both without anything; 0 where there is no space.
-  pure subroutine add_quad_point(mesh, x, point, e)
+  pure subroutine add_quad_point(mesh, x, like, point, e)
     type(quad_mesh_t), intent(inout) :: mesh
-    real(wp), intent(in) :: x(2)   !! [length]
+    real(wp), intent(in) :: x(2)       !! [length]
+    integer, intent(in) :: like(:)     !! points around, of which it has the mean stretch (n)
     integer, intent(out) :: point, e
 
     point = 0
@@ -122,6 +126,7 @@ contains
     mesh%x(:, point) = x
     mesh%fixed(point) = .false.
     mesh%ideal(point) = 4
+    mesh%stretch(:, point) = sum(mesh%stretch(:, like), 2)/size(like)
     mesh%count(point) = 0
   end subroutine add_quad_point
 

@@ -17,6 +17,7 @@ module quad_mesher
   use quad_seams, only: separate_sides
   use quad_smoothing, only: smooth_all
   use size_field, only: size_field_t
+  use stretched_sides, only: exchange_stretched, stretch_of_points
   use triangle_pairs, only: pair_triangles
   use triangle_moves, only: merge_triangles
   use triangulation, only: triangulation_t
@@ -37,13 +38,14 @@ contains
     integer, intent(in) :: sides(:, :)
     integer, intent(in) :: ncontour        !! number of sides of contours
     type(size_field_t), intent(in) :: sizes
-    integer, intent(in) :: material        !! as `size_at` takes it
+    integer, intent(in) :: material        !! as `directed_size_at` takes it
     real(wp), intent(in) :: factor         !! ratio of the sizes to those of the field
     type(quads_t), intent(out) :: quads
     type(error_t), allocatable, intent(out) :: error
     type(triangulation_t) :: triangles
     type(background_t) :: field
     type(quad_mesh_t) :: mesh
+    real(wp), allocatable :: stretch(:, :)
     integer, allocatable :: corners(:, :), original(:)
     logical :: possible
     integer :: n, round, k
@@ -53,7 +55,9 @@ contains
     call set_up_background(triangles, sides + 4, sizes, material, factor, field)
     call pack_points(field, sides(:, :ncontour) + 4, triangles, error)
     if (allocated(error)) return
-    call pair_triangles(triangles, corners)
+    call stretch_of_points(field, triangles, stretch)
+    call exchange_stretched(stretch, triangles)
+    call pair_triangles(triangles, stretch, corners)
     n = size(points, 2)
     ! the first four points are those of the square around
     corners = max(corners - 4, 0)
@@ -68,6 +72,7 @@ contains
                 'ask for elements of other sizes')
       return
     end if
+    mesh%stretch(:, :mesh%npoint) = stretch(:, [(k, k=5, triangles%npoint), original + 4])
     call smooth_all(mesh, first_sweeps)
     do round = 1, rounds
       call clean_quads(mesh)

@@ -4,8 +4,9 @@
 !> sides, more for any other, infinite for a flat one (P. M. Knupp, SIAM J. Sci. Comput. 23 (2001) 193-218). The sum of f^4 over
 !> the corners that a point changes is minimised by Newton's method, point by point. Where corners are flat or inverted the area
 !> is replaced by a positive one that grows with it (J. M. Escobar et al., Comput. Methods Appl. Mech. Engng 192 (2003)
-!> 2775-2787).
+!> 2775-2787). Where quadrilaterals are wanted longer than wide, sides are measured by the map that makes squares of these.
 module quad_smoothing
+  use directed_sizes, only: to_squares
   use kinds, only: wp
   use plane_vectors, only: cross
   use quad_mesh, only: quad_mesh_t
@@ -79,11 +80,12 @@ contains
     type(quad_mesh_t), intent(inout) :: mesh
     integer, intent(in) :: point
     real(wp), intent(out) :: moved   !! over the mean side
-    real(wp) :: ring(2, 3, size(mesh%around, 1)), matrix(3), step(2), start(2), x(2), det, side, delta, energy
+    real(wp) :: ring(2, 3, size(mesh%around, 1)), matrix(3), step(2), start(2), x(2), det, side, delta, energy, square(2, 2)
     type(sums_t) :: sums
     integer :: i, n, k
 
     n = mesh%count(point)
+    square = to_squares(mesh%stretch(:, point))
     side = 0
     do i = 1, n
       associate (corner => mesh%corner(:, mesh%around(i, point)))
@@ -92,7 +94,7 @@ contains
         ring(:, 2, i) = mesh%x(:, corner(mod(k + 1, 4) + 1))
         ring(:, 3, i) = mesh%x(:, corner(mod(k + 2, 4) + 1))
       end associate
-      side = side + sum((ring(:, [2, 3], i) - ring(:, [1, 2], i))**2)
+      side = side + sum(matmul(square, ring(:, [2, 3], i) - ring(:, [1, 2], i))**2)
     end do
     moved = 0
     side = sqrt(side/(2*n))
@@ -101,7 +103,7 @@ contains
     ! lengths over the mean side
     do i = 1, n
       do k = 1, 3
-        ring(:, k, i) = (ring(:, k, i) - start)/side
+        ring(:, k, i) = matmul(square, ring(:, k, i) - start)/side
       end do
     end do
     x = 0
@@ -121,7 +123,7 @@ contains
     do k = 1, halvings
       energy = energy_at(ring(:, :, :n), x + step, delta)
       if (energy < sums%energy) then
-        mesh%x(:, point) = start + side*step
+        mesh%x(:, point) = start + side*matmul(to_squares(-mesh%stretch(:, point)), step)
         moved = length_of(step)
         return
       end if

@@ -5,6 +5,7 @@
 !> paths, with odd cycles contracted (J. Edmonds, Paths, trees, and flowers, Canadian J. Math. 17 (1965) 449-467), first over good
 !> pairs, then over any. Cleaning repairs what a path has cost.
 module triangle_pairs
+  use directed_sizes, only: to_squares
   use kinds, only: pi, wp
   use plane_vectors, only: angle_between
   use triangulation, only: after, before, place_of, triangulation_t
@@ -31,8 +32,9 @@ module triangle_pairs
 contains
 
   !> The quadrilaterals, counter-clockwise; triangles that remain have a fourth corner of 0.
-  pure subroutine pair_triangles(mesh, corners)
+  pure subroutine pair_triangles(mesh, stretch, corners)
     type(triangulation_t), intent(in) :: mesh
+    real(wp), intent(in) :: stretch(:, :)              !! of quadrilaterals around each point (2, npoint) [-]
     integer, allocatable, intent(out) :: corners(:, :)   !! (4, n) points of the triangulation
     real(wp), allocatable :: quality(:, :)
     integer, allocatable :: partner(:)
@@ -45,7 +47,7 @@ contains
       do k = 1, 3
         if (mesh%kept(k, t)) cycle
         if (mesh%across(k, t) > t) then
-          quality(k, t) = quality_of(mesh, t, k)
+          quality(k, t) = quality_of(mesh, stretch, t, k)
         else
           quality(k, t) = quality(place_of(mesh, t, mesh%across(k, t)), mesh%across(k, t))
         end if
@@ -95,14 +97,16 @@ contains
   end function merged
 
   !> 1 for a rectangle, 0 or less where a corner is flat or beyond.
-  pure function quality_of(mesh, t, k) result(quality)
+  pure function quality_of(mesh, stretch, t, k) result(quality)
     type(triangulation_t), intent(in) :: mesh
+    real(wp), intent(in) :: stretch(:, :)
     integer, intent(in) :: t, k
     real(wp) :: quality
     real(wp) :: x(2, 4), angle, worst
-    integer :: i
+    integer :: corners(4), i
 
-    x = mesh%x(:, merged(mesh, t, k))
+    corners = merged(mesh, t, k)
+    x = matmul(to_squares(0.25_wp*sum(stretch(:, corners), 2)), mesh%x(:, corners))
     worst = 0
     do i = 1, 4
       angle = angle_between(x(:, mod(i, 4) + 1) - x(:, i), x(:, modulo(i - 2, 4) + 1) - x(:, i))

@@ -3,16 +3,20 @@ module sizes_of_scene
   use arcs_on_die, only: placed_piece
   use block_mesh, only: polygon_area
   use contact_misfits, only: needs_of_misfits
+  use contour_volume, only: volume_inside
   use contour_needs, only: geometry_settings_t, needs_of_boundary, needs_of_die
   use dies, only: is_deformable
   use fields, only: pilot_field
   use kinds, only: wp
   use part_contour, only: contour_t
   use scene, only: axisymmetric, scene_t
-  use size_field, only: need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t
+  use remesh_defaults, only: elements_at_first
+  use size_field, only: lengthen, need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t
   use size_windows, only: limits_around, place_window, size_window_t
   use solution, only: solution_t
+  use square_sizes, only: set_up_squares, square_field_t
   use state_pieces, only: mesh_of, solid_pieces, state_pieces_t
+  use thin_parts, only: find_thin_parts, thin_point_t
   use transfer_mesh, only: transfer_mesh_t
   implicit none
   private
@@ -38,39 +42,28 @@ contains
     type(state_pieces_t) :: pieces
     type(transfer_mesh_t) :: mesh
     type(old_mesh_t) :: old
-    type(size_limits_t) :: limits, wide
+    type(size_limits_t) :: limits, longer
     type(size_window_t), allocatable :: windows(:)
-    type(geometry_settings_t) :: settings
-    type(need_t), allocatable :: needs(:), bends(:), more(:)
+    type(need_t), allocatable :: needs(:), misfits(:)
+    type(thin_point_t), allocatable :: thin(:)
     real(wp) :: error, now
     logical :: shown
-    integer :: e, c, d, k
+    integer :: e, c
 
     if (scene%remesher%smallest > 0) limits%smallest = scene%remesher%smallest
     if (scene%remesher%largest > 0) limits%largest = scene%remesher%largest
     call place_windows(scene, solution, windows)
-    wide = limits_around(limits, windows)
-    settings%across = scene%remesher%across_contact
-    settings%turn = scene%remesher%turn
-    allocate (needs(0), bends(0))
-    do d = 1, size(scene%dies)
-      if (is_deformable(scene%dies(d))) cycle
-      call needs_of_die([(placed_piece(scene%dies(d), solution%fields(pilot_field)%value(:, d), k), &
-                          k=1, size(scene%dies(d)%pieces, 3))], &
-                        scene%dies(d)%closed, settings, wide, more)
-      bends = [bends, more]
-    end do
-    do c = 1, size(contours)
-      call needs_of_boundary(contours(c)%boundary, settings, wide, more, bends)
-      needs = [needs, more]
-    end do
+    longer = limits
+    call find_thin_parts([(contours(c)%boundary, c=1, size(contours))], limits%largest, thin)
+    if (size(thin) > 0) longer%largest = longest_size(scene, contours, first, limits%largest)
+    allocate (misfits(0))
+    if (.not. first) call needs_of_misfits(scene, solution, misfits)
+    call needs_of_geometry(scene, solution, contours, limits_around(limits, windows), misfits, needs)
     if (first) then
       call set_up_sizes(limits, needs, sizes, learned, windows)
+      call let_be_longer(learned)
       return
     end if
-    call needs_of_misfits(scene, solution, more)
-    more%size = max(more%size, wide%smallest)
-    needs = [needs, more]
     call solid_pieces(scene, pieces, solution)
     pieces%axisymmetric = .false.
     call mesh_of(pieces, mesh)
@@ -96,7 +89,74 @@ contains
     end if
     if (size(windows) > 0) old%origin = scene%mesh%origin
     call set_up_sizes(limits, needs, sizes, old, windows)
+    call let_be_longer(old)
+
+  contains
+
+    !> Lengths in thin parts: sizes for a larger limit, with what the geometry requires below that.
+    subroutine let_be_longer(mesh_before)
+      type(old_mesh_t), intent(in), optional :: mesh_before
+      type(square_field_t) :: lengths
+      type(need_t), allocatable :: needs_of_lengths(:)
+
+      if (.not. longer%largest > limits%largest) return
+      call needs_of_geometry(scene, solution, contours, limits_around(longer, windows), misfits, needs_of_lengths)
+      call set_up_squares(longer, needs_of_lengths, lengths, mesh_before, windows)
+      call lengthen(lengths, thin, sizes)
+    end subroutine let_be_longer
+
   end subroutine requested_sizes
+
+  !> Length of elements in thin parts at most. A first mesh, of which nothing is known but its contours, has no longer ones than
+  !> squares as a body that is not thin would have (`remesh_defaults`).
+  pure function longest_size(scene, contours, first, largest) result(longest)
+    type(scene_t), intent(in) :: scene
+    type(contour_t), intent(in) :: contours(:)
+    logical, intent(in) :: first
+    real(wp), intent(in) :: largest   !! [length]
+    real(wp) :: longest
+    real(wp) :: area
+    integer :: c
+
+    longest = scene%remesher%stretch*largest
+    if (.not. first) return
+    area = 0
+    do c = 1, size(contours)
+      area = area + volume_inside(contours(c)%boundary, .false.)
+    end do
+    longest = max(largest, min(longest, sqrt(max(area, 0.0_wp)/elements_at_first)))
+  end function longest_size
+
+  !> Requirements of bends and contacts, and where sides lie off their dies.
+  subroutine needs_of_geometry(scene, solution, contours, limits, misfits, needs)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(contour_t), intent(in) :: contours(:)
+    type(size_limits_t), intent(in) :: limits             !! nowhere narrower than those of any place
+    type(need_t), intent(in) :: misfits(:)                !! (n)
+    type(need_t), allocatable, intent(out) :: needs(:)    !! (nneed)
+    type(geometry_settings_t) :: settings
+    type(need_t), allocatable :: bends(:), more(:)
+    integer :: c, d, k
+
+    settings%across = scene%remesher%across_contact
+    settings%turn = scene%remesher%turn
+    allocate (needs(0), bends(0))
+    do d = 1, size(scene%dies)
+      if (is_deformable(scene%dies(d))) cycle
+      call needs_of_die([(placed_piece(scene%dies(d), solution%fields(pilot_field)%value(:, d), k), &
+                          k=1, size(scene%dies(d)%pieces, 3))], &
+                        scene%dies(d)%closed, settings, limits, more)
+      bends = [bends, more]
+    end do
+    do c = 1, size(contours)
+      call needs_of_boundary(contours(c)%boundary, settings, limits, more, bends)
+      needs = [needs, more]
+    end do
+    more = misfits
+    more%size = max(more%size, limits%smallest)
+    needs = [needs, more]
+  end subroutine needs_of_geometry
 
   !> Windows of the deck where they are now.
   subroutine place_windows(scene, solution, windows)

@@ -8,7 +8,7 @@ module remesh_defaults
   use vectors, only: length_of
   implicit none
   private
-  public :: area_in, set_default_limits, set_default_sizes
+  public :: elements_at_first, area_in, set_default_limits, set_default_sizes
 
   !> Shapes at which an element does its work badly but does it still, for every single element: a new mesh has none like these
   !> (angles from 20 degrees, scaled Jacobians from 0.25, middle nodes in the middle third), and each is some steps of distortion

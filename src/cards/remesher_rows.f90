@@ -17,7 +17,7 @@ module remesher_rows
   public :: remesher_words, read_remesher_row, make_sizes_finer, measure_own_mesh, complete_options
 
   !> In the order of `read_remesher_row`.
-  character(len=*), parameter :: remesher_words = 'STRAIN SIZE COUNT ACROSS TURN TRANSFER ACCEPT TRIES MESHER'
+  character(len=*), parameter :: remesher_words = 'STRAIN SIZE COUNT ACROSS TURN STRETCH TRANSFER ACCEPT TRIES MESHER'
   !> Meshers by their numbers, from 1.
   character(len=*), parameter :: meshers = 'ZONES GMSH FREE'
   !> Methods of transfer by their numbers, from 0.
@@ -26,6 +26,8 @@ module remesher_rows
   character(len=*), parameter :: limits = 'RESIDUAL ITERATIONS FORCE ENERGY DEPTH STEP'
   !> Moving squares of degree 2 need 6 points, and some more not to be an interpolation.
   integer, parameter :: fewest_neighbours = 8, most_neighbours = 64
+  !> Longer elements than this are past the limit of `ASPECT` soon (remesh_defaults).
+  real(wp), parameter :: largest_stretch = 5.0_wp
   !> Smallest and largest elements over those of the deck's own mesh, and how many times as many elements there may be.
   real(wp), parameter :: smallest_share = 0.4_wp, largest_share = 2.5_wp
   integer, parameter :: growth = 3
@@ -53,6 +55,8 @@ contains
       call cursor%real('the angle a side of an element may turn by', degrees, lower=0.0_wp, upper=90.0_wp, &
                        strict_lower=.true., unit='degrees')
       options%turn = degrees*pi/180
+    case ('STRETCH')
+      call cursor%real('the largest ratio of length to width of an element', options%stretch, lower=1.0_wp, upper=largest_stretch)
     case ('TRANSFER')
       call read_transfer(cursor, options)
     case ('ACCEPT')

@@ -13,6 +13,10 @@ module remesher_options
   !> Mesher: zones, and where they fail the free mesher, then Gmsh; zones alone; Gmsh alone; the free mesher alone.
   integer, parameter :: as_it_comes = 0, by_zones = 1, by_gmsh = 2, by_free = 3
 
+  !> Largest ratio of length to width where the deck does not say: as long as wide, as longer ones save little in the
+  !> scenes (manual).
+  real(wp), parameter :: default_stretch = 1.0_wp
+
   !> The mesh that the cards make, before any remesh took its place.
   type :: own_mesh_t
     integer :: elements = 0
@@ -32,6 +36,8 @@ module remesher_options
     !> Error of the strains an element is made for, elements at most.
     real(wp) :: strain_error = 0.05_wp
     integer :: most_elements = 0
+    !> Largest ratio of length to width of elements that the remesher asks for.
+    real(wp) :: stretch = default_stretch
     !> Sizes in windows; empty without any.
     type(mesh_window_t), allocatable :: windows(:)
     !> Elements across a contact interval (0: as they come), angle a side of an element may turn by [radian].

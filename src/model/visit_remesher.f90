@@ -37,6 +37,7 @@ contains
     call visitor%member('most_elements', self%most_elements, kept, low=0)
     call visitor%member('across_contact', self%across_contact, kept, low=0)
     call visitor%member('turn', self%turn, kept, 'radian', low=tiny(1.0_wp), high=pi/2)
+    call visitor%member('stretch', self%stretch, kept, '-', low=1.0_wp)
     call visitor%member('mesher', self%mesher, kept, low=0, high=by_free)
     call visitor%member('tries', self%tries, kept, low=0)
     call visit_window_list(visitor, self%windows)

@@ -189,6 +189,7 @@ contains
         options%most_elements = 77
         options%across_contact = 5
         options%turn = 0.4_wp
+        options%stretch = 2.5_wp
         options%mesher = by_gmsh
         options%tries = 6
         options%windows = [mesh_window_t(low=[0.1_wp, 0.2_wp], high=[0.3_wp, 0.5_wp], smallest=0.02_wp, largest=0.04_wp, &
