@@ -5,7 +5,8 @@ usage: run_solvers.py [-v] [-k]       -v prints every check and the differences,
 
 A deck takes the same steps and its history agrees to 1e-8 of the largest number of each column: solutions of the linear systems differ
 in round-off alone, and Newton's method ends within its norms, which are a ten thousandth of the defaults here. With norms of a hundredth it
-takes as many iterations, but for one.
+takes as many iterations, but for one. A part that slides on a die adds up the round-off of its places over the depth, which pressures
+follow, in every step.
 """
 import os
 import re
@@ -17,6 +18,8 @@ from support import (DONE, SIGNAL, SOURCE, Checks, add_cards, deck_text, history
                      start, stop_after, summary, with_h5py, write)
 
 AGREE = 1.0e-8
+# Largest coordinate of a deck whose part slides all the way [mm].
+SLIDES = {"press fit": 40.0}
 # Norms with which iterations are counted, and with which histories are compared: points at the limit of friction multiply what Newton's
 # method leaves.
 COUNTED, COMPARED = "NORMS  FORCE 1.E-8 DISPL 1.E-7", "NORMS  FORCE 1.E-10 DISPL 1.E-9"
@@ -73,7 +76,8 @@ def compare(checks, name, deck, options, solver):
         share = depths.get("max_penetration_over_allowed", 0.0)
         one, two = (history(folder) for folder in compared)
         worst = difference(one, two, depths["max_penetration"]/share if share > 0 else 0.0)
-        checks.that(worst[0] <= AGREE, f"{name}, {solver}: the same history", worst)
+        floor = sys.float_info.epsilon*SLIDES.get(name, 0.0)/depths["max_penetration"]*len(one["time"]) if name in SLIDES else 0.0
+        checks.that(worst[0] <= max(AGREE, floor), f"{name}, {solver}: the same history", (*worst, floor))
         if checks.verbose:
             print(f"       {len(one['time'])} steps, largest difference {worst[0]:.1e} {worst[1]}")
 
