@@ -42,7 +42,7 @@ module remesh_scene
   public :: remesh_checkpoint
 
   !> Free sides from a corner to contact that are shorter than this share of the smallest element are dropped.
-  real(wp), parameter :: least_free = 0.5_wp
+  real(wp), parameter :: least_free = 0.2_wp
   !> Loops of a free contour that crosses itself are cut off up to the length of so many of the smallest elements: as deep as one.
   real(wp), parameter :: longest_lap = 2.0_wp
 
