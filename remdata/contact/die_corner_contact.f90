@@ -6,7 +6,9 @@
 module die_corner_contact
   use boundary_sides, only: loop_t
   use contact_intervals, only: along, contact_interval_t, side_point_t
+  use corner_weights, only: handing_over
   use kinds, only: wp
+  use quadrature, only: line_rule
   use scene, only: scene_t
   use solution, only: solution_t
   use state_variables, only: find_variable
@@ -17,7 +19,9 @@ module die_corner_contact
 contains
 
   !> Extend intervals to the corners in contact with sides of their group that are no farther than `longest` past their ends,
-  !> as long as no other interval is between them.
+  !> as long as no other interval is between them. An interval whose first or last point in contact is a corner ends there already:
+  !> what is left of it on the corner's other face is as long as the corner is deep. So does one whose last node has slid past
+  !> the corner, and hands its force over to it.
   pure subroutine extend_to_corners(scene, solution, loop, longest, intervals)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -25,6 +29,7 @@ contains
     real(wp), intent(in) :: longest                           !! [sides]
     type(contact_interval_t), intent(inout) :: intervals(:)   !! (ninterval) in their order along the loop
     type(side_point_t), allocatable :: corners(:)
+    real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: until
     integer :: g, k, i, nside, before, after
 
@@ -32,6 +37,7 @@ contains
     do g = 1, size(scene%groups)
       if (all(intervals%group /= g)) cycle
       call find_corners(scene, solution, loop, g, corners)
+      call line_rule(scene%groups(g)%rule, xi, weight)
       do k = 1, size(intervals)
         if (intervals(k)%group /= g) cycle
         after = modulo(k, size(intervals)) + 1
@@ -41,10 +47,49 @@ contains
           call try_end(corners(i), min(until, along(intervals(k)%to) + longest), nside, intervals(k))
           until = along(intervals(before)%to) - merge(nside, 0, before >= k)
           call try_beginning(corners(i), max(until, along(intervals(k)%from) - longest), intervals(k))
+          if (is_outermost(xi, intervals(k)%from, corners(i), 1)) intervals(k)%to_corner(1) = .true.
+          if (is_outermost(xi, intervals(k)%to, corners(i), -1)) intervals(k)%to_corner(2) = .true.
+          call end_at_corner(corners(i), nside, intervals(k))
         end do
       end do
     end do
   end subroutine extend_to_corners
+
+  !> A corner is the first point of contact behind an end of an interval on its side, along the loop (1) or against it (-1).
+  pure function is_outermost(xi, limit, corner, towards) result(yes)
+    real(wp), intent(in) :: xi(:)   !! (npoint) of the side [-]
+    type(side_point_t), intent(in) :: limit, corner
+    integer, intent(in) :: towards
+    logical :: yes
+
+    yes = corner%side == limit%side .and. towards*(corner%xi - limit%xi) >= 0 &
+          .and. .not. any(towards*(xi - limit%xi) >= 0 .and. towards*(corner%xi - xi) >= 0)
+  end function is_outermost
+
+  !> The node between a corner and the end of an interval has slid past the corner, and loses its force on this way
+  !> (corner_release): the interval ends in the corner.
+  pure subroutine end_at_corner(corner, nside, interval)
+    type(side_point_t), intent(in) :: corner
+    integer, intent(in) :: nside
+    type(contact_interval_t), intent(inout) :: interval
+    type(side_point_t) :: one
+    real(wp) :: past
+
+    past = along(corner) - along(interval%from)
+    if (corner%xi < 0 .and. past >= 0 .and. past <= handing_over) then
+      interval%from = corner
+      interval%found(1) = corner
+      interval%to_corner(1) = .true.
+    end if
+    one = corner
+    if (along(one) < along(interval%from)) one%side = one%side + nside
+    past = along(interval%to) - along(one)
+    if (corner%xi > 0 .and. past >= 0 .and. past <= handing_over) then
+      interval%to = one
+      interval%found(2) = one
+      interval%to_corner(2) = .true.
+    end if
+  end subroutine end_at_corner
 
   !> An interval ends in a corner that is past its end.
   pure subroutine try_end(corner, until, nside, interval)

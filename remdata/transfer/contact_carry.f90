@@ -1,10 +1,11 @@
 !> Transfer of the contact state to the new sides: along each contact interval, from its beginning to its end.
 module contact_carry
   use arcs, only: arc_t
-  use boundary_curves, only: arc_length_at, boundary_length
+  use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, position_at_arc_length, position_t
   use boundary_sides, only: loop_t
   use contact_intervals, only: contact_interval_t, is_before_corner, side_point_t
-  use corner_weights, only: corner_weight
+  use contour_assembly, only: contact_t
+  use corner_weights, only: corner_weight, share_of_corner
   use kinds, only: wp
   use new_scene, only: middle_position
   use offset_parabolas, only: length_between
@@ -30,6 +31,8 @@ module contact_carry
     integer, allocatable :: point(:), element(:)
     !> What is added to the numbers of components: 0, or for a corner of the die those of its own state.
     integer, allocatable :: offset(:)
+    !> Points that share a force: those of a node that slides past a corner of the die, and the corner.
+    logical, allocatable :: shared(:)
   end type interval_points_t
 
   !> Arc lengths from the start of an interval are equal to this share of it.
@@ -68,6 +71,7 @@ contains
           call list_carried(old, h, carried, conserved)
           call carry_interval(carried, conserved, row_old, row_new, from%groups(h)%committed, status_row(old, h), &
                               to%groups(h)%committed)
+          if (h == g) call place_on_die(new, g, contours(c)%boundary, contours(c)%contacts(k), row_new, to%groups(g)%committed)
           call add_integrals(old, h, carried(pack([(i, i=1, size(carried))], conserved)), row_old, from%groups(h)%committed, &
                              row_new, to%groups(h)%committed, rows)
         end do
@@ -77,6 +81,40 @@ contains
       to%groups(g)%trial = to%groups(g)%committed
     end do
   end subroutine carry_contacts
+
+  !> Where on the die the points of an interval are: one that slides past a corner in the very first step is on the face it comes
+  !> from (corner_release), and loses its pressure on a way, not at once.
+  pure subroutine place_on_die(scene, g, boundary, contact, row, state)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g
+    type(boundary_curve_t), intent(in) :: boundary
+    type(contact_t), intent(in) :: contact
+    type(interval_points_t), intent(in) :: row   !! of the new mesh
+    real(wp), intent(inout) :: state(:, :, :)    !! (nstate, npoint, nside) [unit of each component]
+    type(position_t) :: position
+    integer :: p, first, last, piece, xi
+
+    piece = find_variable(scene%groups(g)%variables, 'die_piece')
+    if (piece == 0 .or. status_row(scene, g) == 0) return
+    piece = scene%groups(g)%variables(piece)%first
+    xi = scene%groups(g)%variables(find_variable(scene%groups(g)%variables, 'die_xi'))%first
+    first = contact%first
+    last = modulo(contact%next - 2, size(boundary%arcs)) + 1
+    do p = 1, size(row%s)
+      ! at the ends of the interval other arcs begin
+      if (row%s(p) <= 0) then
+        position = position_t(first, boundary%arcs(first)%range(1))
+      else if (row%s(p) >= row%length) then
+        position = position_t(last, boundary%arcs(last)%range(2))
+      else
+        position = position_at_arc_length(boundary, modulo(boundary%arc_length(first - 1) + row%s(p), boundary_length(boundary)))
+      end if
+      associate (point => state(:, row%point(p), row%element(p)), arc => boundary%arcs(position%arc))
+        if (nint(point(status_row(scene, g))) == 0 .or. arc%die /= contact%number) cycle
+        point([piece, xi]) = [real(arc%piece, wp), min(max(position%xi, -1.0_wp), 1.0_wp)]
+      end associate
+    end do
+  end subroutine place_on_die
 
   pure function status_row(scene, g) result(row)
     type(scene_t), intent(in) :: scene
@@ -122,9 +160,10 @@ contains
     type(arc_t) :: part
     integer :: side, number, e, p
 
-    allocate (row%s(0), row%weight(0), row%point(0), row%element(0), row%offset(0))
+    allocate (row%s(0), row%weight(0), row%point(0), row%element(0), row%offset(0), row%shared(0))
     call line_rule(scene%groups(g)%rule, xi, weight)
     if (.not. interval%from%xi > -1) call add_neighbour(scene, g, loop, x, interval%from%side - 1, 1.0_wp, row)
+    if (with_corners .and. interval%to_corner(1)) call add_released(scene, g, loop, x, interval%from, -1, row)
     do side = interval%from%side, interval%to%side
       number = modulo(side - 1, size(loop%sides, 2)) + 1
       associate (nodes => x(:, loop%sides(:, number)))
@@ -144,7 +183,29 @@ contains
       row%length = row%length + length_between(part, part%range(1), part%range(2))
     end do
     if (.not. interval%to%xi < 1) call add_neighbour(scene, g, loop, x, interval%to%side + 1, -1.0_wp, row)
+    if (with_corners .and. interval%to_corner(2)) call add_released(scene, g, loop, x, interval%to, 1, row)
   end subroutine old_row
+
+  !> The points of the node that hands its force over to the corner in which an interval begins (-1) or ends (1): the pressure of
+  !> their state acts there with what the corner has not taken yet (corner_release).
+  pure subroutine add_released(scene, g, loop, x, corner, towards, row)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g, towards
+    type(loop_t), intent(in) :: loop
+    real(wp), intent(in) :: x(:, :)
+    type(side_point_t), intent(in) :: corner
+    type(interval_points_t), intent(inout) :: row
+    real(wp) :: share
+    integer :: n
+
+    share = 1 - share_of_corner(corner%xi)
+    if (.not. (share > 0 .and. towards*corner%xi > 0)) return
+    n = size(row%s)
+    call add_neighbour(scene, g, loop, x, corner%side, real(towards, wp), row)
+    call add_neighbour(scene, g, loop, x, corner%side + towards, -real(towards, wp), row)
+    row%weight(n + 1:) = share*row%weight(n + 1:)
+    row%shared(n + 1:) = .true.
+  end subroutine add_released
 
   !> The corner of the die in contact in the interval before a point, where it is on a part of a side.
   pure subroutine add_corner(scene, g, nodes, part, xi, p, e, state, row)
@@ -166,6 +227,7 @@ contains
                      corner_weight(xi, p, place)*line_jacobian(nodes, place, scene%plane_state == axisymmetric), p, e, row, &
                      variables(find_variable(variables, 'corner_pressure'))%first &
                      - variables(find_variable(variables, 'pressure'))%first)
+      row%shared(size(row%shared)) = share_of_corner(place) < 1
     end associate
   end subroutine add_corner
 
@@ -248,6 +310,7 @@ contains
     added = 0
     if (present(offset)) added = offset
     row%offset = [row%offset, added]
+    row%shared = [row%shared, .false.]
   end subroutine add_point
 
   !> New points of a group on the arcs of an interval.
@@ -264,7 +327,7 @@ contains
     logical :: taken((size(mesh%sides) + 2)*scene%groups(g)%rule%n)
     integer :: k, e, p
 
-    allocate (unsorted%s(0), unsorted%weight(0), unsorted%point(0), unsorted%element(0), unsorted%offset(0))
+    allocate (unsorted%s(0), unsorted%weight(0), unsorted%point(0), unsorted%element(0), unsorted%offset(0), unsorted%shared(0))
     call line_rule(scene%groups(g)%rule, xi, weight)
     associate (boundary => contours(c)%boundary, contact => contours(c)%contacts(interval))
       total = boundary_length(boundary)
@@ -306,6 +369,7 @@ contains
     row%point = unsorted%point(order)
     row%element = unsorted%element(order)
     row%offset = unsorted%offset(order)
+    row%shared = unsorted%shared(order)
   end subroutine new_row
 
   pure subroutine carry_interval(carried, conserved, row_old, row_new, before, status, after)
@@ -322,6 +386,7 @@ contains
     do p = 1, size(row_old%s)
       old(:, p) = before(carried + row_old%offset(p), row_old%point(p), row_old%element(p))
     end do
+    call share_forces(row_old, old)
     do v = 1, size(carried)
       call carry_along(row_old%length, row_old%s, old(v:v, :), row_old%weight, row_new%length, row_new%s, row_new%weight, 2, &
                        conserved(v), new(v:v, :), change(v:v))
@@ -334,6 +399,23 @@ contains
                                                                      row_old%point(nearest), row_old%element(nearest))
     end do
   end subroutine carry_interval
+
+  !> Points that share a force have its mean over the length that they stand for.
+  pure subroutine share_forces(row, values)
+    type(interval_points_t), intent(in) :: row
+    real(wp), intent(inout) :: values(:, :)   !! (component, npoint) [unit of each component]
+    logical :: same(size(row%s))
+    integer :: p, v
+
+    do p = 1, size(row%s)
+      if (.not. row%shared(p)) cycle
+      same = row%shared .and. abs(row%s - row%s(p)) <= round_off*row%length
+      if (count(same) < 2 .or. .not. sum(row%weight, mask=same) > 0) cycle
+      do v = 1, size(values, 1)
+        values(v, :) = merge(sum(values(v, :)*row%weight, mask=same)/sum(row%weight, mask=same), values(v, :), same)
+      end do
+    end do
+  end subroutine share_forces
 
   !> Add the integrals of the variables of an interval, each to the row of its name.
   pure subroutine add_integrals(scene, g, components, row_old, before, row_new, after, rows)

@@ -59,7 +59,8 @@ contains
         if (.not. (way > 0 .and. way < 0.5_wp*releasing*length)) cycle
         depth = dot_product(point - die%corners(1:2, k), right_of(merge(outward, -outward, side == 1)))
         normal = right_of(merge(outward, -outward, side == 1))
-        if (.not. depth > 0) cycle
+        ! pressure that was augmented holds also where the point has left the face by less than that takes
+        if (was_open .and. .not. depth > 0) cycle
         if (was_open .and. .not. (depth < shallow*length .and. dot_product(normal, e_r) < -facing)) cycle
         closest = closest_point_t(piece=face_at(die, k, side), xi=merge(1.0_wp, -1.0_wp, side == 1), d=depth, normal=normal)
         release%slope = -2/(releasing*length)

@@ -8,6 +8,7 @@
 module rigid_contact
   use contact_point, only: act, at_penetration, at_piece, at_status, at_xi, contact_point_t, meeting_t, most_unknowns, side_point
   use closest_point, only: closest_point_t
+  use corner_faces, only: stay_on_face
   use curve_search, only: closest_facing_point, follow_closest_point
   use dies, only: die_t
   use kinds, only: wp
@@ -177,6 +178,7 @@ contains
     if (piece == 0) return
     call follow_closest_point(die, point, e_r, reach, piece, committed(at_xi), same)
     if (same%piece > 0 .and. same%d > 0) closest = same
+    if (nint(committed(at_status)) /= contact_open .and. closest%piece > 0) call stay_on_face(die, point, reach, piece, closest)
   end subroutine closest_or_followed
 
   !> Outer product of two vectors.

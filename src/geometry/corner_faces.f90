@@ -5,7 +5,9 @@
 !> - in a corner that the part fills, as that of a container's floor and wall, the end of a side is near both faces, and the signs
 !>   of its depths are those of round-off and of the last correction. It keeps to the face that its side lies on, which goes on
 !>   beyond the vertex where it has to: multipliers hold the pressure there, along the normal of that face. The other face is that
-!>   of the other side which ends there.
+!>   of the other side which ends there;
+!> - a point that presses one face of a corner that points to the part stays on it while it is shallow: a pressure that is held
+!>   would turn with the face from one iteration to the next, and back.
 module corner_faces
   use closest_point, only: closest_point_t, closest_within_piece, sense_of_turn, stationary_points, whole_piece
   use kinds, only: wp
@@ -15,7 +17,7 @@ module corner_faces
   use vectors, only: length_of
   implicit none
   private
-  public :: leave_beside, keep_to_face, closest_on_piece
+  public :: leave_beside, keep_to_face, stay_on_face, closest_on_piece
 
   !> A side whose normal meets a face at less than this cosine hardly lies on it.
   real(wp), parameter :: beside = 0.7_wp
@@ -55,6 +57,30 @@ contains
       along = along_other
     end do
   end subroutine leave_beside
+
+  !> The face that a point has pressed, in place of the other one of the same corner, which must point to the part.
+  pure subroutine stay_on_face(curve, point, reach, pressed, closest)
+    class(piecewise_curve_t), intent(in) :: curve
+    real(wp), intent(in) :: point(2)   !! in the pilot's axes [length]
+    real(wp), intent(in) :: reach      !! [length]
+    integer, intent(in) :: pressed     !! piece
+    type(closest_point_t), intent(inout) :: closest   !! of all, on a piece
+    type(closest_point_t) :: found
+    integer :: way
+
+    if (closest%at_vertex .or. closest%piece == pressed) return
+    do way = -1, 1, 2
+      if (adjacent_piece(curve, pressed, way) /= closest%piece) cycle
+      associate (own => curve%pieces(:, :, pressed), other => curve%pieces(:, :, closest%piece))
+        if (way > 0 .and. .not. sense_of_turn(own, other) < 0) cycle
+        if (way < 0 .and. .not. sense_of_turn(other, own) < 0) cycle
+      end associate
+      call closest_on_piece(curve, pressed, point, real(way, wp), 0.0_wp, found)
+      if (found%piece == 0 .or. .not. abs(found%d) < at_corner*reach) cycle
+      closest = found
+      return
+    end do
+  end subroutine stay_on_face
 
   !> In a corner that the part fills, the face that the side of a point lies on.
   pure subroutine keep_to_face(curve, point, e_r, reach, closest)

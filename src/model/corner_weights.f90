@@ -6,7 +6,7 @@ module corner_weights
   use kinds, only: wp
   implicit none
   private
-  public :: corner_weight, interval_before, share_of_corner
+  public :: corner_weight, handing_over, interval_before, share_of_corner
 
   !> A corner nearer than this to an end of the side, in xi, has lost a part of its weight to the node there.
   real(wp), parameter :: handing_over = 0.05_wp

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Neighbours of the scenes with REMSH alone, drawn at random: radii, heights, friction and hardening within ranges (scenes.py).
 
-usage: run_neighbours.py [--seed S] [--number N] [--first K] [-v] [-k]     default: seed 1, the first 2 of them
+usage: run_neighbours.py [--seed S] [--number N] [--first K] [--scene NAME] [-v] [-k]     default: seed 1, the first 2 of them, of scenes in turn
 
 Neighbour K of a seed is the same whatever N is. Ends with 0 or 3, where 3 comes with a reason; at least 57 of 60 with 0. Prints a table, and one of the changes of the die force at new meshes (force_changes.py).
 """
@@ -20,24 +20,25 @@ ORDER = ("bimetal", "side_pressing", "can", "teeth", "two_strokes", "h_section",
          "extrusion_long", "heading")
 
 
-def draw(seed, number):
+def draw(seed, number, name=""):
     """Scene and parameters of a neighbour, four digits each."""
     chance = random.Random(1000003 * seed + number)
-    name = ORDER[number % len(ORDER)]
+    name = name or ORDER[number % len(ORDER)]
     return name, {key: float(f"{chance.uniform(*bounds):.4g}") for key, bounds in SCENES[name][1].items()}
 
 
 def value_of(option, default):
-    return int(sys.argv[sys.argv.index(option) + 1]) if option in sys.argv else default
+    return type(default)(sys.argv[sys.argv.index(option) + 1]) if option in sys.argv else default
 
 
 def main():
     checks = Checks()
     seed, number, first = value_of("--seed", 1), value_of("--number", 2), value_of("--first", 0)
+    scene = value_of("--scene", "")
     failed, outs = 0, []
     print("\n".join(HEAD))
     for k in range(first, first + number):
-        name, parameters = draw(seed, k)
+        name, parameters = draw(seed, k, scene)
         found = run_scene(name, checks.path(f"{k}"), parameters)
         failed += found["code"] != DONE
         outs.append(found["out"])

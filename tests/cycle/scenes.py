@@ -13,6 +13,7 @@ STEP = (0.01, 0.05)                                                        # of 
 # Each with its die and the parameters that may be drawn, (least, largest).
 SCENES = {
     "can": ("punch", {"punch": (5.0, 8.0), "edge": (0.4, 2.5), "height": (8.0, 16.0), "mu": (0.0, 0.2), "harden": (5.0, 400.0), "step": STEP}),
+    "can_sharp": ("punch", {"punch": (5.0, 8.0), "height": (8.0, 16.0), "mu": (0.0, 0.2), "harden": (5.0, 400.0), "step": STEP}),
     "extrusion_long": ("punch", {"angle": (20.0, 55.0), "exit": (4.0, 7.0), "mu": (0.0, 0.12), "harden": (5.0, 300.0), "step": STEP}),
     "h_section": ("upper", {"fillet": (0.8, 3.0), "height": (6.0, 8.0), "flash": (0.6, 1.5), "draft": (0.05, 0.25), "mu": (0.02, 0.35),
                             "harden": (5.0, 400.0), "step": STEP}),
