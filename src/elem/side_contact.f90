@@ -7,7 +7,7 @@
 !> the pressure begins as it was carried there, however the side lies.
 module side_contact
   use closest_point, only: closest_point_t
-  use contact_point, only: at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_xi, touching
+  use contact_point, only: at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_xi, contact_point_t, touching
   use control_point_contact, only: control_t, end_area, find_control_point, node_t, press_control_point
   use corner_release, only: motion_past_corner, passes_corner, release_t, slide_beyond, slide_past_corner
   use dies, only: die_t
@@ -15,7 +15,7 @@ module side_contact
   use kinds, only: wp
   use law_api, only: contact_open, law_t
   use materials, only: material_t
-  use plane_vectors, only: turned
+  use plane_vectors, only: left_of, turned
   use rigid_contact, only: closest_or_followed, ndof, place_point, press, side_t
   implicit none
   private
@@ -46,7 +46,8 @@ contains
       call place_point(side, place(i), nodes(i)%point)
     end do
     do i = 1, 3, 2
-      call find_closest(die, side, nodes(i), committed(:, i), nodes(i)%closest, release)
+      call find_closest(die, side, nodes(i), inward(nodes(i)%point, nodes(2)%point, place(i)), committed(:, i), nodes(i)%closest, &
+                        release)
       if (nodes(i)%closest%piece == 0) cycle
       before = force
       call press(law, material, drivers(:, :, i), side, place(i), end_area(nodes(i)%point, nodes(2)%point), nodes(i)%closest, &
@@ -58,22 +59,33 @@ contains
   end subroutine press_side
 
   !> Closest point of a node, on the face that it slides past where it loses its pressure beside a corner.
-  pure subroutine find_closest(die, side, node, committed, closest, release)
+  pure subroutine find_closest(die, side, node, normal, committed, closest, release)
     type(die_t), intent(in) :: die
     type(side_t), intent(in) :: side
     type(node_t), intent(in) :: node
+    real(wp), intent(in) :: normal(2)   !! inner normal of the part [-]
     real(wp), intent(in) :: committed(:)
     type(closest_point_t), intent(out) :: closest
     type(release_t), intent(out) :: release
     real(wp) :: x(2), e_r(2)
 
     x = in_axes(side, node%point%x)
-    e_r = turned(node%point%e_r, -side%pilot(3, 2))
+    e_r = turned(normal, -side%pilot(3, 2))
     call closest_or_followed(die, x, e_r, side%length, committed, closest)
     if (.not. (closest%piece > 0 .and. closest%d > 0)) &
       call slide_past_corner(die, x, e_r, side%length, committed, closest, release)
     if (closest%piece > 0 .and. abs(closest%d) <= touching*side%length) closest%d = 0
   end subroutine find_closest
+
+  !> Inner normal of the half of a side at its end: the tangent at the end itself is none where the middle node has come to a
+  !> quarter of the side.
+  pure function inward(node, middle, place) result(normal)
+    type(contact_point_t), intent(in) :: node, middle
+    real(wp), intent(in) :: place   !! of the end, -1 or 1
+    real(wp) :: normal(2)
+
+    normal = left_of(place*(node%x - middle%x))
+  end function inward
 
   !> A point in the axes of the pilot at the end of the step.
   pure function in_axes(side, x) result(y)
