@@ -32,9 +32,10 @@ module control_point_contact
   implicit none
   private
   public :: node_t, control_t, find_control_point, press_control_point, end_area
+  public :: control_shares
 
-  !> Coefficients of the depths of the nodes.
-  real(wp), parameter :: coefficient(3) = [-0.5_wp, 2.0_wp, -0.5_wp]
+  !> Shares of the depths of the nodes in that of the control point, and of their motions in its.
+  real(wp), parameter :: control_shares(3) = [-0.5_wp, 2.0_wp, -0.5_wp]
   !> E over the chord of the side at the start of the step.
   real(wp), parameter :: bend_range = 0.25_wp
 
@@ -70,9 +71,9 @@ contains
     integer :: i
 
     range = bend_range*length_of(side%x(:, 3) - side%x(:, 1))
-    call add_part(control, meet_node(side, nodes, 2, nodes(2)%face), 2.0_wp)
+    call add_part(control, meet_node(side, nodes, 2, nodes(2)%face), control_shares(2))
     control%meeting%normal = control%parts(1)%meeting%normal
-    control%meeting%d = 2*nodes(2)%face%d
+    control%meeting%d = control_shares(2)*nodes(2)%face%d
     do i = 1, 3, 2
       tangent = meet_tangent(side, nodes, i)
       rho = 0
@@ -82,12 +83,12 @@ contains
       end if
       if (abs(rho(1)) > 0 .or. abs(rho(2)) > 0) then
         de = tangent%meeting%dd(:ndof) - own%meeting%dd(:ndof)
-        own%dshare = coefficient(i)*rho(2)*de
+        own%dshare = control_shares(i)*rho(2)*de
         tangent%dshare = -own%dshare
-        call add_part(control, own, coefficient(i)*rho(1))
+        call add_part(control, own, control_shares(i)*rho(1))
       end if
-      call add_part(control, tangent, coefficient(i)*(1 - rho(1)))
-      control%meeting%d = control%meeting%d + coefficient(i)*(tangent%meeting%d - rho(0))
+      call add_part(control, tangent, control_shares(i)*(1 - rho(1)))
+      control%meeting%d = control%meeting%d + control_shares(i)*(tangent%meeting%d - rho(0))
     end do
     control%meeting%dd = 0
     control%meeting%slip = 0
