@@ -18,8 +18,14 @@
 !> On a straight die d_t = d, and d' = d exactly; E is a quarter of the side, which a circle departs by where its radius is half
 !> a side.
 !>
-!> All of it follows from b: the force is p db, the pressure times the derivatives of b, and does no work while the die rests.
-!> The areas are those of contact_areas.
+!> The force is p db, the pressure times the derivatives of b with the tangent of the die held: on a flat die it does no work on a
+!> side that slides at the same b. That the tangent turns on a curved die as the closest point of the middle node moves is in the
+!> derivatives of the pressure and in the matrix, not in the force: it would push the middle node along the die, without friction.
+!> What the force lacks for p db is this, for a motion s of the middle node along the die and its curvature k at the distance d_m,
+!>
+!>     -p k s/2 (w_1 t.(x_1 - x_m) + w_2 t.(x_2 - x_m)),   w = 1 - drho/de of the end,
+!>
+!> nothing where the middle node is half way along the tangent t and both ends depart alike. The areas are those of contact_areas.
 module control_point_contact
   use closest_point, only: closest_point_t
   use contact_point, only: answer, at_penetration, at_piece, at_xi, contact_point_t, meeting_t, most_unknowns
