@@ -5,7 +5,7 @@ module quadrature
   implicit none
   private
   public :: rule_t, rule_gauss, rule_equidistant, rule_along, rule_control
-  public :: line_rule, gauss_line, square_rule, rule_number, rule_of_number, is_control_point
+  public :: line_rule, gauss_line, square_rule, rule_number, rule_of_number, rule_name, is_control_point
 
   !> Families of rules: Gauss; points at equal distances, the ends among them (Lobatto's with 3, then Simpson's on equal parts);
   !> the same of so many points that contact is seen along the whole side (ALONG); the nodes of a side whose contact is that of
@@ -36,6 +36,21 @@ contains
 
     rule = rule_t(merge(rule_equidistant, merge(rule_along, rule_gauss, number > most_gauss), number < 0), abs(number))
   end function rule_of_number
+
+  !> What the places of a rule are, in words.
+  pure function rule_name(rule) result(name)
+    type(rule_t), intent(in) :: rule
+    character(len=:), allocatable :: name
+
+    select case (rule%family)
+    case (rule_gauss)
+      name = 'Gauss'
+    case (rule_control)
+      name = 'control point'
+    case default
+      name = 'equidistant'
+    end select
+  end function rule_name
 
   !> A place of a rule is no point of the side, but its control point: its depth is none of the side.
   elemental function is_control_point(rule, p) result(yes)
