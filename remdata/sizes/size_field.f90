@@ -10,8 +10,7 @@ module size_field
   use directed_sizes, only: no_stretch, ratio_of
   use graded_sizes, only: slope_of
   use kinds, only: wp
-  use square_sizes, only: is_in_a_window, need_t, old_mesh_t, requested_size, set_up_squares, size_limits_t, square_at, &
-                          square_field_t
+  use square_sizes, only: is_in_window, need_t, old_mesh_t, requested_size, set_up_squares, size_at, size_limits_t, square_field_t
   use size_windows, only: size_window_t
   use thin_parts, only: direction_along, set_up_thin, thin_field_t, thin_point_t
   implicit none
@@ -59,16 +58,6 @@ contains
     squares%square_field_t = field%square_field_t
   end function of_squares
 
-  !> Size requested at a point of a material: of a square, or the width [length].
-  pure function size_at(field, material, x) result(h)
-    type(size_field_t), intent(in) :: field
-    integer, intent(in) :: material
-    real(wp), intent(in) :: x(2)   !! [length]
-    real(wp) :: h
-
-    h = square_at(field%square_field_t, material, x)
-  end function size_at
-
   !> Width and stretch (`directed_sizes`) requested at a point of a material.
   pure subroutine directed_size_at(field, material, x, across, stretch)
     type(size_field_t), intent(in) :: field
@@ -83,7 +72,7 @@ contains
     if (.not. field%is_directed) return
     call direction_along(field%thin, x, direction, reach)
     if (.not. any(abs(direction) > 0)) return
-    along = square_at(field%lengths, material, x)
+    along = size_at(field%lengths, material, x)
     ! from squares at the ends of the part it grows as sizes do
     if (along > across) along = min(along, across + slope_of(field%limits%gradation)*reach)
     stretch = 0.5_wp*log(max(along/across, 1.0_wp))*direction
@@ -104,15 +93,5 @@ contains
       number = number + max(polygon_area(x), 0.0_wp)/(across**2*ratio_of(stretch))
     end do
   end function elements_needed
-
-  !> A point of a material is in a window.
-  pure function is_in_window(field, material, x) result(yes)
-    type(size_field_t), intent(in) :: field
-    integer, intent(in) :: material
-    real(wp), intent(in) :: x(2)   !! (2) [length]
-    logical :: yes
-
-    yes = is_in_a_window(field%square_field_t, material, x)
-  end function is_in_window
 
 end module size_field

@@ -4,7 +4,6 @@
 !> with a size requirement (a bend of the contour, contact): the required size, growing with the distance. Limited by the smallest
 !> and largest size, those of its window for a point in one, and from one element to the next by the gradation.
 module square_sizes
-  use block_mesh, only: polygon_area
   use box_tree, only: box_tree_t, build_tree, nearest_items
   use graded_sizes, only: grade, slope_of
   use kinds, only: wp
@@ -14,7 +13,7 @@ module square_sizes
   use transfer_mesh, only: build_element_trees, set_up_mesh, transfer_mesh_t
   implicit none
   private
-  public :: size_limits_t, need_t, square_field_t, old_mesh_t, requested_size, set_up_squares, square_at, is_in_a_window
+  public :: size_limits_t, need_t, square_field_t, old_mesh_t, requested_size, set_up_squares, size_at, is_in_window
 
   !> A point where the geometry requires a size.
   type :: need_t
@@ -116,9 +115,9 @@ contains
     sizes = merge(exp(sizes/max(valence, 1)), field%limits%largest, valence > 0)
   end subroutine sizes_of_corners
 
-  !> Size requested at a point of a material [length].
-  pure function square_at(field, material, x) result(h)
-    type(square_field_t), intent(in) :: field
+  !> Size requested at a point of a material: of a square, or the width [length].
+  pure function size_at(field, material, x) result(h)
+    class(square_field_t), intent(in) :: field
     integer, intent(in) :: material
     real(wp), intent(in) :: x(2)   !! [length]
     real(wp) :: h
@@ -129,11 +128,11 @@ contains
     h = min(h, on_mesh)
     h = min(h, size_by_windows(field%limits, field%windows, x, origin))
     h = within(limits_at(field, x, origin), h)
-  end function square_at
+  end function size_at
 
   !> A point of a material is in a window.
-  pure function is_in_a_window(field, material, x) result(yes)
-    type(square_field_t), intent(in) :: field
+  pure function is_in_window(field, material, x) result(yes)
+    class(square_field_t), intent(in) :: field
     integer, intent(in) :: material
     real(wp), intent(in) :: x(2)   !! (2) [length]
     logical :: yes
@@ -143,7 +142,7 @@ contains
     if (.not. yes) return
     call look_up(field, material, x, origin, on_mesh)
     yes = is_in_any(field%windows, x, origin)
-  end function is_in_a_window
+  end function is_in_window
 
   !> Where the matter at a point was at the start, and the size at it by the corners of the old mesh: the point itself and no limit
   !> where there is none.

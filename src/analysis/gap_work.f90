@@ -9,6 +9,7 @@ module gap_work
   use contact_areas, only: area_of_point
   use contact_point, only: at_piece, at_pressure, at_status, at_tau, at_xi, contact_block, penalties, side_length
   use contact_work, only: kept_work
+  use control_point_contact, only: control_shares
   use corner_weights, only: interval_before
   use dies, only: is_deformable
   use element_loop, only: group_geometry
@@ -19,7 +20,7 @@ module gap_work
   use law_api, only: contact_open
   use parabolas, only: tangent_on
   use plane_vectors, only: turned
-  use quadrature, only: line_rule, rule_control
+  use quadrature, only: is_control_point, line_rule
   use scene, only: group_t, role_contact, scene_t
   use shape_functions, only: line3
   use solution, only: solution_t
@@ -86,8 +87,8 @@ contains
         if (scene%finite) x(:, :3, e) = x(:, :3, e) - du
         do p = 1, size(xi)
           area = area_of_point(group%rule, xi, weight, p, solution%fields(section_field)%value(:, 1), x(:, :3, e))
-          if (group%rule%family == rule_control .and. p == 2) then
-            call add_point(before(:n, p, e), after(:n, p, e), xi(p), area, shares=[-0.5_wp, 2.0_wp, -0.5_wp])
+          if (is_control_point(group%rule, p)) then
+            call add_point(before(:n, p, e), after(:n, p, e), xi(p), area, shares=control_shares)
           else
             call add_point(before(:n, p, e), after(:n, p, e), xi(p), area)
           end if

@@ -6,8 +6,9 @@
 !> points and shorter sides do. A side that is seen along its whole length spans the bend instead: a new mesh is due.
 module penetration_advice
   use contact_quality, only: measure_misfit, misfit_t
+  use dies, only: is_deformable
   use kinds, only: wp
-  use quadrature, only: rule_along, rule_gauss
+  use quadrature, only: rule_along, rule_control, rule_gauss
   use scene, only: group_t, scene_t
   use solution, only: solution_t
   use text, only: to_text
@@ -54,24 +55,36 @@ contains
     character(len=:), allocatable :: advice
     integer :: g
     real(wp) :: bound
-    logical :: gauss, few
+    logical :: gauss, few, bezier, along, rigid
     character(len=*), parameter :: shorter = 'shorter sides where the die bends'
 
     advice = ''
     gauss = .false.
     few = .false.
+    bezier = .false.
+    along = .false.
     bound = between_along
     do g = 1, size(scene%groups)
       if (.not. is_contact(scene%groups(g))) cycle
-      gauss = gauss .or. scene%groups(g)%rule%family == rule_gauss
-      few = few .or. (scene%groups(g)%rule%n < most_points .and. scene%groups(g)%rule%family /= rule_along)
-      if (scene%groups(g)%rule%family /= rule_along) bound = 1
+      associate (rule => scene%groups(g)%rule)
+        gauss = gauss .or. rule%family == rule_gauss
+        few = few .or. (rule%n < most_points .and. rule%family /= rule_along)
+        rigid = .not. is_deformable(scene%dies(scene%groups(g)%die))
+        along = along .or. (rigid .and. rule%family /= rule_along)
+        bezier = bezier .or. (rigid .and. all(rule%family /= [rule_along, rule_control]))
+        if (rule%family /= rule_along) bound = 1
+      end associate
     end do
     if (solution%worst_sample_ratio <= max(bound, solution%worst_penetration_ratio) + slack) return
-    if (gauss) then
-      advice = 'CNT2D with BEZIER or ALONG, or with -3 points, which are the nodes; '
-    else if (few) then
-      advice = 'CNT2D with BEZIER or ALONG, or with -9 or -17 points; '
+    if (gauss .or. few) then
+      advice = 'CNT2D with '
+      if (bezier) then
+        advice = advice//'BEZIER or ALONG, or with '
+      else if (along) then
+        advice = advice//'ALONG, or with '
+      end if
+      if (gauss) advice = advice//'-3 points, which are the nodes; '
+      if (.not. gauss) advice = advice//'-9 or -17 points; '
     end if
     if (any_law(scene, at_augment, without=.true.)) advice = advice//'AUGMENT 20 in the contact law; '
     advice = advice//shorter

@@ -23,7 +23,7 @@ module restore_balance
   use linear_solver, only: return_to_chosen
   use newton, only: outcome_t, solve_step
   use path_record, only: settle_path
-  use quadrature, only: rule_control
+  use quadrature, only: is_control_point
   use residual_parts, only: first_parts, next_part, residual_parts_t
   use residual_place, only: least_shape, place_residual, residual_place_t
   use scene, only: scene_t
@@ -250,7 +250,7 @@ contains
           do p = 1, size(state%committed, 2)
             if (nint(state%committed(status, p, e)) <= 0) cycle
             ! a control point begins with the pressure carried, wherever its side lies
-            if (group%rule%family == rule_control .and. p == 2) cycle
+            if (is_control_point(group%rule, p)) cycle
             weight = abs(state%committed(pressure, p, e))*side
             force(group%die) = force(group%die) + weight
             moment(group%die) = moment(group%die) &

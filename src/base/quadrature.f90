@@ -5,7 +5,7 @@ module quadrature
   implicit none
   private
   public :: rule_t, rule_gauss, rule_equidistant, rule_along, rule_control
-  public :: line_rule, gauss_line, square_rule, rule_number, rule_of_number
+  public :: line_rule, gauss_line, square_rule, rule_number, rule_of_number, rule_name, is_control_point
 
   !> Families of rules: Gauss; points at equal distances, the ends among them (Lobatto's with 3, then Simpson's on equal parts);
   !> the same of so many points that contact is seen along the whole side (ALONG); the nodes of a side whose contact is that of
@@ -36,6 +36,30 @@ contains
 
     rule = rule_t(merge(rule_equidistant, merge(rule_along, rule_gauss, number > most_gauss), number < 0), abs(number))
   end function rule_of_number
+
+  !> What the places of a rule are, in words.
+  pure function rule_name(rule) result(name)
+    type(rule_t), intent(in) :: rule
+    character(len=:), allocatable :: name
+
+    select case (rule%family)
+    case (rule_gauss)
+      name = 'Gauss'
+    case (rule_control)
+      name = 'control point'
+    case default
+      name = 'equidistant'
+    end select
+  end function rule_name
+
+  !> A place of a rule is no point of the side, but its control point: its depth is none of the side.
+  elemental function is_control_point(rule, p) result(yes)
+    type(rule_t), intent(in) :: rule
+    integer, intent(in) :: p   !! place
+    logical :: yes
+
+    yes = rule%family == rule_control .and. p == 2
+  end function is_control_point
 
   !> Gauss points (1 to 4), or points at equal distances: 3 (Lobatto), or 5, 9, 13, 17 (Simpson's rule on 2, 4, 6, 8 equal
   !> parts), or 33, 65, 129 (Gregory's rule, for functions with kinks anywhere); weights sum to 2.

@@ -2,15 +2,17 @@
 !> is a mesh.
 module cards_dies
   use card_points, only: read_xy
+  use curve_loops, only: find_loop
+  use deck_card, only: card_t
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
-  use diagnostics, only: diagnostics_t
+  use diagnostics, only: diagnostics_t, location_t
   use fillets, only: round_corner
   use dies, only: die_t, finish_die
   use kinds, only: wp
   use piece_rows, only: ends_meet, piece_words, read_piece
   use scene_draft, only: close_card, draft_t, words_of
-  use text, only: string_t
+  use text, only: string_t, to_text
   implicit none
   private
   public :: read_dies
@@ -27,6 +29,9 @@ module cards_dies
     !> The last row was a fillet; the piece after it is still to come.
     logical :: fillet = .false.
     real(wp) :: radius = 0.0_wp, tolerance = 0.0_wp
+    !> Rows read, and pieces up to the end of each (row), those of a fillet with the row before it.
+    integer :: nrow = 0
+    integer, allocatable :: last(:)
   end type die_rows_t
 
 contains
@@ -60,10 +65,12 @@ contains
       call read_pilot(cursor, die%pilot)
       if (allocated(die%pieces)) deallocate (die%pieces)
       allocate (die%pieces(2, 3, 0))
-      rows = die_rows_t()
+      rows = die_rows_t(last=spread(0, 1, size(deck%cards(i)%rows)))
       call cursor%next_row('SEGM, PARAB or ARC and its points')
       do while (.not. cursor%failed())
         call read_row(cursor, forms, die, rows)
+        rows%nrow = rows%nrow + 1
+        rows%last(rows%nrow) = rows%npiece
         if (.not. cursor%more_rows()) exit
         call cursor%next_row('a piece')
       end do
@@ -72,10 +79,40 @@ contains
       if (ends_meet(die%pieces)) die%pieces(:, 3, size(die%pieces, 3)) = die%pieces(:, 1, 1)
       call close_card(draft, cursor, deck%cards(i))
       call finish_die(die)
+      if (.not. cursor%failed()) call refuse_loops(deck%cards(i), die, rows, diagnostics)
       dies(n) = die
     end do
     draft%scene%dies = dies(:n)
   end subroutine read_dies
+
+  !> The part on the left of a curve that crosses itself would be on its right too.
+  subroutine refuse_loops(card, die, rows, diagnostics)
+    type(card_t), intent(in) :: card
+    type(die_t), intent(in) :: die
+    type(die_rows_t), intent(in) :: rows
+    type(diagnostics_t), intent(inout) :: diagnostics
+    integer :: pieces(2)
+    real(wp) :: point(2)
+
+    call find_loop(die, pieces, point)
+    if (pieces(1) == 0) return
+    point = point + die%pilot(1:2)
+    associate (first => card%rows(row_of(pieces(1))), second => card%rows(row_of(pieces(2))))
+      call diagnostics%add(location_t(second%file, second%line, second%fields(1)%column), card%keyword, &
+                           'expected a curve that does not cross itself; this piece crosses that of line '//to_text(first%line) &
+                           //' at x = '//to_text(point(1))//', y = '//to_text(point(2)))
+    end associate
+
+  contains
+
+    pure function row_of(piece) result(row)
+      integer, intent(in) :: piece
+      integer :: row
+
+      row = findloc(rows%last >= piece, .true., dim=1)
+    end function row_of
+
+  end subroutine refuse_loops
 
   subroutine read_pilot(cursor, pilot)
     type(cursor_t), intent(inout) :: cursor
@@ -130,6 +167,7 @@ contains
     whole(:, :, first:) = rounded
     rows%npiece = size(whole, 3)
     rows%first = rows%npiece - rest + 1
+    rows%last(rows%nrow - 1:rows%nrow) = rows%npiece - rest
     call move_alloc(whole, die%pieces)
   end subroutine read_row
 

@@ -14,7 +14,7 @@ module contact_measure
   use held_depth, only: soft_depth
   use kinds, only: wp
   use law_api, only: contact_open, contact_slip, contact_stick, law_t
-  use quadrature, only: line_rule, rule_along, rule_equidistant, rule_t
+  use quadrature, only: is_control_point, line_rule, rule_along, rule_equidistant, rule_t
   use scene, only: group_t, scene_t
   use state_variables, only: find_variable
   implicit none
@@ -99,7 +99,8 @@ contains
     end do
   end function peaks
 
-  !> Friction work, penetration found and allowed, number of points in each contact state.
+  !> Friction work, penetration found and allowed, number of points in each contact state. What a control point has is no depth of
+  !> the side.
   subroutine measure(scene, group, law, section, x, state, before, totals)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -131,23 +132,25 @@ contains
         case default
           totals%open = totals%open + 1
         end select
-        call add_point(state(:n, p, e), before(:n, p, e), area_of_point(group%rule, xi, weight, p, section, x(:, :, e)))
+        call add_point(state(:n, p, e), before(:n, p, e), area_of_point(group%rule, xi, weight, p, section, x(:, :, e)), &
+                       is_control_point(group%rule, p))
         if (.not. corners) cycle
         call interval_before(xi, p, from, to)
         call add_point(state(n + 1:2*n, p, e), before(n + 1:2*n, p, e), &
-                       area_at_corner(state(2*n + 1, p, e), to - from, section, x(:, :, e), side))
+                       area_at_corner(state(2*n + 1, p, e), to - from, section, x(:, :, e), side), .false.)
       end do
     end do
 
   contains
 
     !> Penetration and friction of a point of side e.
-    subroutine add_point(now, old, area)
+    subroutine add_point(now, old, area, control)
       real(wp), intent(in) :: now(:), old(:), area
+      logical, intent(in) :: control
       real(wp) :: allowed, lost
 
       allowed = allowed_penetration(scene%materials(group%material))*side
-      if (nint(now(at_status)) /= contact_open) then
+      if (nint(now(at_status)) /= contact_open .and. .not. control) then
         totals%max_penetration = max(totals%max_penetration, now(at_penetration))
         if (allowed > 0) totals%penetration_ratio = max(totals%penetration_ratio, now(at_penetration)/allowed)
       end if

@@ -111,18 +111,21 @@ contains
     point%x = matmul(y, phi)
     point%tangent = matmul(y, dphi)
     point%length = length_of(point%tangent)
-    point%e_r = [-point%tangent(2), point%tangent(1)]/point%length
+    point%e_r = 0
     point%thickness = thickness_at(section, point%x)
     point%dx = 0
     point%dlength = 0
     point%dthickness = 0
     point%dx(1, 1:3) = phi
     point%dx(2, 4:6) = phi
-    point%dlength(1:3) = dphi*point%tangent(1)/point%length
-    point%dlength(4:6) = dphi*point%tangent(2)/point%length
     point%dthickness(1:3) = section(2)*phi
     point%dthickness(4:6) = section(3)*phi
     point%dthickness(nunknown - 2:nunknown) = [1.0_wp, point%x]
+    ! no tangent, no normal: at an end whose middle node is at a quarter of the side
+    if (.not. point%length > 0) return
+    point%e_r = [-point%tangent(2), point%tangent(1)]/point%length
+    point%dlength(1:3) = dphi*point%tangent(1)/point%length
+    point%dlength(4:6) = dphi*point%tangent(2)/point%length
   end subroutine side_point
 
   !> Force on what is met, the opposite of that on the side: traction p n + tau t times length, weight and

@@ -18,8 +18,14 @@
 !> On a straight die d_t = d, and d' = d exactly; E is a quarter of the side, which a circle departs by where its radius is half
 !> a side.
 !>
-!> All of it follows from b: the force is p db, the pressure times the derivatives of b, and does no work while the die rests.
-!> The areas are those of contact_areas.
+!> The force is p db, the pressure times the derivatives of b with the tangent of the die held: on a flat die it does no work on a
+!> side that slides at the same b. That the tangent turns on a curved die as the closest point of the middle node moves is in the
+!> derivatives of the pressure and in the matrix, not in the force: it would push the middle node along the die, without friction.
+!> What the force lacks for p db is this, for a motion s of the middle node along the die and its curvature k at the distance d_m,
+!>
+!>     -p k s/2 (w_1 t.(x_1 - x_m) + w_2 t.(x_2 - x_m)),   w = 1 - drho/de of the end,
+!>
+!> nothing where the middle node is half way along the tangent t and both ends depart alike. The areas are those of contact_areas.
 module control_point_contact
   use closest_point, only: closest_point_t
   use contact_point, only: answer, at_penetration, at_piece, at_xi, contact_point_t, meeting_t, most_unknowns
@@ -32,9 +38,10 @@ module control_point_contact
   implicit none
   private
   public :: node_t, control_t, find_control_point, press_control_point, end_area
+  public :: control_shares
 
-  !> Coefficients of the depths of the nodes.
-  real(wp), parameter :: coefficient(3) = [-0.5_wp, 2.0_wp, -0.5_wp]
+  !> Shares of the depths of the nodes in that of the control point, and of their motions in its.
+  real(wp), parameter :: control_shares(3) = [-0.5_wp, 2.0_wp, -0.5_wp]
   !> E over the chord of the side at the start of the step.
   real(wp), parameter :: bend_range = 0.25_wp
 
@@ -70,9 +77,9 @@ contains
     integer :: i
 
     range = bend_range*length_of(side%x(:, 3) - side%x(:, 1))
-    call add_part(control, meet_node(side, nodes, 2, nodes(2)%face), 2.0_wp)
+    call add_part(control, meet_node(side, nodes, 2, nodes(2)%face), control_shares(2))
     control%meeting%normal = control%parts(1)%meeting%normal
-    control%meeting%d = 2*nodes(2)%face%d
+    control%meeting%d = control_shares(2)*nodes(2)%face%d
     do i = 1, 3, 2
       tangent = meet_tangent(side, nodes, i)
       rho = 0
@@ -82,12 +89,12 @@ contains
       end if
       if (abs(rho(1)) > 0 .or. abs(rho(2)) > 0) then
         de = tangent%meeting%dd(:ndof) - own%meeting%dd(:ndof)
-        own%dshare = coefficient(i)*rho(2)*de
+        own%dshare = control_shares(i)*rho(2)*de
         tangent%dshare = -own%dshare
-        call add_part(control, own, coefficient(i)*rho(1))
+        call add_part(control, own, control_shares(i)*rho(1))
       end if
-      call add_part(control, tangent, coefficient(i)*(1 - rho(1)))
-      control%meeting%d = control%meeting%d + coefficient(i)*(tangent%meeting%d - rho(0))
+      call add_part(control, tangent, control_shares(i)*(1 - rho(1)))
+      control%meeting%d = control%meeting%d + control_shares(i)*(tangent%meeting%d - rho(0))
     end do
     control%meeting%dd = 0
     control%meeting%slip = 0

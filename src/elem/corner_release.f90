@@ -9,7 +9,7 @@ module corner_release
   use dies, only: die_t
   use kinds, only: wp
   use law_api, only: contact_open
-  use piecewise_curves, only: adjacent_piece
+  use piecewise_curves, only: adjacent_piece, blunt
   use plane_vectors, only: cross, right_of, turned
   use rigid_contact, only: ndof, side_t
   implicit none
@@ -22,10 +22,6 @@ module corner_release
   !> A point that comes to a corner is on the face when it is less deep than this share of its side, and its side lies along the
   !> face within this cosine: one that has risen beside the corner is not.
   real(wp), parameter :: shallow = 0.01_wp, facing = 0.7_wp
-
-  !> A die that turns by more than this sine on the way of a point has a corner there: parabolas that follow a curve within a
-  !> tolerance turn by less.
-  real(wp), parameter :: blunt = 0.1_wp
 
   !> What is left of the pressure, and its change with the way past the corner [1/length]; the tangent of the face that way.
   type :: release_t
@@ -98,6 +94,7 @@ contains
     associate (piece => die%pieces(:, :, nint(committed(at_piece))))
       call closest_within_piece(piece, piece(:, 2), committed(at_xi), before)
     end associate
+    ! a die that turns by as much as a corner has one on the way, or a bend as small
     yes = abs(cross(before%normal, closest%normal)) > blunt
   end function passes_corner
 

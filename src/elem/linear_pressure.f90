@@ -62,12 +62,12 @@ contains
     call places(rule, y1, y2, here)
     call places(rule, part1, part2, away)
     do p = 1, size(dv)
-      detj = jacobian(p, 1)*jacobian(p, 4) - jacobian(p, 3)*jacobian(p, 2)
+      detj = jacobian(p, 1)*jacobian(p, 4) - jacobian(p, 2)*jacobian(p, 3)
       thickness = thickness_at(from, here(p, :))
       before(p) = detj*rule%weight(p)*thickness
       ! trace of the gradient of the correction
-      linear(p) = (jacobian(p, 4)*parent(p, 1) - jacobian(p, 3)*parent(p, 2) + jacobian(p, 1)*parent(p, 4) &
-                   - jacobian(p, 2)*parent(p, 3))/detj &
+      linear(p) = (jacobian(p, 4)*parent(p, 1) - jacobian(p, 2)*parent(p, 3) + jacobian(p, 1)*parent(p, 4) &
+                   - jacobian(p, 3)*parent(p, 2))/detj &
                   + (thickness_at(section(:, 1) - from, here(p, :)) + dot_product(from(2:3), away(p, :)))/thickness
     end do
     if (present(own)) then

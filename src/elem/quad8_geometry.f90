@@ -11,15 +11,15 @@ module quad8_geometry
 
   integer, parameter, public :: max_points = 9
   !> Points summed at once, and how often that covers all of them.
-  integer, parameter, public :: lanes = 4
+  integer, parameter :: lanes = 4
   integer, parameter :: max_sweeps = (max_points + lanes - 1)/lanes
 
   !> Shape functions and parent derivatives at the points of a rule.
   type :: quad8_rule_t
     integer :: npoint = 0
     real(wp) :: phi(8, max_points) = 0.0_wp, dphi(2, 8, max_points) = 0.0_wp, weight(max_points) = 0.0_wp
-    !> Shape functions and parent derivatives (xi, then eta) by lanes; the last point stands in lanes that are left over.
-    real(wp), private :: of_lane(lanes, 8, max_sweeps) = 0.0_wp, slope_of_lane(lanes, 8, 2, max_sweeps) = 0.0_wp
+    !> Shape functions (0) and parent derivatives by xi (1) and eta (2) by lanes; the last point stands in lanes that are left over.
+    real(wp), private :: of_lane(lanes, 8, max_sweeps, 0:2) = 0.0_wp
   end type quad8_rule_t
 
 contains
@@ -40,9 +40,9 @@ contains
     do k = 1, (npoint + lanes - 1)/lanes
       do lane = 1, lanes
         p = min((k - 1)*lanes + lane, npoint)
-        rule%of_lane(lane, :, k) = rule%phi(:, p)
-        rule%slope_of_lane(lane, :, 1, k) = rule%dphi(1, :, p)
-        rule%slope_of_lane(lane, :, 2, k) = rule%dphi(2, :, p)
+        rule%of_lane(lane, :, k, 0) = rule%phi(:, p)
+        rule%of_lane(lane, :, k, 1) = rule%dphi(1, :, p)
+        rule%of_lane(lane, :, k, 2) = rule%dphi(2, :, p)
       end do
     end do
   end subroutine quad8_rule
@@ -50,46 +50,43 @@ contains
   !> Values of two nodal quantities at all points.
   pure subroutine places(rule, a, b, at)
     type(quad8_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: a(8), b(8)        !! [unit of each]
+    real(wp), intent(in) :: a(8), b(8)           !! [unit of each]
     real(wp), intent(out) :: at(max_points, 2)   !! those of a, of b [the same]
-    real(wp) :: sums(lanes, 2)
-    integer :: i, k, l, left
 
-    do k = 1, (rule%npoint + lanes - 1)/lanes
-      sums = 0
-      do i = 1, 8
-        do l = 1, lanes
-          sums(l, 1) = sums(l, 1) + rule%of_lane(l, i, k)*a(i)
-          sums(l, 2) = sums(l, 2) + rule%of_lane(l, i, k)*b(i)
-        end do
-      end do
-      left = min(lanes, max_points - (k - 1)*lanes)
-      at((k - 1)*lanes + 1:(k - 1)*lanes + left, :) = sums(:left, :)
-    end do
+    call sum_lanes(rule%npoint, rule%of_lane(:, :, :, 0), a, b, at)
   end subroutine places
 
   !> Parent derivatives of two nodal quantities at all points.
   pure subroutine slopes(rule, a, b, of)
     type(quad8_rule_t), intent(in) :: rule
     real(wp), intent(in) :: a(8), b(8)           !! [unit of each]
-    real(wp), intent(out) :: of(max_points, 4)   !! of a by xi, by eta, of b by xi, by eta [the same]
-    real(wp) :: sums(lanes, 4)
+    real(wp), intent(out) :: of(max_points, 4)   !! of a and b by xi, of a and b by eta [the same]
+
+    call sum_lanes(rule%npoint, rule%of_lane(:, :, :, 1), a, b, of(:, 1:2))
+    call sum_lanes(rule%npoint, rule%of_lane(:, :, :, 2), a, b, of(:, 3:4))
+  end subroutine slopes
+
+  !> Sums over the nodes of two quantities at all points.
+  pure subroutine sum_lanes(npoint, of_lane, a, b, at)
+    integer, intent(in) :: npoint
+    real(wp), intent(in) :: of_lane(lanes, 8, max_sweeps)   !! factors of the nodes [-]
+    real(wp), intent(in) :: a(8), b(8)           !! [unit of each]
+    real(wp), intent(out) :: at(max_points, 2)   !! sums of a, of b [the same]
+    real(wp) :: sums(lanes, 2)
     integer :: i, k, l, left
 
-    do k = 1, (rule%npoint + lanes - 1)/lanes
+    do k = 1, (npoint + lanes - 1)/lanes
       sums = 0
       do i = 1, 8
         do l = 1, lanes
-          sums(l, 1) = sums(l, 1) + rule%slope_of_lane(l, i, 1, k)*a(i)
-          sums(l, 2) = sums(l, 2) + rule%slope_of_lane(l, i, 2, k)*a(i)
-          sums(l, 3) = sums(l, 3) + rule%slope_of_lane(l, i, 1, k)*b(i)
-          sums(l, 4) = sums(l, 4) + rule%slope_of_lane(l, i, 2, k)*b(i)
+          sums(l, 1) = sums(l, 1) + of_lane(l, i, k)*a(i)
+          sums(l, 2) = sums(l, 2) + of_lane(l, i, k)*b(i)
         end do
       end do
       left = min(lanes, max_points - (k - 1)*lanes)
-      of((k - 1)*lanes + 1:(k - 1)*lanes + left, :) = sums(:left, :)
+      at((k - 1)*lanes + 1:(k - 1)*lanes + left, :) = sums(:left, :)
     end do
-  end subroutine slopes
+  end subroutine sum_lanes
 
   !> Cartesian derivatives and the determinant of the Jacobian.
   pure subroutine derivatives(dphi, x, nx, ny, detj)

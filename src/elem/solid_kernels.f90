@@ -43,18 +43,18 @@ contains
     strain = 0
     valid = .false.
     do p = 1, rule%npoint
-      detj = jacobian(p, 1)*jacobian(p, 4) - jacobian(p, 3)*jacobian(p, 2)
+      detj = jacobian(p, 1)*jacobian(p, 4) - jacobian(p, 2)*jacobian(p, 3)
       thickness = thickness_at(section(:, 1), here(p, :))
       if (.not. (detj > 0 .and. thickness > 0)) return
       inverse = 1/detj
       do i = 1, 8
-        nx(i, p) = (jacobian(p, 4)*inverse)*rule%dphi(1, i, p) - (jacobian(p, 3)*inverse)*rule%dphi(2, i, p)
-        ny(i, p) = (jacobian(p, 1)*inverse)*rule%dphi(2, i, p) - (jacobian(p, 2)*inverse)*rule%dphi(1, i, p)
+        nx(i, p) = (jacobian(p, 4)*inverse)*rule%dphi(1, i, p) - (jacobian(p, 2)*inverse)*rule%dphi(2, i, p)
+        ny(i, p) = (jacobian(p, 1)*inverse)*rule%dphi(2, i, p) - (jacobian(p, 3)*inverse)*rule%dphi(1, i, p)
       end do
-      g(1) = (jacobian(p, 4)*parent(p, 1) - jacobian(p, 3)*parent(p, 2))*inverse
-      g(2) = (jacobian(p, 1)*parent(p, 2) - jacobian(p, 2)*parent(p, 1))*inverse
-      g(3) = (jacobian(p, 4)*parent(p, 3) - jacobian(p, 3)*parent(p, 4))*inverse
-      g(4) = (jacobian(p, 1)*parent(p, 4) - jacobian(p, 2)*parent(p, 3))*inverse
+      g(1) = (jacobian(p, 4)*parent(p, 1) - jacobian(p, 2)*parent(p, 3))*inverse
+      g(2) = (jacobian(p, 1)*parent(p, 3) - jacobian(p, 3)*parent(p, 1))*inverse
+      g(3) = (jacobian(p, 4)*parent(p, 2) - jacobian(p, 2)*parent(p, 4))*inverse
+      g(4) = (jacobian(p, 1)*parent(p, 4) - jacobian(p, 3)*parent(p, 2))*inverse
       dv(p) = detj*rule%weight(p)*thickness
       zx(:, p) = (section(2, 1)/thickness)*rule%phi(:, p)
       if (finite) then

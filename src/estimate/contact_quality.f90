@@ -10,7 +10,7 @@ module contact_quality
   use dies, only: die_t, in_pilot_axes, present_die
   use fields, only: pilot_field
   use kinds, only: wp
-  use quadrature, only: rule_along
+  use quadrature, only: is_control_point, rule_along, rule_t
   use law_api, only: contact_open
   use scene, only: scene_t
   use solution, only: present_coordinates, solution_t
@@ -67,7 +67,7 @@ contains
         length = length_of(scene%mesh%coordinates(:, nodes(3)) - scene%mesh%coordinates(:, nodes(1)))
         if (.not. is_near(die, side, length)) cycle
         n = contact_block(corners, size(state, 1))
-        known = depth_of(state(:n, :))
+        known = depth_of(state(:n, :), rule=scene%groups(g)%rule)
         if (corners) then
           deep = depth_of(state(n + 1:2*n, :))
           of_sides(2, e) = deep/length
@@ -80,12 +80,21 @@ contains
     end do
   end function misfit_of_sides
 
-  !> Largest penetration of points in contact [length].
-  pure function depth_of(state) result(depth)
+  !> Largest penetration of points in contact, of a rule or of corners [length].
+  pure function depth_of(state, rule) result(depth)
     real(wp), intent(in) :: state(:, :)   !! (nstate, npoint) of contact_point
+    type(rule_t), intent(in), optional :: rule
     real(wp) :: depth
+    integer :: p
 
-    depth = max(0.0_wp, maxval(state(at_penetration, :), mask=nint(state(at_status, :)) /= contact_open))
+    depth = 0
+    do p = 1, size(state, 2)
+      if (nint(state(at_status, p)) == contact_open) cycle
+      if (present(rule)) then
+        if (is_control_point(rule, p)) cycle
+      end if
+      depth = max(depth, state(at_penetration, p))
+    end do
   end function depth_of
 
   !> Largest distance of a side from its die between two points in contact [length].

@@ -6,16 +6,12 @@ module face_points
                            whole_piece
   use kinds, only: wp
   use parabolas, only: tangent_on
-  use piecewise_curves, only: adjacent_piece, piecewise_curve_t
+  use piecewise_curves, only: adjacent_piece, blunt, piecewise_curve_t
   use plane_vectors, only: cross, right_of
   use vectors, only: length_of
   implicit none
   private
   public :: closest_on_face
-
-  !> A vertex where the curve turns by less than this sine is no corner: parabolas that follow a curve within a tolerance turn
-  !> by up to 3 degrees where they meet.
-  real(wp), parameter :: blunt = 0.1_wp
 
 contains
 

@@ -5,7 +5,11 @@ module piecewise_curves
   use vectors, only: length_of
   implicit none
   private
-  public :: piecewise_curve_t, prepare_search, adjacent_piece, box_of_node, box_gap
+  public :: piecewise_curve_t, prepare_search, adjacent_piece, box_of_node, box_gap, blunt
+
+  !> A vertex where a curve turns by less than this sine is no corner: parabolas that follow a curve within a tolerance turn by up
+  !> to 3 degrees where they meet.
+  real(wp), parameter :: blunt = 0.1_wp
 
   type :: piecewise_curve_t
     !> Points of the pieces (2, 3, npiece) [length].

@@ -8,16 +8,12 @@
 module dies
   use kinds, only: wp
   use parabolas, only: tangent_on
-  use piecewise_curves, only: piecewise_curve_t, prepare_search
+  use piecewise_curves, only: blunt, piecewise_curve_t, prepare_search
   use plane_vectors, only: cross, turned
   use vectors, only: length_of
   implicit none
   private
   public :: die_t, finish_die, is_deformable, place_on_nodes, present_die, in_pilot_axes
-
-  !> A vertex where the curve turns by less than this sine is no corner: parabolas that follow a curve within a tolerance turn
-  !> by up to 3 degrees where they meet.
-  real(wp), parameter :: blunt = 0.1_wp
 
   !> Its pieces are stored in the axes of the pilot.
   type, extends(piecewise_curve_t) :: die_t

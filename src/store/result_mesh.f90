@@ -4,7 +4,7 @@ module result_mesh
   use errors, only: error_t
   use hdf5_file, only: hdf5_file_t
   use instant_files, only: begin_file, put_in_place
-  use quadrature, only: rule_number
+  use quadrature, only: rule_name, rule_number
   use result_dies, only: write_die_topology
   use scene, only: is_solid, scene_t
   use text, only: to_text
@@ -52,6 +52,7 @@ contains
       call file%write_attribute(place, 'name', scene%groups(g)%name)
       call file%write_attribute(place, 'elem', scene%groups(g)%elem)
       call file%write_attribute(place, 'npoint', rule_number(scene%groups(g)%rule))
+      call file%write_attribute(place, 'rule', rule_name(scene%groups(g)%rule))
     end do
     ! deformable dies are drawn with their bodies
     n = 0

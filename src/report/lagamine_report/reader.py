@@ -18,13 +18,14 @@ AXISYMMETRIC = 2
 
 @dataclass
 class Group:
-    """Elements of one kind: name, LAGAMINE's element name, nodes from 0, points of a side (negative: Lobatto)."""
+    """Elements of one kind: name, LAGAMINE's element name, nodes from 0, points of a side (negative: Lobatto), what these are."""
 
     number: str
     name: str
     elem: str
     connectivity: np.ndarray
     npoint: int = 0
+    rule: str = ""
 
 
 @dataclass
@@ -242,7 +243,8 @@ def _generation(path: str, file: h5py.File) -> Generation:
     for number in sorted(file.get("mesh/groups", {}), key=int):
         item = file[f"mesh/groups/{number}"]
         nodes = _dataset(file, f"mesh/groups/{number}/connectivity").astype(int)
-        groups.append(Group(number, _attribute(item, "name"), _attribute(item, "elem"), nodes, int(_attribute(item, "npoint", 0))))
+        groups.append(Group(number, _attribute(item, "name"), _attribute(item, "elem"), nodes, int(_attribute(item, "npoint", 0)),
+                            _attribute(item, "rule", "") or ""))
     for nodes in [topology] + [group.connectivity for group in groups]:
         if nodes.size and (nodes.min() < 0 or nodes.max() >= len(coordinates)):
             raise ReportError("damaged: an element has a node that does not exist")

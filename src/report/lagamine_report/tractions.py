@@ -14,6 +14,7 @@ from .geometry import line3, side_points
 from .reader import Group, Run, Step
 
 STRESSES = ("stress_xx", "stress_yy", "stress_xy")
+CONTROL_POINT = "control point"     # rule of sides whose middle point is that of their parabola, its area its Bernstein polynomial's
 STRETCH = 2               # sides
 FEWEST = 4                # closed points of an interval that is recovered
 FACTOR = (0.4, 2.5)       # the body's pressure may differ by so much from that of the points
@@ -31,6 +32,14 @@ def side_weights(npoint: int, found: int) -> np.ndarray:
         weights[:3] *= np.array([9, 28, 23]) / 24
         weights[:-4:-1] = weights[:3]
     return weights
+
+
+def point_areas(group: Group, per_xi: np.ndarray) -> np.ndarray:
+    """Areas that the points of a contact stand for (side, point), from those per unit of xi at them."""
+    if group.rule != CONTROL_POINT:
+        return per_xi * side_weights(group.npoint, per_xi.shape[1])
+    first, middle, last = per_xi.T
+    return np.stack([first + middle, 2 * middle, last + middle], axis=1) / 3
 
 
 def recovered_tractions(run: Run, step: Step, group: Group) -> Optional[Tuple[np.ndarray, np.ndarray]]:
@@ -77,7 +86,7 @@ def _body_tractions(run: Run, step: Step, group: Group, npoint: int) -> Tuple[np
     n = np.stack([t[..., 1], -t[..., 0]], axis=2)       # the part is on the left
     xx, yy, xy = (np.einsum("pk,sk->sp", line3(xi), run.nodal(step, name)[group.connectivity]) for name in STRESSES)
     force = np.stack([xx * n[..., 0] + xy * n[..., 1], xy * n[..., 0] + yy * n[..., 1]], axis=2)
-    area = length * side_weights(group.npoint, npoint) * (np.abs(place[..., 0]) if run.axisymmetric else 1)
+    area = point_areas(group, length * (np.abs(place[..., 0]) if run.axisymmetric else 1))
     return -(force * n).sum(axis=2).ravel(), -(force * t).sum(axis=2).ravel(), area.ravel()
 
 
