@@ -52,6 +52,7 @@ contains
     call move_fields(equations%dofs, outcome%du, solution%fields)
     call fill_middles(scene, solution%fields)
     solution%time = solution%time + dt
+    solution%older_step = solution%last_step
     solution%last_step = dt
     solution%step = solution%step + 1
     solution%iterations = solution%iterations + outcome%iterations
@@ -118,6 +119,7 @@ contains
     call move_fields(equations%dofs, outcome%du, solution%fields)
     do f = 1, size(before)
       solution%fields(f)%last_increment = before(f)%last_increment
+      solution%fields(f)%older_increment = before(f)%older_increment
     end do
     solution%iterations = solution%iterations + outcome%iterations
     call book_deformable_dies(scene, equations, solution, error)

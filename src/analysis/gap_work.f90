@@ -7,7 +7,7 @@
 module gap_work
   use axis_contact, only: area_at_corner
   use contact_areas, only: area_of_point
-  use contact_point, only: at_piece, at_pressure, at_status, at_tau, at_xi, contact_block, penalties, side_length
+  use contact_point, only: at_between, at_piece, at_pressure, at_status, at_tau, at_xi, contact_block, penalties, side_length
   use contact_work, only: kept_work
   use control_point_contact, only: control_shares
   use corner_weights, only: interval_before
@@ -15,7 +15,6 @@ module gap_work
   use element_loop, only: group_geometry
   use equations, only: equations_t
   use fields, only: displacement_field, pilot_field, section_field
-  use held_depth, only: soft_depth
   use kinds, only: wp
   use law_api, only: contact_open
   use parabolas, only: tangent_on
@@ -107,7 +106,6 @@ contains
       real(wp), intent(in) :: old(:), now(:), place, area
       real(wp), intent(in), optional :: shares(3)   ! of the nodes in its motion
       real(wp) :: phi(3), dphi(3), tangent(2), traction(2), penalty(2), side
-      logical :: held
 
       if (.not. opens(old(at_status), now(at_status))) return
       associate (group => scene%groups(g), side_of => x(:, :3, e))
@@ -115,13 +113,12 @@ contains
         if (present(shares)) phi = shares
         tangent = tangent_of_die(scene, solution, group, old, matmul(side_of, dphi))
         ! walking along the die the part is on the left: the inner normal of the die is on the right
-        traction = old(at_pressure)*[tangent(2), -tangent(1)] + old(at_tau)*tangent
+        traction = (old(at_pressure) - old(at_between))*[tangent(2), -tangent(1)] + old(at_tau)*tangent
         side = side_length(scene, group%connectivity(:, e))
         penalty = penalties(scene%materials(group%material), group%modulus, side)
-        held = soft_depth(group%rule, scene%materials(group%material), side) > 0
         work = work + area &
                *(0.5_wp*dot_product(traction, motion_of_die(scene, solution, group, old, matmul(side_of, phi)) - matmul(du, phi)) &
-                 + kept_work(old, now, penalty, held))
+                 + kept_work(old, now, penalty))
       end associate
     end subroutine add_point
 

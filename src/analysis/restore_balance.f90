@@ -116,16 +116,22 @@ contains
     balance%shape = least_shape(scene, scene%mesh%coordinates)
     rest = 0
     call external_forces(scene, equations%dofs, solution%time, external)
-    call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report)
+    ! what was carried is judged by what the points of contact have; a new side that spans a bend otherwise than the old ones did
+    ! is pushed out of the die as equilibrium is restored
+    call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report, points_alone=.true.)
     balance%depth_change = depth_change(scene, solution)
     call keep_pressures(scene, solution)
-    call evaluate(scene, equations, solution, 0.0_wp, rest, .true., report)
+    call evaluate(scene, equations, solution, 0.0_wp, rest, .true., report, points_alone=.true.)
     allocate (balance%pilot_carried, source=solution%fields(pilot_field)%applied)
     if (report%status == block_done) call book_carried(scene, equations, balance%pilot_carried)
     rest = external - equations%force
     where (equations%solves(equations%now)%equation == 0) rest = 0
     call place_residual(scene, equations%dofs, external, equations%magnitude, rest, balance%place)
     call work_of_correction(equations, rest, work)
+    rest = 0
+    call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report)
+    rest = external - equations%force
+    where (equations%solves(equations%now)%equation == 0) rest = 0
     parts = first_parts(1.0_wp, smallest_part)
     do while (parts%goes_on)
       call solve_step(scene, equations, solution, 0.0_wp, outcome, (parts%left - parts%part)*rest)

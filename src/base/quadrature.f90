@@ -8,11 +8,9 @@ module quadrature
   public :: line_rule, gauss_line, square_rule, rule_number, rule_of_number, rule_name, is_control_point
 
   !> Families of rules: Gauss; points at equal distances, the ends among them (Lobatto's with 3, then Simpson's on equal parts);
-  !> the same of so many points that contact is seen along the whole side (ALONG); the nodes of a side whose contact is that of
-  !> its ends and its control point, 3 as Lobatto's.
+  !> the nodes of a side that is in contact between them too (ALONG), and those of one whose contact is that of its ends and its
+  !> control point (BEZIER), 3 as Lobatto's.
   integer, parameter :: rule_gauss = 1, rule_equidistant = 2, rule_along = 3, rule_control = 4
-  !> More points than these are no rule of Gauss here.
-  integer, parameter :: most_gauss = 4
 
   !> A rule: family, and number of points in all.
   type :: rule_t
@@ -27,14 +25,14 @@ contains
     type(rule_t), intent(in) :: rule
     integer :: number
 
-    number = merge(-rule%n, rule%n, rule%family == rule_equidistant .or. rule%family == rule_control)
+    number = merge(rule%n, -rule%n, rule%family == rule_gauss)
   end function rule_number
 
   elemental function rule_of_number(number) result(rule)
     integer, intent(in) :: number
     type(rule_t) :: rule
 
-    rule = rule_t(merge(rule_equidistant, merge(rule_along, rule_gauss, number > most_gauss), number < 0), abs(number))
+    rule = rule_t(merge(rule_equidistant, rule_gauss, number < 0), abs(number))
   end function rule_of_number
 
   !> What the places of a rule are, in words.

@@ -202,19 +202,15 @@ contains
     draft%group_where = [draft%group_where, where]
   end subroutine append_group
 
-  !> The word for points along the whole side. So many that neither a fillet of one and a half sides nor a side that folds comes
-  !> deeper between them than the penetration usually allowed, a thousandth of the side: an arc of radius r dips by h**2/(8 r)
-  !> between points at a distance h, which is 6e-4 of a side at r = 1.5 sides, and a parabola that bulges by a tenth of its length
-  !> by 7e-4.
+  !> The word for the nodes of a side and what is deeper between them (contact_between).
   subroutine read_along(cursor, group)
     type(cursor_t), intent(inout) :: cursor
     type(group_t), intent(inout) :: group
     character(len=:), allocatable :: word
-    integer, parameter :: along = 13
 
     call cursor%word('ALONG', word)
     if (group%pairs > 0) call cursor%fail('ALONG is for rigid dies; against a body the points are chosen without it')
-    group%rule = rule_t(rule_along, along)
+    group%rule = rule_t(rule_along, 3)
   end subroutine read_along
 
   !> The word for the nodes of a side with a control point in place of the middle one.

@@ -254,7 +254,7 @@ contains
       character(len=:), allocatable :: s
 
       s = ''
-      if (rule%family == rule_along) s = ' equidistant'
+      if (rule%family == rule_along) s = ' along'
       if (rule%family == rule_control) s = ' Bezier'
       if (rule%family == rule_equidistant) s = trim(merge(' Lobatto    ', ' equidistant', rule%n == 3))
     end function rule_of

@@ -6,15 +6,14 @@ module contact_measure
   use axis_contact, only: area_at_corner
   use contact_areas, only: area_of_point
   use contact_penalties, only: allowed_penetration, penalties_of_card, penalties_t
-  use contact_point, only: at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_work, contact_block, &
+  use contact_point, only: at_augmentation, at_between, at_penetration, at_piece, at_pressure, at_status, at_work, contact_block, &
                            dissipated, penalties, side_length
   use contact_work, only: kept_work
   use corner_weights, only: interval_before
   use elem_api, only: totals_t
-  use held_depth, only: soft_depth
   use kinds, only: wp
   use law_api, only: contact_open, contact_slip, contact_stick, law_t
-  use quadrature, only: is_control_point, line_rule, rule_along, rule_equidistant, rule_t
+  use quadrature, only: is_control_point, line_rule, rule_equidistant, rule_t
   use scene, only: group_t, scene_t
   use state_variables, only: find_variable
   implicit none
@@ -48,26 +47,23 @@ contains
     do e = 1, size(trial, 3)
       allowed = given%allowed*side_length(scene, group%connectivity(:, e))
       do k = 0, last, n
-        changed = changed .or. any(deep(trial(k + 1:k + n, :, e), group%rule) > allowed &
+        changed = changed .or. any(deep(trial(k + 1:k + n, :, e)) > allowed &
                                    .and. nint(trial(k + at_status, :, e)) /= contact_open)
       end do
       changed = changed .or. any(peaks(trial(:, :, e), group%rule, worth_augmenting*allowed) > allowed)
     end do
     if (.not. changed) return
     do k = 0, last, n
-      committed(k + at_augmentation, :, :) = trial(k + at_pressure, :, :)
+      committed(k + at_augmentation, :, :) = trial(k + at_pressure, :, :) - trial(k + at_between, :, :)
     end do
   end subroutine augment
 
-  !> Depth of points, and height of those that their multipliers hold over the die. Where the depth is held (held_depth) the
-  !> multipliers give way by themselves.
-  pure function deep(state, rule) result(depth)
+  !> Depth of points, and height of those that their multipliers hold over the die.
+  pure function deep(state) result(depth)
     real(wp), intent(in) :: state(:, :)   !! (nstate, npoint) [unit of each component]
-    type(rule_t), intent(in) :: rule
     real(wp) :: depth(size(state, 2))     !! [length]
 
     depth = abs(state(at_penetration, :))
-    if (rule%family == rule_along) depth = sign(state(at_penetration, :), state(at_penetration, :)*state(at_pressure, :))
   end function deep
 
   !> Corners of the die are points of contact of their own.
@@ -112,7 +108,6 @@ contains
     type(totals_t), intent(out) :: totals
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: side, penalty(2), from, to
-    logical :: held
     integer :: e, p, n
     logical :: corners
 
@@ -122,7 +117,6 @@ contains
     do e = 1, size(x, 3)
       side = side_length(scene, group%connectivity(:, e))
       penalty = penalties(scene%materials(group%material), group%modulus, side)
-      held = soft_depth(group%rule, scene%materials(group%material), side) > 0
       do p = 1, size(xi)
         select case (nint(state(at_status, p, e)))
         case (contact_stick)
@@ -156,7 +150,7 @@ contains
       end if
       lost = dissipated(old, now, penalty(2))
       totals%friction_work = totals%friction_work + area*now(at_work)
-      totals%contact_work = totals%contact_work + area*kept_work(old, now, penalty, held)
+      totals%contact_work = totals%contact_work + area*kept_work(old, now, penalty)
       totals%least_dissipation = min(totals%least_dissipation, lost)
     end subroutine add_point
 

@@ -6,7 +6,6 @@
 !> alone: depth, slip, and the turn of the normal.
 module contact_point
   use contact_penalties, only: penalties_of_card, penalties_t
-  use held_depth, only: next_multiplier, stiffened
   use kinds, only: wp
   use law_api, only: contact_open, contact_slip, law_t
   use materials, only: material_t
@@ -19,13 +18,15 @@ module contact_point
   private
   public :: contact_point_t, meeting_t, side_point, act, answer, penalties, share_to_contact, show_on_axis, side_length
   public :: area_at, dissipated, point_variables, rest, thinning, contact_block
-  public :: at_pressure, at_tau, at_penetration, at_status, at_slip, at_augmentation, at_work, at_piece, at_xi, &
-            npoint_state
+  public :: at_pressure, at_tau, at_penetration, at_status, at_slip, at_augmentation, at_work, at_piece, at_xi, at_between, &
+            at_energy, npoint_state
   public :: most_unknowns, no_surface, share_of_way, touching
 
-  !> Rows in the state of a point; the history of its law follows.
+  !> Rows in the state of a point; the history of its law follows. The pressure has in it that of the side beside the point, where
+  !> it is deeper between points than allowed (contact_between).
   integer, parameter :: at_pressure = 1, at_tau = 2, at_penetration = 3, at_status = 4, at_slip = 5, &
-                        at_augmentation = 6, at_work = 7, at_piece = 8, at_xi = 9, npoint_state = 9
+                        at_augmentation = 6, at_work = 7, at_piece = 8, at_xi = 9, at_between = 10, at_energy = 11, &
+                        npoint_state = 11
   !> Six of a side, six of what it meets, three of the section.
   integer, parameter :: most_unknowns = 15
 
@@ -55,8 +56,6 @@ module contact_point
     real(wp) :: d, slip, normal(2)
     !> Depth that needs no pressure [length].
     real(wp) :: allowed = 0.0_wp
-    !> Depth up to which the penalty is that of the card (held_depth) [length].
-    real(wp) :: soft = 0.0_wp
     !> A point in contact at the start of the step follows its law linearised at the depth it had then (instant_t).
     logical :: kept = .false.
     real(wp), dimension(most_unknowns) :: dd, dslip, turn
@@ -77,14 +76,17 @@ contains
                             state_variable('augmentation', 'stress', transfer_contact), &
                             state_variable('friction_work', 'stress*length', transfer_contact), &
                             state_variable('die_piece', '-', transfer_recompute), &
-                            state_variable('die_xi', '-', transfer_recompute), law%history])
+                            state_variable('die_xi', '-', transfer_recompute), &
+                            state_variable('pressure_between', 'stress', transfer_recompute), &
+                            state_variable('energy_between', 'stress*length', transfer_recompute), law%history])
   end function point_variables
 
   !> Points without contact: slip and work of friction so far stay.
   pure subroutine rest(state)
     real(wp), intent(inout) :: state(:, :)   !! (nstate, npoint) [unit of each component]
 
-    state([at_pressure, at_tau, at_status, at_penetration, at_piece, at_xi, at_augmentation], :) = 0
+    state([at_pressure, at_tau, at_status, at_penetration, at_piece, at_xi, at_augmentation, at_between, &
+           at_energy], :) = 0
   end subroutine rest
 
   !> Rows of the state that are of the point itself: with corners the same of a corner and its position on the side follow.
@@ -144,12 +146,12 @@ contains
     real(wp), intent(inout) :: trial(:)             !! (nstate) [unit of each component]
     real(wp), intent(out) :: q(2)                   !! per radian when axisymmetric [force]
     real(wp), intent(out) :: dq(2, most_unknowns)   !! set where the tangent is wanted and there is contact [force/unknown]
-    real(wp) :: dslip(most_unknowns), t(2), slope, pressure, tau, law_tangent(2, 2), area, traction(2), dp, dtau
+    real(wp) :: dslip(most_unknowns), t(2), pressure, tau, law_tangent(2, 2), area, traction(2), dp, dtau
     logical :: open
     integer :: j
 
     q = 0
-    call answer(law, material, dt, drivers, penalty, meeting, committed, trial, pressure, tau, law_tangent, slope, dslip, open)
+    call answer(law, material, dt, drivers, penalty, meeting, committed, trial, pressure, tau, law_tangent, dslip, open)
     if (open) return
 
     t = [-meeting%normal(2), meeting%normal(1)]
@@ -158,8 +160,8 @@ contains
     q = traction*area
     if (.not. tangent_wanted) return
     do j = 1, most_unknowns
-      dp = law_tangent(1, 1)*slope*meeting%dd(j) + law_tangent(1, 2)*dslip(j)
-      dtau = law_tangent(2, 1)*slope*meeting%dd(j) + law_tangent(2, 2)*dslip(j)
+      dp = law_tangent(1, 1)*meeting%dd(j) + law_tangent(1, 2)*dslip(j)
+      dtau = law_tangent(2, 1)*meeting%dd(j) + law_tangent(2, 2)*dslip(j)
       dq(:, j) = -(dp*meeting%normal + dtau*t + meeting%turn(j)*(pressure*t - tau*meeting%normal))*area &
                  + traction*weight*(point%dlength(j)*point%thickness + point%length*point%dthickness(j))
     end do
@@ -169,7 +171,7 @@ contains
   !> trial.
   !>
   !> When contact begins inside the step only the share d/(d - d_start) of the way counts as slip.
-  pure subroutine answer(law, material, dt, drivers, penalty, meeting, committed, trial, pressure, tau, tangent, slope, dslip, open)
+  pure subroutine answer(law, material, dt, drivers, penalty, meeting, committed, trial, pressure, tau, tangent, dslip, open)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt              !! length of the step [time]
@@ -179,8 +181,7 @@ contains
     real(wp), intent(in) :: committed(:)    !! (nstate) [unit of each component]
     real(wp), intent(inout) :: trial(:)     !! (nstate) [unit of each component]
     real(wp), intent(out) :: pressure, tau   !! [stress]
-    real(wp), intent(out) :: tangent(2, 2)   !! of both by depth, to be multiplied by `slope`, and slip [stress/length]
-    real(wp), intent(out) :: slope           !! [-]
+    real(wp), intent(out) :: tangent(2, 2)   !! of both by depth and slip [stress/length]
     real(wp), intent(out) :: dslip(most_unknowns)   !! derivatives of the slip that counts [length/unknown]
     logical, intent(out) :: open
     real(wp) :: slip, depth, gap, share, stress(2), law_tangent(3, 3), change
@@ -196,13 +197,11 @@ contains
       slip = share*slip
     end if
 
-    call stiffened(meeting%d - meeting%allowed, meeting%soft, depth, slope)
     ! of the depth since the start of the step, where the law is linearised there
     change = 0
     if (meeting%kept .and. nint(committed(at_status)) /= contact_open) then
-      change = depth
-      call stiffened(committed(at_penetration) - meeting%allowed, meeting%soft, depth, slope)
-      change = change - depth
+      change = depth - (committed(at_penetration) - meeting%allowed)
+      depth = committed(at_penetration) - meeting%allowed
     end if
     ! nothing moves across the plane: the second tangential component stays at rest
     call law%slide(material, dt, drivers, penalty, committed(at_augmentation), depth, [slip, 0.0_wp], [committed(at_tau), 0.0_wp], &
@@ -216,7 +215,7 @@ contains
     trial(at_status) = status
     open = status == contact_open
     if (open) return
-    trial(at_augmentation) = next_multiplier(committed(at_augmentation), penalty(1), depth, meeting%soft)
+    trial(at_augmentation) = committed(at_augmentation)
     trial(at_slip) = committed(at_slip) + slip
     trial(at_work) = trial(at_work) + dissipated(committed, trial, penalty(2))
   end subroutine answer

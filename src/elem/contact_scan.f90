@@ -1,6 +1,4 @@
 !> A whole side of the part against its die: its depth at many points, and where contact begins and ends on it.
-!>
-!> Contact forces act at integration points only; this finds the depth between them too.
 module contact_scan
   use closest_point, only: closest_point_t
   use curve_search, only: box_distance, closest_facing_point
@@ -10,10 +8,10 @@ module contact_scan
   use shape_functions, only: line3
   implicit none
   private
-  public :: is_near, deepest_sample, lies_inside, locate_end
+  public :: is_near, deepest_sample, widest_gap, lies_inside, locate_end
 
   !> Points at which a side is sampled.
-  integer, parameter :: nsample = 20
+  integer, parameter :: nsample = 65
 
 contains
 
@@ -38,10 +36,44 @@ contains
 
     depth = -reach
     do k = 1, nsample
-      call closest_to_side_point(die, side, -1 + 2*real(k - 1, wp)/(nsample - 1), reach, closest)
+      call closest_to_side_point(die, side, sample(k), reach, closest)
       if (closest%piece > 0) depth = max(depth, closest%d)
     end do
   end function deepest_sample
+
+  !> Largest distance of a side from its die between two places that touch it [length].
+  pure function widest_gap(die, side, reach, touch) result(gap)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: side(2, 3)   !! nodes in the pilot's axes [length]
+    real(wp), intent(in) :: reach        !! [length]
+    real(wp), intent(in) :: touch        !! what is nearer touches the die [length]
+    real(wp) :: gap
+    type(closest_point_t) :: closest
+    real(wp) :: since
+    logical :: touched
+    integer :: k
+
+    gap = 0
+    since = 0
+    touched = .false.
+    do k = 1, nsample
+      call closest_to_side_point(die, side, sample(k), reach, closest)
+      if (closest%piece == 0) cycle
+      since = max(since, -closest%d)
+      if (closest%d < -touch) cycle
+      if (touched .and. since > touch) gap = max(gap, since)
+      touched = .true.
+      since = 0
+    end do
+  end function widest_gap
+
+  !> Places at which a side is looked at, the ends among them.
+  elemental function sample(k) result(place)
+    integer, intent(in) :: k
+    real(wp) :: place   !! [-]
+
+    place = -1 + 2*real(k - 1, wp)/(nsample - 1)
+  end function sample
 
   !> Where contact ends between a position on a side in contact and an open one: a linear guess from the penetrations there, then
   !> the zero of the depth by bisection and secants on the side itself. Where the die ends first that is the position; where the

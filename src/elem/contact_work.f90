@@ -3,11 +3,12 @@
 !> Against the pressure p = multiplier + AKP d it is the integral of p dd. Penalties keep it as p**2/(2 AKP); what a
 !> multiplier takes when it replaces depth (Uzawa) is no energy that comes back. With p straight between both ends of the
 !> step both are (p0 + p1)/2 (d1 - d0). A point that closes begins at no pressure, one that opens ends there. Along the side
-!> the tangential penalty keeps tau**2/(2 AKTAU). Source: P. Wriggers, Computational Contact Mechanics, 2nd ed., Springer
-!> 2006 (energies of penalty and augmented Lagrange methods).
+!> the tangential penalty keeps tau**2/(2 AKTAU). What is in contact between points (contact_between)
+!> keeps its own energy. Source: P. Wriggers, Computational Contact Mechanics, 2nd ed., Springer 2006 (energies of penalty and
+!> augmented Lagrange methods).
 module contact_work
   use contact_areas, only: area_of_point
-  use contact_point, only: area_at, at_augmentation, at_penetration, at_pressure, at_status, at_tau
+  use contact_point, only: area_at, at_augmentation, at_between, at_energy, at_penetration, at_pressure, at_status, at_tau
   use corner_weights, only: interval_before
   use kinds, only: wp
   use law_api, only: contact_open
@@ -19,29 +20,26 @@ module contact_work
 contains
 
   !> Work per present area of the side.
-  pure function kept_work(before, after, penalty, held) result(work)
+  pure function kept_work(before, after, penalty) result(work)
     real(wp), intent(in) :: before(:), after(:)   !! (nstate) state of the point [unit of each component]
     real(wp), intent(in) :: penalty(2)            !! normal and tangential [stress/length]
-    logical, intent(in), optional :: held         !! the depth is held (held_depth): it is no longer the pressure over the penalty
     real(wp) :: work                              !! [stress*length]
-    logical :: was, is, by_depth
+    real(wp) :: pressure(2)
+    logical :: was, is
 
     was = nint(before(at_status)) /= contact_open
     is = nint(after(at_status)) /= contact_open
-    by_depth = .false.
-    if (present(held)) by_depth = held
+    ! of the point itself
+    pressure = [before(at_pressure) - before(at_between), after(at_pressure) - after(at_between)]
     work = 0
     if (was .and. is) then
-      work = 0.5_wp*(before(at_pressure) + after(at_pressure))*(after(at_penetration) - before(at_penetration))
-    else if (by_depth) then
-      if (is) work = 0.5_wp*after(at_pressure)*after(at_penetration)
-      if (was) work = -0.5_wp*before(at_pressure)*before(at_penetration)
+      work = 0.5_wp*sum(pressure)*(after(at_penetration) - before(at_penetration))
     else if (is) then
-      work = 0.5_wp*after(at_pressure)*(after(at_pressure) - after(at_augmentation))/penalty(1)
+      work = 0.5_wp*pressure(2)*(pressure(2) - after(at_augmentation))/penalty(1)
     else if (was) then
-      work = -0.5_wp*before(at_pressure)*(before(at_pressure) - before(at_augmentation))/penalty(1)
+      work = -0.5_wp*pressure(1)*(pressure(1) - before(at_augmentation))/penalty(1)
     end if
-    work = work + 0.5_wp*(after(at_tau)**2 - before(at_tau)**2)/penalty(2)
+    work = work + 0.5_wp*(after(at_tau)**2 - before(at_tau)**2)/penalty(2) + after(at_energy) - before(at_energy)
   end function kept_work
 
   !> Work that friction has done so far at a point of a side and at the corner of the die in the interval before it, at the start

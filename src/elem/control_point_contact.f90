@@ -189,7 +189,7 @@ contains
     real(wp), intent(inout) :: trial(:)                !! (nstate) [unit of each component]
     real(wp), intent(inout) :: force(ndof)             !! [force]
     real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
-    real(wp) :: law_tangent(2, 2), slope, area, darea(ndof), dslip(most_unknowns), pressure, tau, dp(ndof), dtau(ndof)
+    real(wp) :: law_tangent(2, 2), area, darea(ndof), dslip(most_unknowns), pressure, tau, dp(ndof), dtau(ndof)
     real(wp) :: q(2), dq(2, ndof), traction(2), n(2), t(2), moment, dmoment(ndof)
     logical :: open
     integer :: i, j
@@ -198,16 +198,15 @@ contains
     trial(at_piece) = nodes(2)%face%piece
     trial(at_xi) = nodes(2)%face%xi
     control%meeting%kept = side%kept .and. .not. released
-    control%meeting%soft = side%soft
     call answer(law, material, side%dt, drivers, side%penalty, control%meeting, committed, trial, pressure, tau, law_tangent, &
-                slope, dslip, open)
+                dslip, open)
     if (open) return
     associate (point => nodes(2)%point)
       area = 2.0_wp/3*share*point%length*point%thickness
       darea = 2.0_wp/3*share*(point%dlength(:ndof)*point%thickness + point%length*point%dthickness(:ndof))
     end associate
-    dp = law_tangent(1, 1)*slope*control%meeting%dd(:ndof) + law_tangent(1, 2)*dslip(:ndof)
-    dtau = law_tangent(2, 1)*slope*control%meeting%dd(:ndof) + law_tangent(2, 2)*dslip(:ndof)
+    dp = law_tangent(1, 1)*control%meeting%dd(:ndof) + law_tangent(1, 2)*dslip(:ndof)
+    dtau = law_tangent(2, 1)*control%meeting%dd(:ndof) + law_tangent(2, 2)*dslip(:ndof)
     do i = 1, control%n
       associate (part => control%parts(i), x => control%parts(i)%node)
         n = part%meeting%normal

@@ -93,6 +93,8 @@ module elem_api
     logical, allocatable :: turning(:)
     real(wp), allocatable :: corrected_from(:, :)
     real(wp) :: section_from(3) = 0.0_wp
+    !> Sides press on dies at their points alone, not between them (contact_between).
+    logical :: points_alone = .false.
     !> Values of all unknowns at the start of the step (ndof); not allocated where mechanics is all there is.
     real(wp), allocatable :: values(:)
     !> Multipliers at the start and at the end of the step.
@@ -130,6 +132,8 @@ module elem_api
     logical :: unpaired = .false.
     !> Largest change of penetration at a point already in contact, over the side.
     real(wp) :: jump = 0.0_wp
+    !> A side is in contact between its points.
+    logical :: between = .false.
     !> Square of the norm of the sources within the elements, which the other terms of the elements balance [power^2].
     real(wp) :: source = 0.0_wp
     !> Heat that the elements took up in the step, and that sources released in them [energy].

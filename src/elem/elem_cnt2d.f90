@@ -10,7 +10,8 @@
 !> begins inside the step only the share d/(d - d_start) of it counts.
 !>
 !> A corner of the die between two integration points is one more point of contact of the side
-!> (corner_contact); so is the node of a side on the axis (axis_contact).
+!> (corner_contact); so is the node of a side on the axis (axis_contact). What is deeper than allowed between points
+!> presses too (contact_between).
 !>
 !> The work of friction is kept per present area: it decreases where the side stretches.
 !>
@@ -20,6 +21,7 @@ module elem_cnt2d
   use axis_contact, only: press_axis
   use closest_point, only: closest_point_t, closest_within_piece
   use contact_areas, only: areas_with_control
+  use contact_between, only: press_between
   use contact_measure, only: augment, measure
   use contact_point, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, &
                            contact_point_t, no_surface, &
@@ -29,7 +31,6 @@ module elem_cnt2d
   use corner_release, only: motion_past_corner, passes_corner, release_t, slide_past_corner
   use curve_search, only: box_distance
   use die_sweep, only: share_to_pass
-  use held_depth, only: soft_depth
   use dies, only: die_t
   use elem_api, only: elem_t, goes_on, instant_t, layout_t, of_displacement, of_pilot, of_section, report_t, section_motion
   use kinds, only: wp
@@ -37,7 +38,7 @@ module elem_cnt2d
   use law_api, only: contact_law, contact_open, law_t
   use materials, only: material_t
   use plane_vectors, only: cross, turned
-  use quadrature, only: line_rule, rule_control
+  use quadrature, only: line_rule, rule_along, rule_control
   use side_contact, only: press_side
   use rigid_contact, only: closest_or_followed, ndof, place_point, press, side_t
   use scene, only: axisymmetric, group_t, role_contact, scene_t
@@ -106,12 +107,13 @@ contains
     real(wp) :: f(ndof), k(ndof, ndof)
     type(side_t) :: side
     integer :: e, p, n, own
-    logical :: axisym, whole
+    logical :: axisym, whole, between
 
     n = size(du, 1)
     own = contact_block(.true., size(trial, 1))
     axisym = scene%plane_state == axisymmetric
     whole = group%rule%family == rule_control
+    between = group%rule%family == rule_along .and. .not. instant%points_alone
     call line_rule(group%rule, xi, weight)
     associate (die => scene%dies(group%die), material => scene%materials(group%material))
       do e = 1, size(x, 3)
@@ -141,6 +143,8 @@ contains
                            report)
         if (axisym) call press_axis(die, law, material, drivers(:, :, :, e), side, xi, committed(:, :, e), &
                                                       trial(:, :, e), f, k, report)
+        if (between) call press_between(die, law, material, drivers(:, :, :, e), axisym, side, group%rule, xi, weight, &
+                                        committed(:, :, e), trial(:, :, e), f, k, report)
         force(:, e) = f(:n)
         if (instant%tangent) stiffness(:, :, e) = k(:n, :n)
         if (axisym .and. .not. whole) call show_on_axis(xi, x(1, :, e) + du(1:3, e), side%length, trial(:, :, e))
@@ -166,7 +170,6 @@ contains
     if (scene%finite) side%section = instant%section + side%thickening
     side%length = side_length(scene, group%connectivity(:, element))
     side%penalty = penalties(scene%materials(group%material), group%modulus, side%length)
-    side%soft = soft_depth(group%rule, scene%materials(group%material), side%length)
     side%pilot(:, 1) = instant%pilots(:, group%die)
     side%pilot(:, 2) = side%pilot(:, 1) + du(7:9)
     side%dt = instant%dt

@@ -18,7 +18,7 @@ module rigid_contact
   use shape_functions, only: line3
   implicit none
   private
-  public :: side_t, drift_t, place_point, press, meet, outer, closest_or_followed
+  public :: side_t, drift_t, place_point, press, meet, outer, closest_or_followed, motion_of_depth
   public :: ndof
 
   !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle, section; the last three are
@@ -35,8 +35,6 @@ module rigid_contact
     real(wp) :: section(3) = 0.0_wp, thickening(3) = 0.0_wp
     !> Chord in the mesh as it began: the distance within which the side searches [length].
     real(wp) :: length = 0.0_wp
-    !> Depth up to which the penalty is that of the card (held_depth) [length].
-    real(wp) :: soft = 0.0_wp
     !> Normal and tangential penalty [stress/length].
     real(wp) :: penalty(2) = 0.0_wp
     !> Length of the step [time].
@@ -65,7 +63,7 @@ contains
 
   !> Contact of a point with its closest point on the die: state, forces, matrix.
   pure subroutine press(law, material, drivers, side, xi, point, closest, allowed, weight, committed, trial, force, stiffness, &
-                        drift, released)
+                        drift, released, dallowed)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) of the law [unit of each driver]
@@ -81,6 +79,7 @@ contains
     real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
     type(drift_t), intent(in), optional :: drift       !! of a point that is not fixed on its side
     logical, intent(in), optional :: released          !! its contact is not kept
+    real(wp), intent(in), optional :: dallowed(ndof)   !! derivatives of `allowed` [length/unknown]
     type(meeting_t) :: meeting
     real(wp) :: phi(3), dphi(3), lever(2), q(2), moment, dlever(2, ndof), dmoment(ndof), dq(2, most_unknowns)
     integer :: j, k
@@ -95,7 +94,7 @@ contains
     dlever(2, 8) = dlever(2, 8) - 1
     call meet(side, phi, dphi, closest, lever, dlever, meeting, drift)
     meeting%allowed = allowed
-    meeting%soft = side%soft
+    if (present(dallowed)) meeting%dd(:ndof) = meeting%dd(:ndof) - dallowed
     meeting%kept = side%kept
     if (present(released)) meeting%kept = meeting%kept .and. .not. released
     call act(law, material, side%dt, drivers, side%penalty, point, meeting, weight, side%tangent, committed, trial, q, dq)
@@ -120,6 +119,21 @@ contains
     stiffness(1:3, :) = stiffness(1:3, :) - q(1)*spread(dphi, 2, ndof)*spread(drift%dxi, 1, 3)
     stiffness(4:6, :) = stiffness(4:6, :) - q(2)*spread(dphi, 2, ndof)*spread(drift%dxi, 1, 3)
   end subroutine press
+
+  !> Derivatives of the depth of a point of a side.
+  pure function motion_of_depth(side, point, closest) result(dd)
+    type(side_t), intent(in) :: side
+    type(contact_point_t), intent(in) :: point
+    type(closest_point_t), intent(in) :: closest   !! in the pilot's axes
+    real(wp) :: dd(ndof)                           !! [length/unknown]
+    real(wp) :: n(2), lever(2)
+
+    n = turned(closest%normal, side%pilot(3, 2))
+    lever = point%x - side%pilot(1:2, 2)
+    dd = matmul(n, point%dx(:, :ndof))
+    dd(7:8) = dd(7:8) - n
+    dd(9) = dd(9) - dot_product(n, [-lever(2), lever(1)])
+  end function motion_of_depth
 
   !> Depth, slip and turn of the normal, with their derivatives.
   pure subroutine meet(side, phi, dphi, closest, lever, dlever, meeting, drift)

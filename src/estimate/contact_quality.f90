@@ -1,12 +1,12 @@
 !> Fit of the sides of a mesh to the dies they touch.
 !>
-!> Two things that no pressure corrects: a side whose parabola is deeper in the die between its points than at them, or spans a bend
-!> of the die from one place in contact to another, and a corner of the die that sticks into a side. All are measured over the
-!> penetration that the side's law allows.
+!> Two things that no pressure corrects: a side whose parabola is deeper in the die between its points than at them, or, with ALONG,
+!> spans a bend of the die from one place in contact to another, and a corner of the die that sticks into a side. All are measured
+!> over the penetration that the side's law allows.
 module contact_quality
   use contact_penalties, only: allowed_penetration
-  use contact_point, only: at_penetration, at_piece, at_status, contact_block
-  use contact_scan, only: deepest_sample, is_near
+  use contact_point, only: at_penetration, at_status, contact_block
+  use contact_scan, only: deepest_sample, is_near, widest_gap
   use dies, only: die_t, in_pilot_axes, present_die
   use fields, only: pilot_field
   use kinds, only: wp
@@ -25,6 +25,9 @@ module contact_quality
     real(wp) :: between = 0.0_wp, corner = 0.0_wp
     integer :: between_side = 0, corner_side = 0
   end type misfit_t
+
+  !> What is nearer to a die than this share of the side touches it: multipliers hold points as much above it as below.
+  real(wp), parameter :: touching = 5.0e-4_wp
 
 contains
 
@@ -74,7 +77,7 @@ contains
           known = max(known, deep)
         end if
         deep = deepest_sample(die, side, length) - known
-        if (scene%groups(g)%rule%family == rule_along) deep = max(deep, span_of(state(:n, :)))
+        if (scene%groups(g)%rule%family == rule_along) deep = max(deep, widest_gap(die, side, length, touching*length))
         of_sides(1, e) = deep/length
       end associate
     end do
@@ -96,20 +99,6 @@ contains
       depth = max(depth, state(at_penetration, p))
     end do
   end function depth_of
-
-  !> Largest distance of a side from its die between two points in contact [length].
-  pure function span_of(state) result(gap)
-    real(wp), intent(in) :: state(:, :)   !! (nstate, npoint) of contact_point
-    real(wp) :: gap
-    integer :: first, last
-
-    gap = 0
-    associate (closed => nint(state(at_status, :)) /= contact_open, met => nint(state(at_piece, :)) /= 0)
-      first = findloc(closed, .true., 1)
-      last = findloc(closed, .true., 1, back=.true.)
-      if (first < last) gap = max(gap, maxval(-state(at_penetration, first:last), mask=met(first:last)))
-    end associate
-  end function span_of
 
   pure subroutine keep(value, side, worst, worst_side)
     real(wp), intent(in) :: value

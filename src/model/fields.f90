@@ -46,9 +46,9 @@ module fields
     logical :: given = .false.
     !> What acts on it and is below this is round-off (set at the first evaluation of a mesh).
     real(wp) :: floor = 0.0_wp
-    !> Value at the accepted instant, its change in the last accepted step, what acted from outside at that instant, and what
-    !> supports and imposed values carried, without the loads on the same place (ncomp, place).
-    real(wp), allocatable :: value(:, :), last_increment(:, :), applied(:, :), reaction(:, :)
+    !> Value at the accepted instant, its change in the last accepted step and in the one before, what acted from outside at that
+    !> instant, and what supports and imposed values carried, without the loads on the same place (ncomp, place).
+    real(wp), allocatable :: value(:, :), last_increment(:, :), older_increment(:, :), applied(:, :), reaction(:, :)
   end type field_t
 
 contains
@@ -109,7 +109,8 @@ contains
     integer, intent(in) :: nplace
     type(field_t), intent(inout) :: field
 
-    allocate (field%value(field%ncomp, nplace), field%last_increment(field%ncomp, nplace), field%applied(field%ncomp, nplace), &
+    allocate (field%value(field%ncomp, nplace), field%last_increment(field%ncomp, nplace), &
+              field%older_increment(field%ncomp, nplace), field%applied(field%ncomp, nplace), &
               field%reaction(field%ncomp, nplace), source=0.0_wp)
     field%value = field%initial
   end subroutine start_field

@@ -71,6 +71,7 @@ contains
     after%unbalanced = .true.
     after%next_step = fresh%next_step
     after%last_step = 0
+    after%older_step = 0
     after%probation = fresh%probation
     after%largest_force = 0
     after%friction_apart = 0

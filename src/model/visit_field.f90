@@ -47,6 +47,7 @@ contains
     call visitor%member('floor', self%floor, effects, self%dual_unit, low=0.0_wp)
     call visitor%member('value', self%value, values, 'component, place', self%unit)
     call visitor%member('last_increment', self%last_increment, values, 'component, place', self%unit)
+    call visitor%member('older_increment', self%older_increment, effects, 'component, place', self%unit)
     call visitor%member('applied', self%applied, effects, 'component, place', self%dual_unit)
     call visitor%member('reaction', self%reaction, effects, 'component, place', self%dual_unit)
   end subroutine visit_field_values

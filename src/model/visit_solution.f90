@@ -27,6 +27,7 @@ contains
     call visitor%member('time', self%time, kept, 'time', low=0.0_wp)
     call visitor%member('step', self%step, kept, low=0)
     call visitor%member('last_step', self%last_step, kept, 'time', low=0.0_wp)
+    call visitor%member('older_step', self%older_step, recomputed, 'time', low=0.0_wp)
     call visitor%member('next_step', self%next_step, kept, 'time', low=0.0_wp)
     call visitor%member('unbalanced', self%unbalanced, recomputed)
     call visitor%member('iterations', self%iterations, kept, low=0)

@@ -59,7 +59,7 @@ contains
     end do
   end function touching_dies
 
-  !> A point or a corner of a group of contact is closed in this state.
+  !> A group of contact is closed somewhere in this state.
   pure function touches(group, state)
     type(group_t), intent(in) :: group
     real(wp), intent(in) :: state(:, :, :)   !! (component, point, element)
@@ -68,20 +68,22 @@ contains
     touches = touching(group, state) > 0
   end function touches
 
-  !> Points and corners of a group of contact that are closed in this state.
+  !> Points and corners of a group of contact that are closed in this state, and open points beside which their side is in contact.
   pure function touching(group, state) result(n)
     type(group_t), intent(in) :: group
     real(wp), intent(in) :: state(:, :, :)   !! (component, point, element)
     integer :: n
 
     associate (variables => group%variables)
-      n = count(nint(state(variables(find_variable(variables, 'contact_status'))%first, :, :)) /= contact_open)
+      n = count(nint(state(variables(find_variable(variables, 'contact_status'))%first, :, :)) /= contact_open &
+                .or. state(variables(find_variable(variables, 'pressure_between'))%first, :, :) > 0)
       if (find_variable(variables, 'corner_place') == 0) return
       n = n + count(nint(state(variables(find_variable(variables, 'corner_contact_status'))%first, :, :)) /= contact_open)
     end associate
   end function touching
 
-  !> Status of all points and corners in the trial state, one after the other: open, stick, slip; slip backwards is negative.
+  !> Status of all points and corners in the trial state, one after the other: open, stick, slip; slip backwards is negative. What
+  !> is in contact between points follows the points of its group.
   pure function contact_set(scene, solution) result(set)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -118,6 +120,8 @@ contains
     associate (variables => group%variables)
       set = ways(state(variables(find_variable(variables, 'contact_status'))%first, :, :), &
                  state(variables(find_variable(variables, 'friction'))%first, :, :))
+      set = [set, merge(contact_slip, contact_open, &
+                        pack(state(variables(find_variable(variables, 'pressure_between'))%first, :, :), .true.) > 0)]
       if (find_variable(variables, 'corner_place') == 0) return
       set = [set, ways(state(variables(find_variable(variables, 'corner_contact_status'))%first, :, :), &
                        state(variables(find_variable(variables, 'corner_friction'))%first, :, :))]

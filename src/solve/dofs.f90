@@ -419,6 +419,7 @@ contains
     integer :: f, k, c, d
 
     do f = 1, size(fields)
+      fields(f)%older_increment = fields(f)%last_increment
       do k = 1, size(fields(f)%value, 2)
         do c = 1, fields(f)%ncomp
           d = dofs%fields(f)%number(c, k)

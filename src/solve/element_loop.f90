@@ -82,6 +82,7 @@ contains
         do b = 1, size(reports)
           report%strain = max(report%strain, reports(b)%strain)
           report%jump = max(report%jump, reports(b)%jump)
+          report%between = report%between .or. reports(b)%between
           report%event = min(report%event, reports(b)%event)
           report%passed = min(report%passed, reports(b)%passed)
           report%source = report%source + reports(b)%source

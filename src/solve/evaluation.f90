@@ -22,7 +22,7 @@ contains
   !> Internal force, and matrices when wanted, at the motion `du` of the step. Points that meet pieces of deformable dies
   !> beyond their pairs get new ones, and all is computed again: no contact is lost, no step cut back.
   subroutine evaluate(scene, equations, solution, dt, du, tangent, report, predicted, kept, turning, &
-                      corrected_from, contact_alone)
+                      corrected_from, contact_alone, points_alone)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -35,6 +35,7 @@ contains
     logical, intent(in), optional :: turning(:)             !! (ndie) not with these dies
     real(wp), intent(in), optional :: corrected_from(:)     !! (ndof) motion before the correction that led to it [unknown]
     logical, intent(in), optional :: contact_alone          !! all but contact is as it was evaluated last, or of no interest
+    logical, intent(in), optional :: points_alone           !! sides press on dies at their points alone
     type(instant_t) :: instant
     real(wp), allocatable :: now(:, :)
     logical :: active(size(scene%groups))
@@ -45,6 +46,7 @@ contains
     if (present(predicted)) instant%predicted = predicted
     if (present(kept)) instant%kept = kept
     if (present(turning)) instant%turning = turning
+    if (present(points_alone)) instant%points_alone = points_alone
     if (present(corrected_from)) call note_correction(scene, equations%dofs, corrected_from, instant)
     call driving_values(scene, equations, solution, du, now)
     active = equations%solves(equations%now)%active

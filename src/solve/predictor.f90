@@ -7,6 +7,10 @@
 !> there is no motion that goes on: only the onset of it is kept, and the matrix there (with the contacts of now) spreads the
 !> rest.
 !>
+!> A side that is held between its points (contact_between) meets a bend of a die at another place in every step, and a die that it
+!> slides on by a tenth of its length goes off its straight path by more than the depth allowed. There the start follows the bend of
+!> the path of the last two steps (path_bend), where that changes penetrations less than going straight on.
+!>
 !> On a new mesh the last motion is none of its own: the first step starts at the motion of its onset (onset_motion), but where it
 !> shows that contact begins, to which the step is shortened first, and where temperatures are solved for too, which have their own
 !> last change.
@@ -30,6 +34,7 @@ module predictor
   use fields, only: displacement_field, field_t, pilot_field
   use kinds, only: wp
   use onset_motion, only: extend_onset
+  use path_bend, only: bend_of_path
   use resting_bodies, only: leave_at_rest
   use scene, only: scene_t
   use solution, only: solution_t
@@ -64,7 +69,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: left(:)     !! (ndie) dies that leave the part: they start where they go
     logical :: fixed(size(du)), at_place(size(du)), back(size(du)), turning(size(du)), dies(size(scene%dies)), found, begun
-    real(wp) :: motion(size(equations%dofs%prescribed)), before(size(du))
+    real(wp) :: motion(size(equations%dofs%prescribed)), before(size(du)), bend(size(du))
     real(wp) :: ratio
     integer :: k
 
@@ -94,6 +99,7 @@ contains
     staying = .false.
     if (any(back)) staying = is_motion() .and. .not. back
     kept = .false.
+    bend = 0
     call try_from(ratio)
     begun = .false.
     if (is_first_step(solution%probation) .and. .not. (any(back) .or. found) .and. ratio > 0 .and. report%event >= 1 &
@@ -123,11 +129,26 @@ contains
           .and. abs(share) > 0 .and. dt > scene%strategy%least_step .and. is_apart(scene, equations)) then
         if (is_driven()) then
           call start_from(share, alone=.true.)
+          if (report%status == block_done .and. report%between) call try_bend(share)
           if (report%status == block_done .and. (report%event < 1 .or. report%jump > smooth_contact)) return
         end if
       end if
       call start_from(share)
     end subroutine try_from
+
+    !> Follow the bend of the path where contact alone tells that penetrations change less than on the straight one.
+    subroutine try_bend(share)
+      real(wp), intent(in) :: share
+      type(report_t) :: straight
+
+      straight = report
+      bend = bend_of_path(equations%dofs, solution, dt)
+      if (.not. any(abs(bend) > 0)) return
+      call start_from(share, alone=.true.)
+      if (report%status == block_done .and. report%jump < straight%jump) return
+      bend = 0
+      report = straight
+    end subroutine try_bend
 
     !> Start at the motion of the onset, with contact kept; where there is none, as on any mesh.
     subroutine start_on_new_mesh()
@@ -191,13 +212,15 @@ contains
       end do
     end function is_driven
 
-    !> Evaluate at the last motion times a share; what is given is taken as it is.
+    !> Evaluate at the last motion times a share, with the bend of the path where it is the whole of it; what is given is taken as
+    !> it is.
     subroutine start_from(share, alone)
       real(wp), intent(in) :: share
       logical, intent(in), optional :: alone   !! contact alone, without matrices
       logical :: whole
 
       call proportion(equations%dofs, solution%fields, share, du)
+      if (.not. abs(share - ratio) > 0) du = du + bend
       where (back) du = -onset*du
       call leave_at_rest(scene, equations%dofs, equations%loose, solution, solution%time + dt, du, &
                          equations%resting)

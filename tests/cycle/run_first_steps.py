@@ -7,16 +7,20 @@ The first step on a new mesh starts at the motion of its onset there, not at the
 rounded edges, where sides roll onto the punch, needs no more of its iterations than of ordinary ones, twice, and steps go on as long as they were.
 Beside a bore that closes, where the old mesh is too coarse to close it, the new one moves far at once, however short its first step: that is found in
 parts, so that no mesh is refused for it.
+Sides that are in contact between their points too (ALONG) are carried to new meshes: no side is deeper in the punch than twice the allowed, the books of energy close,
+and die forces go on.
 A mesh that is never replaced turns over at corners of elements, where errors are estimated beyond the points of the element: the run comes to its end.
 """
 import os
 import re
 import sys
 
+import numpy as np
+
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from scenes import deck_of, run_scene  # noqa: E402
-from support import DONE, Checks, write  # noqa: E402
+from support import DONE, Checks, summary, write  # noqa: E402
 
 # Of an ordinary step; of a new mesh (over twenty new meshes of six scenes .35, and .9 where steps start as on any mesh).
 MOST_ITERATIONS, MOST_CUTBACKS = 2.0, 0.5
@@ -53,6 +57,24 @@ def first_steps(checks):
     checks.that(cutbacks <= MOST_CUTBACKS, f"at most {MOST_CUTBACKS:g} cutbacks a new mesh", cutbacks)
 
 
+def whole_sides(checks):
+    with open(deck_of("indentation"), encoding="utf-8") as file:
+        text = file.read()
+    plain = run_scene("indentation", checks.path("points"), {"travel": 2.5})
+    deck = write(checks.path("along", "indentation.lag"), text.replace("punch -3 film", "punch ALONG film"))
+    found = run_scene("indentation", checks.path("along"), {"travel": 2.5}, deck=deck)
+    if not checks.that(found["code"] == plain["code"] == DONE, "ALONG: the cycle ends with 0", (found["said"], plain["said"])):
+        return
+    told, was = (summary(one["out"])["checks"] for one in (found, plain))
+    checks.that(found["meshes"] > 1, "ALONG: new meshes", found["meshes"])
+    deepest = [one["max_penetration_sampled_over_allowed"] for one in (told, was)]
+    checks.that(deepest[0] <= 2, "ALONG: at most twice the depth allowed, anywhere", deepest)
+    checks.that(deepest[1] > 10, "points alone: deeper between them", deepest)
+    checks.that(abs(told["energy_imbalance"]) < 0.01, "ALONG: energy is not missing", told["energy_imbalance"])
+    forces = [np.interp(np.linspace(0.2, 1, 9), one["history"]["time"], one["history"]["force_y_punch"]).mean() for one in (found, plain)]
+    checks.that(abs(forces[0]/forces[1] - 1) < 0.02, "ALONG: the mean force of points alone", forces)
+
+
 def closing_bore(checks):
     found = run_scene("ring_70", checks.path("bore"), {"mu": 0.35})
     checks.that(found["code"] == DONE, "a bore that closes: the cycle ends with 0", found["said"])
@@ -72,6 +94,7 @@ def worn_mesh(checks):
 def main():
     checks = Checks()
     first_steps(checks)
+    whole_sides(checks)
     closing_bore(checks)
     worn_mesh(checks)
     checks.end()

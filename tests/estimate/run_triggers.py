@@ -188,7 +188,7 @@ def misfits(checks, name, text, limit, wanted):
                     points = points[::2]
                 known = {part: max([0.0] + [p[names.index(part + "penetration")] for p in points if round(p[names.index(part + status)]) > 0])
                          for part, status in (("", "contact_status"), ("corner_", "contact_status"))}
-                depths = [depth(pieces, p) for p in shape(np.linspace(-1, 1, 20)).T @ x]
+                depths = [depth(pieces, p) for p in shape(np.linspace(-1, 1, 65)).T @ x]
                 deep.append((np.nanmax(depths + [-1.0]) - max(known.values()))/(1e-3*side))
                 poke.append(known["corner_"]/(1e-3*side))
             between.append(max(deep))

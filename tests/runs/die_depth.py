@@ -45,7 +45,7 @@ def depth(pieces, point):
     return found
 
 
-def sampled(path, number=20):
+def sampled(path, number=65):
     """Of every saved step and contact group: step, name, deepest sample over the side's first chord, depth, least pressure."""
     rows = []
     with h5py.File(path, "r") as file:
