@@ -14,7 +14,7 @@ module penetration_advice
   use text, only: to_text
   implicit none
   private
-  public :: advice_at_points, advice_between_points, sides_that_span, states_penetration
+  public :: advice_at_points, advice_between_points, allowed_between, sides_that_span, states_penetration
 
   !> Numbers among the values of every contact law (contact_penalties).
   integer, parameter :: at_penetr = 1, at_akp = 2, at_augment = 4
@@ -48,13 +48,24 @@ contains
     end if
   end function advice_at_points
 
+  !> How deep sides may be in their dies between points, over what is allowed.
+  pure function allowed_between(scene) result(bound)
+    type(scene_t), intent(in) :: scene
+    real(wp) :: bound
+    integer :: g
+
+    bound = between_along
+    do g = 1, size(scene%groups)
+      if (is_contact(scene%groups(g)) .and. scene%groups(g)%rule%family /= rule_along) bound = 1
+    end do
+  end function allowed_between
+
   !> For sides between these points; empty where none was deeper than allowed, or than its points are.
   pure function advice_between_points(scene, solution) result(advice)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     character(len=:), allocatable :: advice
     integer :: g
-    real(wp) :: bound
     logical :: gauss, few, bezier, along, rigid
     character(len=*), parameter :: shorter = 'shorter sides where the die bends'
 
@@ -63,7 +74,6 @@ contains
     few = .false.
     bezier = .false.
     along = .false.
-    bound = between_along
     do g = 1, size(scene%groups)
       if (.not. is_contact(scene%groups(g))) cycle
       associate (rule => scene%groups(g)%rule)
@@ -72,10 +82,9 @@ contains
         rigid = .not. is_deformable(scene%dies(scene%groups(g)%die))
         along = along .or. (rigid .and. rule%family /= rule_along)
         bezier = bezier .or. (rigid .and. all(rule%family /= [rule_along, rule_control]))
-        if (rule%family /= rule_along) bound = 1
       end associate
     end do
-    if (solution%worst_sample_ratio <= max(bound, solution%worst_penetration_ratio) + slack) return
+    if (solution%worst_sample_ratio <= max(allowed_between(scene), solution%worst_penetration_ratio) + slack) return
     if (gauss .or. few) then
       advice = 'CNT2D with '
       if (bezier) then

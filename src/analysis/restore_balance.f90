@@ -23,7 +23,7 @@ module restore_balance
   use linear_solver, only: return_to_chosen
   use newton, only: outcome_t, solve_step
   use path_record, only: settle_path
-  use quadrature, only: is_control_point
+  use quadrature, only: is_control_point, rule_along
   use residual_parts, only: first_parts, next_part, residual_parts_t
   use residual_place, only: least_shape, place_residual, residual_place_t
   use scene, only: scene_t
@@ -117,21 +117,21 @@ contains
     rest = 0
     call external_forces(scene, equations%dofs, solution%time, external)
     ! what was carried is judged by what the points of contact have; a new side that spans a bend otherwise than the old ones did
-    ! is pushed out of the die as equilibrium is restored
+    ! (contact_between) is pushed out of the die as equilibrium is restored
     call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report, points_alone=.true.)
     balance%depth_change = depth_change(scene, solution)
     call keep_pressures(scene, solution)
     call evaluate(scene, equations, solution, 0.0_wp, rest, .true., report, points_alone=.true.)
     allocate (balance%pilot_carried, source=solution%fields(pilot_field)%applied)
     if (report%status == block_done) call book_carried(scene, equations, balance%pilot_carried)
-    rest = external - equations%force
-    where (equations%solves(equations%now)%equation == 0) rest = 0
+    call find_rest()
     call place_residual(scene, equations%dofs, external, equations%magnitude, rest, balance%place)
     call work_of_correction(equations, rest, work)
-    rest = 0
-    call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report)
-    rest = external - equations%force
-    where (equations%solves(equations%now)%equation == 0) rest = 0
+    if (any(scene%groups%rule%family == rule_along)) then
+      rest = 0
+      call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report)
+      call find_rest()
+    end if
     parts = first_parts(1.0_wp, smallest_part)
     do while (parts%goes_on)
       call solve_step(scene, equations, solution, 0.0_wp, outcome, (parts%left - parts%part)*rest)
@@ -162,6 +162,15 @@ contains
     call settle_path(solution%path)
     equations%mode = mode_advance
     balance%wall = wall_seconds() - started
+
+  contains
+
+    !> What is out of balance at the motion evaluated last.
+    subroutine find_rest()
+      rest = external - equations%force
+      where (equations%solves(equations%now)%equation == 0) rest = 0
+    end subroutine find_rest
+
   end subroutine restore_equilibrium
 
   !> Twice the elastic energy of the linear correction of a residual: r . K^-1 r.

@@ -9,7 +9,7 @@ module summary_checks
   use json_writer, only: json_t
   use path_advice, only: motion_advice, stress_advice
   use path_record, only: motion_error, stress_error
-  use penetration_advice, only: advice_at_points, advice_between_points
+  use penetration_advice, only: advice_at_points, advice_between_points, allowed_between
   use phase_books, only: fraction_slack, has_fractions
   use run_facts, only: unloaded_drift
   use scene, only: scene_t
@@ -35,6 +35,7 @@ contains
     call json%add('max_penetration_over_allowed', solution%worst_penetration_ratio)
     call json%add('max_penetration_sampled', solution%worst_sample)
     call json%add('max_penetration_sampled_over_allowed', solution%worst_sample_ratio)
+    call json%add('max_penetration_sampled_bound', allowed_between(scene))
     call json%add('worst_linear_residual', solution%worst_linear_residual)
     call json%add('least_dissipation', solution%least_dissipation)
     if (scene%fields(displacement_field)%declared) call json%add('energy_imbalance', energy_imbalance(solution))

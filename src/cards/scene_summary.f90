@@ -44,7 +44,7 @@ contains
     do k = 1, size(scene%groups)
       associate (group => scene%groups(k))
         call put('group      '//padded(group%name, 24)//padded(to_text(size(group%connectivity, 2))//' '//group%elem, 14) &
-                 //to_text(group%rule%n)//rule_of(group%rule)//' points' &
+                 //to_text(group%rule%n)//rule_of(group%rule) &
                  //option_of(group)//driven_by(k))
       end associate
     end do
@@ -248,15 +248,17 @@ contains
       if (multiplier > 0) s = ' x '//scene%multipliers(multiplier)%name
     end function times
 
-    !> Kind of an integration rule along a side, where it is not Gauss's.
+    !> Points of an integration rule, with its kind along a side where it is not Gauss's.
     pure function rule_of(rule) result(s)
       type(rule_t), intent(in) :: rule
       character(len=:), allocatable :: s
 
       s = ''
-      if (rule%family == rule_along) s = ' along'
+      if (rule%family == rule_along) s = ' Lobatto'
       if (rule%family == rule_control) s = ' Bezier'
       if (rule%family == rule_equidistant) s = trim(merge(' Lobatto    ', ' equidistant', rule%n == 3))
+      s = s//' points'
+      if (rule%family == rule_along) s = s//' and between them'
     end function rule_of
 
     pure function motion_of(die) result(s)

@@ -24,16 +24,15 @@ module contact_between
   use contact_penalties, only: allowed_penetration
   use contact_point, only: area_at, at_between, at_energy, at_penetration, at_pressure, at_status, at_tau, at_work, contact_block, &
                            contact_point_t, no_surface, touching
-  use curve_search, only: closest_facing_point
+  use contact_scan, only: closest_to_side_point
+  use corner_contact, only: end_on_axis
   use dies, only: die_t
   use elem_api, only: report_t
   use kinds, only: wp
   use law_api, only: contact_open, law_t
   use materials, only: material_t
-  use plane_vectors, only: left_of, turned
   use quadrature, only: rule_t
-  use rigid_contact, only: motion_of_depth, ndof, place_point, press, side_t
-  use shape_functions, only: line3
+  use rigid_contact, only: motion_of_depth, ndof, nodes_in_axes, place_point, press, side_at_start, side_t
   implicit none
   private
   public :: press_between
@@ -67,7 +66,7 @@ contains
     real(wp), intent(inout) :: force(ndof)             !! [force]
     real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
     type(report_t), intent(inout) :: report
-    type(side_t) :: between, start
+    type(side_t) :: between
     type(contact_point_t) :: point
     type(closest_point_t) :: closest
     real(wp), dimension(contact_block(.true., size(trial, 1))) :: before, now
@@ -77,21 +76,16 @@ contains
 
     free = share*allowed_penetration(material)*side%length
     if (.not. free > 0) return
-    touched = any(nint(committed(at_status, :)) /= contact_open .or. committed(at_between, :) > 0)
-    at_axis = axisym .and. minval(side%x(1, [1, 3]) + side%du([1, 3])) <= no_surface*side%length
+    touched = any(nint(committed([at_status, size(now) + at_status], :)) /= contact_open) .or. any(committed(at_between, :) > 0)
+    at_axis = .false.
+    if (axisym) at_axis = end_on_axis(side) > 0
     between = side
     between%kept = .false.
     between%penalty = stiffer*side%penalty
-    start = side
-    start%du = 0
-    start%pilot(:, 2) = side%pilot(:, 1)
-    do k = 1, 3
-      nodes(:, k) = turned([side%x(1, k) + side%du(k), side%x(2, k) + side%du(k + 3)] - side%pilot(1:2, 2), -side%pilot(3, 2))
-    end do
+    nodes = nodes_in_axes(side)
     dfree = 0
-    do p = 1, size(xi)
-      if (.not. at_axis) exit
-      closest = face(die, nodes, xi(p), side%length)
+    do p = 1, merge(size(xi), 0, at_axis)
+      call closest_to_side_point(die, nodes, xi(p), side%length, closest)
       if (closest%piece > 0 .and. abs(closest%normal(1)) > steep) return
     end do
     do p = 1, size(xi)
@@ -101,7 +95,7 @@ contains
     end do
     do k = 1, nplace
       place = -1 + (2*k - 1)/real(nplace, wp)
-      closest = face(die, nodes, place, side%length)
+      call closest_to_side_point(die, nodes, place, side%length, closest)
       if (closest%piece == 0 .or. .not. closest%d - free > touching*side%length) cycle
       call place_point(between, place, point)
       if (axisym .and. point%x(1) <= no_surface*side%length) cycle
@@ -110,7 +104,7 @@ contains
         drive(p, :) = matmul(drivers(p, :, :), hats)
       end do
       before = 0
-      before(at_penetration) = depth_at_start(die, start, place)
+      before(at_penetration) = depth_at_start(die, side_at_start(side), place)
       report%between = .true.
       report%jump = max(report%jump, abs(closest%d - max(free, before(at_penetration)))/side%length)
       ! what was in contact at another place slides all the way
@@ -135,7 +129,7 @@ contains
     type(contact_point_t) :: point
     type(closest_point_t) :: closest
 
-    closest = face(die, nodes, place, side%length)
+    call closest_to_side_point(die, nodes, place, side%length, closest)
     if (closest%piece == 0 .or. .not. closest%d > free) return
     free = closest%d
     call place_point(side, place, point)
@@ -176,21 +170,6 @@ contains
     end do
   end subroutine share_out
 
-  !> Closest point on the die to a place of a side.
-  pure function face(die, nodes, place, reach) result(closest)
-    type(die_t), intent(in) :: die
-    real(wp), intent(in) :: nodes(2, 3)   !! of the side, in the pilot's axes [length]
-    real(wp), intent(in) :: place         !! [-]
-    real(wp), intent(in) :: reach         !! [length]
-    type(closest_point_t) :: closest
-    real(wp) :: phi(3), dphi(3), tangent(2)
-
-    call line3(place, phi, dphi)
-    tangent = matmul(nodes, dphi)
-    if (.not. any(abs(tangent) > 0)) return
-    call closest_facing_point(die, matmul(nodes, phi), left_of(tangent), reach, closest)
-  end function face
-
   !> Depth of a place at the start of the step; a side's length out of the die where nothing is nearer.
   pure function depth_at_start(die, side, place) result(depth)
     type(die_t), intent(in) :: die
@@ -198,13 +177,8 @@ contains
     real(wp), intent(in) :: place      !! [-]
     real(wp) :: depth                  !! [length]
     type(closest_point_t) :: closest
-    real(wp) :: nodes(2, 3)
-    integer :: k
 
-    do k = 1, 3
-      nodes(:, k) = turned(side%x(:, k) - side%pilot(1:2, 1), -side%pilot(3, 1))
-    end do
-    closest = face(die, nodes, place, side%length)
+    call closest_to_side_point(die, nodes_in_axes(side), place, side%length, closest)
     depth = -side%length
     if (closest%piece > 0) depth = closest%d
   end function depth_at_start

@@ -8,7 +8,7 @@ module contact_scan
   use shape_functions, only: line3
   implicit none
   private
-  public :: is_near, deepest_sample, widest_gap, lies_inside, locate_end
+  public :: is_near, closest_to_side_point, deepest_sample, widest_gap, lies_inside, locate_end
 
   !> Points at which a side is sampled.
   integer, parameter :: nsample = 65
@@ -136,12 +136,16 @@ contains
   !> Closest point to a position on a side.
   pure subroutine closest_to_side_point(die, side, position, reach, closest)
     type(die_t), intent(in) :: die
-    real(wp), intent(in) :: side(2, 3), position, reach
+    real(wp), intent(in) :: side(2, 3)   !! nodes in the pilot's axes [length]
+    real(wp), intent(in) :: position     !! parent coordinate [-]
+    real(wp), intent(in) :: reach        !! [length]
     type(closest_point_t), intent(out) :: closest
     real(wp) :: phi(3), dphi(3), tangent(2)
 
     call line3(position, phi, dphi)
     tangent = matmul(side, dphi)
+    ! where a side has no tangent it faces nothing
+    if (.not. any(abs(tangent) > 0)) return
     call closest_facing_point(die, matmul(side, phi), left_of(tangent), reach, closest)
   end subroutine closest_to_side_point
 

@@ -16,7 +16,7 @@ module corner_contact
   use law_api, only: contact_open, law_t
   use materials, only: material_t
   use plane_vectors, only: turned
-  use rigid_contact, only: drift_t, ndof, outer, place_point, press, side_t
+  use rigid_contact, only: drift_t, ndof, nodes_in_axes, outer, place_point, press, side_t
   use shape_functions, only: line3
   use side_corners, only: closest_at_corner, corner_t, deepest_corner
   implicit none
@@ -84,18 +84,15 @@ contains
     real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
     type(report_t), intent(inout) :: report
     type(corner_t) :: corner
-    real(wp) :: nodes(2, 3), from, to, worn(1)
-    integer :: k, n, at_place
+    real(wp) :: from, to, worn(1)
+    integer :: n, at_place
 
     if (size(die%corners, 2) == 0 .or. .not. allowed_penetration(material) > 0) return
     call interval_before(xi, p, from, to)
     if (.not. to > from) return
     at_place = size(trial)
     n = contact_block(.true., at_place)
-    do k = 1, 3
-      nodes(:, k) = turned([side%x(1, k) + side%du(k), side%x(2, k) + side%du(k + 3)] - side%pilot(1:2, 2), -side%pilot(3, 2))
-    end do
-    call deepest_corner(die, nodes, from, to, side%length, corner)
+    call deepest_corner(die, nodes_in_axes(side), from, to, side%length, corner)
     if (.not. corner%found) return
     trial(at_place) = corner%place
     associate (before => committed(n + 1:2*n), now => trial(n + 1:2*n))

@@ -23,13 +23,13 @@ module elem_cnt2d
   use contact_areas, only: areas_with_control
   use contact_between, only: press_between
   use contact_measure, only: augment, measure
+  use contact_scan, only: is_near
   use contact_point, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, &
                            contact_point_t, no_surface, &
                            penalties, point_variables, rest, share_to_contact, show_on_axis, side_length, &
                            thinning, touching
   use corner_contact, only: press_corners
   use corner_release, only: motion_past_corner, passes_corner, release_t, slide_past_corner
-  use curve_search, only: box_distance
   use die_sweep, only: share_to_pass
   use dies, only: die_t
   use elem_api, only: elem_t, goes_on, instant_t, layout_t, of_displacement, of_pilot, of_section, report_t, section_motion
@@ -40,7 +40,7 @@ module elem_cnt2d
   use plane_vectors, only: cross, turned
   use quadrature, only: line_rule, rule_along, rule_control
   use side_contact, only: press_side
-  use rigid_contact, only: closest_or_followed, ndof, place_point, press, side_t
+  use rigid_contact, only: closest_or_followed, ndof, nodes_in_axes, place_point, press, side_t
   use scene, only: axisymmetric, group_t, role_contact, scene_t
   use state_variables, only: state_variable, state_variable_t, transfer_recompute
   implicit none
@@ -205,13 +205,8 @@ contains
     type(die_t), intent(in) :: die
     type(side_t), intent(in) :: side
     logical :: skipped
-    real(wp) :: y(2, 3)
-    integer :: k
 
-    do k = 1, 3
-      y(:, k) = turned([side%x(1, k) + side%du(k), side%x(2, k) + side%du(k + 3)] - side%pilot(1:2, 2), -side%pilot(3, 2))
-    end do
-    skipped = box_distance(die, [minval(y(1, :)), minval(y(2, :)), maxval(y(1, :)), maxval(y(2, :))]) > side%length
+    skipped = .not. is_near(die, nodes_in_axes(side), side%length)
   end function far
 
   !> Contact at one integration point: state, forces, matrix.

@@ -18,7 +18,7 @@ module rigid_contact
   use shape_functions, only: line3
   implicit none
   private
-  public :: side_t, drift_t, place_point, press, meet, outer, closest_or_followed, motion_of_depth
+  public :: side_t, drift_t, place_point, press, meet, outer, closest_or_followed, motion_of_depth, nodes_in_axes, side_at_start
   public :: ndof
 
   !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle, section; the last three are
@@ -49,6 +49,27 @@ module rigid_contact
   end type drift_t
 
 contains
+
+  !> A side as it was at the start of the step, its die where that was.
+  pure function side_at_start(side) result(start)
+    type(side_t), intent(in) :: side
+    type(side_t) :: start
+
+    start = side
+    start%du = 0
+    start%pilot(:, 2) = side%pilot(:, 1)
+  end function side_at_start
+
+  !> Nodes of a side in the axes of the pilot, at the end of the step.
+  pure function nodes_in_axes(side) result(nodes)
+    type(side_t), intent(in) :: side
+    real(wp) :: nodes(2, 3)   !! [length]
+    integer :: k
+
+    do k = 1, 3
+      nodes(:, k) = turned([side%x(1, k) + side%du(k), side%x(2, k) + side%du(k + 3)] - side%pilot(1:2, 2), -side%pilot(3, 2))
+    end do
+  end function nodes_in_axes
 
   !> The point of a side at a parent coordinate, in the present geometry.
   pure subroutine place_point(side, xi, point)

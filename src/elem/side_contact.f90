@@ -16,7 +16,7 @@ module side_contact
   use law_api, only: contact_open, law_t
   use materials, only: material_t
   use plane_vectors, only: left_of, turned
-  use rigid_contact, only: closest_or_followed, ndof, place_point, press, side_t
+  use rigid_contact, only: closest_or_followed, ndof, place_point, press, side_at_start, side_t
   implicit none
   private
   public :: press_side
@@ -182,9 +182,7 @@ contains
     type(control_t) :: control
     integer :: i
 
-    start = side
-    start%du = 0
-    start%pilot(:, 2) = side%pilot(:, 1)
+    start = side_at_start(side)
     do i = 1, 3
       call place_point(start, place(i), nodes(i)%point)
     end do

@@ -30,7 +30,7 @@ module solution
     !> Time reached and number of accepted steps.
     real(wp) :: time = 0.0_wp
     integer :: step = 0
-    !> Length of the last accepted step, of the one before it on this mesh, and the one proposed for the next [time].
+    !> Length of the last accepted step, of the one before it (0: none since the mesh began), and of the one proposed next [time].
     real(wp) :: last_step = 0.0_wp, older_step = 0.0_wp, next_step = 0.0_wp
     !> Unknowns: displacement of the nodes since the mesh began, pilots of the dies, section (sections), and what else the
     !> elements of the scene declare (as `scene%fields`).

@@ -7,8 +7,8 @@
 !> there is no motion that goes on: only the onset of it is kept, and the matrix there (with the contacts of now) spreads the
 !> rest.
 !>
-!> A side that is held between its points (contact_between) meets a bend of a die at another place in every step, and a die that it
-!> slides on by a tenth of its length goes off its straight path by more than the depth allowed. There the start follows the bend of
+!> A side that is held between its points (contact_between) meets a bend of a die at another place in every step, and where it
+!> slides by a tenth of its length it goes off its straight path by more than the depth allowed. There the start follows the bend of
 !> the path of the last two steps (path_bend), where that changes penetrations less than going straight on.
 !>
 !> On a new mesh the last motion is none of its own: the first step starts at the motion of its onset (onset_motion), but where it

@@ -17,9 +17,10 @@ ENERGY_IMBALANCE, VOLUME_DRIFT, VOLUME_BY_MESHES, LINEAR_RESIDUAL, SPURIOUS_MODE
 PATH_ERROR = 0.02
 SPRING_SHARE = 1e-3
 HEAT_IMBALANCE = 1e-6
-# Depths in summary.json, the share of the allowed beside them, and how far above 1 that is reported as too large, as in the listing.
+# Depths in summary.json, the share of the allowed beside them, what that may be where it is not 1, and how far above it is reported as too
+# large, as in the listing.
 PENETRATIONS = {"max_penetration": "at points of contact", "max_penetration_sampled": "between points of contact too"}
-OVER_ALLOWED, RATIO_SLACK = "_over_allowed", 1e-6
+OVER_ALLOWED, BOUND, RATIO_SLACK = "_over_allowed", "_bound", 1e-6
 # Signs of the page that not every terminal has.
 PLAIN = {0x2212: "-", 0x202F: None, 0x221E: "infinite", 0x2013: "-"}
 
@@ -84,7 +85,7 @@ def checks(run: Run) -> List[Check]:
         good = values["least_dissipation"] >= -slack
         result.append(Check("least friction work of a step", brief(values["least_dissipation"], 3), "not negative", good,
                             "" if good else "friction gave energy back: report it with the deck"))
-    known = {*PENETRATIONS, *(name + OVER_ALLOWED for name in PENETRATIONS), "energy_imbalance", "heat_imbalance", "volume_drift",
+    known = {*PENETRATIONS, *(name + end for name in PENETRATIONS for end in (OVER_ALLOWED, BOUND)), "energy_imbalance", "heat_imbalance", "volume_drift",
              "path_error_motion", "path_error_stress", "spring_share", "volume_drift_unloaded", "worst_linear_residual", "least_dissipation", "spurious_mode",
              "phase_fractions", "phase_fractions_allowed"}
     for name in given:
@@ -104,10 +105,11 @@ def penetration_checks(run: Run, values: Dict[str, float]) -> List[Check]:
         if not ratio > 0:       # no contact law says what it allows, or nothing was touched
             result.append(Check(f"depth {title}", brief(depth, 3), "–", None))
             continue
-        good = ratio <= 1 + RATIO_SLACK
+        bound = values.get(name + BOUND, 1.0)
+        good = ratio <= bound + RATIO_SLACK
         advice = str(run.summary["advice"].get(name + OVER_ALLOWED, "as at the points" if ratio <= worst else ""))
         worst = max(worst, ratio)
-        result.append(Check(f"depth over allowed {title}", f"{brief(ratio, 3)} (depth {brief(depth, 3)})", "1", good,
+        result.append(Check(f"depth over allowed {title}", f"{brief(ratio, 3)} (depth {brief(depth, 3)})", brief(bound, 3), good,
                             "" if good else advice))
     return result
 

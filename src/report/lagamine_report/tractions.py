@@ -43,11 +43,14 @@ def point_areas(group: Group, per_xi: np.ndarray) -> np.ndarray:
 
 
 def recovered_tractions(run: Run, step: Step, group: Group) -> Optional[Tuple[np.ndarray, np.ndarray]]:
-    """Pressure and friction at the points (side*point,) of a contact, 0 where they are open; none where the bodies have no stresses."""
+    """Pressure and friction at the points (side*point,) of a contact, 0 where nothing touches; none where the bodies have no stresses."""
     names, state = run.points(step, group)
     if not {"pressure", "friction", "contact_status"} <= set(names) or not set(STRESSES) <= set(run.names(step, "node")):
         return None
     pressure, friction, status = (state[:, :, names.index(name)].ravel() for name in ("pressure", "friction", "contact_status"))
+    # open points bear what is in contact beside them, where no point of their side is (ALONG)
+    if "pressure_between" in names:
+        status = np.where(state[:, :, names.index("pressure_between")].ravel() > 0, np.maximum(status, 1), status)
     normal_stress, shear_stress, area = _body_tractions(run, step, group, state.shape[1])
     shown = np.zeros((2, len(pressure)))
     for interval, place in _intervals(run, step, group, status):
