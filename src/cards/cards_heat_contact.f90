@@ -3,7 +3,7 @@ module cards_heat_contact
   use card_places, only: read_sides
   use cards_die_heat, only: find_die, read_die
   use cards_sides, only: append_group, refuse_inner_sides, start_group
-  use contact_rule, only: chosen_rule
+  use contact_rule, only: rule_on_body
   use deck_cursor, only: cursor_t
   use deck_reader, only: card_t, deck_t
   use diagnostics, only: diagnostics_t, location_t
@@ -127,7 +127,7 @@ contains
         call cursor%fail('expected a CNT2D card of the same place and die, found none')
       else
         if (group%pairs > 0) then
-          group%rule = chosen_rule(draft%scene, group)
+          group%rule = rule_on_body(draft%scene, group)
           group%rule_is_chosen = .true.
         end if
         if (any(draft%scene%die_motions%die == group%die)) &

@@ -2,7 +2,7 @@
 module cards_sides
   use card_places, only: numbers_after_name, read_sides
   use cards_laws, only: read_material
-  use contact_rule, only: chosen_rule
+  use contact_rule, only: rule_on_body, rule_on_die
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
@@ -57,7 +57,6 @@ contains
       else if (cursor%peek_word() == 'BEZIER') then
         call read_bezier(cursor, group)
       else if (.not. cursor%failed()) then
-        group%rule = chosen_rule(draft%scene, group)
         group%rule_is_chosen = .true.
       end if
       call read_material(cursor, draft, contact_law, group%material)
@@ -70,6 +69,11 @@ contains
       if (law == 0) then
         draft%groups_sound = .false.
         cycle
+      end if
+      if (group%rule_is_chosen .and. group%pairs > 0) then
+        group%rule = rule_on_body(draft%scene, group)
+      else if (group%rule_is_chosen) then
+        group%rule = rule_on_die(draft%scene, group%die, draft%laws(law)%lasts)
       end if
       deallocate (group%variables)
       call draft%elems(group%elem_id)%variables(law_of_material(draft%laws(law), draft%scene%materials(group%material)), &

@@ -56,6 +56,8 @@ module contact_point
     real(wp) :: d, slip, normal(2)
     !> Depth that needs no pressure [length].
     real(wp) :: allowed = 0.0_wp
+    !> Share of the area that bears the pressure: friction is that of the pressure there [-].
+    real(wp) :: bearing = 1.0_wp
     !> A point in contact at the start of the step follows its law linearised at the depth it had then (instant_t).
     logical :: kept = .false.
     real(wp), dimension(most_unknowns) :: dd, dslip, turn
@@ -204,12 +206,14 @@ contains
       depth = committed(at_penetration) - meeting%allowed
     end if
     ! nothing moves across the plane: the second tangential component stays at rest
-    call law%slide(material, dt, drivers, penalty, committed(at_augmentation), depth, [slip, 0.0_wp], [committed(at_tau), 0.0_wp], &
-                   committed(npoint_state + 1:), pressure, stress, trial(npoint_state + 1:), law_tangent, status)
-    pressure = pressure + law_tangent(1, 1)*change
-    stress(1) = stress(1) + law_tangent(2, 1)*change
-    tau = stress(1)
-    tangent = law_tangent(:2, :2)
+    associate (bearing => meeting%bearing)
+      call law%slide(material, dt, drivers, penalty/bearing, committed(at_augmentation)/bearing, depth, [slip, 0.0_wp], &
+                     [committed(at_tau)/bearing, 0.0_wp], committed(npoint_state + 1:), pressure, stress, &
+                     trial(npoint_state + 1:), law_tangent, status)
+      pressure = bearing*(pressure + law_tangent(1, 1)*change)
+      tau = bearing*(stress(1) + law_tangent(2, 1)*change)
+      tangent = bearing*law_tangent(:2, :2)
+    end associate
     trial(at_pressure) = pressure
     trial(at_tau) = tau
     trial(at_status) = status

@@ -84,7 +84,7 @@ contains
 
   !> Contact of a point with its closest point on the die: state, forces, matrix.
   pure subroutine press(law, material, drivers, side, xi, point, closest, allowed, weight, committed, trial, force, stiffness, &
-                        drift, released, dallowed)
+                        drift, released, dallowed, bearing)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) of the law [unit of each driver]
@@ -101,6 +101,7 @@ contains
     type(drift_t), intent(in), optional :: drift       !! of a point that is not fixed on its side
     logical, intent(in), optional :: released          !! its contact is not kept
     real(wp), intent(in), optional :: dallowed(ndof)   !! derivatives of `allowed` [length/unknown]
+    real(wp), intent(in), optional :: bearing          !! share of the area that bears the pressure [-]
     type(meeting_t) :: meeting
     real(wp) :: phi(3), dphi(3), lever(2), q(2), moment, dlever(2, ndof), dmoment(ndof), dq(2, most_unknowns)
     integer :: j, k
@@ -117,6 +118,7 @@ contains
     meeting%allowed = allowed
     if (present(dallowed)) meeting%dd(:ndof) = meeting%dd(:ndof) - dallowed
     meeting%kept = side%kept
+    if (present(bearing)) meeting%bearing = bearing
     if (present(released)) meeting%kept = meeting%kept .and. .not. released
     call act(law, material, side%dt, drivers, side%penalty, point, meeting, weight, side%tangent, committed, trial, q, dq)
     if (nint(trial(at_status)) == contact_open) return

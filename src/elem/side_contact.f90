@@ -39,12 +39,13 @@ contains
     real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
     type(node_t) :: nodes(3)
     type(release_t) :: release
-    real(wp) :: before(ndof)
+    real(wp) :: before(ndof), bearing(3)
     integer :: i
 
     do i = 1, 3
       call place_point(side, place(i), nodes(i)%point)
     end do
+    bearing = bearing_shares(nint(committed(at_status, :)) /= contact_open)
     do i = 1, 3, 2
       call find_closest(die, side, nodes(i), inward(nodes(i)%point, nodes(2)%point, place(i)), committed(:, i), nodes(i)%closest, &
                         release)
@@ -52,11 +53,25 @@ contains
       before = force
       call press(law, material, drivers(:, :, i), side, place(i), end_area(nodes(i)%point, nodes(2)%point), nodes(i)%closest, &
                  0.0_wp, release%share, committed(:, i), trial(:, i), force, stiffness, &
-                 released=side%kept .and. passes_corner(die, committed(:, i), nodes(i)%closest))
+                 released=side%kept .and. passes_corner(die, committed(:, i), nodes(i)%closest), bearing=bearing(i))
       call add_release(side, nodes(i), release, force - before, stiffness)
     end do
-    call press_control(die, law, material, drivers(:, :, 2), side, nodes, committed(:, 2), trial(:, 2), force, stiffness)
+    call press_control(die, law, material, drivers(:, :, 2), side, nodes, bearing(2), committed(:, 2), trial(:, 2), force, &
+                       stiffness)
   end subroutine press_side
+
+  !> Shares of the areas of a side's ends and control point that bear pressure, as the step begins: half where the side goes away
+  !> from the die there, which a limit of the friction stress must not take for contact. What is in contact then, an end alone or
+  !> an end and the control point, bears on a sixth and on a half of the side, as the points of Simpson's rule do.
+  pure function bearing_shares(closed) result(shares)
+    logical, intent(in) :: closed(3)
+    real(wp) :: shares(3)
+
+    shares = 1
+    if (.not. any(closed)) return
+    if (.not. closed(2)) shares([1, 3]) = 0.5_wp
+    if (.not. (closed(1) .and. closed(3))) shares(2) = 0.5_wp
+  end function bearing_shares
 
   !> Closest point of a node, on the face that it slides past where it loses its pressure beside a corner.
   pure subroutine find_closest(die, side, node, normal, committed, closest, release)
@@ -110,13 +125,14 @@ contains
   end subroutine add_release
 
   !> Contact of the control point.
-  pure subroutine press_control(die, law, material, drivers, side, nodes, committed, trial, force, stiffness)
+  pure subroutine press_control(die, law, material, drivers, side, nodes, bearing, committed, trial, force, stiffness)
     type(die_t), intent(in) :: die
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: drivers(:, :)
     type(side_t), intent(in) :: side
     type(node_t), intent(inout) :: nodes(3)
+    real(wp), intent(in) :: bearing
     real(wp), intent(in) :: committed(:)
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(control_t) :: control
@@ -146,6 +162,7 @@ contains
       start(at_augmentation) = committed(at_pressure) - side%penalty(1)*depth(2)
       start(at_penetration) = depth(2)
     end if
+    control%meeting%bearing = bearing
     before = force
     seen = nodes(2)%face
     seen%d = control%meeting%d

@@ -13,7 +13,10 @@ module dies
   use vectors, only: length_of
   implicit none
   private
-  public :: die_t, finish_die, is_deformable, place_on_nodes, present_die, in_pilot_axes
+  public :: die_t, finish_die, is_deformable, is_straight, place_on_nodes, present_die, in_pilot_axes
+
+  !> Distance from a straight line over its length that is round-off of points as cards give them [-].
+  real(wp), parameter :: straight = 1.0e-9_wp
 
   !> Its pieces are stored in the axes of the pilot.
   type, extends(piecewise_curve_t) :: die_t
@@ -95,6 +98,23 @@ contains
 
     yes = allocated(die%nodes)
   end function is_deformable
+
+  !> All of a die lies on one straight line, to the last bits of its points.
+  pure function is_straight(die) result(yes)
+    type(die_t), intent(in) :: die
+    logical :: yes
+    real(wp) :: along(2), way(2)
+    integer :: k, i
+
+    yes = .not. die%closed
+    along = die%pieces(:, 3, size(die%pieces, 3)) - die%pieces(:, 1, 1)
+    do k = 1, size(die%pieces, 3)
+      do i = 2, 3
+        way = die%pieces(:, i, k) - die%pieces(:, 1, k)
+        yes = yes .and. abs(cross(along, way)) <= straight*dot_product(along, along) .and. dot_product(along, way) > 0
+      end do
+    end do
+  end function is_straight
 
   !> Put the pieces of a deformable die where its nodes are.
   pure subroutine place_on_nodes(coordinates, die)

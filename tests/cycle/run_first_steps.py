@@ -61,7 +61,7 @@ def whole_sides(checks):
     with open(deck_of("indentation"), encoding="utf-8") as file:
         text = file.read()
     plain = run_scene("indentation", checks.path("points"), {"travel": 2.5})
-    deck = write(checks.path("along", "indentation.lag"), text.replace("punch -3 film", "punch ALONG film"))
+    deck = write(checks.path("along", "indentation.lag"), text.replace("punch film", "punch ALONG film"))
     found = run_scene("indentation", checks.path("along"), {"travel": 2.5}, deck=deck)
     if not checks.that(found["code"] == plain["code"] == DONE, "ALONG: the cycle ends with 0", (found["said"], plain["said"])):
         return

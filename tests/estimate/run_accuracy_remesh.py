@@ -147,8 +147,14 @@ def of_a_contour(checks):
     call(checks, LAGACYCLE, path, "--out", finest, "--fineness", "4,0.25,0.25", "--quiet")
     told = summary(out)
     asked = told["accuracy"]["asked"]
-    expected = re.search(r"(?m)^ +run: .*: (\d+) elements", forecast)
-    checks.that(expected and int(expected.group(1)) == new_elements(out, "can"), "a contour: elements as forecast", (expected and expected.group(), told["elements"]))
+    line = r"(?m)^ +{}: +elements along a line x (\S+), steps x 1, penetration x 1: (?:about )?(\d+) elements"
+    pilots, expected = re.findall(line.format("pilot"), forecast), re.search(line.format("run"), forecast)
+    if checks.that(len(pilots) == 2 and expected, "a contour: elements of pilots and run", forecast):
+        coarse, fine = (int(elements) for _, elements in pilots)
+        factor, elements = float(expected.group(1)), int(expected.group(2))
+        checks.that(elements == round(coarse*(fine/coarse)**np.log2(factor)), "a contour: elements as those of the pilots grow", (forecast, elements))
+        # a mesh of so few elements grows by whole rows
+        checks.that(1/1.5 <= elements/new_elements(out, "can") <= 1.5, "a contour: elements as forecast", (elements, told["elements"]))
     checks.that(asked["met"] and 1/WITHIN <= asked["spent_steps"]/asked["expected_steps"] <= WITHIN, "a contour: met, steps as expected", asked)
     force, true = (history(folder)["force_y_punch"] for folder in (out, finest))
     checks.that(abs(force[-1] - true[-1]) <= 0.03*np.ptp(true), "a contour: true error below what was asked", (force[-1], true[-1]))

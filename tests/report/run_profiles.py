@@ -19,7 +19,8 @@ import lagamine  # noqa: E402
 from lagamine_report.geometry import quad8, side_points  # noqa: E402
 from lagamine_report.profiles import _quad8_slopes, find_places  # noqa: E402
 from lagamine_report.reader import Group, Run  # noqa: E402
-from lagamine_report.tractions import point_areas, recovered_tractions, side_weights  # noqa: E402
+from lagamine_report.contact import contact_points  # noqa: E402
+from lagamine_report.tractions import recovered_tractions, side_weights  # noqa: E402
 
 # A block pressed by a flat die, friction along its side; a second body beside it, 1 apart.
 BLOCKS = """TITLE  Two blocks
@@ -146,11 +147,8 @@ class Profiles(unittest.TestCase):
             self.assertAlmostEqual(2.0, weights.sum(), places=13)
             self.assertAlmostEqual(2 / 3, (weights * xi**2).sum(), places=13)
 
-    def test_areas_with_a_control_point(self):
-        """Those of the integrals of Bernstein polynomials; a cylinder's pressures on them make the force, and those of Simpson's rule do not."""
-        group = Group("1", "a/flat", "CNT2D", np.zeros((1, 3), dtype=int), -3, "control point")
-        np.testing.assert_allclose(point_areas(group, np.array([[1.0, 3.0, 8.0]])), [[4 / 3, 2.0, 11 / 3]], rtol=1e-15)
-        np.testing.assert_allclose(point_areas(Group("1", "a/flat", "CNT2D", group.connectivity, -3), np.array([[1.0, 3.0, 8.0]])), [[1 / 3, 4.0, 8 / 3]])
+    def test_sides_with_a_control_point(self):
+        """Values at the points of a cylinder's sides make the force by Simpson's rule; those of the control points in the middle do not."""
         path = os.path.join(self.folder, "bezier.lag")
         with open(path, "w", encoding="ascii") as file:
             file.write(BLOCKS.replace("PLSTN", "AXISYM").replace("-3 c", "BEZIER c"))
@@ -163,10 +161,14 @@ class Profiles(unittest.TestCase):
         per_xi = np.hypot(*np.moveaxis(np.einsum("pk,skd->spd", slopes, nodes), 2, 0)) * nodes[..., 0]
         pressure = made.points("a.3/flat")["pressure"]
         force = made.history["force_y_flat"][-1]
-        self.assertAlmostEqual(1.0, 2 * np.pi * (point_areas(group, per_xi) * pressure).sum() / force, delta=1e-5)
-        self.assertGreater(abs(2 * np.pi * (per_xi * side_weights(-3, 3) * pressure).sum() / force - 1), 1e-3)
+        areas = 2 * np.pi * per_xi * side_weights(-3, 3)
+        names, state = contact_points(run, run.steps[-1], group)
+        shown = state[:, :, names.index("pressure")]
+        np.testing.assert_array_equal(shown[:, 1], (pressure[:, 0] + 2 * pressure[:, 1] + pressure[:, 2]) / 4)
+        self.assertAlmostEqual(1.0, (areas * shown).sum() / force, delta=1e-5)
+        self.assertGreater(abs((areas * pressure).sum() / force - 1), 1e-3)
         recovered = recovered_tractions(run, run.steps[-1], group)[0].reshape(-1, 3)
-        self.assertAlmostEqual(1.0, 2 * np.pi * (point_areas(group, per_xi) * recovered).sum() / force, delta=1e-5)
+        self.assertAlmostEqual(1.0, (areas * recovered).sum() / force, delta=1e-5)
 
     def test_tables_and_page(self):
         done = self.report("blocks", "--line", "0", "1", "8", "1", "--line", "1", "0", "1", "3", "--side", "a.3/flat", "--time", "0.5")

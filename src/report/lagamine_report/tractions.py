@@ -9,12 +9,11 @@ from typing import List, Optional, Tuple
 
 import numpy as np
 
-from .contact import along_group
+from .contact import along_group, contact_points
 from .geometry import line3, side_points
 from .reader import Group, Run, Step
 
 STRESSES = ("stress_xx", "stress_yy", "stress_xy")
-CONTROL_POINT = "control point"     # rule of sides whose middle point is that of their parabola, its area its Bernstein polynomial's
 STRETCH = 2               # sides
 FEWEST = 4                # closed points of an interval that is recovered
 FACTOR = (0.4, 2.5)       # the body's pressure may differ by so much from that of the points
@@ -34,17 +33,9 @@ def side_weights(npoint: int, found: int) -> np.ndarray:
     return weights
 
 
-def point_areas(group: Group, per_xi: np.ndarray) -> np.ndarray:
-    """Areas that the points of a contact stand for (side, point), from those per unit of xi at them."""
-    if group.rule != CONTROL_POINT:
-        return per_xi * side_weights(group.npoint, per_xi.shape[1])
-    first, middle, last = per_xi.T
-    return np.stack([first + middle, 2 * middle, last + middle], axis=1) / 3
-
-
 def recovered_tractions(run: Run, step: Step, group: Group) -> Optional[Tuple[np.ndarray, np.ndarray]]:
     """Pressure and friction at the points (side*point,) of a contact, 0 where nothing touches; none where the bodies have no stresses."""
-    names, state = run.points(step, group)
+    names, state = contact_points(run, step, group)
     if not {"pressure", "friction", "contact_status"} <= set(names) or not set(STRESSES) <= set(run.names(step, "node")):
         return None
     pressure, friction, status = (state[:, :, names.index(name)].ravel() for name in ("pressure", "friction", "contact_status"))
@@ -89,7 +80,7 @@ def _body_tractions(run: Run, step: Step, group: Group, npoint: int) -> Tuple[np
     n = np.stack([t[..., 1], -t[..., 0]], axis=2)       # the part is on the left
     xx, yy, xy = (np.einsum("pk,sk->sp", line3(xi), run.nodal(step, name)[group.connectivity]) for name in STRESSES)
     force = np.stack([xx * n[..., 0] + xy * n[..., 1], xy * n[..., 0] + yy * n[..., 1]], axis=2)
-    area = point_areas(group, length * (np.abs(place[..., 0]) if run.axisymmetric else 1))
+    area = length * (np.abs(place[..., 0]) if run.axisymmetric else 1) * side_weights(group.npoint, npoint)
     return -(force * n).sum(axis=2).ravel(), -(force * t).sum(axis=2).ravel(), area.ravel()
 
 
