@@ -215,7 +215,8 @@ contains
     if (piece == 0) return
     call follow_closest_point(die, point, e_r, reach, piece, committed(at_xi), same)
     if (same%piece > 0 .and. same%d > 0) closest = same
-    if (nint(committed(at_status)) /= contact_open .and. closest%piece > 0) call stay_on_face(die, point, reach, piece, closest)
+    if (nint(committed(at_status)) /= contact_open .and. closest%piece > 0) &
+      call stay_on_face(die, point, e_r, reach, piece, closest)
   end subroutine closest_or_followed
 
   !> Outer product of two vectors.
