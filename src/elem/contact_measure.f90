@@ -6,8 +6,8 @@ module contact_measure
   use axis_contact, only: area_at_corner
   use contact_areas, only: area_of_point
   use contact_penalties, only: allowed_penetration, penalties_of_card, penalties_t
-  use contact_point, only: at_augmentation, at_between, at_penetration, at_piece, at_pressure, at_status, at_work, contact_block, &
-                           dissipated, penalties, side_length
+  use contact_point, only: at_augmentation, at_between, at_penetration, at_piece, at_pressure, at_status, at_work, at_xi, &
+                           contact_block, dissipated, is_released, penalties, side_length
   use contact_work, only: kept_work
   use corner_weights, only: interval_before
   use elem_api, only: totals_t
@@ -27,7 +27,8 @@ module contact_measure
 contains
 
   !> Uzawa: the pressure (or pull, of glue) reached becomes the multiplier, p = multiplier + AKP d, so that the same
-  !> pressure needs no penetration any more. The side is judged at its points and between them.
+  !> pressure needs no penetration any more. The side is judged at its points and between them. A point that loses its pressure
+  !> beyond a corner keeps the multiplier that it had: what acts of it is a share that goes to zero, and no pressure holds it.
   subroutine augment(scene, group, times, committed, trial, changed)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -48,13 +49,15 @@ contains
       allowed = given%allowed*side_length(scene, group%connectivity(:, e))
       do k = 0, last, n
         changed = changed .or. any(deep(trial(k + 1:k + n, :, e)) > allowed &
-                                   .and. nint(trial(k + at_status, :, e)) /= contact_open)
+                                   .and. nint(trial(k + at_status, :, e)) /= contact_open &
+                                   .and. .not. is_released(trial(k + at_xi, :, e)))
       end do
       changed = changed .or. any(peaks(trial(:, :, e), group%rule, worth_augmenting*allowed) > allowed)
     end do
     if (.not. changed) return
     do k = 0, last, n
-      committed(k + at_augmentation, :, :) = trial(k + at_pressure, :, :) - trial(k + at_between, :, :)
+      where (.not. is_released(trial(k + at_xi, :, :))) &
+        committed(k + at_augmentation, :, :) = trial(k + at_pressure, :, :) - trial(k + at_between, :, :)
     end do
   end subroutine augment
 
@@ -96,7 +99,7 @@ contains
   end function peaks
 
   !> Friction work, penetration found and allowed, number of points in each contact state. What a control point has is no depth of
-  !> the side.
+  !> the side; nor is there a die where a point is beyond the corner of its face.
   subroutine measure(scene, group, law, section, x, state, before, totals)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -144,7 +147,7 @@ contains
       real(wp) :: allowed, lost
 
       allowed = allowed_penetration(scene%materials(group%material))*side
-      if (nint(now(at_status)) /= contact_open .and. .not. control) then
+      if (nint(now(at_status)) /= contact_open .and. .not. (control .or. is_released(now(at_xi)))) then
         totals%max_penetration = max(totals%max_penetration, now(at_penetration))
         if (allowed > 0) totals%penetration_ratio = max(totals%penetration_ratio, now(at_penetration)/allowed)
       end if

@@ -5,6 +5,7 @@
 !> there in generalised plane strain only, and always the last. What is met enters by its motion
 !> alone: depth, slip, and the turn of the normal.
 module contact_point
+  use closest_point, only: end_slack
   use contact_penalties, only: penalties_of_card, penalties_t
   use kinds, only: wp
   use law_api, only: contact_open, contact_slip, law_t
@@ -17,7 +18,7 @@ module contact_point
   implicit none
   private
   public :: contact_point_t, meeting_t, side_point, act, answer, penalties, share_to_contact, show_on_axis, side_length
-  public :: area_at, dissipated, point_variables, rest, thinning, contact_block
+  public :: area_at, dissipated, is_released, point_variables, rest, thinning, contact_block
   public :: at_pressure, at_tau, at_penetration, at_status, at_slip, at_augmentation, at_work, at_piece, at_xi, at_between, &
             at_energy, npoint_state
   public :: most_unknowns, no_surface, share_of_way, touching
@@ -64,6 +65,14 @@ module contact_point
   end type meeting_t
 
 contains
+
+  !> A point that is losing its pressure beyond the corner at the end of its face.
+  elemental function is_released(xi) result(yes)
+    real(wp), intent(in) :: xi   !! parent coordinate in its state [-]
+    logical :: yes
+
+    yes = abs(xi) > 1 + end_slack
+  end function is_released
 
   !> State of a point, with the history of its law.
   pure function point_variables(law) result(list)

@@ -4,11 +4,13 @@
 !> multiplier takes when it replaces depth (Uzawa) is no energy that comes back. With p straight between both ends of the
 !> step both are (p0 + p1)/2 (d1 - d0). A point that closes begins at no pressure, one that opens ends there. Along the side
 !> the tangential penalty keeps tau**2/(2 AKTAU). What is in contact between points (contact_between) keeps its
-!> own energy. Source: P. Wriggers, Computational Contact Mechanics, 2nd ed., Springer 2006 (energies of penalty and augmented
-!> Lagrange methods).
+!> own energy. A point that loses its pressure beyond a corner of the die (corner_release) is as one that opens: the share of its
+!> pressure that still acts goes to zero. Source: P. Wriggers, Computational Contact Mechanics, 2nd ed., Springer 2006 (energies of
+!> penalty and augmented Lagrange methods).
 module contact_work
   use contact_areas, only: area_of_point
-  use contact_point, only: area_at, at_augmentation, at_between, at_energy, at_penetration, at_pressure, at_status, at_tau
+  use contact_point, only: area_at, at_augmentation, at_between, at_energy, at_penetration, at_pressure, at_status, at_tau, &
+                           at_xi, is_released
   use corner_weights, only: interval_before
   use kinds, only: wp
   use law_api, only: contact_open
@@ -27,8 +29,8 @@ contains
     real(wp) :: pressure(2)
     logical :: was, is
 
-    was = nint(before(at_status)) /= contact_open
-    is = nint(after(at_status)) /= contact_open
+    was = nint(before(at_status)) /= contact_open .and. .not. is_released(before(at_xi))
+    is = nint(after(at_status)) /= contact_open .and. .not. is_released(after(at_xi))
     ! of the point itself
     pressure = [before(at_pressure) - before(at_between), after(at_pressure) - after(at_between)]
     work = 0

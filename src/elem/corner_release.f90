@@ -4,7 +4,7 @@
 !> point (corner_contact). A pressure that ended at once would leave positions without equilibrium. So the face goes on beyond
 !> its corner, as the line along its tangent, for `releasing` of half a side, and the pressure falls to zero on that way.
 module corner_release
-  use closest_point, only: closest_point_t, closest_within_piece
+  use closest_point, only: closest_point_t, closest_within_piece, past_end
   use contact_point, only: at_penetration, at_piece, at_status, at_xi, contact_point_t
   use dies, only: die_t
   use kinds, only: wp
@@ -58,7 +58,7 @@ contains
         ! pressure that was augmented holds also where the point has left the face by less than that takes
         if (was_open .and. .not. depth > 0) cycle
         if (was_open .and. .not. (depth < shallow*length .and. dot_product(normal, e_r) < -facing)) cycle
-        closest = closest_point_t(piece=face_at(die, k, side), xi=merge(1.0_wp, -1.0_wp, side == 1), d=depth, normal=normal)
+        closest = closest_point_t(piece=face_at(die, k, side), xi=merge(past_end, -past_end, side == 1), d=depth, normal=normal)
         release%slope = -2/(releasing*length)
         release%share = 1 + release%slope*way
         release%tangent = outward
@@ -103,7 +103,7 @@ contains
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: point(2)                 !! in the pilot's axes [length]
     real(wp), intent(in) :: length                   !! of the side [length]
-    type(closest_point_t), intent(in) :: closest     !! on the face
+    type(closest_point_t), intent(inout) :: closest  !! on the face
     type(release_t), intent(out) :: release
     real(wp) :: way, outward(2)
     integer :: k, side
@@ -117,6 +117,7 @@ contains
         release%slope = -2/(releasing*length)
         release%share = max(0.0_wp, 1 + release%slope*way)
         release%tangent = outward
+        closest%xi = merge(past_end, -past_end, side == 1)
         return
       end do
     end do

@@ -11,7 +11,7 @@ module closest_point
   implicit none
   private
   public :: closest_point_t, stationary_points, closest_within_piece, closest_at_vertex, distance_slope, sense_of_turn, &
-            whole_piece, end_slack
+            whole_piece, end_slack, past_end
 
   !> Closest point on a curve; on a die, in the pilot's axes.
   type :: closest_point_t
@@ -30,6 +30,8 @@ module closest_point
 
   !> Ends of pieces belong to both neighbours, within round-off of xi: coordinates may be 1e5 times a piece.
   real(wp), parameter :: end_slack = 1.0e-10_wp, whole_piece(2) = [-1 - end_slack, 1 + end_slack]
+  !> Parent coordinate of what is kept on a piece beyond its end.
+  real(wp), parameter :: past_end = 1 + 2*end_slack
   !> Pieces are one smooth curve where their tangents turn by less than this sine: `end_slack` covers the fan.
   real(wp), parameter :: smooth_turn = 1.0e-12_wp
 
