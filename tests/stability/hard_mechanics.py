@@ -266,6 +266,19 @@ def lifted_off(checks):
     return max(cuts - 5, worst/1000)
 
 
+def slides_off_an_edge(checks):
+    """Points that slide off the edge of a flat punch lose their pressure; multipliers do not hold it, and the books of energy close."""
+    worst = 0.0
+    for k, (radius, height, edge, way) in enumerate(((17.392, 8.698, 10.4354, -2.1745), (17.3923, 8.6981, 10.4354, -2.17454))):
+        run = checks.run(f"off-edge-{k}", deck(
+            "AXISYM", "LOG", block(f"0. 0. {radius} 0. {radius} {height} 0. {height}", "8 1. 6 1."),
+            "LAW m EPLA\n 200000. 0.3\n LINEAR 100. 50.\nLAW k COUL2D\n PENETR 1.E-3 M 0.1 AUGMENT 20\n",
+            f"DIE d PILOT 0. {height}\n SEGM {edge} 26.094 {edge} {height}\n SEGM {edge} {height} -1. {height}\nCNT2D b 2 3 d k\nMOVE d Y go\n"
+            f"FIXED b 1 Y\nFIXED b 4 X\nLIC go\n 0. 0. 1. {way}\n", "STRAT 0.005 1.E-6 0.04 6 3"))
+        worst = max(worst, abs(report(run)["checks"]["energy_imbalance"]))
+    return worst
+
+
 def past_the_end(checks):
     """A block under a weight dragged over the open end of its table and back: it stays whole, and the force is friction's."""
     run = checks.run("past-the-end", deck(
@@ -450,7 +463,7 @@ CASES = (
     Case("held by friction alone", friction_alone, 1e-2), Case("contact again", contact_again, 0.01),
     Case("released and pressed again", released, 1e-9), Case("lifts off", lifts_off, 0), Case("lifted off", lifted_off, 1e-9),
     Case("wall that peels off", wall_peels, 1), Case("another press turns back", another_press_turns, 1.0),
-    Case("past a die's end", past_the_end, 1e-2), Case("round a fillet", round_a_fillet, 5.0),
+    Case("past a die's end", past_the_end, 1e-2), Case("slides off an edge", slides_off_an_edge, 0.03), Case("round a fillet", round_a_fillet, 5.0),
     Case("stick-slip reversal", stick_slip, 1e-3),
     Case("bent round a pin", round_a_pin, 0.25), Case("bent between three rollers", three_point_bending, 0.2),
     Case("blank under a holder", under_a_holder, 1e-4),
