@@ -66,12 +66,12 @@ module contact_point
 
 contains
 
-  !> A point that is losing its pressure beyond the corner at the end of its face.
+  !> A point that has lost more than half of its pressure beyond the corner at the end of its face (corner_release).
   elemental function is_released(xi) result(yes)
     real(wp), intent(in) :: xi   !! parent coordinate in its state [-]
     logical :: yes
 
-    yes = abs(xi) > 1 + end_slack
+    yes = abs(xi) > 1 + 1.5_wp*end_slack
   end function is_released
 
   !> State of a point, with the history of its law.

@@ -58,10 +58,11 @@ contains
         ! pressure that was augmented holds also where the point has left the face by less than that takes
         if (was_open .and. .not. depth > 0) cycle
         if (was_open .and. .not. (depth < shallow*length .and. dot_product(normal, e_r) < -facing)) cycle
-        closest = closest_point_t(piece=face_at(die, k, side), xi=merge(past_end, -past_end, side == 1), d=depth, normal=normal)
+        closest = closest_point_t(piece=face_at(die, k, side), xi=merge(1.0_wp, -1.0_wp, side == 1), d=depth, normal=normal)
         release%slope = -2/(releasing*length)
         release%share = 1 + release%slope*way
         release%tangent = outward
+        call mark_released(release, closest)
         return
       end do
     end do
@@ -80,6 +81,15 @@ contains
       piece = adjacent_piece(die, piece, 1)
     end if
   end function face_at
+
+  !> Where less than half of a point's pressure is left its parent coordinate is beyond the end of the face (is_released): the state
+  !> of a point that stands on a corner, or just beyond it, stays that of one on the face.
+  pure subroutine mark_released(release, closest)
+    type(release_t), intent(in) :: release
+    type(closest_point_t), intent(inout) :: closest   !! at the end of its face
+
+    if (release%share < 0.5_wp) closest%xi = sign(past_end, closest%xi)
+  end subroutine mark_released
 
   !> A point has lost depth on a way along the die that passes a corner.
   pure function passes_corner(die, committed, closest) result(yes)
@@ -117,7 +127,7 @@ contains
         release%slope = -2/(releasing*length)
         release%share = max(0.0_wp, 1 + release%slope*way)
         release%tangent = outward
-        closest%xi = merge(past_end, -past_end, side == 1)
+        call mark_released(release, closest)
         return
       end do
     end do

@@ -14,7 +14,7 @@ module corner_faces
   use kinds, only: wp
   use parabolas, only: tangent_on
   use piecewise_curves, only: adjacent_piece, blunt, piecewise_curve_t
-  use plane_vectors, only: cross, right_of
+  use plane_vectors, only: angle_between, right_of
   use vectors, only: length_of
   implicit none
   private
@@ -72,14 +72,17 @@ contains
     integer, intent(in) :: pressed     !! piece
     type(closest_point_t), intent(inout) :: closest   !! of all, on a piece or the vertex behind it
     type(closest_point_t) :: found
-    integer :: way, next
+    integer :: way, next, found_on
     real(wp) :: turn
 
     if (closest%piece == pressed .and. .not. closest%at_vertex) return
     do way = -1, 1, 2
       next = adjacent_piece(curve, pressed, way)
       if (next == 0) cycle
-      if (closest%piece /= merge(merge(pressed, next, way > 0), next, closest%at_vertex)) cycle
+      ! of the corner between both the closest point is on the other face, or it is the vertex behind the first of them
+      found_on = next
+      if (closest%at_vertex .and. way > 0) found_on = pressed
+      if (closest%piece /= found_on) cycle
       turn = turn_at(curve, pressed, next, way)
       if (turn > 0) then
         call try_face(curve, point, e_r, reach, way, pressed, still_away, closest)
@@ -133,7 +136,7 @@ contains
       if (.not. meets(tangent_on(own, real(end, wp))) > beside) return
       near = in_corner*reach
       if (meets(tangent_on(opposite, -real(end, wp))) > across) then
-        turn = corner_angle(tangent_on(own, real(end, wp)), tangent_on(opposite, -real(end, wp)))
+        turn = abs(angle_between(tangent_on(own, real(end, wp)), tangent_on(opposite, -real(end, wp))))
         near = at_corner*reach
         if (.not. (turn > blunt .and. abs(closest%d) < near)) return
         if (meets(tangent_on(opposite, -real(end, wp))) > cos(share*turn)) return
@@ -166,14 +169,6 @@ contains
 
     turn = sense_of_turn(curve%pieces(:, :, merge(piece, next, way > 0)), curve%pieces(:, :, merge(next, piece, way > 0)))
   end function turn_at
-
-  !> Angle between two tangents [radian].
-  pure function corner_angle(t1, t2) result(angle)
-    real(wp), intent(in) :: t1(2), t2(2)
-    real(wp) :: angle
-
-    angle = atan2(abs(cross(t1, t2)), dot_product(t1, t2))
-  end function corner_angle
 
   !> Closest point on one piece, or up to `beyond` outside its ends; of several the one nearest to `from`.
   pure subroutine closest_on_piece(curve, piece, point, from, beyond, closest)

@@ -16,10 +16,10 @@ BIN = os.path.abspath(os.environ.get("LAGAMINE_BIN") or os.path.join(SOURCE, "bu
 sys.path.insert(0, os.path.join(SOURCE, "src", "report"))
 sys.dont_write_bytecode = True
 import lagamine  # noqa: E402
+from lagamine_report.contact import contact_points  # noqa: E402
 from lagamine_report.geometry import quad8, side_points  # noqa: E402
 from lagamine_report.profiles import _quad8_slopes, find_places  # noqa: E402
-from lagamine_report.reader import Group, Run  # noqa: E402
-from lagamine_report.contact import contact_points  # noqa: E402
+from lagamine_report.reader import Run  # noqa: E402
 from lagamine_report.tractions import recovered_tractions, side_weights  # noqa: E402
 
 # A block pressed by a flat die, friction along its side; a second body beside it, 1 apart.
