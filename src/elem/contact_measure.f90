@@ -28,7 +28,7 @@ contains
 
   !> Uzawa: the pressure (or pull, of glue) reached becomes the multiplier, p = multiplier + AKP d, so that the same
   !> pressure needs no penetration any more. The side is judged at its points and between them. A point that has lost
-  !> more than half of its pressure beyond a corner keeps its multiplier: the share that acts goes to zero, and no pressure holds it.
+  !> more than half of its pressure beyond a corner keeps its multiplier: the share that acts goes to zero, no pressure holds it.
   subroutine augment(scene, group, times, committed, trial, changed)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group

@@ -1,5 +1,5 @@
-!> The points of a contact whose card does not say how many: by what a rigid die looks like; against a body from the lengths of sides,
-!> so anew for every mesh.
+!> The points of a contact whose card does not say how many: by the shape of a rigid die; against a body by the lengths of sides, so
+!> anew for every mesh.
 module contact_rule
   use dies, only: die_t, is_straight
   use kinds, only: wp
