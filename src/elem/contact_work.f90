@@ -6,7 +6,8 @@
 !> the tangential penalty keeps tau**2/(2 AKTAU). What is in contact between points (contact_between) keeps its
 !> own energy. A point that has lost more than half of its pressure beyond a corner of the die (corner_release) is as
 !> one that opens: the share that still acts goes to zero.
-!> Source: P. Wriggers, Computational Contact Mechanics, 2nd ed., Springer 2006 (energies of penalty and augmented Lagrange methods).
+!> Source: P. Wriggers, Computational Contact Mechanics, 2nd ed., Springer 2006 (energies of penalty and augmented Lagrange
+!> methods).
 module contact_work
   use contact_areas, only: area_of_point
   use contact_point, only: area_at, at_augmentation, at_between, at_energy, at_penetration, at_pressure, at_status, at_tau, &
