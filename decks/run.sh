@@ -128,7 +128,7 @@ while [ $# -gt 0 ]; do
 done
 
 setup_packages
-configure_and_build || exit 1
+configure && build_targets programs || exit 1
 
 status=0
 for name in ${names:-upsetting}; do

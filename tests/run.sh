@@ -34,7 +34,7 @@ fi
 [ "$preset" = release ] || build="$root/build-$preset"
 
 setup_packages
-configure_and_build || exit 1
+configure || exit 1
 cd "$build" || exit 1
 
 # Several tests run at once: each on one thread, unless it asks for more itself.
@@ -47,6 +47,8 @@ names() {
 }
 
 chosen=''
+targets=unit_tests
+[ $# -gt 0 ] || targets=all
 for word in "$@"; do
   found=$(names -L "^$word\$")
   [ -n "$found" ] || found=$(names -R "$word")
@@ -56,11 +58,13 @@ for word in "$@"; do
     exit 2
   fi
   for name in $found; do
+    case $name in test_*) ;; *) targets=all ;; esac
     chosen="$chosen${chosen:+|}$(printf '%s' "$name" | sed 's/[.+]/[&]/g')"
   done
 done
 # None chosen: every name.
 if [ -n "$chosen" ]; then chosen="^($chosen)\$"; else chosen=.; fi
+build_targets "$targets" || exit 1
 
 if [ "$preset" != coverage ]; then
   exec ctest $show --no-tests=error -j "$jobs" -R "$chosen"

@@ -1,7 +1,8 @@
 # Shared by tests/run.sh and decks/run.sh, which source it after setting `root` to the project's folder. POSIX sh.
 #   setup_packages        install what is missing, or say what to install and stop with 2
-#   configure_and_build   build in $build with the initial cache $preset of src/cmake/presets; sets and exports LAGAMINE_PYTHON
+#   configure             prepare $build with the initial cache $preset of src/cmake/presets; sets and exports LAGAMINE_PYTHON
 #                         (empty where there is none)
+#   build_targets NAME... build these in $build: all, programs, unit_tests
 # and the variables `build` (the build folder: $root/build), `preset` (release) and `jobs` (how many things to do at once).
 
 packages="gfortran make cmake libmumps-seq-dev libmetis-dev libhdf5-dev libopenblas-dev python3 python3-h5py python3-matplotlib \
@@ -52,9 +53,12 @@ setup_packages() {
   exit 2
 }
 
-configure_and_build() {
-  cmake -C "$root/src/cmake/presets/$preset.cmake" -S "$root" -B "$build" &&
-    cmake --build "$build" --parallel "$jobs" || return 1
+configure() {
+  cmake -C "$root/src/cmake/presets/$preset.cmake" -S "$root" -B "$build" || return 1
   LAGAMINE_PYTHON=$(sed -n 's/^LAGAMINE_PYTHON:FILEPATH=//p' "$build/CMakeCache.txt")
   export LAGAMINE_PYTHON
+}
+
+build_targets() {
+  cmake --build "$build" --parallel "$jobs" --target "$@"
 }

@@ -27,7 +27,7 @@ done
 
 if [ -z "${LAGAMINE_BIN:-}" ]; then
   setup_packages
-  configure_and_build >&2 || exit 1
+  configure >&2 && build_targets programs >&2 || exit 1
   LAGAMINE_BIN="$build/bin"
 fi
 export LAGAMINE_BIN
