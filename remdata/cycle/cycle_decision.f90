@@ -206,7 +206,8 @@ contains
     else
       action = give_up(exit_no_convergence, 'no new mesh is good enough at '//place_of(s%new%old_end)//': '//tried, &
                        'the checkpoint is '//s%stem//'.'//current_name//': lagamine --resume goes on with the old mesh; '// &
-                       'other rows of REMSH (SIZE, ACCEPT, TRIES) may help')
+                       'shorter steps (STRAT), or other rows of REMSH (SIZE, ACCEPT, TRIES), beside the limits that --check '// &
+                       'prints, may help')
     end if
   end function no_way_left
 

@@ -97,8 +97,9 @@ contains
       call cursor%fail('the axis holds an axisymmetric body along X, expected Y')
     call cursor%real('the stiffness of the body''s springs', group%stiffness, lower=0.0_wp, strict_lower=.true., &
                      unit='force/length; of the full circumference')
-    if (cursor%failed() .or. .not. draft%mesh_sound) return
+    if (cursor%failed()) return
     group%name = group%name//'/spring.'//directions(group%direction)%s
+    if (.not. draft%mesh_sound) return
     volume = volume_of_body(draft%scene, group%connectivity)
     if (draft%scene%plane_state == axisymmetric) volume = 2*pi*volume
     if (volume > 0) group%stiffness = group%stiffness/volume
@@ -117,7 +118,8 @@ contains
     group%name = draft%places%words(k)%s
     if (any(draft%places%keywords(k)%s == ['SIDES', 'DIE  '])) then
       call cursor%fail(''''//group%name//''' is a '//draft%places%keywords(k)%s//', expected a body')
-    else if (draft%mesh_sound) then
+    else
+      ! bodies are known before they have a mesh
       do g = 1, size(draft%scene%groups)
         if (draft%scene%groups(g)%name /= group%name) cycle
         group%connectivity = draft%scene%groups(g)%connectivity

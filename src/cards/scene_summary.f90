@@ -8,7 +8,7 @@ module scene_summary
   use linear_registry, only: list_solvers
   use quadrature, only: rule_along, rule_control, rule_equidistant, rule_t
   use remesher_windows, only: window_text
-  use remeshing, only: criterion_names, is_upper, ncriteria, never
+  use remeshing, only: criterion_names, has_limit, is_upper, ncriteria, never
   use scene, only: axisymmetric, generalised_plane_strain, group_t, lacks_mesh, plane_state_names, scene_t
   use sections, only: section_drive_t, section_forced, section_moved, section_names
   use text, only: string_t, to_text
@@ -89,6 +89,7 @@ contains
           call put_limit('stroke', scene%dies(stroke%die)%name//' '//directions(stroke%component)//' = '//to_text(stroke%value))
         end associate
       end do
+      if (.not. has_limit(scene%remesh)) call put_limit('never again', 'after the first mesh: no row of REMSH is a limit')
       associate (wish => scene%remesher)
         call put('new mesh   elements of '//to_text(wish%smallest, 4)//' to '//to_text(wish%largest, 4) &
                  //most_text(wish%most_elements)//', error of the strain '//to_text(100*wish%strain_error)//' %')

@@ -66,7 +66,7 @@ contains
     f = 0
     matrix = 0
     node = trial(:, p)
-    call press_corner(die, law, material, drivers(:, :, p), .true., side, xi, p, committed(:, p), trial(:, p), f(:, 1), &
+    call press_corner(die, law, material, drivers(:, :, p), .true., side, xi, p, committed, trial(:, p), f(:, 1), &
                       matrix(:, :, 1), of_corner)
     call press_node(die, law, material, drivers(:, :, p), side, xi, k, committed, node, f(:, 2), matrix(:, :, 2), of_node, met)
     corner_acts = nint(trial(n + at_status, p)) /= contact_open

@@ -5,11 +5,15 @@
 !> a side that lies on the die by a corner has its points for that. Toward an end of the side the weight
 !> goes to zero (corner_weights). The normal force of a corner is pressure only, whatever the law. In the interval at a node on
 !> the axis either the corner acts or that node (axis_contact).
+!>
+!> A corner that passes a point within the side goes on in the next interval, with its multiplier and its friction: nothing
+!> changes there. The point itself stays open as it passes, where it was (corner_beside): were it pressed in place of the corner,
+!> it would be held on the face beyond the corner until its pressure is released, and the part would stop and jump.
 module corner_contact
   use contact_point, only: at_augmentation, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, most_unknowns, &
                            contact_block, no_surface, share_to_contact, thinning
   use contact_penalties, only: allowed_penetration
-  use corner_weights, only: interval_before, share_of_corner
+  use corner_weights, only: handing_over, interval_before, share_of_corner
   use dies, only: die_t
   use elem_api, only: report_t
   use kinds, only: wp
@@ -21,7 +25,7 @@ module corner_contact
   use side_corners, only: closest_at_corner, corner_t, deepest_corner
   implicit none
   private
-  public :: end_on_axis, press_corner, press_corners
+  public :: corner_beside, end_on_axis, press_corner, press_corners
 
   !> A corner acts on what is deeper than this share of the allowed penetration.
   real(wp), parameter :: corner_share = 0.5_wp
@@ -50,8 +54,8 @@ contains
     if (axisym) apart = end_on_axis(side)
     if (apart > 0) apart = merge(1, size(xi), apart == 1)
     do p = 1, size(xi)
-      if (p /= apart) call press_corner(die, law, material, drivers(:, :, p), axisym, side, xi, p, committed(:, p), trial(:, p), &
-                                        force, stiffness, report)
+      if (p /= apart) call press_corner(die, law, material, drivers(:, :, p), axisym, side, xi, p, committed, trial(:, p), force, &
+                                        stiffness, report)
     end do
   end subroutine press_corners
 
@@ -78,13 +82,13 @@ contains
     type(side_t), intent(in) :: side
     real(wp), intent(in) :: xi(:)                      !! (npoint) [-]
     integer, intent(in) :: p
-    real(wp), intent(in) :: committed(:)               !! (nstate) of the point [unit of each component]
+    real(wp), intent(in) :: committed(:, :)            !! (nstate, npoint) [unit of each component]
     real(wp), intent(inout) :: trial(:)                !! (nstate) of the point [unit of each component]
     real(wp), intent(inout) :: force(ndof)             !! [force]
     real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
     type(report_t), intent(inout) :: report
     type(corner_t) :: corner
-    real(wp) :: from, to, worn(1)
+    real(wp) :: from, to, worn(1), before(contact_block(.true., size(trial)))
     integer :: n, at_place
 
     if (size(die%corners, 2) == 0 .or. .not. allowed_penetration(material) > 0) return
@@ -95,8 +99,9 @@ contains
     call deepest_corner(die, nodes_in_axes(side), from, to, side%length, corner)
     if (.not. corner%found) return
     trial(at_place) = corner%place
-    associate (before => committed(n + 1:2*n), now => trial(n + 1:2*n))
-      worn = thinning(committed([at_place]), [corner%place], side%section, side%thickening, side%x, side%du(1:6))
+    before = corner_at_start(committed, p, corner)
+    associate (now => trial(n + 1:2*n))
+      worn = thinning(committed(at_place:at_place, p), [corner%place], side%section, side%thickening, side%x, side%du(1:6))
       now(at_work) = before(at_work)*worn(1)
       call corner_at(law, material, drivers, axisym, side, corner, to - from, before, now, force, stiffness)
       if (nint(before(at_status)) /= contact_open) then
@@ -105,6 +110,46 @@ contains
       report%event = min(report%event, share_to_contact(before, now, side%length))
     end associate
   end subroutine press_corner
+
+  !> State of a corner in the interval before a point as the step began: where it was in contact in an interval beside, what it
+  !> was there, but its work, which stays where it was done.
+  pure function corner_at_start(committed, p, corner) result(state)
+    real(wp), intent(in) :: committed(:, :)
+    integer, intent(in) :: p
+    type(corner_t), intent(in) :: corner
+    real(wp) :: state(contact_block(.true., size(committed, 1)))
+    integer :: q, n
+
+    n = size(state)
+    state = committed(n + 1:2*n, p)
+    if (nint(state(at_status)) /= contact_open) return
+    do q = max(1, p - 1), min(size(committed, 2), p + 1)
+      associate (beside => committed(n + 1:2*n, q))
+        if (nint(beside(at_status)) == contact_open .or. nint(beside(at_piece)) /= corner%piece) cycle
+        if (beside(at_xi)*corner%xi < 0) cycle   ! the other end of the piece
+        state(:at_augmentation) = beside(:at_augmentation)
+        state([at_piece, at_xi]) = beside([at_piece, at_xi])
+      end associate
+    end do
+  end function corner_at_start
+
+  !> A corner of the die was in contact beside a point within the side as the step began, nearer than an end of a side would
+  !> take its load over from it.
+  pure function corner_beside(xi, p, committed) result(yes)
+    real(wp), intent(in) :: xi(:)              !! (npoint) [-]
+    integer, intent(in) :: p
+    real(wp), intent(in) :: committed(:, :)    !! (nstate, npoint) [unit of each component]
+    logical :: yes
+    integer :: q, n
+
+    n = contact_block(.true., size(committed, 1))
+    yes = .false.
+    if (1 - abs(xi(p)) < handing_over) return
+    do q = p, min(size(xi), p + 1)
+      if (nint(committed(n + at_status, q)) == contact_open) cycle
+      if (abs(committed(2*n + 1, q) - xi(p)) < handing_over) yes = .true.
+    end do
+  end function corner_beside
 
   !> Contact at one corner: state, forces, matrix.
   pure subroutine corner_at(law, material, drivers, axisym, side, corner, weight, committed, trial, force, stiffness)

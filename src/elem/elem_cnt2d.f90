@@ -28,7 +28,7 @@ module elem_cnt2d
                            contact_point_t, no_surface, &
                            penalties, point_variables, rest, share_to_contact, show_on_axis, side_length, &
                            thinning, touching
-  use corner_contact, only: press_corners
+  use corner_contact, only: corner_beside, press_corners
   use corner_release, only: motion_past_corner, passes_corner, release_t, slide_past_corner
   use die_sweep, only: share_to_pass
   use dies, only: die_t
@@ -129,8 +129,8 @@ contains
           call press_side(die, law, material, drivers(:, :, :, e), side, committed(:own, :, e), trial(:own, :, e), f, k)
         else
           do p = 1, size(xi)
-            call contact_at(die, law, material, drivers(:, :, p, e), axisym, side, xi(p), weight(p), committed(:own, p, e), &
-                            trial(:own, p, e), f, k)
+            call contact_at(die, law, material, drivers(:, :, p, e), axisym, side, xi(p), weight(p), &
+                            corner_beside(xi, p, committed(:, :, e)), committed(:own, p, e), trial(:own, p, e), f, k)
           end do
         end if
         do p = 1, size(xi)
@@ -210,7 +210,8 @@ contains
   end function far
 
   !> Contact at one integration point: state, forces, matrix.
-  pure subroutine contact_at(die, law, material, drivers, axisym, side, xi, weight, committed, trial, force, stiffness)
+  pure subroutine contact_at(die, law, material, drivers, axisym, side, xi, weight, beside, committed, trial, force, &
+                             stiffness)
     type(die_t), intent(in) :: die
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
@@ -218,6 +219,7 @@ contains
     logical, intent(in) :: axisym
     type(side_t), intent(in) :: side
     real(wp), intent(in) :: xi, weight
+    logical, intent(in) :: beside   !! a corner of the die that passes
     real(wp), intent(in) :: committed(:)
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: point
@@ -235,6 +237,10 @@ contains
     if (closest%piece == 0) return
     ! a point on the axis has no surface: nothing acts there, and no contact is evaluated
     if (axisym .and. point%x(1) <= no_surface*side%length) return
+    if (beside .and. nint(committed(at_status)) == contact_open) then
+      trial([at_penetration, at_piece, at_xi]) = [closest%d, real(closest%piece, wp), closest%xi]
+      return
+    end if
     if (abs(closest%d) <= touching*side%length) closest%d = 0
     before = force
     passed = .false.

@@ -2,7 +2,8 @@
 !>
 !> Two things that no pressure corrects: a side whose parabola is deeper in the die between its points than at them, or, with ALONG,
 !> spans a bend of the die from one place in contact to another, and a corner of the die that sticks into a side. All are measured
-!> over the penetration that the side's law allows.
+!> over the penetration that the side's law allows. Where a body faces itself neither is known: the depth of a side below its own
+!> body's contour says nothing (own_contact), and is left out as it is of `max_penetration_sampled`.
 module contact_quality
   use contact_penalties, only: allowed_penetration
   use contact_point, only: at_penetration, at_status, contact_block
@@ -12,6 +13,7 @@ module contact_quality
   use kinds, only: wp
   use quadrature, only: is_control_point, rule_along, rule_t
   use law_api, only: contact_open
+  use own_contact, only: faces_itself
   use scene, only: scene_t
   use solution, only: present_coordinates, solution_t
   use state_variables, only: find_variable
@@ -61,6 +63,7 @@ contains
     integer :: e, n
 
     of_sides = 0
+    if (faces_itself(scene, scene%groups(g))) return
     corners = find_variable(scene%groups(g)%variables, 'corner_place') > 0
     x = present_coordinates(scene, solution)
     die = present_die(scene%dies(scene%groups(g)%die), x)

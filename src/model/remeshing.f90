@@ -6,7 +6,7 @@ module remeshing
   implicit none
   private
   public :: carry_error, remesh_rules_t, stroke_t, stress_error_of_all, trigger_t, estimate_t
-  public :: drop_triggers, trigger_words
+  public :: drop_triggers, has_limit, trigger_words
   public :: ncriteria, criterion_names, is_upper, never
   public :: least_angle, largest_angle, middle_share, jacobian_ratio, scaled_jacobian, aspect_ratio
 
@@ -75,6 +75,16 @@ module remeshing
   end type estimate_t
 
 contains
+
+  !> A new mesh becomes due by something: not where rows of a card only say how the first mesh is made.
+  pure function has_limit(rules) result(yes)
+    type(remesh_rules_t), intent(in) :: rules
+    logical :: yes
+
+    yes = any(abs(rules%shape) < never) .or. rules%stress_error < never .or. rules%contact < never .or. rules%distress < huge(0)
+    if (allocated(rules%times)) yes = yes .or. size(rules%times) > 0
+    if (allocated(rules%strokes)) yes = yes .or. size(rules%strokes) > 0
+  end function has_limit
 
   !> Error of the stress that comes of this mesh and of those before it: a new mesh gets the stress of the old one with its error,
   !> and what its own elements add knows nothing of that.
