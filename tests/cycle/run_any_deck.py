@@ -56,6 +56,27 @@ SPRNG  upper X 10.
 STRAT  0.1 1.E-3 0.1   4 3
 END
 """
+# A body by its contour that a force of volume pushes against springs: each part of it moves by force over stiffness, b A/K = 0.32.
+PUSHED = """TITLE  Square held by springs against a force of volume
+STATE  PLSTN
+KINEM  LOG
+BODY   block PL8LS 4 rubber
+   SEGM   0. 0.   4. 0.
+   SEGM   4. 0.   4. 4.
+   SEGM   4. 4.   0. 4.
+   SEGM   0. 4.   0. 0.
+LAW    rubber ELA
+   1000. 0.3
+FIXED  block 1 Y
+LIC    push
+   0. 0.     1. 1.
+BFORC  block X 0.002 push
+SPRNG  block X 0.1
+STRAT  0.1 1.E-3 0.1   4 3
+REMSH
+PROBE  right NODE UX 4. 4.
+END
+"""
 # How far the forces of dies that the new mesh bears before it is in balance may be from those of the old one.
 CARRIED = 0.05
 
@@ -95,8 +116,19 @@ def remeshed(checks, deck, options, limits):
                 f"{short}: work of friction never falls")
 
 
+def pushed(checks):
+    """Loads on a body that has no mesh when its deck is read."""
+    out = checks.path("pushed.out")
+    result = cycle(write(checks.path("pushed.lag"), PUSHED), out)
+    if not checks.that(result.returncode == DONE, "loads on a contour: the cycle ends with 0", result.stdout + result.stderr):
+        return
+    moved = history(out)["right"][-1]
+    checks.that(abs(moved / 0.32 - 1) < 1e-6, "loads on a contour: force over stiffness", moved)
+
+
 def main():
     checks = Checks()
+    pushed(checks)
     for name, options, limits in DECKS:
         remeshed(checks, os.path.join(ROOT, "decks", name + ".lag"), options, limits)
     remeshed(checks, write(checks.path("decks", "spring.lag"), SPRING), [], {"force_y_upper": 0.001, "elastic_energy": 0.001})
