@@ -197,17 +197,19 @@ contains
   pure function no_way_left(s) result(action)
     type(situation_t), intent(in) :: s
     type(action_t) :: action
-    character(len=:), allocatable :: tried
+    character(len=:), allocatable :: tried, heed
 
+    ! what is wrong with the scene, as a part that begins in a die or passes through itself, is told there
+    heed = 'warnings in '//s%stem//'.log come first'
     tried = to_text(s%new%number - 1)//' tried, see '//s%table
     if (is_first_mesh(s%new%old_end%facts)) then
       action = give_up(exit_no_convergence, 'no first mesh is good enough: '//tried, &
-                       'the contour may want other ZPNT and ZONE cards, or sizes: REMSH SIZE, TURN and COUNT')
+                       heed//'; else the contour may want other ZPNT and ZONE cards, or sizes: REMSH SIZE, TURN and COUNT')
     else
       action = give_up(exit_no_convergence, 'no new mesh is good enough at '//place_of(s%new%old_end)//': '//tried, &
                        'the checkpoint is '//s%stem//'.'//current_name//': lagamine --resume goes on with the old mesh; '// &
                        'shorter steps (STRAT), or other rows of REMSH (SIZE, ACCEPT, TRIES), beside the limits that --check '// &
-                       'prints, may help')
+                       'prints, may help; '//heed)
     end if
   end function no_way_left
 
