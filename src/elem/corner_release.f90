@@ -30,8 +30,8 @@ module corner_release
 
 contains
 
-  !> The face that a point was on, or over, when the step began, beyond its corner; `closest` stays where there is none. A point that has
-  !> left the face is over the other one then: the first does not take it back.
+  !> The face that a point was on, or over, when the step began, beyond its corner, or comes to where it has faced none yet; `closest`
+  !> stays where there is none. A point that has left a face and is over the other one is not taken back by the first.
   pure subroutine slide_past_corner(die, point, e_r, length, committed, closest, release)
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: point(2)       !! in the pilot's axes [length]
@@ -50,7 +50,7 @@ contains
       do side = 1, 2
         ! the face before the corner goes on along its tangent, the one behind it against it
         if (face_at(die, k, side) == 0) cycle
-        if (face_at(die, k, side) /= piece) cycle
+        if (piece > 0 .and. face_at(die, k, side) /= piece) cycle
         outward = merge(die%corners(3:4, k), -die%corners(5:6, k), side == 1)
         way = dot_product(point - die%corners(1:2, k), outward)
         if (.not. (way > 0 .and. way < 0.5_wp*releasing*length)) cycle
