@@ -74,7 +74,14 @@ contains
 
     call read_component(cursor, draft, component)
     call read_point(cursor, draft, is_cut, x)
-    if (cursor%failed() .or. .not. (draft%mesh_sound .and. draft%groups_sound)) return
+    if (cursor%failed() .or. .not. draft%groups_sound) return
+    if (.not. draft%mesh_sound) then
+      ! its unit is known before there is a mesh, and is that of the column of all operations
+      do g = size(draft%scene%groups), 1, -1
+        if (find_component(draft%scene%groups(g), component) > 0) call set_component(draft%scene%groups(g), component, probe)
+      end do
+      return
+    end if
     nearest = huge(nearest)
     do g = 1, size(draft%scene%groups)
       associate (group => draft%scene%groups(g))

@@ -209,7 +209,7 @@ contains
     type(string_t) :: cells(self%ncolumn)
     integer :: k, first, length
 
-    if (self%ncell /= size(self%places)) return
+    if (self%ncell /= size(self%places) .or. any(self%places < 1 .or. self%places > self%ncolumn)) return
     do k = 1, self%ncolumn
       cells(k)%s = empty_cell
     end do
