@@ -30,8 +30,8 @@ module corner_release
 
 contains
 
-  !> The face that a point was on, or over, when the step began, beyond its corner, or comes to where it has faced none yet; `closest`
-  !> stays where there is none. A point that has left a face and is over the other one is not taken back by the first.
+  !> The face that a point was on, or over, when the step began, beyond its corner, or comes to where it has faced none yet;
+  !> `closest` stays where there is none. A point that has left a face and is over the other one is not taken back by the first.
   pure subroutine slide_past_corner(die, point, e_r, length, committed, closest, release)
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: point(2)       !! in the pilot's axes [length]
