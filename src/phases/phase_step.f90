@@ -21,7 +21,7 @@ module phase_step
                     martensite, pearlite, phase_count, prop_latent, steel_t, tempered, unknown_temperature
   use stress_kinetics, only: hastened, shift_of_phase, stressed_span
   use temperature_curves, only: dual_curve_at, is_given
-  use tempering, only: add_hollomon_jaffe, temper
+  use tempering, only: add_hollomon_jaffe, join_hollomon_jaffe, make_younger, temper
   implicit none
   private
   public :: advance_phases
@@ -32,6 +32,8 @@ module phase_step
   integer, parameter :: most_parts = 64
   !> Where the cooling rate of hardness is taken [degC].
   real(wp), parameter :: rate_temperature = 700.0_wp
+  !> A phase of which austenite has left no more than this has nothing to remember of its tempering.
+  real(wp), parameter :: nothing_left = 1.0e-6_wp
 
 contains
 
@@ -181,7 +183,15 @@ contains
     call settle(s)
   end subroutine sub_step
 
-  !> Austenite from all other phases, in proportion, and its grains.
+  !> Fraction that is tempered, or can be.
+  pure function to_temper(s) result(fraction)
+    type(dual_t), intent(in) :: s(:)
+    real(wp) :: fraction
+
+    fraction = s(martensite)%value + s(bainite)%value + s(tempered)%value
+  end function to_temper
+
+  !> Austenite from all other phases, in proportion, and its grains. Of what is left, tempering goes on.
   pure subroutine heat_up(steel, time, temperature, s, heat)
     type(steel_t), intent(in) :: steel
     type(dual_t), intent(in) :: time, temperature
@@ -205,9 +215,9 @@ contains
       s(austenite) = s(austenite) + formed
     end if
     s(at_coldest) = dual_t(never_cold)
-    s(at_tempering) = dual_t()
-    s(at_tempering + 1) = dual_t()
-    s(at_hollomon_jaffe) = dual_t()
+    if (.not. s(martensite)%value > nothing_left) s(at_tempering) = dual_t()
+    if (.not. s(bainite)%value > nothing_left) s(at_tempering + 1) = dual_t()
+    if (.not. to_temper(s) > nothing_left) s(at_hollomon_jaffe) = dual_t()
   end subroutine heat_up
 
   !> What the histories of a CCT diagram give down to Ms, as far as there is austenite.
@@ -332,24 +342,28 @@ contains
     end if
   end subroutine limit_growth
 
-  !> Martensite and bainite become tempered; the time counts above all where there is something to temper. What has formed in the
-  !> sub-step is tempered for half of it in the mean.
+  !> Martensite and bainite become tempered; the time counts for P where there is something to temper. What has formed in the
+  !> sub-step, and what austenite has taken, is tempered for half of it in the mean: half of what is new joins before, half after.
   pure subroutine temper_phases(steel, time, temperature, before, s)
     type(steel_t), intent(in) :: steel
     type(dual_t), intent(in) :: time, temperature
     type(dual_t), intent(in) :: before(2)   ! martensite and bainite at the start of the sub-step
     type(dual_t), intent(inout) :: s(:)
     integer, parameter :: phases(2) = [martensite, bainite]
-    type(dual_t) :: w, gone
+    type(dual_t) :: w, gone, half, mean
     integer :: k
 
-    if (.not. s(martensite)%value + s(bainite)%value + s(tempered)%value > 0) return
-    call add_hollomon_jaffe(steel, time, temperature, s(at_hollomon_jaffe))
+    if (to_temper(s) > nothing_left) call add_hollomon_jaffe(steel, time, temperature, s(at_hollomon_jaffe))
     do k = 1, 2
       if (.not. s(phases(k))%value > 0) cycle
+      mean = 0.5_wp*(before(k) + s(phases(k)))
+      half = mean - before(k)
+      call make_younger(steel, k, before(k), half, s(at_tempering + k - 1))
       call temper(steel, k, time, temperature, s(at_tempering + k - 1), w)
-      gone = 0.5_wp*(before(k) + s(phases(k)))*(1.0_wp - exp(-w))
+      gone = mean*(1.0_wp - exp(-w))
       if (gone%value > s(phases(k))%value) gone = s(phases(k))
+      call join_hollomon_jaffe(steel, k, temperature, s(at_tempering + k - 1), s(tempered), gone, s(at_hollomon_jaffe))
+      call make_younger(steel, k, mean - gone, half, s(at_tempering + k - 1))
       s(phases(k)) = s(phases(k)) - gone
       s(tempered) = s(tempered) + gone
     end do
