@@ -121,7 +121,8 @@ contains
     call table%put(solution%last_step)
     call table%put([outcome%iterations, solution%cutbacks])
     call table%put(outcome%strain)
-    call table%put(factor*[solution%external_work, totals%elastic_energy, totals%plastic_work, totals%friction_work])
+    ! what flow dissipates is added up: a body that cools afterwards, or is cut, does not take it back
+    call table%put(factor*[solution%external_work, totals%elastic_energy, solution%work%flow, totals%friction_work])
     call table%put([totals%volume/solution%initial_volume - 1, totals%max_penetration])
     call table%put([totals%stick, totals%slip])
     if (scene%load_factor%multiplier > 0) &

@@ -57,7 +57,7 @@ contains
     !> At the points of an element, from the temperatures there at both ends of the step.
     subroutine slopes_of_element(before, after)
       real(wp), intent(in) :: before(:), after(:)
-      real(wp) :: given(size(drivers(other)%value, 1), 2), change, heat, slope
+      real(wp) :: given(size(drivers(other)%value, 1), 2), change, heat, of_work, slope
       integer :: p, row
 
       associate (material => scene%materials(scene%groups(other)%material), committed => solution%groups(other)%committed)
@@ -66,9 +66,9 @@ contains
           change = epsilon(1.0_wp)**(1.0_wp/3)*max(abs(before(p)), abs(after(p)))
           if (.not. change > 0) change = epsilon(1.0_wp)**(1.0_wp/3)
           given(driver_temperature, :) = [before(p), after(p) + change]
-          call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), heat, slope, high)
+          call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), heat, of_work, slope, high)
           given(driver_temperature, 2) = after(p) - change
-          call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), heat, slope, low)
+          call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), heat, of_work, slope, low)
           do k = 1, size(drivers(g)%source)
             if (drivers(g)%source(k)%kind /= from_state) cycle
             row = drivers(g)%source(k)%row(body)
@@ -107,7 +107,7 @@ contains
     !> At the points of an element, from the temperatures there at both ends of the step.
     subroutine heat_of_element(before, after)
       real(wp), intent(in) :: before(:), after(:)
-      real(wp) :: given(size(drivers(other)%value, 1), 2), change, high, low, slope
+      real(wp) :: given(size(drivers(other)%value, 1), 2), change, high, low, of_work, slope
       real(wp), allocatable :: state(:)
       integer :: p, d, n
 
@@ -123,9 +123,9 @@ contains
             change = epsilon(1.0_wp)**(1.0_wp/3)*maxval(abs(given(:, 2)), mask=sources%kind == from_stress)
             if (.not. change > 0) cycle
             given(d, 2) = given(d, 2) + change
-            call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), high, slope, state)
+            call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), high, of_work, slope, state)
             given(d, 2) = given(d, 2) - 2*change
-            call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), low, slope, state)
+            call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), low, of_work, slope, state)
             given(d, 2) = given(d, 2) + change
             drivers(g)%value(sources(d)%measure, 4, p, e) = (high - low)/(2*change)
           end do

@@ -149,6 +149,7 @@ module elem_api
     !> What the volume would be without elastic strain.
     real(wp) :: unloaded_volume = 0.0_wp
     real(wp) :: elastic_energy = 0.0_wp
+    !> What points carry of plastic work, over their volumes of now: of one instant, to compare the state of two meshes.
     real(wp) :: plastic_work = 0.0_wp
     real(wp) :: friction_work = 0.0_wp
     !> Since the instant before: what flow dissipated, what penalties and multipliers of contact took, and the sum over the points

@@ -17,7 +17,8 @@ module elem_pl8ls
   use law_api, only: driver_count, driver_temperature, law_done, law_t, solid_law
   use mean_dilatation, only: dilatation_t, mean_option, share_dilatation, share_pressure
   use plane_stress_points, only: update_plane_stress
-  use plastic_heat, only: add_rows_of_heat, heated_by_work, latent_slopes, move_along, ncomponent, shares_of_work
+  use plastic_heat, only: add_rows_of_heat, heated_by_work, latent_slopes, move_along, ncomponent, shares_of_work, &
+                          volumes_at
   use point_temperatures, only: nodal_temperatures, point_temperatures_of, projected_functions, temperature_field, temperature_place
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
   use scene, only: generalised_plane_strain, group_t, plane_stress, role_body, scene_t
@@ -298,8 +299,25 @@ contains
         slopes(ncomponent + 1, :, :) = (other(work, :, :) - done)/change
       end if
       call shares_of_work(scene, group, instant, layout, rule, start, done)
-      call add_rows_of_heat(scene, group, instant, layout, rule, first, nx, ny, motion_across(), done, slopes, stiffness)
+      if (kinematics%finite .and. scene%plane_state /= plane_stress) then
+        call add_rows_of_heat(instant, layout, rule, volumes_at(rule, instant%section, x), nx, ny, motion_across(), done, slopes, &
+                              stiffness)
+      else
+        call add_rows_of_heat(instant, layout, rule, volumes_of_mesh(), nx, ny, motion_across(), done, slopes, stiffness)
+      end if
     end subroutine add_work
+
+    !> Volumes at the start of the mesh.
+    function volumes_of_mesh() result(volume)
+      real(wp) :: volume(group%rule%n, nb)
+      real(wp) :: x0(2, 8, nb)
+      integer :: i
+
+      do i = 1, nb
+        x0(:, :, i) = scene%mesh%coordinates(:, group%connectivity(:, first + i - 1))
+      end do
+      volume = volumes_at(rule, scene%section, x0)
+    end function volumes_of_mesh
 
     !> d h_zz/d(motion): of the nodes, and of the section where it moves.
     function motion_across() result(zz)
@@ -331,7 +349,7 @@ contains
                              warmer(:, p, i), slopes(:, p, i))
         end do
       end do
-      call add_rows_of_heat(scene, group, instant, layout, rule, first, nx, ny, motion_across(), share, slopes, stiffness)
+      call add_rows_of_heat(instant, layout, rule, volumes_of_mesh(), nx, ny, motion_across(), share, slopes, stiffness)
     end subroutine add_latent
 
   end subroutine compute

@@ -2,12 +2,15 @@
 !>
 !> Temperature on eight nodes with the consistent capacity, or with the option BILINEAR on the corners with the capacity lumped
 !> there (no undershoot near a thermal shock; a linear temperature is exact where sides are straight). Balance of a step,
-!> F_i = sum phi_i (h(T) - h(T_n))/dt dv0 + sum_k w_k sum grad phi_i LAMBDA grad T_k dv + sum phi_i (SOURCE (e - e_n) - r)/dt dv0,
-!> with T_k at the instants k of the flow rule (elem_api: the end of the step for implicit Euler), h the heat content and r the heat
-!> released by the law; heat flow per unit of the section (per radian when axisymmetric). The heat content goes with the mass: dv0
-!> is the volume at the start of the scene, that at the start of the mesh over the volume ratio that points then have (1 on the
-!> first mesh; kept where new meshes may come); e is the volume strain, ln(dv) where kinematics are finite, of the motion that PL8LS
-!> gives the body. Linearised exactly, along the displacements too, but for the plastic work behind r.
+!> F_i = sum phi_i (h(T) - h(T_n))/dt dv0 + sum_k w_k sum grad phi_i LAMBDA grad T_k dv + sum phi_i (SOURCE (e - e_n) - r)/dt dv0
+!> - sum phi_i r_w/dt dv_n, with T_k at the instants k of the flow rule (elem_api: the end of the step for implicit Euler), h the
+!> heat content, r the heat released by the law and r_w that of plastic work; heat flow per unit of the section (per radian when
+!> axisymmetric). The heat content goes with the mass: dv0 is the volume at the start of the scene, that at the start of the mesh
+!> over the volume ratio that points then have (1 on the first mesh; kept where new meshes may come). Work is per present volume, of
+!> a body that has expanded a larger one: dv_n is that at the start of the step, in which no work of a step is lost that is found
+!> after the temperature (from the volume without elastic strain, which PL8LS counts work by, it differs by that strain). In plane
+!> stress of finite strains, where PL8TM does not know the thickness, it is dv0. e is the volume strain, ln(dv) where kinematics are
+!> finite, of the motion that PL8LS gives the body. Linearised exactly, along the displacements too, but for the plastic work.
 !> Source: K.J. Bathe, Finite Element Procedures, sec. 7.2; R.W. Lewis et al., The Finite Element Method in Heat Transfer Analysis.
 module elem_pl8tm
   use elem_api, only: block_inverted, elem_t, first_unknown, instant_t, layout_t, mode_error, mode_restore, report_t, &
@@ -19,7 +22,7 @@ module elem_pl8tm
   use materials, only: material_t
   use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
   use quadrature, only: square_rule
-  use scene, only: group_t, role_body, scene_t
+  use scene, only: group_t, plane_stress, role_body, scene_t
   use sections, only: thickness_at
   use shape_functions, only: quad4, quad8_corner
   use state_variables, only: find_variable, name_of_ratio, state_variable_t
@@ -40,6 +43,7 @@ module elem_pl8tm
   !> Geometry of an element in a step at its points.
   type :: heat_points_t
     real(wp) :: dv(9), dv0(9)                 !! volumes at the end of the step and at the start of the scene
+    real(wp) :: worked(9)                     !! volumes that plastic work is per, at the start of the step
     real(wp) :: gx(8, 9), gy(8, 9)            !! gradients of the functions of the temperature
     real(wp) :: nx(8, 9), ny(8, 9)            !! gradients of the shape functions
     real(wp) :: strain(9), swelling(16, 9)    !! volume strain of the step, and its derivative along the displacements
@@ -140,6 +144,7 @@ contains
         return
       end if
       if (ratio > 0) place%dv0(:rule%npoint) = place%dv0(:rule%npoint)/committed(ratio, :, e)
+      if (kinematics%finite .and. scene%plane_state == plane_stress) place%worked = place%dv0
       associate (material => scene%materials(group%material))
         if (instant%mode == mode_error) then
           call add_error(law, material, rule%npoint, own, group%option == bilinear, place, drivers(:, :, :, e), du(:own%n, e), &
@@ -205,6 +210,7 @@ contains
       place%dv0(p) = detj*rule%weight(p)*thickness_at(scene%section, matmul(x0, rule%phi(:, p)))
       call derivatives(rule%dphi(:, :, p), x, nx, ny, detj)
       before = detj*thickness_at(section, matmul(x, rule%phi(:, p)))
+      place%worked(p) = before*rule%weight(p)
       call derivatives(rule%dphi(:, :, p), y, nx, ny, detj)
       thickness = thickness_at(section, matmul(y, rule%phi(:, p)))
       place%valid = place%valid .and. detj > 0 .and. thickness > 0
@@ -352,7 +358,7 @@ contains
     real(wp), intent(inout) :: trial(:, :)
     real(wp), intent(inout) :: force(:), stiffness(:, :)
     type(report_t), intent(inout) :: report
-    real(wp) :: given(max(1, size(drivers, 1)), 2), released, slope, per_strain, share, heat(own%n)
+    real(wp) :: given(max(1, size(drivers, 1)), 2), released, of_work, slope, per_strain, share, heat(own%n)
     integer :: p, j, n
 
     n = own%n
@@ -371,8 +377,8 @@ contains
       if (size(drivers, 1) > 0) given = drivers(:, :, p)
       given(driver_temperature, :) = [dot_product(own%phi(:n, p), start), dot_product(own%phi(:n, p), start + change)]
       ! what happens at a point takes the time since the start of the step
-      call law%release(material, instant%dt/instant%share, given, committed(:, p), released, slope, trial(:, p))
-      heat = heat - own%phi(:n, p)*(released*share)
+      call law%release(material, instant%dt/instant%share, given, committed(:, p), released, of_work, slope, trial(:, p))
+      heat = heat - own%phi(:n, p)*(released*share + of_work*(place%worked(p)/instant%dt))
       if (.not. instant%tangent .or. .not. abs(slope) > 0) cycle
       do j = 1, n
         stiffness(:n, j) = stiffness(:n, j) - own%phi(:n, p)*(slope*share*own%phi(j, p))

@@ -1,11 +1,12 @@
 !> Heat that the plastic work of a body releases (QUINNEY), or phases that form under its stress (METAMEC), along the motion and the
 !> temperature of the body.
 !>
-!> PL8TM releases it as -phi_i SHARE (w - w_n)/dt dv0 and knows the work w at the points, not how that depends on the motion.
-!> PL8LS does: where all fields are solved for together it adds -phi_i SHARE dw/dt dv0 to the rows of the temperature, with dw along
-!> h = d(du)/dx(n+1) and the temperature at the points. Latent heat r by the mean and von Mises' stress is released as
-!> -phi_i r/dt dv0: there dr = sum dr/dm dm/d sigma d sigma (driver_slopes). Left out are the volume ratio of bodies that have had a
-!> new mesh, the sharing of the change of volume by the option MEAN, and the section's own motion in generalised plane strain.
+!> PL8TM releases it as -phi_i SHARE (w - w_n)/dt dv_n and knows the work w at the points, not how that depends on the motion.
+!> PL8LS does: where all fields are solved for together it adds -phi_i SHARE dw/dt dv_n to the rows of the temperature, with dw
+!> along h = d(du)/dx(n+1) and the temperature at the points. Latent heat r by the mean and von Mises' stress is released as
+!> -phi_i r/dt dv0: there dr = sum dr/dm dm/d sigma d sigma (driver_slopes). Left out are the volume ratio in dv0 of bodies that
+!> have had a new mesh, the sharing of the change of volume by the option MEAN, and the section's own motion in generalised plane
+!> strain.
 module plastic_heat
   use elem_api, only: instant_t, layout_t, mode_advance
   use elem_pl8tm, only: functions_of, functions_t
@@ -20,7 +21,7 @@ module plastic_heat
   use stress_measures, only: von_mises
   implicit none
   private
-  public :: add_rows_of_heat, heated_by_work, latent_slopes, move_along, ncomponent, shares_of_work
+  public :: add_rows_of_heat, heated_by_work, latent_slopes, move_along, ncomponent, shares_of_work, volumes_at
 
   !> Components of h: xx, xy, yx, yy, zz.
   integer, parameter :: ncomponent = 5
@@ -121,21 +122,36 @@ contains
     slopes(ncomponent + 1) = dot_product(heat, by_temperature)
   end subroutine latent_slopes
 
+  !> Volumes at the points of a block of elements.
+  pure function volumes_at(rule, section, x) result(volume)
+    type(quad8_rule_t), intent(in) :: rule
+    real(wp), intent(in) :: section(3)                    !! thickness at the origin [length], and its slopes [-]
+    real(wp), intent(in) :: x(:, :, :)                    !! (2, 8, nelem) nodes [length]
+    real(wp) :: volume(rule%npoint, size(x, 3))           !! per radian when axisymmetric
+    real(wp) :: unused_x(8), unused_y(8), detj
+    integer :: e, p
+
+    do e = 1, size(x, 3)
+      do p = 1, rule%npoint
+        call derivatives(rule%dphi(:, :, p), x(:, :, e), unused_x, unused_y, detj)
+        volume(p, e) = detj*rule%weight(p)*thickness_at(section, matmul(x(:, :, e), rule%phi(:, p)))
+      end do
+    end do
+  end function volumes_at
+
   !> Add the derivatives of the heat of a block of elements to the rows of the temperature.
-  subroutine add_rows_of_heat(scene, group, instant, layout, rule, first, nx, ny, zz, share, slopes, stiffness)
-    type(scene_t), intent(in) :: scene
-    type(group_t), intent(in) :: group
+  subroutine add_rows_of_heat(instant, layout, rule, volume, nx, ny, zz, share, slopes, stiffness)
     type(instant_t), intent(in) :: instant
     type(layout_t), intent(in) :: layout
     type(quad8_rule_t), intent(in) :: rule
-    integer, intent(in) :: first                                   !! element of the block
+    real(wp), intent(in) :: volume(:, :)                           !! (npoint, nelem) that the heat is per
     real(wp), intent(in) :: nx(:, :, :), ny(:, :, :)               !! (8, npoint, nelem) gradients [1/length]
     real(wp), intent(in) :: zz(:, :, :)                            !! (nmotion, npoint, nelem) d h_zz/d(motion) [1/unknown]
     real(wp), intent(in) :: share(:, :)                            !! (npoint, nelem) what becomes heat of the next [-]
     real(wp), intent(in) :: slopes(:, :, :)                        !! (6, npoint, nelem) d()/dh [energy/volume], by temperature
     real(wp), intent(inout) :: stiffness(:, :, :)                  !! (ndof, ndof, nelem)
     type(functions_t) :: own
-    real(wp) :: x(2, 8), unused_x(8), unused_y(8), detj, weight, row(size(stiffness, 2)), projected(8, rule%npoint)
+    real(wp) :: weight, row(size(stiffness, 2)), projected(8, rule%npoint)
     integer :: u, n, e, p, k, at
 
     u = temperature_place(layout)
@@ -144,10 +160,8 @@ contains
     call functions_of(n == 4, rule, own)
     projected = projected_functions(rule)
     do e = 1, size(stiffness, 3)
-      x = scene%mesh%coordinates(:, group%connectivity(:, first + e - 1))
       do p = 1, rule%npoint
-        call derivatives(rule%dphi(:, :, p), x, unused_x, unused_y, detj)
-        weight = share(p, e)*detj*rule%weight(p)*thickness_at(scene%section, matmul(x, rule%phi(:, p)))/instant%dt
+        weight = share(p, e)*volume(p, e)/instant%dt
         row = 0
         associate (s => slopes(:, p, e))
           row(:size(zz, 1)) = s(5)*zz(:, p, e)

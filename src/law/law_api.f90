@@ -206,13 +206,14 @@ module law_api
     end subroutine law_store_i
 
     !> Heat that a point releases in a step beside what flows, and its derivative by the temperature at the end.
-    pure subroutine law_release_i(material, dt, drivers, committed, released, slope, history)
+    pure subroutine law_release_i(material, dt, drivers, committed, released, of_work, slope, history)
       import :: material_t, wp
       type(material_t), intent(in) :: material
       real(wp), intent(in) :: dt              !! length of the step [time]
       real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) at both ends of the step, temperature first [unit of each driver]
       real(wp), intent(in) :: committed(:)    !! (nhistory) at the start of the step [unit of each component]
       real(wp), intent(out) :: released       !! [energy/length^3] per volume of the start
+      real(wp), intent(out) :: of_work        !! by plastic work, beside it [energy/length^3] per volume that the work is per
       real(wp), intent(out) :: slope          !! [energy/length^3/temperature]
       real(wp), intent(out) :: history(:)     !! (nhistory) [unit of each component]
     end subroutine law_release_i

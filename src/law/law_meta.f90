@@ -128,10 +128,10 @@ contains
 
   !> Phases at the end of the step, their latent heat, by how much they take up less heat than austenite, and the share of the
   !> plastic work that has not become heat yet.
-  pure subroutine release(material, dt, drivers, committed, released, slope, history)
+  pure subroutine release(material, dt, drivers, committed, released, of_work, slope, history)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt, drivers(:, :), committed(:)
-    real(wp), intent(out) :: released, slope, history(:)
+    real(wp), intent(out) :: released, of_work, slope, history(:)
     real(wp) :: start(state_size), changes(state_size), t(2), taken, capacity, own(2), mean, stresses(2, 2)
     integer :: i
 
@@ -156,10 +156,10 @@ contains
     end if
     released = released*material%values(place_energy)
     slope = slope*material%values(place_energy)
+    of_work = 0
     if (.not. has_number(material, place_share)) return
     associate (work => drivers(size(drivers, 1), 2), heated => history(state_size + 1))
-      released = released + share_of_work(material, place_share, drivers(driver_temperature, 1)) &
-                 *(work - committed(state_size + 1))
+      of_work = share_of_work(material, place_share, drivers(driver_temperature, 1))*(work - committed(state_size + 1))
       heated = work
     end associate
   end subroutine release

@@ -16,6 +16,8 @@ usage: run_exchange.py [-v] [-k]
 - `stefan`: freezing of a half space (F. Neumann): LAMBDA jumps and RHOC holds the latent heat: within 1 %.
 - `squeezed`: a block of perfect plasticity pressed to a plastic strain of 1 without loss of heat: QUINNEY sigma p/(rho c), in all ways of
   coupling.
+- `pressed_hot`: the same of a cylinder that has expanded before it is pressed: heat over plastic work is QUINNEY, but for the elastic strain
+  (1.5e-3); and it keeps its plastic work when it cools (1e-12).
 """
 import math
 import os
@@ -296,10 +298,34 @@ def plastic(checks):
                              f"plastic work to heat, {law} {way}: {share*flow/capacity:.2f} at strain {p:.3f}")
 
 
+EXPANDING = STEEL.replace("metal\n", "expanding\n", 1).replace("does not expand", "expands").replace("ALPHA  0", "ALPHA  22E-6")
+
+
+def pressed_hot(checks):
+    """Plastic work is per volume of the hot body: a twentieth more than of the cold one; what was done does not shrink with it."""
+    write(os.path.join(checks.folder, "expanding.met"), EXPANDING.format(capacity=4.0, young=150000.0, flow=300.0))
+    imposed = "".join(f"IMPOS bar {side} T {{0}}\n" for side in (1, 2, 3, 4))
+    for way, find in (("ONCE", ""), ("CONVERGE", ""), ("MONOLITHIC", " TIME 1.")):
+        run = Run(checks, f"pressed-hot-{way}", "TITLE pressed hot\nSTATE AXISYM\nKINEM LOG\nBLOCK bar PL8LS 4 steel\n"
+                  "   0. 0. 10. 0. 10. 10. 0. 10.\n   1 1. 1 1.\nLAW steel ARBTHMET\n   STEEL 'expanding.met' expanding\n"
+                  f"   STRESS 1.{find}\nADDEL bar PL8TM heat BILINEAR\nLAW heat META\n   STEEL 'expanding.met' expanding\n"
+                  "   ENERGY 1. QUINNEY 0.9\nSTART T 20.\nFIXED bar 4 X\nFIXED bar 1 Y\nNORMS FORCE 1.E-9 DISPL 1.E-9\n"
+                  f"SOLVE {way}\nSTRAT 0.05 1.E-5 0.05 9 3\nOPERA heat\n{imposed.format('up')}LIC up\n   0. 20. 1. 1000.\nSTOP 1.\n"
+                  "OPERA press\nMOVE bar 3 Y down\nLIC down\n   0. 0. 1. -5.  1.1 -5.\nSTOP 1.1\n"
+                  f"OPERA cool\n{imposed.format('back')}LIC back\n   0. 1000. 1. 20.\nSTOP 1.\nEND\n")
+        if not run.ok:
+            continue
+        rows = run.history
+        last = {int(operation): k for k, operation in enumerate(rows["operation"])}
+        heat = rows["heat_released"][last[2]] - rows["heat_released"][last[1]]
+        checks.small(abs(heat/(0.9*rows["plastic_work"][last[2]]) - 1), 1.5e-3, f"pressed hot, {way}: heat of plastic work")
+        checks.small(abs(rows["plastic_work"][last[3]]/rows["plastic_work"][last[2]] - 1), 1e-12, f"pressed hot, {way}: work kept in cooling")
+
+
 def main():
     """All cases."""
     checks = Checks()
-    for case in (radiation, wave, annulus, convection, flows, cylinder, by_temperature, source, stefan, plastic):
+    for case in (radiation, wave, annulus, convection, flows, cylinder, by_temperature, source, stefan, plastic, pressed_hot):
         case(checks)
     checks.end()
 
