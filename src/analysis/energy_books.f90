@@ -23,7 +23,8 @@ module energy_books
   use work_books, only: work_t
   implicit none
   private
-  public :: book_stored, book_work, energy_imbalance, imbalance_advice, missing_energy, spring_energy, start_stored
+  public :: book_stored, book_work, energy_imbalance, energy_of_round_off, external_on_unknowns, imbalance_advice, &
+            missing_energy, spring_energy, start_stored
 
   !> The run warns above this share of what passed.
   real(wp), parameter :: largest_imbalance = 0.01_wp
@@ -34,27 +35,15 @@ module energy_books
 contains
 
   !> External work by the trapezoidal rule: forces from outside on nodes and pilots times their motion.
-  !> The external force on an unknown is the internal force there, without the elements that are loads.
   subroutine book_work(equations, du, solution)
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: du(:)   !! (ndof) motion of the step [unknown]
     type(solution_t), intent(inout) :: solution
     type(work_t) :: before
     real(wp) :: applied(equations%dofs%ndof), done, sizes
-    integer :: f, g, k, c, d, m
+    integer :: f, k, c
 
-    applied = equations%force
-    do g = 1, size(equations%dofs%groups)
-      if (.not. equations%is_load(g)) cycle
-      m = equations%solves(1)%pattern%force_start(g)
-      do k = 1, size(equations%dofs%groups(g)%dof, 2)
-        do c = 1, size(equations%dofs%groups(g)%dof, 1)
-          m = m + 1
-          d = equations%dofs%groups(g)%dof(c, k)
-          applied(d) = applied(d) - equations%buffers%force(m)
-        end do
-      end do
-    end do
+    applied = external_on_unknowns(equations)
     before = solution%work
     sizes = 0
     do f = 1, size(solution%fields)
@@ -100,6 +89,26 @@ contains
     end subroutine book
 
   end subroutine book_work
+
+  !> The external force on each unknown: the internal force there, without the elements that are loads.
+  pure function external_on_unknowns(equations) result(applied)
+    type(equations_t), intent(in) :: equations
+    real(wp) :: applied(equations%dofs%ndof)   !! [residual]
+    integer :: g, k, c, d, m
+
+    applied = equations%force
+    do g = 1, size(equations%dofs%groups)
+      if (.not. equations%is_load(g)) cycle
+      m = equations%solves(1)%pattern%force_start(g)
+      do k = 1, size(equations%dofs%groups(g)%dof, 2)
+        do c = 1, size(equations%dofs%groups(g)%dof, 1)
+          m = m + 1
+          d = equations%dofs%groups(g)%dof(c, k)
+          applied(d) = applied(d) - equations%buffers%force(m)
+        end do
+      end do
+    end do
+  end function external_on_unknowns
 
   !> What the step stored and dissipated, after it was measured and before its state is committed.
   subroutine book_stored(scene, equations, du, totals, friction_before, solution)
@@ -243,6 +252,17 @@ contains
       end associate
     end do
   end function spring_energy
+
+  !> Energy below which stresses are round-off: what the motion of the steps may have left of it, and strains of that size.
+  pure function energy_of_round_off(scene, equations, solution, volume) result(energy)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: volume   !! of the bodies, per radian when axisymmetric [volume]
+    real(wp) :: energy               !! per radian when axisymmetric [energy]
+
+    energy = solution%work%round_off + stiffest(scene, equations)*volume*(operations*eps)**2
+  end function energy_of_round_off
 
   !> Largest Young's modulus of the scene's materials at no temperature: the size of a stress.
   pure function stiffest(scene, equations) result(modulus)

@@ -127,14 +127,15 @@ contains
             //'that it was wrong on the old one (error of its stress: '//to_text(100*balance%old_error, 3)//' %)'
   end function agreed_words
 
-  !> Change of the elastic energy over what was carried.
+  !> Change of the elastic energy over what was carried; where that is round-off, over what round-off may be.
   pure function energy_change(balance) result(change)
     type(balance_t), intent(in) :: balance
     real(wp) :: change
+    real(wp) :: carried
 
+    carried = max(balance%before%elastic_energy, balance%round_off)
     change = 0
-    if (balance%before%elastic_energy > 0) &
-      change = abs(balance%after%elastic_energy - balance%before%elastic_energy)/balance%before%elastic_energy
+    if (carried > 0) change = abs(balance%after%elastic_energy - balance%before%elastic_energy)/carried
   end function energy_change
 
   !> The measures, each with its limit.

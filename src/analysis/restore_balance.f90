@@ -11,19 +11,18 @@ module restore_balance
   use accept_step, only: accept_balance
   use bookkeeping, only: pressed_on
   use contact_penalties, only: allowed_penetration
-  use corrections, only: solve_correction
   use dies, only: is_deformable
   use elem_api, only: block_done, mode_advance, mode_restore, report_t, totals_t
+  use energy_books, only: energy_of_round_off, external_on_unknowns
   use equations, only: equations_t, take_turn
-  use errors, only: error_t
   use evaluation, only: evaluate
   use external_loads, only: external_forces
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
-  use linear_solver, only: return_to_chosen
   use newton, only: outcome_t, solve_step
   use path_record, only: settle_path
   use quadrature, only: is_control_point, rule_along
+  use residual_distance, only: relative_distance, work_of_correction
   use residual_parts, only: first_parts, next_part, residual_parts_t
   use residual_place, only: least_shape, place_residual, residual_place_t
   use scene, only: scene_t
@@ -58,6 +57,8 @@ module restore_balance
     real(wp) :: motion = 0.0_wp
     !> Volume, elastic energy and plastic work before and after.
     type(totals_t) :: before, after
+    !> Energy below which stresses are round-off: a body without stress is none the worse for it.
+    real(wp) :: round_off = 0.0_wp
     !> Force on each pilot before (as the old mesh had it), by the pressures that were carried, and after (3, ndie).
     real(wp), allocatable :: pilot_before(:, :), pilot_carried(:, :), pilot_after(:, :)
     !> What presses on each die made of sides, sizes added up (ndie).
@@ -126,7 +127,8 @@ contains
     if (report%status == block_done) call book_carried(scene, equations, balance%pilot_carried)
     call find_rest()
     call place_residual(scene, equations%dofs, external, equations%magnitude, rest, balance%place)
-    call work_of_correction(equations, rest, work)
+    call work_of_correction(scene, equations, rest, work)
+    balance%round_off = energy_of_round_off(scene, equations, solution, balance%before%volume)
     if (any(scene%groups%rule%family == rule_along)) then
       rest = 0
       call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report)
@@ -149,7 +151,8 @@ contains
     balance%restored = .not. parts%left > 0
     balance%largest_force = solution%largest_force
     balance%old_error = solution%estimate%previous_stress
-    balance%first_residual = relative_distance(work, max(balance%before%elastic_energy, balance%after%elastic_energy))
+    balance%first_residual = relative_distance(work, max(balance%before%elastic_energy, balance%after%elastic_energy, &
+                                                         balance%round_off))
     if (allocated(outcome%reason)) balance%reason = outcome%reason
     balance%motion = maxval(abs(solution%fields(displacement_field)%value))/equations%size
     allocate (balance%pilot_after, source=solution%fields(pilot_field)%applied)
@@ -173,34 +176,6 @@ contains
 
   end subroutine restore_equilibrium
 
-  !> Twice the elastic energy of the linear correction of a residual: r . K^-1 r.
-  subroutine work_of_correction(equations, residual, work)
-    type(equations_t), intent(inout) :: equations
-    real(wp), intent(in) :: residual(:)
-    real(wp), intent(out) :: work
-    real(wp) :: correction(size(residual))
-    type(error_t), allocatable :: error
-
-    work = 0
-    if (.not. any(abs(residual) > 0)) return
-    call return_to_chosen(equations%solves(equations%now)%solver)
-    call solve_correction(equations, residual, correction, error)
-    work = abs(dot_product(residual, correction))
-    ! a residual that no linear correction removes counts as the largest; Newton's method then shows more
-    if (allocated(error)) work = huge(work)
-  end subroutine work_of_correction
-
-  !> Distance from equilibrium in the norm of energy, as errors of the stress are measured (page on errors; Zienkiewicz and Zhu,
-  !> Int. J. Num. Meth. Eng. 24 (1987) 337-357): sqrt(r . K^-1 r/2 over the elastic energy). Unlike a norm of forces it does not
-  !> depend on how fine the mesh is, nor on how few nodes carry the load.
-  pure function relative_distance(work, energy) result(distance)
-    real(wp), intent(in) :: work, energy
-    real(wp) :: distance
-
-    distance = 0
-    if (work > 0) distance = sqrt(0.5_wp*min(work/max(energy, tiny(energy)), huge(energy)))
-  end function relative_distance
-
   !> The penalty of contact goes with the length of sides: at the depth that was kept, sides of another length carry another
   !> pressure. The multiplier takes the difference, so that every point begins with the pressure that was carried, be it closed or
   !> one that lies between closed and open ones of the old mesh.
@@ -223,18 +198,21 @@ contains
     end do
   end subroutine keep_pressures
 
-  !> What the carried state does to the pilots of rigid dies; those of deformable dies stay as the old mesh had them.
+  !> What the carried state does to the pilots of rigid dies, without their springs, as the old mesh had it; those of deformable
+  !> dies stay so.
   pure subroutine book_carried(scene, equations, on_pilots)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     real(wp), intent(inout) :: on_pilots(:, :)   !! (3, ndie) [force]
+    real(wp) :: applied(equations%dofs%ndof)
     integer :: k, c
 
+    applied = external_on_unknowns(equations)
     do k = 1, size(on_pilots, 2)
       if (is_deformable(scene%dies(k))) cycle
       do c = 1, 3
         associate (d => equations%dofs%fields(pilot_field)%number(c, k))
-          if (d > 0) on_pilots(c, k) = equations%force(d)
+          if (d > 0) on_pilots(c, k) = applied(d)
         end associate
       end do
     end do

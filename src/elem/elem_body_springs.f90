@@ -13,7 +13,7 @@ module elem_body_springs
   use sections, only: thickness_at
   implicit none
   private
-  public :: elem_bsprg_row, springs_of_body, volume_of_body
+  public :: elem_bsprg_row, pull_of_springs, springs_of_body, volume_of_body
 
   !> Gauss points of an element: exact where sides are straight.
   integer, parameter :: npoint = 9
@@ -107,19 +107,28 @@ contains
     real(wp), intent(in) :: displacement(:, :)   !! (2, nnode) [length]
     real(wp), intent(out) :: force               !! along the direction of the group [force]
     real(wp), intent(out) :: energy              !! [energy]
-    real(wp) :: pull(8)
+    real(wp) :: pull(size(displacement, 2))
+
+    pull = pull_of_springs(scene, group, displacement)
+    force = -sum(pull)
+    energy = 0.5_wp*dot_product(pull, displacement(group%direction, :))
+  end subroutine springs_of_body
+
+  !> Internal force of the springs of a group on the nodes, along the direction of the group, per radian when axisymmetric [force].
+  pure function pull_of_springs(scene, group, displacement) result(pull)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: displacement(:, :)   !! (2, nnode) [length]
+    real(wp) :: pull(size(displacement, 2))
     integer :: e
 
-    force = 0
-    energy = 0
+    pull = 0
     do e = 1, size(group%connectivity, 2)
       associate (nodes => group%connectivity(:, e))
-        pull = group%stiffness*matmul(mass_matrix(scene%section, scene%mesh%coordinates(:, nodes)), &
-                                      displacement(group%direction, nodes))
-        force = force - sum(pull)
-        energy = energy + 0.5_wp*dot_product(pull, displacement(group%direction, nodes))
+        pull(nodes) = pull(nodes) + group%stiffness*matmul(mass_matrix(scene%section, scene%mesh%coordinates(:, nodes)), &
+                                                           displacement(group%direction, nodes))
       end associate
     end do
-  end subroutine springs_of_body
+  end function pull_of_springs
 
 end module elem_body_springs
