@@ -13,7 +13,7 @@ module driver_slopes
   use drivers, only: drivers_t, drives_heat, from_state, from_stress, with_slopes
   use fields, only: find_field
   use kinds, only: wp
-  use law_api, only: driver_temperature, law_t
+  use law_api, only: driver_count, driver_temperature, law_t
   use point_temperatures, only: temperature_field
   use scene, only: host_of, scene_t
   use solution, only: solution_t
@@ -57,12 +57,12 @@ contains
     !> At the points of an element, from the temperatures there at both ends of the step.
     subroutine slopes_of_element(before, after)
       real(wp), intent(in) :: before(:), after(:)
-      real(wp) :: given(size(drivers(other)%value, 1), 2), change, heat, of_work, slope
+      real(wp) :: given(driver_count(laws(scene%materials(scene%groups(other)%material)%law_id)), 2), change, heat, of_work, slope
       integer :: p, row
 
       associate (material => scene%materials(scene%groups(other)%material), committed => solution%groups(other)%committed)
         do p = 1, size(before)
-          given = drivers(other)%value(:, :2, p, e)
+          given = drivers(other)%value(:size(given, 1), :2, p, e)
           change = epsilon(1.0_wp)**(1.0_wp/3)*max(abs(before(p)), abs(after(p)))
           if (.not. change > 0) change = epsilon(1.0_wp)**(1.0_wp/3)
           given(driver_temperature, :) = [before(p), after(p) + change]
@@ -107,7 +107,8 @@ contains
     !> At the points of an element, from the temperatures there at both ends of the step.
     subroutine heat_of_element(before, after)
       real(wp), intent(in) :: before(:), after(:)
-      real(wp) :: given(size(drivers(other)%value, 1), 2), change, high, low, of_work, slope
+      real(wp) :: given(driver_count(laws(scene%materials(scene%groups(other)%material)%law_id)), 2)
+      real(wp) :: change, high, low, of_work, slope
       real(wp), allocatable :: state(:)
       integer :: p, d, n
 
@@ -116,7 +117,7 @@ contains
         n = size(committed, 1)
         allocate (state(n))
         do p = 1, size(before)
-          given = drivers(other)%value(:, :2, p, e)
+          given = drivers(other)%value(:size(given, 1), :2, p, e)
           given(driver_temperature, :) = [before(p), after(p)]
           do d = 1, size(sources)
             if (sources(d)%kind /= from_stress) cycle

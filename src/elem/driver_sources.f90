@@ -1,10 +1,11 @@
 !> Where the drivers of the points of each group come from: fields, states of other formulations, stress, the body behind.
 module driver_sources
   use drivers, only: at_body_effusivity, at_corner_place, at_die_effusivity, at_status, driver_source_t, drivers_t, flow_name, &
-                     from_effusivity, from_field, from_flow, from_itself, from_nothing, from_state, from_stress, is_scalar, &
-                     of_contact
+                     from_effusivity, from_field, from_flow, from_itself, from_nothing, from_state, from_stress, from_unloading, &
+                     is_scalar, of_contact
   use fields, only: find_field
   use kinds, only: wp
+  use heat_sources, only: work_name
   use law_api, only: driver_count, driver_t, driver_temperature, heat_law, law_t, solid_law
   use materials, only: has_number
   use point_temperatures, only: temperature_field
@@ -23,12 +24,13 @@ contains
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)                        !! (nlaw)
     type(drivers_t), allocatable, intent(out) :: drivers(:)   !! (ngroup)
-    integer :: g, k, n, law
+    integer :: g, k, n, m, law
 
     allocate (drivers(size(scene%groups)))
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
         n = 0
+        m = 0
         law = 0
         if (group%role == role_heat_contact) then
           call drive_heat_contact(scene, g, drivers(g))
@@ -38,9 +40,11 @@ contains
           law = scene%materials(group%material)%law_id
           n = driver_count(laws(law))
           if (n == 1 .and. group%role /= role_contact) n = 0
+          m = n
+          if (is_heated_by_work(scene, g, laws(law))) m = n + 1
         end if
-        allocate (drivers(g)%value(n, 2, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
-        allocate (drivers(g)%source(n))
+        allocate (drivers(g)%value(m, 2, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
+        allocate (drivers(g)%source(m))
         if (n == 0) cycle
         if (group%role == role_contact) then
           call find_bodies_behind(scene, group%connectivity(2, :), drivers(g)%body, drivers(g)%element, drivers(g)%side)
@@ -50,6 +54,10 @@ contains
           if (is_asked_for(scene, g, laws(law)%drivers(k - 1))) &
             drivers(g)%source(k) = source_of(scene, g, laws(law)%drivers(k - 1)%name)
         end do
+        if (m > n) then
+          drivers(g)%source(m) = source_of_unloading(scene, source_of(scene, g, work_name))
+          drivers(g)%value(m, :, :, :) = 1
+        end if
         if (follows_temperature(scene, laws, g, drivers(g)%source)) then
           deallocate (drivers(g)%value)
           allocate (drivers(g)%value(n, 3, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
@@ -64,6 +72,42 @@ contains
       end associate
     end do
   end subroutine find_drivers
+
+  !> Plastic work becomes heat in a group.
+  pure function is_heated_by_work(scene, g, law) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g   !! number of the group
+    type(law_t), intent(in) :: law
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    if (law%kind /= heat_law) return
+    do k = 1, driver_count(law) - 1
+      if (law%drivers(k)%name == work_name) yes = is_asked_for(scene, g, law%drivers(k))
+    end do
+  end function is_heated_by_work
+
+  !> Elastic strain where plastic work is.
+  pure function source_of_unloading(scene, work) result(source)
+    type(scene_t), intent(in) :: scene
+    type(driver_source_t), intent(in) :: work   !! of plastic work
+    type(driver_source_t) :: source
+    integer :: body, v
+
+    source = work
+    source%kind = from_nothing
+    if (work%kind /= from_state) return
+    do body = 1, size(work%group)
+      if (work%group(body) == 0) cycle
+      associate (variables => scene%groups(work%group(body))%variables)
+        v = find_variable(variables, 'elastic_strain')
+        if (v == 0) cycle
+        source%kind = from_unloading
+        source%row(body) = variables(v)%first
+      end associate
+    end do
+  end function source_of_unloading
 
   !> A body is driven by states of a formulation of heat that is solved together with it.
   pure function follows_temperature(scene, laws, g, sources) result(yes)

@@ -1,7 +1,7 @@
 !> Values of the drivers at the start and at the end of a step.
 module driver_values
   use drivers, only: at_body_effusivity, driver_source_t, drivers_t, from_effusivity, from_field, from_flow, from_itself, &
-                     from_state, from_stress, is_scalar
+                     from_state, from_stress, from_unloading, is_scalar
   use fields, only: field_t, has_corners_only
   use kinds, only: wp
   use law_api, only: driver_temperature, law_t
@@ -105,6 +105,11 @@ contains
           do e = 1, size(own%value, 4)
             own%value(k, at, :, e) = stress_at_points(scene, solution, g, own%source(k), at, e)
           end do
+        case (from_unloading)
+          if (at == 2) cycle
+          do e = 1, size(own%value, 4)
+            own%value(k, at, :, e) = unloaded_at_points(scene, solution, g, own%source(k), e)
+          end do
         case (from_itself)
           if (at == 1) own%value(k, at, :, :) = solution%groups(g)%committed(own%source(k)%row(g), :, :)
         case (from_flow)
@@ -185,6 +190,23 @@ contains
       end if
     end associate
   end function state_at_points
+
+  !> Volume without elastic strain over that of now, of the mechanics on the same points: exp(-tr e) in large strain.
+  pure function unloaded_at_points(scene, solution, g, source, e) result(values)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: g, e   !! group, element
+    type(driver_source_t), intent(in) :: source
+    real(wp) :: values(scene%groups(g)%rule%n)   !! [-]
+    integer :: body
+
+    values = 1
+    if (.not. scene%finite) return
+    body = host_of(scene, g)
+    associate (strain => solution%groups(source%group(body))%committed(:, :, e), row => source%row(body))
+      values = exp(-strain(row, :) - strain(row + 1, :) - strain(row + 3, :))
+    end associate
+  end function unloaded_at_points
 
   !> A measure of the stress of the mechanics on the same points.
   pure function stress_at_points(scene, solution, g, source, at, e) result(values)

@@ -300,12 +300,18 @@ contains
       end if
       call shares_of_work(scene, group, instant, layout, rule, start, done)
       if (kinematics%finite .and. scene%plane_state /= plane_stress) then
-        call add_rows_of_heat(instant, layout, rule, volumes_at(rule, instant%section, x), nx, ny, motion_across(), done, slopes, &
-                              stiffness)
+        call add_rows_of_heat(instant, layout, rule, volumes_of_work(), nx, ny, motion_across(), done, slopes, stiffness)
       else
         call add_rows_of_heat(instant, layout, rule, volumes_of_mesh(), nx, ny, motion_across(), done, slopes, stiffness)
       end if
     end subroutine add_work
+
+    !> Volumes without elastic strain at the start of the step, which plastic work is per.
+    function volumes_of_work() result(volume)
+      real(wp) :: volume(group%rule%n, nb)
+
+      volume = volumes_at(rule, instant%section, x)*exp(-committed(5, :, :) - committed(6, :, :) - committed(8, :, :))
+    end function volumes_of_work
 
     !> Volumes at the start of the mesh.
     function volumes_of_mesh() result(volume)

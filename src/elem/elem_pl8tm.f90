@@ -6,11 +6,11 @@
 !> - sum phi_i r_w/dt dv_n, with T_k at the instants k of the flow rule (elem_api: the end of the step for implicit Euler), h the
 !> heat content, r the heat released by the law and r_w that of plastic work; heat flow per unit of the section (per radian when
 !> axisymmetric). The heat content goes with the mass: dv0 is the volume at the start of the scene, that at the start of the mesh
-!> over the volume ratio that points then have (1 on the first mesh; kept where new meshes may come). Work is per present volume, of
-!> a body that has expanded a larger one: dv_n is that at the start of the step, in which no work of a step is lost that is found
-!> after the temperature (from the volume without elastic strain, which PL8LS counts work by, it differs by that strain). In plane
-!> stress of finite strains, where PL8TM does not know the thickness, it is dv0. e is the volume strain, ln(dv) where kinematics are
-!> finite, of the motion that PL8LS gives the body. Linearised exactly, along the displacements too, but for the plastic work.
+!> over the volume ratio that points then have (1 on the first mesh; kept where new meshes may come). Work is per volume of now
+!> without elastic strain, a larger one of a body that has expanded: dv_n is that at the start of the step, so that no work is lost
+!> of a step whose motion is found after the temperature. In plane stress of finite strains, where PL8TM does not know the
+!> thickness, it is dv0. e is the volume strain, ln(dv) where kinematics are finite, of the motion that PL8LS gives the body.
+!> Linearised exactly, along the displacements too, but for the plastic work.
 !> Source: K.J. Bathe, Finite Element Procedures, sec. 7.2; R.W. Lewis et al., The Finite Element Method in Heat Transfer Analysis.
 module elem_pl8tm
   use elem_api, only: block_inverted, elem_t, first_unknown, instant_t, layout_t, mode_error, mode_restore, report_t, &
@@ -18,7 +18,7 @@ module elem_pl8tm
   use fields, only: displacement_field, field_t, transfer_nodal
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
-  use law_api, only: driver_temperature, heat_law, law_t
+  use law_api, only: driver_count, driver_temperature, heat_law, law_t
   use materials, only: material_t
   use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
   use quadrature, only: square_rule
@@ -114,7 +114,7 @@ contains
     type(functions_t) :: own
     type(heat_points_t) :: place
     real(wp) :: motion(16)
-    integer :: e, k, u, ratio, n
+    integer :: e, k, u, ratio, n, m
 
     force = 0
     if (instant%content .and. instant%mode /= mode_error) trial = committed
@@ -130,6 +130,7 @@ contains
     ratio = find_variable(group%variables, name_of_ratio)
     if (ratio > 0) ratio = group%variables(ratio)%first
     n = merge(ratio - 1, size(committed, 1), ratio > 0)
+    m = min(size(drivers, 1), driver_count(law))
     call quad8_rule(group%rule%n, rule)
     call functions_of(group%option == bilinear, rule, own)
     u = first_unknown(layout, displacement_field)
@@ -144,22 +145,26 @@ contains
         return
       end if
       if (ratio > 0) place%dv0(:rule%npoint) = place%dv0(:rule%npoint)/committed(ratio, :, e)
-      if (kinematics%finite .and. scene%plane_state == plane_stress) place%worked = place%dv0
+      if (kinematics%finite .and. scene%plane_state == plane_stress) then
+        place%worked = place%dv0
+      else if (size(drivers, 1) > m) then
+        place%worked(:rule%npoint) = place%worked(:rule%npoint)*drivers(m + 1, 1, :, e)
+      end if
       associate (material => scene%materials(group%material))
         if (instant%mode == mode_error) then
-          call add_error(law, material, rule%npoint, own, group%option == bilinear, place, drivers(:, :, :, e), du(:own%n, e), &
+          call add_error(law, material, rule%npoint, own, group%option == bilinear, place, drivers(:m, :, :, e), du(:own%n, e), &
                          start(:own%n, e), report)
           cycle
         end if
         if (instant%content) then
-          call add_content(instant, law, material, rule%npoint, own, group%option == bilinear, place, drivers(:, :, :, e), &
+          call add_content(instant, law, material, rule%npoint, own, group%option == bilinear, place, drivers(:m, :, :, e), &
                            du(:own%n, e), start(:own%n, e), force(:, e), stiffness(:, :, e), report%heat_stored)
-          call add_released(instant, law, material, rule%npoint, own, place, drivers(:, :, :, e), du(:own%n, e), &
+          call add_released(instant, law, material, rule%npoint, own, place, drivers(:m, :, :, e), du(:own%n, e), &
                             start(:own%n, e), u, committed(:n, :, e), trial(:n, :, e), force(:, e), stiffness(:, :, e), report)
         end if
         do k = 1, instant%flow%n
-          call add_flow(instant, k, law, material, kinematics%finite, rule%npoint, own, place, drivers(:, :, :, e), du(:own%n, e), &
-                        start(:own%n, e), u, force(:, e), stiffness(:, :, e))
+          call add_flow(instant, k, law, material, kinematics%finite, rule%npoint, own, place, drivers(:m, :, :, e), &
+                        du(:own%n, e), start(:own%n, e), u, force(:, e), stiffness(:, :, e))
         end do
       end associate
     end do

@@ -86,8 +86,8 @@ contains
           real(wp) :: given(driver_count(laws(material%law_id)), 1)
 
           given = 0
-          if (size(given, 1) > 1 .and. size(drivers(g)%value, 1) == size(given, 1)) &
-            given(2:, 1) = drivers(g)%value(2:, 1, near(1), element)
+          if (size(given, 1) > 1 .and. size(drivers(g)%value, 1) >= size(given, 1)) &
+            given(2:, 1) = drivers(g)%value(2:size(given, 1), 1, near(1), element)
           given(driver_temperature, 1) = mean_temperature(scene, solution, scene%groups(body), element)
           call laws(material%law_id)%conduct(material, given, conductivity, slope)
           call laws(material%law_id)%store(material, given, given, taken, capacity)

@@ -6,11 +6,14 @@ module heat_sources
   use materials, only: material_t, values_at
   implicit none
   private
-  public :: heat_source_parameters, place_source, place_share, share_of_work, source_of_volume, work_heated
+  public :: heat_source_parameters, place_source, place_share, share_of_work, source_of_volume, work_heated, &
+            work_name
 
   !> The work that has become heat, of laws with QUINNEY: none is lost where the motion is solved for after the temperature, and its
   !> heat comes a step later.
   character(len=*), parameter :: work_heated = 'work_heated'
+  !> Plastic work per volume without elastic strain, of laws for solids.
+  character(len=*), parameter :: work_name = 'plastic_work'
   !> Places among the values of HEAT and HEATH, after conductivity and capacity.
   integer, parameter :: place_source = 3, place_share = 4
 

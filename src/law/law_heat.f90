@@ -7,7 +7,7 @@
 !> SOURCE is the heat that a change of volume takes up, per volume and unit of volume strain: 3 K ALPHA T of thermoelasticity
 !> (W. Thomson 1855; J.M.C. Duhamel). QUINNEY turns plastic work of the body into heat.
 module law_heat
-  use heat_sources, only: heat_source_parameters, place_share, share_of_work, source_of_volume, work_heated
+  use heat_sources, only: heat_source_parameters, place_share, share_of_work, source_of_volume, work_heated, work_name
   use kinds, only: wp
   use law_api, only: driver_temperature, heat_law, law_line, law_t, parameter
   use materials, only: bracket_temperature, integral_over_temperature, material_t
@@ -57,7 +57,7 @@ contains
     row%symmetric_by_temperature = .false.
     allocate (row%history(1), row%drivers(1))
     row%history(1) = state_variable(work_heated, 'stress', transfer_scalar, needs=place_share)
-    row%drivers(driver_work - 1)%name = 'plastic_work'
+    row%drivers(driver_work - 1)%name = work_name
     row%drivers(driver_work - 1)%needs = place_share
     row%conduct => conduct
     row%swell => source_of_volume

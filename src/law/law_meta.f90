@@ -10,7 +10,7 @@
 !> Source: S. Denis, D. Farias, A. Simon, ISIJ Int. 32 (1992) 316; kinetics: where they stand.
 module law_meta
   use heat_of_phases, only: heat_taken, lacking_heat_data, mixture_conductivity
-  use heat_sources, only: share_of_work, work_heated
+  use heat_sources, only: share_of_work, work_heated, work_name
   use kinds, only: wp
   use law_api, only: driver_t, driver_temperature, heat_law, law_line, law_t, parameter, parameter_t
   use materials, only: has_number, material_t
@@ -56,7 +56,7 @@ contains
     do k = 1, phase_count
       row%drivers(k)%name = trim(state_names(k))
     end do
-    row%drivers(phase_count + 1) = driver_t('plastic_work', place_share)
+    row%drivers(phase_count + 1) = driver_t(work_name, place_share)
     row%conduct => conduct
     row%store => store
     row%swell => swell

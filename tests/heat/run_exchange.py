@@ -16,8 +16,8 @@ usage: run_exchange.py [-v] [-k]
 - `stefan`: freezing of a half space (F. Neumann): LAMBDA jumps and RHOC holds the latent heat: within 1 %.
 - `squeezed`: a block of perfect plasticity pressed to a plastic strain of 1 without loss of heat: QUINNEY sigma p/(rho c), in all ways of
   coupling.
-- `pressed_hot`: the same of a cylinder that has expanded before it is pressed: heat over plastic work is QUINNEY, but for the elastic strain
-  (1.5e-3); and it keeps its plastic work when it cools (1e-12).
+- `pressed_hot`: the same of a cylinder that has expanded before it is pressed: heat over plastic work is QUINNEY, exactly where heat comes a step
+  later (1e-9), else but for the elastic strain of the steps in which it flows first (3e-4); it keeps its plastic work when it cools (1e-12).
 """
 import math
 import os
@@ -318,7 +318,7 @@ def pressed_hot(checks):
         rows = run.history
         last = {int(operation): k for k, operation in enumerate(rows["operation"])}
         heat = rows["heat_released"][last[2]] - rows["heat_released"][last[1]]
-        checks.small(abs(heat/(0.9*rows["plastic_work"][last[2]]) - 1), 1.5e-3, f"pressed hot, {way}: heat of plastic work")
+        checks.small(abs(heat/(0.9*rows["plastic_work"][last[2]]) - 1), 1e-9 if way == "ONCE" else 3e-4, f"pressed hot, {way}: heat of plastic work")
         checks.small(abs(rows["plastic_work"][last[3]]/rows["plastic_work"][last[2]] - 1), 1e-12, f"pressed hot, {way}: work kept in cooling")
 
 

@@ -18,7 +18,7 @@ KEEPS_OLD = "old mesh"
 AGREED = "agreed force"
 LIMIT = "_limit"
 # What the restart balances: name in NAME.gNN.restart.json, without `_before` and `_after`, and in words.
-BALANCES = {"volume": "volume", "elastic_energy": "elastic energy", "plastic_work": "plastic work of the run"}
+BALANCES = {"volume": "volume", "elastic_energy": "elastic energy", "plastic_work": "plastic work that points keep"}
 
 
 @dataclass
