@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Bodies that are asleep until an operation has them (ASLEEP).
 
-usage: run_weld_pass.py [-v] [-k]
+usage: run_weld_pass.py [-v] [-k] [--write]     --write puts the table of finer runs into the README of decks/weld_pipe
 
 - `bar`: between two walls a bar is laid at a high temperature beside another; both come to one temperature, then to that of the
   start. Elastic: the mean temperature and the stress are the integrals of what was laid (closed form). Stopped and resumed: the same
@@ -15,8 +15,10 @@ import sys
 
 sys.dont_write_bytecode = True
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-sys.path[:0] = [os.path.join(TESTS, "runs")]
-from support import DONE, NO_CONVERGENCE, SIGNAL, Checks, history, result_differences, run, said, start, stop_after, with_h5py, write  # noqa: E402
+sys.path[:0] = [os.path.join(TESTS, folder) for folder in ("runs", "cycle")]
+from remeshed import put_table  # noqa: E402
+from support import (DONE, NO_CONVERGENCE, SIGNAL, SOURCE, Checks, history, result_differences, run, said, start, stop_after,  # noqa: E402
+                     with_h5py, write)
 
 E, ALPHA, LAID, N = 200000.0, 1e-5, 1020.0, 8
 BAR = f"""TITLE  A bar laid on hot beside another, between walls
@@ -125,11 +127,32 @@ def gap(checks):
     checks.that(result.returncode == NO_CONVERGENCE and "large strain in KINEM SMALL" in result.stderr, "pressed: refused", said(result))
 
 
+def table(checks):
+    """Finer runs of the weld of a pipe, into its README."""
+    folder = os.path.join(SOURCE, "decks", "weld_pipe")
+    lines = ["| elements across a pass, along the pipe, `tol` | heat given off kJ | `bent` mm | `far` mm | peak of `heat_affected` | "
+             "`hoop_root`, `hoop_cap` | `hoop_in`, `hoop_out` | `axial_in`, `axial_out` |", "|---|---|---|---|---|---|---|---|"]
+    for n, m, tol, words in ((3, 12, 10, ""), (4, 16, 10, " (the deck)"), (6, 24, 3, ""), (8, 32, 3, "")):
+        out = checks.path(f"weld{n}")
+        result = run([os.path.join(folder, "weld_pipe.lag"), "--out", out, "-p", f"n={n}", "-p", f"m={m}", "-p", f"tol={tol}"])
+        if not checks.that(result.returncode == DONE, f"weld_pipe, n={n}", said(result)):
+            continue
+        rows = history(out)
+        last = {name: values[-1] for name, values in rows.items()}
+        peak = max(value for value in rows["heat_affected"] if value == value)
+        pairs = [f"{last[a]:.0f} {last[b]:.0f}" for a, b in (("hoop_root", "hoop_cap"), ("hoop_in", "hoop_out"), ("axial_in", "axial_out"))]
+        lines.append(f"| {n}, {m}, {tol}{words} | {-last['heat_in'] / 1e6:.3f} | {last['bent']:.4f} | {last['far']:.4f} | {peak:.0f} | "
+                     f"{' | '.join(pairs)} |")
+    put_table(os.path.join(folder, "README.md"), "<!-- runs -->", lines)
+
+
 def main():
     with_h5py()
     checks = Checks()
     bar(checks)
     gap(checks)
+    if "--write" in sys.argv[1:]:
+        table(checks)
     checks.end()
 
 
