@@ -1,23 +1,26 @@
 #!/usr/bin/env python3
 """Forming scenes whose decks say REMSH and nothing else of meshes: the cycle goes to the end of the stroke.
 
-usage: run_scenes.py [NAME... | all] [--finer] [-v] [-k]     without names: the quick ones
+usage: run_scenes.py [NAME... | all] [--finer] [--write] [-v] [-k]     without names: the quick ones
 
 Every scene ends with 0, its die has made its stroke, the volume without elastic strain stays within 0.1 %, no single step but the shortest 2
 in a hundred is shorter than a thousandth of the mean one, and refused tries are at most 5 in a hundred (or one). --finer runs each a second
-time with elements of half the size and compares forces. Prints a table.
+time with elements of half the size and compares forces. Prints a table; --write puts the row of each scene into its README. What a README
+says is what is found, but for what other compilers and processors change: a tenth of the meshes and of the steps, and one.
 """
 import os
 import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from scenes import (HEAD, LEAST_ANGLE, SCENES, asks_by_remsh_alone, badly_shaped, checked, deck_of, finer_deck, force_table, line,  # noqa: E402
-                    run_scene, totals)
+from remeshed import put_table  # noqa: E402
+from scenes import (HEAD, LEAST_ANGLE, MARK, SCENES, asks_by_remsh_alone, badly_shaped, checked, deck_of, finer_deck, force_table,  # noqa: E402
+                    line, readme_of, run_scene, said_in_readme, totals)
 from support import DONE, Checks  # noqa: E402
 
 QUICK = ("bimetal", "side_pressing", "teeth")
 DRIFT, SMALLEST, REFUSED = 0.1, 1e-3, 0.05
+AS_SAID = 0.1
 LIMITS = ("stress_error", "least_angle", "largest_angle", "middle_share", "scaled_jacobian", "aspect_ratio", "contact", "distress", "new mesh   elements of")
 
 
@@ -50,6 +53,11 @@ def main():
         checks.that(found["smallest"] > SMALLEST, f"{name}: steps", found["smallest"])
         checks.that(found["refused"] <= max(1, REFUSED * found["meshes"]), f"{name}: tries refused", found["refused"])
         checks.that(not badly_shaped(found), f"{name}: shape of the meshes", badly_shaped(found))
+        if "--write" in sys.argv[1:]:
+            put_table(readme_of(name), MARK, HEAD + [line(found)])
+        told = said_in_readme(name)
+        checks.that(all(abs(found[key] - told[key]) <= AS_SAID * told[key] + (key != "code") for key in told), f"{name}: as its README says",
+                    [(key, told[key], found[key]) for key in told])
         if "--finer" not in sys.argv[1:]:
             continue
         fine = run_scene(name, checks.path(name + ".finer"), deck=finer_deck(name, checks.folder))

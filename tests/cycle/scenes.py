@@ -37,6 +37,8 @@ HEAD = ["| scene | code | meshes | tries refused | steps | smallest step / mean 
 
 FORCE_HEAD = ["| change of the force | number | mean % | median % | below 0 % | mean size % | 95 % below % |", "|---|---|---|---|---|---|---|"]
 
+# Lines around the table in the README of a scene.
+MARK = "<!-- scene -->"
 # Limits of every new mesh, and the angle of contour corners below which they do not hold [degrees].
 LEAST_ANGLE, LEAST_JACOBIAN = 20.0, 0.25
 
@@ -103,9 +105,20 @@ def finer_deck(name, folder):
         return write(os.path.join(folder, name + ".lag"), re.sub(r"^REMSH.*\n", rows, file.read(), flags=re.MULTILINE))
 
 
+def readme_of(name):
+    return os.path.join(ROOT, "decks", name, "README.md")
+
+
+def said_in_readme(name):
+    """What the README of a scene says of it: code, meshes, tries refused, steps."""
+    with open(readme_of(name), encoding="utf-8") as file:
+        row = file.read().split(MARK)[1].strip().splitlines()[-1]
+    return dict(zip(("code", "meshes", "refused", "steps"), map(int, row.split("|")[2:6])))
+
+
 def line(found, words=""):
     return (f"| {found['name']} | {found['code']} | {found['meshes']} | {found['refused']} | {found['steps']} | {found['smallest']:.3g} | "
-            f"{found['drift']:+.4f} | {found['seconds']:.0f} | {words or (found['said'].splitlines() or [''])[0][:160] * (found['code'] != DONE)} |")
+            f"{found['drift']:+.4f} | {found['processor']:.0f} | {words or (found['said'].splitlines() or [''])[0][:160] * (found['code'] != DONE)} |")
 
 
 def badly_shaped(found):

@@ -54,6 +54,35 @@ class Pages(unittest.TestCase):
             self.assertIn("EXIT STATUS", done.stdout)
 
 
+def rows_of_nobody(text):
+    """Rows of a README with three numbers or more that stand between no two equal marks, <!-- word -->: no command makes them anew."""
+    rows, within = [], ""
+    for part in re.split(r"(<!-- \w+ -->)", text):
+        if part.startswith("<!-- "):
+            within = "" if part == within else part
+        elif not within:
+            rows += [row for row in part.splitlines() if row.startswith("|") and sum(map(is_number, row.strip("|").split("|"))) >= 3]
+    return rows
+
+
+def is_number(cell):
+    """A cell is a number, with an unit of % or without, or several of them."""
+    return re.fullmatch(r"[-+−]?[0-9][0-9.eE%+−\- ]*", cell.strip()) is not None
+
+
+class Tables(unittest.TestCase):
+    def test_rows_without_a_command(self):
+        self.assertTrue(is_number("-1318 1035") and is_number("+0.0004") and is_number("1e-4 %") and not is_number("6 x 9") and not is_number(""))
+        row = "| can | 1 | 2. | -3e-4 |\n"
+        self.assertEqual([row.strip()], rows_of_nobody(f"{row}<!-- a -->\n{row}<!-- a -->\n"))
+
+    def test_numbers_of_decks_are_made_by_commands(self):
+        """What no command makes anew drifts unnoticed."""
+        for path in sorted(glob.glob(os.path.join(SOURCE, "decks", "*", "README.md"))):
+            with open(path, encoding="utf-8") as file:
+                self.assertEqual([], rows_of_nobody(file.read()), path)
+
+
 class Citation(unittest.TestCase):
     def test_version(self):
         """CITATION.cff is for forges and has the version once more: that of the programs."""
