@@ -1,8 +1,8 @@
 !> Folds of a body: sides that lie on other sides of their own body (own_contact).
 !>
 !> Both overlap by the depth of contact, and a contour that crosses itself cannot be meshed. So both are moved back by the depth,
-!> which leaves a gap of about that size: the contour follows the fold to its ground. On the new mesh they are moved together again
-!> (fold_closing). Nodes move against the sides' normals, along what their supports leave free; at the ground of a fold, where
+!> or by what new sides, straight to the mesher and with their ends elsewhere, may miss of wavy ones where that is more: the contour
+!> follows the fold to its ground. On the new mesh they are moved together again (fold_closing). Nodes move against the sides' normals, along what their supports leave free; at the ground of a fold, where
 !> normals face each other, they stay.
 module folded_sides
   use fields, only: displacement_field
@@ -25,8 +25,8 @@ module folded_sides
     real(wp) :: from(2) = 0.0_wp, to(2) = 0.0_wp, length = 0.0_wp
   end type fold_t
 
-  !> Sides that just touch are moved by this share of their chord.
-  real(wp), parameter :: least_move = 1.0e-4_wp
+  !> Sides are moved by this share of their chord at least.
+  real(wp), parameter :: least_move = 0.03_wp
   !> Sum of unit normals below which a node is the ground of a fold, over their number.
   real(wp), parameter :: ground = 0.3_wp
 

@@ -1,6 +1,7 @@
 !> Acceptance of a step: the trial state becomes the state, and every check is made.
 module accept_step
   use bookkeeping, only: book_reactions, book_deformable_dies, measure_scene, book_spurious_mode, pressed_on, sample_contacts
+  use damping, only: ease_damping, work_of_damping
   use dies, only: is_deformable
   use dofs, only: move_fields
   use driver_values, only: start_drivers
@@ -44,6 +45,8 @@ contains
     real(wp) :: friction_before
 
     call book_work(equations, outcome%du, solution)
+    solution%work%damping = solution%work%damping + work_of_damping(equations, dt, outcome%du)
+    call ease_damping(scene, equations, dt, outcome%du, solution)
     call book_reactions(scene, equations, solution%time + dt, solution%fields)
     call book_heat(scene, equations, dt, solution)
     call book_heat_flows(scene, equations, solution)

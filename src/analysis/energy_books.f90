@@ -23,11 +23,13 @@ module energy_books
   use work_books, only: work_t
   implicit none
   private
-  public :: book_stored, book_work, energy_imbalance, energy_of_round_off, external_on_unknowns, imbalance_advice, &
-            missing_energy, spring_energy, start_stored
+  public :: book_stored, book_work, damped_share, damping_advice, energy_imbalance, energy_of_round_off, &
+            external_on_unknowns, imbalance_advice, missing_energy, spring_energy, start_stored
 
   !> The run warns above this share of what passed.
   real(wp), parameter :: largest_imbalance = 0.01_wp
+  !> And where viscous forces took more than this share of it.
+  real(wp), parameter :: largest_damping = 0.01_wp
   !> Stresses carry some eps of the modulus as round-off, from strains that come from gradients of order one; on the motion of a
   !> step they make work. As many operations as this stand behind a stress and a sum.
   real(wp), parameter :: operations = 1000
@@ -200,7 +202,7 @@ contains
 
     associate (work => solution%work)
       missing = solution%external_work + work%heat + work%overlap + work%remeshing &
-                - work%elastic - work%flow - solution%friction_work - work%contact
+                - work%elastic - work%flow - solution%friction_work - work%contact - work%damping
     end associate
   end function missing_energy
 
@@ -227,6 +229,27 @@ contains
     if (energy_imbalance(solution) > largest_imbalance) &
       advice = advice//'; what stays was released suddenly, as by a part that snaps free: it would be kinetic energy'
   end function imbalance_advice
+
+  !> What viscous forces of damped steps took, over all that passed.
+  pure function damped_share(solution) result(share)
+    type(solution_t), intent(in) :: solution
+    real(wp) :: share
+
+    share = 0
+    if (solution%work%damping > 0) share = solution%work%damping/max(solution%work%passed, solution%work%damping)
+  end function damped_share
+
+  !> What to say of it; empty where there is nothing.
+  pure function damping_advice(solution) result(advice)
+    type(solution_t), intent(in) :: solution
+    character(len=:), allocatable :: advice
+
+    advice = ''
+    if (damped_share(solution) > largest_damping) &
+      advice = 'what a die held was let go suddenly, and where it came to rest depends on the way there: compare with ' &
+               //'smaller steps (STRAT), or let the die withdraw at once'
+    if (solution%damping > 0) advice = 'the last step has viscous forces that hold the part: it is not in equilibrium'
+  end function damping_advice
 
   !> Energy that springs of dies and of bodies hold [energy]. They stand outside: what dies do to the part is the work of dies, what
   !> springs of a body do that of loads.

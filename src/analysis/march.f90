@@ -5,6 +5,7 @@ module march
   use blas, only: blas_buffer
   use bookkeeping, only: measure_scene
   use cut_report, only: lines_of_cuts
+  use damping, only: begin_damping, strengthen_damping
   use driver_values, only: start_drivers
   use energy_books, only: start_stored
   use equation_set_up, only: set_up
@@ -40,6 +41,8 @@ module march
 
   !> A step shortened to an event is shortened by at least this much, so that the event is met in a few trials.
   real(wp), parameter :: largest_event = 0.95_wp
+  !> So many cutbacks in a row are not answered by damping.
+  integer, parameter :: most_cutbacks_undamped = 1
   !> So many cutbacks in a row show that a body passes through itself in steps of any length.
   integer, parameter :: most_cutbacks_for_crossing = 3
 
@@ -66,6 +69,7 @@ contains
       call solve_fields(scene, run%equations, solution, dt, outcome)
       do while (outcome%event < 1)
         call note_attempt(outcome%path, dt, solution%path)
+        if (outcome%path%too_long) call strengthen_damping(solution)
         dt = max(min(outcome%event, largest_event)*dt, scene%strategy%least_step)
         call list_event(run%listing, solution, dt, outcome%event_reason)
         if (outcome%heat%too_long) solution%heat%shortened = solution%heat%shortened + 1
@@ -121,6 +125,7 @@ contains
     call after_failure(scene, dt, solution%next_step, give_up)
     call list_cutback(run%listing, scene, solution, dt, solution%next_step, outcome)
     cutbacks = cutbacks + 1
+    if (cutbacks > most_cutbacks_undamped .or. solution%damping > 0) call damp(scene, dt, solution, run)
     if (outcome%passes_itself) give_up = give_up .or. cutbacks > most_cutbacks_for_crossing
     call note_cutback(solution%probation, solution%next_step)
     if (on_probation .and. is_too_short(scene, solution)) then
@@ -138,6 +143,24 @@ contains
       if (on_probation) call refuse_mesh(scene, solution, outcome, run, error)
     end if
   end subroutine answer_failure
+
+  !> The step is tried again with more damping than before, where a die withdraws.
+  subroutine damp(scene, dt, solution, run)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: dt   !! of the step that failed [time]
+    type(solution_t), intent(inout) :: solution
+    type(run_t), intent(inout) :: run
+    integer :: die
+
+    if (solution%damping > 0) then
+      call strengthen_damping(solution)
+      return
+    end if
+    call begin_damping(scene, run%equations, solution, dt, die)
+    if (die > 0) &
+      call list_note(run%listing, 'note: step '//to_text(solution%step + 1)//': '//scene%dies(die)%name//' withdraws, and no ' &
+                     //'equilibrium is near: what it held is let go suddenly; steps are damped until there is one')
+  end subroutine damp
 
   !> Equations, the scene at rest, and files. A mesh that is refused has touched none of the results.
   subroutine start(scene, solution, run, error)

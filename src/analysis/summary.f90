@@ -122,6 +122,7 @@ contains
       call json%add('plastic', factor*work%flow)
       call json%add('friction', factor*solution%friction_work)
       call json%add('contact', factor*work%contact)
+      call json%add('damping', factor*work%damping)
       call json%add('springs', factor*spring_energy(scene, solution))
       call json%add('overlap', factor*work%overlap)
       call json%add('remeshing', factor*work%remeshing)

@@ -1,7 +1,7 @@
 !> Checks of a run in `summary.json`, what to do about those that do not hold, and estimated errors.
 module summary_checks
   use elem_api, only: totals_t
-  use energy_books, only: energy_imbalance, imbalance_advice
+  use energy_books, only: damped_share, damping_advice, energy_imbalance, imbalance_advice
   use fields, only: displacement_field
   use heat_books, only: has_heat, heat_imbalance
   use heat_record, only: heat_record_t
@@ -39,6 +39,7 @@ contains
     call json%add('worst_linear_residual', solution%worst_linear_residual)
     call json%add('least_dissipation', solution%least_dissipation)
     if (scene%fields(displacement_field)%declared) call json%add('energy_imbalance', energy_imbalance(solution))
+    if (solution%work%damping > 0) call json%add('damped_share', damped_share(solution))
     if (has_heat(scene)) call json%add('heat_imbalance', heat_imbalance(solution))
     if (has_heat(scene)) call add_heat(json, solution%heat)
     if (scene%follows_path) call add_path(json, solution)
@@ -92,6 +93,7 @@ contains
 
     call json%begin_object('advice')
     call add('energy_imbalance', imbalance_advice(solution))
+    call add('damped_share', damping_advice(solution))
     call add('path_error_motion', motion_advice(solution%path))
     call add('path_error_stress', stress_advice(solution%path))
     if (has_body_springs(scene)) call add('spring_share', spring_advice(scene, solution))

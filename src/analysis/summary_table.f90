@@ -3,7 +3,7 @@ module summary_table
   use closing_table, only: closing_lines
   use cut_report, only: lines_of_cuts
   use elem_api, only: totals_t
-  use energy_books, only: energy_imbalance, imbalance_advice
+  use energy_books, only: damped_share, damping_advice, energy_imbalance, imbalance_advice
   use equations, only: equations_t
   use heat_books, only: has_heat, heat_imbalance
   use heat_record, only: heat_record_t
@@ -45,6 +45,10 @@ contains
              //to_text(100*energy_imbalance(solution), 3)//' %, worst linear residual ' &
              //to_text(solution%worst_linear_residual, 2))
     call warn('energy imbalance '//to_text(100*energy_imbalance(solution), 3)//' %', imbalance_advice(solution))
+    if (solution%work%damping > 0) &
+      call put('  damping of steps that had no equilibrium near took '//to_text(100*damped_share(solution), 3) &
+               //' % of the energy that passed')
+    call warn('damping '//to_text(100*damped_share(solution), 3)//' % of the energy that passed', damping_advice(solution))
     cut_lines = lines_of_cuts(scene, solution)
     do t = 1, size(cut_lines)
       call put(cut_lines(t)%s)

@@ -13,7 +13,7 @@ module elem_body_springs
   use sections, only: thickness_at
   implicit none
   private
-  public :: elem_bsprg_row, pull_of_springs, springs_of_body, volume_of_body
+  public :: elem_bsprg_row, mass_matrix, pull_of_springs, springs_of_body, volume_of_body
 
   !> Gauss points of an element: exact where sides are straight.
   integer, parameter :: npoint = 9

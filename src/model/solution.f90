@@ -42,6 +42,8 @@ module solution
     logical :: unbalanced = .false.
     !> Lengths of late steps, and of those of a mesh that is new.
     type(probation_t) :: probation
+    !> Viscous force over velocity and volume in the step to come, 0 where it is not damped (damping) [force time/length^4].
+    real(wp) :: damping = 0.0_wp
     !> Totals since the start.
     integer :: iterations = 0, cutbacks = 0
     !> Work done on the scene from outside, per radian when axisymmetric.

@@ -64,6 +64,8 @@ module equations
     real(wp) :: source = 0.0_wp
     !> Heat taken up by all elements in the step, and released in them, at the last evaluation of their solve [energy].
     real(wp) :: heat_stored = 0.0_wp, heat_released = 0.0_wp
+    !> Viscous force over velocity of the unknowns in a step that is damped (ndof); not allocated in others (damping).
+    real(wp), allocatable :: damping(:)
     !> Weights of the quantities in norms over several of them (convergence).
     real(wp), allocatable :: weight(:)
     !> Nodes of the solid elements, and the pairs that unknowns and pattern are of.

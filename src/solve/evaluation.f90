@@ -7,6 +7,7 @@ module evaluation
   use equations, only: equations_t, solves_heat
   use fields, only: displacement_field
   use kinds, only: wp
+  use matrix_pattern, only: matrix_pattern_t
   use resting_bodies, only: hold_resting
   use round_off_floors, only: set_floors
   use scene, only: scene_t
@@ -77,14 +78,35 @@ contains
         call press_on_axis(scene, equations%dofs, solve%pattern, solve%active, solution%fields(displacement_field)%value, du, &
                            tangent, equations%wall, equations%buffers%force, equations%buffers%matrix, report)
       call gather_forces(solve%pattern, equations%buffers, solve%is_own, equations%force, equations%magnitude)
+      if (allocated(equations%damping) .and. dt > 0) equations%force = equations%force + equations%damping*du/dt
       if (tangent) then
         call gather_matrix(solve%pattern, equations%buffers, solve%values)
+        if (allocated(equations%damping) .and. dt > 0) &
+          call add_diagonal(solve%pattern, solve%equation, equations%damping/dt, solve%values)
         call hold_resting(scene, equations%dofs, solution, equations%loose, solve%pattern, solve%equation, equations%resting, &
                           solve%values)
       end if
     end associate
     call equations%timers%stop(timer)
   end subroutine evaluate
+
+  !> Add to the diagonal of a matrix.
+  pure subroutine add_diagonal(pattern, equation, added, values)
+    class(matrix_pattern_t), intent(in) :: pattern
+    integer, intent(in) :: equation(:)     !! (ndof) of every unknown, 0 where it has none
+    real(wp), intent(in) :: added(:)       !! (ndof) [residual/unknown]
+    real(wp), intent(inout) :: values(:)   !! (nnz) [residual/unknown]
+    real(wp) :: diagonal(0:pattern%neq)
+    integer :: d, k
+
+    diagonal = 0
+    do d = 1, size(equation)
+      diagonal(equation(d)) = added(d)
+    end do
+    do k = 1, pattern%nnz
+      if (pattern%row(k) == pattern%column(k)) values(k) = values(k) + diagonal(pattern%row(k))
+    end do
+  end subroutine add_diagonal
 
   !> Groups whose multipliers are carried forward.
   pure function is_contact(scene, equations) result(yes)

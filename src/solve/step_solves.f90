@@ -4,6 +4,7 @@
 !> own solve has found it in this step, or as predicted from the last step. Once in turns is first order in the step; in turns until
 !> nothing changes any more is the result of the monolithic solve. Stress that drives heat is handed over by stress_exchange.
 module step_solves
+  use damping, only: prepare_damping
   use equations, only: equations_t
   use fields, only: displacement_field
   use first_step_parts, only: solve_motion
@@ -39,6 +40,7 @@ contains
     integer :: solved
 
     solved = corrections_of_motion(equations)
+    call prepare_damping(scene, solution, equations)
     call take_turns(scene, equations, solution, dt, exchange, outcome)
     call end_exchange(equations, exchange)
     call judge_contours(scene, equations, solution, outcome)

@@ -15,7 +15,7 @@ from .words import brief
 # solution leaves, the share of an element's strain that its points do not see, and what the books of heat lack of the heat that passed.
 ENERGY_IMBALANCE, VOLUME_DRIFT, VOLUME_BY_MESHES, LINEAR_RESIDUAL, SPURIOUS_MODE = 0.01, 0.01, 0.001, 1e-10, 0.9
 PATH_ERROR = 0.02
-SPRING_SHARE = 1e-3
+SPRING_SHARE, DAMPED_SHARE = 1e-3, 0.01
 HEAT_IMBALANCE = 1e-6
 # Depths in summary.json, the share of the allowed beside them, what that may be where it is not 1, and how far above it is reported as too
 # large, as in the listing.
@@ -58,6 +58,7 @@ def checks(run: Run) -> List[Check]:
 
     result += penetration_checks(run, values)
     within("energy_imbalance", "energy imbalance", ENERGY_IMBALANCE, percent, "take smaller steps (STRAT) and compare")
+    within("damped_share", "work of damping", DAMPED_SHARE, percent, "compare with smaller steps (STRAT)")
     for name, title, norm in (("path_error_motion", "error of the motion by the path within steps, in sum", "PATH"),
                               ("path_error_stress", "error of the stress by the path within steps", "RATE")):
         within(name, title, PATH_ERROR, percent, f"take smaller steps ({norm} of NORMS, STRAT) and compare")
@@ -86,7 +87,7 @@ def checks(run: Run) -> List[Check]:
         result.append(Check("least friction work of a step", brief(values["least_dissipation"], 3), "not negative", good,
                             "" if good else "friction gave energy back: report it with the deck"))
     known = {*PENETRATIONS, *(name + end for name in PENETRATIONS for end in (OVER_ALLOWED, BOUND)), "energy_imbalance", "heat_imbalance", "volume_drift",
-             "path_error_motion", "path_error_stress", "spring_share", "volume_drift_unloaded", "worst_linear_residual", "least_dissipation", "spurious_mode",
+             "damped_share", "path_error_motion", "path_error_stress", "spring_share", "volume_drift_unloaded", "worst_linear_residual", "least_dissipation", "spurious_mode",
              "phase_fractions", "phase_fractions_allowed"}
     for name in given:
         if name not in known:

@@ -1,0 +1,161 @@
+!> Damping of steps that lead away from an equilibrium that is lost.
+!>
+!> Where a die withdraws, what is thin under it loses its contact before what is thick: a flash springs back by a tenth of what
+!> the part inside a closed die does. Held by friction no more, it is pushed out by the part inside, and friction holds it the
+!> less, the further it has gone. Elastic energy is set free however little the die moves: there is no equilibrium near the last
+!> one, and no step is short enough. In a press the flash would move within microseconds. Here viscous forces take the energy,
+!> c w du/dt on a node with the volume w around it, until an equilibrium is found that needs none of them: the pseudo-transient
+!> way to a steady state (C.T. Kelley, D.E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508-523), in steps that are accepted, so that
+!> flow and friction follow it.
+!>
+!> c begins so that the force of the die would move the part by the side of an element within the step that failed. A step that
+!> fails again, or goes further than the path can be followed, makes it larger; others make it smaller. It ends where the forces
+!> are within the tolerance of equilibrium. Their work is booked, and told at the end.
+module damping
+  use convergence, only: relative_residual
+  use dofs, only: prescribed_motion
+  use elem_api, only: block_done, report_t
+  use elem_body_springs, only: mass_matrix
+  use equations, only: equations_t
+  use evaluation, only: evaluate
+  use fields, only: displacement_field, pilot_field
+  use kinds, only: wp
+  use predictor, only: work_of_dies
+  use scene, only: is_solid, scene_t
+  use solution, only: present_coordinates, solution_t
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: begin_damping, ease_damping, prepare_damping, strengthen_damping, work_of_damping
+
+  !> Factors of the coefficient after a step that failed, and after one that was accepted.
+  real(wp), parameter :: stronger = 4.0_wp, weaker = 0.7_wp
+
+contains
+
+  !> Viscous force over velocity of the unknowns in the step to come; none where nothing is damped.
+  subroutine prepare_damping(scene, solution, equations)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(equations_t), intent(inout) :: equations
+    real(wp), allocatable :: x(:, :)
+    real(wp) :: share
+    integer :: g, e, j, c, d
+
+    if (allocated(equations%damping)) deallocate (equations%damping)
+    if (.not. solution%damping > 0) return
+    allocate (equations%damping(equations%dofs%ndof), source=0.0_wp)
+    allocate (x, source=present_coordinates(scene, solution))
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      associate (nodes => scene%groups(g)%connectivity)
+        do e = 1, size(nodes, 2)
+          share = solution%damping*sum(mass_matrix(scene%section, x(:, nodes(:, e))))/size(nodes, 1)
+          do j = 1, size(nodes, 1)
+            do c = 1, 2
+              d = equations%dofs%fields(displacement_field)%number(c, nodes(j, e))
+              if (d == 0) cycle
+              if (equations%dofs%is_free(d)) equations%damping(d) = equations%damping(d) + share
+            end do
+          end do
+        end do
+      end associate
+    end do
+  end subroutine prepare_damping
+
+  !> The coefficient with which a step of length dt that failed is tried again where a die withdraws; 0 where none does.
+  subroutine begin_damping(scene, equations, solution, dt, die)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt     !! of the step that failed [time]
+    integer, intent(out) :: die    !! the one that withdraws with the largest force, 0 where none does
+    real(wp), dimension(equations%dofs%ndof) :: rest, motion
+    real(wp) :: driven(size(equations%dofs%prescribed)), work(size(scene%dies)), force, largest
+    type(report_t) :: report
+    logical :: at_rest
+    integer :: k
+
+    die = 0
+    if (.not. scene%fields(displacement_field)%declared .or. scene%load_factor%multiplier > 0) return
+    at_rest = .not. solution%last_step > 0
+    call prescribed_motion(scene, equations%dofs, solution%fields, at_rest, solution%time, solution%time + dt, driven)
+    motion = 0
+    motion(equations%dofs%prescribed%dof) = driven
+    rest = 0
+    call evaluate(scene, equations, solution, dt, rest, .false., report)
+    if (report%status /= block_done) return
+    work = work_of_dies(equations, motion)
+    largest = 0
+    associate (pilot => equations%dofs%fields(pilot_field)%number)
+      do k = 1, size(work)
+        if (.not. work(k) < 0 .or. any(pilot(1:2, k) == 0)) cycle
+        force = length_of(equations%force(pilot(1:2, k)))
+        if (.not. force > largest) cycle
+        largest = force
+        die = k
+      end do
+    end associate
+    if (die > 0) solution%damping = largest*dt/size_of_part(scene, solution)
+  end subroutine begin_damping
+
+  !> Volume of the bodies times the side of the smallest element [length^4, per radian when axisymmetric].
+  pure function size_of_part(scene, solution) result(s)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp) :: s
+    real(wp) :: x(2, size(scene%mesh%coordinates, 2)), one(2), other(2), area
+    integer :: g, e
+
+    x = present_coordinates(scene, solution)
+    s = 0
+    area = huge(area)
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      associate (nodes => scene%groups(g)%connectivity)
+        do e = 1, size(nodes, 2)
+          s = s + sum(mass_matrix(scene%section, x(:, nodes(:, e))))
+          one = x(:, nodes(3, e)) - x(:, nodes(1, e))
+          other = x(:, nodes(4, e)) - x(:, nodes(2, e))
+          area = min(area, 0.5_wp*abs(one(1)*other(2) - one(2)*other(1)))
+        end do
+      end associate
+    end do
+    s = s*sqrt(area)
+  end function size_of_part
+
+  !> A damped step failed, or goes too far.
+  elemental subroutine strengthen_damping(solution)
+    type(solution_t), intent(inout) :: solution
+
+    solution%damping = stronger*solution%damping
+  end subroutine strengthen_damping
+
+  !> A damped step was accepted, and the length of the next is chosen: damping eases unless that is shorter. It ends where its
+  !> forces are within the tolerance of equilibrium.
+  subroutine ease_damping(scene, equations, dt, du, solution)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: dt      !! [time]
+    real(wp), intent(in) :: du(:)   !! (ndof) motion of the step [unknown]
+    type(solution_t), intent(inout) :: solution
+    real(wp) :: forces(size(du))
+
+    if (.not. allocated(equations%damping)) return
+    forces = equations%damping*du/dt
+    if (.not. solution%next_step < dt) solution%damping = weaker*solution%damping
+    if (relative_residual(equations, solution%fields, 0*du, forces, du) <= scene%strategy%force_norm) solution%damping = 0
+  end subroutine ease_damping
+
+  !> Work that viscous forces took in a step [energy].
+  pure function work_of_damping(equations, dt, du) result(work)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: dt      !! [time]
+    real(wp), intent(in) :: du(:)   !! (ndof) motion of the step [unknown]
+    real(wp) :: work
+
+    work = 0
+    if (allocated(equations%damping)) work = sum(equations%damping*du**2)/dt
+  end function work_of_damping
+
+end module damping
