@@ -141,13 +141,15 @@ contains
   end function interval
 
   !> The share QUINNEY of the plastic work (G.I. Taylor, H. Quinney 1934) that has not become heat yet.
-  pure subroutine release(material, dt, drivers, committed, released, slope, history)
+  pure subroutine release(material, dt, drivers, committed, released, slope, history, surplus)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt, drivers(:, :), committed(:)
     real(wp), intent(out) :: released, slope, history(:)
+    real(wp), intent(out), optional :: surplus
 
     released = 0
     slope = 0
+    if (present(surplus)) surplus = 0
     if (size(history) == 0) return
     history(1) = drivers(driver_work, 2)
     released = share_of_work(material, place_share, drivers(driver_temperature, 1)) &
