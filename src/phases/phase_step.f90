@@ -16,7 +16,7 @@ module phase_step
   use li_kinetics, only: grow_li
   use martensite_kinetics, only: grow_martensite, martensite_start, total_martensite
   use phase_state, only: at_coldest, at_grain, at_hollomon_jaffe, at_rate, at_tempering, first_growth, first_incubation, &
-                         never_cold, set_hardness, state_size
+                         cold_as_mixture, never_cold, set_hardness, state_size
   use steels, only: austenite, bainite, ferrite, first_diffusive, kinetics_avrami, kinetics_li, kinetics_none, last_diffusive, &
                     martensite, pearlite, phase_count, prop_latent, steel_t, tempered, unknown_temperature
   use stress_kinetics, only: hastened, shift_of_phase, stressed_span
@@ -56,6 +56,8 @@ contains
     load = 0
     if (present(stresses) .and. steel%isig%given) load = stresses
     s%value = committed
+    if (committed(at_coldest) > 0.5_wp*(never_cold + cold_as_mixture)) &
+      s(at_coldest)%value = coldest_of_mixture(steel, committed, before)
     released = dual_t()
     finish = dual_t(now, 1.0_wp)
     parts = parts_of(steel, dt, before, load(:, 1), committed)
@@ -91,6 +93,20 @@ contains
     heat_slope = released%slope
     call set_hardness(steel, state)
   end subroutine advance_phases
+
+  !> A mixture that is given with its martensite has been as cold as leaves its austenite, and as it begins: no more forms above
+  !> that.
+  pure function coldest_of_mixture(steel, committed, before) result(coldest)
+    type(steel_t), intent(in) :: steel
+    real(wp), intent(in) :: committed(:)   !! (state_size) [state_units]
+    real(wp), intent(in) :: before         !! temperature [degC]
+    real(wp) :: coldest                    !! [degC]
+    type(dual_t) :: ms
+
+    ms = martensite_start(steel, dual_t(sum(committed(ferrite:bainite))))
+    coldest = committed(austenite)
+    coldest = min(before, ms%value + log(coldest/(coldest + committed(martensite) + committed(tempered)))/steel%beta)
+  end function coldest_of_mixture
 
   !> First and last node strictly between two temperatures, in the direction of the step; none: `last` is before `first`.
   pure subroutine find_nodes(nodes, before, now, first, last)
@@ -258,7 +274,7 @@ contains
     type(dual_t), intent(in) :: time, from, to, stress(2, 2)
     type(dual_t), intent(inout) :: s(:), heat
     type(dual_t), dimension(ferrite:martensite) :: w, volume, dz
-    type(dual_t) :: total, total_volume, room, formed, middle, own, span, ms(2), coldest(2), by_diffusion
+    type(dual_t) :: total, total_volume, room, formed, middle, own, span, ms(2), coldest(2), by_diffusion, cold(2)
     integer :: i
 
     middle = 0.5_wp*(from + to)
@@ -279,8 +295,10 @@ contains
     by_diffusion = s(ferrite) + s(pearlite) + s(bainite)
     ms(1) = martensite_start(steel, by_diffusion)
     coldest(1) = s(at_coldest)
-    call grow_martensite(steel, by_diffusion, to - shift_of_phase(steel%isig, martensite, stress(:, 2)), s(at_coldest), &
-                         w(martensite))
+    ! a point that begins cold is at its coldest before it is heated
+    cold = [from - shift_of_phase(steel%isig, martensite, stress(:, 1)), to - shift_of_phase(steel%isig, martensite, stress(:, 2))]
+    if (cold(1)%value < cold(2)%value) cold(2) = cold(1)
+    call grow_martensite(steel, by_diffusion, cold(2), s(at_coldest), w(martensite))
     coldest(2) = s(at_coldest)
     total = sum_of(w)
     total_volume = sum_of(volume)
