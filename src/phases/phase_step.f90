@@ -230,11 +230,26 @@ contains
       end do
       s(austenite) = s(austenite) + formed
     end if
+    do i = first_diffusive, last_diffusive
+      call forget_growth(steel, i, temperature%value, s)
+    end do
     s(at_coldest) = dual_t(never_cold)
     if (.not. s(martensite)%value > nothing_left) s(at_tempering) = dual_t()
     if (.not. s(bainite)%value > nothing_left) s(at_tempering + 1) = dual_t()
     if (.not. to_temper(s) > nothing_left) s(at_hollomon_jaffe) = dual_t()
   end subroutine heat_up
+
+  !> Above the temperatures at which a phase forms its nuclei dissolve; not those beside what has formed, which can go on.
+  pure subroutine forget_growth(steel, phase, temperature, s)
+    type(steel_t), intent(in) :: steel
+    integer, intent(in) :: phase
+    real(wp), intent(in) :: temperature   !! [degC]
+    type(dual_t), intent(inout) :: s(:)
+
+    if (temperature < steel%kinetics(phase)%high) return
+    s(first_incubation + phase - first_diffusive) = dual_t()
+    s(first_growth + phase - first_diffusive) = dual_t()
+  end subroutine forget_growth
 
   !> What the histories of a CCT diagram give down to Ms, as far as there is austenite.
   pure subroutine cool_by_histories(steel, time, from, to, stress, s, heat)
@@ -287,9 +302,8 @@ contains
       if (forms(steel, i, own%value)) then
         call grow(steel, i, span, own, s(first_incubation + i - ferrite), s(first_growth + i - ferrite), w(i), volume(i))
         call limit_growth(steel, i, own, s, w(i), volume(i))
-      else if (own%value >= steel%kinetics(i)%high) then
-        s(first_incubation + i - ferrite) = dual_t()
-        s(first_growth + i - ferrite) = dual_t()
+      else if (.not. s(i)%value > 0) then
+        call forget_growth(steel, i, own%value, s)
       end if
     end do
     by_diffusion = s(ferrite) + s(pearlite) + s(bainite)
