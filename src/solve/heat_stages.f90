@@ -15,7 +15,7 @@ module heat_stages
   use heat_bounds, only: excess_of_temperature, has_bounds, on_corners_alone
   use heat_error, only: diagonal, estimate_error, flows, weight
   use kinds, only: wp
-  use kinetics_error, only: content_error_of_path, keep_piece, piece_t
+  use kinetics_error, only: content_error_of_path, keep_piece, path_piece_t
   use newton, only: outcome_t, solve_step
   use scene, only: role_heat_contact, scene_t
   use solution, only: solution_t
@@ -161,7 +161,7 @@ contains
     real(wp), dimension(equations%dofs%ndof) :: start, external, left, heat
     real(wp) :: passed(size(equations%buffers%force)), element_force(size(equations%buffers%force))
     type(evaluation_t) :: kept
-    type(piece_t) :: piece, whole
+    type(path_piece_t) :: piece, whole
     type(outcome_t) :: first
 
     start = 0

@@ -19,15 +19,15 @@ module kinetics_error
   use step_instants, only: make_instant
   implicit none
   private
-  public :: content_error_of_path, keep_piece, piece_t
+  public :: content_error_of_path, keep_piece, path_piece_t
 
   !> A piece of a step.
-  type :: piece_t
+  type :: path_piece_t
     !> Heat taken up less what was released, by element forces; not allocated where no kinetics release heat [energy].
     real(wp), allocatable :: heat(:)
     !> States at its end, of groups with kinetics (ngroup).
     type(group_state_t), allocatable :: groups(:)
-  end type piece_t
+  end type path_piece_t
 
 contains
 
@@ -55,7 +55,7 @@ contains
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: length             !! by which the stage divides changes of the heat content [time]
     real(wp), intent(in) :: element_force(:)   !! [power]
-    type(piece_t), intent(out) :: piece
+    type(path_piece_t), intent(out) :: piece
     logical :: active(size(scene%groups))
     integer :: g
 
@@ -75,8 +75,8 @@ contains
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt                !! [time]
     real(wp), intent(in) :: share             !! of the step, where the path is bent
-    type(piece_t), intent(in) :: first        !! the step to there
-    type(piece_t), intent(in) :: whole        !! all of it
+    type(path_piece_t), intent(in) :: first        !! the step to there
+    type(path_piece_t), intent(in) :: whole        !! all of it
     real(wp), intent(in) :: middle(:)         !! (ndof) motion to there [unknown]
     real(wp), intent(in) :: du(:)             !! (ndof) motion of the step [unknown]
     real(wp), intent(out) :: heat(:)          !! (ndof) [energy]
