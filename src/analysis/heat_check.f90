@@ -1,16 +1,17 @@
-!> What can be told of the heat of a deck before it runs: torches beside their bodies, dies beside sides, sides cooled twice, steels
-!> without hardness, austenite that is too cold.
+!> What can be told of the heat of a deck before it runs: torches beside their bodies, dies beside sides, sides cooled twice, sides
+!> that radiate below absolute zero, steels without hardness, austenite that is too cold.
 module heat_check
   use contact_outlook, only: gaps_at_rest
   use dies, only: is_deformable
   use elem_weld_source, only: source_share
-  use fields, only: displacement_field, find_field
+  use fields, only: displacement_field, field_t, find_field
   use hardness, only: has_hardness
   use heat_contact_point, only: touching_still
   use kinds, only: wp
   use law_api, only: find_parameter, heat_law, law_t
-  use loads, only: by_convection, multiplier_at
+  use loads, only: by_convection, by_radiation, multiplier_at
   use scene, only: group_t, host_of, lacks_mesh, role_heat_contact, scene_t
+  use solution, only: start_fields
   use state_variables, only: find_variable
   use steels, only: first_diffusive, kinetics_none, last_diffusive, martensite, phase_names, prop_hardness, steel_t
   use temperature_curves, only: is_given
@@ -48,6 +49,7 @@ contains
     do g = 1, size(scene%groups)
       call judge_start(scene, laws, g, warnings)
       call judge_exchange(scene, g, warnings)
+      call judge_radiation(scene, g, warnings)
     end do
     call judge_hardness(scene, warnings)
     if (scene%fields(displacement_field)%declared) return
@@ -110,6 +112,26 @@ contains
                           //' sides of elements are on both, and have the sum of both exchanges')
     end do
   end subroutine judge_exchange
+
+  !> A side that radiates and begins below absolute zero: ZERO is not that of its temperatures.
+  subroutine judge_radiation(scene, g, warnings)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g   !! number of the group
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    type(field_t), allocatable :: fields(:)
+    real(wp) :: coldest
+    integer :: f
+
+    f = find_field(scene%fields, 'temperature')
+    associate (group => scene%groups(g))
+      if (f == 0 .or. group%exchange%kind /= by_radiation .or. size(group%connectivity) == 0) return
+      call start_fields(scene, 0.0_wp, fields)
+      coldest = minval(fields(f)%value(1, pack(group%connectivity, .true.)))
+      if (.not. coldest < -group%exchange%zero) return
+      call add(warnings, group%name//': it begins at '//to_text(coldest, 4)//', below absolute zero, '// &
+               to_text(-group%exchange%zero, 6)//': ZERO is what makes temperatures absolute')
+    end associate
+  end subroutine judge_radiation
 
   !> Two multipliers are above half of their largest values at one time; one alone may be on while the other fades.
   pure function act_together(scene, one, other) result(yes)

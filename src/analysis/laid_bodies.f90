@@ -2,7 +2,9 @@
 !>
 !> A body that is laid down has the temperature of START, a shared node that of what was there. It gets the one at which both have
 !> together the heat that they had apart, sum_g m_g (h_g(T) - h_g(T_g)) = 0 with m_g the volume of the node in the elements of g: as
-!> two bodies that touch, of one effusivity. So what is laid brings the heat of its whole volume on any mesh. Points that were there
+!> two bodies that touch, of one effusivity. So what is laid brings the heat of its whole volume on any mesh. Temperatures on eight
+!> nodes have their heat at the points, where heat capacities by temperature are those of no node: all shared nodes are then moved
+!> by one share of the difference between their bodies, at which the heat of all is what it was. Points that were there
 !> are free of strains at the new temperature, as those that come are: the strain of cooling down is that of the heat too.
 module laid_bodies
   use elem_pl8tm, only: functions_of, functions_t
@@ -18,7 +20,9 @@ module laid_bodies
   private
   public :: share_heat
 
-  integer, parameter :: most_halvings = 200
+  integer, parameter :: most_halvings = 200, most_secants = 50
+  !> Share of the difference with which the secants begin: heat capacities change little along it.
+  real(wp), parameter :: first_share = 0.01_wp
 
 contains
 
@@ -29,7 +33,7 @@ contains
     type(law_t), intent(in) :: laws(:)     !! (nlaw)
     type(solution_t), intent(inout) :: solution
     real(wp) :: volume(size(scene%mesh%coordinates, 2), size(scene%groups))
-    real(wp) :: temperature(size(volume, 1), size(volume, 2))
+    real(wp) :: temperature(size(volume, 1), size(volume, 2)), apart(size(volume, 1))
     logical :: has_heat(size(scene%groups)), laid(size(scene%groups)), comes, stays
     integer :: f, g, e, k
 
@@ -50,12 +54,18 @@ contains
       if (laid(g)) temperature(:, g) = laid_at(scene, f, scene%groups(host_of(scene, g))%name)
       call add_volumes(scene, g, has_corners_only(solution%fields(f)), volume(:, g))
     end do
+    apart = 0
     do k = 1, size(volume, 1)
       comes = any(abs(volume(k, :)) > 0 .and. laid)
       stays = any(abs(volume(k, :)) > 0 .and. .not. laid)
-      if (comes .and. stays) solution%fields(f)%value(1, k) = common_temperature(scene, laws, abs(volume(k, :)), temperature(k, :))
+      if (.not. (comes .and. stays)) cycle
+      solution%fields(f)%value(1, k) = common_temperature(scene, laws, abs(volume(k, :)), temperature(k, :))
+      apart(k) = maxval(temperature(k, :), mask=abs(volume(k, :)) > 0) - minval(temperature(k, :), mask=abs(volume(k, :)) > 0)
     end do
-    if (.not. has_corners_only(solution%fields(f))) return
+    if (.not. has_corners_only(solution%fields(f))) then
+      call keep_whole_heat(scene, laws, has_heat, temperature, apart, solution%fields(f)%value(1, :))
+      return
+    end if
     do g = 1, size(scene%groups)
       if (.not. has_heat(g)) cycle
       do e = 1, size(scene%groups(g)%connectivity, 2)
@@ -108,6 +118,65 @@ contains
     end do
   end subroutine add_volumes
 
+  !> Move the temperatures of shared nodes by one share of their difference, so that all bodies together have the heat that they
+  !> have at their own temperatures, by the method of secants.
+  subroutine keep_whole_heat(scene, laws, has_heat, temperature, apart, values)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    logical, intent(in) :: has_heat(:)          !! (ngroup)
+    real(wp), intent(in) :: temperature(:, :)   !! (nnode, ngroup) their own [temperature]
+    real(wp), intent(in) :: apart(:)            !! (nnode) difference at shared nodes, 0 elsewhere [temperature]
+    real(wp), intent(inout) :: values(:)        !! (nnode) [temperature]
+    real(wp) :: share(2), heat(2), next
+    integer :: k
+
+    if (.not. any(apart > 0)) return
+    share = [0.0_wp, first_share]
+    do k = 1, 2
+      heat(k) = heat_of(values + share(k)*apart)
+    end do
+    do k = 1, most_secants
+      if (.not. abs(heat(2) - heat(1)) > 0) exit
+      next = share(2) - heat(2)*(share(2) - share(1))/(heat(2) - heat(1))
+      share = [share(2), next]
+      heat = [heat(2), heat_of(values + next*apart)]
+      if (abs(share(2) - share(1)) <= eps) exit
+    end do
+    values = values + share(2)*apart
+
+  contains
+
+    !> Taken up by all bodies from their own temperatures to these, shared nodes alone having others.
+    function heat_of(shared) result(heat)
+      real(wp), intent(in) :: shared(:)   !! (nnode) [temperature]
+      real(wp) :: heat
+      real(wp) :: own(8), now(8)
+      type(quad8_rule_t) :: rule
+      real(wp) :: x(2, 8), nx(8), ny(8), detj
+      integer :: g, e, p
+
+      heat = 0
+      do g = 1, size(has_heat)
+        if (.not. has_heat(g)) cycle
+        call quad8_rule(scene%groups(g)%rule%n, rule)
+        do e = 1, size(scene%groups(g)%connectivity, 2)
+          associate (nodes => scene%groups(g)%connectivity(:, e))
+            if (.not. any(apart(nodes) > 0)) cycle
+            own = temperature(nodes, g)
+            now = merge(shared(nodes), own, apart(nodes) > 0)
+            x = scene%mesh%coordinates(:, nodes)
+          end associate
+          do p = 1, rule%npoint
+            call derivatives(rule%dphi(:, :, p), x, nx, ny, detj)
+            heat = heat + detj*rule%weight(p)*thickness_at(scene%section, matmul(x, rule%phi(:, p))) &
+                   *taken_up(scene, laws, g, dot_product(rule%phi(:, p), own), dot_product(rule%phi(:, p), now))
+          end do
+        end do
+      end do
+    end function heat_of
+
+  end subroutine keep_whole_heat
+
   !> The temperature at which groups have together the heat that they have at their own, by bisection.
   function common_temperature(scene, laws, volume, temperature) result(common)
     type(scene_t), intent(in) :: scene
@@ -125,7 +194,7 @@ contains
       if (high - low <= eps*max(abs(low), abs(high))) return
       heat = 0
       do g = 1, size(volume)
-        if (volume(g) > 0) heat = heat + volume(g)*taken_up(temperature(g))
+        if (volume(g) > 0) heat = heat + volume(g)*taken_up(scene, laws, g, temperature(g), common)
       end do
       if (heat > 0) then
         high = common
@@ -133,29 +202,25 @@ contains
         low = common
       end if
     end do
-
-  contains
-
-    !> By a volume of the group between its own temperature and this one.
-    function taken_up(own) result(taken)
-      real(wp), intent(in) :: own
-      real(wp) :: taken
-
-      associate (material => scene%materials(scene%groups(g)%material))
-        block
-          real(wp) :: before(driver_count(laws(material%law_id)), 1), now(driver_count(laws(material%law_id)), 1)
-          real(wp) :: each(1), capacity(1)
-
-          before = 0
-          now = 0
-          before(driver_temperature, 1) = own
-          now(driver_temperature, 1) = common
-          call laws(material%law_id)%store(material, before, now, each, capacity)
-          taken = each(1)
-        end block
-      end associate
-    end function taken_up
-
   end function common_temperature
+
+  !> Heat that a volume of a group takes up between two temperatures.
+  function taken_up(scene, laws, g, from, to) result(taken)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: g            !! number of the group
+    real(wp), intent(in) :: from, to    !! [temperature]
+    real(wp) :: taken                   !! [energy/length^3]
+    real(wp), allocatable :: before(:, :), now(:, :)
+    real(wp) :: each(1), capacity(1)
+
+    associate (material => scene%materials(scene%groups(g)%material))
+      allocate (before(driver_count(laws(material%law_id)), 1), now(driver_count(laws(material%law_id)), 1), source=0.0_wp)
+      before(driver_temperature, 1) = from
+      now(driver_temperature, 1) = to
+      call laws(material%law_id)%store(material, before, now, each, capacity)
+    end associate
+    taken = each(1)
+  end function taken_up
 
 end module laid_bodies

@@ -39,8 +39,13 @@ contains
       where_at = where_at//', worst at node '//to_text(scene%mesh%labels(maxloc(sum(residual**2, 1), 1)))
       call save_failure(scene, solution, run%stem, residual, late)
     end if
-    advice = 'the residual force is in '//run%stem//'.failed.xdmf; a limit load, a mesh too distorted or a least step too ' &
-             //'large in STRAT are the usual causes'
+    advice = 'the residual force is in '//run%stem//'.failed.xdmf; '
+    if (scene%fields(displacement_field)%declared) then
+      advice = advice//'a limit load, a mesh too distorted or a least step too large in STRAT are the usual causes'
+    else
+      advice = advice//'numbers that jump along the temperature, NORMS near round-off or a least step too large in ' &
+               //'STRAT are the usual causes'
+    end if
     if (size(scene%die_forces) > 0) advice = 'a die that is free and touches nothing needs a SPRNG card until it does; '//advice
     if (index(outcome%reason, 'singular') > 0 .and. any(may_stand_alone(scene%groups))) advice = advice//'; a body of few ' &
       //'elements with 4 integration points has a motion that nothing resists, 9 points with MEAN have none'

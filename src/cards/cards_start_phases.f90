@@ -3,7 +3,7 @@ module cards_start_phases
   use cards_fields, only: read_body
   use deck_cursor, only: cursor_t
   use kinds, only: wp
-  use phase_state, only: at_coldest, state_names
+  use phase_state, only: at_coldest, cold_as_mixture, state_names
   use scene, only: group_t, host_of
   use scene_draft, only: draft_t
   use state_variables, only: find_variable
@@ -72,21 +72,18 @@ contains
     if (allocated(group%variables)) yes = find_variable(group%variables, trim(state_names(at_coldest))) > 0
   end function has_phases
 
-  !> A mixture with martensite has been as cold as leaves its austenite: no more forms above that.
+  !> The mixture of a group; one with martensite has been cold (phase_step).
   subroutine start_with(steel, z, group)
     type(steel_t), intent(in) :: steel
     real(wp), intent(in) :: z(:)   !! (phase_count) [-]
     type(group_t), intent(inout) :: group
-    real(wp) :: hard
     integer :: k
 
     do k = 1, phase_count
       group%variables(find_variable(group%variables, trim(state_names(k))))%initial = z(k)
     end do
-    hard = z(martensite) + z(tempered)
-    if (.not. (hard > 0 .and. z(austenite) > 0 .and. steel%ms > unknown_temperature)) return
-    group%variables(find_variable(group%variables, trim(state_names(at_coldest))))%initial = &
-      steel%ms + log(z(austenite)/(z(austenite) + hard))/steel%beta
+    if (.not. (any(z([martensite, tempered]) > 0) .and. z(austenite) > 0 .and. steel%ms > unknown_temperature)) return
+    group%variables(find_variable(group%variables, trim(state_names(at_coldest))))%initial = cold_as_mixture
   end subroutine start_with
 
 end module cards_start_phases

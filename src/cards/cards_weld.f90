@@ -101,7 +101,7 @@ contains
       if (k == 0) return
       select case (words(k)%s)
       case ('P')
-        call cursor%real('the power of the torch', source%power, lower=0.0_wp, strict_lower=.true., unit='power')
+        call cursor%real('the power of the torch', source%power, lower=0.0_wp, unit='power')
         call read_multiplier(cursor, draft, words, source%multiplier)
         if (source%multiplier > 0) then
           if (minval(draft%scene%multipliers(source%multiplier)%value) < 0) &

@@ -83,21 +83,26 @@ contains
     yes = size(drivers%value, 2) == 4
   end function drives_heat
 
-  !> Drivers of the first or the second half of a step: what changes goes straight, and states of the formulation itself are those
-  !> in the middle, which the first half has left as the trial state. They hold as they are: nothing advances them.
-  pure subroutine drivers_of_half(whole, groups, second, half)
+  !> Drivers of the first or the second part of a step, halves if nothing else is said: what changes goes straight, and states of
+  !> the formulation itself are those in between, which the first part has left as the trial state. They hold as they are: nothing
+  !> advances them.
+  pure subroutine drivers_of_half(whole, groups, second, half, share)
     type(drivers_t), intent(in) :: whole(:)                  !! (ngroup) of the step
     type(group_state_t), intent(in) :: groups(:)             !! (ngroup) states
     logical, intent(in) :: second
     type(drivers_t), allocatable, intent(out) :: half(:)     !! (ngroup)
+    real(wp), intent(in), optional :: share                  !! of the step, where its first part ends
+    real(wp) :: at
     integer :: g, k
 
+    at = 0.5_wp
+    if (present(share)) at = share
     allocate (half, source=whole)
     do g = 1, size(half)
       half(g)%vary = .false.
       if (.not. allocated(half(g)%value)) cycle
       associate (value => half(g)%value)
-        value(:, merge(1, 2, second), :, :) = 0.5_wp*(value(:, 1, :, :) + value(:, 2, :, :))
+        value(:, merge(1, 2, second), :, :) = (1 - at)*value(:, 1, :, :) + at*value(:, 2, :, :)
         do k = 1, size(half(g)%source)
           if (half(g)%source(k)%kind /= from_itself) cycle
           value(k, :, :, :) = whole(g)%value(k, :, :, :)

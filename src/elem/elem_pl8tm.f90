@@ -363,11 +363,12 @@ contains
     real(wp), intent(inout) :: trial(:, :)
     real(wp), intent(inout) :: force(:), stiffness(:, :)
     type(report_t), intent(inout) :: report
-    real(wp) :: given(max(1, size(drivers, 1)), 2), released, of_work, slope, per_strain, share, heat(own%n)
+    real(wp) :: given(max(1, size(drivers, 1)), 2), released, of_work, slope, surplus, per_strain, share, heat(own%n), counted
     integer :: p, j, n
 
     n = own%n
     heat = 0
+    counted = 0
     do p = 1, npoint
       share = place%dv0(p)/instant%dt
       per_strain = law%swell(material, dot_product(own%phi(:n, p), start))
@@ -382,8 +383,10 @@ contains
       if (size(drivers, 1) > 0) given = drivers(:, :, p)
       given(driver_temperature, :) = [dot_product(own%phi(:n, p), start), dot_product(own%phi(:n, p), start + change)]
       ! what happens at a point takes the time since the start of the step
-      call law%release(material, instant%dt/instant%share, given, committed(:, p), released, of_work, slope, trial(:, p))
+      call law%release(material, instant%dt/instant%share, given, committed(:, p), released, of_work, slope, trial(:, p), &
+                       surplus)
       heat = heat - own%phi(:n, p)*(released*share + of_work*(place%worked(p)/instant%dt))
+      counted = counted + surplus*place%dv0(p)
       if (.not. instant%tangent .or. .not. abs(slope) > 0) cycle
       do j = 1, n
         stiffness(:n, j) = stiffness(:n, j) - own%phi(:n, p)*(slope*share*own%phi(j, p))
@@ -391,7 +394,8 @@ contains
     end do
     force(:n) = force(:n) + heat
     report%source = report%source + sum(heat**2)
-    report%heat_released = report%heat_released - sum(heat)*instant%dt
+    report%heat_stored = report%heat_stored - counted
+    report%heat_released = report%heat_released - sum(heat)*instant%dt - counted
   end subroutine add_released
 
   !> Heat conducted at one of the instants of the flow rule.

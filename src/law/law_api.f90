@@ -206,7 +206,7 @@ module law_api
     end subroutine law_store_i
 
     !> Heat that a point releases in a step beside what flows, and its derivative by the temperature at the end.
-    pure subroutine law_release_i(material, dt, drivers, committed, released, of_work, slope, history)
+    pure subroutine law_release_i(material, dt, drivers, committed, released, of_work, slope, history, surplus)
       import :: material_t, wp
       type(material_t), intent(in) :: material
       real(wp), intent(in) :: dt              !! length of the step [time]
@@ -216,6 +216,8 @@ module law_api
       real(wp), intent(out) :: of_work        !! by plastic work, beside it [energy/length^3] per volume that the work is per
       real(wp), intent(out) :: slope          !! [energy/length^3/temperature]
       real(wp), intent(out) :: history(:)     !! (nhistory) [unit of each component]
+      !> Part of it that is no source: by how much `store` counts more than the point takes up [energy/length^3].
+      real(wp), intent(out), optional :: surplus
     end subroutine law_release_i
 
     !> Heat taken up by a change of volume, per volume and unit of volume strain.

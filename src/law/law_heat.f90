@@ -141,14 +141,16 @@ contains
   end function interval
 
   !> The share QUINNEY of the plastic work (G.I. Taylor, H. Quinney 1934) that has not become heat yet.
-  pure subroutine release(material, dt, drivers, committed, released, of_work, slope, history)
+  pure subroutine release(material, dt, drivers, committed, released, of_work, slope, history, surplus)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt, drivers(:, :), committed(:)
     real(wp), intent(out) :: released, of_work, slope, history(:)
+    real(wp), intent(out), optional :: surplus
 
     released = 0
     of_work = 0
     slope = 0
+    if (present(surplus)) surplus = 0
     if (size(history) == 0) return
     history(1) = drivers(driver_work, 2)
     of_work = share_of_work(material, place_share, drivers(driver_temperature, 1))*(drivers(driver_work, 2) - committed(1))

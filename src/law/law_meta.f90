@@ -3,8 +3,8 @@
 !> The points of the body hold the fractions of the phases and what their kinetics remember (src/phases). Heat flow
 !> -LAMBDA(T, z) grad T, LAMBDA that of the mixture at the start of the step. The heat taken up is that of austenite, exact between
 !> any temperatures; what the other phases take up more or less, with the mean of their fractions at both ends of the step, and the
-!> latent heat are released at the points, with the exact derivative by the temperature at the end. A steel whose heat content H
-!> holds the latent heat already has none beside.
+!> latent heat are released at the points, with the exact derivative by the temperature at the end. In the books of heat the former
+!> is heat taken up, which so is that of the phases there are. A steel whose heat content H holds the latent heat has none beside.
 !> The data are in the units of the steel's file: ENERGY is 1 MJ/m3 in the deck's [energy/length^3], CONDUCT 1 W/m/K in its unit of
 !> conductivity, TIME the seconds of its unit of time, ZERO what makes its temperatures degC. QUINNEY turns plastic work into heat.
 !> Source: S. Denis, D. Farias, A. Simon, ISIJ Int. 32 (1992) 316; kinetics: where they stand.
@@ -128,11 +128,12 @@ contains
 
   !> Phases at the end of the step, their latent heat, by how much they take up less heat than austenite, and the share of the
   !> plastic work that has not become heat yet.
-  pure subroutine release(material, dt, drivers, committed, released, of_work, slope, history)
+  pure subroutine release(material, dt, drivers, committed, released, of_work, slope, history, surplus)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt, drivers(:, :), committed(:)
     real(wp), intent(out) :: released, of_work, slope, history(:)
-    real(wp) :: start(state_size), changes(state_size), t(2), taken, capacity, own(2), mean, stresses(2, 2)
+    real(wp), intent(out), optional :: surplus
+    real(wp) :: start(state_size), changes(state_size), t(2), taken, capacity, own(2), mean, less, stresses(2, 2)
     integer :: i
 
     start = committed(:state_size)
@@ -144,17 +145,19 @@ contains
     end if
     call advance_phases(material%steel, dt*material%values(place_time), t(1), t(2), start, history(:state_size), changes, &
                         released, slope, stresses)
+    less = 0
     if (.not. material%steel%one_heat) then
       call heat_taken(material%steel, austenite, t(1), t(2), taken, capacity)
       do i = 1, phase_count
         mean = 0.5_wp*(start(i) + history(i))
         if (i == austenite .or. .not. mean > 0) cycle
         call heat_taken(material%steel, i, t(1), t(2), own(1), own(2))
-        released = released + mean*(taken - own(1))
+        less = less + mean*(taken - own(1))
         slope = slope + mean*(capacity - own(2)) + 0.5_wp*changes(i)*(taken - own(1))
       end do
     end if
-    released = released*material%values(place_energy)
+    released = (released + less)*material%values(place_energy)
+    if (present(surplus)) surplus = less*material%values(place_energy)
     slope = slope*material%values(place_energy)
     of_work = 0
     if (.not. has_number(material, place_share)) return

@@ -15,7 +15,7 @@ module solution
   use work_books, only: work_t
   implicit none
   private
-  public :: solution_t, group_state_t, start_solution, present_coordinates
+  public :: solution_t, group_state_t, start_fields, start_solution, present_coordinates
 
   !> State of the points of a group (component, point, element).
   type :: group_state_t

@@ -8,6 +8,10 @@
 !> that is left, or of the whole volume: then the fraction itself grows in proportion to S to 1 - exp(-b t_start^n).
 !> Two curves t_s(T) and t_f(T) of shares z_s and z_f give n = ln(ln(1-z_f)/ln(1-z_s))/ln(t_f/t_s) (6.12733/ln(t99/t1)),
 !> b = -ln(1-z_s)/t_s^n; their times are linear in ln t between temperatures.
+!> Curves end where the driving force does, and times go to infinity there; those of a file end at a finite time. Over the last
+!> `fading` below their end the time counts less and less, to nothing. So latent heat can lift the temperature to the end of the
+!> curve, where growth then takes what is conducted away: with a rate that jumped no temperature would balance the heat there
+!> (A.F. Filippov, Differential Equations with Discontinuous Righthand Sides, 1988).
 !> Source: E. Scheil, Arch. Eisenhuettenwes. 8 (1935) 565; M. Avrami, J. Chem. Phys. 8 (1940) 212; F. Fernandes, S. Denis,
 !> A. Simon, Mater. Sci. Technol. 1 (1985) 838.
 module avrami
@@ -17,7 +21,10 @@ module avrami
   use temperature_curves, only: dual_curve_at
   implicit none
   private
-  public :: grow_avrami, avrami_numbers, avrami_time
+  public :: grow_avrami, avrami_numbers, avrami_time, fading
+
+  !> Width below the highest temperature of a phase in which its growth ends [K]: less than temperatures of diagrams are known to.
+  real(wp), parameter :: fading = 2.0_wp
 
 contains
 
@@ -30,21 +37,23 @@ contains
     type(dual_t), intent(inout) :: incubation, extended   !! [-]
     type(dual_t), intent(out) :: growth      !! of the extended fraction, by which austenite is divided [-]
     type(dual_t), intent(out) :: of_volume   !! fraction of the whole volume that forms beside [-]
-    type(dual_t) :: log_b, n, start, left, share, before, first
+    type(dual_t) :: log_b, n, start, left, share, before, first, below
 
     before = extended
     of_volume = dual_t()
     call avrami_numbers(kinetics, temperature, log_b, n)
+    below = kinetics%high - temperature
     left = time
+    if (below%value < fading) left = time*(below/fading)
     if (kinetics%waits .and. incubation%value < 1) then
       start = dual_curve_at(kinetics%start, temperature)
-      share = time/(kinetics%factor*start)
+      share = left/(kinetics%factor*start)
       if (incubation%value + share%value < 1) then
         incubation = incubation + share
         left = dual_t()
       else
         share = 1.0_wp - incubation
-        left = time - kinetics%factor*start*share
+        left = left - kinetics%factor*start*share
         incubation = dual_t(1.0_wp)
       end if
       if (.not. kinetics%from_incubation) then

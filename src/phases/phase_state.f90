@@ -26,6 +26,8 @@ module phase_state
                                  'K/s', 'HV']
   !> Coldest temperature of a point that has not been cold [degC]: above all that steel can have.
   real(wp), parameter, public :: never_cold = 1.0e4_wp
+  !> That of a point that begins with a given mixture of austenite and martensite: to be found from the mixture and the temperature.
+  real(wp), parameter, public :: cold_as_mixture = 2*never_cold
 
 contains
 

@@ -16,7 +16,7 @@ module phase_step
   use li_kinetics, only: grow_li
   use martensite_kinetics, only: grow_martensite, martensite_start, total_martensite
   use phase_state, only: at_coldest, at_grain, at_hollomon_jaffe, at_rate, at_tempering, first_growth, first_incubation, &
-                         never_cold, set_hardness, state_size
+                         cold_as_mixture, never_cold, set_hardness, state_size
   use steels, only: austenite, bainite, ferrite, first_diffusive, kinetics_avrami, kinetics_li, kinetics_none, last_diffusive, &
                     martensite, pearlite, phase_count, prop_latent, steel_t, tempered, unknown_temperature
   use stress_kinetics, only: hastened, shift_of_phase, stressed_span
@@ -56,6 +56,8 @@ contains
     load = 0
     if (present(stresses) .and. steel%isig%given) load = stresses
     s%value = committed
+    if (committed(at_coldest) > 0.5_wp*(never_cold + cold_as_mixture)) &
+      s(at_coldest)%value = coldest_of_mixture(steel, committed, before)
     released = dual_t()
     finish = dual_t(now, 1.0_wp)
     parts = parts_of(steel, dt, before, load(:, 1), committed)
@@ -91,6 +93,20 @@ contains
     heat_slope = released%slope
     call set_hardness(steel, state)
   end subroutine advance_phases
+
+  !> A mixture that is given with its martensite has been as cold as leaves its austenite, and as it begins: no more forms above
+  !> that.
+  pure function coldest_of_mixture(steel, committed, before) result(coldest)
+    type(steel_t), intent(in) :: steel
+    real(wp), intent(in) :: committed(:)   !! (state_size) [state_units]
+    real(wp), intent(in) :: before         !! temperature [degC]
+    real(wp) :: coldest                    !! [degC]
+    type(dual_t) :: ms
+
+    ms = martensite_start(steel, dual_t(sum(committed(ferrite:bainite))))
+    coldest = committed(austenite)
+    coldest = min(before, ms%value + log(coldest/(coldest + committed(martensite) + committed(tempered)))/steel%beta)
+  end function coldest_of_mixture
 
   !> First and last node strictly between two temperatures, in the direction of the step; none: `last` is before `first`.
   pure subroutine find_nodes(nodes, before, now, first, last)
@@ -214,11 +230,26 @@ contains
       end do
       s(austenite) = s(austenite) + formed
     end if
+    do i = first_diffusive, last_diffusive
+      call forget_growth(steel, i, temperature%value, s)
+    end do
     s(at_coldest) = dual_t(never_cold)
     if (.not. s(martensite)%value > nothing_left) s(at_tempering) = dual_t()
     if (.not. s(bainite)%value > nothing_left) s(at_tempering + 1) = dual_t()
     if (.not. to_temper(s) > nothing_left) s(at_hollomon_jaffe) = dual_t()
   end subroutine heat_up
+
+  !> Above the temperatures at which a phase forms its nuclei dissolve; not those beside what has formed, which can go on.
+  pure subroutine forget_growth(steel, phase, temperature, s)
+    type(steel_t), intent(in) :: steel
+    integer, intent(in) :: phase
+    real(wp), intent(in) :: temperature   !! [degC]
+    type(dual_t), intent(inout) :: s(:)
+
+    if (temperature < steel%kinetics(phase)%high) return
+    s(first_incubation + phase - first_diffusive) = dual_t()
+    s(first_growth + phase - first_diffusive) = dual_t()
+  end subroutine forget_growth
 
   !> What the histories of a CCT diagram give down to Ms, as far as there is austenite.
   pure subroutine cool_by_histories(steel, time, from, to, stress, s, heat)
@@ -258,7 +289,7 @@ contains
     type(dual_t), intent(in) :: time, from, to, stress(2, 2)
     type(dual_t), intent(inout) :: s(:), heat
     type(dual_t), dimension(ferrite:martensite) :: w, volume, dz
-    type(dual_t) :: total, total_volume, room, formed, middle, own, span, ms(2), coldest(2), by_diffusion
+    type(dual_t) :: total, total_volume, room, formed, middle, own, span, ms(2), coldest(2), by_diffusion, cold(2)
     integer :: i
 
     middle = 0.5_wp*(from + to)
@@ -271,16 +302,17 @@ contains
       if (forms(steel, i, own%value)) then
         call grow(steel, i, span, own, s(first_incubation + i - ferrite), s(first_growth + i - ferrite), w(i), volume(i))
         call limit_growth(steel, i, own, s, w(i), volume(i))
-      else if (own%value >= steel%kinetics(i)%high) then
-        s(first_incubation + i - ferrite) = dual_t()
-        s(first_growth + i - ferrite) = dual_t()
+      else if (.not. s(i)%value > 0) then
+        call forget_growth(steel, i, own%value, s)
       end if
     end do
     by_diffusion = s(ferrite) + s(pearlite) + s(bainite)
     ms(1) = martensite_start(steel, by_diffusion)
     coldest(1) = s(at_coldest)
-    call grow_martensite(steel, by_diffusion, to - shift_of_phase(steel%isig, martensite, stress(:, 2)), s(at_coldest), &
-                         w(martensite))
+    ! a point that begins cold is at its coldest before it is heated
+    cold = [from - shift_of_phase(steel%isig, martensite, stress(:, 1)), to - shift_of_phase(steel%isig, martensite, stress(:, 2))]
+    if (cold(1)%value < cold(2)%value) cold(2) = cold(1)
+    call grow_martensite(steel, by_diffusion, cold(2), s(at_coldest), w(martensite))
     coldest(2) = s(at_coldest)
     total = sum_of(w)
     total_volume = sum_of(volume)

@@ -1,12 +1,13 @@
 !> A steel made ready: numbers that follow from the composition, the temperatures of its sub-steps, and what is missing.
 module steel_build
+  use avrami, only: fading
   use critical_temperatures, only: andrews_ae1, andrews_ae3, lever_rule_ferrite, li_bs, van_bohemen_ms, van_bohemen_rate
   use kinds, only: wp
   use li_kinetics, only: li_power, li_speed, li_table
   use phases_there, only: phases_that_form
-  use steels, only: bainite, expansion_none, ferrite, first_diffusive, kinetics_li, kinetics_none, last_diffusive, martensite, &
-                    pearlite, phase_count, phase_names, plasticity_none, prop_plasticity, prop_rise, prop_saturation, &
-                    property_count, steel_t, unknown_temperature
+  use steels, only: bainite, expansion_none, ferrite, first_diffusive, kinetics_avrami, kinetics_li, kinetics_none, &
+                    last_diffusive, martensite, pearlite, phase_count, phase_names, plasticity_none, &
+                    prop_plasticity, prop_rise, prop_saturation, property_count, steel_t, unknown_temperature
   use temperature_curves, only: curve_table, is_given, temperature_curve_t
   use text, only: add_text, string_t
   implicit none
@@ -80,6 +81,7 @@ contains
       associate (kinetics => steel%kinetics(i))
         if (kinetics%kind == kinetics_none) cycle
         breaks = [breaks, kinetics%low, kinetics%high]
+        if (kinetics%kind == kinetics_avrami) breaks = [breaks, kinetics%high - fading]
         call add_table(kinetics%start)
         call add_table(kinetics%finish)
         call add_table(kinetics%log_rate)

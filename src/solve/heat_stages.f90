@@ -5,7 +5,8 @@
 !> Math. 20 (1996) 21-37) has stages at the start, after 2 D dt, and at the end, D = 1 - 1/sqrt(2), W = sqrt(2)/4:
 !>   (H1 - Hn)/(D dt) + G0 + G1 = 0,   (H2 - Hn)/(D dt) + (W/D)(G0 + G1) + G2 = 0.
 !> It is of second order and L-stable, and both stages have the same matrix. The difference to its embedded formula of third order
-!> is its error, sum of E_k G_k dt; of implicit Euler it is the difference to the trapezoidal rule, (G1 - G0) dt/2 (heat_error).
+!> is its error, sum of E_k G_k dt, to which comes that of the heat that kinetics release along the temperatures of the step
+!> (kinetics_error); of implicit Euler it is the difference to the trapezoidal rule, (G1 - G0) dt/2 (heat_error).
 !> A first step is of implicit Euler: what was started with need not agree with what is imposed, which would cost TR-BDF2 an order.
 module heat_stages
   use equations, only: equations_t, remedy_euler, remedy_monotone, remedy_none, stage_t
@@ -14,6 +15,7 @@ module heat_stages
   use heat_bounds, only: excess_of_temperature, has_bounds, on_corners_alone
   use heat_error, only: diagonal, estimate_error, flows, weight
   use kinds, only: wp
+  use kinetics_error, only: content_error_of_path, keep_piece, path_piece_t
   use newton, only: outcome_t, solve_step
   use scene, only: role_heat_contact, scene_t
   use solution, only: solution_t
@@ -156,9 +158,10 @@ contains
     type(outcome_t), intent(out) :: outcome
     real(wp), intent(in), optional :: given(:)
     real(wp), dimension(equations%dofs%ndof, 0:2) :: g
-    real(wp), dimension(equations%dofs%ndof) :: start, external, left
-    real(wp) :: passed(size(equations%buffers%force))
+    real(wp), dimension(equations%dofs%ndof) :: start, external, left, heat
+    real(wp) :: passed(size(equations%buffers%force)), element_force(size(equations%buffers%force))
     type(evaluation_t) :: kept
+    type(path_piece_t) :: piece, whole
     type(outcome_t) :: first
 
     start = 0
@@ -174,7 +177,9 @@ contains
       outcome = first
       return
     end if
+    element_force = equations%buffers%force
     call flows(scene, equations, solution, 2*diagonal*dt, first%du, g(:, 1), reach=2*diagonal)
+    call keep_piece(scene, equations, solution, diagonal*dt, element_force, piece)
     call add_passed(scene, equations, weights(1), passed)
 
     ! the temperatures go on as they went in the first stage
@@ -189,11 +194,13 @@ contains
 
     call keep_evaluation(equations, kept)
     call flows(scene, equations, solution, dt, outcome%du, g(:, 2))
+    call keep_piece(scene, equations, solution, diagonal*dt, kept%element_force, whole)
+    call content_error_of_path(scene, equations, solution, dt, 2*diagonal, piece, whole, first%du, outcome%du, heat)
     call add_passed(scene, equations, weights(2), passed)
     call take_passed(scene, equations, passed, kept%element_force)
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     kept%force = merge(external + diagonal*(kept%force + left - external), kept%force, equations%solves(equations%now)%is_own)
-    call estimate_error(scene, equations, solution, dt, matmul(g, error_weights)/diagonal, g(:, 2), .true., outcome)
+    call estimate_error(scene, equations, solution, dt, (matmul(g, error_weights) + heat/dt)/diagonal, g(:, 2), .true., outcome)
     call return_to(kept, equations)
   end subroutine solve_two_stages
 

@@ -167,6 +167,15 @@ def told(checks):
         for words in ("bar: it begins as austenite at 0, below Ms of the steel s (300 degC)", "2 sides of elements are on both",
                       "the steel s has no hardness"):
             checks.that(sum(words in line["text"] for line in warnings) == 1, f"told: {words}", warnings)
+    # START in degC, ZERO for absolute temperatures
+    for start, zero, cold in ((-50, 0., True), (20, 0., False), (-50, 273.15, False), (-300, 273.15, True)):
+        run = Run(checks, f"radiates-{start}-{zero:g}", "TITLE radiates\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+                  f"   2 1.   2 1.\nLAW hot HEAT\n   30. 4.5\nSTART T 40.\nSTART T {start} bar\nRADIA bar 2 EPS 0.8 SIGMA 5.67E-11 ZERO {zero} TS 20.\n"
+                  "GOLDAK bar P 0. ETA 0.8 FRONT 2. REAR 2. DEPTH 2. INTO -1. 0.\n   0. 4. 2.\nSTRAT 1. 1. 1. 4 3\nSTOP 2.\nEND\n")
+        if run.ok:
+            lines = [line["text"] for line in summary(run)["warnings"] if "below absolute zero" in line["text"]]
+            checks.that(len(lines) == cold, f"radiates from {start} with ZERO {zero}: told", summary(run)["warnings"])
+            checks.that(abs(run.history["heat_through_bar/GOLDAK"][-1]) == 0, "a torch without power heats nothing")
     # air until water comes: never both
     run = Run(checks, "in-turns", "TITLE in turns\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
               "   2 1.   2 1.\nLAW hot HEAT\n   30. 4.5\nSTART T 100.\nLIC air\n   0. 1.   1. 1.   1.1 0.   2. 0.\nLIC water\n   0. 0.   1. 0.   1.1 1.   2. 1.\n"

@@ -6,6 +6,8 @@ usage: run_weld_pass.py [-v] [-k] [--write]     --write puts the table of finer 
 - `bar`: between two walls a bar is laid at a high temperature beside another; both come to one temperature, then to that of the
   start. Elastic: the mean temperature and the stress are the integrals of what was laid (closed form). Stopped and resumed: the same
   bits. Put to sleep again, it leaves the other bar without stress.
+- `whole`: laid beside a bar of another heat capacity, which depends on the temperature, on four and on eight nodes an element, on meshes that
+  differ: the common temperature is that of the heat of both (closed form).
 - `gap`: the first bar has come nearer by 15 % of the other's length before that is laid: no strain of it (KINEM SMALL), before and after
   a stop. Pressed by 12 % more it is refused.
 """
@@ -127,6 +129,62 @@ def gap(checks):
     checks.that(result.returncode == NO_CONVERGENCE and "large strain in KINEM SMALL" in result.stderr, "pressed: refused", said(result))
 
 
+WHOLE = """TITLE  laid hot, its heat capacity by temperature
+STATE  PLSTN
+KINEM  SMALL
+BLOCK  p PL8LS {rule} metal
+   0. 0.   10. 0.   10. 2.   0. 2.
+   {n} 1.   2 1.
+BLOCK  f PL8LS {rule} metal
+   10. 0.   14. 0.   14. 2.   10. 2.
+   {m} 1.   2 1.
+JOIN   p 2 f 4
+LAW    metal ELATH
+   {e} 0.3 1.E-5
+ADDEL  p PL8TM h {nodes}
+ADDEL  f PL8TM g {nodes}
+LAW    h HEAT
+   20. 3.6
+LAW    g HEAT
+   TEMP   0.
+   20. {low}
+   TEMP   2000.
+   40. {high}
+START  T 20. p
+START  T 1500. f
+FIXED  p 1 Y
+FIXED  p 4 X
+PROBE  t MEAN T p
+STRAT  0.1 1.E-5 50.   5 3
+OPERA  before
+ASLEEP f
+STOP   1.
+OPERA  laid
+STOP   2000.
+END
+"""
+
+
+def whole(checks):
+    """20 of volume at 20 degC and 8 at 1500 degC: 72 (T - 20) = 8 int RHOC dT."""
+    for k, (n, m, rule, nodes, low, high) in enumerate(((5, 2, 4, "", 2., 6.), (5, 2, 4, "BILINEAR", 2., 6.), (1, 1, 4, "", 2., 6.), (3, 4, 9, "", 2., 6.),
+                                                        (5, 2, 4, "", 6., 1.), (5, 2, 4, "", 3., 3.))):
+        name = f"whole{k}"
+        result = run([write(checks.path(name + ".lag"), WHOLE.format(n=n, m=m, rule=rule, nodes=nodes, low=low, high=high, e=E)), "--out", checks.path(name),
+                      "--threads", "1"])
+        if not checks.that(result.returncode == DONE, f"{name}: runs", said(result)):
+            continue
+        cold, hot = 20.0, 1500.0
+        for _ in range(100):
+            t = (cold + hot)/2
+            if 72*(t - 20) < 8*(low*(1500 - t) + (high - low)/4000*(1500**2 - t**2)):
+                cold = t
+            else:
+                hot = t
+        found = history(checks.path(name))["t"][-1]
+        checks.that(abs(found - t) < 1e-3, f"{name}: common temperature", (found, t))
+
+
 def table(checks):
     """Finer runs of the weld of a pipe, into its README."""
     folder = os.path.join(SOURCE, "decks", "weld_pipe")
@@ -151,6 +209,7 @@ def main():
     checks = Checks()
     bar(checks)
     gap(checks)
+    whole(checks)
     if "--write" in sys.argv[1:]:
         table(checks)
     checks.end()

@@ -184,6 +184,16 @@ def limit_load(checks):
                 result.stderr)
 
 
+def heat_alone(checks):
+    """What is advised is of the scene: a body that does not move has no limit load."""
+    deck = write(checks.path("heat.lag"), "TITLE heat alone, below round-off\nSTATE PLSTN\nKINEM SMALL\nBLOCK w PL8TM 4 h\n   0. 0.   10. 0.   10. 10.   0. 10.\n"
+                 "   4 1.   4 1.\nLAW h HEAT\n   TEMP 0.\n   1. 1.\n   TEMP 100.\n   1000. 1.\n   TEMP 101.\n   0.001 1.\nSTART T 0.\nFLUX w 2 Q 1.E5\n"
+                 "CONVE w 4 H 1. TS 0.\nNORMS FORCE 1.E-17\nSTRAT 1.E3 1.E3 1.E3   2 1\nSTOP 1.E3\nEND\n")
+    result = run([deck, "--out", checks.path("heat"), "--quiet"])
+    fails(checks, result, NO_CONVERGENCE, "heat alone", ["no convergence", "step 1 "])
+    checks.that("limit load" not in result.stderr and "NORMS near round-off" in result.stderr, "heat alone: advice", result.stderr[:400])
+
+
 def streams(checks):
     """What goes where when all is well."""
     quiet = run([UPSETTING, "--out", checks.path("quiet"), "--quiet", "-p", "travel=1"] + SMALL)
@@ -202,7 +212,7 @@ def streams(checks):
 def main():
     with_h5py()
     checks = Checks()
-    for topic in (command_line, no_place, full_disk, lost_output, limit_load, streams):
+    for topic in (command_line, no_place, full_disk, lost_output, limit_load, heat_alone, streams):
         topic(checks)
     checks.end()
 

@@ -196,6 +196,13 @@ def phases(checks):
     result = run(["--point", alone])
     checks.that(result.returncode == INPUT and "is driven by 'austenite', which a point alone does not have" in result.stderr,
                 "phases that nothing finds: refused", said(result))
+    # a mistake in the steel's file is all that is told
+    write(checks.path("wrong", "tension.met"), "STEEL w\nSOURCE 'none'\nTEMPS MS 300\nMARTEN BETA 0.011\nPHASE ALL\n   NUU 0.3\nEND\n")
+    wrong = BASE.replace("   200000. 0.3\n   LINEAR 300. 1000.\n", "   STEEL tension.met w\n   STRESS 1.   TIME 1.\n").replace("EPLA", "ARBTHMET") \
+        .replace("PATH   steel", "PATH   steel T 20.")
+    result = run(["--point", write(checks.path("wrong", "a.point"), wrong)])
+    checks.that(result.returncode == INPUT and "found 'NUU'" in result.stderr and "driven" not in result.stderr,
+                "a mistake in the steel's file: told alone", said(result))
 
 
 def refusals(checks):

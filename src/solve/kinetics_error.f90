@@ -1,0 +1,131 @@
+!> Error in time of the heat that kinetics release in a step of TR-BDF2.
+!>
+!> The phases of a point go on as if its temperature were linear in time over the whole step (phase_step). When the step has been
+!> found, what forms is made once more along two pieces, by way of the temperature after its first stage, at the share s of the
+!> step: the first piece is that stage itself, the second begins with its phases. Along a temperature that is quadratic in time each
+!> piece errs with the third power of its length, as the trapezoidal rule does, so that the error of the step is the difference over
+!> 1 - s^3 - (1 - s)^3 (as in step doubling: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 1993,
+!> II.4). Heat that is released too late or too early counts as an error of the heat content. Beside the error of implicit Euler
+!> this one is of higher order.
+module kinetics_error
+  use drivers, only: drivers_of_half, drivers_t
+  use elem_api, only: block_done, instant_t, report_t
+  use element_loop, only: gather_forces, run_elements
+  use equations, only: equations_t
+  use kinds, only: wp
+  use law_api, only: heat_law
+  use scene, only: scene_t
+  use solution, only: group_state_t, solution_t
+  use step_instants, only: make_instant
+  implicit none
+  private
+  public :: content_error_of_path, keep_piece, path_piece_t
+
+  !> A piece of a step.
+  type :: path_piece_t
+    !> Heat taken up less what was released, by element forces; not allocated where no kinetics release heat [energy].
+    real(wp), allocatable :: heat(:)
+    !> States at its end, of groups with kinetics (ngroup).
+    type(group_state_t), allocatable :: groups(:)
+  end type path_piece_t
+
+contains
+
+  !> Points of these groups have kinetics that release heat (ngroup).
+  pure function has_kinetics(scene, equations) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    logical :: yes(size(scene%groups))
+    integer :: g
+
+    yes = .false.
+    do g = 1, size(yes)
+      if (scene%groups(g)%material == 0) cycle
+      associate (material => scene%materials(scene%groups(g)%material))
+        if (.not. allocated(material%steel)) cycle
+        yes(g) = equations%solves(equations%now)%active(g) .and. equations%laws(material%law_id)%kind == heat_law
+      end associate
+    end do
+  end function has_kinetics
+
+  !> Keep what a stage has found, from its element forces and those of the flows at its end, which were evaluated last.
+  subroutine keep_piece(scene, equations, solution, length, element_force, piece)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: length             !! by which the stage divides changes of the heat content [time]
+    real(wp), intent(in) :: element_force(:)   !! [power]
+    type(path_piece_t), intent(out) :: piece
+    logical :: active(size(scene%groups))
+    integer :: g
+
+    active = has_kinetics(scene, equations)
+    if (.not. any(active)) return
+    piece%heat = length*(element_force - equations%buffers%force)
+    allocate (piece%groups(size(active)))
+    do g = 1, size(active)
+      if (active(g)) piece%groups(g) = solution%groups(g)
+    end do
+  end subroutine keep_piece
+
+  !> What is missing in the heat contents at the end of a step. Element forces and states are kept.
+  subroutine content_error_of_path(scene, equations, solution, dt, share, first, whole, middle, du, heat)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt                !! [time]
+    real(wp), intent(in) :: share             !! of the step, where the path is bent
+    type(path_piece_t), intent(in) :: first        !! the step to there
+    type(path_piece_t), intent(in) :: whole        !! all of it
+    real(wp), intent(in) :: middle(:)         !! (ndof) motion to there [unknown]
+    real(wp), intent(in) :: du(:)             !! (ndof) motion of the step [unknown]
+    real(wp), intent(out) :: heat(:)          !! (ndof) [energy]
+    type(drivers_t), allocatable :: drivers(:)
+    type(instant_t) :: instant
+    type(report_t) :: report
+    real(wp) :: element_force(size(equations%buffers%force)), magnitude(size(du)), none(0, 0)
+    logical :: active(size(scene%groups))
+    integer :: g
+
+    heat = 0
+    if (.not. allocated(whole%heat)) return
+    active = has_kinetics(scene, equations)
+    element_force = equations%buffers%force
+    do g = 1, size(active)
+      if (active(g)) solution%groups(g)%committed = first%groups(g)%trial
+    end do
+    call drivers_of_half(equations%drivers, solution%groups, .true., drivers, share)
+    call make_instant(scene, equations, solution, (1 - share)*dt, du - middle, .false., instant)
+    instant%flow%n = 0
+    instant%values = instant%values + middle
+    associate (solve => equations%solves(equations%now), buffers => equations%buffers)
+      call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, active, solve%pattern, &
+                        instant, du - middle, none, solution, drivers, buffers, equations%timers, report)
+      if (report%status == block_done) then
+        buffers%force = merge(whole%heat - first%heat - instant%dt*buffers%force, 0.0_wp, of_groups(equations, active))
+        call gather_forces(solve%pattern, buffers, solve%is_own, heat, magnitude)
+        heat = heat/(1 - share**3 - (1 - share)**3)
+      end if
+      buffers%force = element_force
+    end associate
+    do g = 1, size(active)
+      if (active(g)) solution%groups(g) = whole%groups(g)
+    end do
+  end subroutine content_error_of_path
+
+  !> Element forces that are of these groups.
+  pure function of_groups(equations, active) result(yes)
+    type(equations_t), intent(in) :: equations
+    logical, intent(in) :: active(:)   !! (ngroup)
+    logical :: yes(size(equations%buffers%force))
+    integer :: g, m
+
+    yes = .false.
+    do g = 1, size(active)
+      if (.not. active(g)) cycle
+      m = equations%solves(1)%pattern%force_start(g)
+      yes(m + 1:m + size(equations%dofs%groups(g)%dof)) = .true.
+    end do
+  end function of_groups
+
+end module kinetics_error

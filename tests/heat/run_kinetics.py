@@ -1,0 +1,204 @@
+#!/usr/bin/env python3
+"""Kinetics of phases in the balance of heat: books, what is there at the start, the end of a curve, the error in time.
+
+usage: run_kinetics.py [-v] [-k]
+
+- `books`: heat taken up is that of the phases there are, by their own RHOC; what is released is their latent heat. Martensite and mixtures that are
+  heated release nothing; austenite that is quenched releases the latent heat of its martensite. On corners and on eight nodes.
+- `cold`: retained austenite beside martensite at room temperature stays when it is heated, in steps of any length, with META and with ARBTHMET; austenite
+  that begins below Ms has the martensite of its first temperature.
+- `top`: bainite whose latent heat lifts the temperature to the end of its curve, where growth ends: no step is shortened, at any length, on any mesh, and
+  runs by steps of 10, 2 and 0.5 s agree.
+- `error`: the largest error in time that is told is 0.7 to 4 times that of the run, where latent heat of pearlite is most of it.
+"""
+import os
+import sys
+
+sys.dont_write_bytecode = True
+TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+sys.path[:0] = [os.path.join(TESTS, folder) for folder in ("runs",)]
+from math import exp  # noqa: E402
+from support import DONE, Checks, history, run, said, summary, write  # noqa: E402
+
+MS, BETA, LATENT = 350.0, 0.015, 600.0
+OWN = {"AUSTENITE": 5.0, "MARTENSITE": 3.0, "PEARLITE": 4.0}
+STEELS = f"""STEEL  two
+SOURCE 'made up, for tests'
+TEMPS  MS {MS:g}
+MARTEN BETA {BETA:g}
+EXPAND TOTAL 20
+PHASE  ALL
+   LAMBDA 30
+   E      200000
+   NU     0.3
+   ALPHA  12E-6
+PHASE  AUSTENITE
+   RHOC   {OWN['AUSTENITE']:g}
+PHASE  PEARLITE
+   RHOC   {OWN['PEARLITE']:g}
+   DEPS   0.004
+PHASE  MARTENSITE
+   RHOC   {OWN['MARTENSITE']:g}
+   LATENT {LATENT:g}
+   DEPS   0.01
+STEEL  bainitic
+SOURCE 'made up, for tests; fast up to the end of its curve'
+TEMPS  BS 385
+AVRAMI BAINITE 0 385 ZERO VOLUME
+   LNB   TABLE 250 -17.1  320 -13.3  350 -10.7  385 -8.2
+   N     TABLE 250 3.5  320 2.9  350 2.6  385 2.6
+   START TABLE 250 210  300 48  350 13.2  385 8
+PHASE  ALL
+   LAMBDA 30
+   RHOC   4.2
+PHASE  BAINITE
+   LATENT 980
+STEEL  pearlitic
+SOURCE 'made up, for tests'
+TEMPS  AE3 800 AE1 720
+AVRAMI PEARLITE 400 700
+   LNB   TABLE 400 -8  700 -6
+   N     2.5
+PHASE  ALL
+   LAMBDA 30
+   RHOC   4
+PHASE  PEARLITE
+   LATENT 400
+END
+"""
+DECK = """TITLE  {title}
+STATE  PLSTN
+KINEM  SMALL
+BLOCK  w PL8TM 4 m {nodes}
+   0. 0.   {size} 0.   {size} {size}   0. {size}
+   {n} 1.   {n} 1.
+LAW    m META
+   STEEL k.met {steel}
+   ENERGY 1.
+{cards}
+PROBE  t MEAN T w
+{probes}
+END
+"""
+SLOWLY = "START  T {start}\nCONVE  w 2 H {h} TS {ts}\nSTRAT  {strat}\nSTOP   {stop}\nTHETA  {theta}"
+
+
+def rows_of(checks, name, steel, cards, probes, nodes="BILINEAR", size=10., n=2):
+    """History of a deck that must run to its end; None where it does not."""
+    write(checks.path(name, "k.met"), STEELS)
+    text = DECK.format(title=name, nodes=nodes, size=size, n=n, steel=steel, cards=cards, probes="\n".join(f"PROBE  {p} MEAN {p} w" for p in probes))
+    result = run([write(checks.path(name, "a.lag"), text), "--out", checks.path(name, "out"), "--threads", "1"])
+    return history(checks.path(name, "out")) if checks.that(result.returncode == DONE, f"{name}: runs", said(result)) else None
+
+
+def books(checks):
+    """100 of area: heated by 200 K at 60 000 of pure martensite."""
+    for nodes in ("BILINEAR", ""):
+        for number, shares in enumerate(({"MARTENSITE": 1.0}, {"MARTENSITE": 0.4, "PEARLITE": 0.6}, {"AUSTENITE": 0.3, "MARTENSITE": 0.7})):
+            name = f"books_{nodes.lower() or 'eight'}_{number}"
+            capacity = sum(share*OWN[phase] for phase, share in shares.items())
+            start = "START  PHASES " + " ".join(f"{phase} {share:g}" for phase, share in shares.items())
+            rows = rows_of(checks, name, "two", f"START  T 20.\n{start}\nFLUX   w 2 Q {capacity*20:g}\nSTRAT  0.5 0.1 1. 5 3\nSTOP   100.", ["martensite"], nodes)
+            if not rows:
+                continue
+            stored, released = rows["heat_stored"][-1], rows["heat_released"][-1]
+            checks.that(abs(stored/(capacity*200*100) - 1) < 1e-9, f"{name}: taken up", (stored, capacity*2e4))
+            checks.that(abs(released) < 1e-9*stored, f"{name}: released", released)
+            checks.that(max(map(abs, rows["heat_imbalance"])) < 1e-9, f"{name}: imbalance", max(map(abs, rows["heat_imbalance"])))
+        name = f"books_quench_{nodes.lower() or 'eight'}"
+        rows = rows_of(checks, name, "two", "START  T 500.\nCONVE  w 2 H 1. TS 20.\nSTRAT  0.1 1.E-4 1. 5 3\nSTOP   150.", ["martensite"], nodes)
+        if not rows:
+            continue
+        formed = 100*LATENT*rows["martensite"][-1]
+        checks.that(abs(rows["heat_released"][-1]/formed - 1) < 1e-3, f"{name}: latent heat", (rows["heat_released"][-1], formed))
+        checks.that(max(map(abs, rows["heat_imbalance"])) < 1e-6, f"{name}: imbalance", max(map(abs, rows["heat_imbalance"])))
+
+
+def cold(checks):
+    """From 20 to 220 degC in 1, 5 and 40 steps."""
+    formed = 1 - exp(-BETA*(MS - 20))
+    for steps in (1, 5, 40):
+        for start, expected in (("START  PHASES AUSTENITE 0.5 MARTENSITE 0.5\n", 0.5), ("", formed)):
+            name = f"cold_{steps}_{'mixture' if start else 'austenite'}"
+            rows = rows_of(checks, name, "two", f"START  T 20.\n{start}IMPOS  w 2 T way\nIMPOS  w 4 T way\nLIC    way\n   0. 20.   10. 220.\n"
+                           f"STRAT  {10/steps} 1.E-3 {10/steps} 9 3\nSTOP   10.", ["martensite"], n=1)
+            if rows:
+                checks.that(all(abs(z - expected) < 1e-12 for z in rows["martensite"][1:]), f"{name}: martensite", rows["martensite"][-1])
+    text = """TITLE  cold, by the law itself
+STATE  AXISYM
+KINEM  SMALL
+BLOCK  a PL8LS 4 steel
+   0. 0.   1. 0.   1. 1.   0. 1.
+   1 1.   1 1.
+LAW    steel ARBTHMET
+   STEEL k.met two
+   STRESS 1.   TIME 1.
+TEMPE  a 1. way
+LIC    way
+   0. 20.   10. 220.
+START  PHASES MARTENSITE 0.5 AUSTENITE 0.5
+FIXED  a 1 Y
+FIXED  a 4 X
+STRAT  5. 1.E-4 5.   9 3
+STOP   10.
+PROBE  martensite MEAN martensite a
+END
+"""
+    write(checks.path("cold_own", "k.met"), STEELS)
+    result = run([write(checks.path("cold_own", "a.lag"), text), "--out", checks.path("cold_own", "out"), "--threads", "1"])
+    if checks.that(result.returncode == DONE, "cold_own: runs", said(result)):
+        rows = history(checks.path("cold_own", "out"))
+        checks.that(abs(rows["martensite"][-1] - 0.5) < 1e-12, "cold_own: martensite", rows["martensite"][-1])
+
+
+def top(checks):
+    """The temperature stays within the last kelvins of the curve for most of the run."""
+    found = {}
+    for name, step, n, nodes, theta in (("top_short", 0.5, 4, "BILINEAR", "TRBDF2"), ("top_middle", 2., 4, "BILINEAR", "TRBDF2"), ("top_long", 10., 4, "BILINEAR", "TRBDF2"),
+                                        ("top_one", 2., 1, "", "TRBDF2"), ("top_fine", 2., 8, "", "TRBDF2"), ("top_euler", 2., 4, "", "1.")):
+        cards = SLOWLY.format(start=850., h=1., ts=330., strat=f"{step} 1.E-5 {step} 8 3", stop=500., theta=theta)
+        rows = rows_of(checks, name, "bainitic", cards, ["bainite"], nodes, 20., n)
+        if not rows:
+            continue
+        found[name] = rows["bainite"][-1]
+        checks.that(max(rows["cutbacks"]) == 0, f"{name}: no step is shortened", max(rows["cutbacks"]))
+        checks.that(max(t for t, time in zip(rows["t"], rows["time"]) if time > 300) > 380, f"{name}: near the end of the curve", max(rows["t"][-20:]))
+        checks.that(max(rows["iterations"][1:]) <= 15, f"{name}: iterations", max(rows["iterations"][1:]))
+    if "top_short" in found:
+        for name, z in found.items():
+            checks.that(abs(z - found["top_short"]) < 0.01, f"{name}: bainite as by short steps", (z, found["top_short"]))
+
+
+def error(checks):
+    """20 mm through pearlite, from within a step to the whole of it."""
+    cards = SLOWLY.format(start=720., h=0.5, ts=400., strat="{strat}", stop=40., theta="{theta}")
+    for nodes, n in (("BILINEAR", 4), ("", 3)):
+        word = nodes.lower() or "eight"
+        reference = rows_of(checks, f"error_{word}_fine", "pearlitic", cards.format(strat="0.05 1.E-5 0.05 8 3", theta="TRBDF2"), ["pearlite"], nodes, 20., n)
+        for theta in ("TRBDF2 TOL 0.3", "TRBDF2 TOL 0.1", "TRBDF2 TOL 0.03", "TRBDF2 TOL 0.01", "1. TOL 0.1"):
+            name = f"error_{word}_{theta.replace(' ', '_')}"
+            rows = rows_of(checks, name, "pearlitic", cards.format(strat="0.1 1.E-5 200. 20 9 0.25 4.", theta=theta), ["pearlite"], nodes, 20., n)
+            if not (rows and reference):
+                continue
+            largest = max(abs(t - between(reference["time"], reference["t"], time)) for time, t in zip(rows["time"], rows["t"]))
+            told = summary(checks.path(name, "out"))["checks"]["error_in_time_largest"]
+            checks.that(0.7*largest < told < 4*largest, f"{name}: told and found", (told, largest))
+
+
+def between(times, values, time):
+    """Linear between the rows of a history."""
+    k = max(1, next((k for k, other in enumerate(times) if other >= time), len(times) - 1))
+    return values[k - 1] + (values[k] - values[k - 1])*(time - times[k - 1])/(times[k] - times[k - 1])
+
+
+def main():
+    checks = Checks()
+    books(checks)
+    cold(checks)
+    top(checks)
+    error(checks)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
