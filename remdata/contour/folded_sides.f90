@@ -1,9 +1,9 @@
 !> Folds of a body: sides that lie on other sides of their own body (own_contact).
 !>
-!> Both overlap by the depth of contact, and a contour that crosses itself cannot be meshed. So both are moved back by the depth, or,
-!> where that is more, by what new sides, straight to the mesher and with their ends elsewhere, may miss of wavy ones: the contour
-!> follows the fold to its ground. On the new mesh they are moved together again (fold_closing). Nodes move against the sides'
-!> normals, along what their supports leave free; at the ground of a fold, where normals face each other, they stay.
+!> Both overlap by the depth of contact, and a contour that crosses itself cannot be meshed. So both are moved back by the depth,
+!> or, where that is more, by what new sides, straight to the mesher and with their ends elsewhere, may miss of wavy ones: the
+!> contour follows the fold to its ground. On the new mesh they are moved together again (fold_closing). Nodes move against the
+!> sides' normals, along what their supports leave free; at the ground of a fold, where normals face each other, they stay.
 module folded_sides
   use fields, only: displacement_field
   use kinds, only: wp
