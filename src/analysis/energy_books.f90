@@ -248,7 +248,6 @@ contains
     if (damped_share(solution) > largest_damping) &
       advice = 'what a die held was let go suddenly, and where it came to rest depends on the way there: compare with ' &
                //'smaller steps (STRAT), or let the die withdraw at once'
-    if (solution%damping > 0) advice = 'the last step has viscous forces that hold the part: it is not in equilibrium'
   end function damping_advice
 
   !> Energy that springs of dies and of bodies hold [energy]. They stand outside: what dies do to the part is the work of dies, what

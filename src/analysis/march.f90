@@ -17,6 +17,7 @@ module march
   use judge_remesh, only: limit_lines, refuse_remesh
   use kinds, only: eps, wp
   use listing, only: list_balance, list_cutback, list_event, list_lines, list_note, list_step, show_progress
+  use lost_equilibrium, only: refuse_lost_equilibrium
   use memory_limits, only: require_memory
   use newton, only: outcome_t
   use path_record, only: note_attempt
@@ -103,6 +104,7 @@ contains
       if (allocated(error)) exit
       call record(scene, solution, outcome, run, error)
       if (.not. allocated(error)) call refuse_large_strain(scene, run%equations%laws, solution, error)
+      if (.not. allocated(error)) call refuse_lost_equilibrium(scene, solution, error)
       if (allocated(error)) exit
       if (caught_signal() /= 0 .or. mesh_is_due(solution)) exit
     end do

@@ -44,6 +44,8 @@ module solution
     type(probation_t) :: probation
     !> Viscous force over velocity and volume in the step to come, 0 where it is not damped (damping) [force time/length^4].
     real(wp) :: damping = 0.0_wp
+    !> Work of damping up to which it may be a release of elastic energy [energy, per radian when axisymmetric].
+    real(wp) :: damping_bound = 0.0_wp
     !> Totals since the start.
     integer :: iterations = 0, cutbacks = 0
     !> Work done on the scene from outside, per radian when axisymmetric.

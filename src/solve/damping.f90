@@ -10,7 +10,8 @@
 !>
 !> c begins so that the force of the die would move the part by the side of an element within the step that failed. A step that
 !> fails again, or goes further than the path can be followed, makes it larger; others make it smaller. It ends where the forces
-!> are within the tolerance of equilibrium. Their work is booked, and told at the end.
+!> are within the tolerance of equilibrium. Their work is booked, and told at the end. No release takes more than the elastic energy
+!> that was there: where they take more it is loads that drive the part on, and nothing holds it (lost_equilibrium).
 module damping
   use convergence, only: relative_residual
   use dofs, only: prescribed_motion
@@ -20,7 +21,6 @@ module damping
   use evaluation, only: evaluate
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
-  use predictor, only: work_of_dies
   use scene, only: is_solid, scene_t
   use solution, only: present_coordinates, solution_t
   use vectors, only: length_of
@@ -71,7 +71,7 @@ contains
     real(wp), intent(in) :: dt     !! of the step that failed [time]
     integer, intent(out) :: die    !! the one that withdraws with the largest force, 0 where none does
     real(wp), dimension(equations%dofs%ndof) :: rest, motion
-    real(wp) :: driven(size(equations%dofs%prescribed)), work(size(scene%dies)), force, largest
+    real(wp) :: driven(size(equations%dofs%prescribed)), force, largest
     type(report_t) :: report
     logical :: at_rest
     integer :: k
@@ -85,18 +85,21 @@ contains
     rest = 0
     call evaluate(scene, equations, solution, dt, rest, .false., report)
     if (report%status /= block_done) return
-    work = work_of_dies(equations, motion)
     largest = 0
     associate (pilot => equations%dofs%fields(pilot_field)%number)
-      do k = 1, size(work)
-        if (.not. work(k) < 0 .or. any(pilot(1:2, k) == 0)) cycle
+      do k = 1, size(pilot, 2)
+        if (any(pilot(1:2, k) == 0)) cycle
+        ! one that turns a part over does not let it go
+        if (.not. dot_product(equations%force(pilot(1:2, k)), motion(pilot(1:2, k))) < 0) cycle
         force = length_of(equations%force(pilot(1:2, k)))
         if (.not. force > largest) cycle
         largest = force
         die = k
       end do
     end associate
-    if (die > 0) solution%damping = largest*dt/size_of_part(scene, solution)
+    if (die == 0) return
+    solution%damping = largest*dt/size_of_part(scene, solution)
+    solution%damping_bound = solution%work%damping + solution%work%elastic
   end subroutine begin_damping
 
   !> Volume of the bodies times the side of the smallest element [length^4, per radian when axisymmetric].

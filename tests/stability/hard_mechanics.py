@@ -300,6 +300,18 @@ def lets_go(checks):
     return worst
 
 
+def driven_on(checks):
+    """A block on a table that goes down, pushed by more than friction holds from .7 on: no release of what was stored, but no equilibrium,
+    whatever is damped; the run says so soon after."""
+    run = checks.run("driven-on", deck(
+        "PLSTN", "LOG", block("0. 0. 10. 0. 10. 5. 0. 5.", "8 1. 4 1."), "LAW m ELA\n 1000. 0.3\nLAW k COUL2D\n PENETR 1.E-3 PHI 0.2\n",
+        "DIE table PILOT 0. 0.\n SEGM -100. 0. 100. 0.\nCNT2D b 1 table k\nTRACT b 3 Y -10. weight\nTRACT b 4 X 6. push\nMOVE table Y down\n"
+        "LIC weight\n 0. 0. 0.1 1. 2. 1.\nLIC push\n 0. 0. 0.1 0. 1. 1.\nLIC down\n 0. 0. 0.1 0. 1. -1.\n", "STRAT 0.01 1.E-6 0.05 5 3"), 3)
+    if "nothing holds it" not in run.said:
+        raise RuntimeError(run.said)
+    return abs(run.history["time"][-1] - 0.7)
+
+
 def past_the_end(checks):
     """A block under a weight dragged over the open end of its table and back: it stays whole, and the force is friction's."""
     run = checks.run("past-the-end", deck(
@@ -484,7 +496,7 @@ CASES = (
     Case("held by friction alone", friction_alone, 1e-2), Case("contact again", contact_again, 0.01),
     Case("released and pressed again", released, 1e-9), Case("lifts off", lifts_off, 0), Case("lifted off", lifted_off, 1e-9),
     Case("wall that peels off", wall_peels, 1), Case("another press turns back", another_press_turns, 1.0),
-    Case("past a die's end", past_the_end, 1e-2), Case("slides off an edge", slides_off_an_edge, 0.03), Case("flash let go", lets_go, 0.01),
+    Case("past a die's end", past_the_end, 1e-2), Case("slides off an edge", slides_off_an_edge, 0.03), Case("flash let go", lets_go, 0.01), Case("driven on", driven_on, 0.15),
     Case("round a fillet", round_a_fillet, 5.0),
     Case("stick-slip reversal", stick_slip, 1e-3),
     Case("bent round a pin", round_a_pin, 0.25), Case("bent between three rollers", three_point_bending, 0.2),
