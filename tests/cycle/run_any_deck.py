@@ -117,6 +117,42 @@ UNSTRESSED_CASES = {
 CARRIED = 0.05
 
 
+# A block with a notch in its side, upset until most of the notch has closed.
+NOTCH = """TITLE  a notch that closes
+STATE  PLSTN
+KINEM  LOG
+BODY   part PL8LS 4 metal
+   SEGM  0. 0.     12. 0.
+   SEGM  12. 0.    12. 8.
+   SEGM  12. 8.    8. 10.
+   SEGM  8. 10.    12. 12.
+   SEGM  12. 12.   12. 20.
+   SEGM  12. 20.   0. 20.
+   SEGM  0. 20.    0. 0.
+LAW    metal EPLA
+   70000. 0.33
+   SWIFT 250. 0.01 0.15
+LAW    film COUL2D
+   PENETR 1.E-3   PHI 0.2   AUGMENT 10
+DIE    base
+   SEGM  -40. 0.   40. 0.
+CNT2D  part 1 2 base film
+DIE    top PILOT 0. 20.
+   SEGM  40. 20.  -40. 20.
+CNT2D  part 5 6 top film
+FIXED  part 7 X
+DIE    skin SIDES part 3 4
+CNT2D  skin skin film
+LIC    down
+   0. 0.  1. -7.
+MOVE   top Y down
+STRAT  0.002 1.E-6 0.02   6 3
+STOP   0.78
+REMSH
+END
+"""
+
+
 def with_remesh(deck, path):
     """The deck with a new mesh at half its time."""
     with open(deck, encoding="utf-8") as file:
@@ -163,9 +199,19 @@ def pushed(checks):
     checks.that(abs(moved / 0.32 - 1) < 1e-6, "loads on a contour: force over stiffness", moved)
 
 
+def closing(checks):
+    """A notch that closes on itself: its flanks are wavy where they press on each other, and new meshes follow them both."""
+    out = checks.path("notch.out")
+    result = cycle(write(checks.path("notch.lag"), NOTCH), out)
+    if not checks.that(result.returncode == DONE, "a notch that closes: the cycle ends with 0", result.stdout + result.stderr):
+        return
+    checks.that(not any("contours cross" in t["reason"] for t in tries(out)), "a notch that closes: its flanks do not cross", [t["reason"] for t in tries(out)])
+
+
 def main():
     checks = Checks()
     pushed(checks)
+    closing(checks)
     for name, options, limits in DECKS:
         remeshed(checks, os.path.join(ROOT, "decks", name + ".lag"), options, limits)
     remeshed(checks, write(checks.path("decks", "spring.lag"), SPRING), [], {"force_y_upper": 0.001, "elastic_energy": 0.001})
