@@ -43,7 +43,7 @@ module march
   !> A step shortened to an event is shortened by at least this much, so that the event is met in a few trials.
   real(wp), parameter :: largest_event = 0.95_wp
   !> So many cutbacks in a row are not answered by damping.
-  integer, parameter :: most_cutbacks_undamped = 1
+  integer, parameter :: most_cutbacks_undamped = 2
   !> So many cutbacks in a row show that a body passes through itself in steps of any length.
   integer, parameter :: most_cutbacks_for_crossing = 3
 

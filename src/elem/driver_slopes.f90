@@ -121,7 +121,7 @@ contains
           given(driver_temperature, :) = [before(p), after(p)]
           do d = 1, size(sources)
             if (sources(d)%kind /= from_stress) cycle
-            change = epsilon(1.0_wp)**(1.0_wp/3)*maxval(abs(given(:, 2)), mask=sources%kind == from_stress)
+            change = epsilon(1.0_wp)**(1.0_wp/3)*maxval(abs(given(:, 2)), mask=sources(:size(given, 1))%kind == from_stress)
             if (.not. change > 0) cycle
             given(d, 2) = given(d, 2) + change
             call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), high, of_work, slope, state)
