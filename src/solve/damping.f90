@@ -13,11 +13,10 @@
 !> are within the tolerance of equilibrium. Their work is booked, and told at the end. No release takes more than the elastic energy
 !> that was there: where they take more it is loads that drive the part on, and nothing holds it (lost_equilibrium).
 module damping
-  use convergence, only: relative_residual
   use dofs, only: prescribed_motion
   use elem_api, only: block_done, report_t
   use elem_body_springs, only: mass_matrix
-  use equations, only: equations_t
+  use equations, only: equations_t, take_turn
   use evaluation, only: evaluate
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
@@ -83,6 +82,7 @@ contains
     motion = 0
     motion(equations%dofs%prescribed%dof) = driven
     rest = 0
+    call take_turn(equations, displacement_field)
     call evaluate(scene, equations, solution, dt, rest, .false., report)
     if (report%status /= block_done) return
     largest = 0
@@ -147,7 +147,7 @@ contains
     if (.not. allocated(equations%damping)) return
     forces = equations%damping*du/dt
     if (.not. solution%next_step < dt) solution%damping = weaker*solution%damping
-    if (relative_residual(equations, solution%fields, 0*du, forces, du) <= scene%strategy%force_norm) solution%damping = 0
+    if (norm2(forces) <= scene%strategy%force_norm*norm2(pack(equations%magnitude, equations%damping > 0))) solution%damping = 0
   end subroutine ease_damping
 
   !> Work that viscous forces took in a step [energy].

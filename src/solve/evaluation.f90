@@ -39,7 +39,7 @@ contains
     logical, intent(in), optional :: points_alone           !! sides press on dies at their points alone
     type(instant_t) :: instant
     real(wp), allocatable :: now(:, :)
-    logical :: active(size(scene%groups))
+    logical :: active(size(scene%groups)), damped
     integer :: timer
 
     call fit_to_load(equations%team)
@@ -78,11 +78,11 @@ contains
         call press_on_axis(scene, equations%dofs, solve%pattern, solve%active, solution%fields(displacement_field)%value, du, &
                            tangent, equations%wall, equations%buffers%force, equations%buffers%matrix, report)
       call gather_forces(solve%pattern, equations%buffers, solve%is_own, equations%force, equations%magnitude)
-      if (allocated(equations%damping) .and. dt > 0) equations%force = equations%force + equations%damping*du/dt
+      damped = allocated(equations%damping) .and. dt > 0 .and. solve%own(displacement_field)
+      if (damped) equations%force = equations%force + equations%damping*du/dt
       if (tangent) then
         call gather_matrix(solve%pattern, equations%buffers, solve%values)
-        if (allocated(equations%damping) .and. dt > 0) &
-          call add_diagonal(solve%pattern, solve%equation, equations%damping/dt, solve%values)
+        if (damped) call add_diagonal(solve%pattern, solve%equation, equations%damping/dt, solve%values)
         call hold_resting(scene, equations%dofs, solution, equations%loose, solve%pattern, solve%equation, equations%resting, &
                           solve%values)
       end if
