@@ -33,7 +33,7 @@ contains
     call visit_deck_source(schema, deck)
     call visit_scene_members(schema, scene)
     ! a solution has its lists before it is visited: one entry of each
-    allocate (solution%fields(1), solution%groups(1), solution%pairs(1), solution%estimate%triggers(0))
+    allocate (solution%fields(1), solution%groups(1), solution%pairs(1), solution%cuts(1), solution%estimate%triggers(0))
     solution%fields(1)%name = '<name>'
     solution%fields(1)%unit = 'its unit'
     solution%fields(1)%dual_unit = 'of its dual'
