@@ -2,8 +2,8 @@
 """Cards with many rows are read in a time that grows with their number, not with its square.
 
 usage: run_long_cards.py [-v] [-k] [ROWS]      -v prints every time; ROWS of the shorter deck, default 10000
-For each kind of card: processor time of `--check` with twice the rows over that with ROWS, the least of three each. A quadratic part
-that matters brings the ratio near 4.
+For each kind of card: processor time of `--check` with twice the rows over that with ROWS, the least of three each, in turns; of up to
+nine where the ratio is too large. A quadratic part that matters brings it near 4.
 """
 import math
 import os
@@ -14,7 +14,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "runs"))
 from support import DONE, LAGAMINE, Checks, write  # noqa: E402
 
-LARGEST_RATIO, REPEATS = 3.0, 3
+LARGEST_RATIO, REPEATS, MOST = 3.0, 3, 9
 
 HEAD = """TITLE  Long cards
 STATE  PLSTN
@@ -89,33 +89,33 @@ FAMILIES = {"DIE": die, "BODY": body, "LIC": multiplier, "EPLA TABLE": table, "T
 
 
 def seconds(deck):
-    """Processor time of a check, the least of some, and how the last one ended."""
-    least = math.inf
-    for _ in range(REPEATS):
-        process = subprocess.Popen([LAGAMINE, deck, "--check"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE, text=True)
-        said = process.stderr.read()
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        process.stderr.close()
-        least = min(least, usage.ru_utime + usage.ru_stime)
-        if process.returncode != DONE:
-            return least, process.returncode, said
-    return least, DONE, ""
+    """Processor time of a check, and how it ended."""
+    process = subprocess.Popen([LAGAMINE, deck, "--check"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, text=True)
+    said = process.stderr.read()
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    process.stderr.close()
+    return usage.ru_utime + usage.ru_stime, process.returncode, said
 
 
 def main():
     checks = Checks()
     n = next((int(word) for word in sys.argv[1:] if word.isdigit()), 10000)
     for name, deck_of in FAMILIES.items():
-        found = []
-        for count in (n, 2*n):
-            deck = write(checks.path("deck.lag"), deck_of(count))
-            found.append(seconds(deck))
-            checks.that(found[-1][1] == DONE, f"{name}, {count} rows: read", found[-1][1:])
-        ratio = found[1][0]/found[0][0]
-        what = f"{name}: {found[0][0]:.3f} s for {n} rows, {found[1][0]:.3f} s for {2*n}: ratio {ratio:.2f}"
-        checks.that(ratio < LARGEST_RATIO, what)
+        decks = {count: write(checks.path(f"deck{count}.lag"), deck_of(count)) for count in (n, 2*n)}
+        least = dict.fromkeys(decks, math.inf)
+        for k in range(MOST):
+            for count, deck in decks.items():
+                took, *ended = seconds(deck)
+                least[count] = min(least[count], took)
+                if k == 0:
+                    checks.that(ended[0] == DONE, f"{name}, {count} rows: read", ended)
+            # a busy machine is no quadratic part: it is looked at again
+            if k + 1 >= REPEATS and least[2*n] < LARGEST_RATIO*least[n]:
+                break
+        ratio = least[2*n]/least[n]
+        checks.that(ratio < LARGEST_RATIO, f"{name}: {least[n]:.3f} s for {n} rows, {least[2*n]:.3f} s for {2*n}: ratio {ratio:.2f}")
     checks.end()
 
 
