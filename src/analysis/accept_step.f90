@@ -42,11 +42,12 @@ contains
     type(solution_t), intent(inout) :: solution
     type(totals_t), intent(out) :: totals
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: friction_before
+    real(wp) :: friction_before, given_before
 
+    given_before = solution%work%dies + solution%work%supports
     call book_work(equations, outcome%du, solution)
     solution%work%damping = solution%work%damping + work_of_damping(equations, dt, outcome%du)
-    call ease_damping(scene, equations, dt, outcome%du, solution)
+    call ease_damping(scene, equations, dt, outcome%du, solution%work%dies + solution%work%supports - given_before, solution)
     call book_reactions(scene, equations, solution%time + dt, solution%fields)
     call book_heat(scene, equations, dt, solution)
     call book_heat_flows(scene, equations, solution)

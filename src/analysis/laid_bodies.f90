@@ -20,9 +20,7 @@ module laid_bodies
   private
   public :: share_heat
 
-  integer, parameter :: most_halvings = 200, most_secants = 50
-  !> Share of the difference with which the secants begin: heat capacities change little along it.
-  real(wp), parameter :: first_share = 0.01_wp
+  integer, parameter :: most_halvings = 200, most_doublings = 10
 
 contains
 
@@ -119,7 +117,7 @@ contains
   end subroutine add_volumes
 
   !> Move the temperatures of shared nodes by one share of their difference, so that all bodies together have the heat that they
-  !> have at their own temperatures, by the method of secants.
+  !> have at their own temperatures, by bisection: heat rises with the temperature.
   subroutine keep_whole_heat(scene, laws, has_heat, temperature, apart, values)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)
@@ -127,22 +125,27 @@ contains
     real(wp), intent(in) :: temperature(:, :)   !! (nnode, ngroup) their own [temperature]
     real(wp), intent(in) :: apart(:)            !! (nnode) difference at shared nodes, 0 elsewhere [temperature]
     real(wp), intent(inout) :: values(:)        !! (nnode) [temperature]
-    real(wp) :: share(2), heat(2), next
+    real(wp) :: low, high, share
     integer :: k
 
     if (.not. any(apart > 0)) return
-    share = [0.0_wp, first_share]
-    do k = 1, 2
-      heat(k) = heat_of(values + share(k)*apart)
+    ! functions of eight nodes are negative in places: their temperatures may have to lie beyond those of both bodies
+    high = 1
+    do k = 1, most_doublings
+      if (heat_of(values - high*apart) <= 0 .and. heat_of(values + high*apart) >= 0) exit
+      high = 2*high
     end do
-    do k = 1, most_secants
-      if (.not. abs(heat(2) - heat(1)) > 0) exit
-      next = share(2) - heat(2)*(share(2) - share(1))/(heat(2) - heat(1))
-      share = [share(2), next]
-      heat = [heat(2), heat_of(values + next*apart)]
-      if (abs(share(2) - share(1)) <= eps) exit
+    low = -high
+    do k = 1, most_halvings
+      share = 0.5_wp*(low + high)
+      if (high - low <= eps) exit
+      if (heat_of(values + share*apart) > 0) then
+        high = share
+      else
+        low = share
+      end if
     end do
-    values = values + share(2)*apart
+    values = values + share*apart
 
   contains
 

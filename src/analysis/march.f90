@@ -42,8 +42,8 @@ module march
 
   !> A step shortened to an event is shortened by at least this much, so that the event is met in a few trials.
   real(wp), parameter :: largest_event = 0.95_wp
-  !> So many cutbacks in a row are not answered by damping.
-  integer, parameter :: most_cutbacks_undamped = 2
+  !> So many cutbacks in a row are not answered by damping; damped, a step of the least length is tried until there were so many.
+  integer, parameter :: most_cutbacks_undamped = 2, most_cutbacks_damped = 12
   !> So many cutbacks in a row show that a body passes through itself in steps of any length.
   integer, parameter :: most_cutbacks_for_crossing = 3
 
@@ -62,6 +62,7 @@ contains
 
     cutbacks = 0
     call start(scene, solution, run, error)
+    if (.not. allocated(error)) call refuse_lost_equilibrium(scene, solution, error)
     do while (.not. (allocated(error) .or. mesh_is_due(solution)) .and. solution%time < scene%strategy%end_time*(1 - 64*eps))
       dt = choose_step(scene, solution%time, solution%next_step)
       length = min(solution%next_step, scene%strategy%largest_step)
@@ -96,8 +97,9 @@ contains
       call note_step(solution%probation, length)
       call estimate(scene, run%estimator, run%equations%timers, solution)
       call list_step(run%listing, solution, outcome, run%totals)
-      ! at the end no new mesh is needed
-      if (.not. at_end(scene, solution)) call look_at_mesh(scene, run%equations%timers, run%listing, solution)
+      ! at the end no new mesh is needed; on one made while viscous forces hold the part these would be out of balance
+      if (.not. (at_end(scene, solution) .or. solution%damping > 0)) &
+        call look_at_mesh(scene, run%equations%timers, run%listing, solution)
       call report_spurious_mode(scene, solution, run)
       call show_progress(run%listing, scene, solution, outcome%iterations)
       if (on_probation) call judge_steps(scene, solution, outcome, run, error)
@@ -127,14 +129,23 @@ contains
     call after_failure(scene, dt, solution%next_step, give_up)
     call list_cutback(run%listing, scene, solution, dt, solution%next_step, outcome)
     cutbacks = cutbacks + 1
-    if (cutbacks > most_cutbacks_undamped .or. solution%damping > 0) call damp(scene, dt, solution, run)
+    ! only a motion that is not found is damped
+    if (.not. (outcome%of_heat .or. outcome%passes_itself) &
+        .and. (cutbacks > most_cutbacks_undamped .or. give_up .or. solution%damping > 0)) then
+      call damp(scene, dt, solution, run)
+      ! more damping does what a shorter step cannot
+      if (give_up .and. solution%damping > 0 .and. cutbacks < most_cutbacks_damped) then
+        give_up = .false.
+        solution%next_step = dt
+      end if
+    end if
     if (outcome%passes_itself) give_up = give_up .or. cutbacks > most_cutbacks_for_crossing
     call note_cutback(solution%probation, solution%next_step)
     if (on_probation .and. is_too_short(scene, solution)) then
       call refuse_mesh(scene, solution, outcome, run, error)
       return
     end if
-    call answer_distress(scene, cutbacks, give_up, run%listing, solution)
+    call answer_distress(scene, merge(0, cutbacks, solution%damping > 0), give_up, run%listing, solution)
     if (mesh_is_due(solution)) then
       if (on_probation) call pass_probation(scene, run%stem, run%listing, solution, error)
       if (.not. allocated(error)) call save_all(scene, solution, run, error)

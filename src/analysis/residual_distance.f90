@@ -73,7 +73,8 @@ contains
   !> Int. J. Num. Meth. Eng. 24 (1987) 337-357): sqrt(r . K^-1 r/2 over the elastic energy). Unlike a norm of forces it does not
   !> depend on how fine the mesh is, nor on how few nodes carry the load.
   pure function relative_distance(work, energy) result(distance)
-    real(wp), intent(in) :: work, energy
+    real(wp), intent(in) :: work     !! of work_of_correction [energy]
+    real(wp), intent(in) :: energy   !! elastic energy of the state [energy]
     real(wp) :: distance
 
     distance = 0

@@ -32,7 +32,7 @@ module restore_balance
   use vectors, only: length_of
   implicit none
   private
-  public :: balance_t, keep_balance, restore_equilibrium
+  public :: balance_t, depth_change, keep_balance, restore_equilibrium
 
   !> What the restart reports about the remesh.
   type :: balance_t
@@ -77,8 +77,8 @@ module restore_balance
   !> length (fourth term of the series), so this is an arc of 66 degrees.
   real(wp), parameter :: missed_by_parabola = 1.0e-3_wp
   !> A point counts as no further off than this many times what is allowed: one at a sharp corner of a die, from which the new
-  !> contour leads elsewhere, says nothing of the rest (found: three points with a sixth of the force, off by 3 to 14). What it
-  !> loses of the force is judged by that.
+  !> contour leads elsewhere, says nothing of the rest (found: three points with a sixth of the force, off by 3 to 14). So a
+  !> third of the force must lie off for a mesh to be refused by it; pressures that are lost change the force of the die (FORCE).
   real(wp), parameter :: most_off = 3.0_wp
 
 contains

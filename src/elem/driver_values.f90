@@ -106,9 +106,11 @@ contains
             own%value(k, at, :, e) = stress_at_points(scene, solution, g, own%source(k), at, e)
           end do
         case (from_unloading)
+          ! that at the start holds for the whole step
           if (at == 2) cycle
           do e = 1, size(own%value, 4)
-            own%value(k, at, :, e) = unloaded_at_points(scene, solution, g, own%source(k), e)
+            own%value(k, 1, :, e) = unloaded_at_points(scene, solution, g, own%source(k), e)
+            own%value(k, 2, :, e) = own%value(k, 1, :, e)
           end do
         case (from_itself)
           if (at == 1) own%value(k, at, :, :) = solution%groups(g)%committed(own%source(k)%row(g), :, :)

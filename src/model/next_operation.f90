@@ -74,6 +74,8 @@ contains
     after%older_step = 0
     after%probation = fresh%probation
     after%largest_force = 0
+    after%damping = 0
+    after%damping_bound = after%work%damping
     after%friction_apart = 0
     after%path%error = fresh%path%error
     ! the dies are others, with temperatures of their own

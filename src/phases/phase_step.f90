@@ -239,7 +239,7 @@ contains
     if (.not. to_temper(s) > nothing_left) s(at_hollomon_jaffe) = dual_t()
   end subroutine heat_up
 
-  !> Above the temperatures at which a phase forms its nuclei dissolve; not those beside what has formed, which can go on.
+  !> Above the temperatures at which a phase forms its nuclei dissolve.
   pure subroutine forget_growth(steel, phase, temperature, s)
     type(steel_t), intent(in) :: steel
     integer, intent(in) :: phase
@@ -303,6 +303,7 @@ contains
         call grow(steel, i, span, own, s(first_incubation + i - ferrite), s(first_growth + i - ferrite), w(i), volume(i))
         call limit_growth(steel, i, own, s, w(i), volume(i))
       else if (.not. s(i)%value > 0) then
+        ! those beside what has formed stay: it can go on
         call forget_growth(steel, i, own%value, s)
       end if
     end do

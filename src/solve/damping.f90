@@ -11,11 +11,13 @@
 !> c begins so that the force of the die would move the part by the side of an element within the step that failed. A step that
 !> fails again, or goes further than the path can be followed, makes it larger; others make it smaller. It ends where the forces
 !> are within the tolerance of equilibrium. Their work is booked, and told at the end. No release takes more than the elastic energy
-!> that was there: where they take more it is loads that drive the part on, and nothing holds it (lost_equilibrium).
+!> that was there, and what dies and supports give that carry the part on meanwhile: where they take more it is loads that drive it,
+!> and nothing holds it (lost_equilibrium).
 module damping
+  use convergence, only: relative_residual
   use dofs, only: prescribed_motion
   use elem_api, only: block_done, report_t
-  use elem_body_springs, only: mass_matrix
+  use elem_body_springs, only: mass_matrix, volume_of_body
   use equations, only: equations_t, take_turn
   use evaluation, only: evaluate
   use fields, only: displacement_field, pilot_field
@@ -107,24 +109,24 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     real(wp) :: s
-    real(wp) :: x(2, size(scene%mesh%coordinates, 2)), one(2), other(2), area
+    real(wp) :: x(2, size(scene%mesh%coordinates, 2)), one(2), other(2), area, volume
     integer :: g, e
 
     x = present_coordinates(scene, solution)
-    s = 0
+    volume = 0
     area = huge(area)
     do g = 1, size(scene%groups)
       if (.not. is_solid(scene%groups(g))) cycle
       associate (nodes => scene%groups(g)%connectivity)
+        volume = volume + volume_of_body(scene, nodes)
         do e = 1, size(nodes, 2)
-          s = s + sum(mass_matrix(scene%section, x(:, nodes(:, e))))
           one = x(:, nodes(3, e)) - x(:, nodes(1, e))
           other = x(:, nodes(4, e)) - x(:, nodes(2, e))
           area = min(area, 0.5_wp*abs(one(1)*other(2) - one(2)*other(1)))
         end do
       end associate
     end do
-    s = s*sqrt(area)
+    s = volume*sqrt(area)
   end function size_of_part
 
   !> A damped step failed, or goes too far.
@@ -135,19 +137,26 @@ contains
   end subroutine strengthen_damping
 
   !> A damped step was accepted, and the length of the next is chosen: damping eases unless that is shorter. It ends where its
-  !> forces are within the tolerance of equilibrium.
-  subroutine ease_damping(scene, equations, dt, du, solution)
+  !> forces are within the tolerance of equilibrium. Dies and supports that carry the part on give it energy of their own.
+  subroutine ease_damping(scene, equations, dt, du, given, solution)
     type(scene_t), intent(in) :: scene
-    type(equations_t), intent(in) :: equations
+    type(equations_t), intent(inout) :: equations
     real(wp), intent(in) :: dt      !! [time]
     real(wp), intent(in) :: du(:)   !! (ndof) motion of the step [unknown]
+    real(wp), intent(in) :: given   !! work of dies and supports in the step, per radian when axisymmetric [energy]
     type(solution_t), intent(inout) :: solution
     real(wp) :: forces(size(du))
+    integer :: turn
 
     if (.not. allocated(equations%damping)) return
     forces = equations%damping*du/dt
     if (.not. solution%next_step < dt) solution%damping = weaker*solution%damping
-    if (norm2(forces) <= scene%strategy%force_norm*norm2(pack(equations%magnitude, equations%damping > 0))) solution%damping = 0
+    solution%damping_bound = solution%damping_bound + max(given, 0.0_wp)
+    ! heat may have been solved for after the motion
+    turn = equations%now
+    call take_turn(equations, displacement_field)
+    if (relative_residual(equations, solution%fields, 0*du, forces, du) <= scene%strategy%force_norm) solution%damping = 0
+    equations%now = turn
   end subroutine ease_damping
 
   !> Work that viscous forces took in a step [energy].

@@ -45,6 +45,8 @@ module newton
     !> The step should be no longer than this share of it; why.
     real(wp) :: event = 1.0_wp
     character(len=:), allocatable :: event_reason
+    !> The solve that failed is one of heat alone.
+    logical :: of_heat = .false.
     !> The equilibrium found has a body that passes through itself.
     logical :: passes_itself = .false.
     !> Balance of heat in time.

@@ -170,6 +170,7 @@ contains
     all%augmentations = max(all%augmentations, own%augmentations)
     all%gave_way = all%gave_way .or. own%gave_way
     if (own%converged) return
+    all%of_heat = is_heat
     all%group = own%group
     all%element = own%element
     if (allocated(own%reason)) all%reason = name//': '//own%reason

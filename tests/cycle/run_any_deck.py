@@ -14,7 +14,7 @@ import sys
 
 sys.dont_write_bytecode = True
 from remeshed import ROOT, cycle, facts, tries, within_limits  # noqa: E402
-from support import DONE, Checks, history, run, said, write  # noqa: E402
+from support import DONE, Checks, history, run, said, summary, write  # noqa: E402
 
 # Deck, options, and how far each column may be from the deck's own at the end.
 DECKS = [
@@ -205,7 +205,11 @@ def closing(checks):
     result = cycle(write(checks.path("notch.lag"), NOTCH), out)
     if not checks.that(result.returncode == DONE, "a notch that closes: the cycle ends with 0", result.stdout + result.stderr):
         return
-    checks.that(not any("contours cross" in t["reason"] for t in tries(out)), "a notch that closes: its flanks do not cross", [t["reason"] for t in tries(out)])
+    made = tries(out)
+    checks.that(sum(t["accepted"] == "y" for t in made) >= 5, "a notch that closes: five new meshes or more", len(made))
+    checks.that(not any("contours cross" in t["reason"] for t in made), "a notch that closes: its flanks do not cross", [t["reason"] for t in made])
+    drift = summary(out)["checks"]["volume_drift_unloaded"]
+    checks.that(abs(drift) < 1e-3, "a notch that closes: its volume", drift)
 
 
 def main():

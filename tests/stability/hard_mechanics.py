@@ -294,6 +294,8 @@ def lets_go(checks):
             "DIE top PILOT 0. 9.\n SEGM 40. 1. 12.05 1.\n FILLT 0.4 1.E-3\n SEGM 12.05 1. 12. 9.\n SEGM 12. 9. -10. 9.\n"
             "CNT2D core 2 3 top k\nCNT2D flash 2 3 top k\nFIXED b 4 X\nFIXED core 4 X\nMOVE top Y down\n"
             f"LIC down\n 0. 0. 1. {-press} 2. 2.\n", "STRAT 0.005 1.E-6 0.02 6 3"))
+        if "top withdraws" not in run.said:
+            raise RuntimeError(run.said)
         books, force = report(run)["energy"], abs(run.history["force_y_top"])
         if not books["damping"] > 0:
             raise RuntimeError("no step was damped")

@@ -136,7 +136,7 @@ def energy_picture(run: Run) -> Optional[Picture]:
     if not any(np.any(values) for values in (work, *parts)):
         return None
     books = run.summary.get("energy", {})
-    by_work = not any(books.get(name) for name in ("work_of_heat", "overlap"))
+    by_work = not any(books.get(name) for name in ("work_of_heat", "overlap", "damping"))
     fig, axes = figure(1, 2, (9.2, 3.3), gridspec_kw={"width_ratios": [1.5, 1]}) if by_work else figure(1, 1, (5.6, 3.3))
     energy = axes[0][0]
     energy.stackplot(time, *parts, labels=["elastic", "plastic", "friction"], colors=["#a9c4de", "#efc9a6", "#b9d8c0"], lw=0)
