@@ -113,6 +113,8 @@ contains
     x = uncorrected
     call limit_depths(scene, solution, x)
     call open_folds(scene, solution, x, report%folds, report%opened)
+    ! what opens folds is taken back on the new mesh: free sides make no room for it
+    if (allocated(report%opened)) uncorrected = uncorrected + report%opened
     if (scene%plane_state == axisymmetric) call put_on_axis(x)
     call gather_solids(scene, connectivity)
     call find_loops(connectivity, size(x, 2), loops, status, node)
@@ -202,7 +204,7 @@ contains
   pure subroutine correct(scene, x, uncorrected, held, options, joints, contour)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: x(:, :)             !! (2, nnode) now, those on the axis limited in depth [length]
-    real(wp), intent(in) :: uncorrected(:, :)   !! (2, nnode) now [length]
+    real(wp), intent(in) :: uncorrected(:, :)   !! (2, nnode) now, with folds opened [length]
     logical, intent(in) :: held(:)              !! (nnode) fixed nodes
     type(contour_options_t), intent(in) :: options
     type(side_point_t), intent(in) :: joints(:)   !! (njoint) ends of contact with other bodies
