@@ -125,14 +125,16 @@ contains
     real(wp), intent(in) :: temperature(:, :)   !! (nnode, ngroup) their own [temperature]
     real(wp), intent(in) :: apart(:)            !! (nnode) difference at shared nodes, 0 elsewhere [temperature]
     real(wp), intent(inout) :: values(:)        !! (nnode) [temperature]
-    real(wp) :: low, high, share
+    real(wp) :: low, high, share, least, most   ! least, most: heat at both ends
     integer :: k
 
     if (.not. any(apart > 0)) return
     ! functions of eight nodes are negative in places: their temperatures may have to lie beyond those of both bodies
     high = 1
     do k = 1, most_doublings
-      if (heat_of(values - high*apart) <= 0 .and. heat_of(values + high*apart) >= 0) exit
+      least = heat_of(values - high*apart)
+      most = heat_of(values + high*apart)
+      if (least <= 0 .and. most >= 0) exit
       high = 2*high
     end do
     low = -high
