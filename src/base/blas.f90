@@ -1,12 +1,13 @@
-!> Interfaces of the dense kernels that are used, of the switch of OpenBLAS's own threads, and of what it reports about itself.
+!> Interfaces of the dense kernels that are used, in both precisions, of the switch of OpenBLAS's own threads, and of what it
+!> reports about itself.
 module blas
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr
-  use kinds, only: wp
+  use kinds, only: sp, wp
   use system, only: text_of_c
   implicit none
   private
   public :: blas_buffer
-  public :: dgemm, dgemv, keep_blas_to_one_thread, blas_core_name, blas_build
+  public :: dgemm, dgemv, sgemm, sgemv, keep_blas_to_one_thread, blas_core_name, blas_build
 
   !> Address space that OpenBLAS asks for, for ever if it is refused, in each thread that calls it first [bytes] (its BUFFER_SIZE,
   !> at most; little of it is used).
@@ -24,6 +25,16 @@ module blas
       real(wp), intent(inout) :: c(ldc, *)   !! (ldc, :) [of any unit]
     end subroutine dgemm
 
+    subroutine sgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
+      import :: sp
+      character, intent(in) :: transa, transb
+      integer, intent(in) :: m, n, k, lda, ldb, ldc
+      real(sp), intent(in) :: alpha, beta
+      real(sp), intent(in) :: a(lda, *)      !! (lda, :) [of any unit]
+      real(sp), intent(in) :: b(ldb, *)      !! (ldb, :) [of any unit]
+      real(sp), intent(inout) :: c(ldc, *)   !! (ldc, :) [of any unit]
+    end subroutine sgemm
+
     !> y := alpha op(A) x + beta y.
     subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
       import :: wp
@@ -34,6 +45,16 @@ module blas
       real(wp), intent(in) :: x(*)        !! (:) [of any unit]
       real(wp), intent(inout) :: y(*)     !! (:) [of any unit]
     end subroutine dgemv
+
+    subroutine sgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
+      import :: sp
+      character, intent(in) :: trans
+      integer, intent(in) :: m, n, lda, incx, incy
+      real(sp), intent(in) :: alpha, beta
+      real(sp), intent(in) :: a(lda, *)   !! (lda, :) [of any unit]
+      real(sp), intent(in) :: x(*)        !! (:) [of any unit]
+      real(sp), intent(inout) :: y(*)     !! (:) [of any unit]
+    end subroutine sgemv
 
     subroutine openblas_set_num_threads(n) bind(c, name='openblas_set_num_threads')
       import :: c_int

@@ -7,8 +7,8 @@
 !>
 !> Columns are cut into strips of fixed width, and a thread does whole strips: results do not depend on the number of threads.
 module dense_lu
-  use blas, only: dgemm
-  use kinds, only: wp
+  use blas, only: gemm => dgemm
+  use kinds, only: rk => wp
   implicit none
   private
   public :: eliminate, eliminate_shared
@@ -22,9 +22,9 @@ contains
   !> One thread. `regular` becomes false when a pivot is zero or NaN.
   subroutine eliminate(p, n, pivot, row, border, regular)
     integer, intent(in) :: p, n                     !! pivots, order
-    real(wp), intent(inout) :: pivot(n, p)          !! pivot columns [residual/unknown]; inverses of their blocks and U there
-    real(wp), intent(inout) :: row(p, n - p)        !! rest of the pivot rows [residual/unknown]; U there
-    real(wp), intent(out) :: border(n - p, n - p)   !! what elimination adds to the border [residual/unknown]
+    real(rk), intent(inout) :: pivot(n, p)          !! pivot columns [residual/unknown]; inverses of their blocks and U there
+    real(rk), intent(inout) :: row(p, n - p)        !! rest of the pivot rows [residual/unknown]; U there
+    real(rk), intent(out) :: border(n - p, n - p)   !! what elimination adds to the border [residual/unknown]
     logical, intent(inout) :: regular
     integer :: k, w
 
@@ -40,9 +40,9 @@ contains
   !> The same by all threads of the team, called by one of them.
   subroutine eliminate_shared(p, n, pivot, row, border, regular)
     integer, intent(in) :: p, n
-    real(wp), intent(inout) :: pivot(n, p)          !! pivot columns [residual/unknown]
-    real(wp), intent(inout) :: row(p, n - p)        !! rest of the pivot rows [residual/unknown]
-    real(wp), intent(out) :: border(n - p, n - p)   !! [residual/unknown]
+    real(rk), intent(inout) :: pivot(n, p)          !! pivot columns [residual/unknown]
+    real(rk), intent(inout) :: row(p, n - p)        !! rest of the pivot rows [residual/unknown]
+    real(rk), intent(out) :: border(n - p, n - p)   !! [residual/unknown]
     logical, intent(inout) :: regular
     integer :: k, w, j
 
@@ -68,40 +68,40 @@ contains
   !> Columns beside the pivots: U by all blocks, and what it adds to the border.
   subroutine reduce_strip(p, n, pivot, ncol, row, border)
     integer, intent(in) :: p, n, ncol
-    real(wp), intent(in) :: pivot(n, p)
-    real(wp), intent(inout) :: row(p, ncol)
-    real(wp), intent(out) :: border(n - p, ncol)
+    real(rk), intent(in) :: pivot(n, p)
+    real(rk), intent(inout) :: row(p, ncol)
+    real(rk), intent(out) :: border(n - p, ncol)
     integer :: k
 
     do k = 1, p, block
       call reduce_block(min(block, p - k + 1), ncol, p - k + 1, pivot(k, k), n, row(k, 1), p)
     end do
-    call dgemm('N', 'N', n - p, ncol, p, -1.0_wp, pivot(p + 1, 1), n, row, p, 0.0_wp, border, n - p)
+    call gemm('N', 'N', n - p, ncol, p, -1.0_rk, pivot(p + 1, 1), n, row, p, 0.0_rk, border, n - p)
   end subroutine reduce_strip
 
   !> Columns `b` of m rows by one block of w pivots: its rows U, and those below them less Q U.
   subroutine reduce_block(w, ncol, m, pivot, ldp, b, ldb)
     integer, intent(in) :: w, ncol, m, ldp, ldb
-    real(wp), intent(in) :: pivot(ldp, *)   !! inverse of the block, Q below it
-    real(wp), intent(inout) :: b(ldb, *)
-    real(wp) :: before(block, strip)
+    real(rk), intent(in) :: pivot(ldp, *)   !! inverse of the block, Q below it
+    real(rk), intent(inout) :: b(ldb, *)
+    real(rk) :: before(block, strip)
     integer :: j, v
 
     do j = 1, ncol, strip
       v = min(strip, ncol - j + 1)
       before(:w, :v) = b(:w, j:j + v - 1)
-      call dgemm('N', 'N', w, v, w, 1.0_wp, pivot, ldp, before, block, 0.0_wp, b(1, j), ldb)
+      call gemm('N', 'N', w, v, w, 1.0_rk, pivot, ldp, before, block, 0.0_rk, b(1, j), ldb)
     end do
-    if (m > w) call dgemm('N', 'N', m - w, ncol, w, -1.0_wp, pivot(w + 1, 1), ldp, b, ldb, 1.0_wp, b(w + 1, 1), ldb)
+    if (m > w) call gemm('N', 'N', m - w, ncol, w, -1.0_rk, pivot(w + 1, 1), ldp, b, ldb, 1.0_rk, b(w + 1, 1), ldb)
   end subroutine reduce_block
 
   !> a := a^-1, halved again and again: for a = [A B; C D] with X = A^-1 B, Y = C A^-1 and S = (D - C X)^-1
   !> it is [A^-1 + X S Y, -X S; -S Y, S].
   recursive subroutine invert(n, a, lda, regular)
     integer, intent(in) :: n, lda
-    real(wp), intent(inout) :: a(lda, *)
+    real(rk), intent(inout) :: a(lda, *)
     logical, intent(inout) :: regular
-    real(wp) :: x(block, block), y(block, block)
+    real(rk) :: x(block, block), y(block, block)
     integer :: h, r
 
     if (n <= narrow) then
@@ -112,28 +112,28 @@ contains
     r = n - h
     call invert(h, a, lda, regular)
     if (.not. regular) return
-    call dgemm('N', 'N', h, r, h, 1.0_wp, a, lda, a(1, h + 1), lda, 0.0_wp, x, block)
-    call dgemm('N', 'N', r, h, h, 1.0_wp, a(h + 1, 1), lda, a, lda, 0.0_wp, y, block)
-    call dgemm('N', 'N', r, r, h, -1.0_wp, a(h + 1, 1), lda, x, block, 1.0_wp, a(h + 1, h + 1), lda)
+    call gemm('N', 'N', h, r, h, 1.0_rk, a, lda, a(1, h + 1), lda, 0.0_rk, x, block)
+    call gemm('N', 'N', r, h, h, 1.0_rk, a(h + 1, 1), lda, a, lda, 0.0_rk, y, block)
+    call gemm('N', 'N', r, r, h, -1.0_rk, a(h + 1, 1), lda, x, block, 1.0_rk, a(h + 1, h + 1), lda)
     call invert(r, a(h + 1, h + 1), lda, regular)
     if (.not. regular) return
-    call dgemm('N', 'N', h, r, r, -1.0_wp, x, block, a(h + 1, h + 1), lda, 0.0_wp, a(1, h + 1), lda)
-    call dgemm('N', 'N', r, h, r, -1.0_wp, a(h + 1, h + 1), lda, y, block, 0.0_wp, a(h + 1, 1), lda)
-    call dgemm('N', 'N', h, h, r, -1.0_wp, a(1, h + 1), lda, y, block, 1.0_wp, a, lda)
+    call gemm('N', 'N', h, r, r, -1.0_rk, x, block, a(h + 1, h + 1), lda, 0.0_rk, a(1, h + 1), lda)
+    call gemm('N', 'N', r, h, r, -1.0_rk, a(h + 1, h + 1), lda, y, block, 0.0_rk, a(h + 1, 1), lda)
+    call gemm('N', 'N', h, h, r, -1.0_rk, a(1, h + 1), lda, y, block, 1.0_rk, a, lda)
   end subroutine invert
 
   !> The same by Gauss-Jordan elimination, in an array whose extents are known when it is compiled.
   pure subroutine invert_narrow(n, a, lda, regular)
     integer, intent(in) :: n, lda
-    real(wp), intent(inout) :: a(lda, n)
+    real(rk), intent(inout) :: a(lda, n)
     logical, intent(inout) :: regular
-    real(wp) :: b(narrow, narrow), column(narrow), inverse, above
+    real(rk) :: b(narrow, narrow), column(narrow), inverse, above
     integer :: j, k
 
     b = 0
     b(:n, :n) = a(:n, :)
     do k = 1, n
-      if (.not. (abs(b(k, k)) > 0 .and. abs(b(k, k)) <= huge(1.0_wp))) then
+      if (.not. (abs(b(k, k)) > 0 .and. abs(b(k, k)) <= huge(1.0_rk))) then
         regular = .false.
         return
       end if

@@ -23,6 +23,10 @@ module linear_api
     character(len=:), allocatable :: name, purpose
     !> Name of the solver that takes over for the rest of a step when the factors of this one are too poor; '': none.
     character(len=:), allocatable :: fallback
+    !> Backward error of a solve that is refined.
+    real(wp) :: refine_above = 1.0e-14_wp
+    !> Fewer operations of a factorisation are left to the fallback.
+    real(wp) :: least_operations = 0.0_wp
     procedure(create_i), nopass, pointer :: create => null()
   end type solver_row_t
 

@@ -1,6 +1,6 @@
 !> Direct solution of the linear system by the solver chosen: analysis once per mesh, factorisation per matrix (factors of a matrix
 !> that comes again, to the last bit, are kept), residual of every solve checked and refined. A matrix for which the factors prove
-!> too poor, and those after it in the step, get the fallback of the solver, where it has one.
+!> too poor, and those after it in the step, get the fallback of the solver, where it has one, and its fallback after that.
 module linear_solver
   use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: i8, wp
@@ -13,26 +13,35 @@ module linear_solver
   private
   public :: linear_solver_t, choose_solver, analyse, factorise, solve_linear, release, return_to_chosen
 
-  !> Backward error of a solve that is refined; and what is accepted at last.
-  real(wp), parameter, public :: refine_above = 1.0e-14_wp
+  !> Backward error of a solve that is accepted at last.
   real(wp), parameter, public :: linear_tolerance = 1.0e-10_wp
-  integer, parameter :: max_refinements = 3
+  !> Solves are refined so often at most, and while each refinement leaves no more than this share of the backward error.
+  integer, parameter :: max_refinements = 6
+  real(wp), parameter :: worth_refining = 0.25_wp
   !> Forces |A| |x| this many times the right-hand side are round-off of a singular matrix.
   real(wp), parameter :: singular_growth = 1.0e13_wp
   !> Fewer nonzeros are faster on one thread.
   integer, parameter :: worth_threads = 50000
 
+  !> A solver and its factors, once they were needed.
+  type :: solver_stage_t
+    type(solver_row_t) :: row
+    class(factors_t), allocatable :: factors
+  end type solver_stage_t
+
   type :: linear_solver_t
     private
-    !> The solver chosen.
+    !> The solver in use for matrices of this pattern, as long as it is good enough: the one chosen before they are known.
     type(solver_row_t), public :: row
-    !> Its factors, and those of its fallback once that was needed.
-    class(factors_t), allocatable :: own, fallback
+    !> The solver chosen, its fallback, the fallback of that, ...
+    type(solver_stage_t), allocatable :: stages(:)
+    !> Stages of `row`, of the matrices to come in this step, and of the factors at hand.
+    integer :: first = 1, now = 1, made_by = 0
     !> Order of elimination asked for; where every row of the matrix begins; its nonzeros.
     integer, allocatable :: position(:), row_start(:)
     real(wp), allocatable :: values(:)
-    !> The factors at hand are sound; they are to be made by the fallback; the fallback has made them.
-    logical :: sound = .false., fallen_back = .false., by_fallback = .false.
+    !> The factors at hand are sound.
+    logical :: sound = .false.
     !> Matrices factorised so far, and those that were the one before, whose factors were taken again.
     integer, public :: factorised = 0, reused = 0
     !> Entries of the factors and operations of a factorisation.
@@ -48,13 +57,25 @@ contains
     type(linear_solver_t), intent(inout) :: solver
     integer, intent(in) :: place
     type(solver_row_t), allocatable :: rows(:)
+    integer :: k, n, at
 
     call release(solver)
     call list_solvers(rows)
     solver%row = rows(place)
+    if (allocated(solver%stages)) deallocate (solver%stages)
+    allocate (solver%stages(size(rows)))
+    at = place
+    do n = 1, size(rows)
+      solver%stages(n)%row = rows(at)
+      if (rows(at)%fallback == '') exit
+      do k = 1, size(rows)
+        if (rows(k)%name == solver%stages(n)%row%fallback) at = k
+      end do
+    end do
+    solver%stages = solver%stages(:n)
   end subroutine choose_solver
 
-  !> Plan the factorisation for a pattern and an order of elimination.
+  !> Plan the factorisation for a pattern and an order of elimination, by the first of the stages that is for so many operations.
   subroutine analyse(solver, pattern, position, error)
     type(linear_solver_t), intent(inout) :: solver
     class(matrix_pattern_t), intent(in) :: pattern
@@ -65,11 +86,32 @@ contains
     solver%position = position
     allocate (solver%values(pattern%nnz))
     call start_rows(pattern, solver%row_start)
-    call solver%row%create(solver%own)
-    call solver%own%plan(pattern, position, error)
-    solver%estimated_entries = solver%own%entries
-    solver%estimated_flops = solver%own%operations
+    do
+      call plan_stage(solver, solver%first, pattern, error)
+      if (allocated(error)) return
+      associate (stage => solver%stages(solver%first))
+        solver%row = stage%row
+        solver%estimated_entries = stage%factors%entries
+        solver%estimated_flops = stage%factors%operations
+        if (stage%factors%operations >= stage%row%least_operations) exit
+        call drop(stage%factors)
+      end associate
+      solver%first = solver%first + 1
+    end do
+    solver%now = solver%first
   end subroutine analyse
+
+  subroutine plan_stage(solver, k, pattern, error)
+    type(linear_solver_t), intent(inout) :: solver
+    integer, intent(in) :: k
+    class(matrix_pattern_t), intent(in) :: pattern
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (stage => solver%stages(k))
+      call stage%row%create(stage%factors)
+      call stage%factors%plan(pattern, solver%position, error)
+    end associate
+  end subroutine plan_stage
 
   !> Nonzeros are sorted by row: where every row begins (neq + 1).
   pure subroutine start_rows(pattern, row_start)
@@ -91,7 +133,7 @@ contains
   pure subroutine return_to_chosen(solver)
     type(linear_solver_t), intent(inout) :: solver
 
-    solver%fallen_back = .false.
+    solver%now = solver%first
   end subroutine return_to_chosen
 
   !> Factorise the matrix with these nonzeros, unless it is the one that sound factors are at hand of. A singular matrix gives
@@ -101,22 +143,26 @@ contains
     real(wp), intent(in) :: values(:)    !! (nnz) [residual/unknown]
     type(error_t), allocatable, intent(out) :: error
 
-    if (solver%sound .and. (solver%by_fallback .eqv. solver%fallen_back)) then
+    if (solver%sound .and. solver%made_by == solver%now) then
       if (same_bits(values, solver%values)) then
         solver%reused = solver%reused + 1
         return
       end if
     end if
     solver%values = values
-    solver%factorised = solver%factorised + 1
-    solver%by_fallback = solver%fallen_back
-    if (solver%fallen_back) then
-      call solver%fallback%factorise(solver%values, solver%sound, error)
-    else
-      call solver%own%factorise(solver%values, solver%sound, error)
-    end if
-    if (allocated(error)) solver%sound = .false.
+    call factorise_now(solver, error)
   end subroutine factorise
+
+  !> The matrix at hand by the present stage.
+  subroutine factorise_now(solver, error)
+    type(linear_solver_t), intent(inout) :: solver
+    type(error_t), allocatable, intent(out) :: error
+
+    solver%factorised = solver%factorised + 1
+    solver%made_by = solver%now
+    call solver%stages(solver%now)%factors%factorise(solver%values, solver%sound, error)
+    if (allocated(error)) solver%sound = .false.
+  end subroutine factorise_now
 
   !> Equal to the last bit; two zeros of different sign are not.
   pure function same_bits(a, b) result(same)
@@ -143,11 +189,13 @@ contains
     x = 0
     if (solver%sound) call refine(solver, pattern, rhs, x, error)
     if (allocated(error)) return
-    if (can_fall_back(solver) .and. .not. (solver%sound .and. solver%residual <= linear_tolerance)) then
-      call fall_back(solver, pattern, error)
-      if (.not. allocated(error)) call refine(solver, pattern, rhs, x, error)
-    end if
-    if (allocated(error)) return
+    do while (solver%now < size(solver%stages) .and. .not. (solver%sound .and. solver%residual <= linear_tolerance))
+      solver%now = solver%now + 1
+      if (.not. allocated(solver%stages(solver%now)%factors)) call plan_stage(solver, solver%now, pattern, error)
+      if (.not. allocated(error)) call factorise_now(solver, error)
+      if (solver%sound .and. .not. allocated(error)) call refine(solver, pattern, rhs, x, error)
+      if (allocated(error)) return
+    end do
     if (.not. solver%sound) then
       call fail(error, exit_no_convergence, 'the matrix has no factors: its factorisation failed')
     else if (.not. solver%residual <= linear_tolerance) then
@@ -156,35 +204,6 @@ contains
     end if
   end subroutine solve_linear
 
-  pure function can_fall_back(solver) result(yes)
-    type(linear_solver_t), intent(in) :: solver
-    logical :: yes
-
-    yes = solver%row%fallback /= '' .and. .not. solver%fallen_back
-  end function can_fall_back
-
-  !> Factorise the present matrix by the fallback, which is planned when it is needed first.
-  subroutine fall_back(solver, pattern, error)
-    type(linear_solver_t), intent(inout) :: solver
-    class(matrix_pattern_t), intent(in) :: pattern
-    type(error_t), allocatable, intent(out) :: error
-    type(solver_row_t), allocatable :: rows(:)
-    integer :: k
-
-    solver%fallen_back = .true.
-    if (.not. allocated(solver%fallback)) then
-      call list_solvers(rows)
-      do k = 1, size(rows)
-        if (rows(k)%name == solver%row%fallback) call rows(k)%create(solver%fallback)
-      end do
-      call solver%fallback%plan(pattern, solver%position, error)
-      if (allocated(error)) return
-    end if
-    solver%factorised = solver%factorised + 1
-    solver%by_fallback = .true.
-    call solver%fallback%factorise(solver%values, solver%sound, error)
-  end subroutine fall_back
-
   !> Solve, then correct by the residual while that is worth it.
   subroutine refine(solver, pattern, rhs, x, error)
     type(linear_solver_t), intent(inout) :: solver
@@ -192,25 +211,24 @@ contains
     real(wp), intent(in) :: rhs(:)       !! (neq) [residual]
     real(wp), intent(out) :: x(:)        !! (neq) [unknown]
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: residual(size(rhs)), correction(size(rhs)), scale
+    real(wp) :: residual(size(rhs)), correction(size(rhs)), scale, before
     integer :: k
 
     x = 0
     scale = 0
     residual = rhs
+    solver%residual = huge(before)
     do k = 0, max_refinements
+      before = solver%residual
       correction = residual
-      if (solver%fallen_back) then
-        call solver%fallback%substitute(correction, error)
-      else
-        call solver%own%substitute(correction, error)
-      end if
+      call solver%stages(solver%now)%factors%substitute(correction, error)
       if (allocated(error)) return
       x = x + correction
       call linear_residual(pattern, solver%row_start, solver%values, rhs, x, residual, scale)
       solver%residual = 0
       if (scale > 0) solver%residual = length_of(residual)/scale
-      if (.not. solver%residual > refine_above) exit
+      if (.not. solver%residual > solver%stages(solver%now)%row%refine_above) exit
+      if (solver%residual > worth_refining*before) exit
     end do
     if (scale > singular_growth*length_of(rhs)) then
       call fail(error, exit_no_convergence, 'the matrix is singular to working precision: is every body held?')
@@ -257,12 +275,18 @@ contains
   subroutine release(solver)
     type(linear_solver_t), intent(inout) :: solver
 
-    call drop(solver%own)
-    call drop(solver%fallback)
+    integer :: k
+
+    if (allocated(solver%stages)) then
+      do k = 1, size(solver%stages)
+        call drop(solver%stages(k)%factors)
+      end do
+    end if
     if (allocated(solver%position)) deallocate (solver%position, solver%row_start, solver%values)
     solver%sound = .false.
-    solver%fallen_back = .false.
-    solver%by_fallback = .false.
+    solver%first = 1
+    solver%now = 1
+    solver%made_by = 0
   end subroutine release
 
   subroutine drop(factors)

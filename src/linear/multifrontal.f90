@@ -5,21 +5,24 @@
 !> its own only, not with theirs. A front sums its nonzeros and the borders of its children in a fixed order and writes only
 !> what is its own, so the bits are the same for any number of threads.
 module multifrontal
-  use blas, only: dgemv, keep_blas_to_one_thread
+  use blas, only: gemv => dgemv, keep_blas_to_one_thread
   use dense_lu, only: block, eliminate, eliminate_shared
   use errors, only: error_t, exit_machine, fail
   use front_layout, only: front_layout_t, lay_out_fronts
-  use kinds, only: i8, wp
+  use kinds, only: i8, wp, rk => wp
   use matrix_pattern, only: matrix_pattern_t
   use text, only: to_text
   implicit none
   private
   public :: multifrontal_t, plan, decompose, substitute
 
+  !> Of an entry of the factors.
+  integer, parameter :: bytes = storage_size(0.0_rk)/8
+
   type :: multifrontal_t
     type(front_layout_t) :: layout
     !> Factors of all fronts; matrices of their borders; what borders send on in a solve.
-    real(wp), allocatable :: factors(:), borders(:), sent(:)
+    real(rk), allocatable :: factors(:), borders(:), sent(:)
   end type multifrontal_t
 
 contains
@@ -43,7 +46,7 @@ contains
     if (status == 0) allocate (solver%borders(solver%layout%border_length + 1), stat=status)
     if (status /= 0) then
       call fail(error, exit_machine, 'not enough memory for the factors of the matrix ('// &
-                to_text(nint(8*real(solver%layout%factor_length + solver%layout%border_length, wp)/2.0_wp**20))//' MB)', &
+                to_text(nint(bytes*real(solver%layout%factor_length + solver%layout%border_length, wp)/2.0_wp**20))//' MB)', &
                 'use a coarser mesh or a machine with more memory')
     end if
   end subroutine plan
@@ -68,7 +71,7 @@ contains
     type(front_layout_t), intent(in) :: layout
     real(wp), intent(in) :: values(:)
     integer, intent(in) :: f
-    real(wp), intent(inout) :: factors(layout%factor_length + 1), borders(layout%border_length + 1)
+    real(rk), intent(inout) :: factors(layout%factor_length + 1), borders(layout%border_length + 1)
     logical, intent(inout) :: sound(:)
     integer :: k, c, s
 
@@ -93,7 +96,7 @@ contains
     type(front_layout_t), intent(in) :: layout
     real(wp), intent(in) :: values(:)
     integer, intent(in) :: f
-    real(wp), intent(inout) :: factors(layout%factor_length + 1), borders(layout%border_length + 1)
+    real(rk), intent(inout) :: factors(layout%factor_length + 1), borders(layout%border_length + 1)
     logical, intent(inout) :: sound(:)
     integer :: k, c, p, n
 
@@ -104,7 +107,7 @@ contains
                border => layout%border_start(f))
       factors(pivot:pivot + int(p, kind(pivot))*(2*n - p) - 1) = 0
       do k = layout%entry(f), layout%entry(f + 1) - 1
-        factors(pivot + layout%target(k) - 1) = factors(pivot + layout%target(k) - 1) + values(layout%source(k))
+        factors(pivot + layout%target(k) - 1) = factors(pivot + layout%target(k) - 1) + real(values(layout%source(k)), rk)
       end do
       do k = layout%child_first(f), layout%child_first(f + 1) - 1
         c = layout%child(k)
@@ -132,8 +135,8 @@ contains
   !> Add the border of a child to the pivot columns and rows of a front, whose rows `to` it goes to.
   pure subroutine add_to_pivots(m, to, child, p, n, pivot, row)
     integer, intent(in) :: m, to(m), p, n
-    real(wp), intent(in) :: child(m, m)
-    real(wp), intent(inout) :: pivot(n, p), row(p, n - p)
+    real(rk), intent(in) :: child(m, m)
+    real(rk), intent(inout) :: pivot(n, p), row(p, n - p)
     integer :: i, j, inside
 
     inside = count(to <= p)
@@ -152,8 +155,8 @@ contains
   !> Add the rest of the border of a child to the border of the front, which the elimination has begun.
   pure subroutine add_to_border(m, to, child, p, n, border)
     integer, intent(in) :: m, to(m), p, n
-    real(wp), intent(in) :: child(m, m)
-    real(wp), intent(inout) :: border(n - p, n - p)
+    real(rk), intent(in) :: child(m, m)
+    real(rk), intent(inout) :: border(n - p, n - p)
     integer :: i, j, inside
 
     inside = count(to <= p)
@@ -168,24 +171,27 @@ contains
   subroutine substitute(solver, x)
     type(multifrontal_t), intent(inout) :: solver
     real(wp), intent(inout) :: x(:)   !! (neq) [residual] in, [unknown] out
-    real(wp) :: y(size(x))
+    real(rk) :: y(size(x))
+    real(wp) :: unit
 
-    y(solver%layout%place) = x
+    ! by a power of two, which leaves the bits: of single precision, numbers far from 1 are none
+    unit = scale(1.0_wp, exponent(maxval(abs(x))))
+    y(solver%layout%place) = real(x/unit, rk)
     !$omp parallel if (any(solver%layout%shared)) default(shared)
     !$omp single
     call forward_below(solver%layout, 0, solver%factors, y, solver%sent)
     call backward_below(solver%layout, 0, solver%factors, y)
     !$omp end single
     !$omp end parallel
-    x = y(solver%layout%place)
+    x = unit*y(solver%layout%place)
   end subroutine substitute
 
   !> Forward substitution: children of front f, then the front itself.
   recursive subroutine forward_below(layout, f, factors, y, sent)
     type(front_layout_t), intent(in) :: layout
     integer, intent(in) :: f
-    real(wp), intent(in) :: factors(layout%factor_length + 1)
-    real(wp), intent(inout) :: y(:), sent(:)
+    real(rk), intent(in) :: factors(layout%factor_length + 1)
+    real(rk), intent(inout) :: y(:), sent(:)
     integer :: k, c, s
 
     do k = layout%child_first(f), layout%child_first(f + 1) - 1
@@ -207,9 +213,9 @@ contains
   subroutine forward(layout, f, factors, y, sent)
     type(front_layout_t), intent(in) :: layout
     integer, intent(in) :: f
-    real(wp), intent(in) :: factors(layout%factor_length + 1)
-    real(wp), intent(inout) :: y(:), sent(:)
-    real(wp) :: z(layout%max_order), before(block)
+    real(rk), intent(in) :: factors(layout%factor_length + 1)
+    real(rk), intent(inout) :: y(:), sent(:)
+    real(rk) :: z(layout%max_order), before(block)
     integer(i8) :: at
     integer :: k, c, i, p, n, w
 
@@ -227,8 +233,8 @@ contains
       w = min(block, p - k + 1)
       before(:w) = z(k:k + w - 1)
       at = layout%factor_start(f) + (k - 1) + int(k - 1, i8)*n
-      call dgemv('N', w, w, 1.0_wp, factors(at), n, before, 1, 0.0_wp, z(k), 1)
-      if (k + w <= n) call dgemv('N', n - k - w + 1, w, -1.0_wp, factors(at + w), n, z(k), 1, 1.0_wp, z(k + w), 1)
+      call gemv('N', w, w, 1.0_rk, factors(at), n, before, 1, 0.0_rk, z(k), 1)
+      if (k + w <= n) call gemv('N', n - k - w + 1, w, -1.0_rk, factors(at + w), n, z(k), 1, 1.0_rk, z(k + w), 1)
     end do
     y(layout%first(f):layout%first(f + 1) - 1) = z(:p)
     sent(layout%border(f):layout%border(f + 1) - 1) = z(p + 1:n)
@@ -238,8 +244,8 @@ contains
   recursive subroutine backward_below(layout, f, factors, y)
     type(front_layout_t), intent(in) :: layout
     integer, intent(in) :: f
-    real(wp), intent(in) :: factors(layout%factor_length + 1)
-    real(wp), intent(inout) :: y(:)
+    real(rk), intent(in) :: factors(layout%factor_length + 1)
+    real(rk), intent(inout) :: y(:)
     integer :: k, c, s
 
     if (f > 0) call backward(layout, f, factors, y)
@@ -261,9 +267,9 @@ contains
   subroutine backward(layout, f, factors, y)
     type(front_layout_t), intent(in) :: layout
     integer, intent(in) :: f
-    real(wp), intent(in) :: factors(layout%factor_length + 1)
-    real(wp), intent(inout) :: y(:)
-    real(wp) :: z(layout%max_order)
+    real(rk), intent(in) :: factors(layout%factor_length + 1)
+    real(rk), intent(inout) :: y(:)
+    real(rk) :: z(layout%max_order)
     integer(i8) :: at
     integer :: p, n, k
 
@@ -272,11 +278,11 @@ contains
     z(:p) = y(layout%first(f):layout%first(f + 1) - 1)
     z(p + 1:n) = y(layout%index(layout%border(f):layout%border(f + 1) - 1))
     at = layout%factor_start(f) + int(p, i8)*n
-    if (n > p) call dgemv('N', p, n - p, -1.0_wp, factors(at), p, z(p + 1), 1, 1.0_wp, z, 1)
+    if (n > p) call gemv('N', p, n - p, -1.0_rk, factors(at), p, z(p + 1), 1, 1.0_rk, z, 1)
     do k = 1 + block*((p - 1)/block) - block, 1, -block
       ! rows of a block, by the pivots of those after it
       at = layout%factor_start(f) + (k - 1) + int(k + block - 1, i8)*n
-      call dgemv('N', block, p - k - block + 1, -1.0_wp, factors(at), n, z(k + block), 1, 1.0_wp, z(k), 1)
+      call gemv('N', block, p - k - block + 1, -1.0_rk, factors(at), n, z(k + block), 1, 1.0_rk, z(k), 1)
     end do
     y(layout%first(f):layout%first(f + 1) - 1) = z(:p)
   end subroutine backward

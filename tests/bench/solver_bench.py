@@ -15,7 +15,7 @@ import time
 sys.dont_write_bytecode = True
 import bench  # noqa: E402
 
-SOLVERS = ("FRONT", "MUMPS")
+SOLVERS = ("MIXED", "FRONT", "MUMPS")
 BEGIN, END = "<!-- solvers: written by solver_bench.py --write -->", "<!-- solvers: end -->"
 
 

@@ -58,6 +58,9 @@ DRIVER = {"main", "remesh_scene", "mesh_choice", "remesh_options", "remesh_facts
 # Modules that come from the compiler or a library.
 EXTERNAL = {"iso_fortran_env", "iso_c_binding", "ieee_arithmetic", "ieee_exceptions", "ieee_features", "omp_lib", "hdf5"}
 
+# Modules that CMake makes of others, of another precision: they stand where those stand.
+MADE_OF_OTHERS = "_single"
+
 LONGEST_FILE = 800
 
 # Names of types that are still defined more than once, and how often: each must get a name of its own, and leave this list.
@@ -120,7 +123,7 @@ class Tree:
                 self.types[new_type.group(1).lower()].append((file, number))
             use = USE.match(line)
             if use:
-                uses.append((use.group(1).lower(), number))
+                uses.append((use.group(1).lower().removesuffix(MADE_OF_OTHERS), number))
             # A `private` inside a type is not the module's.
             depth += bool(BLOCK_START.match(line)) - bool(BLOCK_END.match(line))
             for word, pattern in WORDS.items():

@@ -25,7 +25,7 @@ NOTHING = {
     "ESTIM, which only looks": "ESTIM",
     "REMSH with limits that are not reached": "REMSH\n   ANGLE 0. 179.9\n   MIDDLE 0.499\n   DISTRESS 1000",
     "a probe": "PROBE work MAX mises billet",
-    "a solver that is the default": "SOLVR FRONT",
+    "a solver that is the default": "SOLVR MIXED",
     "bounds that are the default": "NORMS PATH 0.04 RATE 0.008",
     "fields and checkpoints at every step": "CKPT 1",
     "one operation": None,

@@ -24,6 +24,8 @@ SLIDES = ("press fit",)
 # method leaves.
 COUNTED, COMPARED = "NORMS  FORCE 1.E-8 DISPL 1.E-7", "NORMS  FORCE 1.E-10 DISPL 1.E-9"
 OTHERS = ("MUMPS",)
+# Matrices that are large enough for single precision; contact begins within a few steps of the largest length.
+LARGE = mesh(26, 38) + ["-p", "travel=2"]
 DECKS = {"upsetting": ("upsetting/upsetting.lag", mesh(4, 6)), "press fit": ("press_fit/press_fit.lag", []),
          "thick cylinder": ("thick_cylinder/thick_cylinder.lag", []), "cook": ("cook/cook.lag", []), "hertz": ("hertz/hertz.lag", [])}
 
@@ -47,8 +49,8 @@ def difference(one, two, allowed):
     return worst
 
 
-def run_both(checks, name, deck, options, solver, norms):
-    """Folders of one deck with the default and with another solver; none where a run fails."""
+def run_both(checks, name, deck, options, solver, norms, default):
+    """Folders of one deck with the default, which is `default` for its matrices, and with another solver; none where a run fails."""
     text = deck_text(os.path.join(SOURCE, "decks", deck))
     folders = []
     for label, cards in (("default", norms), (solver, f"{norms}\nSOLVR  {solver}")):
@@ -58,7 +60,7 @@ def run_both(checks, name, deck, options, solver, norms):
         if not checks.that(result.returncode == DONE, f"{name}, {label}: runs", said(result)):
             return []
     reported = [summary(folder)["linear_solver"] for folder in folders]
-    checks.that(reported == ["FRONT", solver], f"{name}, {solver}: summary.json states the solver", reported)
+    checks.that(reported == [default, solver], f"{name}, {solver}: summary.json states the solver", reported)
     # lengths of steps follow strains, and have their round-off
     steps = [len(history(folder)["time"]) for folder in folders]
     return folders if checks.that(steps[0] == steps[1], f"{name}, {solver}: the same steps", steps) else []
@@ -72,13 +74,13 @@ def largest_coordinate(folder):
         return max(float(abs(step["coordinates"][()]).max()) for step in file["steps"].values())
 
 
-def compare(checks, name, deck, options, solver):
+def compare(checks, name, deck, options, solver, default="FRONT"):
     """One deck with the default and with another solver: iterations, and the history."""
-    counted = run_both(checks, name, deck, options, solver, COUNTED)
+    counted = run_both(checks, name, deck, options, solver, COUNTED, default)
     if counted:
         iterations = [sum(history(folder)["iterations"]) for folder in counted]
         checks.that(abs(iterations[0] - iterations[1]) <= 1, f"{name}, {solver}: the same number of iterations", iterations)
-    compared = run_both(checks, name, deck, options, solver, COMPARED)
+    compared = run_both(checks, name, deck, options, solver, COMPARED, default)
     if compared:
         depths = summary(compared[0])["checks"]
         share = depths.get("max_penetration_over_allowed", 0.0)
@@ -92,7 +94,7 @@ def compare(checks, name, deck, options, solver):
 
 def check_choice(checks):
     """--check and the listing state the solver and what its factors cost."""
-    for solver in ("FRONT",) + OTHERS:
+    for solver in ("MIXED", "FRONT") + OTHERS:
         deck = write(checks.path("reported", f"{solver}.lag"), add_cards(deck_text(), f"SOLVR  {solver}"))
         result = run([deck, "--check"])
         checks.that(result.returncode == DONE and re.search(rf"(?m)^solver +{solver} +\S", result.stdout), f"{solver}: --check states it",
@@ -101,16 +103,16 @@ def check_choice(checks):
         checks.that(cost and float(cost[1]) > 1000 and float(cost[2]) > 1000, f"{solver}: --check states the cost", result.stdout[-300:])
 
 
-def check_threads_and_resume(checks, solver):
+def check_threads_and_resume(checks, solver, options=()):
     """The same bits with two threads, and after a stop."""
     deck = write(checks.path(solver, "deck.lag"), add_cards(deck_text(), f"SOLVR  {solver}"))
     whole, two, parts = (checks.path(solver, name) for name in ("whole", "two", "parts"))
     for threads, out in (("1", whole), ("2", two)):
-        result = run([deck, "--threads", threads, "--quiet", "--out", out])
+        result = run([deck, "--threads", threads, "--quiet", "--out", out, *options])
         checks.that(result.returncode == DONE, f"{solver}, {threads} threads: runs", said(result))
     checks.that(read_bytes(os.path.join(whole, "history.csv")) == read_bytes(os.path.join(two, "history.csv")),
                 f"{solver}: the same history with two threads")
-    common = [deck, "--threads", "1", "--quiet", "--out", parts]
+    common = [deck, "--threads", "1", "--quiet", "--out", parts, *options]
     code, _, reported = stop_after(start(common), parts, 10, signal.SIGTERM)
     if checks.that(code == SIGNAL + signal.SIGTERM, f"{solver}: stops", (code, reported)):
         result = run(common + ["--resume", os.path.join(parts, "deck.ckp.h5")])
@@ -127,6 +129,8 @@ def main():
         for name, (deck, options) in DECKS.items():
             compare(checks, name, deck, options, solver)
         check_threads_and_resume(checks, solver)
+    compare(checks, "large billet", DECKS["upsetting"][0], LARGE, "FRONT", "MIXED")
+    check_threads_and_resume(checks, "MIXED", LARGE)
     checks.end()
 
 
