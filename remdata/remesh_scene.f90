@@ -10,6 +10,7 @@ module remesh_scene
   use carry_solution, only: carry_progress, carry_solids
   use contact_carry, only: carry_contacts
   use contact_ends, only: contact_end_t
+  use contact_rule, only: choose_rules
   use contour_cuts, only: cut_is_due, make_cuts
   use contour_volume, only: volume_inside
   use cuts, only: stage_of_cuts
@@ -124,6 +125,8 @@ contains
     new%generation = facts%generation
     call fit_pairs(contours, mesh, new, facts%fit)
     if (allocated(facts%contour%opened)) call close_folds(contours, facts%contour%opened, mesh, new)
+    ! by the lengths that the sides have in the checkpoint, where it is read
+    call choose_rules(new)
     if (facts%fit > 0 .or. allocated(facts%contour%opened)) call check_shape(mesh, facts%mesh, error)
     if (allocated(error)) return
     call start_solution(new, after)
