@@ -18,6 +18,7 @@ module remesh_scene
   use exchange, only: write_checkpoint
   use fields, only: displacement_field, pilot_field
   use first_contours, only: contours_of_cards
+  use fold_carry, only: carry_folds
   use fold_closing, only: close_folds
   use kinds, only: pi, wp
   use material_interfaces, only: group_interfaces, interface_t, interfaces_of
@@ -226,6 +227,7 @@ contains
     call begin_task(facts, 'contact', 'contact')
     call carry_contacts(old, before, contours, mesh, new, after, facts%contacts)
     call update_closest_points(new, after)
+    call carry_folds(old, before, contours, mesh, new, after)
   end subroutine carry_state
 
   !> Command line options that replace those of the deck, for this mesh.
