@@ -10,6 +10,7 @@ module remesh_scene
   use carry_solution, only: carry_progress, carry_solids
   use contact_carry, only: carry_contacts
   use contact_ends, only: contact_end_t
+  use contact_rule, only: choose_rules
   use contour_cuts, only: cut_is_due, make_cuts
   use contour_volume, only: volume_inside
   use cuts, only: stage_of_cuts
@@ -17,6 +18,7 @@ module remesh_scene
   use exchange, only: write_checkpoint
   use fields, only: displacement_field, pilot_field
   use first_contours, only: contours_of_cards
+  use fold_carry, only: carry_folds
   use fold_closing, only: close_folds
   use kinds, only: pi, wp
   use material_interfaces, only: group_interfaces, interface_t, interfaces_of
@@ -124,6 +126,8 @@ contains
     new%generation = facts%generation
     call fit_pairs(contours, mesh, new, facts%fit)
     if (allocated(facts%contour%opened)) call close_folds(contours, facts%contour%opened, mesh, new)
+    ! by the lengths that the sides have in the checkpoint, where it is read
+    call choose_rules(new)
     if (facts%fit > 0 .or. allocated(facts%contour%opened)) call check_shape(mesh, facts%mesh, error)
     if (allocated(error)) return
     call start_solution(new, after)
@@ -223,6 +227,7 @@ contains
     call begin_task(facts, 'contact', 'contact')
     call carry_contacts(old, before, contours, mesh, new, after, facts%contacts)
     call update_closest_points(new, after)
+    call carry_folds(old, before, contours, mesh, new, after)
   end subroutine carry_state
 
   !> Command line options that replace those of the deck, for this mesh.

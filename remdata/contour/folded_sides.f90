@@ -12,11 +12,12 @@ module folded_sides
   use scene, only: axisymmetric, scene_t
   use shape_functions, only: line3
   use solution, only: solution_t
+  use side_tags, only: side_tags_t
   use state_variables, only: find_variable
   use vectors, only: length_of
   implicit none
   private
-  public :: fold_t, open_folds
+  public :: fold_t, open_folds, own_sides
 
   !> A fold: sides in contact one after the other along the die that they are; what is open between two of their points belongs to
   !> it.
@@ -31,6 +32,20 @@ module folded_sides
   real(wp), parameter :: ground = 0.3_wp
 
 contains
+
+  !> Sides of a loop that face their own body.
+  pure function own_sides(scene, tags) result(own)
+    type(scene_t), intent(in) :: scene
+    type(side_tags_t), intent(in) :: tags
+    logical :: own(size(tags%on_group, 2))   !! (nside)
+    integer :: g
+
+    own = .false.
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%die == 0 .or. .not. faces_itself(scene, scene%groups(g))) cycle
+      own = own .or. tags%on_group(g, :)
+    end do
+  end function own_sides
 
   !> List the folds and move their sides apart.
   subroutine open_folds(scene, solution, x, folds, opened)

@@ -14,14 +14,14 @@ module part_contour
   use contact_placement, only: contour_options_t, place_contacts
   use contour_assembly, only: assemble_boundary, contact_t
   use contour_laps, only: find_laps, lap_t
-  use folded_sides, only: fold_t, open_folds
+  use folded_sides, only: fold_t, open_folds, own_sides
   use contour_volume, only: shift_sides, volume_inside, volume_of_loop
   use die_closest_points, only: point_on_side
   use errors, only: error_t, exit_bug, exit_no_convergence, fail
   use kinds, only: wp
   use scene, only: axisymmetric, is_solid, scene_t, solid_elements
   use short_die_arcs, only: drop_short_die_arcs
-  use short_free_sides, only: drop_short_sides
+  use short_free_sides, only: drop_short_grounds, drop_short_sides
   use small_laps, only: cut_small_laps
   use side_tags, only: find_tags, held_nodes, side_tags_t
   use solution, only: present_coordinates, solution_t
@@ -210,15 +210,16 @@ contains
     type(side_point_t), intent(in) :: joints(:)   !! (njoint) ends of contact with other bodies
     type(contour_t), intent(inout) :: contour
     real(wp) :: moved(2, size(x, 2))
-    logical :: may_move(size(contour%loop%sides, 2)), round
+    logical :: may_move(size(contour%loop%sides, 2)), own(size(may_move)), round
     type(position_t) :: position
     real(wp) :: shift, gain
     logical :: moves
     integer :: k, i
 
     round = scene%plane_state == axisymmetric
+    own = own_sides(scene, contour%tags)
     contour%volume_before = volume_of_loop(contour%loop, uncorrected, round)
-    call draw_boundary(x, options, joints, contour)
+    call draw_boundary(x, own, options, joints, contour)
     contour%volume_after = volume_inside(contour%boundary, round)
     if (size(contour%contacts) == 0) return
     moved = x
@@ -237,7 +238,7 @@ contains
       call shift_sides(contour%loop, may_move, held, round, gain, moved, shift, moves)
       if (.not. moves) exit
       contour%shift = contour%shift + shift
-      call draw_boundary(moved, options, joints, contour)
+      call draw_boundary(moved, own, options, joints, contour)
       contour%volume_after = volume_inside(contour%boundary, round)
     end do
     contour%restored = abs(contour%volume_before - contour%volume_after) <= kept_volume*abs(contour%volume_before)
@@ -251,8 +252,9 @@ contains
   end subroutine correct
 
   !> The boundary curve of a contour with its nodes at x.
-  pure subroutine draw_boundary(x, options, joints, contour)
+  pure subroutine draw_boundary(x, own, options, joints, contour)
     real(wp), intent(in) :: x(:, :)   !! (2, nnode) [length]
+    logical, intent(in) :: own(:)     !! (nside) sides that face their own body
     type(contour_options_t), intent(in) :: options
     type(side_point_t), intent(in) :: joints(:)   !! (njoint) ends of contact with other bodies
     type(contour_t), intent(inout) :: contour
@@ -261,6 +263,7 @@ contains
     if (options%least_free > 0) then
       call drop_short_die_arcs(options%least_free, contour%tags, contour%contacts, contour%boundary)
       call drop_short_sides(options%least_free, contour%tags, contour%contacts, contour%boundary)
+      call drop_short_grounds(options%least_free, own, contour%tags, contour%contacts, contour%boundary)
     end if
     contour%laps = [fold_t ::]
     if (options%longest_lap > 0) &

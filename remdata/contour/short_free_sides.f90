@@ -2,7 +2,8 @@
 !>
 !> A surface that folds onto a die leaves a corner just before the place where contact begins. No mesh resolves a side
 !> much shorter than its smallest element, nor has it good elements in both ends of such a side: the free contour goes
-!> straight to the end of contact instead, which stays where it is.
+!> straight to the end of contact instead, which stays where it is. Nor has it elements for the sides of a rounded ground that has
+!> crumpled, where a fold has closed.
 module short_free_sides
   use arcs, only: arc_t
   use boundary_curves, only: boundary_curve_t, close_boundary, kind_corner, kind_end
@@ -12,7 +13,7 @@ module short_free_sides
   use side_tags, only: same_tags, side_tags_t
   implicit none
   private
-  public :: drop_short_sides, is_free, redrawn, remove_arcs
+  public :: drop_short_sides, drop_short_grounds, is_free, redrawn, remove_arcs
 
 contains
 
@@ -59,6 +60,67 @@ contains
     any_dropped = any(dropped)
     if (any_dropped) call remove_arcs(dropped, contacts, boundary)
   end subroutine drop_once
+
+  !> Drop all runs of sides that face their own body, shorter than `least`, from one corner that only bends to the next: where the
+  !> rounded ground of a fold has crumpled as it closed. The side before them goes to their end.
+  pure subroutine drop_short_grounds(least, own, tags, contacts, boundary)
+    real(wp), intent(in) :: least   !! [length]
+    logical, intent(in) :: own(:)   !! (nside) sides that face their own body
+    type(side_tags_t), intent(in) :: tags
+    type(contact_t), intent(inout) :: contacts(:)   !! (ncontact) their arcs are renumbered
+    type(boundary_curve_t), intent(inout) :: boundary
+    logical, allocatable :: run(:)
+    integer :: k, before
+
+    do
+      call find_ground(least, own, tags, boundary, run, before, k)
+      if (.not. any(run)) return
+      associate (next => boundary%arcs(k))
+        boundary%arcs(before) = redrawn(boundary%arcs(before), point_at(next, next%range(1)), 2)
+      end associate
+      call remove_arcs(run, contacts, boundary)
+    end do
+  end subroutine drop_short_grounds
+
+  !> The first of these runs, none where there is no more.
+  pure subroutine find_ground(least, own, tags, boundary, run, before, k)
+    real(wp), intent(in) :: least   !! [length]
+    logical, intent(in) :: own(:)   !! (nside)
+    type(side_tags_t), intent(in) :: tags
+    type(boundary_curve_t), intent(in) :: boundary
+    logical, allocatable, intent(out) :: run(:)   !! (narc)
+    integer, intent(out) :: before, k             !! arcs before and after it
+    real(wp) :: length
+    integer :: first
+
+    allocate (run(size(boundary%arcs)))
+    do first = 1, size(run)
+      run = .false.
+      length = 0
+      before = neighbour(first, -1, size(run))
+      k = first
+      do while (boundary%kinds(first) == kind_corner .and. k /= before)
+        if (.not. (in_fold(before) .and. in_fold(k))) exit
+        if (.not. same_tags(tags, boundary%arcs(before)%side, boundary%arcs(k)%side)) exit
+        if (any(run) .and. boundary%kinds(k) == kind_corner) return
+        length = length + boundary%arc_length(k) - boundary%arc_length(k - 1)
+        if (length > least) exit
+        run(k) = .true.
+        k = neighbour(k, 1, size(run))
+      end do
+    end do
+    run = .false.
+
+  contains
+
+    pure function in_fold(arc) result(yes)
+      integer, intent(in) :: arc
+      logical :: yes
+
+      yes = is_free(boundary%arcs(arc)) .and. own(boundary%arcs(arc)%side)
+    end function in_fold
+
+  end subroutine find_ground
 
   !> Take arcs out of a boundary curve, and renumber those of the contacts.
   pure subroutine remove_arcs(dropped, contacts, boundary)

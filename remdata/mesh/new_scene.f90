@@ -2,7 +2,6 @@
 module new_scene
   use boundary_curves, only: arc_length_at, boundary_length, position_at_arc_length, position_t
   use cards_side_dies, only: curve_of_sides
-  use contact_rule, only: choose_rules
   use dies, only: is_deformable, place_on_nodes
   use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
@@ -55,7 +54,6 @@ contains
     do g = 1, size(new%groups)
       if (new%groups(g)%host > 0) new%groups(g)%connectivity = new%groups(new%groups(g)%host)%connectivity
     end do
-    call choose_rules(new)
   end subroutine set_up_new_scene
 
   !> Sides of a set: those between zones, or the contour sides that replace sides of the old set: sets follow the material.

@@ -12,6 +12,7 @@ module pair_fit
   use dies, only: die_t, is_deformable, place_on_nodes
   use kinds, only: wp
   use new_scene, only: middle_position
+  use own_contact, only: faces_itself
   use plane_vectors, only: turned
   use part_contour, only: contour_t
   use quadrature, only: line_rule
@@ -145,7 +146,8 @@ contains
     missing = before%d - after%d
   end subroutine find_missing_depth
 
-  !> Closest points of contact points on the new sides of their die: from them the solver measures the slip of the next step.
+  !> Closest points of contact points on the new sides of their die: from them the solver measures the slip of the next step. Those
+  !> of a body on itself are found with their state (fold_carry).
   pure subroutine update_closest_points(scene, solution)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
@@ -158,7 +160,7 @@ contains
     still = 0
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
-        if (group%pairs == 0) cycle
+        if (group%pairs == 0 .or. faces_itself(scene, group)) cycle
         status = group%variables(find_variable(group%variables, 'contact_status'))%first
         piece_row = group%variables(find_variable(group%variables, 'die_piece'))%first
         xi_row = group%variables(find_variable(group%variables, 'die_xi'))%first

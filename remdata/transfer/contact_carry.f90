@@ -22,7 +22,7 @@ module contact_carry
   use zone_mesh, only: new_mesh_t
   implicit none
   private
-  public :: carry_contacts
+  public :: carry_contacts, list_carried, status_row
 
   !> Integration points of an interval in sequence: arc length from its start, length each represents, point and element.
   type :: interval_points_t
@@ -116,9 +116,10 @@ contains
     end do
   end subroutine place_on_die
 
+  !> Number of the component that is the status of a group's points; 0 where there is none.
   pure function status_row(scene, g) result(row)
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: g
+    integer, intent(in) :: g   !! group
     integer :: row
 
     row = find_variable(scene%groups(g)%variables, 'contact_status')
@@ -129,9 +130,9 @@ contains
   !> are found again by the solver.
   pure subroutine list_carried(scene, g, carried, conserved)
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: g
-    integer, allocatable, intent(out) :: carried(:)
-    logical, allocatable, intent(out) :: conserved(:)
+    integer, intent(in) :: g                            !! group
+    integer, allocatable, intent(out) :: carried(:)     !! (n) numbers of components
+    logical, allocatable, intent(out) :: conserved(:)   !! (n) their integrals along an interval are kept
     integer :: v, i
 
     allocate (carried(0), conserved(0))

@@ -21,6 +21,7 @@
 !> A body may face itself (own_contact): nothing tells then by its place whether a point is behind the wall that it belongs to or in
 !> the side that it has met, both are a depth. So a point goes on from the closest point of the last accepted instant, or takes the
 !> nearest gap. Only where it had none in reach, as in a first step, a depth counts that was none on the mesh as it began.
+!> The two sides that meet in the ground of a fold press on each other; beside any other corner a depth is the body itself.
 module elem_cntdf
   use contact_point, only: act, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, meeting_t, &
                            most_unknowns, no_surface, penalties, point_variables, rest, share_to_contact, touching, &
@@ -57,6 +58,8 @@ module elem_cntdf
   !> A point that was deeper behind a side of its body, on the mesh as it began, than this share of its own side is behind a wall:
   !> no depth of contact is as large.
   real(wp), parameter :: wall_thickness = 0.02_wp
+  !> Cosine of the largest angle between the sides of a slot that is shut, about 10 degrees: no element has a corner as sharp.
+  real(wp), parameter :: shut = 0.985_wp
   !> A closest point as far along its side was at the end of it (parent coordinate).
   real(wp), parameter :: at_corner = 0.999_wp
 
@@ -243,7 +246,8 @@ contains
       found = other
     end subroutine follow_from
 
-    !> What the point met before is nearer than a gap where it is a depth. A depth that was not met before may be a wall.
+    !> What the point met before is nearer than a gap where it is a depth. A depth that was not met before may be a wall, and one
+    !> beside a common node the body itself.
     pure subroutine take(other, was_met, closest)
       type(closest_point_t), intent(in) :: other
       logical, intent(in) :: was_met
@@ -253,27 +257,51 @@ contains
       if (.not. may(other%piece)) return
       if (is_own_node(other)) return
       if (closest%piece > 0 .and. other%d < 0 .and. other%d < closest%d) return
-      if (.not. was_met .and. other%d > 0) then
-        if (is_wall(other)) return
+      if (other%d > 0) then
+        if (is_next(other)) then
+          if (.not. is_slot(other)) return
+        else if (.not. was_met) then
+          if (is_wall(other)) return
+        end if
       end if
       closest = other
     end subroutine take
 
-    !> Point and closest point are on two faces of one wall, or on two sides of one corner.
+    !> Point and closest point are on two faces of one wall.
     pure function is_wall(far) result(wall)
       type(closest_point_t), intent(in) :: far
       logical :: wall
-      real(wp) :: y(2, 3), apart(2), across
+      real(wp) :: x(2, 3), y(2, 3), apart(2), across
 
       associate (side => group%connectivity(:, element), other => scene%dies(group%die)%nodes(:, far%piece), &
                  first => scene%mesh%coordinates)
+        x = first(:, side)
         y = first(:, other)
-        apart = matmul(first(:, side), phi) - point_on(y, far%xi)
+        apart = matmul(x, phi) - point_on(y, far%xi)
         across = dot_product(apart, right_of(tangent_on(y, far%xi)))
         if (far%at_vertex) across = sign(length_of(apart), across)
-        wall = across > wall_thickness*reach .or. is_next(far)
+        wall = across > wall_thickness*reach
       end associate
     end function is_wall
+
+    !> The side of the point and the one that it shares a node with have a slot between them, the ground of a fold, and no corner of
+    !> the body: by their chords, since parabolas that press on each other may bulge beside that node. A slot that is shut may have
+    !> turned over by the depth of contact.
+    pure function is_slot(found) result(slot)
+      type(closest_point_t), intent(in) :: found
+      logical :: slot
+      real(wp) :: before(2), after(2)
+      integer :: piece
+
+      associate (side => group%connectivity(:, element), other => scene%dies(group%die)%nodes(:, found%piece))
+        piece = found%piece
+        if (side(3) /= other(3)) piece = adjacent_piece(die, found%piece, -1)
+      end associate
+      before = die%pieces(:, 3, piece) - die%pieces(:, 1, piece)
+      piece = adjacent_piece(die, piece, 1)
+      after = die%pieces(:, 3, piece) - die%pieces(:, 1, piece)
+      slot = cross(before, after) > 0 .or. dot_product(before, after) < -shut*length_of(before)*length_of(after)
+    end function is_slot
 
     !> The closest point is on a side that shares a node with that of the point.
     pure function is_next(found) result(next)

@@ -96,12 +96,14 @@ def linked(link, width, low, die, place, loads):
 
 
 def remeshed(checks):
-    """A C that is shut gets a new mesh: the fold stays, its lap is told, and the force is that of the half on its own new mesh."""
+    """A C that is shut gets a new mesh: the fold stays, its lap is told, and the force is that of the half on its own new mesh; so it
+    is where multipliers hold the pressure in the fold."""
     found = []
-    for whole in (True, False):
-        contact = "DIE skin SIDES low 3 back 2 up 1\nCNT2D skin skin k\nLAW k COUL2D\n AKP 2.E7 PHI 0.3\n" if whole else \
-            "DIE line\n SEGM 9. 0. -1. 0.\nCNT2D low 3 line -33 k\nLAW k COUL2D\n AKP 4.E7 PHI 0.\n"
-        path, out = os.path.join(checks.folder, f"remeshed-{whole}.lag"), os.path.join(checks.folder, f"remeshed-{whole}")
+    for name, whole, law in (("whole", True, "AKP 2.E7 PHI 0.3"), ("half", False, "AKP 4.E7 PHI 0."),
+                             ("multipliers", True, "PENETR 1.E-3 PHI 0.3 AUGMENT 10")):
+        contact = ("DIE skin SIDES low 3 back 2 up 1\nCNT2D skin skin k\n" if whole else
+                   "DIE line\n SEGM 9. 0. -1. 0.\nCNT2D low 3 line -33 k\n") + f"LAW k COUL2D\n {law}\n"
+        path, out = os.path.join(checks.folder, f"remeshed-{name}.lag"), os.path.join(checks.folder, f"remeshed-{name}")
         with open(path, "w", encoding="utf-8") as deck:
             deck.write(arms(0.0, "PLSTN", whole, contact, more="LIC press\n 0. 0. 1. 0.25\nREMSH\n TIMES 0.7\n") + STRAT)
         done = subprocess.run([os.path.join(BIN, "lagacycle"), path, "--out", out, "--quiet"], check=False, stdin=subprocess.DEVNULL,
@@ -113,11 +115,12 @@ def remeshed(checks):
         found.append(float(rows[-1][[title.split(" [")[0] for title in rows[0]].index("force")]))
         with open(os.path.join(out, "cycle.csv"), newline="", encoding="utf-8") as file:
             tries = list(csv.DictReader(file))
-        checks.that([one["accepted"] for one in tries] == ["y"], f"remeshed: one new mesh at the first try ({len(tries)})")
+        checks.that([one["accepted"] for one in tries] == ["y"], f"remeshed, {name}: one new mesh at the first try ({len(tries)})")
         laps, depth = int(tries[0]["laps [-]"]), float(tries[0]["lap_depth [length]"])
         # the arms lie on each other from a tip to the ground of the slot, 3 long
         checks.that((laps == 1 and 2.0 < depth < 3.2) if whole else laps == 0, "remeshed: laps", f"{laps}, {depth}")
     checks.small(abs(found[0]/found[1] - 1), 0.02, "remeshed: force beside that of the half on a new mesh")
+    checks.small(abs(found[2]/found[0] - 1), 1e-3, "remeshed: force with multipliers")
 
 
 def friction(checks):
