@@ -12,11 +12,11 @@ module remesh_scene
   use contact_ends, only: contact_end_t
   use contact_rule, only: choose_rules
   use contour_cuts, only: cut_is_due, make_cuts
-  use contour_volume, only: volume_inside
+  use contour_volume, only: volume_of_section
   use cuts, only: stage_of_cuts
   use errors, only: error_t, exit_input, fail
   use exchange, only: write_checkpoint
-  use fields, only: displacement_field, pilot_field
+  use fields, only: displacement_field, pilot_field, section_field
   use first_contours, only: contours_of_cards
   use fold_carry, only: carry_folds
   use fold_closing, only: close_folds
@@ -183,7 +183,7 @@ contains
 
     left = 0
     do c = 1, size(contours)
-      left = left + volume_inside(contours(c)%boundary, old%plane_state == axisymmetric)
+      left = left + volume_of_section(contours(c)%boundary, after%fields(section_field)%value(:, 1))
     end do
     facts%removed = sum(facts%cuts%volume, mask=facts%cuts%generation == facts%generation)
     share = left/(left + facts%removed)

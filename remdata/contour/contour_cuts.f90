@@ -1,13 +1,13 @@
 !> Bodies are cut, after their contours were corrected and before they are meshed (cards TRIM and PIERC).
 module contour_cuts
-  use contour_volume, only: volume_inside
+  use contour_volume, only: volume_inside, volume_of_section
   use cut_contour, only: contour_of_piece
   use cut_crossings, only: cut_crossing_t, crossings_of_line, crossings_of_way
   use cut_pieces, only: follow_pieces, piece_t
   use cuts, only: cut_record_t, cut_t, is_trim, web_trigger
   use boundary_curves, only: boundary_curve_t
   use errors, only: error_t, exit_input, fail
-  use fields, only: pilot_field
+  use fields, only: pilot_field, section_field
   use kinds, only: wp
   use loop_group, only: group_of
   use offset_parabolas, only: point_at
@@ -83,7 +83,7 @@ contains
     do c = 1, size(contours)
       of_body(c) = group_of(scene, contours(c)%loop, c) == cut%group
     end do
-    before = total_volume(contours, of_body, scene%plane_state == axisymmetric)
+    before = total_volume(contours, of_body, solution%fields(section_field)%value(:, 1))
     if (is_trim(cut)) then
       call trim_body(scene, cut, contours, of_body, pieces, error)
     else
@@ -92,18 +92,20 @@ contains
     if (allocated(error)) return
     call replace_contours(scene, solution, cut, of_body, pieces, contours)
     record%volume = before - total_volume(contours, [(group_of(scene, contours(c)%loop, c) == cut%group, c=1, size(contours))], &
-                                          scene%plane_state == axisymmetric)
+                                          solution%fields(section_field)%value(:, 1))
   end subroutine make_cut
 
-  pure function total_volume(contours, among, round) result(volume)
-    type(contour_t), intent(in) :: contours(:)
-    logical, intent(in) :: among(:), round
-    real(wp) :: volume
+  !> Volume of those of the contours that `among` names.
+  pure function total_volume(contours, among, section) result(volume)
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
+    logical, intent(in) :: among(:)              !! (ncontour)
+    real(wp), intent(in) :: section(:)           !! (3) thickness at the origin [length], and its slopes [-]
+    real(wp) :: volume                           !! [length^3], per radian when axisymmetric
     integer :: c
 
     volume = 0
     do c = 1, size(contours)
-      if (among(c)) volume = volume + volume_inside(contours(c)%boundary, round)
+      if (among(c)) volume = volume + volume_of_section(contours(c)%boundary, section)
     end do
   end function total_volume
 
@@ -207,11 +209,11 @@ contains
       logical, intent(out) :: first
       real(wp) :: part
 
-      part = volume_inside(one%boundary, scene%plane_state == axisymmetric)
+      part = volume_of_section(one%boundary, solution%fields(section_field)%value(:, 1))
       if (cut%names_kept) then
         first = is_around(one%boundary, cut%kept)
       else
-        first = part > 0.5_wp*total_volume(contours, of_body, scene%plane_state == axisymmetric)
+        first = part > 0.5_wp*total_volume(contours, of_body, solution%fields(section_field)%value(:, 1))
       end if
     end subroutine choose_kept
 

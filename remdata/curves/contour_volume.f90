@@ -14,7 +14,7 @@ module contour_volume
   use vectors, only: length_of
   implicit none
   private
-  public :: volume_inside, volume_of_loop, shift_sides
+  public :: volume_inside, volume_of_section, volume_of_loop, shift_sides
 
   !> Gauss's rule on the halves and on the whole agree to this share of the arc length times its lever arm.
   real(wp), parameter :: accuracy = 16*eps
@@ -40,6 +40,28 @@ contains
       volume = volume + below(boundary%arcs(k), axisymmetric, origin)
     end do
   end function volume_inside
+
+  !> Volume inside a boundary curve of a section with the thickness a1 + a2 x + a3 y (sections): a1 times the area and a2 and a3
+  !> times its first moments, the integrals of x and y. A section of 0, 1, 0 is axisymmetric: per radian.
+  pure function volume_of_section(boundary, section) result(volume)
+    type(boundary_curve_t), intent(in) :: boundary
+    real(wp), intent(in) :: section(3)   !! a1 [length], a2 and a3 [-]
+    real(wp) :: volume                   !! [length^3], of an axisymmetric section per radian
+    type(boundary_curve_t) :: turned
+    integer :: k
+
+    volume = 0
+    if (abs(section(1)) > 0) volume = section(1)*volume_inside(boundary, .false.)
+    if (abs(section(2)) > 0) volume = volume + section(2)*volume_inside(boundary, .true.)
+    if (.not. abs(section(3)) > 0) return
+    ! by a quarter turn clockwise y becomes x
+    turned = boundary
+    do k = 1, size(turned%arcs)
+      turned%arcs(k)%points(1, :) = boundary%arcs(k)%points(2, :)
+      turned%arcs(k)%points(2, :) = -boundary%arcs(k)%points(1, :)
+    end do
+    volume = volume + section(3)*volume_inside(turned, .true.)
+  end function volume_of_section
 
   !> Volume inside a loop of sides without contact.
   pure function volume_of_loop(loop, coordinates, axisymmetric) result(volume)

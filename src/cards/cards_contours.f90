@@ -137,10 +137,24 @@ contains
     associate (where => head_location(deck%cards(i)))
       if (size(parts%bodies) > size(draft%scene%remesher%contours)) then
         call diagnostics%add(where, 'BODY', 'a deck has bodies by their contours or bodies with elements, not both')
-      else if (.not. draft%scene%remesher%largest > 0) then
+      else if (.not. (draft%scene%remesher%largest > 0 .or. goes_on(deck))) then
         call diagnostics%add(where, 'BODY', 'the size of its elements is not given: expected a REMSH card')
       end if
     end associate
   end subroutine refuse_half_contours
+
+  !> This operation follows another one of the deck, which has made the mesh: cards of others have no keyword of theirs here.
+  pure function goes_on(deck) result(yes)
+    type(deck_t), intent(in) :: deck
+    logical :: yes
+    integer :: i
+
+    yes = .false.
+    do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword == 'OPERA') return
+      yes = deck%cards(i)%elsewhere
+      if (yes) return
+    end do
+  end function goes_on
 
 end module cards_contours

@@ -79,8 +79,7 @@ contains
     call find_die(cursor, draft, group%die)
     if (draft%groups_sound .and. field == 0) call cursor%fail('no body of this scene has a temperature among its unknowns (PL8TM)')
     if (group%die > 0) group%name = label//'/'//draft%scene%dies(group%die)%name
-    if (.not. cursor%failed() .and. draft%mesh_sound .and. draft%groups_sound) &
-      call find_contact(cursor, draft, field, dies_sound, group)
+    if (.not. cursor%failed() .and. draft%groups_sound) call find_contact(cursor, draft, field, dies_sound, group)
     group%name = group%name//'/COU2DC'
     do g = 1, size(draft%scene%groups)
       if (draft%scene%groups(g)%name == group%name) call cursor%fail('this is already given at ' &
@@ -97,6 +96,7 @@ contains
   end subroutine read_contact
 
   !> The contact of the same sides and die, whose points heat passes; in scenes of heat alone there is none, and dies stand still.
+  !> Cards name it: it is found where contours (BODY) have no mesh yet, too.
   subroutine find_contact(cursor, draft, field, dies_sound, group)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
@@ -109,6 +109,14 @@ contains
       do g = 1, size(groups)
         if (groups(g)%role == role_contact .and. groups(g)%die == group%die .and. groups(g)%name == group%name) group%host = g
       end do
+      if (group%host == 0 .and. draft%scene%fields(displacement_field)%declared) then
+        call cursor%fail('expected a CNT2D card of the same place and die, found none')
+      else if (group%host == 0 .and. any(draft%scene%die_motions%die == group%die)) then
+        call cursor%fail('in a scene of heat alone dies stand still, and a MOVE card moves this one')
+      else if (.not. is_deformable(die) .and. dies_sound .and. .not. any(draft%scene%die_heats%die == group%die)) then
+        call cursor%fail('the temperature of DIE '''//die%name//''' is not known: expected a TDIE card')
+      end if
+      if (.not. draft%mesh_sound) return
       group%rule = rule_t(rule_gauss, npoint)
       if (is_deformable(die)) then
         group%elem = 'CNDTM'
@@ -116,22 +124,14 @@ contains
         group%pairs = maxval([0, groups%pairs]) + 1
         call refuse_without_field(cursor, draft, field, [die%nodes], 'DIE '''//die%name//'''', own=.true.)
         if (faces_itself(draft%scene, group)) call cursor%fail('heat does not pass where a body faces itself')
-      else if (dies_sound .and. .not. any(draft%scene%die_heats%die == group%die)) then
-        call cursor%fail('the temperature of DIE '''//die%name//''' is not known: expected a TDIE card')
       end if
       if (group%host > 0) then
         group%rule = groups(group%host)%rule
         group%connectivity = groups(group%host)%connectivity
         if (group%pairs > 0) group%pairs = groups(group%host)%pairs
-      else if (draft%scene%fields(displacement_field)%declared) then
-        call cursor%fail('expected a CNT2D card of the same place and die, found none')
-      else
-        if (group%pairs > 0) then
-          group%rule = rule_on_body(draft%scene, group)
-          group%rule_is_chosen = .true.
-        end if
-        if (any(draft%scene%die_motions%die == group%die)) &
-          call cursor%fail('in a scene of heat alone dies stand still, and a MOVE card moves this one')
+      else if (group%pairs > 0) then
+        group%rule = rule_on_body(draft%scene, group)
+        group%rule_is_chosen = .true.
       end if
     end associate
   end subroutine find_contact

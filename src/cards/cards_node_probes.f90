@@ -67,7 +67,7 @@ contains
     if (probe%field > 0 .and. draft%scene%generation == 1) &
       call refuse_without_field(cursor, draft, probe%field, probe%nodes, node_text(draft, node), own=.false.)
     if (draft%scene%generation > 1) probe%offset = x - draft%scene%mesh%origin(:, node)
-    if (is_cut) probe%is_gone = is_off(draft, node, x)
+    if (is_cut) probe%is_gone = is_off(draft, x)
   end subroutine read_node_probe
 
   !> The name of a body at the end of a row, 0 where there is none.

@@ -97,8 +97,7 @@ contains
       end associate
     end do
     if (.not. is_cut) return
-    call nearest_node(draft%scene%mesh%origin, x, k, distance)
-    probe%is_gone = is_off(draft, k, x)
+    probe%is_gone = is_off(draft, x)
   end subroutine read_point_probe
 
   !> `component group`: the largest or smallest over all points of a group, or with more groups the mean over their volumes; of the

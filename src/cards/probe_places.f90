@@ -1,8 +1,10 @@
 !> Places on PROBE cards: points of the mesh as it begins, the nodes and integration points nearest to them.
 module probe_places
+  use box_tree, only: box_tree_t, build_tree
   use card_points, only: read_xy
   use deck_cursor, only: cursor_t
   use kinds, only: wp
+  use nearest_element, only: box_of_element, find_element
   use quadrature, only: line_rule, square_rule
   use scene, only: group_t, is_solid
   use scene_draft, only: draft_t
@@ -15,6 +17,9 @@ module probe_places
 
   !> A point further out of the box around the mesh than this share of its size is a typing error.
   real(wp), parameter :: outside_tolerance = 1.0e-3_wp
+  !> After a cut a place belongs to a body up to this share of its nearest element outside: where matter was in the deck's own mesh
+  !> is carried from mesh to mesh, with errors beside corners that have folded.
+  real(wp), parameter :: still_inside = 0.1_wp
 
 contains
 
@@ -93,29 +98,30 @@ contains
     end do
   end subroutine nearest_point
 
-  !> Is a point further from its nearest node than the elements there are long? The matter there was cut off.
-  pure function is_off(draft, node, x) result(off)
+  !> Is a point outside of all bodies, by more than the curves of its sides may be off on a new mesh? The matter there was cut off.
+  pure function is_off(draft, x) result(off)
     type(draft_t), intent(in) :: draft
-    integer, intent(in) :: node
-    real(wp), intent(in) :: x(2)
+    real(wp), intent(in) :: x(2)   !! a place of the deck's own mesh [length]
     logical :: off
-    real(wp) :: longest
+    type(box_tree_t) :: tree
+    real(wp), allocatable :: boxes(:, :)
+    real(wp) :: xi(2), distance
     integer :: g, e, k
 
-    longest = 0
+    off = .true.
     do g = 1, size(draft%scene%groups)
       if (.not. is_solid(draft%scene%groups(g))) cycle
-      do e = 1, size(draft%scene%groups(g)%connectivity, 2)
-        associate (nodes => draft%scene%groups(g)%connectivity(:, e))
-          if (all(nodes /= node)) cycle
-          do k = 1, 4
-            longest = max(longest, length_of(draft%scene%mesh%origin(:, nodes(k)) &
-                                             - draft%scene%mesh%origin(:, nodes(mod(k, 4) + 1))))
-          end do
-        end associate
-      end do
+      associate (origin => draft%scene%mesh%origin, connectivity => draft%scene%groups(g)%connectivity)
+        allocate (boxes(4, size(connectivity, 2)))
+        do e = 1, size(boxes, 2)
+          boxes(:, e) = box_of_element(origin(:, connectivity(:, e)))
+        end do
+        call build_tree(boxes, [(k, k=1, size(boxes, 2))], tree)
+        call find_element(origin, connectivity, tree, x, e, xi, distance)
+        off = off .and. distance > still_inside*maxval(boxes(3:4, e) - boxes(1:2, e))
+        deallocate (boxes)
+      end associate
     end do
-    off = length_of(draft%scene%mesh%origin(:, node) - x) > longest
   end function is_off
 
 end module probe_places

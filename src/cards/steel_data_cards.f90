@@ -17,6 +17,8 @@ module steel_data_cards
   real(wp), parameter :: coldest = -273.15_wp, hottest = 2000.0_wp
   !> Cast iron has 4 or 5 per cent of carbon, and no steel as much; half an alloy of iron is iron [mass per cent].
   real(wp), parameter :: most_carbon = 5.0_wp, most_alloy = 50.0_wp
+  !> Carbon moves through iron at some 80 kJ/mol, what tempers steel needs that and more: less is a number in kJ/mol [J/mol].
+  real(wp), parameter :: least_temper_energy = 1.0e4_wp
 
 contains
 
@@ -171,7 +173,7 @@ contains
       else
         if (steel%temper_rate(k) > 0) call cursor%fail(words(k)%s//' is given twice')
         call cursor%real('the rate k0', steel%temper_rate(k), lower=0.0_wp, strict_lower=.true., unit='1/s')
-        call cursor%real('the activation energy Q', steel%temper_energy(k), lower=0.0_wp, unit='J/mol')
+        call cursor%real('the activation energy Q', steel%temper_energy(k), lower=least_temper_energy, unit='J/mol')
         call cursor%real('the exponent n', steel%temper_exponent(k), lower=0.0_wp, strict_lower=.true.)
       end if
       if (.not. cursor%more_rows()) exit

@@ -80,10 +80,14 @@ contains
       most = 2.0e4_wp
     case (prop_young)
       most = 1.0e7_wp
-    case (prop_yield)
+    case (prop_yield, prop_saturation)
       most = 1.0e5_wp
+    case (prop_modulus)
+      most = 1.0e6_wp
     case (prop_alpha)
       most = 1.0e-3_wp
+    case (prop_plasticity)
+      most = 1.0e-2_wp
     case default
       most = huge(most)
     end select

@@ -26,7 +26,7 @@ module cuts
     real(wp) :: kept(2) = 0.0_wp
   end type cut_t
 
-  !> What came of it. Volumes and forces are per radian when axisymmetric.
+  !> What came of it. Volumes and forces are per radian when axisymmetric, otherwise of the thickness of the section.
   type :: cut_record_t
     !> Mesh that was made with the cut; 0 before.
     integer :: generation = 0

@@ -6,19 +6,21 @@
 !> those in the middle of the step.
 !> Yield stress (1 - f(Z)) y_g + f(Z) sum_i z_i y_i/Z, y = SY + ET r + QV (1 - exp(-BV r)), r the hardening of each phase: all grow
 !> by dp, and what forms brings THETA times that of what it forms from, so that r_i = (z_i r_i + dz_i THETA_i r)/(z_i + dz_i).
+!> What becomes tempered in a step forms from martensite or bainite, also what has become these in the same step.
 !> Stress by the rate r', of Norton and Hoff's form, added to it with the same weights: P2 sqrt3^(1+P3) r^P4 exp(-P1 r) r'^P3.
 !> Transformation plasticity d eps = 3/2 s dG, dG = sum K_i (F(Z_end) - F(Z_start)) dz_i/dZ where phases form from austenite: exact
-!> in F; of one phase K (F(z_end) - F(z_start)). F is z (2 - z), z (1 - ln z) above z = .03, or z.
+!> in F; of one phase K (F(z_end) - F(z_start)). F is z (2 - z), z (1 - ln z) above z = .03, or z. Nothing forms tempered from
+!> austenite: what does and is tempered in the same step counts as the martensite or bainite that it was.
 !> Sources: J.-B. Leblond, G. Mottet, J.-C. Devaux, J. Mech. Phys. Solids 34 (1986) 395-432; J.-B. Leblond, Int. J. Plasticity 5
 !> (1989) 573-591 (F, its threshold, K = 2 deps/sy_g; THETA); Y. Desalos, IRSID report 95.34.94.01 (1981); code_aster R4.04.02
 !> (mixture, several phases).
 module phase_mechanics
   use kinds, only: wp
   use phases_there, only: phases_that_form
-  use steels, only: austenite, expansion_none, expansion_total, phase_count, phase_names, plasticity_desalos, plasticity_leblond, &
-                    plasticity_none, prop_alpha, prop_consistency, prop_hardening, prop_memory, prop_modulus, &
-                    prop_plasticity, prop_poisson, prop_rate, prop_rise, prop_saturation, prop_softening, prop_strain, &
-                    prop_yield, prop_young, steel_t
+  use steels, only: austenite, bainite, expansion_none, expansion_total, martensite, phase_count, phase_names, &
+                    plasticity_desalos, plasticity_leblond, plasticity_none, prop_alpha, prop_consistency, prop_hardening, &
+                    prop_memory, prop_modulus, prop_plasticity, prop_poisson, prop_rate, prop_rise, prop_saturation, &
+                    prop_softening, prop_strain, prop_yield, prop_young, steel_t, tempered
   use temperature_curves, only: curve_at, curve_integral, is_given
   use text, only: add_text, string_t
   implicit none
@@ -160,6 +162,19 @@ contains
     real(wp), intent(in) :: before(:), now(:)   !! (phase_count) fractions at both ends of the step [-]
     real(wp), intent(in) :: temperature         !! [degC]
     real(wp), intent(inout) :: hardening(:)     !! (phase_count) [-]
+    real(wp) :: formed(phase_count)
+
+    formed = before_tempering(steel, before, now)
+    call hand_over(steel, before, formed, temperature, hardening)
+    call hand_over(steel, formed, now, temperature, hardening)
+  end subroutine carry_hardening
+
+  !> What phases that shrink hand over to those that grow.
+  pure subroutine hand_over(steel, before, now, temperature, hardening)
+    type(steel_t), intent(in) :: steel
+    real(wp), intent(in) :: before(:), now(:)   !! (phase_count) [-]
+    real(wp), intent(in) :: temperature         !! [degC]
+    real(wp), intent(inout) :: hardening(:)     !! (phase_count) [-]
     real(wp) :: gone(phase_count), given, theta
     integer :: i
 
@@ -172,7 +187,30 @@ contains
       if (is_given(steel%properties(prop_memory, i))) theta = curve_at(steel%properties(prop_memory, i), temperature)
       hardening(i) = (before(i)*hardening(i) + (now(i) - before(i))*theta*given)/now(i)
     end do
-  end subroutine carry_hardening
+  end subroutine hand_over
+
+  !> Fractions at the end of a step were nothing tempered in it. What is tempered is missing first where less is left than there
+  !> was; what is more than that was martensite, or bainite where no martensite is tempered.
+  pure function before_tempering(steel, before, now) result(formed)
+    type(steel_t), intent(in) :: steel
+    real(wp), intent(in) :: before(:), now(:)   !! (phase_count) fractions at both ends of the step [-]
+    real(wp) :: formed(phase_count)             !! (phase_count) [-]
+    real(wp) :: left, part
+    integer :: k
+    integer, parameter :: origins(2) = [martensite, bainite]
+
+    formed = now
+    left = now(tempered) - before(tempered)
+    if (.not. left > 0) return
+    formed(tempered) = before(tempered)
+    do k = 1, size(origins)
+      part = min(left, max(0.0_wp, before(origins(k)) - now(origins(k))))
+      formed(origins(k)) = formed(origins(k)) + part
+      left = left - part
+    end do
+    k = merge(1, 2, steel%temper_rate(1) > 0 .or. .not. steel%temper_rate(2) > 0)
+    formed(origins(k)) = formed(origins(k)) + left
+  end function before_tempering
 
   !> dG of the step: the strain of transformation plasticity over 3/2 of the deviator of the stress.
   pure function plasticity_of_transformation(steel, before, now, from, to) result(factor)
@@ -185,7 +223,7 @@ contains
 
     factor = 0
     if (steel%plasticity == plasticity_none .or. .not. before(austenite) > now(austenite)) return
-    grown = max(0.0_wp, now - before)
+    grown = max(0.0_wp, before_tempering(steel, before, now) - before)
     if (.not. sum(grown) > 0) return
     do i = 1, phase_count
       if (grown(i) > 0) factor = factor + coefficient(steel, i, 0.5_wp*(from + to))*grown(i)/sum(grown)
@@ -271,6 +309,7 @@ contains
     type(steel_t), intent(in) :: steel
     type(string_t), allocatable, intent(out) :: problems(:)   !! (nproblem)
     logical :: there(phase_count)
+    logical, parameter :: from_austenite(phase_count) = [.false., .true., .true., .true., .true., .false.]
     integer :: i
 
     allocate (problems(0))
@@ -286,11 +325,11 @@ contains
       if (has_yield(steel) .neqv. is_given(steel%properties(prop_yield, i))) &
         call add_text(problems, 'the steel '''//steel%name//''' has SY of some phases and none of '// &
                       trim(phase_names(merge(i, austenite, has_yield(steel)))))
-      if (i == austenite .or. steel%plasticity == plasticity_none .or. steel%plasticity == plasticity_leblond) cycle
+      if (.not. from_austenite(i) .or. any(steel%plasticity == [plasticity_none, plasticity_leblond])) cycle
       call ask_for(i, prop_plasticity, 'KTP', problems)
     end do
     if (steel%plasticity == plasticity_leblond .and. .not. has_yield(steel) .and. &
-        any(there .and. .not. is_given(steel%properties(prop_plasticity, :)))) &
+        any(there .and. from_austenite .and. .not. is_given(steel%properties(prop_plasticity, :)))) &
       call add_text(problems, 'the steel '''//steel%name//''' needs KTP of all phases, or SY, for TRIP LEBLOND')
 
   contains

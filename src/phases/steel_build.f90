@@ -153,6 +153,8 @@ contains
       call add_text(problems, 'GRAIN with LAMBDA needs AC1 on the card TEMPS')
     if (steel%ac1 > unknown_temperature .and. steel%ac3 > unknown_temperature .and. .not. steel%ac3 > steel%ac1) &
       call add_text(problems, 'AC3 must be above AC1')
+    if (steel%ms > unknown_temperature .and. steel%ac1 > unknown_temperature .and. .not. steel%ms < steel%ac1) &
+      call add_text(problems, 'MS must be below AC1: what is martensite there would be austenite')
     if (steel%maynier .and. .not. steel%composition%given) &
       call add_text(problems, 'HARDN MAYNIER needs the composition: COMPO')
     if (is_given(steel%tempered_hardness) .and. .not. any(steel%temper_rate > 0)) &

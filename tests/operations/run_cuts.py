@@ -5,7 +5,7 @@ usage: run_cuts.py [-v] [-k] [--seed N]
 
 - `flash`: a disc pressed without friction, its rim cut off, pressed on. The volume removed is pi (R^2 - c^2) h, with R and h where nodes are;
   what is left keeps its plastic strain, which is the same everywhere, and the next stroke bears the force of a disc of radius c.
-- `heat`: a block whose temperature rises in proportion to x, cut along an inclined line: the volume, and the heat that is left, which closed forms give.
+- `heat`: a block of 25 in thickness whose temperature rises in proportion to x, cut along an inclined line: the volume, and the heat that is left, which closed forms give.
 - `punch`: a blank without hardening, punched through. The slug's volume is that of the cut; the force at the cut is near that of shear along
   the web, 2 pi r w k, between one time it (nothing but shear) and twice (pressed together as well).
 - killed at random and gone on with by the same command, `flash` comes to the same history.
@@ -68,7 +68,7 @@ END
 """
 CUT = "TRIM   disc 9. -1. 9. 7. KEEP 0. 0."
 HEAT = """TITLE  Hot block cut along a line
-STATE  PLSTN
+STATE  PLSTN 25.
 KINEM  SMALL
 BLOCK  block PL8TM 4 metal BILINEAR
    0. 0.   10. 0.   10. 6.   0. 6.
@@ -80,6 +80,8 @@ STRAT  0.5 1.E-6 1.E9   6 3
 PROBE  cold NODE T 0. 0.
 PROBE  inside NODE T 4. 3.
 PROBE  gone NODE T 10. 6.
+PROBE  beside NODE T 8.2 0.
+PROBE  edge NODE T 7.5 0.
 REMSH
 OPERA  warm
 IMPOS  block 4 T low
@@ -219,7 +221,10 @@ def warm(checks):
     ends = [8 - 0.5 * (y + 1) for y in (0, 6)]
     area = 6 * sum(ends) / 2
     told = summary(out)["cuts"][0]
-    checks.that(abs(told["volume_removed"] - (60 - area)) < 1e-9, "heat: area removed", (told["volume_removed"], 60 - area))
+    removed = 25 * (60 - area)
+    checks.that(abs(told["volume_removed"] - removed) < 1e-9 * 25, "heat: volume removed, of the thickness", (told["volume_removed"], removed))
+    column = [one["removed_volume [volume]"] for one in tries(out)]
+    checks.that(any(value and abs(float(value) - removed) < 1e-6 for value in column), "heat: cycle.csv", column)
     import h5py   # with_h5py has found a Python that has it
     with h5py.File(os.path.join(out, "heat.g03.start.h5"), "r") as file:
         x = file["mesh/coordinates"][()]
@@ -229,6 +234,9 @@ def warm(checks):
     checks.that(abs(far) < 1e-9 * 10, "heat: nothing is left beyond the line", far)
     rows = history(out)
     checks.that(math.isnan(rows["gone"][-1]) and rows["gone"][0] > 0, "heat: a probe of what was cut off is nan", rows["gone"][-1])
+    # outside by less than an element, and on the cut
+    checks.that(math.isnan(rows["beside"][-1]), "heat: a probe beside the cut is nan", rows["beside"][-1])
+    checks.that(abs(rows["edge"][-1] - 95) < 10, "heat: a probe on the cut reads the node there", rows["edge"][-1])
     checks.that(abs(rows["inside"][-1] - 60) < 10, "heat: a probe of what is left reads the node next to it", rows["inside"][-1])
     checks.that(abs(summary(out)["checks"]["heat_imbalance"]) < 1e-6, "heat: balance", summary(out)["checks"]["heat_imbalance"])
 

@@ -11,6 +11,7 @@ usage: run_operations.py [-v] [-k]
   operation the same part, by one command, also where that is stopped.
 - `closing`: an operation without REMSH after one with it: what its table of accuracy says.
 - `first_without`: one without before the first with it: its seconds are in the cost of the whole.
+- `contour`: a BODY has its sizes from the first operation alone; the others may do without REMSH, the first one not.
 """
 import os
 import signal
@@ -247,6 +248,24 @@ def at_once(checks):
         checks.that(abs(rows["corner"][row]/way - 1) < 1e-9, f"at once: {way}", rows["corner"][row])
 
 
+def contour(checks):
+    """A body by its contour, pressed and released: the release asks for no meshes and has no REMSH."""
+    block = HEAD[HEAD.index("BLOCK"):HEAD.index("LAW    metal")]
+    body = "BODY   block PL8LS 4 metal\n   SEGM 0. 0. 10. 0.\n   SEGM 10. 0. 10. 10.\n   SEGM 10. 10. 0. 10.\n   SEGM 0. 10. 0. 0.\n"
+    press, size = "OPERA  upset\n" + flat(10.0, 0.5) + STEP, "REMSH\n   SIZE 1. 2.\n"
+    head, end = HEAD.replace(block, body), RELEASE + "END\n"
+    deck, out = write(checks.path("contour.lag"), head + press + size + end), checks.path("contour")
+    result = cycle(deck, out, "--quiet")
+    checks.that(result.returncode == DONE, "contour: an operation without REMSH after the first", said(result))
+    if result.returncode == DONE:
+        rows = history(out)
+        checks.that(rows["operation"][-1] == 2 and abs(rows["corner"][-1] + 0.5) < 0.05, "contour: pressed, released", rows["corner"][-1])
+    result = run([write(checks.path("unsized.lag"), head + press + end), "--check"])
+    lines = result.stderr.splitlines()
+    checks.that(result.returncode == 2 and len(lines) == 1 and "BODY: the size of its elements is not given" in lines[0],
+                "contour: the first operation needs it", said(result))
+
+
 def checked(checks):
     """--check shows every operation."""
     deck, folder = write(checks.path("checked.lag"), HEAD + STROKES + "END\n"), checks.path("scenes")
@@ -268,6 +287,7 @@ def main():
     checked(checks)
     closing(checks)
     first_without(checks)
+    contour(checks)
     checks.end()
 
 

@@ -25,6 +25,7 @@ contains
     logical, intent(in) :: round   !! about an axis
 
     scene%plane_state = merge(axisymmetric, plane_strain, round)
+    scene%section = merge([0.0_wp, 1.0_wp, 0.0_wp], [1.0_wp, 0.0_wp, 0.0_wp], round)
     scene%fields = mechanical_fields()
     allocate (scene%groups(0), scene%dies(0), scene%fixations(0), scene%mesh%coordinates(2, 0), scene%mesh%sides(0), &
               scene%mesh%labels(0))
