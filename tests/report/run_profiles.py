@@ -190,12 +190,28 @@ class Profiles(unittest.TestCase):
 
     def test_refused(self):
         for words, message in ((("--line", "9", "9", "10", "10"), "meets no body"), (("--line", "1", "1", "1", "1"), "has no length"),
-                               (("--side", "a"), "no contact 'a'; there are: a.3/flat"), (("--time", "1"), "--time: for --line and --side"),
+                               (("--side", "a"), "no contact 'a' at time 1; there are: a.3/flat"), (("--time", "1"), "--time: for --line and --side"),
                                (("--line", "0", "0", "1", "1", "--field", "heat"), "no such field"), (("--line", "0", "0", "1"), "expected 4")):
             done = self.report("blocks", *words)
             self.assertEqual(2, done.returncode, words)
             self.assertIn(message, done.stderr)
             self.assertNotIn("Traceback", done.stderr)
+
+    def test_contact_of_an_operation_before(self):
+        """A contact that the last operation has no more: the message says when it was there last."""
+        head, tail = BLOCKS.split("DIE    flat")
+        die, law = "DIE    flat" + tail[:tail.index("FIXED")], tail[tail.index("FIXED"):tail.index("LIC")]
+        motion, march = tail[tail.index("LIC"):tail.index("STRAT")], tail[tail.index("STRAT"):tail.index("END")]
+        path = os.path.join(self.folder, "released.lag")
+        with open(path, "w", encoding="ascii") as file:
+            contact = head[head.index("LAW    c"):]
+            file.write(head[:head.index("LAW    c")] + law + march + "OPERA  press\n" + contact + die + motion + "OPERA  free\nSTOP   0.5\nEND\n")
+        lagamine.run(path, os.path.join(self.folder, "released"), programs=BIN)
+        done = self.report("released", "--side", "a.3/flat")
+        self.assertEqual(2, done.returncode, done.stderr)
+        self.assertIn("no contact 'a.3/flat' at time 1.5; there are: none; the last saved instant with it is at time 1 (--time)", done.stderr)
+        done = self.report("released", "--side", "a.3/flat", "--time", "1")
+        self.assertEqual((0, ""), (done.returncode, done.stderr))
 
 
 if __name__ == "__main__":

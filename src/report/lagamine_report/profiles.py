@@ -66,7 +66,7 @@ def along_sides(run: Run, step: Step, name: str) -> Profile:
     """What the points of a contact hold, along its sides."""
     groups = {group.name: group for group in contact_groups(run, step)}
     if name not in groups:
-        raise ReportError(f"no contact '{name}'; there are: {', '.join(groups) or 'none'}")
+        raise ReportError(f"no contact '{name}' at time {step.time:g}; there are: {', '.join(groups) or 'none'}{_last_with(run, name)}")
     names, state = contact_points(run, step, groups[name])
     length, order, curve_ends = along_group(run, step, groups[name])
     ends = run.coordinates(step)[groups[name].connectivity]
@@ -78,6 +78,14 @@ def along_sides(run: Run, step: Step, name: str) -> Profile:
     if recovered is not None:
         values.update(pressure_recovered=recovered[0][order], friction_recovered=recovered[1][order])
     return Profile(f"along {name}", length, x[order], values, curve_ends[:-1], [one for one in OF_SIDES if one in values])
+
+
+def _last_with(run: Run, name: str) -> str:
+    """The last saved instant at which there is such a contact, in words; nothing where there is none: an operation may have ended it."""
+    for step in reversed(run.steps):
+        if any(group.name == name for group in contact_groups(run, step)):
+            return f"; the last saved instant with it is at time {step.time:g} (--time)"
+    return ""
 
 
 def find_places(x: np.ndarray, topology: np.ndarray, points: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
