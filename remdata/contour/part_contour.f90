@@ -366,7 +366,8 @@ contains
     if (size(laps) == 0) return
     call fail(error, exit_no_convergence, 'the contour has '//to_text(size(laps))//' lap'//trim(merge('s', ' ', size(laps) > 1)) &
               //', the first at x = '//to_text(laps(1)%point(1))//', y = '//to_text(laps(1)%point(2)), &
-              'remesh earlier, before the sides fold over each other, or let these sides face a die')
+              'remesh earlier, before the sides fold over each other; sides of one body that meet need contact as those of two '// &
+              'bodies do, DIE name SIDES place and CNT2D place name law, those beside the mouth of a fold too')
   end subroutine refuse_laps
 
 end module part_contour

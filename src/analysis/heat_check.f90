@@ -1,5 +1,5 @@
 !> What can be told of the heat of a deck before it runs: torches beside their bodies, dies beside sides, sides cooled twice, sides
-!> that radiate below absolute zero, steels without hardness, austenite that is too cold.
+!> that radiate below absolute zero, steels without hardness, steels that begin below absolute zero, austenite that is too cold.
 module heat_check
   use contact_outlook, only: gaps_at_rest
   use dies, only: is_deformable
@@ -28,6 +28,8 @@ module heat_check
   real(wp), parameter :: whole_share = 0.99_wp
   !> A side beside a die by less than this share of its length was meant to lie on it.
   real(wp), parameter :: nearly = 0.05_wp
+  !> Absolute zero [degC].
+  real(wp), parameter :: absolute_zero = -273.15_wp
   !> Half of a largest value is meant to be half.
   real(wp), parameter :: round_off = 1.0e-9_wp
 
@@ -58,13 +60,13 @@ contains
     end do
   end subroutine check_heat
 
-  !> A body that begins as austenite below Ms: no temperature, or no phases, were given.
+  !> A body of a steel that begins below absolute zero, or as austenite below Ms: no temperature, or no phases, were given.
   subroutine judge_start(scene, laws, g, warnings)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)
     integer, intent(in) :: g   !! number of the group
     type(string_t), allocatable, intent(inout) :: warnings(:)
-    real(wp) :: coldest
+    real(wp) :: coldest, zero
     integer :: f, k, v
 
     associate (group => scene%groups(g))
@@ -73,7 +75,7 @@ contains
       f = find_field(scene%fields, 'temperature')
       v = find_variable(group%variables, 'austenite')
       if (f == 0 .or. v == 0) return
-      if (.not. scene%fields(f)%declared .or. scene%fields(f)%given .or. group%variables(v)%initial < 1) return
+      if (.not. scene%fields(f)%declared .or. scene%fields(f)%given) return
       coldest = scene%fields(f)%initial
       if (allocated(scene%starts)) then
         do k = 1, size(scene%starts)
@@ -84,7 +86,12 @@ contains
       end if
       associate (material => scene%materials(group%material), law => laws(scene%materials(group%material)%law_id))
         if (law%kind /= heat_law) return
-        if (.not. coldest + material%values(find_parameter(law, 'ZERO')) < material%steel%ms) return
+        zero = material%values(find_parameter(law, 'ZERO'))
+        if (coldest + zero < absolute_zero) then
+          call add(warnings, group%name//': it begins at '//to_text(coldest, 4)//', which is '//to_text(coldest + zero, 4) &
+                   //' degC by ZERO of its law, below absolute zero')
+        end if
+        if (group%variables(v)%initial < 1 .or. .not. coldest + zero < material%steel%ms) return
         call add(warnings, group%name//': it begins as austenite at '//to_text(coldest, 4)//', below Ms of the steel ' &
                  //material%steel%name//' ('//to_text(material%steel%ms, 4)//' degC): START T, or START PHASES')
       end associate

@@ -176,6 +176,15 @@ def told(checks):
             lines = [line["text"] for line in summary(run)["warnings"] if "below absolute zero" in line["text"]]
             checks.that(len(lines) == cold, f"radiates from {start} with ZERO {zero}: told", summary(run)["warnings"])
             checks.that(abs(run.history["heat_through_bar/GOLDAK"][-1]) == 0, "a torch without power heats nothing")
+    # a steel in degC by ZERO of its law; what begins as martensite is not told to begin below Ms
+    for start, zero, cold in ((-300, 0., True), (-200, 0., False), (20, -300., True), (20, -273.15, False)):
+        run = Run(checks, f"begins-{start}-{zero:g}", "TITLE begins\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+                  f"   2 1.   2 1.\nLAW hot META\n   STEEL soft.met s\n   ENERGY 1. ZERO {zero}\nSTART T {start}.\nSTART PHASES MARTENSITE 1. bar\n"
+                  f"CONVE bar 2 H 1. TS {start}.\nSTRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
+        if run.ok:
+            lines = [line["text"] for line in summary(run)["warnings"]]
+            checks.that([f"bar: it begins at {start}, which is {start + zero:g} degC" in line for line in lines] == [True]*cold,
+                        f"begins at {start} with ZERO {zero}: told", lines)
     # air until water comes: never both
     run = Run(checks, "in-turns", "TITLE in turns\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
               "   2 1.   2 1.\nLAW hot HEAT\n   30. 4.5\nSTART T 100.\nLIC air\n   0. 1.   1. 1.   1.1 0.   2. 0.\nLIC water\n   0. 0.   1. 0.   1.1 1.   2. 1.\n"
