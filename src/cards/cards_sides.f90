@@ -2,6 +2,7 @@
 module cards_sides
   use card_places, only: numbers_after_name, read_sides
   use cards_laws, only: read_material
+  use contact_penalties, only: tangential_share
   use contact_rule, only: rule_on_body, rule_on_die
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
@@ -79,6 +80,9 @@ contains
       call draft%elems(group%elem_id)%variables(law_of_material(draft%laws(law), draft%scene%materials(group%material)), &
                                                        draft%scene%plane_state, group%variables)
       group%modulus = modulus_behind(draft, group%connectivity)
+      group%tangential_share = tangential_share(huge(1.0_wp))
+      if (associated(draft%laws(law)%rub)) &
+        group%tangential_share = tangential_share(draft%laws(law)%rub(draft%scene%materials(group%material)))
       call append_group(draft, group, cursor%where())
     end do
   end subroutine read_contacts

@@ -119,7 +119,7 @@ contains
     n = contact_block(corners, size(state, 1))
     do e = 1, size(x, 3)
       side = side_length(scene, group%connectivity(:, e))
-      penalty = penalties(scene%materials(group%material), group%modulus, side)
+      penalty = penalties(scene%materials(group%material), group, side)
       do p = 1, size(xi)
         select case (nint(state(at_status, p, e)))
         case (contact_stick)

@@ -10,7 +10,7 @@ module contact_point
   use kinds, only: wp
   use law_api, only: contact_open, contact_slip, law_t
   use materials, only: material_t
-  use scene, only: scene_t
+  use scene, only: group_t, scene_t
   use sections, only: thickness_at
   use shape_functions, only: line3
   use state_variables, only: state_variable, state_variable_t, transfer_contact, transfer_recompute
@@ -35,10 +35,6 @@ module contact_point
   real(wp), parameter :: no_surface = 1.0e-9_wp
   !> Depth below this share of the side is round-off of coordinates: the point just touches.
   real(wp), parameter :: touching = 1.0e-12_wp
-  !> Tangential penalty over the normal one, where it is not given: an elastic slip of ten times the
-  !> penetration, so that sticking and slipping points do not chatter; error of friction at PHI = 0.5
-  !> about half a percent of a side, as in common use.
-  real(wp), parameter :: tangential_share = 0.1_wp
   !> A point that comes into contact may overlap the die by this share of the side in the predictor of a step.
   real(wp), parameter :: overlap_limit = 0.01_wp
   !> A step that is shortened for it aims at less, so that the next check does not depend on the last bit.
@@ -278,19 +274,20 @@ contains
     area = length_of(matmul(x, dphi))*thickness_at(section, matmul(x, phi))
   end function area_at
 
-  !> Normal and tangential penalty: as given, or such that a pressure of one hundredth of the
-  !> body's modulus makes the allowed penetration.
-  pure function penalties(material, modulus, side) result(penalty)
+  !> Normal and tangential penalty of a group of contact: as given, or such that a pressure of one hundredth of the
+  !> body's modulus makes the allowed penetration, and a share of it.
+  pure function penalties(material, group, side) result(penalty)
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: modulus, side
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: side   !! [length]
     real(wp) :: penalty(2)
     type(penalties_t) :: given
 
     given = penalties_of_card(material)
     penalty(1) = given%normal
-    if (.not. penalty(1) > 0) penalty(1) = 0.01_wp*modulus/(given%allowed*side)
+    if (.not. penalty(1) > 0) penalty(1) = 0.01_wp*group%modulus/(given%allowed*side)
     penalty(2) = given%tangential
-    if (.not. penalty(2) > 0) penalty(2) = tangential_share*penalty(1)
+    if (.not. penalty(2) > 0) penalty(2) = group%tangential_share*penalty(1)
   end function penalties
 
   !> Share of the step after which a point that was open, its gap known, overlaps the die by `overlap_aim` of the side;

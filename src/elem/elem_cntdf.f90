@@ -165,7 +165,7 @@ contains
           call meet(closest, matmul(x(:, 1:3, e), phi), x(:, at + 1:at + 3, e), du(place(7:12), e), point, meeting, dxi)
           meeting%kept = instant%kept .and. goes_on(instant, group%die)
           call act(law, scene%materials(group%material), instant%dt, drivers(:, :, p, e), &
-                   penalties(scene%materials(group%material), group%modulus, side), point, meeting, weight(p), instant%tangent, &
+                   penalties(scene%materials(group%material), group, side), point, meeting, weight(p), instant%tangent, &
                    committed(:, p, e), trial(:, p, e), q, dq)
           if (nint(committed(at_status, p, e)) /= contact_open) then
             report%jump = max(report%jump, abs(trial(at_penetration, p, e) - committed(at_penetration, p, e))/side)

@@ -49,6 +49,7 @@ contains
     row%symmetric = .false.
     row%effects = 'contact friction'
     row%slide => slide
+    row%rub => rub
     row%check => check
   end function law_coul2d_row
 
@@ -62,6 +63,16 @@ contains
     if (.not. min(material%values(place_phi), material%values(place_factor)) < huge(1.0_wp)) &
       call add_text(problems, 'neither PHI nor M is given: one of them says what friction there is (PHI 0. for none)')
   end subroutine check
+
+  !> PHI; with cohesion a point that is hardly pressed has friction too.
+  pure function rub(material) result(coefficient)
+    type(material_t), intent(in) :: material
+    real(wp) :: coefficient
+
+    coefficient = huge(1.0_wp)
+    if (material%values(place_cohesion) > 0) return
+    if (material%values(place_phi) > 0) coefficient = material%values(place_phi)
+  end function rub
 
   !> In slip, with the direction n = trial/|trial|: tau = limit n, and d tau = n PHI AKP dd + limit/|trial| AKTAU (1 - n n) ds,
   !> the derivative of the discrete update: eq. (7), which is its limit for small steps.

@@ -64,6 +64,8 @@ module scene
     integer :: pairs = 0
     !> Young's modulus of the bodies behind the sides of a contact [stress].
     real(wp) :: modulus = 0.0_wp
+    !> Tangential penalty over the normal one of a contact, where the card of its law does not give it [-].
+    real(wp) :: tangential_share = 0.0_wp
     !> Component of the pilot that a spring holds, and its stiffness [force/length, or moment per radian].
     integer :: component = 0
     real(wp) :: stiffness = 0.0_wp

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Neighbours of the scenes with REMSH alone, drawn at random: radii, heights, friction and hardening within ranges (scenes.py).
 
-usage: run_neighbours.py [--seed S] [--number N] [--first K] [--scene NAME] [-v] [-k]     default: seed 1, the first 2 of them, of scenes in turn
+usage: run_neighbours.py [--seed S] [--number N] [--first K] [--scene NAME] [-v] [-k]     default: seed 1, the first 2 of them, of scenes in turn, and those of HARD
 
 Neighbour K of a seed is the same whatever N is. Ends with 0 or 3, where 3 comes with a reason; at least 57 of 60 with 0. Prints a table, and one of the changes of the die force at new meshes (force_changes.py).
 """
 import os
 import random
+import subprocess
 import sys
 
 sys.dont_write_bytecode = True
@@ -15,6 +16,8 @@ from scenes import HEAD, SCENES, badly_shaped, force_table, line, run_scene  # n
 from support import DONE, NO_CONVERGENCE, Checks  # noqa: E402
 
 FAILED = 3 / 60
+# Seed and number of neighbours that did not end: a strip that hardly rubs on its tool (.002) slid to and fro from one iteration to the next.
+HARD = ((33, 33),)
 # Quick scenes come first in the draw, so that the first ones are a test.
 ORDER = ("bimetal", "side_pressing", "can", "teeth", "two_strokes", "h_section", "indentation", "piercing", "ring_70", "springback",
          "extrusion_long", "heading")
@@ -37,9 +40,17 @@ def main():
     scene = value_of("--scene", "")
     failed, outs = 0, []
     print("\n".join(HEAD))
-    for k in range(first, first + number):
+    neighbours = [(seed, k) for k in range(first, first + number)]
+    if not {"--seed", "--number", "--first", "--scene"} & set(sys.argv):
+        neighbours += HARD
+    for seed, k in neighbours:
         name, parameters = draw(seed, k, scene)
-        found = run_scene(name, checks.path(f"{k}"), parameters)
+        try:
+            found = run_scene(name, checks.path(f"{seed}.{k}"), parameters)
+        except subprocess.TimeoutExpired as late:
+            failed += 1
+            checks.that(False, f"{name} {seed}/{k}: ends in time", f"{late.timeout:.0f} s, {parameters}")
+            continue
         failed += found["code"] != DONE
         outs.append(found["out"])
         checks.that(not badly_shaped(found), f"{name} {seed}/{k}: shape of the meshes", badly_shaped(found))
@@ -49,7 +60,7 @@ def main():
         checks.that(found["code"] == DONE or (found["code"] == NO_CONVERGENCE and reason), f"{name} {seed}/{k}: 0, or 3 with a reason",
                     (found["code"], found["said"]))
     print("\n".join(["", *force_table(outs)]))
-    checks.that(failed <= max(FAILED * number, 0), "neighbours that end with 3", f"{failed} of {number}")
+    checks.that(failed <= FAILED * len(neighbours), "neighbours that end with 3", f"{failed} of {len(neighbours)}")
     checks.end()
 
 
