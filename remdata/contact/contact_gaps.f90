@@ -48,7 +48,8 @@ contains
         next = into(next)
       end do
       if (next == i .or. scene%groups(intervals(i)%group)%die /= scene%groups(intervals(next)%group)%die) cycle
-      if (.not. is_narrow(scene, solution, loop, x, widest, intervals(i), begins_after(intervals(i), intervals(next), nside))) cycle
+      if (.not. is_narrow(scene, solution, loop, x, widest, intervals(i)%group, last_in_contact(intervals(i)), &
+                          first_after(intervals(i), intervals(next), nside))) cycle
       call join_intervals(tags, nside, intervals(i), intervals(next), stays)
       if (.not. stays) into(i) = next
     end do
@@ -74,7 +75,7 @@ contains
       if (next == i .or. scene%groups(intervals(i)%group)%die /= scene%groups(intervals(next)%group)%die) cycle
       until = begins_after(intervals(i), intervals(next), size(loop%sides, 2))
       if (coincide(until, intervals(i)%to) .or. along(until) - along(intervals(i)%to) > longest) cycle
-      intervals(i)%small_gap = is_narrow(scene, solution, loop, x, widest, intervals(i), until)
+      intervals(i)%small_gap = is_narrow(scene, solution, loop, x, widest, intervals(i)%group, intervals(i)%to, until)
     end do
   end subroutine mark_small_gaps
 
@@ -88,14 +89,35 @@ contains
     if (along(side_point) < along(interval%to)) side_point%side = side_point%side + nside
   end function begins_after
 
-  !> The part is near the die everywhere between an interval and the next one.
-  pure function is_narrow(scene, solution, loop, x, widest, interval, until) result(narrow)
+  !> Where contact before a gap ends: what was extended to a corner of the die is open from there to the corner.
+  pure function last_in_contact(interval) result(side_point)
+    type(contact_interval_t), intent(in) :: interval
+    type(side_point_t) :: side_point
+
+    side_point = interval%to
+    if (interval%to_corner(2)) side_point = interval%found(2)
+  end function last_in_contact
+
+  !> Where contact behind a gap begins, in the same way, counted on from the end of an interval.
+  pure function first_after(interval, next, nside) result(side_point)
+    type(contact_interval_t), intent(in) :: interval, next
+    integer, intent(in) :: nside
+    type(side_point_t) :: side_point
+
+    side_point = begins_after(interval, next, nside)
+    if (.not. next%to_corner(1)) return
+    side_point = next%found(1)
+    if (along(side_point) < along(interval%to)) side_point%side = side_point%side + nside
+  end function first_after
+
+  !> The part is near the die everywhere between two points of a contour.
+  pure function is_narrow(scene, solution, loop, x, widest, group, from, until) result(narrow)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(loop_t), intent(in) :: loop
     real(wp), intent(in) :: x(:, :), widest
-    type(contact_interval_t), intent(in) :: interval
-    type(side_point_t), intent(in) :: until
+    integer, intent(in) :: group   !! that faces the die
+    type(side_point_t), intent(in) :: from, until
     logical :: narrow
     type(die_t) :: die
     type(closest_point_t) :: closest
@@ -105,15 +127,15 @@ contains
     integer :: k, i, side, number
 
     narrow = .true.
-    number = scene%groups(interval%group)%die
+    number = scene%groups(group)%die
     die = present_die(scene%dies(number), x)
     associate (pilot => solution%fields(pilot_field)%value(:, number))
-      do k = interval%to%side, until%side
+      do k = from%side, until%side
         side = modulo(k - 1, size(loop%sides, 2)) + 1
         chord = length_of(x(:, loop%sides(3, side)) - x(:, loop%sides(1, side)))
         do i = 1, size(samples)
           side_point = side_point_t(k, samples(i))
-          if (along(side_point) <= along(interval%to) .or. along(side_point) >= along(until)) cycle
+          if (along(side_point) <= along(from) .or. along(side_point) >= along(until)) cycle
           call find_closest_point(die, pilot, point_on_side(loop, x, side_point), [1, size(die%pieces, 3)], .true., closest, &
                                   projected)
           narrow = narrow .and. projected .and. abs(closest%d) <= widest*chord

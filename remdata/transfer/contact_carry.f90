@@ -31,8 +31,8 @@ module contact_carry
     integer, allocatable :: point(:), element(:)
     !> What is added to the numbers of components: 0, or for a corner of the die those of its own state.
     integer, allocatable :: offset(:)
-    !> Points that share a force: those of a node that slides past a corner of the die, and the corner.
-    logical, allocatable :: shared(:)
+    !> How far beside a corner of the die the node is that it shares its force with, below 0 where there is none [length].
+    real(wp), allocatable :: reach(:)
   end type interval_points_t
 
   !> Arc lengths from the start of an interval are equal to this share of it.
@@ -161,7 +161,7 @@ contains
     type(arc_t) :: part
     integer :: side, number, e, p
 
-    allocate (row%s(0), row%weight(0), row%point(0), row%element(0), row%offset(0), row%shared(0))
+    allocate (row%s(0), row%weight(0), row%point(0), row%element(0), row%offset(0), row%reach(0))
     call line_rule(scene%groups(g)%rule, xi, weight)
     if (.not. interval%from%xi > -1) call add_neighbour(scene, g, loop, x, interval%from%side - 1, 1.0_wp, row)
     if (with_corners .and. interval%to_corner(1)) call add_released(scene, g, loop, x, interval%from, -1, row)
@@ -205,7 +205,6 @@ contains
     call add_neighbour(scene, g, loop, x, corner%side, real(towards, wp), row)
     call add_neighbour(scene, g, loop, x, corner%side + towards, -real(towards, wp), row)
     row%weight(n + 1:) = share*row%weight(n + 1:)
-    row%shared(n + 1:) = .true.
   end subroutine add_released
 
   !> The corner of the die in contact in the interval before a point, where it is on a part of a side.
@@ -228,7 +227,8 @@ contains
                      corner_weight(xi, p, place)*line_jacobian(nodes, place, scene%plane_state == axisymmetric), p, e, row, &
                      variables(find_variable(variables, 'corner_pressure'))%first &
                      - variables(find_variable(variables, 'pressure'))%first)
-      row%shared(size(row%shared)) = share_of_corner(place) < 1
+      if (share_of_corner(place) < 1) row%reach(size(row%reach)) = &
+        length_between(part, min(place, sign(1.0_wp, place)), max(place, sign(1.0_wp, place)))
     end associate
   end subroutine add_corner
 
@@ -311,7 +311,7 @@ contains
     added = 0
     if (present(offset)) added = offset
     row%offset = [row%offset, added]
-    row%shared = [row%shared, .false.]
+    row%reach = [row%reach, -1.0_wp]
   end subroutine add_point
 
   !> New points of a group on the arcs of an interval.
@@ -328,7 +328,7 @@ contains
     logical :: taken((size(mesh%sides) + 2)*scene%groups(g)%rule%n)
     integer :: k, e, p
 
-    allocate (unsorted%s(0), unsorted%weight(0), unsorted%point(0), unsorted%element(0), unsorted%offset(0), unsorted%shared(0))
+    allocate (unsorted%s(0), unsorted%weight(0), unsorted%point(0), unsorted%element(0), unsorted%offset(0), unsorted%reach(0))
     call line_rule(scene%groups(g)%rule, xi, weight)
     associate (boundary => contours(c)%boundary, contact => contours(c)%contacts(interval))
       total = boundary_length(boundary)
@@ -370,7 +370,7 @@ contains
     row%point = unsorted%point(order)
     row%element = unsorted%element(order)
     row%offset = unsorted%offset(order)
-    row%shared = unsorted%shared(order)
+    row%reach = unsorted%reach(order)
   end subroutine new_row
 
   pure subroutine carry_interval(carried, conserved, row_old, row_new, before, status, after)
@@ -401,7 +401,9 @@ contains
     end do
   end subroutine carry_interval
 
-  !> Points that share a force have its mean over the length that they stand for.
+  !> A corner of the die beside a node has a part of its weight, and the larger a pressure for it (corner_weights): both have the mean
+  !> over the length that they stand for, be the points of the node those of an interval before, which the node hands over, or on
+  !> the face beyond the corner.
   pure subroutine share_forces(row, values)
     type(interval_points_t), intent(in) :: row
     real(wp), intent(inout) :: values(:, :)   !! (component, npoint) [unit of each component]
@@ -409,8 +411,9 @@ contains
     integer :: p, v
 
     do p = 1, size(row%s)
-      if (.not. row%shared(p)) cycle
-      same = row%shared .and. abs(row%s - row%s(p)) <= round_off*row%length
+      if (row%reach(p) < 0) cycle
+      same = row%offset == 0 .and. abs(row%s - row%s(p)) <= row%reach(p) + round_off*row%length
+      same(p) = .true.
       if (count(same) < 2 .or. .not. sum(row%weight, mask=same) > 0) cycle
       do v = 1, size(values, 1)
         values(v, :) = merge(sum(values(v, :)*row%weight, mask=same)/sum(row%weight, mask=same), values(v, :), same)
