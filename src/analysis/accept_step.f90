@@ -26,7 +26,7 @@ module accept_step
   use work_books, only: work_t
   implicit none
   private
-  public :: accept, accept_balance
+  public :: accept, accept_balance, dissipation_slack
 
   !> Dissipated work may fall by this share of the largest work density: round-off of a sum.
   real(wp), parameter :: dissipation_slack = 1.0e-12_wp

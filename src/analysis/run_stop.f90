@@ -3,14 +3,16 @@ module run_stop
   use equations, only: equations_t
   use errors, only: error_t, exit_done, exit_no_convergence, exit_remesh, exit_signal, fail
   use fields, only: displacement_field
+  use heat_contacts, only: jumps_at_opening
   use kinds, only: wp
   use law_api, only: find_parameter, law_t
   use newton, only: outcome_t
   use results, only: save_failure
   use run_record, only: run_t, save_all, at_end
-  use scene, only: scene_t
+  use scene, only: role_heat_contact, scene_t
   use solution, only: solution_t
   use spurious_mode, only: may_stand_alone
+  use strategy, only: coupling_once
   use system, only: caught_signal
   use text, only: to_text
   use watch_mesh, only: mesh_is_due, remesh_reason
@@ -36,7 +38,8 @@ contains
     if (outcome%group > 0) where_at = ', element '//to_text(outcome%element)//' of '//scene%groups(outcome%group)%name
     if (allocated(outcome%residual)) then
       call residual_at_nodes(run%equations, outcome%residual, residual)
-      where_at = where_at//', worst at node '//to_text(scene%mesh%labels(maxloc(sum(residual**2, 1), 1)))
+      if (any(abs(residual) > 0)) &
+        where_at = where_at//', worst at node '//to_text(scene%mesh%labels(maxloc(sum(residual**2, 1), 1)))
       call save_failure(scene, solution, run%stem, residual, late)
     end if
     advice = 'the residual force is in '//run%stem//'.failed.xdmf; '
@@ -49,6 +52,9 @@ contains
     if (size(scene%die_forces) > 0) advice = 'a die that is free and touches nothing needs a SPRNG card until it does; '//advice
     if (index(outcome%reason, 'singular') > 0 .and. any(may_stand_alone(scene%groups))) advice = advice//'; a body of few ' &
       //'elements with 4 integration points has a motion that nothing resists, 9 points with MEAN have none'
+    if (loses_touch(scene)) &
+      advice = advice//'; heat that jumps as a point opens (COU2DC) may leave no equilibrium to a part that shrinks away from a ' &
+               //'die: let PRESS begin, at pressure 0, with what GAP and HO give at gap 0'
     what = 'no convergence'
     if (is_steep(scene, run%equations%laws)) advice = advice//'; friction by M has no bound by the pressure but PHI: PHI 1 ' &
       //'beside M, above which an equilibrium need not exist'
@@ -62,6 +68,20 @@ contains
               advice)
     if (allocated(late)) error%advice = error%advice//' (and '//late%message//')'
   end subroutine stop_here
+
+  !> Heat at a contact, found together with the motion, jumps where points open.
+  pure function loses_touch(scene)
+    type(scene_t), intent(in) :: scene
+    logical :: loses_touch
+    integer :: g
+
+    loses_touch = .false.
+    if (scene%strategy%coupling == coupling_once .or. .not. scene%fields(displacement_field)%declared) return
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%role /= role_heat_contact) cycle
+      loses_touch = loses_touch .or. jumps_at_opening(scene%groups(g)%heat_contact)
+    end do
+  end function loses_touch
 
   !> A law of contact has friction by M, with a coefficient PHI above 1 or none of the deck.
   pure function is_steep(scene, laws)

@@ -85,7 +85,7 @@ contains
                 finish(rate_count)
     integer :: k, i
 
-    start = max(hot, steel%nodes(size(steel%nodes)))
+    start = max(hot, steel%data_end)
     do k = 1, rate_count
       rates(k) = slowest*(fastest/slowest)**(real(k - 1, wp)/(rate_count - 1))
       call cool_at_rate(steel, rates(k), start, cold, state(:, k), begin, begin_of(:, k), finish(k))

@@ -194,7 +194,7 @@ contains
     end do
     columns(3 + phase_count)%s = 'hardness [HV]'
     if (size(steel%nodes) == 0) return   ! nothing changes at any temperature
-    start = max(least_start, steel%nodes(size(steel%nodes)))
+    start = max(least_start, steel%data_end)
     if (.not. options%quiet) then
       call print_line('cooled from '//to_text(start, 5)//' to '//to_text(finish)//' degC', error)
       write (line, '(a, 6(1x, a10), a)') '     K/s  1 % at', (lower(i)//repeat(' ', 10 - len(lower(i))), i=1, phase_count), '   HV'

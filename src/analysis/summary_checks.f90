@@ -1,5 +1,6 @@
 !> Checks of a run in `summary.json`, what to do about those that do not hold, and estimated errors.
 module summary_checks
+  use accept_step, only: dissipation_slack
   use elem_api, only: totals_t
   use energy_books, only: damped_share, damping_advice, energy_imbalance, imbalance_advice
   use fields, only: displacement_field
@@ -7,6 +8,7 @@ module summary_checks
   use heat_record, only: heat_record_t
   use history, only: circumference
   use json_writer, only: json_t
+  use kinds, only: wp
   use path_advice, only: motion_advice, stress_advice
   use path_record, only: motion_error, stress_error
   use penetration_advice, only: advice_at_points, advice_between_points, allowed_between
@@ -38,6 +40,7 @@ contains
     call json%add('max_penetration_sampled_bound', allowed_between(scene))
     call json%add('worst_linear_residual', solution%worst_linear_residual)
     call json%add('least_dissipation', solution%least_dissipation)
+    call json%add('least_dissipation_allowed', -dissipation_slack*largest_state(solution))
     if (scene%fields(displacement_field)%declared) call json%add('energy_imbalance', energy_imbalance(solution))
     if (solution%work%damping > 0) call json%add('damped_share', damped_share(solution))
     if (has_heat(scene)) call json%add('heat_imbalance', heat_imbalance(solution))
@@ -54,6 +57,18 @@ contains
     end if
     call json%end_object()
   end subroutine add_checks
+
+  !> The largest number of the state of all points, whatever it is: that of work densities is no larger.
+  pure function largest_state(solution) result(largest)
+    type(solution_t), intent(in) :: solution
+    real(wp) :: largest
+    integer :: g
+
+    largest = 0
+    do g = 1, size(solution%groups)
+      if (size(solution%groups(g)%committed) > 0) largest = max(largest, maxval(abs(solution%groups(g)%committed)))
+    end do
+  end function largest_state
 
   !> Balance of heat in time, and temperatures that cannot be there.
   subroutine add_heat(json, heat)

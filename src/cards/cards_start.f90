@@ -12,11 +12,11 @@ module cards_start
   use field_places, only: refuse_without_field
   use kinds, only: wp
   use loads, only: instants_around, start_t
-  use other_run, only: nodes_of_body, read_file_of_run, temperatures_at_nodes
+  use other_run, only: nodes_of_body, read_file_of_run, read_instant_of_run, temperatures_at_nodes
   use run_temperatures, only: run_temperatures_t
   use scene, only: host_of, is_solid
-  use scene_draft, only: close_card, draft_t, words_of
-  use text, only: string_t, to_text
+  use scene_draft, only: close_card, draft_t
+  use text, only: to_text
   implicit none
   private
   public :: read_start_values
@@ -63,7 +63,7 @@ contains
         if (from_run) then
           if (draft%scene%fields(f)%name /= 'temperature') call cursor%fail('another run gives temperatures, T')
           call read_file_of_run(cursor, deck%path, file, run)
-          call read_instant_of_run(cursor, run, value)
+          call read_instant_of_run(cursor, run, 'an instant of that run', value)
         else
           call cursor%real_or_formula('the value at the start', value, formula, draft%scene%fields(f)%unit)
           call values_at_nodes(cursor, draft, value, formula, start%values)
@@ -140,22 +140,6 @@ contains
         call cursor%fail('the start of '//draft%scene%fields(field)%word//' of '''//name//''' is given twice')
     end do
   end subroutine read_body_of_start
-
-  !> `AT time`: an instant of another run.
-  subroutine read_instant_of_run(cursor, run, time)
-    type(cursor_t), intent(inout) :: cursor
-    type(run_temperatures_t), intent(in) :: run
-    real(wp), intent(out) :: time   !! [time]
-    type(string_t), allocatable :: words(:)
-    integer :: k
-
-    time = 0
-    call words_of('AT', words)
-    call cursor%name('AT, and an instant of that run', words, k)
-    if (cursor%failed()) return
-    call cursor%real('an instant of that run, '//to_text(run%time(1), 6)//' to '//to_text(run%time(size(run%time)), 6), time, &
-                     lower=run%time(1), upper=run%time(size(run%time)), unit='time')
-  end subroutine read_instant_of_run
 
   !> The temperatures of another run at the nodes of a body, or of all that have a temperature. A new mesh has those of the old one.
   subroutine values_of_run(cursor, draft, run, file, time, start)

@@ -9,7 +9,7 @@ module cards_temperature
   use law_api, only: asks_for, law_t
   use loads, only: field_history_t, instants_around, start_t
   use materials, only: material_t
-  use other_run, only: nodes_of_body, read_file_of_run, temperatures_at_nodes
+  use other_run, only: nodes_of_body, read_file_of_run, read_instant_of_run, temperatures_at_nodes
   use run_temperatures, only: run_temperatures_t
   use scene_draft, only: close_card, draft_t, find_elem
   use text, only: to_text
@@ -22,7 +22,7 @@ module cards_temperature
 
 contains
 
-  !> All TEMPE cards: `body amplitude lic`, or `body FROM file`.
+  !> All TEMPE cards: `body amplitude lic`, or `body FROM file [AT time]`.
   subroutine read_temperatures_of_bodies(deck, draft, diagnostics)
     type(deck_t), intent(inout), target :: deck
     type(draft_t), intent(inout) :: draft
@@ -43,7 +43,7 @@ contains
                                                //', expected a body')
       if (g > 0) call check_body(cursor, draft, g)
       if (cursor%peek_word() == 'FROM') then
-        call read_history(cursor, deck%path, draft, g)
+        call read_history(cursor, deck%path, draft, g, size(deck%cards(i)%head%fields) > 3)
         call close_card(draft, cursor, deck%cards(i))
         ! without it nothing is known of a temperature that others may ask for
         if (cursor%failed()) draft%groups_sound = .false.
@@ -60,12 +60,14 @@ contains
     if (diagnostics%count() == before .and. draft%groups_sound) call refuse_bodies_without(draft, diagnostics)
   end subroutine read_temperatures_of_bodies
 
-  !> `FROM file`: the temperatures of another run. Nodes of the body then have a temperature that is given.
-  subroutine read_history(cursor, deck_path, draft, g)
+  !> `FROM file [AT time]`: the temperatures of another run, this scene beginning at an instant of it, 0 where none is given.
+  !> Nodes of the body then have a temperature that is given.
+  subroutine read_history(cursor, deck_path, draft, g, with_instant)
     type(cursor_t), intent(inout) :: cursor
     character(len=*), intent(in) :: deck_path
     type(draft_t), intent(inout) :: draft
     integer, intent(in) :: g   !! number of the body, 0 where there is none
+    logical, intent(in) :: with_instant
     type(run_temperatures_t) :: run
     type(field_history_t) :: history
     type(start_t) :: start
@@ -73,6 +75,8 @@ contains
     real(wp) :: share
 
     call read_file_of_run(cursor, deck_path, history%source, run)
+    if (with_instant .and. .not. cursor%failed()) &
+      call read_instant_of_run(cursor, run, 'the instant of that run at which this scene begins', history%begins)
     if (cursor%failed() .or. g == 0 .or. .not. (draft%mesh_sound .and. draft%groups_sound)) return
     do k = 1, size(draft%scene%groups)
       if (acts_on(draft%elems(draft%scene%groups(k)%elem_id), 'temperature')) &
@@ -84,11 +88,12 @@ contains
     call refuse_other_source(cursor, draft, history)
     call temperatures_at_nodes(cursor, draft, run, history%source, history%body, history%nodes, history%values)
     if (cursor%failed()) return
-    call move_alloc(run%time, history%time)
-    if (history%time(1) > 0) then
-      call cursor%fail('the first instant of '''//history%source//''' is at '//to_text(history%time(1), 6)//', expected one at 0')
+    if (run%time(1) > history%begins) then
+      call cursor%fail('the first instant of '''//history%source//''' is at '//to_text(run%time(1), 6) &
+                       //': expected AT, and the instant of that run at which this scene begins')
       return
     end if
+    history%time = run%time - history%begins
     call declare_given(draft, history%field)
     ! what is free of thermal strain is so at the first of them
     call instants_around(history%time, 0.0_wp, before, share)
@@ -102,7 +107,7 @@ contains
     draft%scene%groups(g)%temperature_history = size(draft%scene%histories)
   end subroutine read_history
 
-  !> Bodies that share nodes have the temperatures of one run.
+  !> Bodies that share nodes have the temperatures of one run, from one instant on.
   subroutine refuse_other_source(cursor, draft, history)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft
@@ -113,9 +118,11 @@ contains
     own = .false.
     own(history%nodes) = .true.
     do k = 1, size(draft%scene%histories)
-      if (draft%scene%histories(k)%source == history%source .or. .not. any(own(draft%scene%histories(k)%nodes))) cycle
+      if (.not. any(own(draft%scene%histories(k)%nodes))) cycle
+      if (draft%scene%histories(k)%source == history%source &
+          .and. .not. abs(draft%scene%histories(k)%begins - history%begins) > 0) cycle
       call cursor%fail('the bodies '''//history%body//''' and '''//draft%scene%histories(k)%body &
-                       //''' share nodes: expected temperatures of the same run')
+                       //''' share nodes: expected temperatures of the same run at the same instants')
     end do
   end subroutine refuse_other_source
 
@@ -140,17 +147,23 @@ contains
     type(draft_t), intent(inout) :: draft
     type(diagnostics_t), intent(inout), target :: diagnostics
     type(cursor_t) :: cursor
+    character(len=:), allocatable :: there
+    real(wp) :: last
     integer :: i, k
 
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword /= 'TEMPE') cycle
       do k = 1, size(draft%scene%histories)
         if (deck%cards(i)%head%fields(1)%text /= draft%scene%histories(k)%body) cycle
-        associate (time => draft%scene%histories(k)%time)
-          if (.not. time(size(time)) < draft%scene%strategy%end_time*(1 - end_slack)) cycle
+        associate (history => draft%scene%histories(k), end_time => draft%scene%strategy%end_time)
+          last = history%time(size(history%time))
+          ! an instant of that run is known to the rounding of the whole time there
+          if (.not. last < end_time - end_slack*max(end_time, last + history%begins)) cycle
           call cursor%open(deck%cards(i), diagnostics)
-          call cursor%fail('the last instant of '''//draft%scene%histories(k)%source//''' is at '//to_text(time(size(time)), 6) &
-                           //', before the end of this scene at '//to_text(draft%scene%strategy%end_time, 6))
+          there = ''
+          if (history%begins > 0) there = ', '//to_text(end_time + history%begins, 6)//' of that run'
+          call cursor%fail('the last instant of '''//history%source//''' is at '//to_text(last + history%begins, 6) &
+                           //', before the end of this scene at '//to_text(end_time, 6)//there)
         end associate
       end do
     end do

@@ -11,12 +11,12 @@ module other_run
   use kinds, only: wp
   use nearest_element, only: box_of_element, find_element
   use run_temperatures, only: elements_of_body, read_run_temperatures, run_temperatures_t
-  use scene_draft, only: draft_t
+  use scene_draft, only: draft_t, words_of
   use shape_functions, only: quad8
-  use text, only: to_text
+  use text, only: string_t, to_text
   implicit none
   private
-  public :: nodes_of_body, read_file_of_run, temperatures_at_nodes
+  public :: nodes_of_body, read_file_of_run, read_instant_of_run, temperatures_at_nodes
 
   !> A node may be so far outside of the other mesh, over the size of the nearest element: sides of unlike meshes bend differently.
   real(wp), parameter :: outside = 0.05_wp
@@ -38,6 +38,23 @@ contains
     call read_run_temperatures(path_beside(deck_path, file), run, error)
     if (allocated(error)) call cursor%fail(error%message)
   end subroutine read_file_of_run
+
+  !> `AT time`: an instant of another run.
+  subroutine read_instant_of_run(cursor, run, what, time)
+    type(cursor_t), intent(inout) :: cursor
+    type(run_temperatures_t), intent(in) :: run
+    character(len=*), intent(in) :: what   !! the instant, for messages
+    real(wp), intent(out) :: time          !! [time]
+    type(string_t), allocatable :: words(:)
+    integer :: k
+
+    time = 0
+    call words_of('AT', words)
+    call cursor%name('AT, and '//what, words, k)
+    if (cursor%failed()) return
+    call cursor%real(what//', '//to_text(run%time(1), 6)//' to '//to_text(run%time(size(run%time)), 6), time, &
+                     lower=run%time(1), upper=run%time(size(run%time)), unit='time')
+  end subroutine read_instant_of_run
 
   !> Nodes of a body, each once, ascending.
   pure subroutine nodes_of_body(draft, body, nodes)

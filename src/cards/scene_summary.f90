@@ -6,6 +6,7 @@ module scene_summary
   use kinds, only: wp
   use linear_api, only: solver_row_t
   use linear_registry, only: list_solvers
+  use loads, only: field_history_t
   use quadrature, only: rule_along, rule_control, rule_equidistant, rule_t
   use remesher_windows, only: window_text
   use remeshing, only: criterion_names, has_limit, is_upper, ncriteria, never
@@ -200,12 +201,20 @@ contains
       if (scene%groups(g)%elem == 'BSPRG') s = ', '//to_text(scene%groups(g)%stiffness, 3)//' per volume'
       if (any(scene%groups(g)%elem == [character(len=5) :: 'FLUX', 'CONVE', 'RADIA', 'HEATS'])) s = exchange_of(scene%groups(g))
       if (scene%groups(g)%source > 0) s = torch_of(scene%sources(scene%groups(g)%source))
-      if (scene%groups(g)%temperature_history > 0) &
-        s = s//', temperature of '//scene%histories(scene%groups(g)%temperature_history)%source
+      if (scene%groups(g)%temperature_history > 0) s = s//history_of(scene%histories(scene%groups(g)%temperature_history))
       if (scene%groups(g)%temperature_multiplier > 0) &
         s = s//', temperature '//to_text(scene%groups(g)%temperature_amplitude)//' x ' &
             //scene%multipliers(scene%groups(g)%temperature_multiplier)%name
     end function driven_by
+
+    !> Temperatures of another run.
+    pure function history_of(history) result(s)
+      type(field_history_t), intent(in) :: history
+      character(len=:), allocatable :: s
+
+      s = ', temperature of '//history%source
+      if (history%begins > 0) s = s//' from '//to_text(history%begins)//' on'
+    end function history_of
 
     !> What the multiplier that is found makes follow what.
     pure function found_by() result(s)

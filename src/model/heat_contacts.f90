@@ -11,7 +11,7 @@ module heat_contacts
   use radiation, only: fourth_powers
   implicit none
   private
-  public :: die_heat_t, heat_contact_t, flow_from_die, share_by_effusivity
+  public :: die_heat_t, heat_contact_t, flow_from_die, jumps_at_opening, share_by_effusivity
 
   !> Numbers of the exchange of heat between sides and a die.
   type :: heat_contact_t
@@ -66,6 +66,25 @@ contains
     slope = slope + contact%radiation*by_body
     slope_die = slope_die + contact%radiation*by_die
   end subroutine flow_from_die
+
+  !> The conductance of a point that is about to open is another than that of one that has just opened, by more than a hundredth of
+  !> H.
+  pure function jumps_at_opening(contact) result(yes)
+    type(heat_contact_t), intent(in) :: contact
+    logical :: yes
+    real(wp), parameter :: share = 0.01_wp
+    real(wp) :: touching, apart, unused
+
+    touching = contact%conductance
+    if (allocated(contact%by_pressure)) then
+      call value_in_table(contact%by_pressure, 0.0_wp, touching, unused)
+      touching = contact%conductance*touching
+    end if
+    apart = 0
+    if (allocated(contact%by_gap)) call value_in_table(contact%by_gap, 0.0_wp, apart, unused)
+    apart = contact%conductance*apart + contact%convection
+    yes = abs(touching - apart) > share*contact%conductance
+  end function jumps_at_opening
 
   !> Share of friction heat that goes into a body: its effusivity over the sum of both (half spaces that rub have one temperature
   !> where they touch; H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, sec. 2.15).

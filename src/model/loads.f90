@@ -30,8 +30,10 @@ module loads
     character(len=:), allocatable :: body
     !> Where they come from, as the deck says it.
     character(len=:), allocatable :: source
+    !> Instant of the source that is 0 here [time].
+    real(wp) :: begins = 0.0_wp
     integer, allocatable :: nodes(:)
-    !> Instants, ascending (n) [time], and the values then (node, n) [of the field].
+    !> Instants here, ascending (n) [time], and the values then (node, n) [of the field].
     real(wp), allocatable :: time(:), values(:, :)
   end type field_history_t
 

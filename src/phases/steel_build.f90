@@ -16,6 +16,8 @@ module steel_build
 
   !> Intervals of the table of Li's S (its error is below 1e-9, tests/phases), and of a lever rule's.
   integer, parameter :: li_intervals = 200, lever_intervals = 100
+  !> What goes on at any temperature (tempering, growth of grains) is followed in sub-steps between these [degC].
+  real(wp), parameter :: coldest = -200.0_wp, hottest = 1600.0_wp
 
 contains
 
@@ -71,10 +73,13 @@ contains
   end subroutine use_li
 
   !> Temperatures at which sub-steps end: multiples of their width over the range of all data, and where data begin, end or bend.
+  !> Tempering goes on beyond that range, and grains grow above it.
   subroutine set_nodes(steel)
     type(steel_t), intent(inout) :: steel
     real(wp), allocatable :: breaks(:), grid(:)
-    integer :: i, j, k, n
+    real(wp) :: low, high
+    integer :: i, j, k, first, last
+    logical :: tempers
 
     allocate (breaks, source=[steel%ae1, steel%ae3, steel%ac1, steel%ac3, steel%bs, steel%ms])
     do i = first_diffusive, last_diffusive
@@ -96,16 +101,24 @@ contains
     end do
     if (steel%cct%n > 0) breaks = [breaks, steel%cct%hottest, steel%cct%coldest]
     breaks = pack(breaks, breaks > unknown_temperature)
+    tempers = any(steel%temper_rate > 0)
+    if (size(breaks) == 0 .and. tempers) breaks = [coldest]
     if (size(breaks) == 0) then   ! nothing changes at any temperature
       allocate (steel%nodes(0))
       return
     end if
     call sort(breaks)
     breaks = pack(breaks, [.true., breaks(2:) > breaks(:size(breaks) - 1)])
-    n = ceiling((breaks(size(breaks)) - breaks(1))/steel%substep)
+    low = breaks(1)
+    high = breaks(size(breaks))
+    steel%data_end = high
+    if (tempers) low = min(low, coldest)
+    if (tempers .or. steel%lambda0 > 0) high = max(high, hottest)
+    first = -ceiling((breaks(1) - low)/steel%substep)
+    last = ceiling((high - breaks(1))/steel%substep)
     ! those that are nearer to a break than a hundredth of their distance are left out, never the breaks
-    grid = [(breaks(1) + k*steel%substep, k=0, n)]
-    grid = pack(grid, [(minval(abs(grid(k) - breaks)) > 0.01_wp*steel%substep, k=1, n + 1)])
+    grid = [(breaks(1) + k*steel%substep, k=first, last)]
+    grid = pack(grid, [(minval(abs(grid(k) - breaks)) > 0.01_wp*steel%substep, k=1, size(grid))])
     steel%nodes = [breaks, grid]
     call sort(steel%nodes)
 

@@ -148,6 +148,8 @@ module steels
     real(wp) :: substep = default_substep   !! [K]
     !> Temperatures at which sub-steps end, ascending [degC]: they stand still while a step is iterated.
     real(wp), allocatable :: nodes(:)
+    !> Highest temperature at which data begin, end or bend; where there are nodes [degC].
+    real(wp) :: data_end = unknown_temperature
     !> Li's S(X) and its slope over q at equal distances, X = q^(5/3)/(q^(5/3) + (1-q)^(5/3)).
     real(wp), allocatable :: li_sum(:), li_slope(:)
   end type steel_t

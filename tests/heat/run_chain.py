@@ -7,7 +7,8 @@ usage: run_chain.py [-v] [-k]
   stress against B.A. Boley, J.H. Weiner, Theory of Thermal Stresses (1960), section 9.11, within 0.5 %.
 - `bar`: plastic, by temperature, heated at one end; the motion does nothing to the temperature: a chained run by the steps of the other
   on its mesh is the staggered one, and on other meshes it comes near; with BILINEAR too, in large strain.
-- `between`: a bar held at its ends whose temperature grows linearly, saved twice: stress at all steps between.
+- `between`: a bar held at its ends whose temperature grows linearly, saved twice: stress at all steps between; and a scene that begins
+  later than the other run, within its only mesh or with that of its second operation.
 - `given`: a body with TEMPE keeps that temperature where another one conducts.
 - `go_on`: a scene of heat that starts from the end of another is the whole one; between two instants it is their mean; another mesh.
 - `remeshed`: a bar on two new meshes: its material has the temperatures that it has in the other run, and the bar gets as long as on one mesh.
@@ -149,6 +150,17 @@ def between(checks):
         time = held.history["time"]
         checks.small(np.max(np.abs(held.history["t"] - 20 - 500*time)), 1e-9*520, "between: linear in time")
         checks.small(np.max(np.abs(held.history["s"]/(-200000*1.2e-5*500*time) - 1)), 1e-9, "between: stress of a held bar")
+    # from an instant on: free of stress at the temperature then
+    two = Run(checks, "twice", read(os.path.join(checks.folder, "even.lag")).replace(
+        "HEATS bar Q 1000.\nSTRAT 0.5 1.E-6 0.5 9 3\nSTOP 1.\nSAVE 100\n",
+        "STRAT 0.5 1.E-6 0.5 9 3\nSAVE 100\nOPERA one\nHEATS bar Q 1000.\nSTOP 0.6\nOPERA two\nHEATS bar Q 2000.\nSTOP 0.4\n"))
+    for name, card, rate, stop in (("later", "even/even.g01.h5 AT 0.3", 500, 0.7), ("second", "twice/twice.g02.h5 AT 0.6", 1000, 0.4)):
+        later = Run(checks, name, read(os.path.join(checks.folder, "even-held.lag")).replace("even/even.g01.h5", card).replace(
+            "STOP 1.", f"STOP {stop}"))
+        if two.ok and later.ok:
+            time, first = later.history["time"], 20 + 500*float(card.rsplit(" ", 1)[1])
+            checks.small(np.max(np.abs(later.history["t"] - first - rate*time)), 1e-9*520, f"between: {name}: linear in time")
+            checks.small(np.max(np.abs(later.history["s"]/(-200000*1.2e-5*rate*time) - 1)), 1e-9, f"between: {name}: stress of a held bar")
 
 
 def given(checks):
@@ -289,7 +301,10 @@ def refused(checks):
     source = Run(checks, "refused/ok", WALL.format(name="w", n=2, kind="", start="START T 800.\n", stop=0.02))
     cold = Run(checks, "refused/cold", "TITLE c\nSTATE AXISYM\nKINEM SMALL\nBLOCK w PL8LS 9 m\n   1. 0. 3. 0. 3. 1. 1. 1.\n   1 1. 1 1.\nLAW m ELA\n"
                "   1. 0.\nFIXED w 1 Y\nMOVE w 3 Y up 0.01\nLIC up\n   0. 0. 1. 1.\nSTRAT 1. 0.1 1. 9 3\nSTOP 1.\nEND\n")
-    if not (source.ok and cold.ok):
+    # two operations: the mesh of the second begins at 0.01
+    second = Run(checks, "refused/second", read(os.path.join(checks.folder, "refused/ok.lag")).replace(
+        "STOP 0.02\n", "OPERA a\nSTOP 0.01\nOPERA b\nSTOP 0.01\n"))
+    if not (source.ok and cold.ok and second.ok):
         return
     for kind in ("cut", "altered", "inner"):
         shutil.copytree(source.out, os.path.join(folder, kind))
@@ -314,13 +329,22 @@ def refused(checks):
         "sound": (of(), None), "start": (heat.format("START T FROM ok/ok.g01.h5 AT 0.015"), None),
         "missing": (of(card="TEMPE w FROM none/none.g01.h5"), "no such file"),
         "folder": (of(card="TEMPE w FROM ok"), "a directory, where a file is wanted"), "no file": (of(card="TEMPE w FROM"), "expected the file of a run"),
-        "more": (of(card=good + " 2."), "expected the end of the line"),
+        "more": (of(card=good + " 2."), "expected AT"), "still more": (of(card=good + " AT 0. 2."), "expected the end of the line"),
         "cut": (of(card="TEMPE w FROM cut/cut.g01.h5"), "cut short or damaged"),
         "altered": (of(card="TEMPE w FROM altered/altered.g01.h5"), "altered or damaged"),
         "instant": (of(card="TEMPE w FROM inner/inner.g01.h5"), "000001.h5"),
         "no heat": (of(card="TEMPE w FROM cold/cold.g01.h5"), "no body of this run conducts heat"),
         "checkpoint": (of(card="TEMPE w FROM ok/ok.ckp.h5"), "no body of this run conducts heat"),
-        "short": (of(stop=0.03), "before the end of this scene"), "apart": (of(place=apart), "away from the mesh of 'ok/ok.g01.h5'"),
+        "short": (of(stop=0.03), "before the end of this scene"),
+        "later": (of(card=good + " AT 0.005", stop=0.015), None),
+        "later short": (of(card=good + " AT 0.005"), "before the end of this scene at 0.02, 0.025 of that run"),
+        "beyond": (of(card=good + " AT 0.03"), "the instant of that run at which this scene begins, 0 to 0.02"),
+        "no AT": (of(card="TEMPE w FROM second/second.g02.h5", stop=0.01), "is at 0.01: expected AT, and the instant"),
+        "too early": (of(card="TEMPE w FROM second/second.g02.h5 AT 0.005", stop=0.01), "0.01 to 0.02"),
+        "second": (of(card="TEMPE w FROM second/second.g02.h5 AT 0.01", stop=0.01), None),
+        "shared": (of(card=good + "\nBLOCK v PL8LS 9 m\n   3. 0. 4. 0. 4. 1. 3. 1.\n   1 1. 1 1.\nJOIN w 2 v 4\n"
+                      "TEMPE v FROM ok/ok.g01.h5 AT 0.001", stop=0.01), "of the same run at the same instants"),
+        "apart": (of(place=apart), "away from the mesh of 'ok/ok.g01.h5'"),
         "twice": (of(card=good + "\n" + good), "the temperature of 'w' is given twice"),
         "unknown": (of(card=good + "\nADDEL w PL8TM h\nLAW h HEAT\n   1. 1."), "the temperature of w is an unknown of this scene"),
         "imposed": (of(more="IMPOS w 1 T lic\nLIC lic\n   0. 1.\n"), "nodes here are of a body without temperature"),

@@ -18,6 +18,9 @@ usage: run_heat_contact.py [-v] [-k]
 - `newton`: hot steel whose flow depends on the temperature, pressed on a cold die, by SOLVE MONOLITHIC with heat of plastic work, then with
   heat of friction and a conductance by pressure too, on a rigid die, on one that a force drives, and on a conducting body that deforms:
   at most two solutions lead from a residual below 1e-5 to one below 1e-10, round-off of the smallest steps.
+- `shrinks`: a bar held at its hot end, pressed on a die that cools it, so that it shrinks away: steady with a conductance of h p/p0 that
+  grows from 0 (J.R. Barber, J. Elast. 8 (1978) 409-423, on those that jump), the root of 3 (T1 - T) = h p/p0 (T - Td); with one that
+  jumps as the side opens there is no equilibrium, and the message says what to do.
 - `billet`: pressed between chilled dies and remeshed twice: temperatures of the dies and the heat that they got go on, as
   does heat of plastic work and friction, work that has not become heat yet among it.
 """
@@ -37,7 +40,7 @@ from patch_support import LAGAMINE, Checks, Run, np  # noqa: E402
 from remeshed import cycle, tries  # noqa: E402
 from run_coupling import call, content  # noqa: E402
 from run_exchange import STEADY, TIGHT, root  # noqa: E402
-from support import DONE, history, result_differences, said, write  # noqa: E402
+from support import DONE, NO_CONVERGENCE, history, result_differences, said, write  # noqa: E402
 
 HEAD = "TITLE {0}\nSTATE {1}\nKINEM SMALL\n"
 EASY = "NORMS FORCE 1.E-10 DISPL 1.E-10\n"
@@ -362,6 +365,57 @@ def newton(checks):
         checks.that(len(steps) > 6 and most < 3, f"{name}: quadratic, at most {most} solutions from below 1e-5 to 1e-10 in {len(steps)} steps")
 
 
+SHRINKS = """TITLE a bar that shrinks off its die
+STATE PLSTN
+KINEM SMALL
+BLOCK b PL8LS 9 m
+   0. 0. 10. 0. 10. 10. 0. 10.
+   1 1. 4 1.
+LAW m ELATH
+   200000. 0. 1.2E-5
+ADDEL b PL8TM h BILINEAR
+LAW h HEAT
+   30. 4.
+START T 500.
+FIXED b 3 Y
+FIXED b 2 4 X
+LAW c COUL2D
+   PENETR 1.E-7 PHI 0.
+DIE d PILOT 0. 0.
+   SEGM -5. 0. 20. 0.
+CNT2D b 1 d c
+MOVE d Y up
+LIC up
+   0. 0. 1. 0.01
+TDIE d T 20.
+COU2DC b 1 d H 10.
+   PRESS 0. {touch} 100. 1.
+IMPOS b 3 T hot
+LIC hot
+   0. 500.
+SOLVE {solve}
+STRAT 0.1 1.E-4 20. 8 5
+STOP 500.
+PROBE t NODE T 5. 0.
+END
+"""
+
+
+def shrinks(checks):
+    """Strain of the die .01/10, of the cooled bar 1.2E-5 (T1 - T)/2; E = 2E5."""
+    def balance(t):
+        pressure = 2e5*(0.01/10 - 1.2e-5*(500 - t)/2)
+        return 3*(500 - t) - 10*pressure/100*(t - 20)
+
+    steady = root(balance, 340.0, 500.0)
+    for solve in ("MONOLITHIC", "CONVERGE"):
+        run = Run(checks, f"shrinks-{solve}", SHRINKS.format(touch=0., solve=solve))
+        if run.ok:
+            checks.small(abs(run.history["t"][-1] - steady), 0.02, f"{run.name}: {steady:.3f}")
+        run = Run(checks, f"shrinks-jumps-{solve}", SHRINKS.format(touch=1., solve=solve), code=NO_CONVERGENCE)
+        checks.that("let PRESS begin, at pressure 0" in run.said, f"{run.name}: what to do", run.said)
+
+
 def billet(checks):
     """From mesh to mesh."""
     deck, out = write(os.path.join(checks.folder, "billet.lag"), BILLET), os.path.join(checks.folder, "billet")
@@ -403,6 +457,7 @@ def main():
     slide(checks)
     same_bits(checks)
     newton(checks)
+    shrinks(checks)
     billet(checks)
     checks.end()
 

@@ -257,6 +257,13 @@ class ReportTest(unittest.TestCase):
             self.assertEqual(1, len(reported), name)
             self.assertIn(words, reported[0])
 
+    def test_round_off_of_work(self):
+        """What is dissipated at a point may fall by round-off, also where no work comes in, as in a quench."""
+        folder = self.made()
+        self.change_summary(folder, "energy", "external_work", 0.0)
+        self.change_summary(folder, "checks", "least_dissipation", -1e-14)
+        self.assertEqual([], warnings(folder))
+
     def test_under_way_and_interrupted(self):
         """A run that is under way has a page; so has one that was killed in the middle of a row, and one that has just begun."""
         folder = self.made()
