@@ -401,9 +401,9 @@ contains
     end do
   end subroutine carry_interval
 
-  !> A corner of the die beside a node has a part of its weight, and the larger a pressure for it (corner_weights): both have the mean
-  !> over the length that they stand for, be the points of the node those of an interval before, which the node hands over, or on
-  !> the face beyond the corner.
+  !> A corner of the die beside a node has a part of its weight, and the larger a pressure for it (corner_weights): both have the
+  !> mean over the length that they stand for, be the points of the node those of an interval before, which the node hands over, or
+  !> on the face beyond the corner.
   pure subroutine share_forces(row, values)
     type(interval_points_t), intent(in) :: row
     real(wp), intent(inout) :: values(:, :)   !! (component, npoint) [unit of each component]
