@@ -22,8 +22,12 @@ module contact_outlook
   !> A die lies on a side where it is no farther off, or deeper in it, than this share of the side.
   real(wp), parameter :: lies_on = 1.0e-6_wp
 
+  !> A die goes into a part, not along it, where it gets deeper by more than this share of its way.
+  real(wp), parameter :: across = 0.5_wp
+
   type :: outlook_t
-    !> A side has a closest point on the die at the start, at the end of the die's motion.
+    !> A side has a closest point on the die at the start, at the end of the die's motion; also where the die ends behind the place
+    !> of a part that it goes into, as a punch that bends a sheet does: the part will not stand there then.
     logical :: faces = .false., faces_at_end = .false.
     !> Depth of the deepest node at the start, below 0 for a gap; and over the length of its side.
     real(wp) :: depth = 0.0_wp, over_side = 0.0_wp
@@ -42,8 +46,8 @@ contains
     type(group_t), intent(in) :: group
     type(outlook_t), intent(out) :: outlook
     real(wp), allocatable :: sides(:, :, :), behind(:, :)
-    real(wp) :: depth, over_side, time, reach
-    logical :: faces, pressed
+    real(wp) :: depth, over_side, time, reach, depth_before, pilot(3), pilot_before(3)
+    logical :: faces, pressed, enters
     integer :: k
 
     associate (die => scene%dies(group%die))
@@ -56,14 +60,23 @@ contains
       if (outlook%faces .and. outlook%depth >= 0) outlook%first = 0
       if (.not. moves(scene, group%die)) return
       pressed = .false.
+      enters = .false.
+      pilot_before = pilot_at(scene, group%die, 0.0_wp)
+      depth_before = outlook%depth
       do k = 1, ninstant
         time = scene%strategy%end_time*k/ninstant
-        call deepest(sides, die, pilot_at(scene, group%die, time), reach, faces, depth, over_side)
+        pilot = pilot_at(scene, group%die, time)
+        call deepest(sides, die, pilot, reach, faces, depth, over_side)
+        if (faces) then
+          enters = depth > 0 .and. depth - depth_before > across*length_of(pilot(1:2) - pilot_before(1:2))
+          depth_before = depth
+        end if
+        pilot_before = pilot
         pressed = pressed .or. (faces .and. over_side > lies_on)
         if (faces .and. depth >= 0 .and. outlook%first < 0) outlook%first = time
       end do
       if (abs(outlook%over_side) < lies_on .and. faces .and. .not. pressed) outlook%first = -1
-      outlook%faces_at_end = faces
+      outlook%faces_at_end = faces .or. enters
     end associate
   end subroutine look_at_contact
 

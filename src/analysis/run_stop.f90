@@ -44,7 +44,8 @@ contains
     end if
     advice = 'the residual force is in '//run%stem//'.failed.xdmf; '
     if (scene%fields(displacement_field)%declared) then
-      advice = advice//'a limit load, a mesh too distorted or a least step too large in STRAT are the usual causes'
+      advice = advice//'a limit load'//way_past_limit(scene)//', a mesh too distorted or a least step too large in STRAT are ' &
+               //'the usual causes'
     else
       advice = advice//'numbers that jump along the temperature, NORMS near round-off or a least step too large in ' &
                //'STRAT are the usual causes'
@@ -82,6 +83,21 @@ contains
       loses_touch = loses_touch .or. jumps_at_opening(scene%groups(g)%heat_contact)
     end do
   end function loses_touch
+
+  !> What leads past a limit load: the multiplier of loads is found (LOADF), or another measure where that turns back. Nothing where
+  !> no load acts that may be found.
+  pure function way_past_limit(scene)
+    type(scene_t), intent(in) :: scene
+    character(len=:), allocatable :: way_past_limit
+    integer :: g
+
+    way_past_limit = ''
+    if (scene%load_factor%multiplier > 0) then
+      way_past_limit = ' at which the measure of LOADF turns back (that of a node may go on, as across a crack, a neck or a dent)'
+    else if (size(scene%forces) > 0 .or. any([(scene%groups(g)%elem == 'PRES2D', g=1, size(scene%groups))])) then
+      way_past_limit = ' (LOADF finds the loads beyond it)'
+    end if
+  end function way_past_limit
 
   !> A law of contact has friction by M, with a coefficient PHI above 1 or none of the deck.
   pure function is_steep(scene, laws)

@@ -68,9 +68,11 @@ contains
   subroutine read_sides_of(cursor, draft, place, most, label, sides)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
-    integer, intent(in) :: place, most
+    integer, intent(in) :: place
+    integer, intent(in) :: most   !! so many numbers at most belong to the place
     character(len=:), allocatable, intent(inout) :: label
     integer, allocatable, intent(inout) :: sides(:, :)
+    character(len=:), allocatable :: rest
     logical, allocatable :: given(:)
     integer :: side, n, most_sides
 
@@ -94,8 +96,11 @@ contains
         label = label//trim(merge('.', '+', n == 1))//to_text(side)
         call add_sides(draft%places%item(place) + side - 1)
       end do
-      if (n == 0) call cursor%fail(''''//label//''' is a '//draft%places%keywords(place)%s &
-                                   //': expected the numbers of its sides (1 to '//to_text(most_sides)//') after it')
+      if (n > 0) return
+      rest = ''
+      if (cursor%next_is_number()) rest = '; the two numbers before the multiplier are npoint and the amplitude'
+      call cursor%fail(''''//label//''' is a '//draft%places%keywords(place)%s &
+                       //': expected the numbers of its sides (1 to '//to_text(most_sides)//') after it'//rest)
     case default
       call cursor%fail(''''//label//''' is a '//draft%places%keywords(place)%s//', expected a BLOCK or a set of sides')
     end select

@@ -18,7 +18,7 @@ module contact_point
   implicit none
   private
   public :: contact_point_t, meeting_t, side_point, act, answer, penalties, share_to_contact, show_on_axis, side_length
-  public :: area_at, dissipated, is_released, point_variables, rest, thinning, contact_block
+  public :: area_at, dissipated, is_in_contact, is_released, point_variables, rest, thinning, contact_block
   public :: at_pressure, at_tau, at_penetration, at_status, at_slip, at_augmentation, at_work, at_piece, at_xi, at_between, &
             at_energy, npoint_state
   public :: most_unknowns, no_surface, share_of_way, touching
@@ -104,6 +104,16 @@ contains
 
     n = merge((nstate - 1)/2, nstate, corners)
   end function contact_block
+
+  !> A point is in contact, or the corner of the die beside it, or its side next to it (contact_between).
+  pure function is_in_contact(state, corners) result(yes)
+    real(wp), intent(in) :: state(:)   !! (nstate) with that of the corner, where there is one [unit of each component]
+    logical, intent(in) :: corners     !! corners of the die are points of contact of their own
+    logical :: yes
+
+    yes = nint(state(at_status)) /= contact_open .or. state(at_between) > 0
+    if (corners) yes = yes .or. nint(state(contact_block(corners, size(state)) + at_status)) /= contact_open
+  end function is_in_contact
 
   !> Position, length, inner normal and thickness of a point of the side, and their derivatives.
   pure subroutine side_point(phi, dphi, section, x, du, nunknown, point)

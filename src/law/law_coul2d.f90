@@ -2,8 +2,9 @@
 !>
 !> p = augmentation + AKP d where positive; stick dtau = AKTAU ds; slip |tau| = min(PHI p + PBOUE, TAUMAX,
 !> M flow_stress/sqrt3), each limit where it is given (M: constant-factor law, Tresca's friction). Where M stands without PHI, PHI
-!> is `steepest`: a point that just touches would have all of its friction at once, and a step in which its pressure goes to zero
-!> need not have an equilibrium; nor need it with large coefficients of friction: in the plane one is known to exist below
+!> is `steepest`, and of PBOUE there is `steepest` p where that is less: a point that just touches would have all of its friction
+!> at once, and a step in which its pressure goes to zero need not have an equilibrium; nor need it with large coefficients of
+!> friction: in the plane one is known to exist below
 !> sqrt(3 - 4 nu)/(2 - 2 nu) (C. Eck, J. Jarusek, Math. Models Methods Appl. Sci. 8 (1998) 445), .96 at nu = .3 and 1 where
 !> volume cannot change, as in flow. A die that rocks on a block finds none at any step with 5, but does with PHI 1 beside M: what a
 !> run that stops gives as advice (run_stop). It is no default: walls that are hardly pressed, as of a container, would rub less
@@ -23,6 +24,7 @@ module law_coul2d
   integer, parameter :: place_phi = 5, place_cohesion = 6, place_largest = 7, place_factor = 8, driver_flow = 2
 
   !> Coefficient of friction up to the limit M where PHI is not given: friction is the limit from M flow_stress/8.7 of pressure on.
+  !> So is it that of the cohesion, which is PBOUE from a pressure of a fifth of it on.
   real(wp), parameter :: steepest = 5.0_wp
 
 contains
@@ -38,7 +40,8 @@ contains
     allocate (row%lines, source=[law_line([penalty_parameters(), &
                                            parameter('PHI', '-', 'friction coefficient (5 where M stands alone)', lower=0.0_wp, &
                                                      default=huge(1.0_wp)), &
-                                           parameter('PBOUE', 'stress', 'cohesion', lower=0.0_wp, default=0.0_wp), &
+                                           parameter('PBOUE', 'stress', 'cohesion, at most 5 times the pressure', lower=0.0_wp, &
+                                                     default=0.0_wp), &
                                            parameter('TAUMAX', 'stress', 'largest friction stress', &
                                                      above=0.0_wp, default=huge(1.0_wp)), &
                                            parameter('M', '-', 'friction factor: largest friction over the shear flow stress', &
@@ -105,7 +108,10 @@ contains
     trial = tau_committed + penalty(2)*slip
     size_of_trial = sqrt(dot_product(trial, trial))
     limit = tau_max
-    by_pressure = .false.
+    if (cohesion > steepest*pressure) then
+      phi = phi + steepest
+      cohesion = 0
+    end if
     by_pressure = phi*pressure + cohesion < tau_max
     if (by_pressure) limit = phi*pressure + cohesion
     if (size_of_trial <= limit) then

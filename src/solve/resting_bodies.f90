@@ -8,11 +8,10 @@
 !> and in Y (axisymmetric ones in Y) have no such motion, and are not looked at.
 module resting_bodies
   use bodies, only: bodies_of_nodes
-  use contact_point, only: at_piece, at_status, contact_block
+  use contact_point, only: at_piece, is_in_contact
   use dofs, only: dofs_t
   use fields, only: displacement_field
   use kinds, only: wp
-  use law_api, only: contact_open
   use loads, only: multiplier_at
   use matrix_pattern, only: matrix_pattern_t
   use scene, only: axisymmetric, group_t, is_solid, role_contact, role_side_load, role_volume_load, scene_t
@@ -205,14 +204,13 @@ contains
     subroutine mark(group, state)
       type(group_t), intent(in) :: group
       real(wp), intent(in) :: state(:, :, :)
-      integer :: e, p, n
+      integer :: e, p
       logical :: corners
 
       corners = find_variable(group%variables, 'corner_place') > 0
-      n = merge(contact_block(corners, size(state, 1)), 0, corners)
       do e = 1, size(state, 3)
         do p = 1, size(state, 2)
-          if (nint(state(at_status, p, e)) == contact_open .and. nint(state(n + at_status, p, e)) == contact_open) cycle
+          if (.not. is_in_contact(state(:, p, e), corners)) cycle
           acted_on(loose(group%connectivity(1, e))) = .true.
           if (group%pairs > 0) acted_on(loose(scene%dies(group%die)%nodes(1, nint(state(at_piece, p, e))))) = .true.
         end do

@@ -7,12 +7,11 @@
 !> found sooner from a motion that goes on, while dies that leave are followed (leaving_dies).
 module turning_back
   use bodies, only: bodies_of_nodes
-  use contact_point, only: at_piece, at_status, contact_block
+  use contact_point, only: at_piece, is_in_contact
   use dies, only: is_deformable
   use dofs, only: dofs_t
   use fields, only: displacement_field, pilot_field, section_field
   use kinds, only: wp
-  use law_api, only: contact_open
   use scene, only: role_contact, scene_t
   use solution, only: solution_t
   use state_variables, only: find_variable
@@ -118,15 +117,14 @@ contains
     !> What touches in a group of contact is moved together.
     subroutine join_over(g)
       integer, intent(in) :: g
-      integer :: e, p, n, one, other
+      integer :: e, p, one, other
       logical :: corners
 
       associate (group => scene%groups(g), state => solution%groups(g)%committed)
         corners = find_variable(group%variables, 'corner_place') > 0
-        n = merge(contact_block(corners, size(state, 1)), 0, corners)
         do e = 1, size(state, 3)
           do p = 1, size(state, 2)
-            if (nint(state(at_status, p, e)) == contact_open .and. nint(state(n + at_status, p, e)) == contact_open) cycle
+            if (.not. is_in_contact(state(:, p, e), corners)) cycle
             one = body(group%connectivity(1, e))
             closed = closed .or. of_body(one)
             if (is_deformable(scene%dies(group%die))) then

@@ -92,6 +92,31 @@ CASES = (
     ("leaving-few-points", LEAVING, -3, 0.1),
 )
 
+BENDING = """TITLE  A beam bent between a punch and a support, half of it
+STATE  PLSTN
+KINEM  LOG
+BLOCK  beam PL8LS 4 metal
+   0. 0.   30. 0.   30. 2.   0. 2.
+   40 1.   4 1.
+LAW    metal EPLA
+   200000. 0.3
+   LINEAR 300. 1000.
+LAW    dry COUL2D
+   PENETR 1.E-3   PHI 0.
+DIE    support
+   ARC   18. -2.   20. 0.   22. -2.   1.E-4
+DIE    punch PILOT 0. 2.
+   ARC   3. 5.   0. 2.   -3. 5.   1.E-4
+CNT2D  beam 1 support ALONG dry
+CNT2D  beam 3 punch ALONG dry
+FIXED  beam 4 X
+MOVE   punch Y down
+LIC    down
+   0. 0.   1. -3.
+STRAT  0.05 1.E-5 0.1   6 3
+END
+"""
+
 
 def judge(checks, name, cards, points, phi):
     """One case."""
@@ -123,11 +148,23 @@ def judge(checks, name, cards, points, phi):
         checks.that(changes >= 3 and touching[-1], f"{name}: it leaves and comes back", changes)
 
 
+def bending(checks):
+    """A beam that nothing holds but its two dies, bent until both touch it between its points alone (ALONG): it does not rest."""
+    deck = write(checks.path("bending.lag"), BENDING)
+    result = run([deck, "--out", checks.path("bending"), "--threads", "1"])
+    if not checks.that(result.returncode == DONE, "bending: done", said(result)):
+        return
+    ran = summary(checks.path("bending"))
+    print(f"bending: {ran['steps']} steps, {ran['iterations']} iterations, {ran['cutbacks']} cutbacks")
+    checks.that(ran["steps"] <= 60, "bending: steps as long as with points in contact", ran["steps"])
+
+
 def main():
     with_h5py()
     checks = Checks()
     for name, cards, points, phi in CASES:
         judge(checks, name, cards, points, phi)
+    bending(checks)
     checks.end()
 
 

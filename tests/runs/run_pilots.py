@@ -107,6 +107,44 @@ def friction_factor(checks):
               min(friction, pressed) if phi else friction, 1e-9)
 
 
+def cohesion(checks):
+    """A block that rocks as it is pulled to and fro by its top, which is glued: its heel leaves the ground, and what is left slides
+    with friction by the pressure and by cohesion; friction is never more than with cohesion on the whole ground."""
+    deck = checks.path("cohesion.lag")
+    write(deck, """TITLE  A block pulled to and fro
+STATE  PLSTN
+KINEM  LOG
+BLOCK  block PL8LS 4 stuff
+   0. 0.   4. 0.   4. 2.   0. 2.
+   8 1.   4 1.
+LAW    stuff ELA
+   1000. 0.3
+LAW    skin COUL2D
+   PENETR 1.E-3   PHI 0.2   PBOUE 1.
+LAW    glue GLUE2D
+DIE    ground
+   SEGM  -10. 0.   20. 0.
+DIE    top PILOT 0. 2.
+   SEGM  20. 2.   -10. 2.
+CNT2D  block 1 ground skin
+CNT2D  block 3 top glue
+FORCE  top Y -20. down
+MOVE   top X pull
+LIC    down
+   0. 0.   1. 1.
+LIC    pull
+   0. 0.   1. 0.   2. 0.3   4. -0.3
+STRAT  0.1 1.E-5 0.1   5 3
+END
+""")
+    result = run([deck, "--out", checks.path("cohesion")])
+    if checks.that(result.returncode == DONE, "cohesion where a heel opens", said(result)):
+        friction = [abs(force) for force in history(checks.path("cohesion"))["force_x_ground"]]
+        largest = 0.2*20 + 4*1.
+        checks.that(0.9*largest < friction[-1] <= largest and max(friction) <= largest*(1 + 1e-6), "friction with cohesion",
+                    (friction[-1], max(friction), largest))
+
+
 def lost(checks):
     """A free die that touches nothing cannot be solved for: the run says what to do; and of friction by M alone, what bounds it."""
     for name, skin, word, told in (("lost", SMOOTH, "SPRNG", True), ("by_factor", "PENETR 1.E-3 M 0.3", "PHI 1 beside M", True),
@@ -121,7 +159,7 @@ def lost(checks):
 
 def main():
     checks = Checks()
-    for part in (compression, springs, balance, friction_factor, lost):
+    for part in (compression, springs, balance, friction_factor, cohesion, lost):
         part(checks)
     checks.end()
 

@@ -15,7 +15,7 @@ import sys
 sys.dont_write_bytecode = True
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, os.pardir, "patch"))
-from patch_support import Checks, Run  # noqa: E402
+from patch_support import NO_CONVERGENCE, Checks, Run  # noqa: E402
 
 WALL = """TITLE  A thick cylinder widened past its largest pressure
 STATE  {state}
@@ -76,6 +76,24 @@ STRAT  0.01 1.E-6 0.02   6 3
 END
 """
 
+# A clamped cap that is too deep to snap with its apex: a dent forms beside it.
+CAP = """TITLE  A cap
+STATE  AXISYM
+KINEM  LOG
+BLOCK  cap PL8LS 4 metal
+   99.5*sin(.35) 99.5*cos(.35)   100.5*sin(.35) 100.5*cos(.35)   0. 100.5   0. 99.5
+   2 1.   24 1.
+   SIDE 2 ARC 0. 0.
+   SIDE 4 ARC 0. 0.
+LAW    metal ELA
+   200000. 0.3
+FIXED  cap 1 XY
+FIXED  cap 3 X
+PRES2D cap 2 4 1. p
+{load}STRAT  0.02 1.E-5 0.02   6 3
+END
+"""
+
 
 def pressure(bore):
     """Of the rigid plastic cylinder, by Simpson's rule."""
@@ -119,6 +137,14 @@ def arch(checks):
     checks.that(off < 1e-6, "arch: found as where the motion is given", f"{off:.2e}")
 
 
+def told(checks):
+    """What a run says that stops at a limit: of loads that are given, and of a measure that turns back as a deep cap snaps."""
+    for name, load, words in (("given", "LIC    p\n   0. 0.   1. 200.\n", "LOADF finds the loads beyond it"),
+                              ("apex", "LOADF  p POINT 0. 100.5 Y grow\nLIC    grow\n   0. 0.   1. -12.\n", "LOADF turns back")):
+        stopped = Run(checks, name, CAP.format(load=load), code=NO_CONVERGENCE)
+        checks.that(words in stopped.said, f"{name}: what leads past a limit", stopped.said)
+
+
 def resumed(checks):
     """The sheet, and the same stopped on its way and taken up again."""
     whole = Run(checks, "bulge", BULGE)
@@ -137,6 +163,7 @@ def main():
     checks = Checks()
     wall(checks)
     arch(checks)
+    told(checks)
     resumed(checks)
     checks.end()
 

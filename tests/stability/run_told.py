@@ -55,6 +55,8 @@ WRONG = {
     "moved away from where it lies": ({"1. -2.": "1. 2."}, "does not meet the part"),
     "stroke too short": ({"30. 15.   -5. 15.": "30. 18.   -5. 18."}, "does not meet the part"),
     "stroke that leaves the part": ({"MOVE   upper Y press": "MOVE   upper X press 20."}, "no longer faces the part"),
+    "pressed, and then off the part": ({"1. -2.": "0.5 -2.   1. -2.\nLIC    off\n   0. 0.   0.5 0.   1. 20.\nMOVE   upper X off"},
+                                       "no longer faces the part"),
     "floating": ({"FIXED  billet 1 Y\n": TABLE, "30. 15.   -5. 15.": "30. 16.   -5. 16."}, "nothing holds it in Y before it meets"),
     "free to slide": ({"FIXED  billet 4 X\n": "", "CNT2D  billet 3 upper -3 rough\n": "", "DIE    upper\n": "", "MOVE   upper Y press\n":
                        "MOVE   billet 3 Y press\n", "   SEGM  30. 15.   -5. 15.\n": "", "LAW    rough COUL2D\n": "",
@@ -77,6 +79,8 @@ WRONG["friction in percent"] = ({"PHI 0.3": "PHI 30."}, "its coefficient of fric
 # What is changed in the base, and means what it says: far below the face at the exit of a drawing die is not in its body.
 RIGHT = {"heated and expanding": {**HEATED, "steel EPLA": "steel ELATH", "200000. 0.3\n": "200000. 0.3 1.E-5\n", "   LINEAR 700. 300.\n": ""},
          "heated and pressed": {**HEATED, "LIC    press\n": "PRES2D billet 3 3 1. press\nLIC    press\n", "   0. 0.   1. -2.\n": "   0. 0.   1. 5.\n"},
+         "a punch that goes on behind where the part stood": {"SEGM  30. 15.   -5. 15.": "ARC   3. 18.   0. 15.   -3. 18.   1.E-2",
+                                                              "1. -2.": "1. -5."},
          "friction up to a limit": {"PHI 0.3": "PHI 5.   M 0.3"}, "below a drawing die": {"0. 0.   10. 0.   10. 15.   0. 15.": "0. -100.   10. -100.   9.5 0.   0. 0.", "2 1.   3 1.": "2 1.   20 1.",
                                  "30. 15.   -5. 15.": "11. -10.   9. 5.\n   SEGM  9. 5.   9. 10.\n   SEGM  9. 10.   12. 10.",
                                  "CNT2D  billet 3 upper": "CNT2D  billet 2 upper", "FIXED  billet 1 Y\n": "", "upper Y press": "billet 3 Y press -1."}}
