@@ -94,7 +94,7 @@ contains
     type(diagnostics_t), target :: diagnostics
 
     call read_deck(options%deck, options%overrides, deck, diagnostics)
-    if (size(deck%cards) > 0 .or. diagnostics%count() == 0) call read_point(deck, path, diagnostics)
+    if (deck%complete) call read_point(deck, path, diagnostics)
     call diagnostics%error(error)
   end subroutine read_path
 

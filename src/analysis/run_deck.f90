@@ -37,6 +37,7 @@ module run_deck
   use run_input, only: read_input, read_next_operation
   use run_options, only: run_options_t, stem_of
   use run_record, only: run_t
+  use results, only: forget_failure
   use run_version, only: blas_words, version_text
   use scene, only: lacks_mesh, scene_t
   use scene_summary, only: scene_lines
@@ -252,10 +253,11 @@ contains
     call open_listing(run%stem//'.log', run%resume, options%quiet, options%progress, solution%time/scene%strategy%end_time, &
                       run%listing, error)
     if (allocated(error)) return
-    ! the result of an earlier call is not that of this one: its summary and end are removed
+    ! the result of an earlier call is not that of this one: its summary, end and failure are removed
     call remove_file(join_path(run%folder, 'summary.json'), error)
     if (.not. allocated(error) .and. scene%operation > 0) &
       call remove_file(join_path(run%folder, 'summary.'//scene%operation_name//'.json'), error)
+    if (.not. allocated(error)) call forget_failure(run%stem, scene%generation, error)
     ! written only after a while
     if (.not. allocated(error)) call refuse_place(run%stem//'.ckp.h5', error)
     if (allocated(error)) return

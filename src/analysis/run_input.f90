@@ -35,6 +35,12 @@ contains
     integer :: operation, generation
 
     call read_deck(options%deck, options%overrides, deck, diagnostics)
+    if (.not. deck%complete) then
+      ! what a missing file holds is not known, nor what is wrong without it
+      at_rest = .false.
+      call diagnostics%error(error)
+      return
+    end if
     sound = diagnostics%count() == 0
     if (sound .and. allocated(options%resume)) then
       call fingerprint_with_files(deck, text)
@@ -52,7 +58,7 @@ contains
       ! the deck's own mesh
       if (generation == operation) deallocate (remesh)
     end if
-    ! A deck that could not be opened has no other mistakes.
+    ! an empty deck has no other mistakes
     if (operations%count > 0) then
       if (generation > 1 .and. diagnostics%count() == 0 .and. operation <= operations%count) then
         call read_operation(deck, operations, operation, scene, diagnostics, remesh)

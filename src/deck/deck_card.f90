@@ -32,6 +32,8 @@ module deck_card
     !> Included files in place, overrides at the head, comments gone.
     character(len=:), allocatable :: text
     type(card_t), allocatable :: cards(:)
+    !> False when a file could not be read: nothing is told then of names that are missing.
+    logical :: complete = .true.
   end type deck_t
 
 contains

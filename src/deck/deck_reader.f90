@@ -60,6 +60,7 @@ contains
     allocate (parameters%wanted(size(parameters%declared)))
     parameters%wanted = .false.
     parameters%complete = source%complete
+    deck%complete = source%complete
     call build_cards(source, kinds, options, parameters, deck%cards, diagnostics)
     if (source%complete) call refuse_unused(parameters, options, diagnostics)
   end subroutine read_source
