@@ -9,6 +9,7 @@ module physics_check
   use scene, only: axisymmetric, group_t, lacks_mesh, role_side_load, scene_t
   use supports, only: free_motions, is_mechanical_load
   use text, only: add => add_text, string_t, to_text
+  use touching_bodies, only: judge_touching
   implicit none
   private
   public :: check_physics
@@ -19,6 +20,8 @@ module physics_check
   real(wp), parameter :: largest_yield = 0.03_wp
   !> Dry metals rub at less, hot ones that stick at their shear flow stress (M).
   real(wp), parameter :: largest_friction = 1.0_wp
+  !> Metals expand by 1e-5 to 3e-5 of their length for a degree, polymers by 3e-4.
+  real(wp), parameter :: largest_alpha = 0.01_wp
   !> Laws for solids in which temperatures make no strain.
   character(len=6), parameter :: without_expansion(*) = [character(len=6) :: 'ELA', 'EPLA', 'EVP-NH', 'GSELL']
   !> Ends and middle of a side of an element.
@@ -41,6 +44,7 @@ contains
     do g = 1, size(scene%groups)
       call judge_axis(scene, scene%groups(g), warnings)
     end do
+    if (.not. lacks_mesh(scene)) call judge_touching(scene, warnings)
     if (.not. scene%fields(displacement_field)%declared) return
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
@@ -54,6 +58,7 @@ contains
     do g = 1, size(scene%materials)
       call judge_yield(scene, laws, g, warnings)
       call judge_friction(scene, laws, g, warnings)
+      call judge_alpha(scene, laws, g, warnings)
     end do
     call judge_expansion(scene, laws, warnings)
     if (.not. anything_acts(scene)) &
@@ -231,6 +236,23 @@ contains
                //to_text(largest_friction)//': is it in percent? Above 1 an equilibrium need not exist (what sticks: GLUE2D)')
     end associate
   end subroutine judge_friction
+
+  !> A coefficient of expansion that no solid has: given in millionths.
+  subroutine judge_alpha(scene, laws, m, warnings)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: m
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    integer :: k
+
+    associate (material => scene%materials(m), law => laws(scene%materials(m)%law_id))
+      k = find_parameter(law, 'ALPHA')
+      if (k == 0) return
+      if (material%values(k) > largest_alpha) call add(warnings, 'law '//material%name//': it expands by ' &
+        //to_text(material%values(k), 3)//' of its length for each degree, solids by less than '//to_text(largest_alpha) &
+        //': is ALPHA in 1e-6?')
+    end associate
+  end subroutine judge_alpha
 
   !> Bodies that temperatures alone should strain, and no law of which expands.
   subroutine judge_expansion(scene, laws, warnings)

@@ -74,6 +74,10 @@ WRONG["pressed on the axis"] = ({"PLSTN": "AXISYM", "-5. 15.": "0. 15.", "LIC   
 HEATED = {"CNT2D  billet 3 upper -3 rough\n": "", "DIE    upper\n": "", "   SEGM  30. 15.   -5. 15.\n": "", "LAW    rough COUL2D\n": "",
           "   PENETR 1.E-3   PHI 0.3\n": "", "MOVE   upper Y press\n": "ADDEL  billet PL8TM hot\nLAW    hot HEAT\n   50. 3.6\nHEATS  billet Q 5.\nCONVE  billet 2 H 1. TS 0.\n",
           "LIC    press\n": "", "   0. 0.   1. -2.\n": "STOP   1.\n"}
+WRONG["expansion in millionths"] = ({**HEATED, "steel EPLA": "steel ELATH", "200000. 0.3\n": "200000. 0.3 12.\n", "   LINEAR 700. 300.\n": ""}, "is ALPHA in 1e-6?")
+# Another block beside the billet, held as it is; and what joins it.
+BESIDE = "BLOCK  beside PL8LS 4 steel\n   10. 0.   20. 0.   20. 15.   10. 15.\n   2 1.   3 1.\nFIXED  beside 1 Y\nCNT2D  beside 3 upper -3 rough\n"
+WRONG["blocks that only touch"] = ({"LAW    rough": BESIDE + "LAW    rough"}, "billet and beside have nodes at 7 places in common, from 10 0 to 10 15")
 WRONG["welded by EPLA"] = (HEATED, "none of their laws expands")
 # A hot body: temperatures make no strain, and its die moves away.
 HOT = {"FIXED  billet 1 Y\n": "FIXED  billet 1 Y\nADDEL  billet PL8TM hot\nLAW    hot HEAT\n   50. 3.6\nSTART  T 900.\nCONVE  billet 2 H 1. TS 0.\n"}
@@ -81,7 +85,11 @@ WRONG["hot and moved away"] = ({**HOT, "1. -2.": "1. 2."}, "does not meet the pa
 WRONG["hot and pushed from one side"] = ({"FIXED  billet 1 Y\n": HOT["FIXED  billet 1 Y\n"].split("\n", 1)[1]}, "along Y from one side")
 WRONG["friction in percent"] = ({"PHI 0.3": "PHI 30."}, "its coefficient of friction is 30")
 # What is changed in the base, and means what it says: far below the face at the exit of a drawing die is not in its body.
-RIGHT = {"between two dies": {"FIXED  billet 1 Y\n": TABLE}, "pushed from both sides": {"FIXED  billet 1 Y\n": "PRES2D billet 1 3 1. press\n"},
+RIGHT = {"blocks joined": {"LAW    rough": BESIDE + "JOIN   billet 2 beside 4\nLAW    rough"},
+         "blocks in contact": {"LAW    rough": BESIDE + "DIE    wall SIDES billet 2\nCNT2D  beside 4 wall rough\nLAW    rough"},
+         "blocks at a corner": {"LAW    rough": BESIDE.replace("10. 0.   20. 0.   20. 15.   10. 15.", "10. 15.   20. 15.   20. 30.   10. 30.")
+                                .replace("CNT2D  beside 3 upper -3 rough\n", "") + "FIXED  beside 2 X\nLAW    rough"},
+         "between two dies": {"FIXED  billet 1 Y\n": TABLE}, "pushed from both sides": {"FIXED  billet 1 Y\n": "PRES2D billet 1 3 1. press\n"},
          "heated and expanding": {**HEATED, "steel EPLA": "steel ELATH", "200000. 0.3\n": "200000. 0.3 1.E-5\n", "   LINEAR 700. 300.\n": ""},
          "heated and pressed": {**HEATED, "LIC    press\n": "PRES2D billet 3 3 1. press\nLIC    press\n", "   0. 0.   1. -2.\n": "   0. 0.   1. 5.\n"},
          "friction up to a limit": {"PHI 0.3": "PHI 5.   M 0.3"}, "below a drawing die": {"0. 0.   10. 0.   10. 15.   0. 15.": "0. -100.   10. -100.   9.5 0.   0. 0.", "2 1.   3 1.": "2 1.   20 1.",
