@@ -13,6 +13,7 @@ module closing_table
   use accuracy_plan, only: accuracy_lines, accuracy_t, add_accuracy
   use cost_file, only: cost_t, ntask, remesher_task
   use csv_reader, only: read_csv
+  use energy_books, only: energy_without_strain
   use equations, only: equations_t
   use errors, only: error_t
   use estimator, only: estimator_t, set_up_estimator, stress_error_now
@@ -63,10 +64,11 @@ module closing_table
 contains
 
   !> What is known at the end of a run. The error of the stress is estimated now where the deck did not ask for it.
-  subroutine close_run(scene, equations, solution, closing)
+  subroutine close_run(scene, equations, solution, volume, closing)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: volume   !! of the bodies, per radian when axisymmetric [volume]
     type(closing_t), intent(out) :: closing
     integer :: k
 
@@ -74,8 +76,11 @@ contains
     closing%flows = any([(scene%effects(k)%on .and. scene%effects(k)%name == 'plasticity', k=1, size(scene%effects))])
     closing%path = solution%path%estimated > 0
     closing%motion = motion_error(solution%path)
-    closing%path_stress = whole_stress_error(solution%path)
-    closing%stress_at_motion = stress_error(solution%path)
+    ! where nothing is strained both errors and stresses are round-off
+    if (max(solution%path%stress, solution%path%stress_recent)**2 > energy_without_strain(scene, equations, volume)) then
+      closing%path_stress = whole_stress_error(solution%path)
+      closing%stress_at_motion = stress_error(solution%path)
+    end if
     closing%whole_known = solution%path%stress_whole > 0
     closing%warm = has_heat(scene)
     closing%heat_steps = solution%heat%estimated

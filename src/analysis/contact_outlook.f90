@@ -21,6 +21,8 @@ module contact_outlook
   integer, parameter :: ninstant = 50
   !> A die lies on a side where it is no farther off, or deeper in it, than this share of the side.
   real(wp), parameter :: lies_on = 1.0e-6_wp
+  !> Shape functions of a side at its nodes.
+  real(wp), parameter :: at_node(3, 3) = reshape([1, 0, 0, 0, 1, 0, 0, 0, 1]*1.0_wp, [3, 3])
 
   !> A die goes into a part, not along it, where it gets deeper by more than this share of its way.
   real(wp), parameter :: across = 0.5_wp
@@ -36,6 +38,9 @@ module contact_outlook
     real(wp) :: first = -1.0_wp
     !> Sides whose element lies in the die's body, of those that have a closest point.
     integer :: inside = 0, seen = 0
+    !> Least and largest component along X and Y of the unit vectors along which the die would push the nodes that face it at the
+    !> start; the least above the largest where none does.
+    real(wp) :: least_push(2) = 1.0_wp, largest_push(2) = -1.0_wp
   end type outlook_t
 
 contains
@@ -55,6 +60,7 @@ contains
       call sides_at_start(scene, group, sides, behind)
       reach = 4*extent_of(scene)
       call deepest(sides, die, pilot_at(scene, group%die, 0.0_wp), reach, outlook%faces, outlook%depth, outlook%over_side)
+      call find_pushes(sides, die, reach, outlook)
       call count_inside(behind, die, outlook)
       outlook%faces_at_end = outlook%faces
       if (outlook%faces .and. outlook%depth >= 0) outlook%first = 0
@@ -149,7 +155,6 @@ contains
     real(wp), intent(in) :: pilot(3), reach
     logical, intent(out) :: faces
     real(wp), intent(out) :: depth, over_side
-    real(wp), parameter :: node(3, 3) = reshape([1, 0, 0, 0, 1, 0, 0, 0, 1]*1.0_wp, [3, 3])
     real(wp) :: d, share
     integer :: e, k
     logical :: found
@@ -159,7 +164,7 @@ contains
     over_side = 0
     do e = 1, size(sides, 3)
       do k = 1, 3
-        call depth_of(sides(:, :, e), node(:, k), die, pilot, reach, found, d, share)
+        call depth_of(sides(:, :, e), at_node(:, k), die, pilot, reach, found, d, share)
         if (.not. found) cycle
         faces = .true.
         if (.not. d > depth) cycle
@@ -170,14 +175,35 @@ contains
     if (.not. faces) depth = 0
   end subroutine deepest
 
+  !> Directions along which a die would push the nodes of sides, where it stands at the start.
+  pure subroutine find_pushes(sides, die, reach, outlook)
+    real(wp), intent(in) :: sides(:, :, :)   !! (2, 3, nside) [length]
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: reach            !! [length]
+    type(outlook_t), intent(inout) :: outlook
+    real(wp) :: depth, over_side, push(2)
+    integer :: e, k
+    logical :: found
+
+    do e = 1, size(sides, 3)
+      do k = 1, 3
+        call depth_of(sides(:, :, e), at_node(:, k), die, die%pilot, reach, found, depth, over_side, push)
+        if (.not. found) cycle
+        outlook%least_push = min(outlook%least_push, push)
+        outlook%largest_push = max(outlook%largest_push, push)
+      end do
+    end do
+  end subroutine find_pushes
+
   !> Depth of a point of a side, and over the length of the side.
-  pure subroutine depth_of(nodes, phi, die, pilot, reach, faces, depth, over_side)
+  pure subroutine depth_of(nodes, phi, die, pilot, reach, faces, depth, over_side, push)
     real(wp), intent(in) :: nodes(2, 3)   !! [length]
     real(wp), intent(in) :: phi(3)        !! shape functions at the point [-]
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: pilot(3), reach
     logical, intent(out) :: faces
     real(wp), intent(out) :: depth, over_side
+    real(wp), intent(out), optional :: push(2)   !! unit vector along which the die would push the point [-]
     type(closest_point_t) :: closest
     real(wp) :: local(2, 3), chord(2), side
 
@@ -188,6 +214,7 @@ contains
     faces = closest%piece > 0 .and. .not. lies_beyond_end(die, matmul(local, phi), closest%d)
     depth = closest%d
     over_side = depth/side
+    if (present(push)) push = -turned(closest%normal, pilot(3))
   end subroutine depth_of
 
   !> An end of an open curve is nearer to a point than the depth at which it lies behind a piece: the point is beside the die, as a

@@ -24,7 +24,7 @@ module energy_books
   implicit none
   private
   public :: book_stored, book_work, damped_share, damping_advice, energy_imbalance, energy_of_round_off, &
-            external_on_unknowns, imbalance_advice, missing_energy, spring_energy, start_stored
+            energy_without_strain, external_on_unknowns, imbalance_advice, missing_energy, spring_energy, start_stored
 
   !> The run warns above this share of what passed.
   real(wp), parameter :: largest_imbalance = 0.01_wp
@@ -283,8 +283,18 @@ contains
     real(wp), intent(in) :: volume   !! of the bodies, per radian when axisymmetric [volume]
     real(wp) :: energy               !! per radian when axisymmetric [energy]
 
-    energy = solution%work%round_off + stiffest(scene, equations)*volume*(operations*eps)**2
+    energy = solution%work%round_off + energy_without_strain(scene, equations, volume)
   end function energy_of_round_off
+
+  !> What round-off of strains may be worth in bodies that have none.
+  pure function energy_without_strain(scene, equations, volume) result(energy)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: volume   !! of the bodies, per radian when axisymmetric [volume]
+    real(wp) :: energy               !! per radian when axisymmetric [energy]
+
+    energy = stiffest(scene, equations)*volume*(operations*eps)**2
+  end function energy_without_strain
 
   !> Largest Young's modulus of the scene's materials at no temperature: the size of a stress.
   pure function stiffest(scene, equations) result(modulus)

@@ -1,10 +1,12 @@
-!> Bodies that nothing holds when a run ends: let go by their dies, they float.
+!> Bodies that nothing holds when a run ends: let go by their dies, they float; or dies have pushed them ahead without strain.
 !>
 !> Such a body rests where it was let go (resting_bodies): no force says where it would be. One that still lies against a die, as a
 !> forging on its anvil when the punch has gone up, is where it would be anyway, and is not told.
 module floating_bodies
   use contact_outlook, only: gaps_at_rest
   use dies, only: is_deformable
+  use energy_books, only: energy_without_strain
+  use equations, only: equations_t
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
   use resting_bodies, only: mark_acted_on
@@ -13,7 +15,7 @@ module floating_bodies
   use text, only: add_text, string_t, to_text
   implicit none
   private
-  public :: warn_of_floating_bodies
+  public :: warn_of_floating_bodies, warn_of_idle_dies
 
   !> A side lies on a die where the gap is below this share of its length.
   real(wp), parameter :: lies_on = 1.0e-3_wp
@@ -62,6 +64,26 @@ contains
       if (gap < huge(gap)) words = ' (the nearest die is '//to_text(gap, 3)//' away)'
     end function beside
   end subroutine warn_of_floating_bodies
+
+  !> Rigid dies have moved, and no more energy has passed than round-off makes: nothing resisted them. Told where nothing else is.
+  subroutine warn_of_idle_dies(scene, equations, solution, volume, warnings)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: volume   !! of the bodies, per radian when axisymmetric [volume]
+    type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning) lines
+    integer :: k
+
+    if (size(warnings) > 0 .or. .not. scene%fields(displacement_field)%declared) return
+    if (solution%work%passed > energy_without_strain(scene, equations, volume)) return
+    do k = 1, size(scene%dies)
+      if (is_deformable(scene%dies(k))) cycle
+      if (.not. any(abs(solution%fields(pilot_field)%value(:, k) - scene%dies(k)%pilot) > 0)) cycle
+      call add_text(warnings, 'die '//scene%dies(k)%name//' has moved against no resistance, and no body is strained: it met ' &
+                    //'none, or pushed ahead of it what no support holds')
+      return
+    end do
+  end subroutine warn_of_idle_dies
 
   !> Least gap between a body and the dies that its contacts name, or the bodies that face it; huge where there is none.
   subroutine nearest_die(scene, solution, loose, body, gap, over_side)

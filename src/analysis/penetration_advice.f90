@@ -22,6 +22,8 @@ module penetration_advice
   real(wp), parameter :: slack = 1.0e-6_wp
   !> Most integration points that a side may have.
   integer, parameter :: most_points = 17
+  !> And the number that is advised first.
+  integer, parameter :: many_points = 9
   !> Between points that see the whole side it may be so much deeper than allowed; and a side that is farther from its die between
   !> two places in contact, over the depth allowed, does not follow the die.
   real(wp), parameter :: between_along = 2.0_wp, far_apart = 10.0_wp
@@ -65,7 +67,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     character(len=:), allocatable :: advice
-    integer :: g
+    integer :: g, fewest
     logical :: gauss, few, bezier, along, rigid
     character(len=*), parameter :: shorter = 'shorter sides where the die bends'
 
@@ -74,11 +76,13 @@ contains
     few = .false.
     bezier = .false.
     along = .false.
+    fewest = most_points
     do g = 1, size(scene%groups)
       if (.not. is_contact(scene%groups(g))) cycle
       associate (rule => scene%groups(g)%rule)
         gauss = gauss .or. rule%family == rule_gauss
         few = few .or. (rule%n < most_points .and. rule%family /= rule_along)
+        if (rule%family /= rule_along) fewest = min(fewest, rule%n)
         rigid = .not. is_deformable(scene%dies(scene%groups(g)%die))
         along = along .or. (rigid .and. rule%family /= rule_along)
         bezier = bezier .or. (rigid .and. all(rule%family /= [rule_along, rule_control]))
@@ -93,7 +97,8 @@ contains
         advice = advice//'ALONG, or with '
       end if
       if (gauss) advice = advice//'-3 points, which are the nodes; '
-      if (.not. gauss) advice = advice//'-9 or -17 points; '
+      if (.not. gauss .and. fewest < many_points) advice = advice//'-9 or '
+      if (.not. gauss) advice = advice//'-17 points; '
     end if
     if (any_law(scene, at_augment, without=.true.)) advice = advice//'AUGMENT 20 in the contact law; '
     advice = advice//shorter

@@ -6,9 +6,10 @@ module physics_check
   use heat_check, only: check_heat
   use kinds, only: wp
   use law_api, only: driver_count, find_parameter, law_t, solid_law
-  use scene, only: axisymmetric, group_t, lacks_mesh, role_heat_contact, role_side_load, role_volume_load, scene_t
-  use supports, only: free_motions
+  use scene, only: axisymmetric, group_t, lacks_mesh, role_side_load, scene_t
+  use supports, only: free_motions, is_mechanical_load
   use text, only: add => add_text, string_t, to_text
+  use touching_bodies, only: judge_touching
   implicit none
   private
   public :: check_physics
@@ -19,6 +20,10 @@ module physics_check
   real(wp), parameter :: largest_yield = 0.03_wp
   !> Dry metals rub at less, hot ones that stick at their shear flow stress (M).
   real(wp), parameter :: largest_friction = 1.0_wp
+  !> Metals expand by 1e-5 to 3e-5 of their length for a degree, polymers by 3e-4.
+  real(wp), parameter :: largest_alpha = 0.01_wp
+  !> Laws for solids in which temperatures make no strain.
+  character(len=6), parameter :: without_expansion(*) = [character(len=6) :: 'ELA', 'EPLA', 'EVP-NH', 'GSELL']
   !> Ends and middle of a side of an element.
   integer, parameter :: nodes_of_side = 3
 
@@ -39,19 +44,21 @@ contains
     do g = 1, size(scene%groups)
       call judge_axis(scene, scene%groups(g), warnings)
     end do
+    if (.not. lacks_mesh(scene)) call judge_touching(scene, warnings)
     if (.not. scene%fields(displacement_field)%declared) return
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
         if (group%die == 0 .or. group%material == 0) cycle
         call look_at_contact(scene, group, outlook(g))
         call add(table, 'contact    '//group%name//': '//words_of(scene, group, outlook(g)))
-        call judge_contact(scene, group, outlook(g), warnings)
+        call judge_contact(scene, laws, group, outlook(g), warnings)
       end associate
     end do
     if (.not. lacks_mesh(scene)) call free_motions(scene, outlook, warnings)
     do g = 1, size(scene%materials)
       call judge_yield(scene, laws, g, warnings)
       call judge_friction(scene, laws, g, warnings)
+      call judge_alpha(scene, laws, g, warnings)
     end do
     call judge_expansion(scene, laws, warnings)
     if (.not. anything_acts(scene)) &
@@ -102,8 +109,9 @@ contains
   end function words_of
 
   !> Parts in dies, dies walked the wrong way, dies that miss.
-  subroutine judge_contact(scene, group, outlook, warnings)
+  subroutine judge_contact(scene, laws, group, outlook, warnings)
     type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
     type(group_t), intent(in) :: group
     type(outlook_t), intent(in) :: outlook
     type(string_t), allocatable, intent(inout) :: warnings(:)
@@ -117,8 +125,9 @@ contains
         call add(warnings, group%name//': the part begins '//to_text(outlook%depth, 3)//' deep in die '//die%name &
                  //', '//to_text(100*outlook%over_side, 3)//' % of a side')
       else if (moves(scene, group%die) .and. outlook%first < 0) then
-        if (alone(scene, group%die)) call add(warnings, group%name//': die '//die%name//' does not meet the part on all its way: ' &
-                                              //'moved the other way, or the stroke is too short')
+        if (unloaded(scene, group%die) .and. .not. expands(scene, laws)) &
+          call add(warnings, group%name//': die '//die%name//' does not meet the part on all its way: moved the other way, ' &
+                   //'or the stroke is too short')
       else if (moves(scene, group%die) .and. outlook%faces .and. .not. outlook%faces_at_end) then
         call add(warnings, group%name//': at the end of its motion die '//die%name//' no longer faces the part: the stroke ' &
                  //'leaves it')
@@ -126,14 +135,36 @@ contains
     end associate
   end subroutine judge_contact
 
-  !> Nothing but this die moves by what the deck gives: no other motion, no load, no heat.
-  pure function alone(scene, die) result(yes)
+  !> Temperatures change, and a body answers to them with a strain.
+  pure function expands(scene, laws) result(yes)
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: die
+    type(law_t), intent(in) :: laws(:)
     logical :: yes
+    integer :: k
 
-    yes = unloaded(scene, die) .and. .not. has_temperature(scene)
-  end function alone
+    yes = .false.
+    if (.not. is_warm(scene)) return
+    do k = 1, size(scene%groups)
+      associate (group => scene%groups(k))
+        if (group%material == 0 .or. group%die > 0) cycle
+        associate (law => laws(scene%materials(group%material)%law_id))
+          if (law%kind == solid_law) yes = yes .or. .not. any(without_expansion == law%name)
+        end associate
+      end associate
+    end do
+  end function expands
+
+  !> Temperatures act on bodies: a field, or given ones.
+  pure function is_warm(scene) result(yes)
+    type(scene_t), intent(in) :: scene
+    logical :: yes
+    integer :: k
+
+    yes = has_temperature(scene)
+    do k = 1, size(scene%groups)
+      yes = yes .or. max(scene%groups(k)%temperature_multiplier, scene%groups(k)%temperature_history) > 0
+    end do
+  end function is_warm
 
   !> A field beside the motion.
   pure function has_temperature(scene) result(yes)
@@ -149,16 +180,12 @@ contains
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: die   !! 0 for none
     logical :: yes
-    character(len=6), parameter :: heating(*) = ['FLUX  ', 'CONVE ', 'RADIA ', 'HEATS ', 'GOLDAK']
     integer :: k
 
     yes = size(scene%die_forces) == 0 .and. size(scene%forces) == 0 &
           .and. all(scene%section_drives%multiplier == 0) .and. scene%load_factor%multiplier == 0
     do k = 1, size(scene%groups)
-      associate (group => scene%groups(k))
-        if (group%role /= role_side_load .and. group%role /= role_volume_load) cycle
-        yes = yes .and. any(heating == group%elem)
-      end associate
+      yes = yes .and. .not. is_mechanical_load(scene%groups(k))
     end do
     do k = 1, size(scene%dies)
       if (k /= die) yes = yes .and. .not. moves(scene, k)
@@ -210,27 +237,31 @@ contains
     end associate
   end subroutine judge_friction
 
+  !> A coefficient of expansion that no solid has: given in millionths.
+  subroutine judge_alpha(scene, laws, m, warnings)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: m
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    integer :: k
+
+    associate (material => scene%materials(m), law => laws(scene%materials(m)%law_id))
+      k = find_parameter(law, 'ALPHA')
+      if (k == 0) return
+      if (material%values(k) > largest_alpha) call add(warnings, 'law '//material%name//': it expands by ' &
+        //to_text(material%values(k), 3)//' of its length for each degree, solids by less than '//to_text(largest_alpha) &
+        //': is ALPHA in 1e-6?')
+    end associate
+  end subroutine judge_alpha
+
   !> Bodies that temperatures alone should strain, and no law of which expands.
   subroutine judge_expansion(scene, laws, warnings)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)
     type(string_t), allocatable, intent(inout) :: warnings(:)
-    character(len=6), parameter :: rigid(*) = [character(len=6) :: 'ELA', 'EPLA', 'EVP-NH', 'GSELL']
-    logical :: warm
-    integer :: k
 
-    warm = has_temperature(scene)
-    do k = 1, size(scene%groups)
-      associate (group => scene%groups(k))
-        warm = warm .or. max(group%temperature_multiplier, group%temperature_history) > 0
-        if (group%material == 0) cycle
-        if (group%die > 0) return
-        associate (law => laws(scene%materials(group%material)%law_id))
-          if (law%kind == solid_law .and. .not. any(rigid == law%name)) return
-        end associate
-      end associate
-    end do
-    if (warm .and. unloaded(scene, 0)) &
+    if (any(scene%groups%material > 0 .and. scene%groups%die > 0)) return
+    if (is_warm(scene) .and. unloaded(scene, 0) .and. .not. expands(scene, laws)) &
       call add(warnings, 'nothing but temperatures acts on the bodies, and none of their laws expands (ELATH and ARBTHMET do): ' &
                //'no stress, no motion')
   end subroutine judge_expansion

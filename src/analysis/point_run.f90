@@ -1,7 +1,7 @@
 !> `lagamine --point DECK`: one material point along a path of strains and stresses, its response as a table.
 module point_run
   use csv_writer, only: csv_t
-  use deck_reader, only: deck_t, read_deck
+  use deck_reader, only: deck_t, of_point, read_deck, refuse_other_kind
   use diagnostics, only: diagnostics_t
   use errors, only: error_t, exit_no_convergence, fail
   use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
@@ -92,9 +92,12 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(deck_t), target :: deck
     type(diagnostics_t), target :: diagnostics
+    logical :: refused
 
     call read_deck(options%deck, options%overrides, deck, diagnostics)
-    if (size(deck%cards) > 0 .or. diagnostics%count() == 0) call read_point(deck, path, diagnostics)
+    refused = .false.
+    if (deck%complete) call refuse_other_kind(deck, of_point, diagnostics, refused)
+    if (deck%complete .and. .not. refused) call read_point(deck, path, diagnostics)
     call diagnostics%error(error)
   end subroutine read_path
 

@@ -17,7 +17,7 @@ module run_deck
   use diagnostics, only: diagnostics_t
   use errors, only: error_t, exit_done, exit_input, exit_no_convergence, exit_remesh, exit_signal, fail
   use exchange, only: read_state, write_checkpoint
-  use floating_bodies, only: warn_of_floating_bodies
+  use floating_bodies, only: warn_of_floating_bodies, warn_of_idle_dies
   use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
   use judge_remesh, only: agreed_words
   use heated_steels, only: warn_of_missing_austenite
@@ -37,6 +37,7 @@ module run_deck
   use run_input, only: read_input, read_next_operation
   use run_options, only: run_options_t, stem_of
   use run_record, only: run_t
+  use results, only: forget_failure
   use run_version, only: blas_words, version_text
   use scene, only: lacks_mesh, scene_t
   use scene_summary, only: scene_lines
@@ -252,10 +253,11 @@ contains
     call open_listing(run%stem//'.log', run%resume, options%quiet, options%progress, solution%time/scene%strategy%end_time, &
                       run%listing, error)
     if (allocated(error)) return
-    ! the result of an earlier call is not that of this one: its summary and end are removed
+    ! the result of an earlier call is not that of this one: its summary, end and failure are removed
     call remove_file(join_path(run%folder, 'summary.json'), error)
     if (.not. allocated(error) .and. scene%operation > 0) &
       call remove_file(join_path(run%folder, 'summary.'//scene%operation_name//'.json'), error)
+    if (.not. allocated(error)) call forget_failure(run%stem, scene%generation, error)
     ! written only after a while
     if (.not. allocated(error)) call refuse_place(run%stem//'.ckp.h5', error)
     if (allocated(error)) return
@@ -292,6 +294,7 @@ contains
       call warn_of_webs(scene, solution, facts%warnings)
       call warn_of_missing_austenite(scene, solution, facts%warnings)
       call warn_of_floating_bodies(scene, run%equations%loose, solution, facts%warnings)
+      call warn_of_idle_dies(scene, run%equations, solution, run%totals%volume, facts%warnings)
     end if
     facts%version = version_text
     facts%deck = options%deck
@@ -304,7 +307,7 @@ contains
     facts%threads = run%equations%team%most
     facts%blas = blas_words(blas_build(), blas_core_name())
     facts%wall = wall_seconds() - started
-    call close_run(scene, run%equations, solution, facts%closing)
+    call close_run(scene, run%equations, solution, run%totals%volume, facts%closing)
     ! of an operation without REMSH too, where others have it
     if (run%has_new_meshes .or. (scene%accuracy%asked > 0 .and. allocated(options%fineness))) &
       call close_cost(options, scene, solution, cpu_seconds() - processor, run, facts, late)

@@ -1,7 +1,7 @@
 !> What a run begins with: deck, operations, scene, and the mesh of a checkpoint; with all mistakes at once.
 module run_input
   use cards_operations, only: list_operations, operations_t, read_operation
-  use deck_reader, only: deck_t, read_deck
+  use deck_reader, only: deck_t, of_scene, read_deck, refuse_other_kind
   use diagnostics, only: diagnostics_t
   use errors, only: error_t, exit_input, fail
   use exchange, only: open_checkpoint, read_deck_of_checkpoint, read_remesh
@@ -31,10 +31,18 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(remesh_t), allocatable :: remesh
     type(error_t), allocatable :: unfit
-    logical :: sound
+    logical :: sound, other_kind
     integer :: operation, generation
 
     call read_deck(options%deck, options%overrides, deck, diagnostics)
+    other_kind = .false.
+    if (deck%complete) call refuse_other_kind(deck, of_scene, diagnostics, other_kind)
+    if (other_kind .or. .not. deck%complete) then
+      ! what a missing file holds is not known, nor what is wrong without it
+      at_rest = .false.
+      call diagnostics%error(error)
+      return
+    end if
     sound = diagnostics%count() == 0
     if (sound .and. allocated(options%resume)) then
       call fingerprint_with_files(deck, text)
@@ -52,7 +60,7 @@ contains
       ! the deck's own mesh
       if (generation == operation) deallocate (remesh)
     end if
-    ! A deck that could not be opened has no other mistakes.
+    ! an empty deck has no other mistakes
     if (operations%count > 0) then
       if (generation > 1 .and. diagnostics%count() == 0 .and. operation <= operations%count) then
         call read_operation(deck, operations, operation, scene, diagnostics, remesh)

@@ -42,7 +42,8 @@ contains
         where_at = where_at//', worst at node '//to_text(scene%mesh%labels(maxloc(sum(residual**2, 1), 1)))
       call save_failure(scene, solution, run%stem, residual, late)
     end if
-    advice = 'the residual force is in '//run%stem//'.failed.xdmf; '
+    advice = ''
+    if (allocated(outcome%residual)) advice = 'the residual force is in '//run%stem//'.failed.xdmf; '
     if (scene%fields(displacement_field)%declared) then
       advice = advice//'a limit load'//way_past_limit(scene)//', a mesh too distorted or a least step too large in STRAT are ' &
                //'the usual causes'

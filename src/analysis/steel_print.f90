@@ -90,7 +90,7 @@ contains
     call add_temperature('Ac3', steel%ac3)
     call add_temperature('Bs', steel%bs)
     call add_temperature('Ms', steel%ms)
-    call add_text(lines, s)
+    if (s /= 'degC:') call add_text(lines, s)
     if (steel%beta > 0) call add_text(lines, 'martensite: 1 - exp(-'//to_text(steel%beta)//' (Ms - T))')
 
   contains

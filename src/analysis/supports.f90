@@ -1,20 +1,24 @@
 !> Rigid motions of bodies that nothing holds, as far as supports, springs and dies at the start tell.
 module supports
-  use contact_outlook, only: outlook_t
+  use contact_outlook, only: moves, outlook_t
+  use dies, only: is_deformable
   use fields, only: displacement_field
   use kinds, only: wp
-  use scene, only: axisymmetric, is_solid, scene_t
+  use scene, only: axisymmetric, group_t, is_solid, role_side_load, role_volume_load, scene_t
   use text, only: string_t
   implicit none
   private
-  public :: free_motions
+  public :: free_motions, is_mechanical_load
 
   character(len=*), parameter :: directions = 'XY'
+  !> A die presses along a direction, and does not hold across it by friction, where its pushes have at least this component.
+  real(wp), parameter :: least_component = sqrt(0.5_wp)
 
 contains
 
-  !> A warning for each body, with all it is joined to, and each direction in which nothing holds it: no support, and no contact or
-  !> none that touches at the start. In the plane also for a turn about the only point that is held.
+  !> A warning for each body, with all it is joined to, and each direction in which nothing holds it: no support, and no contact,
+  !> none that touches at the start, or dies that press it from one side alone. In the plane also for a turn about the only point
+  !> that is held.
   subroutine free_motions(scene, outlook, warnings)
     type(scene_t), intent(in) :: scene
     type(outlook_t), intent(in) :: outlook(:)   !! (ngroup) of groups that face rigid dies
@@ -30,8 +34,13 @@ contains
         if (group%material == 0) cycle
         call contacts_of(scene, outlook, part, own, touched, near)
         do c = merge(2, 1, scene%plane_state == axisymmetric), 2
-          if (held(scene, part, own, c) .or. touched .or. sprung(scene, part, own, c)) cycle
-          if (near) then
+          if (held(scene, part, own, c)) cycle
+          if (sprung(scene, part, own, c)) cycle
+          if (touched) then
+            if (pressed_from_one_side(scene, outlook, part, own, c)) &
+              call add(group%name//': dies press it along '//directions(c:c)//' from one side, and nothing holds it on the ' &
+                       //'other, no support and no contact: they would push it ahead of them')
+          else if (near) then
             call add(group%name//': nothing holds it in '//directions(c:c)//' before it meets a die: contact alone does, and ' &
                      //'there is a gap')
           else
@@ -122,6 +131,47 @@ contains
       end associate
     end do
   end subroutine contacts_of
+
+  !> Rigid dies face the part, one of them moves or is pushed, and all would push it to one side; no load pushes it back.
+  !> Dies that stand across the direction somewhere may hold it by friction.
+  pure function pressed_from_one_side(scene, outlook, part, own, component) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(outlook_t), intent(in) :: outlook(:)
+    integer, intent(in) :: part(:), own, component
+    logical :: yes
+    real(wp) :: least, largest
+    integer :: g
+    logical :: mine, driven
+
+    yes = .false.
+    driven = .false.
+    least = 1
+    largest = -1
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        mine = part(group%connectivity(1, 1)) == own
+        if (mine .and. is_mechanical_load(group)) return
+        if (group%die == 0 .or. group%material == 0) cycle
+        if (is_deformable(scene%dies(group%die))) return
+        if (.not. mine) cycle
+        if (.not. outlook(g)%faces) return
+        driven = driven .or. moves(scene, group%die) .or. any(scene%die_forces%die == group%die)
+        least = min(least, outlook(g)%least_push(component))
+        largest = max(largest, outlook(g)%largest_push(component))
+      end associate
+    end do
+    if (any(part(scene%forces%node) == own)) return
+    yes = driven .and. (least >= least_component .or. largest <= -least_component)
+  end function pressed_from_one_side
+
+  !> A load on sides or in a volume that is no heat.
+  pure function is_mechanical_load(group) result(yes)
+    type(group_t), intent(in) :: group
+    logical :: yes
+    character(len=6), parameter :: heating(*) = ['FLUX  ', 'CONVE ', 'RADIA ', 'HEATS ', 'GOLDAK']
+
+    yes = any(group%role == [role_side_load, role_volume_load]) .and. .not. any(heating == group%elem)
+  end function is_mechanical_load
 
   !> Weak springs hold the part in a direction, and with it against a turn.
   pure function sprung(scene, part, own, component) result(yes)

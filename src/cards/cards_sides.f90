@@ -20,6 +20,7 @@ module cards_sides
 
   !> Points of a side: Gauss, or at equal distances with the ends (negative).
   integer, parameter :: rules(10) = [2, 3, 4, -3, -5, -9, -17, -33, -65, -129]
+  character(len=*), parameter :: equal_distances = '-3, -5, -9, -17, -33, -65 or -129'
 
 contains
 
@@ -237,9 +238,9 @@ contains
     type(rule_t), intent(out) :: rule
     integer :: npoint
 
-    call cursor%integer('the number of integration points, 2, 3, 4, -3, -5, -9 or -17', npoint)
-    if (all(rules /= npoint)) call cursor%fail('expected 2, 3 or 4 Gauss points, or -3, -5, -9 or -17 for points at equal ' &
-                                               //'distances, found '//to_text(npoint))
+    call cursor%integer('the number of integration points, 2, 3, 4, '//equal_distances, npoint)
+    if (all(rules /= npoint)) call cursor%fail('expected 2, 3 or 4 Gauss points, or '//equal_distances &
+                                               //' for points at equal distances, found '//to_text(npoint))
     rule = rule_of_number(npoint)
   end subroutine read_rule
 

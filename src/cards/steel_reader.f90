@@ -2,7 +2,7 @@
 !> mistakes at once. The manual (decks/README.md) has the cards.
 module steel_reader
   use deck_cursor, only: cursor_t
-  use deck_reader, only: deck_t, read_deck, refuse_unknown
+  use deck_reader, only: deck_t, of_steels, read_deck, refuse_other_kind, refuse_unknown
   use diagnostics, only: diagnostics_t
   use kinds, only: wp
   use steel_build, only: check_steel, complete_from_composition, set_nodes, use_li
@@ -35,8 +35,14 @@ contains
     type(deck_t), target :: file
     type(string_t) :: known(size(keywords))
     integer :: i, n, first, past
+    logical :: refused
 
     call read_deck(path, overrides, file, diagnostics)
+    call refuse_other_kind(file, of_steels, diagnostics, refused)
+    if (refused) then
+      allocate (steels(0))
+      return
+    end if
     do i = 1, size(keywords)
       known(i)%s = trim(keywords(i))
     end do

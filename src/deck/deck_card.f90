@@ -6,7 +6,15 @@ module deck_card
   use text, only: nearest_word, string_t
   implicit none
   private
-  public :: deck_field_t, row_t, card_t, deck_t, refuse_unknown, fingerprint_text
+  public :: deck_field_t, row_t, card_t, deck_t, refuse_other_kind, refuse_unknown, fingerprint_text
+  public :: of_scene, of_point, of_steels
+
+  !> What a file of cards may be: each has a card that the others have not, and a way to be read.
+  integer, parameter :: of_scene = 1, of_point = 2, of_steels = 3
+  character(len=*), parameter :: marks(3) = ['STATE', 'PATH ', 'STEEL']
+  character(len=28), parameter :: kinds(3) = [character(len=28) :: 'a deck of a scene', 'a deck of one point of a law', &
+                                              'a file of steels']
+  character(len=21), parameter :: calls(3) = [character(len=21) :: 'lagamine DECK', 'lagamine --point DECK', 'lagamine --met FILE']
 
   !> The fields of one line, the keyword left out.
   type :: row_t
@@ -32,9 +40,38 @@ module deck_card
     !> Included files in place, overrides at the head, comments gone.
     character(len=:), allocatable :: text
     type(card_t), allocatable :: cards(:)
+    !> False when a file could not be read: nothing is told then of names that are missing.
+    logical :: complete = .true.
   end type deck_t
 
 contains
+
+  !> One error where the file is of another kind than what is read: what it lacks of this one is not told.
+  subroutine refuse_other_kind(deck, kind, diagnostics, refused)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: kind   !! what is read
+    type(diagnostics_t), intent(inout) :: diagnostics
+    logical, intent(out) :: refused
+    integer :: i, k, found
+
+    refused = .false.
+    found = 0
+    do i = size(deck%cards), 1, -1
+      do k = 1, size(marks)
+        if (deck%cards(i)%keyword /= marks(k)) cycle
+        if (k == kind) return
+        found = i
+      end do
+    end do
+    if (found == 0) return
+    refused = .true.
+    do k = 1, size(marks)
+      if (deck%cards(found)%keyword == marks(k)) &
+        call diagnostics%add(location_t(deck%cards(found)%head%file, deck%cards(found)%head%line, 1), trim(marks(k)), &
+                             'this is '//trim(kinds(k))//', expected '//trim(kinds(kind))//'; '''//trim(calls(k)) &
+                             //''' reads it')
+    end do
+  end subroutine refuse_other_kind
 
   !> An error for each card whose keyword is none of the known.
   subroutine refuse_unknown(deck, known_keywords, diagnostics)

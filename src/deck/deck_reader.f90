@@ -1,7 +1,7 @@
 !> Lines -> cards. A line whose first column is not blank starts a card; lines that start with a blank are its
 !> data rows. PARAM, INCLU and END are the reader's own; all other cards are for others to understand.
 module deck_reader
-  use deck_card, only: card_t, deck_t, fingerprint_text, refuse_unknown, row_t
+  use deck_card, only: card_t, deck_t, fingerprint_text, of_point, of_scene, of_steels, refuse_other_kind, refuse_unknown, row_t
   use deck_definitions, only: define, interpret, merge_overrides, override_t, refuse_unused
   use deck_field, only: deck_field_t, first_word, is_title, scan_fields
   use deck_lines, only: classify, declared_names, is_card, is_param, is_row
@@ -11,7 +11,8 @@ module deck_reader
   use text, only: string_t, to_text, upper_case
   implicit none
   private
-  public :: deck_field_t, row_t, card_t, deck_t, read_deck, read_deck_text, refuse_unknown, fingerprint_text
+  public :: deck_field_t, row_t, card_t, deck_t, read_deck, read_deck_text, refuse_other_kind, refuse_unknown, fingerprint_text
+  public :: of_point, of_scene, of_steels
 
 contains
 
@@ -60,6 +61,7 @@ contains
     allocate (parameters%wanted(size(parameters%declared)))
     parameters%wanted = .false.
     parameters%complete = source%complete
+    deck%complete = source%complete
     call build_cards(source, kinds, options, parameters, deck%cards, diagnostics)
     if (source%complete) call refuse_unused(parameters, options, diagnostics)
   end subroutine read_source

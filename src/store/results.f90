@@ -20,8 +20,10 @@ module results
   use xdmf_writer, only: xdmf_grid_t, xdmf_t
   implicit none
   private
-  public :: results_t, open_results, save_fields, save_failure
+  public :: results_t, forget_failure, open_results, save_fields, save_failure
 
+  !> Behind the stem in names of files of a step that failed.
+  character(len=*), parameter :: failure = '.failed'
   !> What XDMF files are called behind the stem.
   character(len=12), parameter :: xdmf_endings(3) = ['.xdmf       ', '.dies.xdmf  ', '.points.xdmf']
   integer, parameter :: of_bodies = 1, of_dies = 2, of_points = 3
@@ -171,6 +173,32 @@ contains
     if (.not. allocated(error)) results%saved_step = solution%step
   end subroutine save_fields
 
+  !> The picture of a step that failed in an earlier call is not of this one: its files go.
+  subroutine forget_failure(stem, generation, error)
+    character(len=*), intent(in) :: stem
+    integer, intent(in) :: generation   !! of the present mesh
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: damaged
+    integer :: g, saved
+    logical :: there
+
+    do g = 1, size(xdmf_endings)
+      call remove_file(stem//failure//trim(xdmf_endings(g)), error)
+      if (allocated(error)) return
+    end do
+    g = 0
+    do
+      g = g + 1
+      there = file_exists(mesh_path(stem//failure, g))
+      if (.not. there .and. g > generation) exit
+      if (.not. there) cycle
+      ! instants that a damaged file does not name stay
+      call forget_later_steps(mesh_path(stem//failure, g), instants_folder(stem//failure, g), -1, saved, damaged)
+      call remove_file(mesh_path(stem//failure, g), error)
+      if (allocated(error)) return
+    end do
+  end subroutine forget_failure
+
   !> A picture of the step that failed, in files of its own (NAME.failed.*): the last good state with the residual force.
   subroutine save_failure(scene, solution, stem, residual, error)
     type(scene_t), intent(in) :: scene
@@ -180,7 +208,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(results_t) :: failed
 
-    call open_results(scene, solution, stem//'.failed', -1, .false., failed, error)
+    call open_results(scene, solution, stem//failure, -1, .false., failed, error)
     if (.not. allocated(error)) call save_fields(scene, solution, failed, error, residual)
   end subroutine save_failure
 

@@ -37,6 +37,8 @@ INP = [
     ("folded", NODES + QUADS.replace("2, 5, 6, 3", "2, 5, 3, 6"), (), "element 2 of 'part' around (1.5, 0.5): it folds over"),
     ("no set", NODES + QUADS + "*SURFACE, NAME=s\nbottom, S1\n", (), "*SURFACE s: there is no set of elements 'bottom'"),
     ("side 5", NODES + QUADS + "*SURFACE, NAME=s\n1, S5\n", (), "*SURFACE s: expected an element or a set, and a side S1 to S4"),
+    ("surface of triangles", NODES + "*ELEMENT, TYPE=CPE3, ELSET=part\n1, 1, 2, 3\n*SURFACE, NAME=s\n1, S1\n", (),
+     "*ELEMENT, ELSET=part: 1 element of kind triangle, the first around"),
     ("inside", NODES + QUADS + "*SURFACE, NAME=s\n1, S2\n", (), "set 's': 1 of 1 line lie between elements, not on the boundary, the first from (1, 0) to (1, 1)"),
     ("generated", NODES + "*NGEN\n1, 2, 1\n" + QUADS, (), "*NGEN: nodes and elements that are generated or turned are not read"),
     ("name", NODES + QUADS.replace("=part", "=the part"), (), "body 'the part': its name is none of a deck"),

@@ -28,6 +28,7 @@ from real_runs import BIN, SOFT, SOURCE, Runs  # noqa: E402
 sys.path.insert(0, os.path.join(SOURCE, "src", "report"))
 from lagamine_report import Run, short_lines  # noqa: E402
 from lagamine_report.geometry import Triangles, element_curves, element_sizes  # noqa: E402
+from lagamine_report.tables import read_notes  # noqa: E402
 from lagamine_report.words import brief  # noqa: E402
 
 BLANK = 0.004   # a picture has at least this share of its pixels drawn upon
@@ -477,6 +478,14 @@ class ReportTest(unittest.TestCase):
         with open(block, "w", encoding="utf-8"):
             pass
         self.refused(folder, "--png", os.path.join(block, "png"), code=5, names="png")
+
+    def test_warnings_once(self):
+        """The listing has the warnings of a deck before and after the steps, the page has each once."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "deck.log")
+            with open(path, "w", encoding="utf-8") as listing:
+                listing.write("WARNING: a\nstep 1\ncutback: b\ncutback: b\n  WARNING: a\n  WARNING: c\n")
+            self.assertEqual({"cutbacks": ["b", "b"], "warnings": ["WARNING: a", "WARNING: c"]}, read_notes(path))
 
     def test_order_of_dies(self):
         """Pilots are in the deck's order, HDF5 lists dies by name: the history's columns state which is which."""

@@ -89,6 +89,7 @@ class Study(unittest.TestCase):
         self.assertTrue(math.isnan(verdict.errors[-1]))
         verdict = judge([1.0, 1.2, float("nan")], [2.0, 2.0], [1.0, 2.0, 4.0], None)
         self.assertEqual(1.2, verdict.truth)
+        self.assertTrue(math.isnan(verdict.errors[1]), "the finest that reached its end is no error of its own")
         verdict = judge([2.0, 2.0, 2.0], [2.0, 2.0], [1.0, 2.0, 4.0], 2.0)
         self.assertTrue(math.isnan(verdict.half_costs) and all(map(math.isnan, verdict.orders)))
 
@@ -142,6 +143,9 @@ class Study(unittest.TestCase):
             subprocess.run(["sh", os.path.join(self.folder, "array.sh")], check=True, env=dict(os.environ, SLURM_ARRAY_TASK_ID=task))
         made = [os.stat(path).st_mtime_ns for path in sorted(glob.glob(os.path.join(self.folder, "array", "*", "summary.json")))]
         self.assertEqual(2, len(made))
+        again = self.study(*words, "--slurm", "again.sh")
+        self.assertEqual((0, False), (again.returncode, os.path.exists(os.path.join(self.folder, "again.sh"))), again.stderr)
+        self.assertIn("all runs are there", again.stdout)
         self.assertEqual(0, self.study(*words, "--jobs", "2").returncode)
         self.assertEqual(made, [os.stat(path).st_mtime_ns for path in sorted(glob.glob(os.path.join(self.folder, "array", "*", "summary.json")))])
 

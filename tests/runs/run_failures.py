@@ -176,6 +176,11 @@ def limit_load(checks):
     again = run([LIMIT_LOAD, "--out", out, "-p", "p_end=0.3", "--quiet", "--threads", "1", "--resume", checkpoint])
     checks.that(again.returncode == NO_CONVERGENCE, "limit load: resumed, it ends the same way", said(again))
     checks.that(history(out) == rows, "limit load: resumed, no step was added")
+    told = [name for name in sorted(os.listdir(out)) if ".failed." in name]
+    checks.that("thick_cylinder_plastic.failed.xdmf" in told and "failed.xdmf" in result.stderr, "limit load: the picture of the failure", told)
+    below = run([LIMIT_LOAD, "--out", out, "-p", "p_end=0.1", "--quiet", "--threads", "1"])
+    left = [name for folder, _, names in os.walk(out) for name in names if ".failed" in os.path.join(folder, name)]
+    checks.that(below.returncode == DONE and not left, "limit load: a run below it in the same folder leaves no picture of a failure", left)
     result = run([LIMIT_LOAD, "--out", checks.path("limit-first"), "-p", "p_end=30000", "--quiet", "--threads", "1"])
     fails(checks, result, NO_CONVERGENCE, "limit load in the first step", ["no convergence", "step 1 "])
     checks.that(os.path.exists(checks.path("limit-first", "summary.json")), "limit load in the first step: summary")

@@ -176,6 +176,19 @@ def temperatures(checks):
         checks.that(result.returncode == INPUT and f"{deck}:{line}:" in result.stderr and phrase in result.stderr, f"'{new}': refused", said(result))
 
 
+def other_kinds(checks):
+    """A scene, a point and steels are told apart in one line."""
+    point = write(checks.path("kind.point"), WARM)
+    scene = os.path.join(SOURCE, "decks", "upsetting", "upsetting.lag")
+    steels = os.path.join(SOURCE, "tests", "refused", "steel.met")
+    for words, phrase in ((["--point", scene], "STATE: this is a deck of a scene, expected a deck of one point of a law; 'lagamine DECK' reads it"),
+                          ([point], "PATH: this is a deck of one point of a law, expected a deck of a scene; 'lagamine --point DECK' reads it"),
+                          ([steels], "STEEL: this is a file of steels, expected a deck of a scene; 'lagamine --met FILE' reads it"),
+                          (["--met", point], "PATH: this is a deck of one point of a law, expected a file of steels")):
+        result = run([*words, "--quiet"])
+        checks.that(result.returncode == INPUT and phrase in result.stderr and len(result.stderr.splitlines()) == 1, f"{words}: one line", said(result))
+
+
 def phases(checks):
     """code_aster's HSNV102: martensite forms under tension, without and with transformation plasticity."""
     deck = os.path.join(TENSION, "martensite.point")
@@ -217,7 +230,7 @@ def refusals(checks):
         checks.that(any(text.startswith(f"{deck}:{line}:") and phrase in text for text in reported), f"'{new}': line {line}, '{phrase}'", said(result))
         checks.that(not os.path.exists(checks.path(name)), f"'{new}': leaves nothing")
     for name, text, phrase in (("no_path", BASE.split("PATH")[0] + "END\n", "the deck has no such card"),
-                               ("a_scene", deck_text(UPSETTING), "BLOCK: there is no such card")):
+                               ("a_scene", deck_text(UPSETTING), "STATE: this is a deck of a scene")):
         result = run(["--point", write(checks.path(name + ".point"), text), "--out", checks.path(name)])
         checks.that(result.returncode == INPUT and phrase in result.stderr, f"{name}: refused", said(result))
     result = run(["--point", checks.path("warm.point"), "--resume", "a.h5"])
@@ -255,6 +268,7 @@ def main():
     large_shear(checks)
     there_and_back(checks)
     temperatures(checks)
+    other_kinds(checks)
     phases(checks)
     refusals(checks)
     failures(checks)

@@ -5,6 +5,7 @@ usage: run_told.py [-v] [-k]       -v prints every check, -k keeps the results
 
 - Decks that are read without a mistake and mean something else than their author: `--check` warns in one line of each, with the words
   that the table prints; the deck that they are made from, and all decks of the project, are told nothing.
+- Dies that move and meet nothing: in the summary.
 - A body that passes the plane in which it is held: in the summary.
 - A body that its dies have let go, so that nothing holds it: in the summary; not one that still lies against a die.
 - A steel without kinetics of austenite that is heated above Ac1: in the summary; not one that has them, nor one that only cools.
@@ -58,6 +59,7 @@ WRONG = {
     "pressed, and then off the part": ({"1. -2.": "0.5 -2.   1. -2.\nLIC    off\n   0. 0.   0.5 0.   1. 20.\nMOVE   upper X off"},
                                        "no longer faces the part"),
     "floating": ({"FIXED  billet 1 Y\n": TABLE, "30. 15.   -5. 15.": "30. 16.   -5. 16."}, "nothing holds it in Y before it meets"),
+    "pushed from one side": ({"FIXED  billet 1 Y\n": ""}, "dies press it along Y from one side"),
     "free to slide": ({"FIXED  billet 4 X\n": "", "CNT2D  billet 3 upper -3 rough\n": "", "DIE    upper\n": "", "MOVE   upper Y press\n":
                        "MOVE   billet 3 Y press\n", "   SEGM  30. 15.   -5. 15.\n": "", "LAW    rough COUL2D\n": "",
                        "   PENETR 1.E-3   PHI 0.3\n": ""}, "nothing holds it in X, no support"),
@@ -74,10 +76,23 @@ WRONG["pressed on the axis"] = ({"PLSTN": "AXISYM", "-5. 15.": "0. 15.", "LIC   
 HEATED = {"CNT2D  billet 3 upper -3 rough\n": "", "DIE    upper\n": "", "   SEGM  30. 15.   -5. 15.\n": "", "LAW    rough COUL2D\n": "",
           "   PENETR 1.E-3   PHI 0.3\n": "", "MOVE   upper Y press\n": "ADDEL  billet PL8TM hot\nLAW    hot HEAT\n   50. 3.6\nHEATS  billet Q 5.\nCONVE  billet 2 H 1. TS 0.\n",
           "LIC    press\n": "", "   0. 0.   1. -2.\n": "STOP   1.\n"}
+WRONG["expansion in millionths"] = ({**HEATED, "steel EPLA": "steel ELATH", "200000. 0.3\n": "200000. 0.3 12.\n", "   LINEAR 700. 300.\n": ""}, "is ALPHA in 1e-6?")
+# Another block beside the billet, held as it is; and what joins it.
+BESIDE = "BLOCK  beside PL8LS 4 steel\n   10. 0.   20. 0.   20. 15.   10. 15.\n   2 1.   3 1.\nFIXED  beside 1 Y\nCNT2D  beside 3 upper -3 rough\n"
+WRONG["blocks that only touch"] = ({"LAW    rough": BESIDE + "LAW    rough"}, "billet and beside have nodes at 7 places in common, from 10 0 to 10 15")
 WRONG["welded by EPLA"] = (HEATED, "none of their laws expands")
+# A hot body: temperatures make no strain, and its die moves away.
+HOT = {"FIXED  billet 1 Y\n": "FIXED  billet 1 Y\nADDEL  billet PL8TM hot\nLAW    hot HEAT\n   50. 3.6\nSTART  T 900.\nCONVE  billet 2 H 1. TS 0.\n"}
+WRONG["hot and moved away"] = ({**HOT, "1. -2.": "1. 2."}, "does not meet the part")
+WRONG["hot and pushed from one side"] = ({"FIXED  billet 1 Y\n": HOT["FIXED  billet 1 Y\n"].split("\n", 1)[1]}, "along Y from one side")
 WRONG["friction in percent"] = ({"PHI 0.3": "PHI 30."}, "its coefficient of friction is 30")
 # What is changed in the base, and means what it says: far below the face at the exit of a drawing die is not in its body.
-RIGHT = {"heated and expanding": {**HEATED, "steel EPLA": "steel ELATH", "200000. 0.3\n": "200000. 0.3 1.E-5\n", "   LINEAR 700. 300.\n": ""},
+RIGHT = {"blocks joined": {"LAW    rough": BESIDE + "JOIN   billet 2 beside 4\nLAW    rough"},
+         "blocks in contact": {"LAW    rough": BESIDE + "DIE    wall SIDES billet 2\nCNT2D  beside 4 wall rough\nLAW    rough"},
+         "blocks at a corner": {"LAW    rough": BESIDE.replace("10. 0.   20. 0.   20. 15.   10. 15.", "10. 15.   20. 15.   20. 30.   10. 30.")
+                                .replace("CNT2D  beside 3 upper -3 rough\n", "") + "FIXED  beside 2 X\nLAW    rough"},
+         "between two dies": {"FIXED  billet 1 Y\n": TABLE}, "pushed from both sides": {"FIXED  billet 1 Y\n": "PRES2D billet 1 3 1. press\n"},
+         "heated and expanding": {**HEATED, "steel EPLA": "steel ELATH", "200000. 0.3\n": "200000. 0.3 1.E-5\n", "   LINEAR 700. 300.\n": ""},
          "heated and pressed": {**HEATED, "LIC    press\n": "PRES2D billet 3 3 1. press\nLIC    press\n", "   0. 0.   1. -2.\n": "   0. 0.   1. 5.\n"},
          "a punch that goes on behind where the part stood": {"SEGM  30. 15.   -5. 15.": "ARC   3. 18.   0. 15.   -3. 18.   1.E-2",
                                                               "1. -2.": "1. -5."},
@@ -199,6 +214,22 @@ def warned_cycle(checks):
     checks.that(len(told) == 1 and "does not meet the part" in told[0]["text"], "the summary of a later mesh has the warning", told)
 
 
+def idle(checks):
+    """Dies that move and meet nothing: told at the end, and round-off is no error of the stress."""
+    side = "DIE    side\n   SEGM  12. -5.   12. 20.\nCNT2D  billet 2 side -3 rough\nMOVE   side X press\n"
+    run = Run(checks, "idle", changed(checks, {"1. -2.": "1. 2.", "FIXED  billet 4 X\n": "FIXED  billet 4 X\n" + side}))
+    pushed = Run(checks, "ahead", changed(checks, {**WRONG["pushed from one side"][0], "PLSTN": "AXISYM", "-5. 15.": "0. 15."}))
+    if not (run.ok and pushed.ok):
+        return
+    with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as summary:
+        told = json.load(summary)["warnings"]
+    checks.that(len(told) == 1 and "against no resistance" in told[0]["text"], "dies without resistance: one warning", told)
+    with open(os.path.join(pushed.out, "summary.json"), encoding="utf-8") as summary:
+        found = json.load(summary)
+    checks.that(len(found["warnings"]) == 1 and found["accuracy"]["path"]["stress_pct"] == 0,
+                "a body pushed ahead: the warning of its start, no error of the stress", (found["warnings"], found["accuracy"]))
+
+
 def passed_planes(checks):
     """A corner that is moved behind the plane in which its body is held: told at the end, with the depth; not where it stays
     before it, nor where the side is clamped."""
@@ -317,6 +348,7 @@ def main():
     warned_run(checks)
     stopped_run(checks)
     warned_cycle(checks)
+    idle(checks)
     passed_planes(checks)
     let_go(checks)
     heated(checks)

@@ -247,6 +247,8 @@ class InpReader:
                     continue
                 for label in members:
                     kind, nodes = self.elements.get(label, ("", ()))[:2]
+                    if kind and not kind.startswith(("quad", "line")):
+                        break      # such elements are refused as a whole
                     if not kind.startswith("quad"):
                         self.mistakes.add(place, f"*SURFACE {name}: {f'element {label} has no sides' if kind else f'there is no element {label}'}")
                         break

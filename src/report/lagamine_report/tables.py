@@ -116,13 +116,13 @@ def columns_of(path: str, text: str) -> Dict[str, Column]:
 
 
 def read_notes(path: str) -> Dict[str, List[str]]:
-    """From the listing: the steps that were cut, and its warnings."""
+    """From the listing: the steps that were cut, and its warnings, each once: it has those of the deck before and after the steps."""
     notes: Dict[str, List[str]] = {"cutbacks": [], "warnings": []}
     for line in read_text(path).splitlines():
         if line.startswith("cutback:"):
             notes["cutbacks"].append(line[8:].strip())
         elif "WARNING" in line or line.lower().startswith("warning:"):
-            notes["warnings"].append(line.strip())
+            notes["warnings"] += [line.strip()] if line.strip() not in notes["warnings"] else []
     return notes
 
 

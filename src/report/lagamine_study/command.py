@@ -89,8 +89,12 @@ def missing_runs(options, ladders: Sequence[Ladder]):
 
 
 def hand_over(options, missing: Dict[str, List[str]], marks: Dict[str, Dict[str, object]]) -> int:
-    """A script for a Slurm array: a task a run."""
+    """A script for a Slurm array: a task a run; none where all runs are there."""
     import json
+    if not missing:
+        if not options.quiet:
+            print("all runs are there: the same command without --slurm reads them")
+        return EXIT_DONE
     for folder in missing:
         os.makedirs(folder, exist_ok=True)
         write(os.path.join(folder, MARK), json.dumps(marks[folder], indent=1).encode("utf-8"))

@@ -24,8 +24,10 @@ def judge(values: Sequence[float], ratios: Sequence[Optional[float]], seconds: S
     truth, source = _truth(values, ratios, exact)
     scale = abs(truth) if truth else 1.0
     errors = [abs(value - truth) / scale for value in values]
-    if source == "the finest run" and errors:
-        errors[-1] = float("nan")      # it is its own measure
+    if source == "the finest run":
+        # the finest that reached its end is its own measure
+        for k in [k for k, value in enumerate(values) if math.isfinite(value)][-1:]:
+            errors[k] = float("nan")
     orders = [_order(a, b, ratio) for a, b, ratio in zip(errors, errors[1:], ratios)]
     return Verdict(truth, source, errors, orders, _half_costs(errors, seconds))
 
