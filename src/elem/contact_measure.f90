@@ -3,7 +3,7 @@
 !> The state of a point is that of contact_point; behind it there may be the same of a corner of the
 !> die, and its position on the side (corner_contact).
 module contact_measure
-  use axis_contact, only: area_at_corner
+  use axis_contact, only: area_at_corner, share_at_corner
   use contact_areas, only: area_of_point
   use contact_penalties, only: allowed_penetration, penalties_of_card, penalties_t
   use contact_point, only: at_augmentation, at_between, at_penetration, at_piece, at_pressure, at_status, at_work, at_xi, &
@@ -130,20 +130,22 @@ contains
           totals%open = totals%open + 1
         end select
         call add_point(state(:n, p, e), before(:n, p, e), area_of_point(group%rule, xi, weight, p, section, x(:, :, e)), &
-                       is_control_point(group%rule, p))
+                       is_control_point(group%rule, p), [1.0_wp, 1.0_wp])
         if (.not. corners) cycle
         call interval_before(xi, p, from, to)
         call add_point(state(n + 1:2*n, p, e), before(n + 1:2*n, p, e), &
-                       area_at_corner(state(2*n + 1, p, e), to - from, section, x(:, :, e), side), .false.)
+                       area_at_corner(state(2*n + 1, p, e), to - from, section, x(:, :, e), side), .false., &
+                       share_at_corner([before(2*n + 1, p, e), state(2*n + 1, p, e)]))
       end do
     end do
 
   contains
 
     !> Penetration and friction of a point of side e.
-    subroutine add_point(now, old, area, control)
+    subroutine add_point(now, old, area, control, share)
       real(wp), intent(in) :: now(:), old(:), area
       logical, intent(in) :: control
+      real(wp), intent(in) :: share(2)   ! of pressure and friction that acts before and now
       real(wp) :: allowed, lost
 
       allowed = allowed_penetration(scene%materials(group%material))*side
@@ -153,7 +155,7 @@ contains
       end if
       lost = dissipated(old, now, penalty(2))
       totals%friction_work = totals%friction_work + area*now(at_work)
-      totals%contact_work = totals%contact_work + area*kept_work(old, now, penalty)
+      totals%contact_work = totals%contact_work + area*kept_work(old, now, penalty, share)
       totals%least_dissipation = min(totals%least_dissipation, lost)
     end subroutine add_point
 
