@@ -23,12 +23,15 @@ module contact_measure
   !> Augmentation removes the depth of points, not the curvature of the side between them: points that are deep by less than
   !> this share of the allowed penetration are not augmented further.
   real(wp), parameter :: worth_augmenting = 0.5_wp
+  !> A corner of which no more than this acts needs ten times the pressure of others to hold the side, and more as it leaves.
+  real(wp), parameter :: least_share = 0.1_wp
 
 contains
 
   !> Uzawa: the pressure (or pull, of glue) reached becomes the multiplier, p = multiplier + AKP d, so that the same
   !> pressure needs no penetration any more. The side is judged at its points and between them. A point that has lost
   !> more than half of its pressure beyond a corner keeps its multiplier: the share that acts goes to zero, no pressure holds it.
+  !> So does a corner of which hardly anything acts any more near an end of the side: the node there holds the side.
   subroutine augment(scene, group, times, committed, trial, changed)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -38,6 +41,7 @@ contains
     logical, intent(out) :: changed
     type(penalties_t) :: given
     real(wp) :: allowed
+    logical, dimension(size(trial, 2), size(trial, 3)) :: held
     integer :: e, k, last, n
 
     changed = .false.
@@ -48,18 +52,29 @@ contains
     do e = 1, size(trial, 3)
       allowed = given%allowed*side_length(scene, group%connectivity(:, e))
       do k = 0, last, n
+        held = is_held(trial, k, n)
         changed = changed .or. any(deep(trial(k + 1:k + n, :, e)) > allowed &
-                                   .and. nint(trial(k + at_status, :, e)) /= contact_open &
-                                   .and. .not. is_released(trial(k + at_xi, :, e)))
+                                   .and. nint(trial(k + at_status, :, e)) /= contact_open .and. held(:, e))
       end do
       changed = changed .or. any(peaks(trial(:, :, e), group%rule, worth_augmenting*allowed) > allowed)
     end do
     if (.not. changed) return
     do k = 0, last, n
-      where (.not. is_released(trial(k + at_xi, :, :))) &
+      where (is_held(trial, k, n)) &
         committed(k + at_augmentation, :, :) = trial(k + at_pressure, :, :) - trial(k + at_between, :, :)
     end do
   end subroutine augment
+
+  !> Points whose pressure can hold the side where it is, in the block of rows that follows row k: the points themselves, or the
+  !> corners of the die.
+  pure function is_held(state, k, n) result(yes)
+    real(wp), intent(in) :: state(:, :, :)   !! (nstate, npoint, nside) [unit of each component]
+    integer, intent(in) :: k, n
+    logical :: yes(size(state, 2), size(state, 3))
+
+    yes = .not. is_released(state(k + at_xi, :, :))
+    if (k > 0) yes = yes .and. share_at_corner(state(k + n + 1, :, :)) > least_share
+  end function is_held
 
   !> Depth of points, and height of those that their multipliers hold over the die.
   pure function deep(state) result(depth)
@@ -149,7 +164,7 @@ contains
       real(wp) :: allowed, lost
 
       allowed = allowed_penetration(scene%materials(group%material))*side
-      if (nint(now(at_status)) /= contact_open .and. .not. (control .or. is_released(now(at_xi)))) then
+      if (nint(now(at_status)) /= contact_open .and. share(2) > least_share .and. .not. (control .or. is_released(now(at_xi)))) then
         totals%max_penetration = max(totals%max_penetration, now(at_penetration))
         if (allowed > 0) totals%penetration_ratio = max(totals%penetration_ratio, now(at_penetration)/allowed)
       end if
