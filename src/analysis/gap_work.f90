@@ -5,7 +5,7 @@
 !> -f(n).(du_die - du_side)/2 by the rule, and in truth what its penalties gave back (contact_work). The difference belongs to
 !> neither the part nor its contact. Without it the work of a die that lifts off grows with the length of the step.
 module gap_work
-  use axis_contact, only: area_at_corner
+  use axis_contact, only: area_at_corner, share_at_corner
   use contact_areas, only: area_of_point
   use contact_point, only: at_between, at_piece, at_pressure, at_status, at_tau, at_xi, contact_block, penalties, side_length
   use contact_work, only: kept_work
@@ -95,30 +95,34 @@ contains
           call interval_before(xi, p, from, to)
           call add_point(before(n + 1:2*n, p, e), after(n + 1:2*n, p, e), before(2*n + 1, p, e), &
                          area_at_corner(before(2*n + 1, p, e), to - from, solution%fields(section_field)%value(:, 1), x(:, :3, e), &
-                                        side_length(scene, group%connectivity(:, e))))
+                                        side_length(scene, group%connectivity(:, e))), &
+                         share=share_at_corner(before(2*n + 1, p, e)))
         end do
       end do
     end associate
 
   contains
 
-    subroutine add_point(old, now, place, area, shares)
+    subroutine add_point(old, now, place, area, shares, share)
       real(wp), intent(in) :: old(:), now(:), place, area
       real(wp), intent(in), optional :: shares(3)   ! of the nodes in its motion
-      real(wp) :: phi(3), dphi(3), tangent(2), traction(2), penalty(2), side
+      real(wp), intent(in), optional :: share       ! of its pressure and friction that acted
+      real(wp) :: phi(3), dphi(3), tangent(2), traction(2), penalty(2), side, acted
 
       if (.not. opens(old(at_status), now(at_status))) return
       associate (group => scene%groups(g), side_of => x(:, :3, e))
         call line3(place, phi, dphi)
         if (present(shares)) phi = shares
+        acted = 1
+        if (present(share)) acted = share
         tangent = tangent_of_die(scene, solution, group, old, matmul(side_of, dphi))
         ! walking along the die the part is on the left: the inner normal of the die is on the right
-        traction = (old(at_pressure) - old(at_between))*[tangent(2), -tangent(1)] + old(at_tau)*tangent
+        traction = acted*((old(at_pressure) - old(at_between))*[tangent(2), -tangent(1)] + old(at_tau)*tangent)
         side = side_length(scene, group%connectivity(:, e))
         penalty = penalties(scene%materials(group%material), group, side)
         work = work + area &
                *(0.5_wp*dot_product(traction, motion_of_die(scene, solution, group, old, matmul(side_of, phi)) - matmul(du, phi)) &
-                 + kept_work(old, now, penalty))
+                 + kept_work(old, now, penalty, [acted, acted]))
       end associate
     end subroutine add_point
 

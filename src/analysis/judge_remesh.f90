@@ -12,8 +12,8 @@ module judge_remesh
   use vectors, only: length_of
   implicit none
   private
-  public :: advice_after_refusal, agreed_words, bad_shape, carried_change, energy_change, force_alone, force_along, force_change, &
-            force_limit, limit_lines, refuse_remesh
+  public :: advice_after_refusal, agreed_words, bad_shape, carried_change, energy_change, find_fault, force_alone, force_along, &
+            force_change, force_limit, limit_lines, refuse_remesh
 
   !> Elements of a smaller scaled Jacobian are distorted (the remesher makes none).
   real(wp), parameter :: bad_shape = 0.2_wp
@@ -29,6 +29,9 @@ module judge_remesh
   !> Changes are over the force of now, or over this share of the largest so far where the load is light: the tenth part of nothing
   !> says nothing about a mesh.
   real(wp), parameter :: light_load = 0.2_wp
+
+  !> First residuals above this are those of a matrix that is singular (work_of_correction).
+  real(wp), parameter :: without_correction = 1.0e100_wp
 
   character(len=*), parameter :: advice_after_refusal = &
     'remesh again from the checkpoint of the old mesh with another transfer or finer elements'
@@ -195,6 +198,9 @@ contains
     if (balance%depth_change > accept%depth_change) then
       what = 'sides lie '//to_text(balance%depth_change, 3)//' times what is allowed from where they carried their pressure, ' &
              //'at most '//to_text(accept%depth_change, 3)
+    else if (balance%first_residual > max(without_correction, accept%first_residual)) then
+      what = 'the matrix is singular: nothing holds a body, or a die under a force, on this mesh; contact that a single corner ' &
+             //'of a die has with a side may have been lost'
     else if (balance%first_residual > accept%first_residual) then
       what = 'the first residual is '//to_text(balance%first_residual, 3)//' of the stress, in the norm of energy, at most ' &
              //to_text(accept%first_residual, 3)

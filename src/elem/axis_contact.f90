@@ -18,6 +18,7 @@ module axis_contact
   use contact_point, only: area_at, at_augmentation, at_penetration, at_piece, at_status, at_xi, contact_block, &
                            contact_point_t, no_surface, rest, share_to_contact
   use corner_contact, only: end_on_axis, press_corner
+  use corner_weights, only: share_of_corner
   use dies, only: die_t
   use elem_api, only: report_t
   use kinds, only: wp
@@ -28,7 +29,7 @@ module axis_contact
   use sections, only: thickness_at
   implicit none
   private
-  public :: press_axis, area_at_corner
+  public :: press_axis, area_at_corner, share_at_corner
 
   !> It acts on what is deeper than this share of the allowed penetration, and than the next point times this factor.
   real(wp), parameter :: own_share = 0.5_wp, deeper = 1.1_wp
@@ -220,5 +221,14 @@ contains
     if (abs(place) < 1) return
     if (thickness_at(section, x(:, merge(1, 3, place < 0))) <= no_surface*chord) area = disc*chord**2
   end function area_at_corner
+
+  !> Share of its pressure with which the state of a corner acts: all of it of a node on the axis, which is at an end of its side.
+  elemental function share_at_corner(place) result(share)
+    real(wp), intent(in) :: place   !! on the side [-]
+    real(wp) :: share
+
+    share = 1
+    if (abs(place) < 1) share = share_of_corner(place)
+  end function share_at_corner
 
 end module axis_contact

@@ -3,7 +3,7 @@
 !> The state of a point is that of contact_point; behind it there may be the same of a corner of the
 !> die, and its position on the side (corner_contact).
 module contact_measure
-  use axis_contact, only: area_at_corner
+  use axis_contact, only: area_at_corner, share_at_corner
   use contact_areas, only: area_of_point
   use contact_penalties, only: allowed_penetration, penalties_of_card, penalties_t
   use contact_point, only: at_augmentation, at_between, at_penetration, at_piece, at_pressure, at_status, at_work, at_xi, &
@@ -23,12 +23,15 @@ module contact_measure
   !> Augmentation removes the depth of points, not the curvature of the side between them: points that are deep by less than
   !> this share of the allowed penetration are not augmented further.
   real(wp), parameter :: worth_augmenting = 0.5_wp
+  !> A corner of which no more than this acts needs ten times the pressure of others to hold the side, and more as it leaves.
+  real(wp), parameter :: least_share = 0.1_wp
 
 contains
 
   !> Uzawa: the pressure (or pull, of glue) reached becomes the multiplier, p = multiplier + AKP d, so that the same
   !> pressure needs no penetration any more. The side is judged at its points and between them. A point that has lost
   !> more than half of its pressure beyond a corner keeps its multiplier: the share that acts goes to zero, no pressure holds it.
+  !> So does a corner of which hardly anything acts any more near an end of the side: the node there holds the side.
   subroutine augment(scene, group, times, committed, trial, changed)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -38,6 +41,7 @@ contains
     logical, intent(out) :: changed
     type(penalties_t) :: given
     real(wp) :: allowed
+    logical, dimension(size(trial, 2), size(trial, 3)) :: held
     integer :: e, k, last, n
 
     changed = .false.
@@ -48,18 +52,29 @@ contains
     do e = 1, size(trial, 3)
       allowed = given%allowed*side_length(scene, group%connectivity(:, e))
       do k = 0, last, n
+        held = is_held(trial, k, n)
         changed = changed .or. any(deep(trial(k + 1:k + n, :, e)) > allowed &
-                                   .and. nint(trial(k + at_status, :, e)) /= contact_open &
-                                   .and. .not. is_released(trial(k + at_xi, :, e)))
+                                   .and. nint(trial(k + at_status, :, e)) /= contact_open .and. held(:, e))
       end do
       changed = changed .or. any(peaks(trial(:, :, e), group%rule, worth_augmenting*allowed) > allowed)
     end do
     if (.not. changed) return
     do k = 0, last, n
-      where (.not. is_released(trial(k + at_xi, :, :))) &
+      where (is_held(trial, k, n)) &
         committed(k + at_augmentation, :, :) = trial(k + at_pressure, :, :) - trial(k + at_between, :, :)
     end do
   end subroutine augment
+
+  !> Points whose pressure can hold the side where it is, in the block of rows that follows row k: the points themselves, or the
+  !> corners of the die.
+  pure function is_held(state, k, n) result(yes)
+    real(wp), intent(in) :: state(:, :, :)   !! (nstate, npoint, nside) [unit of each component]
+    integer, intent(in) :: k, n
+    logical :: yes(size(state, 2), size(state, 3))
+
+    yes = .not. is_released(state(k + at_xi, :, :))
+    if (k > 0) yes = yes .and. share_at_corner(state(k + n + 1, :, :)) > least_share
+  end function is_held
 
   !> Depth of points, and height of those that their multipliers hold over the die.
   pure function deep(state) result(depth)
@@ -130,30 +145,32 @@ contains
           totals%open = totals%open + 1
         end select
         call add_point(state(:n, p, e), before(:n, p, e), area_of_point(group%rule, xi, weight, p, section, x(:, :, e)), &
-                       is_control_point(group%rule, p))
+                       is_control_point(group%rule, p), [1.0_wp, 1.0_wp])
         if (.not. corners) cycle
         call interval_before(xi, p, from, to)
         call add_point(state(n + 1:2*n, p, e), before(n + 1:2*n, p, e), &
-                       area_at_corner(state(2*n + 1, p, e), to - from, section, x(:, :, e), side), .false.)
+                       area_at_corner(state(2*n + 1, p, e), to - from, section, x(:, :, e), side), .false., &
+                       share_at_corner([before(2*n + 1, p, e), state(2*n + 1, p, e)]))
       end do
     end do
 
   contains
 
     !> Penetration and friction of a point of side e.
-    subroutine add_point(now, old, area, control)
+    subroutine add_point(now, old, area, control, share)
       real(wp), intent(in) :: now(:), old(:), area
       logical, intent(in) :: control
+      real(wp), intent(in) :: share(2)   ! of pressure and friction that acts before and now
       real(wp) :: allowed, lost
 
       allowed = allowed_penetration(scene%materials(group%material))*side
-      if (nint(now(at_status)) /= contact_open .and. .not. (control .or. is_released(now(at_xi)))) then
+      if (nint(now(at_status)) /= contact_open .and. share(2) > least_share .and. .not. (control .or. is_released(now(at_xi)))) then
         totals%max_penetration = max(totals%max_penetration, now(at_penetration))
         if (allowed > 0) totals%penetration_ratio = max(totals%penetration_ratio, now(at_penetration)/allowed)
       end if
       lost = dissipated(old, now, penalty(2))
       totals%friction_work = totals%friction_work + area*now(at_work)
-      totals%contact_work = totals%contact_work + area*kept_work(old, now, penalty)
+      totals%contact_work = totals%contact_work + area*kept_work(old, now, penalty, share)
       totals%least_dissipation = min(totals%least_dissipation, lost)
     end subroutine add_point
 

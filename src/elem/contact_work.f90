@@ -5,7 +5,8 @@
 !> step both are (p0 + p1)/2 (d1 - d0). A point that closes begins at no pressure, one that opens ends there. Along the side
 !> the tangential penalty keeps tau**2/(2 AKTAU). What is in contact between points (contact_between) keeps its
 !> own energy. A point that has lost more than half of its pressure beyond a corner of the die (corner_release) is as
-!> one that opens: the share that still acts goes to zero.
+!> one that opens: the share that still acts goes to zero. A corner of the die near an end of the side acts with a share of its
+!> pressure and its friction (corner_weights): they take part in the work with the share that they have at either end of the step.
 !> Source: P. Wriggers, Computational Contact Mechanics, 2nd ed., Springer 2006 (energies of penalty and augmented Lagrange
 !> methods).
 module contact_work
@@ -23,17 +24,19 @@ module contact_work
 contains
 
   !> Work per present area of the side.
-  pure function kept_work(before, after, penalty) result(work)
+  pure function kept_work(before, after, penalty, share) result(work)
     real(wp), intent(in) :: before(:), after(:)   !! (nstate) state of the point [unit of each component]
     real(wp), intent(in) :: penalty(2)            !! normal and tangential [stress/length]
+    real(wp), intent(in) :: share(2)              !! of pressure and friction that acts before and after [-]
     real(wp) :: work                              !! [stress*length]
-    real(wp) :: pressure(2)
+    real(wp) :: pressure(2), tau(2)
     logical :: was, is
 
     was = nint(before(at_status)) /= contact_open .and. .not. is_released(before(at_xi))
     is = nint(after(at_status)) /= contact_open .and. .not. is_released(after(at_xi))
     ! of the point itself
-    pressure = [before(at_pressure) - before(at_between), after(at_pressure) - after(at_between)]
+    pressure = share*[before(at_pressure) - before(at_between), after(at_pressure) - after(at_between)]
+    tau = share*[before(at_tau), after(at_tau)]
     work = 0
     if (was .and. is) then
       work = 0.5_wp*sum(pressure)*(after(at_penetration) - before(at_penetration))
@@ -42,7 +45,7 @@ contains
     else if (was) then
       work = -0.5_wp*pressure(1)*(pressure(1) - before(at_augmentation))/penalty(1)
     end if
-    work = work + 0.5_wp*(after(at_tau)**2 - before(at_tau)**2)/penalty(2) + after(at_energy) - before(at_energy)
+    work = work + 0.5_wp*sum(tau)*(after(at_tau) - before(at_tau))/penalty(2) + after(at_energy) - before(at_energy)
   end function kept_work
 
   !> Work that friction has done so far at a point of a side and at the corner of the die in the interval before it, at the start

@@ -88,7 +88,7 @@ contains
     real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
     type(report_t), intent(inout) :: report
     type(corner_t) :: corner
-    real(wp) :: from, to, worn(1), before(contact_block(.true., size(trial)))
+    real(wp) :: from, to, worn(1), done, before(contact_block(.true., size(trial)))
     integer :: n, at_place
 
     if (size(die%corners, 2) == 0 .or. .not. allowed_penetration(material) > 0) return
@@ -103,7 +103,10 @@ contains
     associate (now => trial(n + 1:2*n))
       worn = thinning(committed(at_place:at_place, p), [corner%place], side%section, side%thickening, side%x, side%du(1:6))
       now(at_work) = before(at_work)*worn(1)
+      done = now(at_work)
       call corner_at(law, material, drivers, axisym, side, corner, to - from, before, now, force, stiffness)
+      ! friction acts with the share of the corner
+      now(at_work) = done + share_of_corner(corner%place)*(now(at_work) - done)
       if (nint(before(at_status)) /= contact_open) then
         report%jump = max(report%jump, abs(now(at_penetration) - before(at_penetration))/side%length)
       end if

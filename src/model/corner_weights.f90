@@ -14,7 +14,7 @@ module corner_weights
 contains
 
   !> Share of its weight that a corner at a position on the side has.
-  pure function share_of_corner(place) result(share)
+  elemental function share_of_corner(place) result(share)
     real(wp), intent(in) :: place
     real(wp) :: share
 
