@@ -12,6 +12,7 @@ module run_deck
   use contact_ends, only: contact_end_t
   use cost_file, only: cost_t, write_cost
   use cut_report, only: warn_of_webs
+  use crossed_bodies, only: warn_of_crossed_bodies
   use deck_check, only: as_warnings, check_deck, look_at_deck
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
@@ -294,6 +295,7 @@ contains
       call warn_of_webs(scene, solution, facts%warnings)
       call warn_of_missing_austenite(scene, solution, facts%warnings)
       call warn_of_floating_bodies(scene, run%equations%loose, solution, facts%warnings)
+      call warn_of_crossed_bodies(scene, run%equations%free_sides, solution, facts%warnings)
       call warn_of_idle_dies(scene, run%equations, solution, run%totals%volume, facts%warnings)
     end if
     facts%version = version_text

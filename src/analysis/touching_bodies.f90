@@ -8,7 +8,7 @@ module touching_bodies
   use text, only: add => add_text, string_t, to_text
   implicit none
   private
-  public :: judge_touching
+  public :: are_in_contact, judge_touching
 
   !> Nodes stand at one place within this share of the size of the mesh.
   real(wp), parameter :: coincidence = 1.0e-6_wp
@@ -34,7 +34,7 @@ contains
     call find_touches(scene, body, touches)
     do k = 1, size(touches)
       associate (touch => touches(k))
-        if (touch%places < least_places .or. are_in_contact(scene, body, touch)) cycle
+        if (touch%places < least_places .or. are_in_contact(scene, touch%a, touch%b)) cycle
         call add(warnings, name_of(touch%a)//' and '//name_of(touch%b)//' have nodes at '//to_text(touch%places) &
                  //' places in common, from '//place_of(touch%first)//' to '//place_of(touch%last) &
                  //', and neither JOIN nor a contact: they come apart, or go through each other')
@@ -107,20 +107,20 @@ contains
   end subroutine count_place
 
   !> Sides of the one face a die made of sides of the other.
-  pure function are_in_contact(scene, body, touch) result(yes)
+  pure function are_in_contact(scene, a, b) result(yes)
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: body(:)
-    type(touch_t), intent(in) :: touch
+    integer, intent(in) :: a, b   !! bodies, by their lowest nodes
     logical :: yes
-    integer :: g, faces, faced
+    integer :: body(size(scene%mesh%coordinates, 2)), g
 
     yes = .false.
+    body = bodies_of_nodes(scene)
     do g = 1, size(scene%groups)
       if (scene%groups(g)%die == 0) cycle
       if (.not. is_deformable(scene%dies(scene%groups(g)%die))) cycle
-      faces = body(scene%groups(g)%connectivity(1, 1))
-      faced = body(scene%dies(scene%groups(g)%die)%nodes(1, 1))
-      yes = yes .or. (min(faces, faced) == touch%a .and. max(faces, faced) == touch%b)
+      associate (faces => body(scene%groups(g)%connectivity(1, :)), faced => body(scene%dies(scene%groups(g)%die)%nodes(1, :)))
+        yes = yes .or. (any(faces == a) .and. any(faced == b)) .or. (any(faces == b) .and. any(faced == a))
+      end associate
     end do
   end function are_in_contact
 

@@ -53,7 +53,8 @@ contains
       call put('law        '//padded(scene%materials(k)%name, 24)//scene%materials(k)%law)
     end do
     do k = 1, size(scene%dies)
-      call put('die        '//padded(scene%dies(k)%name, 24)//to_text(size(scene%dies(k)%pieces, 3))//' pieces, '//motion_of(k))
+      call put('die        '//padded(scene%dies(k)%name, 24)//to_text(size(scene%dies(k)%pieces, 3)) &
+               //trim(merge(' piece,  ', ' pieces, ', size(scene%dies(k)%pieces, 3) == 1))//' '//motion_of(k))
     end do
     do k = 1, merge(3, 0, scene%plane_state == generalised_plane_strain)
       call put('section    '//padded(trim(section_names(k)), 24)//drive_text(scene%section_drives(k)))

@@ -5,7 +5,7 @@ usage: run_told.py [-v] [-k]       -v prints every check, -k keeps the results
 
 - Decks that are read without a mistake and mean something else than their author: `--check` warns in one line of each, with the words
   that the table prints; the deck that they are made from, and all decks of the project, are told nothing.
-- Dies that move and meet nothing: in the summary.
+- Dies that move and meet nothing, bodies that go through each other: in the summary.
 - A body that passes the plane in which it is held: in the summary.
 - A body that its dies have let go, so that nothing holds it: in the summary; not one that still lies against a die.
 - A steel without kinetics of austenite that is heated above Ac1: in the summary; not one that has them, nor one that only cools.
@@ -230,6 +230,40 @@ def idle(checks):
                 "a body pushed ahead: the warning of its start, no error of the stress", (found["warnings"], found["accuracy"]))
 
 
+CROSSED = """TITLE  A punch that goes into a block
+STATE  PLSTN
+KINEM  LOG
+BLOCK  block PL8LS 4 steel
+   0. 0.   10. 0.   10. 6.   0. 6.
+   5 1.   4 1.
+BLOCK  punch PL8LS 4 steel
+   0. 8.   5. 8.   5. 14.   0. 14.
+   3 1.   4 1.
+LAW    steel ELA
+   200000. 0.3
+FIXED  block 1 Y
+FIXED  block 4 X
+FIXED  punch 4 X
+LIC    press
+   0. 0.   1. -5.
+MOVE   punch 3 Y press
+STRAT  0.1 1.E-4 0.5   4 3
+END
+"""
+
+
+def crossed(checks):
+    """A body that goes into another one without contact: told at the end, with the place; not where it stops before."""
+    for way, wanted in (("-5.", 1), ("-1.9", 0)):
+        run = Run(checks, "crossed" + way, CROSSED.replace("-5.", way))
+        if not run.ok:
+            return
+        with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as summary:
+            told = json.load(summary)["warnings"]
+        checks.that(len(told) == wanted and all("block and punch have gone through each other, at x = 5, y = 6" in one["text"] for one in told),
+                    f"a punch moved by {way}: {wanted} warning", told)
+
+
 def passed_planes(checks):
     """A corner that is moved behind the plane in which its body is held: told at the end, with the depth; not where it stays
     before it, nor where the side is clamped."""
@@ -349,6 +383,7 @@ def main():
     stopped_run(checks)
     warned_cycle(checks)
     idle(checks)
+    crossed(checks)
     passed_planes(checks)
     let_go(checks)
     heated(checks)
