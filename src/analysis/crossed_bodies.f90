@@ -1,7 +1,6 @@
 !> Bodies that have gone through each other at the end of a run: no contact was asked for between them.
 module crossed_bodies
-  use arc_crossings, only: box_of_chords, crossings_between, most_crossings
-  use box_tree, only: box_tree_t, build_tree, items_meeting
+  use arc_crossings, only: crossings_between, find_meeting_arcs, most_crossings
   use kinds, only: wp
   use offset_parabolas, only: offset_parabola_t, point_at
   use own_crossings, only: free_sides_t
@@ -28,35 +27,32 @@ contains
     type(solution_t), intent(in) :: solution
     type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning) lines
     type(offset_parabola_t) :: arcs(size(sides%nodes, 2))
-    type(box_tree_t) :: tree
-    real(wp) :: boxes(4, size(arcs)), xi(2, most_crossings), x(2, size(scene%mesh%coordinates, 2)), place(2)
-    integer :: meeting(size(arcs)), number, found, i, k, m, r
+    real(wp) :: xi(2, most_crossings), x(2, size(scene%mesh%coordinates, 2)), place(2)
+    integer, allocatable :: pairs(:, :)
+    integer :: number, i, m, r
 
     if (size(arcs) == 0) return
     if (all(sides%body == sides%body(1))) return
     x = present_coordinates(scene, solution)
     do i = 1, size(arcs)
       arcs(i)%points = x(:, sides%nodes(:, i))
-      boxes(:, i) = box_of_chords(arcs(i))
     end do
-    call build_tree(boxes, [(i, i=1, size(arcs))], tree)
-    do i = 1, size(arcs)
-      call items_meeting(tree, boxes(:, i), found, meeting)
-      do m = 1, found
-        k = meeting(m)
-        if (k <= i .or. sides%body(k) == sides%body(i)) cycle
+    call find_meeting_arcs(arcs, pairs)
+    do m = 1, size(pairs, 2)
+      associate (i => pairs(1, m), k => pairs(2, m))
+        if (sides%body(k) == sides%body(i)) cycle
         if (sine_between(arcs(i), arcs(k)) < least_sine) cycle
         call crossings_between(arcs(i), arcs(k), number, xi)
         do r = 1, number
           if (all(abs(xi(:, r)) > near_end)) cycle
-          if (are_in_contact(scene, sides%body(i), sides%body(k))) cycle
+          if (are_in_contact(scene, sides%body(i), sides%body(k))) exit
           place = point_at(arcs(i), xi(1, r))
           call add_text(warnings, scene%groups(sides%group(i))%name//' and '//scene%groups(sides%group(k))%name &
                         //' have gone through each other, at x = '//to_text(place(1), 5)//', y = '//to_text(place(2), 5) &
                         //': no contact is given between them (DIE name SIDES, CNT2D)')
           return
         end do
-      end do
+      end associate
     end do
   end subroutine warn_of_crossed_bodies
 

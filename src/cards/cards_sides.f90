@@ -81,9 +81,7 @@ contains
       call draft%elems(group%elem_id)%variables(law_of_material(draft%laws(law), draft%scene%materials(group%material)), &
                                                        draft%scene%plane_state, group%variables)
       group%modulus = modulus_behind(draft, group%connectivity)
-      group%tangential_share = tangential_share(huge(1.0_wp))
-      if (associated(draft%laws(law)%rub)) &
-        group%tangential_share = tangential_share(draft%laws(law)%rub(draft%scene%materials(group%material)))
+      group%tangential_share = tangential_share(draft%laws(law), draft%scene%materials(group%material))
       call append_group(draft, group, cursor%where())
     end do
   end subroutine read_contacts

@@ -2,13 +2,14 @@
 !>
 !> Arcs are approximated by chords; where chords cross, the crossing of the arcs is found by Newton's method.
 module arc_crossings
+  use box_tree, only: box_tree_t, build_tree, items_meeting
   use kinds, only: eps, wp
   use offset_parabolas, only: offset_parabola_t, point_at, tangent_at
   use plane_vectors, only: cross
   use vectors, only: length_of
   implicit none
   private
-  public :: box_of_chords, crossings_between, extent, most_crossings, touching
+  public :: box_of_chords, crossings_between, extent, find_meeting_arcs, most_crossings, touching
 
   !> Chords of an arc.
   integer, parameter :: nchord = 8
@@ -28,6 +29,38 @@ contains
     p = chord_points(arc)
     box = [minval(p, 2), maxval(p, 2)]
   end function box_of_chords
+
+  !> Pairs of arcs whose boxes meet, the lower number first, in its order.
+  pure subroutine find_meeting_arcs(arcs, pairs)
+    class(offset_parabola_t), intent(in) :: arcs(:)     !! (narc)
+    integer, allocatable, intent(out) :: pairs(:, :)    !! (2, npair)
+    type(box_tree_t) :: tree
+    real(wp) :: boxes(4, size(arcs))
+    integer :: meeting(size(arcs)), found, i, n
+    integer, allocatable :: list(:, :), longer(:, :)
+
+    do i = 1, size(arcs)
+      boxes(:, i) = box_of_chords(arcs(i))
+    end do
+    call build_tree(boxes, [(i, i=1, size(arcs))], tree)
+    ! every arc of a contour meets its neighbours
+    allocate (list(2, 2*size(arcs)))
+    n = 0
+    do i = 1, size(arcs)
+      call items_meeting(tree, boxes(:, i), found, meeting)
+      associate (others => pack(meeting(:found), meeting(:found) > i))
+        if (n + size(others) > size(list, 2)) then
+          allocate (longer(2, 2*(n + size(others))))
+          longer(:, :n) = list(:, :n)
+          call move_alloc(longer, list)
+        end if
+        list(1, n + 1:n + size(others)) = i
+        list(2, n + 1:n + size(others)) = others
+        n = n + size(others)
+      end associate
+    end do
+    pairs = list(:, :n)
+  end subroutine find_meeting_arcs
 
   pure function chord_points(arc) result(p)
     class(offset_parabola_t), intent(in) :: arc

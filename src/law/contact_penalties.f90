@@ -1,7 +1,7 @@
 !> The numbers that the card of every contact law begins with: allowed penetration or penalties, and augmentation.
 module contact_penalties
   use kinds, only: wp
-  use law_api, only: parameter, parameter_t
+  use law_api, only: law_t, parameter, parameter_t
   use materials, only: material_t
   implicit none
   private
@@ -62,13 +62,15 @@ contains
     share = material%values(place_allowed)
   end function allowed_penetration
 
-  !> Tangential penalty over the normal one with a coefficient of friction.
-  pure function tangential_share(coefficient) result(share)
-    real(wp), intent(in) :: coefficient   !! [-]
-    real(wp) :: share                     !! [-]
+  !> Tangential penalty over the normal one of a law of contact, where its card gives none.
+  pure function tangential_share(law, material) result(share)
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    real(wp) :: share   !! [-]
 
     share = share_of_normal
-    if (coefficient < least_coefficient) share = share_of_normal*(coefficient/least_coefficient)
+    if (associated(law%friction_coefficient)) &
+      share = share*(min(law%friction_coefficient(material), least_coefficient)/least_coefficient)
   end function tangential_share
 
   !> Contact that is stiffer: penetrations of so many times their depth.

@@ -17,7 +17,7 @@ module law_api
   private
   public :: law_t, law_line_t, parameter_t, driver_t
   public :: law_update_i, law_slide_i, law_flow_i, law_check_i, law_elastic_i, law_conduct_i
-  public :: law_store_i, law_swell_i, law_release_i, law_rub_i
+  public :: law_store_i, law_swell_i, law_release_i, law_friction_i
   public :: parameter, law_line, find_parameter, law_of_material, asks_for, is_complete, is_needed, has_symmetric_tangent, &
             tangent_rows
   public :: driver_count, driver_temperature
@@ -113,7 +113,7 @@ module law_api
     procedure(law_update_i), nopass, pointer :: update => null()
     procedure(law_slide_i), nopass, pointer :: slide => null()
     !> Not associated for laws of contact whose friction is no share of the pressure.
-    procedure(law_rub_i), nopass, pointer :: rub => null()
+    procedure(law_friction_i), nopass, pointer :: friction_coefficient => null()
     !> Not associated for laws without flow.
     procedure(law_flow_i), nopass, pointer :: flow_stress => null()
     !> Not associated for laws without isotropic elasticity.
@@ -182,11 +182,11 @@ module law_api
     end function law_flow_i
 
     !> Coefficient of friction of a law of contact; `huge` where the limit of friction has other parts, or is 0.
-    pure function law_rub_i(material) result(coefficient)
+    pure function law_friction_i(material) result(coefficient)
       import :: material_t, wp
       type(material_t), intent(in) :: material
       real(wp) :: coefficient   !! [-]
-    end function law_rub_i
+    end function law_friction_i
 
     !> Isotropic elastic constants at a temperature.
     pure subroutine law_elastic_i(material, temperature, young, poisson)

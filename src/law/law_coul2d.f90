@@ -52,7 +52,7 @@ contains
     row%symmetric = .false.
     row%effects = 'contact friction'
     row%slide => slide
-    row%rub => rub
+    row%friction_coefficient => friction_coefficient
     row%check => check
   end function law_coul2d_row
 
@@ -68,14 +68,14 @@ contains
   end subroutine check
 
   !> PHI; with cohesion a point that is hardly pressed has friction too.
-  pure function rub(material) result(coefficient)
+  pure function friction_coefficient(material) result(coefficient)
     type(material_t), intent(in) :: material
     real(wp) :: coefficient
 
     coefficient = huge(1.0_wp)
     if (material%values(place_cohesion) > 0) return
     if (material%values(place_phi) > 0) coefficient = material%values(place_phi)
-  end function rub
+  end function friction_coefficient
 
   !> In slip, with the direction n = trial/|trial|: tau = limit n, and d tau = n PHI AKP dd + limit/|trial| AKTAU (1 - n n) ds,
   !> the derivative of the discrete update: eq. (7), which is its limit for small steps.

@@ -5,9 +5,8 @@
 !> loop of few sides that encloses hardly anything, where a fold has used up a side; nor do neighbours, whose parabolas may cross
 !> beside their common node in a distorted mesh: the shape of elements is judged elsewhere.
 module own_crossings
-  use arc_crossings, only: box_of_chords, crossings_between, most_crossings
+  use arc_crossings, only: crossings_between, find_meeting_arcs, most_crossings
   use bodies, only: bodies_of_nodes, elements_at_middles
-  use box_tree, only: box_tree_t, build_tree, items_meeting
   use contact_point, only: at_piece, at_status
   use dofs, only: dofs_t
   use fields, only: displacement_field
@@ -86,22 +85,19 @@ contains
     type(free_sides_t), intent(in) :: sides
     type(own_crossing_t), intent(out) :: crossing
     type(offset_parabola_t) :: arcs(size(sides%nodes, 2))
-    type(box_tree_t) :: tree
-    real(wp) :: boxes(4, size(arcs)), xi(2, most_crossings)
+    real(wp) :: xi(2, most_crossings)
     logical, allocatable :: held(:)
-    integer :: meeting(size(arcs)), number, found, i, k, m, r
+    integer, allocatable :: pairs(:, :)
+    integer :: number, i, m, r
 
     if (size(arcs) == 0) return
     do i = 1, size(arcs)
       arcs(i)%points = present_nodes(scene, dofs, solution, du, sides%nodes(:, i))
-      boxes(:, i) = box_of_chords(arcs(i))
     end do
-    call build_tree(boxes, [(i, i=1, size(arcs))], tree)
-    do i = 1, size(arcs)
-      call items_meeting(tree, boxes(:, i), found, meeting)
-      do m = 1, found
-        k = meeting(m)
-        if (k <= i .or. sides%body(k) /= sides%body(i)) cycle
+    call find_meeting_arcs(arcs, pairs)
+    do m = 1, size(pairs, 2)
+      associate (i => pairs(1, m), k => pairs(2, m))
+        if (sides%body(k) /= sides%body(i)) cycle
         if (are_neighbours(sides%nodes(:, i), sides%nodes(:, k))) cycle
         call crossings_between(arcs(i), arcs(k), number, xi)
         do r = 1, number
@@ -113,7 +109,7 @@ contains
           crossing%point = point_at(arcs(i), xi(1, r))
           return
         end do
-      end do
+      end associate
     end do
   end subroutine find_own_crossing
 
