@@ -15,7 +15,7 @@ module contact_outlook
   use vectors, only: length_of
   implicit none
   private
-  public :: lies_on, look_at_contact, moves, gaps_at_rest, outlook_t
+  public :: lies_on, look_at_contact, moves, pilot_at, gaps_at_rest, outlook_t
 
   !> Instants at which a moving die is looked at.
   integer, parameter :: ninstant = 50

@@ -1,5 +1,6 @@
 !> What can be told of a deck before it runs: how parts and dies stand to each other, and what is seldom meant.
 module physics_check
+  use closing_dies, only: judge_closing
   use contact_outlook, only: lies_on, look_at_contact, moves, outlook_t
   use dies, only: is_deformable
   use fields, only: displacement_field
@@ -54,6 +55,7 @@ contains
         call judge_contact(scene, laws, group, outlook(g), warnings)
       end associate
     end do
+    call judge_closing(scene, warnings)
     if (.not. lacks_mesh(scene)) call free_motions(scene, outlook, warnings)
     do g = 1, size(scene%materials)
       call judge_yield(scene, laws, g, warnings)

@@ -86,11 +86,20 @@ HOT = {"FIXED  billet 1 Y\n": "FIXED  billet 1 Y\nADDEL  billet PL8TM hot\nLAW  
 WRONG["hot and moved away"] = ({**HOT, "1. -2.": "1. 2."}, "does not meet the part")
 WRONG["hot and pushed from one side"] = ({"FIXED  billet 1 Y\n": HOT["FIXED  billet 1 Y\n"].split("\n", 1)[1]}, "along Y from one side")
 WRONG["friction in percent"] = ({"PHI 0.3": "PHI 30."}, "its coefficient of friction is 30")
+# Two dies that press the billet through each other, and the flange around the bore into which it is pushed.
+PRESSED = {"FIXED  billet 1 Y\n": TABLE, "1. -2.": "1. -18."}
+BORE = "DIE    bore\n   SEGM  10. -5.   10. 10.\n{}CNT2D  billet 2 bore -3 rough\nFIXED  billet 1 Y\n"
+WRONG["dies through each other"] = (PRESSED, "dies upper and lower go through each other by their motions: no room is left for the part from about time 0.8")
+WRONG["a punch through a flange"] = ({"FIXED  billet 1 Y\n": BORE.format("   SEGM  10. 10.   20. 10.\n"), "1. -2.": "1. -6."},
+                                     "dies upper and bore go through each other")
 # What is changed in the base, and means what it says: far below the face at the exit of a drawing die is not in its body.
 RIGHT = {"blocks joined": {"LAW    rough": BESIDE + "JOIN   billet 2 beside 4\nLAW    rough"},
          "blocks in contact": {"LAW    rough": BESIDE + "DIE    wall SIDES billet 2\nCNT2D  beside 4 wall rough\nLAW    rough"},
          "blocks at a corner": {"LAW    rough": BESIDE.replace("10. 0.   20. 0.   20. 15.   10. 15.", "10. 15.   20. 15.   20. 30.   10. 30.")
                                 .replace("CNT2D  beside 3 upper -3 rough\n", "") + "FIXED  beside 2 X\nLAW    rough"},
+         "a plate wider than a bore": {"FIXED  billet 1 Y\n": BORE.format(""), "1. -2.": "1. -6."},
+         "dies that close": {**PRESSED, "1. -2.": "1. -16."},
+         "a die that a force presses": {"FIXED  billet 1 Y\n": TABLE.replace("lower\n", "lower PILOT 0. -1.\n", 1) + "FORCE  lower Y -1. press\n", "1. -2.": "1. -18."},
          "between two dies": {"FIXED  billet 1 Y\n": TABLE}, "pushed from both sides": {"FIXED  billet 1 Y\n": "PRES2D billet 1 3 1. press\n"},
          "heated and expanding": {**HEATED, "steel EPLA": "steel ELATH", "200000. 0.3\n": "200000. 0.3 1.E-5\n", "   LINEAR 700. 300.\n": ""},
          "heated and pressed": {**HEATED, "LIC    press\n": "PRES2D billet 3 3 1. press\nLIC    press\n", "   0. 0.   1. -2.\n": "   0. 0.   1. 5.\n"},
