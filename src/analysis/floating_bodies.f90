@@ -11,7 +11,8 @@ module floating_bodies
   use kinds, only: wp
   use resting_bodies, only: mark_acted_on
   use scene, only: group_t, is_solid, role_contact, scene_t
-  use solution, only: present_coordinates, solution_t
+  use scene_as_it_stands, only: present_scene
+  use solution, only: solution_t
   use text, only: add_text, string_t, to_text
   implicit none
   private
@@ -94,13 +95,9 @@ contains
     real(wp), intent(out) :: over_side      !! over the length of the side
     type(scene_t) :: now
     real(wp), allocatable :: gaps(:, :), over_sides(:, :)
-    integer :: g, k
+    integer :: g
 
-    now = scene
-    now%mesh%coordinates = present_coordinates(scene, solution)
-    do k = 1, size(now%dies)
-      if (.not. is_deformable(now%dies(k))) now%dies(k)%pilot = solution%fields(pilot_field)%value(:, k)
-    end do
+    now = present_scene(scene, solution)
     gap = huge(gap)
     over_side = huge(over_side)
     do g = 1, size(now%groups)
