@@ -90,6 +90,7 @@ contains
     type(run_options_t), intent(in) :: options
     type(scene_t), intent(in) :: scene
     type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: too_large
     type(string_t), allocatable :: lines(:), more(:), table(:), warnings(:)
 
     call scene_lines(scene, lines)
@@ -97,12 +98,14 @@ contains
     allocate (table(0), warnings(0))
     ! the part with which a later operation begins is not known yet
     if (scene%operation <= 1) call look_at_deck(options, scene, table, warnings, error)
-    if (.not. (allocated(error) .or. lacks_mesh(scene))) call unknowns_lines(scene, more, error)
     if (allocated(error)) return
     call print_lines(lines, error)
     call print_lines(table, error)
+    ! a scene that is too large for this machine is told all the same
+    if (.not. lacks_mesh(scene)) call unknowns_lines(scene, more, too_large)
     call print_lines(more, error)
     call print_lines(as_warnings(warnings), error)
+    if (.not. allocated(error) .and. allocated(too_large)) call move_alloc(too_large, error)
   end subroutine print_check
 
   !> Lines that begin with what they are.

@@ -287,13 +287,15 @@ contains
   end function energy_of_round_off
 
   !> What round-off of strains may be worth in bodies that have none.
-  pure function energy_without_strain(scene, equations, volume) result(energy)
+  pure function energy_without_strain(scene, equations, volume, strain) result(energy)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: volume   !! of the bodies, per radian when axisymmetric [volume]
+    real(wp), intent(in), optional :: strain   !! that counts as none, where it is not that of round-off [-]
     real(wp) :: energy               !! per radian when axisymmetric [energy]
 
     energy = stiffest(scene, equations)*volume*(operations*eps)**2
+    if (present(strain)) energy = stiffest(scene, equations)*volume*strain**2
   end function energy_without_strain
 
   !> Largest Young's modulus of the scene's materials at no temperature: the size of a stress.

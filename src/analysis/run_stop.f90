@@ -15,6 +15,7 @@ module run_stop
   use strategy, only: coupling_once
   use system, only: caught_signal
   use text, only: to_text
+  use untouched_dies, only: untouched_die_advice
   use watch_mesh, only: mesh_is_due, remesh_reason
   implicit none
   private
@@ -51,7 +52,7 @@ contains
       advice = advice//'numbers that jump along the temperature, NORMS near round-off or a least step too large in ' &
                //'STRAT are the usual causes'
     end if
-    if (size(scene%die_forces) > 0) advice = 'a die that is free and touches nothing needs a SPRNG card until it does; '//advice
+    advice = untouched_die_advice(scene, solution)//advice
     if (index(outcome%reason, 'singular') > 0 .and. any(may_stand_alone(scene%groups))) advice = advice//'; a body of few ' &
       //'elements with 4 integration points has a motion that nothing resists, 9 points with MEAN have none'
     if (loses_touch(scene)) &
@@ -85,8 +86,8 @@ contains
     end do
   end function loses_touch
 
-  !> What leads past a limit load: the multiplier of loads is found (LOADF), or another measure where that turns back. Nothing where
-  !> no load acts that may be found.
+  !> What leads past a limit load: the multiplier of loads is found (LOADF), or another measure where that turns back; a die is
+  !> moved. Nothing where no load acts that may be found.
   pure function way_past_limit(scene)
     type(scene_t), intent(in) :: scene
     character(len=:), allocatable :: way_past_limit
@@ -97,6 +98,8 @@ contains
       way_past_limit = ' at which the measure of LOADF turns back (that of a node may go on, as across a crack, a neck or a dent)'
     else if (size(scene%forces) > 0 .or. any([(scene%groups(g)%elem == 'PRES2D', g=1, size(scene%groups))])) then
       way_past_limit = ' (LOADF finds the loads beyond it)'
+    else if (size(scene%die_forces) > 0) then
+      if (any(scene%die_forces%multiplier > 0)) way_past_limit = ' (a die that MOVE drives, in place of FORCE, goes beyond it)'
     end if
   end function way_past_limit
 

@@ -27,6 +27,7 @@ contains
     character(len=:), allocatable :: by_what
     integer :: g, s, nelem, nonzeros
 
+    allocate (lines(0))
     call set_up(scene, equations, error)
     if (allocated(error)) return
     nelem = 0
@@ -48,6 +49,7 @@ contains
     end do
     seconds = seconds_per_element*nelem + operations/flops_per_second
     call memory_left(left, addresses, by_what)
+    deallocate (lines)
     allocate (lines(5))
     lines(1)%s = ''
     lines(2)%s = 'Unknowns: '//to_text(equations%dofs%ndof)//', of them '//to_text(sum(equations%solves%neq)) &

@@ -11,7 +11,7 @@ module system
   public :: is_terminal, peak_memory_mb, cpu_seconds, wall_seconds
   public :: file_exists, directory_exists, make_directory, rename_file, link_file, remove_file, flush_to_disk
   public :: base_name, directory_of, join_path
-  public :: catch_signals, caught_signal, signals_to_errors, program_stop, reason, last_failure
+  public :: catch_signals, caught_signal, raise_termination, signals_to_errors, program_stop, reason, last_failure
   public :: set_environment, in_environment, from_environment, text_of_c
 
   !> The numbers POSIX gives to the two requests to stop.
@@ -89,6 +89,12 @@ module system
       integer(c_int), value :: descriptor
       integer(c_int) :: status
     end function c_close
+
+    function c_raise(number) bind(c, name='raise') result(status)
+      import :: c_int
+      integer(c_int), value :: number
+      integer(c_int) :: status
+    end function c_raise
 
     function c_signal(number, handler) bind(c, name='signal') result(previous)
       import :: c_funptr, c_int
@@ -329,6 +335,13 @@ contains
 
     number = int(last_signal)
   end function caught_signal
+
+  !> TERM to this process, for one that a library has taken for itself: caught, or the end of the program.
+  subroutine raise_termination()
+    integer(c_int) :: status
+
+    status = c_raise(signal_terminate)
+  end subroutine raise_termination
 
   !> The handler. Recursive: a second signal may arrive inside it, which -fcheck=recursion would
   !> otherwise take for a mistake.

@@ -43,18 +43,26 @@ contains
     end do
   end function loses_a_die
 
-  !> Points and corners of all groups that touch each die in the trial state.
-  pure function touching_dies(scene, solution) result(n)
+  !> Points and corners of all groups that touch each die in the trial state, or at the start of the step.
+  pure function touching_dies(scene, solution, at_start) result(n)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
+    logical, intent(in), optional :: at_start
     integer :: n(size(scene%dies))   !! (ndie)
+    logical :: before
     integer :: g
 
     n = 0
+    before = .false.
+    if (present(at_start)) before = at_start
     do g = 1, size(scene%groups)
       if (scene%groups(g)%die == 0 .or. scene%groups(g)%material == 0) cycle
       associate (die => scene%groups(g)%die)
-        n(die) = n(die) + touching(scene%groups(g), solution%groups(g)%trial)
+        if (before) then
+          n(die) = n(die) + touching(scene%groups(g), solution%groups(g)%committed)
+        else
+          n(die) = n(die) + touching(scene%groups(g), solution%groups(g)%trial)
+        end if
       end associate
     end do
   end function touching_dies

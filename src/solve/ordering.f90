@@ -6,12 +6,13 @@ module ordering
   use, intrinsic :: iso_c_binding, only: c_int, c_null_ptr, c_ptr
   use dofs, only: dofs_t
   use errors, only: error_t, exit_machine, fail
+  use system, only: raise_termination
   use text, only: to_text
   implicit none
   private
   public :: order_equations
 
-  integer(c_int), parameter :: metis_ok = 1
+  integer(c_int), parameter :: metis_ok = 1, metis_error = -4
 
   interface
     integer(c_int) function metis_node_nd(nvtxs, xadj, adjncy, vwgt, options, perm, iperm) bind(c, name='METIS_NodeND')
@@ -39,6 +40,11 @@ contains
     call node_graph(connectivity, nnode, xadj, adjncy)
     allocate (perm(nnode), place(nnode), node_at(nnode))
     status = metis_node_nd(int(nnode, c_int), xadj, adjncy, c_null_ptr, c_null_ptr, perm, place)
+    if (status == metis_error) then
+      ! METIS takes TERM for a failure of its own while it is at work: it is passed on, and the order made anew
+      call raise_termination()
+      status = metis_node_nd(int(nnode, c_int), xadj, adjncy, c_null_ptr, c_null_ptr, perm, place)
+    end if
     if (status /= metis_ok) then
       call fail(error, exit_machine, 'METIS could not order the mesh (status '//to_text(status)//')')
       return

@@ -4,10 +4,10 @@
 !>     call file%write(...)
 !>     call commit_atomic(file, error, keep_previous=.true.)
 !>
-!> Every file carries a hash of all its bytes (hdf5_file). `commit_atomic` reads the closed file back and opens it before it takes
-!> the place of the older one; `open_verified` opens a file whose hash is right and in which there is nothing that this program
-!> does not write. Hash and structure are two checks: the first finds every accidental change, however HDF5 would read it; the
-!> second holds also for a file that was written by another program, with a valid hash.
+!> Every file carries a hash of all its bytes (hdf5_file). `commit_atomic` opens the closed file, whose hash was made by reading it,
+!> before it takes the place of the older one; `open_verified` opens a file whose hash is right and in which there is nothing that
+!> this program does not write. Hash and structure are two checks: the first finds every accidental change, however HDF5 would read
+!> it; the second holds also for a file that was written by another program, with a valid hash.
 module hdf5_atomic
   use atomic, only: refuse_place, replace_file, temporary_name
   use errors, only: error_t, exit_bug, exit_machine
@@ -64,13 +64,14 @@ contains
     if (allocated(error)) call file%close(ignored)
   end subroutine open_verified
 
-  !> Can the file be read back as it was written? What is in it was written by this program a moment ago.
+  !> Is the file as long as it was written, and does HDF5 open it? Its hash was made a moment ago by reading all of it: to read it
+  !> once more would find the same bytes in the memory of the system.
   subroutine verify(path, error)
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
     type(hdf5_file_t) :: file
 
-    call file%open(path, error)
+    call file%open(path, error, hashed=.true.)
     if (.not. allocated(error)) call file%close(error)
   end subroutine verify
 

@@ -110,10 +110,11 @@ module hdf5_file
     end subroutine create
 
     !> Open a file for reading. What is missing, not written by this system, cut short or altered since it was closed is refused.
-    module subroutine open_to_read(self, path, error)
+    module subroutine open_to_read(self, path, error, hashed)
       class(hdf5_file_t), intent(inout) :: self
       character(len=*), intent(in) :: path
       type(error_t), allocatable, intent(out) :: error
+      logical, intent(in), optional :: hashed   !! a moment ago, by reading all of it: its length is enough
     end subroutine open_to_read
 
     !> Open an existing file for reading and writing.
@@ -209,8 +210,9 @@ module hdf5_file
     end subroutine write_hash
 
     !> Is the file, not opened yet, just as it was when its hash was written?
-    module subroutine check_hash(self)
+    module subroutine check_hash(self, length_alone)
       class(hdf5_file_t), intent(inout) :: self
+      logical, intent(in) :: length_alone   !! its beginning and its length are compared, not its bytes
     end subroutine check_hash
   end interface
 

@@ -38,24 +38,29 @@ contains
   end procedure create
 
   module procedure open_to_read
+    logical :: known
+
+    known = .false.
+    if (present(hashed)) known = hashed
     call begin(self, path, .false.)
-    call open_existing(self)
+    call open_existing(self, known)
     call self%status(error)
   end procedure open_to_read
 
   module procedure open_append
     call begin(self, path, .true.)
-    call open_existing(self)
+    call open_existing(self, .false.)
     call self%status(error)
   end procedure open_append
 
   !> Open the file at `self%file_path`, or record why it is refused.
-  subroutine open_existing(self)
+  subroutine open_existing(self, hashed)
     class(hdf5_file_t), intent(inout) :: self
+    logical, intent(in) :: hashed   !! its hash was made by reading it, a moment ago
     integer(hid_t) :: access
     integer :: flag, ignored
 
-    call self%check_hash()
+    call self%check_hash(length_alone=hashed)
     if (self%failed()) return
     call make_access(access)
     call h5fopen_f(self%file_path, merge(h5f_acc_rdwr_f, h5f_acc_rdonly_f, self%writable), self%id, flag, access_prp=access)

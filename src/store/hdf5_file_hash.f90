@@ -61,7 +61,7 @@ contains
       call self%record_error(exit_input, 'not a file of this program: it does not begin with a length and a hash')
     else if (index(block, length_line(length)) == 0) then
       call self%record_error(exit_input, 'cut short or damaged: '//to_text(length)//' bytes are not what its beginning states')
-    else
+    else if (.not. length_alone) then
       call take_hash(unit, digest, length, status, why)
       if (status /= 0) then
         call self%record_error(exit_input, 'cannot be read: '//trim(why))

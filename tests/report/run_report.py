@@ -487,6 +487,18 @@ class ReportTest(unittest.TestCase):
                 listing.write("WARNING: a\nstep 1\ncutback: b\ncutback: b\n  WARNING: a\n  WARNING: c\n")
             self.assertEqual({"cutbacks": ["b", "b"], "warnings": ["WARNING: a", "WARNING: c"]}, read_notes(path))
 
+    def test_warnings_of_parts(self):
+        """A part that went on has its warnings judged anew at the end; those of a mesh that was replaced stay."""
+        ends = {"stopped by signal 15 at step 3": ["WARNING: a", "WARNING: e"],
+                "a new mesh is due at step 3: ": ["WARNING: a", "WARNING: d", "WARNING: e"]}
+        for reason, expected in ends.items():
+            with tempfile.TemporaryDirectory() as folder:
+                path = os.path.join(folder, "deck.log")
+                with open(path, "w", encoding="utf-8") as listing:
+                    listing.write(f"WARNING: a\nstopped: {reason}\n  WARNING: a\n  WARNING: d\n\nresumed from deck.ckp.h5 after step 3\n"
+                                  "WARNING: a\ndone: end of the scene\n  WARNING: e\n")
+                self.assertEqual(expected, read_notes(path)["warnings"])
+
     def test_order_of_dies(self):
         """Pilots are in the deck's order, HDF5 lists dies by name: the history's columns state which is which."""
         run = Run(self.made())

@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 sys.dont_write_bytecode = True
-from support import (DONE, INPUT, LAGAMINE, MACHINE, NO_CONVERGENCE, SOURCE, UPSETTING, Checks, history, mesh, run, said, start,  # noqa: E402
+from support import (BIN, DONE, INPUT, LAGAMINE, MACHINE, NO_CONVERGENCE, SOURCE, UPSETTING, Checks, history, mesh, run, said, start,  # noqa: E402
                      summary, with_h5py, write)
 
 LIMIT_LOAD = os.path.join(SOURCE, "decks", "thick_cylinder", "thick_cylinder_plastic.lag")
@@ -120,6 +120,7 @@ def full_disk(checks):
             silent(checks, result, what)
             left = [name for _, _, names in os.walk(out) for name in names if name.endswith(".tmp")]
             checks.that(not left, f"{what}: nothing half written is left", left)
+            report_says_why(checks, out, result, what)
             checkpoint = os.path.join(out, "upsetting.ckp.h5")
             if not os.path.exists(checkpoint):
                 continue
@@ -132,6 +133,19 @@ def full_disk(checks):
     finally:
         if mounted:
             subprocess.run(["umount", disk], check=True)
+
+
+def report_says_why(checks, out, result, what):
+    """Of a run that has left no fields, lagareport repeats why, where the listing has it."""
+    page = subprocess.run([os.path.join(BIN, "lagareport"), out, "--out", checks.path("page.html"), "--quiet"], text=True, check=False,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    listing = os.path.join(out, "upsetting.log")
+    if page.returncode != INPUT or not os.path.exists(listing):
+        return
+    with open(listing, encoding="utf-8") as text:
+        known = "stopped: " in text.read()
+    checks.that(not known or result.stderr.splitlines()[0] in page.stderr, f"{what}: lagareport says why there are no fields",
+                page.stderr)
 
 
 def limit_files(size):

@@ -58,6 +58,9 @@ def main():
     reported = limited(2**40, [UPSETTING, "--check"]).stdout
     checks.that(re.search(r"(?m)^Factors: .*memory about [0-9.]+ MB$", reported) and re.search(r"(?m)^Memory left: [0-9.e+]+ MB", reported),
                 "--check states what is needed, and what is left", reported[-400:])
+    refused = limited((least + 60)*MEGA, [UPSETTING, "--check"] + mesh(300, 300))
+    checks.that(refused.returncode == MACHINE and "not enough memory" in refused.stderr and "effect     displacement" in refused.stdout,
+                "--check of a mesh that is too large for the memory says what the deck holds", said(refused) + refused.stdout[-300:])
     checks.end()
 
 

@@ -208,6 +208,19 @@ def stopped_run(checks):
         checks.that("WARNING before the run: billet.3/upper: the part begins 1 deep in die upper" in run.said, "what it says", run.said)
 
 
+def free_dies(checks):
+    """What is told of a free die at which a run stops: the card that holds one that touches nothing; of one that touches, how to go
+    beyond its largest force."""
+    pushed = {"MOVE   upper Y press": "FORCE  upper Y 1. press", "1. -2.": "1. -20000."}
+    for name, more, phrase in (("apart", {"30. 15.   -5. 15.": "30. 16.   -5. 16."}, "die upper is free along Y and touches nothing: a SPRNG"),
+                               ("too much", {"   LINEAR 700. 300.": "   LINEAR 700. 0.", "KINEM  LOG": "KINEM  SMALL", "1.E-4 0.1": "0.1 0.1"},
+                                "a die that MOVE drives, in place of FORCE")):
+        run = Run(checks, name.replace(" ", "-"), changed(checks, {**pushed, **more}), NO_CONVERGENCE)
+        if run.ok:
+            checks.that(phrase in run.said, f"a free die, {name}: what it needs", run.said)
+            checks.that(("SPRNG" in run.said) == ("SPRNG" in phrase), f"a free die, {name}: no more than that", run.said)
+
+
 def warned_cycle(checks):
     """So has a cycle of contours, in what it prints first and in the summary at its end, which is that of a later mesh."""
     path, out = os.path.join(checks.folder, "contour.lag"), os.path.join(checks.folder, "contour")
@@ -228,11 +241,15 @@ def idle(checks):
     side = "DIE    side\n   SEGM  12. -5.   12. 20.\nCNT2D  billet 2 side -3 rough\nMOVE   side X press\n"
     run = Run(checks, "idle", changed(checks, {"1. -2.": "1. 2.", "FIXED  billet 4 X\n": "FIXED  billet 4 X\n" + side}))
     pushed = Run(checks, "ahead", changed(checks, {**WRONG["pushed from one side"][0], "PLSTN": "AXISYM", "-5. 15.": "0. 15."}))
-    if not (run.ok and pushed.ok):
+    # the body is carried along, and does not come as far as the die that turns
+    carried = Run(checks, "carried", changed(checks, {"FIXED  billet 4 X\n": "MOVE   billet 4 X press\n",
+                                                      "30. 15.   -5. 15.": "30. 16.   -5. 16.", "MOVE   upper Y press": "MOVE   upper A press 0.01"}))
+    if not (run.ok and pushed.ok and carried.ok):
         return
-    with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as summary:
-        told = json.load(summary)["warnings"]
-    checks.that(len(told) == 1 and "against no resistance" in told[0]["text"], "dies without resistance: one warning", told)
+    for idle_run in (run, carried):
+        with open(os.path.join(idle_run.out, "summary.json"), encoding="utf-8") as summary:
+            told = json.load(summary)["warnings"]
+        checks.that(len(told) == 1 and "against no resistance" in told[0]["text"], f"{idle_run.name}: dies without resistance, one warning", told)
     with open(os.path.join(pushed.out, "summary.json"), encoding="utf-8") as summary:
         found = json.load(summary)
     checks.that(len(found["warnings"]) == 1 and found["accuracy"]["path"]["stress_pct"] == 0,
@@ -390,6 +407,7 @@ def main():
     decks(checks)
     warned_run(checks)
     stopped_run(checks)
+    free_dies(checks)
     warned_cycle(checks)
     idle(checks)
     crossed(checks)

@@ -11,7 +11,7 @@ import numpy as np
 from .cycle import read_cycle
 from .errors import ReportError
 from .tables import read_calls, read_history, read_history_so_far, read_notes, read_summary, with_entries
-from .unfinished import unfinished_name, unfinished_summary
+from .unfinished import stop_reason, unfinished_name, unfinished_summary
 
 AXISYMMETRIC = 2
 
@@ -84,7 +84,7 @@ class Run:
         self.generations = [read_generation(path) for path in self._generation_files()]
         self.steps = [step for generation in self.generations for step in generation.steps]
         if not self.steps and self.ended:
-            raise ReportError(f"{self.generations[0].path}: no saved steps")
+            raise ReportError(f"{self.generations[0].path}: no saved steps{self._why_none()}")
         if not self.ended:
             self.summary = with_entries(unfinished_summary(folder, self.name, self.history, self._last_elements(),
                                                            max(len(self.generations) - 1, 0)))
@@ -102,11 +102,16 @@ class Run:
         if not found:
             if not self.ended and not self.history:     # it has only just begun
                 return []
-            raise ReportError(f"{stem}.g01.h5: missing")
+            raise ReportError(f"{stem}.g01.h5: missing{self._why_none()}")
         for number in range(min(found), max(found) + 1):
             if number not in found:
                 raise ReportError(f"{stem}.g{number:02d}.h5: missing, though there is {os.path.basename(found[max(found)])}")
         return [found[number] for number in sorted(found)]
+
+    def _why_none(self) -> str:
+        """Why a run has left no fields, where it has said so."""
+        reason = stop_reason(self.folder, self.name)
+        return f"; the run stopped: {reason}" if reason else ""
 
     def _last_elements(self) -> int:
         """Elements of the latest mesh; 0 where there is none yet."""

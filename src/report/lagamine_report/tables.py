@@ -5,7 +5,7 @@ import math
 import os
 import re
 from dataclasses import dataclass
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Optional
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from .errors import ReportError
 # The line of the listing with which a call of the solver ends.
 REAL = r"([0-9.]+(?:[eE][-+]?[0-9]+)?)"
 CALL = re.compile(rf"  [0-9]+ equations, .* {REAL} s on the wall, .* {REAL} MB")
+# Lines with which the table begins that a call ends with where more is to come, and the part that goes on from it.
+STOPPED, RESUMED, NEW_MESH_DUE = "stopped: ", "resumed from ", "a new mesh is due"
 # Objects of a summary that the page looks into.
 ENTRIES = ("effects", "seconds", "checks", "energy", "advice")
 
@@ -116,13 +118,23 @@ def columns_of(path: str, text: str) -> Dict[str, Column]:
 
 
 def read_notes(path: str) -> Dict[str, List[str]]:
-    """From the listing: the steps that were cut, and its warnings, each once: it has those of the deck before and after the steps."""
+    """From the listing: the steps that were cut, and its warnings, each once: it has those of the deck before and after the steps.
+
+    What the table warned of that a part ended with is judged anew by that of the part which went on from it; of a part that ended as
+    a new mesh was due it stays.
+    """
     notes: Dict[str, List[str]] = {"cutbacks": [], "warnings": []}
+    closing: Optional[List[str]] = None     # warnings of a closing table that may be superseded
     for line in read_text(path).splitlines():
         if line.startswith("cutback:"):
             notes["cutbacks"].append(line[8:].strip())
+        elif line.startswith(STOPPED):
+            closing = [] if NEW_MESH_DUE not in line else None
+        elif line.startswith(RESUMED):
+            closing = None
         elif "WARNING" in line or line.lower().startswith("warning:"):
-            notes["warnings"] += [line.strip()] if line.strip() not in notes["warnings"] else []
+            (notes["warnings"] if closing is None else closing).append(line.strip())
+    notes["warnings"] = list(dict.fromkeys(notes["warnings"] + (closing or [])))
     return notes
 
 

@@ -10,6 +10,7 @@ from .tables import Column
 
 UNDER_WAY, INTERRUPTED = "under way", "interrupted"
 LISTING = ".log"
+STOPPED = "stopped:"
 
 
 def unfinished_name(folder: str) -> Optional[str]:
@@ -33,6 +34,19 @@ def unfinished_summary(folder: str, name: str, history: Dict[str, Column], eleme
             value = float(count(history[column].values))
             summary[key] = value if key == "time" else int(value)
     return summary
+
+
+def stop_reason(folder: str, name: str) -> Optional[str]:
+    """Why a run stopped, by its listing; None where that does not say."""
+    reason = None
+    try:
+        with open(os.path.join(folder, name + LISTING), encoding="utf-8", errors="replace") as listing:
+            for line in listing:
+                if line.startswith(STOPPED):
+                    reason = line[len(STOPPED):].strip()
+    except OSError:
+        return None
+    return reason
 
 
 def last_written(folder: str) -> str:
