@@ -38,6 +38,13 @@ contains
           //to_text(limit%point(1))//', y = '//to_text(limit%point(2)), error)
       end associate
     end do
+    if (allocated(facts%contour%points)) then
+      do k = 1, size(facts%contour%points, 2)
+        associate (point => facts%contour%points(:, k))
+          call print_line('  contact at the point x = '//to_text(point(1))//', y = '//to_text(point(2)), error)
+        end associate
+      end do
+    end if
     if (allocated(facts%contour%folds)) then
       do k = 1, size(facts%contour%folds)
         associate (fold => facts%contour%folds(k))

@@ -28,6 +28,7 @@ module remesh_scene
   use old_checkpoint, only: read_old_checkpoint
   use pair_fit, only: fit_pairs, update_closest_points
   use part_contour, only: build_contours, contour_options_t, contour_t
+  use point_carry, only: carry_points
   use remesh_facts, only: begin_task, end_task, remesh_facts_t
   use remesh_options, only: remesh_options_t
   use remesher_options, only: by_free, by_gmsh, remesher_options_t, smallest_anywhere
@@ -226,6 +227,7 @@ contains
     if (allocated(error)) return
     call begin_task(facts, 'contact', 'contact')
     call carry_contacts(old, before, contours, mesh, new, after, facts%contacts)
+    call carry_points(old, before, contours, new, after, facts%contacts)
     call update_closest_points(new, after)
     call carry_folds(old, before, contours, mesh, new, after)
   end subroutine carry_state

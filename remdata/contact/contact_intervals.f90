@@ -5,7 +5,7 @@
 !> it. An interval that begins or ends close to a kept corner begins or ends in it, so that no short arc is left to be meshed; the
 !> side it was found on is held fixed (part_contour), so that the contour passes through both points. Where intervals of two groups
 !> overlap, what they share is halved, and one inside another is dropped. An interval that covers less than a share of one side is
-!> dropped: the part's own contour carries its pressure as well, and no element would fit.
+!> set apart: no element would fit, and what presses there is a point of contact (point_contacts).
 module contact_intervals
   use boundary_sides, only: loop_t
   use contact_ends, only: contact_end_t
@@ -43,7 +43,7 @@ module contact_intervals
 contains
 
   !> Contact intervals of a loop sorted by their beginnings; only the last may extend across the start of the loop.
-  pure subroutine find_intervals(scene, loop, tags, kept, ends, closed, least, intervals)
+  pure subroutine find_intervals(scene, loop, tags, kept, ends, closed, least, intervals, short)
     type(scene_t), intent(in) :: scene
     type(loop_t), intent(in) :: loop
     type(side_tags_t), intent(in) :: tags
@@ -52,6 +52,7 @@ contains
     logical, intent(in) :: closed(:)                                     !! (ngroup) some points of the group are in contact
     real(wp), intent(in) :: least                                        !! shortest interval, in sides
     type(contact_interval_t), allocatable, intent(out) :: intervals(:)   !! (ninterval)
+    type(contact_interval_t), allocatable, intent(out) :: short(:)       !! (nshort) shorter than `least`
     type(contact_interval_t) :: list(size(ends) + size(scene%groups))
     integer :: side_at(size(scene%mesh%coordinates, 2)), g, k, n, before
 
@@ -73,9 +74,12 @@ contains
         call extend_to_axis(scene%groups(g), tags, size(loop%sides, 2), list(k))
       end do
     end do
-    call keep(along(list(:n)%to) - along(list(:n)%from) >= least, list, n)
     do k = 1, n
       list(k)%found = [list(k)%from, list(k)%to]
+    end do
+    short = pack(list(:n), along(list(:n)%to) - along(list(:n)%from) < least)
+    call keep(along(list(:n)%to) - along(list(:n)%from) >= least, list, n)
+    do k = 1, n
       call snap(kept, least, list(k))
     end do
     call sort_intervals(list(:n))
@@ -157,7 +161,7 @@ contains
       if (to%xi <= -1 + 2*coincidence_tolerance) to = side_point_t(to%side - 1, 1.0_wp, to%piece)
       if (from%xi <= -1 + 2*coincidence_tolerance) from%xi = -1
       if (to%xi >= 1 - 2*coincidence_tolerance) to%xi = 1
-      if (along(to) <= along(from)) cycle
+      if (along(to) < along(from)) cycle
       n = n + 1
       list(n)%group = number
       list(n)%from = from

@@ -14,7 +14,7 @@ module die_corner_contact
   use state_variables, only: find_variable
   implicit none
   private
-  public :: extend_to_corners
+  public :: extend_to_corners, find_corners
 
 contains
 

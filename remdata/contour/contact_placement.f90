@@ -1,9 +1,9 @@
-!> Contact intervals of a loop with their closest points on the dies.
+!> Contact intervals of a loop with their closest points on the dies, and points of contact.
 module contact_placement
   use boundary_sides, only: loop_t
   use contact_ends, only: contact_end_t
   use contact_gaps, only: close_gaps, mark_small_gaps
-  use contact_intervals, only: contact_interval_t, find_intervals, is_shared
+  use contact_intervals, only: along, contact_interval_t, find_intervals, is_shared, sort_intervals
   use contour_assembly, only: contact_t
   use die_corner_contact, only: extend_to_corners
   use corner_ends, only: end_in_corners
@@ -12,6 +12,7 @@ module contact_placement
   use fields, only: pilot_field
   use kinds, only: pi, wp
   use own_contact, only: faces_itself
+  use point_contacts, only: find_points, lies_beside, point_contact_t
   use scene, only: scene_t
   use side_tags, only: kept_corners, side_tags_t
   use solution, only: solution_t
@@ -23,7 +24,7 @@ module contact_placement
   type :: contour_options_t
     !> A corner is where the tangent turns by more than this [radian].
     real(wp) :: corner_turn = 20*pi/180
-    !> Contact over less than this share of a side is ignored.
+    !> Contact over less than this share of a side is contact at a point.
     real(wp) :: least_contact = 0.05_wp
     !> Gaps between two intervals no wider than this share of a side are closed: no mesh resolves them.
     real(wp) :: narrow_gap = 0.01_wp
@@ -42,8 +43,8 @@ module contact_placement
 
 contains
 
-  !> Find the contact intervals of a loop and their closest points on the dies.
-  pure subroutine place_contacts(scene, solution, x, ends, options, loop, tags, contacts, backward)
+  !> Find the contact intervals of a loop and their closest points on the dies, and where contact is at a point.
+  pure subroutine place_contacts(scene, solution, x, ends, options, loop, tags, contacts, points, backward)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: x(:, :)              !! nodes now (2, nnode) [length]
@@ -52,8 +53,9 @@ contains
     type(loop_t), intent(in) :: loop
     type(side_tags_t), intent(in) :: tags
     type(contact_t), allocatable, intent(out) :: contacts(:)   !! (ncontact)
+    type(point_contact_t), allocatable, intent(out) :: points(:)   !! (n)
     integer, intent(inout) :: backward  !! incremented for each interval dropped because it runs backwards along its die
-    type(contact_interval_t), allocatable :: intervals(:)
+    type(contact_interval_t), allocatable :: intervals(:), short(:)
     type(contact_t) :: one
     type(section_t), allocatable :: sections(:)
     type(contact_t), allocatable :: list(:)
@@ -62,8 +64,8 @@ contains
 
     turn = kept_corner_share*options%corner_turn
     call find_intervals(scene, loop, tags, kept_corners(loop, tags, x, turn), ends, closed_groups(scene, solution), &
-                   options%least_contact, intervals)
-    call extend_to_corners(scene, solution, loop, options%small_gap_length, intervals)
+                   options%least_contact, intervals, short)
+    call extend_intervals(scene, solution, loop, options, intervals, short)
     if (options%least_free > 0) call end_in_corners(loop, tags, x, options%corner_turn, options%least_free, intervals)
     call close_gaps(scene, solution, loop, tags, x, options%narrow_gap, intervals)
     call mark_small_gaps(scene, solution, loop, x, options%small_gap_width, options%small_gap_length, intervals)
@@ -91,7 +93,33 @@ contains
     ! no small gap follows an interval that is dropped
     if (n < size(intervals)) list%interval%small_gap = .false.
     allocate (contacts, source=list(:n))
+    call find_points(scene, solution, loop, x, short, contacts%interval, points)
   end subroutine place_contacts
+
+  !> Extend intervals to corners of the die in contact. Short ones that go on to one are intervals like the others, but beside
+  !> others they are no more than their ends.
+  pure subroutine extend_intervals(scene, solution, loop, options, intervals, short)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(loop_t), intent(in) :: loop
+    type(contour_options_t), intent(in) :: options
+    type(contact_interval_t), allocatable, intent(inout) :: intervals(:)   !! (ninterval) in their order along the loop
+    type(contact_interval_t), allocatable, intent(inout) :: short(:)       !! (nshort)
+    type(contact_interval_t), allocatable :: list(:)
+    logical :: apart(size(short))
+    integer :: k, i
+
+    do k = 1, size(short)
+      apart(k) = .not. any([(lies_beside(short(k), intervals(i), size(loop%sides, 2)), i=1, size(intervals))])
+    end do
+    list = [intervals, pack(short, apart)]
+    call sort_intervals(list)
+    call extend_to_corners(scene, solution, loop, options%small_gap_length, list)
+    associate (length => along(list%to) - along(list%from))
+      intervals = pack(list, length >= options%least_contact)
+      short = pack(list, length < options%least_contact)
+    end associate
+  end subroutine extend_intervals
 
   !> Groups with points in contact: their status is zero when open. Sides that face their own body keep their contour
   !> (folded_sides).

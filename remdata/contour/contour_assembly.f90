@@ -226,6 +226,9 @@ contains
       before = modulo(one%side - 2, nside) + 1
       if (draft%pending == kind_end .and. .not. (one%range(1) > -1 .or. same_tags(tags, before, one%side))) &
         draft%pending = kind_joint
+      if (draft%pending == kind_end .and. .not. one%range(1) > -1 &
+          .and. (any(joints%side == before .and. joints%xi >= 1) &
+                 .or. any(joints%side == one%side .and. joints%xi <= -1))) draft%pending = kind_joint
       one%points = x(:, loop%sides(:, one%side))
       one%middle = loop%sides(2, one%side)
       last = one%range(2)

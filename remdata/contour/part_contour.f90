@@ -20,6 +20,7 @@ module part_contour
   use errors, only: error_t, exit_bug, exit_no_convergence, fail
   use kinds, only: wp
   use scene, only: axisymmetric, is_solid, scene_t, solid_elements
+  use point_contacts, only: point_contact_t
   use short_die_arcs, only: drop_short_die_arcs
   use short_free_sides, only: drop_short_grounds, drop_short_sides
   use small_laps, only: cut_small_laps
@@ -54,6 +55,8 @@ module part_contour
     type(boundary_curve_t) :: boundary
     !> Contact intervals that were replaced (`arc_t%interval` is their number).
     type(contact_t), allocatable :: contacts(:)
+    !> Where contact is at a point.
+    type(point_contact_t), allocatable :: points(:)
     !> Area, or volume per radian, inside the old loop and the boundary curve; negative around holes.
     real(wp) :: volume_before = 0.0_wp, volume_after = 0.0_wp
     !> Outward displacement of the free sides [length], and whether it restores the volume.
@@ -77,6 +80,8 @@ module part_contour
     real(wp) :: largest_shift = 0.0_wp, largest_move = 0.0_wp, volume_error = 0.0_wp
     !> Largest distance from the contours to a kept end of contact as the solver found it, as a share of the contour.
     real(wp) :: off_ends = 0.0_wp
+    !> Points of contact with nothing in contact beside them (2, n) [length].
+    real(wp), allocatable :: points(:, :)
     !> Small gaps between contact intervals, whose ends are not among the limits.
     integer :: small_gaps = 0
     !> Contact intervals dropped because they run backwards along their die.
@@ -118,7 +123,7 @@ contains
     if (scene%plane_state == axisymmetric) call put_on_axis(x)
     call gather_solids(scene, connectivity)
     call find_loops(connectivity, size(x, 2), loops, status, node)
-    allocate (contours(size(loops)), report%limits(0), report%laps(0))
+    allocate (contours(size(loops)), report%limits(0), report%laps(0), report%points(2, 0))
     if (status /= loops_found) then
       call fail(error, exit_bug, 'contour: the side with middle node '//to_text(scene%mesh%labels(node))// &
                 trim(merge(' belongs to three elements             ', ' has the same direction in two elements', &
@@ -131,15 +136,18 @@ contains
       contours(k)%loop = loops(k)
       call find_tags(scene, loops(k), x, contours(k)%tags)
       call place_contacts(scene, solution, x, ends, options, contours(k)%loop, contours(k)%tags, contours(k)%contacts, &
-                          report%backward_intervals)
+                          contours(k)%points, report%backward_intervals)
     end do
     do k = 1, size(loops)
-      joints = [side_point_t ::]
+      joints = contours(k)%points%place
       do i = 1, size(loops)
         call add_body_contact_ends(contours(i)%contacts, scene%dies, loops(k), joints)
       end do
       call correct(scene, x, uncorrected, held, options, joints, contours(k))
       call list_limits(k, contours(k), report%limits)
+      do i = 1, size(contours(k)%points)
+        report%points = reshape([report%points, contours(k)%points(i)%point], [2, size(report%points, 2) + 1])
+      end do
       report%folds = [report%folds, contours(k)%laps]
       report%off_ends = max(report%off_ends, off_ends(contours(k), x)/size_of_boundary(contours(k)%boundary))
       report%small_gaps = report%small_gaps + count([(contours(k)%contacts(i)%interval%small_gap, i=1, size(contours(k)%contacts))])
@@ -221,7 +229,7 @@ contains
     contour%volume_before = volume_of_loop(contour%loop, uncorrected, round)
     call draw_boundary(x, own, options, joints, contour)
     contour%volume_after = volume_inside(contour%boundary, round)
-    if (size(contour%contacts) == 0) return
+    if (size(contour%contacts) + size(contour%points) == 0) return
     moved = x
     may_move = .not. (contour%tags%on_axis .or. any(contour%tags%on_die, 1))
     do k = 1, size(contour%contacts)
@@ -231,6 +239,7 @@ contains
         end do
       end associate
     end do
+    may_move(contour%points%place%side) = .false.
     ! where the contour follows a die past the end of contact, the rest of a side depends on the position of the side
     do i = 1, most_shifts
       gain = contour%volume_before - contour%volume_after

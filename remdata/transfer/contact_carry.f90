@@ -10,7 +10,7 @@ module contact_carry
   use new_scene, only: middle_position
   use offset_parabolas, only: length_between
   use part_contour, only: contour_t
-  use quadrature, only: line_rule
+  use quadrature, only: line_rule, rule_control
   use scene, only: axisymmetric, role_heat_contact, scene_t
   use shape_functions, only: line3
   use solution, only: present_coordinates, solution_t
@@ -22,7 +22,8 @@ module contact_carry
   use zone_mesh, only: new_mesh_t
   implicit none
   private
-  public :: carry_contacts, list_carried, status_row
+  public :: interval_points_t
+  public :: add_integrals, carry_contacts, list_carried, old_row, status_row, surface
 
   !> Integration points of an interval in sequence: arc length from its start, length each represents, point and element.
   type :: interval_points_t
@@ -154,7 +155,8 @@ contains
     integer, intent(in) :: g
     type(loop_t), intent(in) :: loop
     type(contact_interval_t), intent(in) :: interval
-    real(wp), intent(in) :: x(:, :), state(:, :, :)
+    real(wp), intent(in) :: x(:, :)           !! nodes now (2, nnode) [length]
+    real(wp), intent(in) :: state(:, :, :)    !! (component, point, element) of the group [unit of each component]
     logical, intent(in) :: with_corners
     type(interval_points_t), intent(out) :: row
     real(wp), allocatable :: xi(:), weight(:)
@@ -164,6 +166,7 @@ contains
     allocate (row%s(0), row%weight(0), row%point(0), row%element(0), row%offset(0), row%reach(0))
     call line_rule(scene%groups(g)%rule, xi, weight)
     if (.not. interval%from%xi > -1) call add_neighbour(scene, g, loop, x, interval%from%side - 1, 1.0_wp, row)
+    call add_control_point(scene, g, loop, interval%from, -1, x, state, row)
     if (with_corners .and. interval%to_corner(1)) call add_released(scene, g, loop, x, interval%from, -1, row)
     do side = interval%from%side, interval%to%side
       number = modulo(side - 1, size(loop%sides, 2)) + 1
@@ -178,14 +181,36 @@ contains
           if (e == 0 .or. xi(p) < part%range(1) .or. xi(p) > part%range(2)) cycle
           if (is_before_corner(interval, side_point_t(side, xi(p)))) cycle
           call add_point(row%length + length_between(part, part%range(1), xi(p)), &
-                         weight(p)*line_jacobian(nodes, xi(p), scene%plane_state == axisymmetric), p, e, row)
+                         surface(scene, g, nodes, xi, weight, p), p, e, row)
         end do
       end associate
       row%length = row%length + length_between(part, part%range(1), part%range(2))
     end do
     if (.not. interval%to%xi < 1) call add_neighbour(scene, g, loop, x, interval%to%side + 1, -1.0_wp, row)
+    call add_control_point(scene, g, loop, interval%to, 1, x, state, row)
     if (with_corners .and. interval%to_corner(2)) call add_released(scene, g, loop, x, interval%to, 1, row)
   end subroutine old_row
+
+  !> Control point of the side within which an interval begins (towards = -1) or ends (1): where the side leaves the die at its
+  !> end, the control point presses on that end (contact_contour).
+  pure subroutine add_control_point(scene, g, loop, limit, towards, x, state, row)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g, towards
+    type(loop_t), intent(in) :: loop
+    type(side_point_t), intent(in) :: limit
+    real(wp), intent(in) :: x(:, :), state(:, :, :)
+    type(interval_points_t), intent(inout) :: row
+    real(wp), allocatable :: xi(:), weight(:)
+    integer :: number, e
+
+    if (scene%groups(g)%rule%family /= rule_control .or. .not. towards*limit%xi < 0) return
+    number = modulo(limit%side - 1, size(loop%sides, 2)) + 1
+    e = findloc(scene%groups(g)%connectivity(2, :), loop%sides(2, number), 1)
+    if (e == 0) return
+    if (nint(state(status_row(scene, g), 2, e)) == 0) return
+    call line_rule(scene%groups(g)%rule, xi, weight)
+    call add_point(row%length, surface(scene, g, x(:, loop%sides(:, number)), xi, weight, 2), 2, e, row)
+  end subroutine add_control_point
 
   !> The points of the node that hands its force over to the corner in which an interval begins (-1) or ends (1): the pressure of
   !> their state acts there with what the corner has not taken yet (corner_release).
@@ -240,17 +265,15 @@ contains
     real(wp), intent(in) :: x(:, :), at
     type(interval_points_t), intent(inout) :: row
     real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: jacobian
     integer :: n, e, p
 
     n = modulo(side - 1, size(loop%sides, 2)) + 1
     e = findloc(scene%groups(g)%connectivity(2, :), loop%sides(2, n), 1)
     if (e == 0) return
     call line_rule(scene%groups(g)%rule, xi, weight)
-    jacobian = line_jacobian(x(:, loop%sides(:, n)), at, scene%plane_state == axisymmetric)
     do p = 1, size(xi)
       if (abs(xi(p) - at) > 0) cycle
-      call add_point(row%length, weight(p)*jacobian, p, e, row)
+      call add_point(row%length, surface(scene, g, x(:, loop%sides(:, n)), xi, weight, p), p, e, row)
     end do
   end subroutine add_neighbour
 
@@ -261,7 +284,7 @@ contains
     type(interval_points_t), intent(inout) :: row
     real(wp), allocatable :: xi(:), weight(:)
     logical :: inside(size(scene%groups(g)%connectivity, 2))
-    real(wp) :: jacobian, at, limits(2)
+    real(wp) :: at, limits(2)
     integer :: ends(2), k, e, p
 
     call line_rule(scene%groups(g)%rule, xi, weight)
@@ -275,15 +298,34 @@ contains
         do k = 1, 2
           if (inside(e) .or. sides(5 - 2*k, e) /= ends(k)) cycle
           at = 3 - 2*k
-          jacobian = line_jacobian(scene%mesh%coordinates(:, sides(:, e)), at, scene%plane_state == axisymmetric)
           do p = 1, size(xi)
             if (abs(xi(p) - at) > 0) cycle
-            call add_point(limits(k), weight(p)*jacobian, p, e, row)
+            call add_point(limits(k), surface(scene, g, scene%mesh%coordinates(:, sides(:, e)), xi, weight, p), p, e, row)
           end do
         end do
       end do
     end associate
   end subroutine add_neighbours
+
+  !> Surface that a point of a side stands for: its weight, or with a control point the integral of its Bernstein polynomial by
+  !> Simpson's rule, as the solver has it.
+  pure function surface(scene, g, x, xi, weight, p) result(area)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g, p                !! group, point
+    real(wp), intent(in) :: x(2, 3)            !! nodes of the side [length]
+    real(wp), intent(in) :: xi(:), weight(:)   !! (npoint) of the rule [-]
+    real(wp) :: area                           !! [length], times the radius when axisymmetric
+    logical :: round
+
+    round = scene%plane_state == axisymmetric
+    if (scene%groups(g)%rule%family /= rule_control) then
+      area = weight(p)*line_jacobian(x, xi(p), round)
+    else if (p == 2) then
+      area = 2*line_jacobian(x, 0.0_wp, round)/3
+    else
+      area = (line_jacobian(x, xi(p), round) + line_jacobian(x, 0.0_wp, round))/3
+    end if
+  end function surface
 
   !> d(length)/d(xi), times the radius.
   pure function line_jacobian(x, xi, round) result(jacobian)
@@ -351,8 +393,7 @@ contains
         if (abs(to - row%length) <= round_off*row%length) to = row%length
         do p = 1, size(xi)
           call add_point(from + 0.5_wp*(1 + xi(p))*(to - from), &
-                         weight(p)*line_jacobian(mesh%coordinates(:, mesh%sides(k)%nodes), xi(p), &
-                                                 scene%plane_state == axisymmetric), p, e, unsorted)
+                         surface(scene, g, mesh%coordinates(:, mesh%sides(k)%nodes), xi, weight, p), p, e, unsorted)
         end do
       end do
     end associate
@@ -424,10 +465,12 @@ contains
   !> Add the integrals of the variables of an interval, each to the row of its name.
   pure subroutine add_integrals(scene, g, components, row_old, before, row_new, after, rows)
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: g, components(:)
+    integer, intent(in) :: g               !! group
+    integer, intent(in) :: components(:)   !! (n) numbers of components
     type(interval_points_t), intent(in) :: row_old, row_new
-    real(wp), intent(in) :: before(:, :, :), after(:, :, :)
-    type(carried_quantity_t), allocatable, intent(inout) :: rows(:)
+    real(wp), intent(in) :: before(:, :, :)       !! (component, point, element), old [unit of each component]
+    real(wp), intent(in) :: after(:, :, :)        !! (component, point, element), new [unit of each component]
+    type(carried_quantity_t), allocatable, intent(inout) :: rows(:)   !! (nrow)
     type(string_t), allocatable :: names(:)
     type(carried_quantity_t) :: row
     integer :: k, r
