@@ -2,6 +2,7 @@
 !> that radiate below absolute zero, steels without hardness, steels that begin below absolute zero, austenite that is too cold.
 module heat_check
   use contact_outlook, only: gaps_at_rest
+  use cycle_heat_check, only: judge_cycle_heat
   use dies, only: is_deformable
   use elem_weld_source, only: source_share
   use fields, only: displacement_field, field_t, find_field
@@ -54,6 +55,7 @@ contains
       call judge_radiation(scene, g, warnings)
     end do
     call judge_hardness(scene, warnings)
+    call judge_cycle_heat(scene, laws, warnings)
     if (scene%fields(displacement_field)%declared) return
     do g = 1, size(scene%groups)
       if (scene%groups(g)%role == role_heat_contact) call judge_heat_contact(scene, scene%groups(g), table, warnings)

@@ -13,6 +13,7 @@ module march
   use fields, only: displacement_field
   use estimator, only: set_up_estimator
   use heated_steels, only: note_missing_austenite
+  use held_steels, only: note_held_steels
   use history, only: open_history
   use judge_remesh, only: limit_lines, refuse_remesh
   use kinds, only: eps, wp
@@ -93,6 +94,7 @@ contains
       call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
       if (allocated(error)) exit
       call note_missing_austenite(scene, run%equations%laws, solution)
+      call note_held_steels(scene, run%equations%laws, solution)
       cutbacks = 0
       call note_step(solution%probation, length)
       call estimate(scene, run%estimator, run%equations%timers, solution)

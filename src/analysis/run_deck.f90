@@ -22,6 +22,7 @@ module run_deck
   use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
   use judge_remesh, only: agreed_words
   use heated_steels, only: warn_of_missing_austenite
+  use held_steels, only: warn_of_held_steels
   use kinds, only: wp
   use laid_bodies, only: share_heat
   use law_api, only: law_t
@@ -294,6 +295,7 @@ contains
     if (run%exit_code == exit_done) then
       call warn_of_webs(scene, solution, facts%warnings)
       call warn_of_missing_austenite(scene, solution, facts%warnings)
+      call warn_of_held_steels(scene, solution, facts%warnings)
       call warn_of_floating_bodies(scene, run%equations%loose, solution, facts%warnings)
       call warn_of_crossed_bodies(scene, run%equations%free_sides, solution, facts%warnings)
       call warn_of_idle_dies(scene, run%equations, solution, run%totals%volume, facts%warnings)

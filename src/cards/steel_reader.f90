@@ -5,6 +5,7 @@ module steel_reader
   use deck_reader, only: deck_t, of_steels, read_deck, refuse_other_kind, refuse_unknown
   use diagnostics, only: diagnostics_t
   use kinds, only: wp
+  use latent_heat, only: complete_latent
   use steel_build, only: check_steel, complete_from_composition, set_nodes, use_li
   use steel_data_cards, only: read_austenite, read_composition, read_grain, read_martensite, read_phase_data, read_source, &
                               read_temperatures, read_tempering
@@ -129,6 +130,7 @@ contains
       if (diagnostics%count() > mistakes) return
       call complete_from_composition(steel)
       if (li) call use_li(steel)
+      call complete_latent(steel)
       call check_steel(steel, problems)
       do k = 1, size(problems)
         call diagnostics%add(head%where(), 'STEEL', problems(k)%s)

@@ -76,6 +76,8 @@ module solution
     real(wp) :: worst_fraction = 0.0_wp
     !> Largest share of an element that should have become austenite on heating, of a steel without its kinetics (heated_steels).
     real(wp) :: missing_austenite = 0.0_wp
+    !> Share that a steel of a CCT diagram alone should have formed in holds, by its slowest history (held_steels).
+    real(wp) :: held_growth = 0.0_wp
     !> Largest depth of a side in a die anywhere along it, and over what the side allows.
     real(wp) :: worst_sample = 0.0_wp, worst_sample_ratio = 0.0_wp
     !> Largest force on a die so far where meshes are replaced, or on one made of sides; per radian when axisymmetric.

@@ -50,6 +50,7 @@ contains
     call visitor%member('worst_spurious', self%worst_spurious, kept, '-')
     call visitor%member('worst_fraction', self%worst_fraction, kept, '-', low=0.0_wp)
     call visitor%member('missing_austenite', self%missing_austenite, kept, '-', low=0.0_wp)
+    call visitor%member('held_growth', self%held_growth, kept, '-', low=0.0_wp, high=1.0_wp)
     call visitor%member('spurious_group', self%spurious_group, kept, low=0)
     call visitor%member('spurious_element', self%spurious_element, of_the_mesh, low=0)
     call visitor%member('worst_sample', self%worst_sample, kept, 'length')

@@ -13,12 +13,13 @@ module phase_step
   use cct_histories, only: cct_increments
   use dual_numbers, only: dual_t, exp, log, operator(*), operator(+), operator(-), operator(/)
   use kinds, only: wp
+  use latent_heat, only: heat_of_tempering, latent_of
   use li_kinetics, only: grow_li
   use martensite_kinetics, only: grow_martensite, martensite_start, total_martensite
   use phase_state, only: at_coldest, at_grain, at_hollomon_jaffe, at_rate, at_tempering, first_growth, first_incubation, &
                          cold_as_mixture, never_cold, set_hardness, state_size
   use steels, only: austenite, bainite, ferrite, first_diffusive, kinetics_avrami, kinetics_li, kinetics_none, last_diffusive, &
-                    martensite, pearlite, phase_count, prop_latent, steel_t, tempered, unknown_temperature
+                    martensite, pearlite, phase_count, steel_t, tempered, unknown_temperature
   use stress_kinetics, only: hastened, shift_of_phase, stressed_span
   use temperature_curves, only: dual_curve_at, is_given
   use tempering, only: add_hollomon_jaffe, join_hollomon_jaffe, make_younger, temper
@@ -195,7 +196,7 @@ contains
     end if
     if (steel%cct%n > 0 .and. s(austenite)%value > 0) call cool_by_histories(steel, time, from, to, stress(:, 2), s, heat)
     call transform(steel, time, from, to, stress, s, heat)
-    if (any(steel%temper_rate > 0)) call temper_phases(steel, time, middle, before, s)
+    if (any(steel%temper_rate > 0)) call temper_phases(steel, time, middle, before, s, heat)
     call settle(s)
   end subroutine sub_step
 
@@ -377,11 +378,11 @@ contains
 
   !> Martensite and bainite become tempered; the time counts for P where there is something to temper. What has formed in the
   !> sub-step, and what austenite has taken, is tempered for half of it in the mean: half of what is new joins before, half after.
-  pure subroutine temper_phases(steel, time, temperature, before, s)
+  pure subroutine temper_phases(steel, time, temperature, before, s, heat)
     type(steel_t), intent(in) :: steel
     type(dual_t), intent(in) :: time, temperature
     type(dual_t), intent(in) :: before(2)   ! martensite and bainite at the start of the sub-step
-    type(dual_t), intent(inout) :: s(:)
+    type(dual_t), intent(inout) :: s(:), heat
     integer, parameter :: phases(2) = [martensite, bainite]
     type(dual_t) :: w, gone, half, mean
     integer :: k
@@ -399,6 +400,7 @@ contains
       call make_younger(steel, k, mean - gone, half, s(at_tempering + k - 1))
       s(phases(k)) = s(phases(k)) - gone
       s(tempered) = s(tempered) + gone
+      heat = heat + heat_of_tempering(steel, phases(k), temperature)*gone
     end do
   end subroutine temper_phases
 
@@ -409,8 +411,7 @@ contains
     type(dual_t), intent(in) :: temperature, formed
     type(dual_t), intent(inout) :: heat
 
-    if (is_given(steel%properties(prop_latent, phase))) &
-      heat = heat + dual_curve_at(steel%properties(prop_latent, phase), temperature)*formed
+    heat = heat + latent_of(steel, phase, temperature)*formed
   end subroutine release
 
   !> Round-off: no fraction below 0, and austenite is what the others leave.

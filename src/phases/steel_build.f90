@@ -3,6 +3,7 @@ module steel_build
   use avrami, only: fading
   use critical_temperatures, only: andrews_ae1, andrews_ae3, lever_rule_ferrite, li_bs, van_bohemen_ms, van_bohemen_rate
   use kinds, only: wp
+  use latent_heat, only: lacks_latent
   use li_kinetics, only: li_power, li_speed, li_table
   use phases_there, only: phases_that_form
   use steels, only: bainite, expansion_none, ferrite, first_diffusive, kinetics_avrami, kinetics_li, kinetics_none, &
@@ -172,6 +173,9 @@ contains
       call add_text(problems, 'HARDN MAYNIER needs the composition: COMPO')
     if (is_given(steel%tempered_hardness) .and. .not. any(steel%temper_rate > 0)) &
       call add_text(problems, 'TEMPER with HV needs a row MARTENSITE or BAINITE: nothing is tempered')
+    if (lacks_latent(steel)) &
+      call add_text(problems, 'PHASE TEMPERED needs LATENT: martensite and bainite are tempered, whose LATENT are not ' &
+                    //'the same, and become austenite again (AUSTEN)')
     if (any(is_given(steel%properties(prop_rise, :)) .neqv. is_given(steel%properties(prop_saturation, :)))) &
       call add_text(problems, 'QV and BV of a phase go together')
     if (any(is_given(steel%properties(prop_plasticity, :))) .and. steel%plasticity == plasticity_none) &

@@ -7,7 +7,7 @@ module temperature_curves
   use kinds, only: wp
   implicit none
   private
-  public :: temperature_curve_t, curve_at, curve_integral, dual_curve_at, is_given
+  public :: temperature_curve_t, curve_at, curve_integral, dual_curve_at, is_given, same_curve
   public :: curve_none, curve_constant, curve_table, curve_polynomial
 
   integer, parameter :: curve_none = 0, curve_constant = 1, curve_table = 2, curve_polynomial = 3
@@ -30,6 +30,25 @@ contains
 
     yes = curve%form /= curve_none
   end function is_given
+
+  !> Two curves are given by the same numbers, or neither is given.
+  pure function same_curve(one, other) result(yes)
+    type(temperature_curve_t), intent(in) :: one, other
+    logical :: yes
+
+    yes = one%form == other%form .and. (one%logarithmic .eqv. other%logarithmic)
+    if (.not. yes .or. one%form == curve_none) return
+    yes = same_numbers(one%v, other%v)
+    if (yes .and. one%form == curve_table) yes = same_numbers(one%t, other%t)
+  end function same_curve
+
+  pure function same_numbers(a, b) result(yes)
+    real(wp), intent(in) :: a(:), b(:)
+    logical :: yes
+
+    yes = size(a) == size(b)
+    if (yes) yes = .not. any(abs(a - b) > 0)
+  end function same_numbers
 
   !> Value at a temperature, 0 where there is no curve.
   pure function curve_at(curve, temperature) result(value)

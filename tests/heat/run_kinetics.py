@@ -9,6 +9,8 @@ usage: run_kinetics.py [-v] [-k]
   that begins below Ms has the martensite of its first temperature.
 - `top`: bainite whose latent heat lifts the temperature to the end of its curve, where growth ends: no step is shortened, at any length, on any mesh, and
   runs by steps of 10, 2 and 0.5 s agree.
+- `cycle`: quenched, tempered, made austenite again, twice: no heat is left, without LATENT of TEMPERED and with any; with unlike heat capacities it is so where
+  LATENT follows them (Kirchhoff), and otherwise `--check` tells how much is made in a cycle.
 - `error`: the largest error in time that is told is 0.7 to 4 times that of the run, where latent heat of pearlite is most of it.
 """
 import os
@@ -191,9 +193,55 @@ def between(times, values, time):
     return values[k - 1] + (values[k] - values[k - 1])*(time - times[k - 1])/(times[k] - times[k - 1])
 
 
+CYCLED = """STEEL  cycled
+SOURCE 'made up, for tests'
+TEMPS  AC1 730 AC3 800 MS 300
+MARTEN BETA 0.02
+AUSTEN 1. 0.2
+TEMPER
+   MARTENSITE 1.E9 1.2E5 0.5
+PHASE  ALL
+   LAMBDA 30
+PHASE  AUSTENITE
+   RHOC   4.5
+PHASE  MARTENSITE
+   RHOC   {own:g}
+   LATENT {latent}
+PHASE  TEMPERED
+   RHOC   {own:g}
+{tempered}END
+"""
+CYCLES = """START  T 850.
+IMPOS  w 1 2 3 4 T way
+LIC    way
+   0. 850.      100. 20.    200. 600.    1000. 600.   1100. 850.   1200. 850.
+   1300. 20.    1400. 600.  2200. 600.   2300. 850.   2400. 850.
+STRAT  5. 1.E-5 5. 5 3
+STOP   2400."""
+
+
+def cycle(checks):
+    """1 of area, twice through martensite at 300 to 20 degC, tempered at 600, austenite from 730 degC on."""
+    for name, own, latent, tempered, closed in (("as it was", 4.5, "640", "", 1e-9), ("its own", 4.5, "640", "   LATENT 700\n", 1e-9),
+                                                ("Kirchhoff", 3.6, "POLY 370 0.9", "", 2e-3), ("unlike", 3.6, "640", "", None)):
+        folder = "cycle_" + name.replace(" ", "_")
+        write(checks.path(folder, "k.met"), CYCLED.format(own=own, latent=latent, tempered=tempered))
+        text = DECK.format(title=name, nodes="BILINEAR", size=1., n=1, steel="cycled", cards=CYCLES, probes="PROBE  tempered MEAN tempered w")
+        deck = write(checks.path(folder, "a.lag"), text)
+        told = "MJ/m3 of heat of nothing in each cycle" in run([deck, "--check"]).stdout
+        checks.that(told == (closed is None), f"{name}: told before the run" if told else f"{name}: nothing is told before the run")
+        result = run([deck, "--out", checks.path(folder, "out"), "--threads", "1"])
+        if closed is None or not checks.that(result.returncode == DONE, f"{name}: runs", said(result)):
+            continue
+        rows = history(checks.path(folder, "out"))
+        checks.that(max(rows["tempered"]) > 0.9, f"{name}: tempered", max(rows["tempered"]))
+        checks.that(abs(rows["heat_in"][-1]) < closed*640, f"{name}: heat over two cycles", rows["heat_in"][-1])
+
+
 def main():
     checks = Checks()
     books(checks)
+    cycle(checks)
     cold(checks)
     top(checks)
     error(checks)

@@ -371,6 +371,37 @@ def heated(checks):
                     f"{name}: told" if told else f"{name}: nothing is told", said)
 
 
+HELD_STEEL = '''STEEL  base
+SOURCE 'an example'
+TEMPS  MS 300
+MARTEN BETA 0.011
+CCT
+   0.1  700 0 0 0
+   0.1  600 0.8 0 0
+   10   700 0 0 0
+   10   600 0.1 0 0
+PHASE  ALL
+   LAMBDA 30
+   RHOC   4.5
+END
+'''
+
+
+def held(checks):
+    """A steel of a CCT diagram held at 650 degC for 600 s, where its slowest history forms 0.08 % in a second; cooled as the diagram says."""
+    with open(os.path.join(checks.folder, "held.met"), "w", encoding="utf-8") as file:
+        file.write(HELD_STEEL)
+    for name, way, told in (("held", "0. 800.   30. 650.   630. 650.   720. 200.", True), ("cooled", "0. 800.   120. 200.", False)):
+        deck = FURNACE % ("held.met", "800.", "IMPOS  plate 1 2 3 4 T way\nLIC    way\n   " + way + "\n", "20.")
+        run = Run(checks, name, deck.replace("CONVE  plate 2 4 H 1. TS 20.\n", "").replace("STOP   100.", f"STOP   {way.split()[-2]}"))
+        if not run.ok:
+            continue
+        with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as summary:
+            said = [warning["text"] for warning in json.load(summary)["warnings"]]
+        checks.that(len(said) == told and all("up to 48 % that this history forms in the time have not" in text for text in said),
+                    f"{name}: told" if told else f"{name}: nothing is told", said)
+
+
 def small(checks):
     """SMALL ends where strains are large."""
     half = changed(checks, {"KINEM  LOG": "KINEM  SMALL", "1. -2.": "1. -9."})
@@ -414,6 +445,7 @@ def main():
     passed_planes(checks)
     let_go(checks)
     heated(checks)
+    held(checks)
     small(checks)
     probes(checks)
     checks.end()
