@@ -2,7 +2,7 @@
 module run_stop
   use equations, only: equations_t
   use errors, only: error_t, exit_done, exit_no_convergence, exit_remesh, exit_signal, fail
-  use fields, only: displacement_field
+  use fields, only: displacement_field, find_field
   use heat_contacts, only: jumps_at_opening
   use kinds, only: wp
   use law_api, only: find_parameter, law_t
@@ -36,15 +36,17 @@ contains
 
     where_at = ''
     if (outcome%group > 0) where_at = ', element '//to_text(outcome%element)//' of '//scene%groups(outcome%group)%name
-    if (allocated(outcome%residual)) then
-      call residual_at_nodes(run%equations, outcome%residual, residual)
-      if (any(abs(residual) > 0)) &
-        where_at = where_at//', worst at node '//to_text(scene%mesh%labels(maxloc(sum(residual**2, 1), 1)))
-      call save_failure(scene, solution, run%stem, residual, late)
-    end if
     advice = ''
-    if (allocated(outcome%residual)) advice = 'the residual force is in '//run%stem//'.failed.xdmf; '
-    if (scene%fields(displacement_field)%declared) then
+    if (allocated(outcome%residual)) then
+      call residual_at_nodes(scene, run%equations, outcome%of_heat, outcome%residual, residual)
+      if (any(abs(residual) > 0)) where_at = where_at//', worst at node ' &
+        //to_text(scene%mesh%labels(maxloc(sum(residual**2, 1), 1)))//trim(merge(' (heat)', '       ', outcome%of_heat))
+      if (.not. outcome%of_heat) then
+        call save_failure(scene, solution, run%stem, residual, late)
+        advice = 'the residual force is in '//run%stem//'.failed.xdmf; '
+      end if
+    end if
+    if (.not. outcome%of_heat) then
       advice = advice//'a limit load'//way_past_limit(scene)//', a mesh too distorted or a least step too large in STRAT are ' &
                //'the usual causes'
     else
@@ -117,21 +119,28 @@ contains
     end do
   end function is_steep
 
-  !> Residual of the free unknowns of the nodes; where the motion is given it is a reaction, left out.
-  pure subroutine residual_at_nodes(equations, residual, at_nodes)
+  !> Residual of the free unknowns of the nodes: forces on their motion, or of a solve of heat alone the heat flow in the first
+  !> component. Where the motion or the temperature is given it is a reaction, left out.
+  pure subroutine residual_at_nodes(scene, equations, of_heat, residual, at_nodes)
+    type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: residual(:)
-    real(wp), allocatable, intent(out) :: at_nodes(:, :)
-    integer :: k, c, d
+    logical, intent(in) :: of_heat                          !! the solve was one of heat alone
+    real(wp), intent(in) :: residual(:)                     !! (ndof) [force or power]
+    real(wp), allocatable, intent(out) :: at_nodes(:, :)    !! (2, nnode)
+    integer :: k, c, d, f
 
-    allocate (at_nodes(2, size(equations%dofs%fields(displacement_field)%number, 2)), source=0.0_wp)
-    do k = 1, size(at_nodes, 2)
-      do c = 1, 2
-        d = equations%dofs%fields(displacement_field)%number(c, k)
-        if (d == 0) cycle
-        if (equations%dofs%is_free(d)) at_nodes(c, k) = residual(d)
+    f = displacement_field
+    if (of_heat) f = find_field(scene%fields, 'temperature')
+    associate (number => equations%dofs%fields(f)%number)
+      allocate (at_nodes(2, size(number, 2)), source=0.0_wp)
+      do k = 1, size(at_nodes, 2)
+        do c = 1, size(number, 1)
+          d = number(c, k)
+          if (d == 0) cycle
+          if (equations%dofs%is_free(d)) at_nodes(c, k) = residual(d)
+        end do
       end do
-    end do
+    end associate
   end subroutine residual_at_nodes
 
   !> Leave files that state how the run ended.

@@ -3,7 +3,7 @@ module scene_summary
   use dies, only: is_deformable
   use elem_api, only: elem_t
   use elem_registry, only: list_elems
-  use kinds, only: wp
+  use kinds, only: pi, wp
   use linear_api, only: solver_row_t
   use linear_registry, only: list_solvers
   use loads, only: field_history_t
@@ -54,7 +54,7 @@ contains
     end do
     do k = 1, size(scene%dies)
       call put('die        '//padded(scene%dies(k)%name, 24)//to_text(size(scene%dies(k)%pieces, 3)) &
-               //trim(merge(' piece,  ', ' pieces, ', size(scene%dies(k)%pieces, 3) == 1))//' '//motion_of(k))
+               //trim(merge(' piece,  ', ' pieces, ', size(scene%dies(k)%pieces, 3) == 1))//' '//motion_of(k)//temperature_of(k))
     end do
     do k = 1, merge(3, 0, scene%plane_state == generalised_plane_strain)
       call put('section    '//padded(trim(section_names(k)), 24)//drive_text(scene%section_drives(k)))
@@ -299,6 +299,24 @@ contains
       end do
       if (s == '') s = 'at rest'
     end function motion_of
+
+    !> What TDIE gives of a die.
+    pure function temperature_of(die) result(s)
+      integer, intent(in) :: die
+      character(len=:), allocatable :: s
+      real(wp) :: around
+      integer :: i
+
+      s = ''
+      around = merge(2*pi, 1.0_wp, scene%plane_state == axisymmetric)
+      do i = 1, size(scene%die_heats)
+        associate (heat => scene%die_heats(i))
+          if (heat%die /= die) cycle
+          s = ', T = '//to_text(heat%temperature)//times(heat%multiplier)
+          if (heat%capacity > 0) s = s//' at the start, heat capacity '//to_text(around*heat%capacity, 6)
+        end associate
+      end do
+    end function temperature_of
 
   end subroutine scene_lines
 

@@ -97,6 +97,7 @@ contains
     if (size(equations%solves) == 1) then
       if (is_heat_alone(scene, equations)) then
         call solve_heat(scene, equations, solution, dt, outcome)
+        outcome%of_heat = .true.
       else
         call solve_motion(scene, equations, solution, dt, outcome)
       end if

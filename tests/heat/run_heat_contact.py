@@ -446,8 +446,21 @@ def billet(checks):
                     f"{least} to {most}, were {low} to {high}")
 
 
+def shown(checks):
+    """What TDIE gives is shown with the die: a temperature by time, one of a heat capacity, of the full circumference."""
+    deck = os.path.join(checks.folder, "shown.lag")
+    with open(deck, "w", encoding="utf-8") as file:
+        file.write("TITLE dies\nSTATE AXISYM\nKINEM SMALL\nBLOCK b PL8TM 4 h BILINEAR\n   0. 0.   10. 0.   10. 10.   0. 10.\n   2 1.   2 1.\n"
+                   "LAW h HEAT\n   30. 4.\nSTART T 800.\nDIE low\n   SEGM -1. 0.   20. 0.\nDIE up\n   SEGM 20. 10.   -1. 10.\nTDIE low T 150. C 5.E4\n"
+                   "TDIE up T 250. warm\nLIC warm\n   0. 1.   10. 1.2\nCOU2DC b 1 low H 2.\nCOU2DC b 3 up H 2.\nSTRAT 1. 1.E-3 1. 5 3\nSTOP 10.\nEND\n")
+    told = subprocess.run([LAGAMINE, deck, "--check"], text=True, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT).stdout
+    for words in ("at rest, T = 150 at the start, heat capacity 50000", "at rest, T = 250 x warm"):
+        checks.that(words in told, f"shown: {words}", told[:1500])
+
+
 def main():
     checks = Checks()
+    shown(checks)
     slab(checks)
     wall(checks)
     round_faces(checks)

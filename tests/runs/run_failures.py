@@ -197,6 +197,15 @@ def heat_alone(checks):
     result = run([deck, "--out", checks.path("heat"), "--quiet"])
     fails(checks, result, NO_CONVERGENCE, "heat alone", ["no convergence", "step 1 "])
     checks.that("limit load" not in result.stderr and "NORMS near round-off" in result.stderr, "heat alone: advice", result.stderr[:400])
+    checks.that("worst at node" in result.stderr and "(heat)" in result.stderr and "force" not in result.stderr, "heat alone: the node of the heat",
+                result.stderr[:400])
+    jump = write(checks.path("jump.lag"), "TITLE a film that jumps\nSTATE PLSTN\nKINEM SMALL\nBLOCK b PL8LS 4 steel\n   0. 0.   10. 0.   10. 10.   0. 10.\n"
+                 "   4 1.   4 1.\nLAW steel ELATH\n   200000. 0.3 1.E-5\nADDEL b PL8TM h BILINEAR\nLAW h HEAT\n   30. 4.\nSTART T 800.\nFIXED b 1 Y\n"
+                 "FIXED b 4 X\nCONVE b 2 H 1. TS 20.\n   0. 1.   500. 1.   500.001 1000.   799. 1000.   799.0001 0.01\nSTRAT 10. 10. 10.   5 3\n"
+                 "NORMS FORCE 1.E-15 DISPL 1.E-16\nSTOP 100.\nEND\n")
+    result = run([jump, "--out", checks.path("jump"), "--quiet"])
+    fails(checks, result, NO_CONVERGENCE, "heat beside mechanics", ["no convergence", "(heat)", "temperature:"])
+    checks.that("limit load" not in result.stderr and "force" not in result.stderr, "heat beside mechanics: advice of heat", result.stderr[:400])
 
 
 def streams(checks):
