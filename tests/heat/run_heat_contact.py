@@ -448,7 +448,7 @@ def billet(checks):
 
 def shown(checks):
     """What TDIE gives is shown with the die: a temperature by time, one of a heat capacity, of the full circumference."""
-    deck = checks.path("shown.lag")
+    deck = os.path.join(checks.folder, "shown.lag")
     with open(deck, "w", encoding="utf-8") as file:
         file.write("TITLE dies\nSTATE AXISYM\nKINEM SMALL\nBLOCK b PL8TM 4 h BILINEAR\n   0. 0.   10. 0.   10. 10.   0. 10.\n   2 1.   2 1.\n"
                    "LAW h HEAT\n   30. 4.\nSTART T 800.\nDIE low\n   SEGM -1. 0.   20. 0.\nDIE up\n   SEGM 20. 10.   -1. 10.\nTDIE low T 150. C 5.E4\n"
