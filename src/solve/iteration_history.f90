@@ -14,8 +14,6 @@ module iteration_history
     real(wp) :: force_norm = 0.0_wp, displacement_norm = 0.0_wp, line_search = 1.0_wp
     !> Points opened, closed, stuck or slipped the other way.
     logical :: contact_changed = .false.
-    !> The whole correction was taken, whatever the residual, after searches that were all short.
-    logical :: watched = .false.
   end type iteration_t
 
   !> A residual this many times larger than the first one, after `patience` iterations, counts as divergence.
@@ -142,7 +140,7 @@ contains
     type(iteration_t), intent(in) :: line
     logical :: is_under_way
 
-    is_under_way = line%contact_changed .or. line%watched .or. line%line_search < 0
+    is_under_way = line%contact_changed .or. line%line_search < 0
   end function is_under_way
 
   !> Contact still changes and the residual falls with it: a thin sheet between dies opens and closes point by point, whatever the

@@ -41,9 +41,8 @@ module line_search
     logical :: whole = .false., closely = .false., exactly = .false.
   end type manner_t
 
-  !> A search that ends below this share of the correction is short: with each the residual falls by a quarter, and a turn of
-  !> loading to unloading stays ahead, however short the step is.
-  real(wp), parameter :: short_share = 0.35_wp
+  !> A search that ends below this share of the correction is short.
+  real(wp), parameter :: short_share = 0.2_wp
   real(wp), parameter :: search_above = 0.8_wp, search_closely_above = 0.3_wp, search_exactly_above = 0.02_wp
   !> A share of the correction is taken when the whole residual falls to this part of what it was.
   real(wp), parameter :: real_fall = 0.5_wp

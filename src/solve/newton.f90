@@ -198,7 +198,6 @@ contains
         if (made%gave_way) exit
         cycle
       end if
-      line%watched = caught(outcome%history(first:)) .and. manner%whole
       call note_contact(scene, solution, contact, line%contact_changed)
       line%contact_changed = line%contact_changed .or. followed .or. steep .or. any(held .neqv. equations%wall%held)
       held = equations%wall%held
