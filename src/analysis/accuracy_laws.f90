@@ -15,6 +15,7 @@ module accuracy_laws
   private
   public :: accuracy_law_t, sample_t
   public :: asked_for, choose_fineness, difference, elements_of, errors_of, expected_seconds, grown_seconds, measure_laws
+  public :: steps_differ
 
   !> Orders in space that are believed: of the stress what a crack leaves at least; of forces, work and motions twice that
   !> (J. Nitsche, Abh. Math. Sem. Hamburg 36 (1971) 9-15); and the order of the stress where it is smooth. Without a third mesh
@@ -23,6 +24,8 @@ module accuracy_laws
                          smooth_order = 2.0_wp, rough_order = 1.0_wp
   !> Where steps hardly change in number, little is seen of their errors: less than this is not believed.
   real(wp), parameter :: least_shortening = 0.25_wp
+  !> The errors of two runs tell those of their steps where one has so many times the steps of the other.
+  real(wp), parameter :: least_growth = sqrt(2.0_wp)
   !> Differences below this share of the range are round-off.
   real(wp), parameter :: round_off = 1.0e-9_wp
   !> Times are the same when they are this close, over the last one.
@@ -121,24 +124,40 @@ contains
   end subroutine measure_laws
 
   !> The pilots with the shortest and the next longer steps, on the mesh of the first and with its penetration; the first one where
-  !> there is no other.
+  !> there is no other. Those whose number of steps hardly differs from that of the shortest are passed over, but the first.
   pure subroutine shortest_steps(pilots, first, longer, shorter)
     type(sample_t), intent(in) :: pilots(:)   !! (npilot)
     integer, intent(in) :: first
     integer, intent(out) :: longer, shorter
     integer :: k
 
-    longer = first
     shorter = first
     do k = 1, size(pilots)
-      associate (other => pilots(k)%fineness)
-        if (abs(other%mesh - pilots(first)%fineness%mesh) + abs(other%depth - 1) > 0) cycle
-        if (.not. other%steps < pilots(shorter)%fineness%steps) cycle
-        longer = shorter
-        shorter = k
-      end associate
+      if (alike(k) .and. pilots(k)%fineness%steps < pilots(shorter)%fineness%steps) shorter = k
     end do
+    longer = first
+    do k = 1, size(pilots)
+      if (alike(k) .and. pilots(k)%fineness%steps < pilots(longer)%fineness%steps &
+          .and. steps_differ(pilots(k), pilots(shorter))) longer = k
+    end do
+
+  contains
+
+    pure logical function alike(k)
+      integer, intent(in) :: k
+
+      alike = abs(pilots(k)%fineness%mesh - pilots(first)%fineness%mesh) + abs(pilots(k)%fineness%depth - 1) <= 0
+    end function alike
+
   end subroutine shortest_steps
+
+  !> The second run has so many more steps that their errors can be told from the difference. Steps that a largest length does not
+  !> limit, as they grow from a short first one or follow instants that are hit, hardly change with it.
+  pure logical function steps_differ(coarse, fine)
+    type(sample_t), intent(in) :: coarse, fine   !! that differ in the length of their steps
+
+    steps_differ = fine%steps >= least_growth*coarse%steps
+  end function steps_differ
 
   !> How far steps really get shorter when they are asked to be: the exponent of their number over the factor. Instants that are
   !> hit, events and steps that grow from a short first one make them shorter already, so that they change by less.

@@ -2,7 +2,7 @@
 !> A pilot that is there already, of the same deck and program, is not made again. Those of a deck with REMSH need new meshes,
 !> which the solver does not make: it asks `lagacycle` for one after the other (`NAME.pilot`, exit code 7).
 module accuracy_runs
-  use accuracy_laws, only: choose_fineness, measure_laws, sample_t
+  use accuracy_laws, only: choose_fineness, measure_laws, sample_t, steps_differ
   use accuracy_plan, only: accuracy_plan_t, expect, fineness_words
   use accuracy_rules, only: coarsest_mesh, fineness_t, stress_name
   use accuracy_samples, only: join_forces, key_of, range_of, read_sample, select_columns
@@ -66,9 +66,15 @@ contains
       call pilot(fineness_t(coarsest, 1.0_wp, 1.0_wp), there)
     end if
     if (plan%divisible .and. goes_on()) call pilot(fineness_t(2*coarsest, 1.0_wp, 1.0_wp), there)
-    if (goes_on()) call pilot(fineness_t(coarsest, half, 1.0_wp), there)
-    shortest = merge(half, 1.0_wp, there)
-    if (.not. there .and. goes_on()) call note('errors in time are not known')
+    shortest = 1
+    do while (goes_on())
+      ! half the steps, and shorter ones as long as there are hardly more of them
+      call pilot(fineness_t(coarsest, half*shortest, 1.0_wp), there)
+      if (.not. there) exit
+      shortest = half*shortest
+      if (enough_steps() .or. .not. shortest > least_pilot) exit
+    end do
+    if (.not. shortest < 1 .and. goes_on()) call note('errors in time are not known')
     if (has_rigid_contact(scene) .and. goes_on()) then
       call pilot(fineness_t(coarsest, 1.0_wp, quarter), there)
       if (.not. there .and. goes_on()) call note('errors of the penetration are not known')
@@ -101,6 +107,12 @@ contains
     logical function goes_on()
       goes_on = .not. allocated(error) .and. code == exit_done
     end function goes_on
+
+    !> The last pilot has so many more steps than the first that their errors can be told.
+    logical function enough_steps()
+      enough_steps = .true.
+      if (size(plan%pilots) > 1) enough_steps = steps_differ(plan%pilots(1), plan%pilots(size(plan%pilots)))
+    end function enough_steps
 
     subroutine note(words)
       character(len=*), intent(in) :: words
@@ -153,14 +165,15 @@ contains
       if (.not. there) then
         if (.not. (options%quiet .or. options%progress)) call print_line('pilot of ACCURACY: '//fineness_words(fineness), error)
         if (.not. allocated(error)) call run(own, code, error)
-        if (allocated(error)) then
+        if (allocated(error)) code = error%code
+        if (code == exit_no_convergence) then
           ! one that finds no equilibrium is no reason why the run should not
-          if (error%code /= exit_no_convergence) return
-          deallocate (error)
+          if (allocated(error)) deallocate (error)
+          code = exit_done
           call note('the pilot with '//fineness_words(fineness)//' did not reach its end')
           return
         end if
-        if (code /= exit_done) return
+        if (allocated(error) .or. code /= exit_done) return
       end if
       if (size(plan%columns) == 0 .and. .not. only_stress()) then
         call select_columns(own, scene, plan%columns, plan%names, error)

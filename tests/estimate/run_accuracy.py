@@ -206,6 +206,33 @@ def none_of_supports(checks):
         checks.that("2 % asked of out, t\n" in file.read() and asked["met"] and asked["reached"]["error_pct"] <= 2, "the work of supports is not judged", asked)
 
 
+def steps_that_hardly_change(checks):
+    """A bar cools; steps grow from a short first one, so that those of half the largest length are as many. Its true error, against steps of a
+    hundredth, is below what was asked all the same."""
+    text = ("TITLE a bar cools\nSTATE AXISYM\nKINEM SMALL\nBLOCK bar PL8TM 4 h\n   0. 0.   20. 0.   20. 30.   0. 30.\n   3 1.   3 1.\nLAW h HEAT\n   28. 4.9\n"
+            "START T 1100.\nCONVE bar 2 3 H 0.05 TS 20.\nRADIA bar 2 3 EPS 0.8 SIGMA 5.67E-11 TS 20. ZERO 273.15\nSTRAT 5. 1.E-3 50. 6 3\nSTOP 300.\n"
+            "PROBE core NODE T 0. 0.\nPROBE edge NODE T 20. 30.\nACCURACY 1 %\nEND\n")
+    history, summary, folder = call(checks, "grows", text)
+    finest = os.path.join(folder, "finest")
+    subprocess.run([LAGAMINE, folder + ".lag", "--out", finest, "--threads", "1", "--quiet", "--fineness", "3,0.01,1"], check=True)
+    run = Run.__new__(Run)
+    run.out = finest
+    true = run.read_history()
+    error = max(abs(history[q][-1] - true[q][-1])/np.ptp(true[q]) for q in ("core", "edge"))
+    checks.that(100*error <= 1 and summary["accuracy"]["asked"]["met"], "steps that hardly change in number: true error below 1 %", f"{100*error:.3g} %")
+
+
+def no_pilot_ends(checks):
+    """A disc that turns too fast has no equilibrium on any mesh: the run says so."""
+    text = ("TITLE a disc bursts\nSTATE AXISYM\nKINEM LOG\nBLOCK disc PL8LS 4 m\n   50. 0.   200. 0.   200. 5.   50. 10.\n   4 1.   2 1.\nLAW m EPLA\n   210000. 0.3\n"
+            "   LINEAR 400. 1000.\nFIXED disc 1 Y\nCENTR disc 7.8E-9 2600. up\nLIC up\n   0. 0.   1. 1.\nSTRAT 0.25 1.E-3 0.25 5 3\nACCURACY 2 %\nEND\n")
+    path = os.path.join(checks.folder, "bursts.lag")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+    done = subprocess.run([LAGAMINE, path, "--out", os.path.join(checks.folder, "bursts"), "--threads", "1", "--quiet"], check=False, capture_output=True, text=True)
+    checks.that(done.returncode == 3 and "no run to its end" in done.stderr, "no pilot ends: told, with code 3", (done.returncode, done.stderr))
+
+
 def main():
     checks = Checks()
     names = [word for word in sys.argv[1:] if not word.startswith("-")]
@@ -224,6 +251,8 @@ def main():
     if not names:
         told_where_it_is_not(checks)
         none_of_supports(checks)
+        steps_that_hardly_change(checks)
+        no_pilot_ends(checks)
     print("scene            asked %   true %  of               expected %  reached %  elements  mesh  steps  depth  steps: spent expected   seconds: spent expected  pilots")
     for name, asked, true, of, told, elements in rows:
         print(f"{name:16s} {asked:7} {true:8.3f}  {of:16s} {told['expected']['error_pct']:10.3f} {told['reached']['error_pct']:10.3f} {elements:9d} {told['mesh']:5g} "
