@@ -1,6 +1,7 @@
 !> Acceptance of a step: the trial state becomes the state, and every check is made.
 module accept_step
   use bookkeeping, only: book_reactions, book_deformable_dies, measure_scene, book_spurious_mode, pressed_on, sample_contacts
+  use confinement, only: note_confinement
   use damping, only: ease_damping, work_of_damping
   use dies, only: is_deformable
   use dofs, only: move_fields
@@ -42,8 +43,10 @@ contains
     type(solution_t), intent(inout) :: solution
     type(totals_t), intent(out) :: totals
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: friction_before, given_before
+    real(wp) :: friction_before, given_before, outside_before, elastic_before
 
+    outside_before = solution%external_work
+    elastic_before = solution%work%elastic
     given_before = solution%work%dies + solution%work%supports
     call book_work(equations, outcome%du, solution)
     solution%work%damping = solution%work%damping + work_of_damping(equations, dt, outcome%du)
@@ -78,6 +81,8 @@ contains
     call check(solution, totals, error)
     if (.not. allocated(error)) call book_fractions(scene, solution, error)
     call commit(scene, equations, solution)
+    call note_confinement(scene, equations%laws, solution%work%elastic - elastic_before, solution%external_work - outside_before, &
+                          solution)
   end subroutine accept
 
   !> Changes of forces at a new mesh, and forces of weak springs, are measured by the largest so far: at lift-off those of now are

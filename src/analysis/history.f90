@@ -13,10 +13,10 @@ module history
   use kinds, only: pi, wp
   use newton, only: outcome_t
   use path_record, only: motion_error, stress_error
+  use point_volumes, only: volumes_of_points
   use probes, only: probe_maximum, probe_mean, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
-  use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
+  use quad8_geometry, only: quad8_rule, quad8_rule_t
   use scene, only: axisymmetric, generalised_plane_strain, scene_t
-  use sections, only: thickness_at
   use solution, only: solution_t
   use stress_measures, only: stress_measure
   use text, only: add_text, string_t
@@ -274,26 +274,22 @@ contains
     type(probe_t), intent(in) :: probe
     real(wp), intent(inout) :: integral, volume
     type(quad8_rule_t) :: rule
-    real(wp) :: x(2, 8), nx(8), ny(8), section(3), detj, dv, here
+    real(wp), allocatable :: dv(:)
+    real(wp) :: here
     integer :: p, e
 
-    section = scene%section
-    if (scene%finite) section = solution%fields(section_field)%value(:, 1)
-    associate (group => scene%groups(probe%group), u => solution%fields(displacement_field)%value)
+    associate (group => scene%groups(probe%group))
       call quad8_rule(group%rule%n, rule)
       do e = 1, size(group%connectivity, 2)
-        x = scene%mesh%coordinates(:, group%connectivity(:, e))
-        if (scene%finite .and. size(u) > 0) x = x + u(:, group%connectivity(:, e))
+        dv = volumes_of_points(scene, solution, rule, group%connectivity(:, e))
         do p = 1, rule%npoint
-          call derivatives(rule%dphi(:, :, p), x, nx, ny, detj)
-          dv = detj*rule%weight(p)*thickness_at(section, matmul(x, rule%phi(:, p)))
-          volume = volume + dv
+          volume = volume + dv(p)
           if (probe%field > 0) then
             here = dot_product(rule%phi(:, p), solution%fields(probe%field)%value(1, group%connectivity(:, e)))
           else
             here = state_of(solution, probe, p, e)
           end if
-          integral = integral + dv*here
+          integral = integral + dv(p)*here
         end do
       end do
     end associate

@@ -9,6 +9,7 @@ module run_deck
   use blas, only: blas_buffer, blas_build, blas_core_name, keep_blas_to_one_thread
   use cards_operations, only: operations_t
   use closing_table, only: close_cycle, close_run
+  use confinement, only: warn_of_confinement
   use contact_ends, only: contact_end_t
   use cost_file, only: cost_t, write_cost
   use cut_report, only: warn_of_webs
@@ -291,6 +292,7 @@ contains
     if (allocated(run%balance)) then
       if (run%balance%agreed) call add_text(facts%warnings, agreed_words(run%balance))
     end if
+    call warn_of_confinement(scene, solution, facts%warnings)
     call warn_of_passed_planes(scene, solution, facts%warnings)
     if (run%exit_code == exit_done) then
       call warn_of_webs(scene, solution, facts%warnings)

@@ -1,5 +1,6 @@
 !> How a run ends: at the end of the scene, at a limit, by a signal, or because it cannot go on.
 module run_stop
+  use confinement, only: confinement_words
   use equations, only: equations_t
   use errors, only: error_t, exit_done, exit_no_convergence, exit_remesh, exit_signal, fail
   use fields, only: displacement_field, find_field
@@ -55,6 +56,7 @@ contains
                //'STRAT are the usual causes'
     end if
     advice = untouched_die_advice(scene, solution)//advice
+    if (solution%confinement%now) advice = confinement_words(scene, solution%confinement)//'; '//advice
     if (index(outcome%reason, 'singular') > 0 .and. any(may_stand_alone(scene%groups))) advice = advice//'; a body of few ' &
       //'elements with 4 integration points has a motion that nothing resists, 9 points with MEAN have none'
     if (loses_touch(scene)) &

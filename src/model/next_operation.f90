@@ -74,6 +74,7 @@ contains
     after%older_step = 0
     after%probation = fresh%probation
     after%largest_force = 0
+    after%confinement = fresh%confinement
     after%damping = 0
     after%damping_bound = after%work%damping
     after%friction_apart = 0

@@ -3,6 +3,7 @@ module solution
   use acceptance, only: probation_t
   use cuts, only: cut_record_t
   use fields, only: displacement_field, field_t, find_field, on_nodes, on_pilots, pilot_field, section_field, start_field
+  use confinement_record, only: confinement_record_t
   use heat_record, only: heat_record_t
   use kinds, only: wp
   use loads, only: multiplier_at, start_t
@@ -78,6 +79,8 @@ module solution
     real(wp) :: missing_austenite = 0.0_wp
     !> Share that a steel of a CCT diagram alone should have formed in holds, by its slowest history (held_steels).
     real(wp) :: held_growth = 0.0_wp
+    !> Parts without room to flow.
+    type(confinement_record_t) :: confinement
     !> Largest depth of a side in a die anywhere along it, and over what the side allows.
     real(wp) :: worst_sample = 0.0_wp, worst_sample_ratio = 0.0_wp
     !> Largest force on a die so far where meshes are replaced, or on one made of sides; per radian when axisymmetric.

@@ -1,6 +1,7 @@
 !> The members of a solution, for writing, reading, describing or carrying them (visitors).
 module visit_solution
   use acceptance, only: probation_steps, probation_t
+  use confinement_record, only: confinement_record_t
   use heat_record, only: heat_record_t
   use kinds, only: wp
   use pairs, only: pairs_t
@@ -63,6 +64,9 @@ contains
     call visitor%enter('heat')
     call visit_heat_record(visitor, self%heat)
     call visitor%leave('heat')
+    call visitor%enter('confinement')
+    call visit_confinement(visitor, self%confinement)
+    call visitor%leave('confinement')
     call visitor%enter('path')
     call visit_path_record(visitor, self%path)
     call visitor%leave('path')
@@ -110,6 +114,17 @@ contains
     call visitor%member('excess', self%excess, kept, 'temperature', low=0.0_wp)
     call visitor%member('fallbacks', self%fallbacks, kept, low=0)
   end subroutine visit_heat_record
+
+  subroutine visit_confinement(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(confinement_record_t), intent(inout) :: self
+
+    call visitor%member('group', self%group, kept, low=0)
+    call visitor%member('since', self%since, kept, 'time', low=0.0_wp)
+    call visitor%member('change', self%change, kept, '-')
+    call visitor%member('over_stress', self%over_stress, kept, '-')
+    call visitor%member('now', self%now, kept)
+  end subroutine visit_confinement
 
   subroutine visit_path_record(visitor, self)
     class(visitor_t), intent(inout) :: visitor

@@ -6,6 +6,7 @@ usage: run_told.py [-v] [-k]       -v prints every check, -k keeps the results
 - Decks that are read without a mistake and mean something else than their author: `--check` warns in one line of each, with the words
   that the table prints; the deck that they are made from, and all decks of the project, are told nothing.
 - Dies that move and meet nothing, bodies that go through each other: in the summary.
+- A body that fills a closed die, which goes on: in the summary, with the change of volume of the closed form.
 - A body that passes the plane in which it is held: in the summary.
 - A body that its dies have let go, so that nothing holds it: in the summary; not one that still lies against a die.
 - A steel without kinetics of austenite that is heated above Ac1: in the summary; not one that has them, nor one that only cools.
@@ -290,6 +291,46 @@ def crossed(checks):
                     f"a punch moved by {way}: {wanted} warning", told)
 
 
+FULL = """TITLE  A billet in a container without an exit
+STATE  AXISYM
+KINEM  LOG
+BLOCK  billet PL8LS 4 metal
+   0. 0.   8. 0.   8. 10.   0. 10.
+   4 1.   5 1.
+LAW    metal EPLA
+   70000. 0.33
+   LINEAR 200. 200.
+LAW    film COUL2D
+   PENETR 1.E-3   PHI 0.1   AUGMENT 10
+DIE    wall
+   SEGM   10. -1.   10. 30.
+DIE    punch PILOT 0. 10.
+   SEGM   12. 10.   -1. 10.
+CNT2D  billet 2 wall film
+CNT2D  billet 3 2 punch film
+FIXED  billet 1 Y
+FIXED  billet 4 X
+LIC    press
+   0. 0.   1. -4.5
+MOVE   punch Y press
+STRAT  0.01 1.E-6 0.02   6 3
+END
+"""
+
+
+def full(checks):
+    """A billet of radius 8 and height 10 fills a bore of radius 10 at 3.6: told when it is pressed 4.5, with 1 - 5.5/6.4 = 14 % of its volume;
+    not when it is pressed 3.4."""
+    for way, told_of in (("-4.5", 1), ("-3.4", 0)):
+        run = Run(checks, "full" + way, FULL.replace("-4.5", way))
+        if not run.ok:
+            return
+        with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as summary:
+            told = [one["text"] for one in json.load(summary)["warnings"]]
+        checks.that(len(told) == told_of and all("billet has had hardly any room to flow since time 0.8" in text and "by up to 14 % of its volume" in text for text in told),
+                    f"a container pressed by {way}: {told_of} warning", told)
+
+
 def passed_planes(checks):
     """A corner that is moved behind the plane in which its body is held: told at the end, with the depth; not where it stays
     before it, nor where the side is clamped."""
@@ -442,6 +483,7 @@ def main():
     warned_cycle(checks)
     idle(checks)
     crossed(checks)
+    full(checks)
     passed_planes(checks)
     let_go(checks)
     heated(checks)
