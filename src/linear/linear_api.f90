@@ -28,6 +28,8 @@ module linear_api
     real(wp) :: refine_above = 1.0e-14_wp
     !> Fewer operations of a factorisation are left to the fallback.
     real(wp) :: least_operations = 0.0_wp
+    !> Its factors find entries of the inverse.
+    logical :: inverts = .false.
     procedure(create_i), nopass, pointer :: create => null()
   end type solver_row_t
 
