@@ -55,6 +55,8 @@ module equations
     type(free_sides_t) :: free_sides
     !> Elements by their nodes, where patches are eliminated.
     type(patch_map_t) :: patches
+    !> None is, in the attempts at a step that follow one which failed with a patch: it may have led past where a side snaps off.
+    logical :: without_patches = .false.
     !> Bodies of nodes that supports do not hold, of no size where there is none (resting_bodies).
     integer, allocatable :: loose(:)
     !> Unknowns at rest in the present step (ndof); of no size where no body is loose.

@@ -223,6 +223,8 @@ contains
     outcome%gave_way = made%gave_way
     outcome%strain = report%strain
     outcome%converged = .not. (allocated(outcome%reason) .or. allocated(outcome%error))
+    if (equations%solves(equations%now)%own(displacement_field)) equations%without_patches = .not. outcome%converged &
+      .and. (equations%without_patches .or. any(outcome%history%inner > 0))
     if (outcome%converged .and. report%passed < 1) then
       outcome%converged = .false.
       outcome%reason = 'a side goes through a die'

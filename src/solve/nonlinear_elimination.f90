@@ -70,7 +70,7 @@ contains
     integer :: g, timer
 
     inner = 0
-    if (iteration >= most_iterations .or. .not. has_patches(scene, equations)) return
+    if (iteration >= most_iterations .or. equations%without_patches .or. .not. has_patches(scene, equations)) return
     call equations%timers%add('elimination', timer)
     call equations%timers%start(timer)
     eliminated = correction

@@ -5,12 +5,14 @@ usage: run_patches.py [-v] [-k]       -v prints every check, -k keeps the result
 
 The upsetting deck, whose side folds onto the die: 246 matrices without patches, 137 with them; force and radius at the end differ by
 .05 %, as the steps are others. A block that slides, and one under a die that a FORCE drives, whose free pilot is among the unknowns
-of the patch. Results with a patch are the same bits for any number of threads.
+of the patch. A blank one side of which snaps off its die: attempts at a step after one that failed have no patch, or the run ends with
+3 (`run_chatter.py`). Results with a patch are the same bits for any number of threads.
 """
 import re
 import sys
 
 sys.dont_write_bytecode = True
+from run_chatter import DRAW, SNAP  # noqa: E402
 from run_newton import SLIDING  # noqa: E402
 from support import DONE, UPSETTING, Checks, deck_text, history, mesh, result_differences, run, said, summary, with_h5py, write  # noqa: E402
 
@@ -80,6 +82,8 @@ def main():
         for column in ("force_x_upper", "force_y_upper", "displacement_x_upper", "displacement_y_upper"):
             one, other = end_of(without, column), end_of(with_patch, column)
             checks.that(abs(other - one) <= SAME_SLIDE*abs(one), f"{name}: {column} at the end as without patches", (one, other))
+    snap = ran(checks, "snap", with_norms(deck_text(DRAW), "PATCH 12"), *SNAP[0])
+    checks.that("with a patch" in deck_text(f"{snap}/deck.log"), "snap: there are patches")
     checks.end()
 
 
