@@ -92,7 +92,7 @@ contains
     type(totals_t), intent(in) :: totals
 
     write (listing%unit, '(a)') 'step '//to_text(solution%step)//'  time '//to_text(solution%time)//'  length ' &
-      //to_text(solution%last_step)//'  iterations '//to_text(outcome%iterations)//parts_of(outcome)
+      //to_text(solution%last_step)//'  iterations '//to_text(outcome%iterations)//parts_of(outcome)//patches_of(outcome)
     call list_iterations(listing, outcome)
     if (outcome%gave_way) write (listing%unit, '(a)') '  augmentation '//to_text(outcome%augmentations + 1) &
       //' of contact had no equilibrium: the one before it was kept'
@@ -111,16 +111,32 @@ contains
     if (outcome%parts > 1) words = ' in '//to_text(outcome%parts)//' parts'
   end function parts_of
 
+  !> Iterations with a patch eliminated, and those on its unknowns.
+  pure function patches_of(outcome) result(words)
+    type(outcome_t), intent(in) :: outcome
+    character(len=:), allocatable :: words
+
+    words = ''
+    if (any(outcome%history%inner > 0)) words = ', '//to_text(count(outcome%history%inner > 0))//' with a patch ('// &
+                                                to_text(sum(outcome%history%inner))//' inner)'
+  end function patches_of
+
   subroutine list_iterations(listing, outcome)
     type(listing_t), intent(in) :: listing
     type(outcome_t), intent(in) :: outcome
     integer :: k
+    logical :: patches
 
-    write (listing%unit, '(a)') '  iteration   residual/force  correction/motion  line search'
+    patches = any(outcome%history%inner > 0)
+    write (listing%unit, '(a)') '  iteration   residual/force  correction/motion  line search' &
+      //trim(merge('  inner', '       ', patches))
     do k = 1, size(outcome%history)
       associate (line => outcome%history(k))
         if (k == 1) then
           write (listing%unit, '(i10,es17.3)') k - 1, line%force_norm
+        else if (patches) then
+          write (listing%unit, '(i10,es17.3,es19.3,f13.3,i7)') k - 1, line%force_norm, line%displacement_norm, line%line_search, &
+            line%inner
         else
           write (listing%unit, '(i10,es17.3,es19.3,f13.3)') k - 1, line%force_norm, line%displacement_norm, line%line_search
         end if

@@ -90,7 +90,7 @@ contains
       end if
 
       solution%next_step = after_success(scene, dt, solution%next_step, outcome%first_iterations, outcome%strain, &
-                                        min(outcome%heat%growth, outcome%path%growth))
+                                        min(outcome%heat%growth, outcome%path%growth), outcome%patch_difficulty)
       call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
       if (allocated(error)) exit
       call note_missing_austenite(scene, run%equations%laws, solution)

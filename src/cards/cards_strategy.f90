@@ -75,10 +75,10 @@ contains
     type(cursor_t), intent(inout) :: cursor
     type(strategy_t), intent(inout) :: strategy
     type(string_t), allocatable :: names(:)
-    logical :: given(7)
+    logical :: given(8)
     integer :: k
 
-    call words_of('FORCE DISPL ITMAX STRAIN PATH RATE TRAVEL', names)
+    call words_of('FORCE DISPL ITMAX STRAIN PATH RATE TRAVEL PATCH', names)
     given = .false.
     do
       call cursor%name('the name of a norm', names, k)
@@ -105,6 +105,8 @@ contains
       case (7)
         call cursor%real('the longest way of a die in a step', strategy%travel_bound, lower=0.0_wp, strict_lower=.true., &
                          unit='length')
+      case (8)
+        call cursor%integer('the elements of a patch at most, or 0', strategy%patch, lower=0, upper=100)
       end select
       if (.not. cursor%more()) exit
     end do

@@ -1,6 +1,7 @@
 !> Factors by the multifrontal factorisation of this program.
 module front_factors
   use errors, only: error_t
+  use front_inverse, only: inverse_entries
   use kinds, only: wp
   use linear_api, only: factors_t
   use matrix_pattern, only: matrix_pattern_t
@@ -16,6 +17,7 @@ module front_factors
     procedure :: factorise => factorise_front
     procedure :: substitute => substitute_front
     procedure :: release => release_front
+    procedure :: invert => invert_front
   end type front_t
 
 contains
@@ -53,6 +55,16 @@ contains
 
     call substitute(self%fronts, x)
   end subroutine substitute_front
+
+  subroutine invert_front(self, equations, entries, found)
+    class(front_t), intent(inout) :: self
+    integer, intent(in) :: equations(:)
+    real(wp), intent(out) :: entries(:, :)
+    logical, intent(out) :: found
+
+    call inverse_entries(self%fronts%layout, self%fronts%factors, equations, entries)
+    found = .true.
+  end subroutine invert_front
 
   subroutine release_front(self)
     class(front_t), intent(inout) :: self

@@ -20,6 +20,8 @@ module front_layout
     integer :: max_order = 0
     !> Children of front f, child(child_first(f):child_first(f+1)-1); those of 0 are the roots.
     integer, allocatable :: child_first(:), child(:)
+    !> Parent of every front, 0 for a root; front of every pivot (neq).
+    integer, allocatable :: parent(:), front_of(:)
     !> Places of the rows of its border, and their rows in its parent: index(border(f):border(f+1)-1), to_parent the same.
     integer, allocatable :: border(:), index(:), to_parent(:)
     !> Nonzeros of the matrix that enter front f, and where in its factors: source, target(entry(f):entry(f+1)-1).
@@ -45,28 +47,28 @@ contains
     class(matrix_pattern_t), intent(in) :: pattern
     integer, intent(in) :: position(:)   !! order of elimination asked for (neq)
     type(front_layout_t), intent(out) :: layout
-    integer, allocatable :: parent(:)
 
-    call find_fronts(pattern, position, layout%place, layout%first, layout%order, parent)
+    call find_fronts(pattern, position, layout%place, layout%first, layout%order, layout%parent)
     layout%neq = pattern%neq
-    layout%nfront = size(parent)
+    layout%nfront = size(layout%parent)
     layout%max_order = maxval(layout%order)
-    call list_children(parent, layout)
+    call list_children(layout)
     call list_borders(pattern, layout)
     call map_entries(pattern, layout)
-    call split_tree(parent, layout)
-    call place_stores(parent, layout)
+    call split_tree(layout)
+    call place_stores(layout)
   end subroutine lay_out_fronts
 
-  pure subroutine list_children(parent, layout)
-    integer, intent(in) :: parent(:)
+  pure subroutine list_children(layout)
     type(front_layout_t), intent(inout) :: layout
     integer, allocatable :: next(:)
     integer :: f
 
     allocate (layout%child_first(0:layout%nfront + 1), source=0)
     do f = 1, layout%nfront
-      layout%child_first(parent(f) + 1) = layout%child_first(parent(f) + 1) + 1
+      associate (next_parent => layout%parent(f) + 1)
+        layout%child_first(next_parent) = layout%child_first(next_parent) + 1
+      end associate
     end do
     layout%child_first(0) = 1
     do f = 1, layout%nfront + 1
@@ -75,8 +77,10 @@ contains
     allocate (layout%child(layout%nfront), next(0:layout%nfront))
     next = layout%child_first(:layout%nfront)
     do f = 1, layout%nfront
-      layout%child(next(parent(f))) = f
-      next(parent(f)) = next(parent(f)) + 1
+      associate (parent => layout%parent(f))
+        layout%child(next(parent)) = f
+        next(parent) = next(parent) + 1
+      end associate
     end do
   end subroutine list_children
 
@@ -152,19 +156,19 @@ contains
   subroutine map_entries(pattern, layout)
     class(matrix_pattern_t), intent(in) :: pattern
     type(front_layout_t), intent(inout) :: layout
-    integer, allocatable :: front_of(:), local(:), next(:)
+    integer, allocatable :: local(:), next(:)
     integer :: f, k, c, j, p, n, pass, a, b
 
-    allocate (front_of(layout%neq), local(layout%neq), layout%to_parent(size(layout%index)))
+    allocate (layout%front_of(layout%neq), local(layout%neq), layout%to_parent(size(layout%index)))
     do f = 1, layout%nfront
-      front_of(layout%first(f):layout%first(f + 1) - 1) = f
+      layout%front_of(layout%first(f):layout%first(f + 1) - 1) = f
     end do
     allocate (layout%entry(layout%nfront + 1), source=0)
     do pass = 1, 2
       do k = 1, pattern%nnz
         a = layout%place(pattern%row(k))
         b = layout%place(pattern%column(k))
-        f = front_of(min(a, b))
+        f = layout%front_of(min(a, b))
         call note(a, b)
         if (pattern%symmetric .and. a /= b) call note(b, a)
       end do
@@ -229,8 +233,7 @@ contains
   end subroutine map_entries
 
   !> Operations of all subtrees, and which are left to one thread.
-  pure subroutine split_tree(parent, layout)
-    integer, intent(in) :: parent(:)
+  pure subroutine split_tree(layout)
     type(front_layout_t), intent(inout) :: layout
     real(wp), allocatable :: work(:)
     real(wp) :: p, n
@@ -243,8 +246,10 @@ contains
       n = layout%order(f)
       ! LU of the pivots, both triangular solves, product
       work(f) = work(f) + 2*p**3/3 + 2*p**2*(n - p) + 2*p*(n - p)**2
-      work(parent(f)) = work(parent(f)) + work(f)
-      if (parent(f) > 0) layout%subtree(parent(f)) = min(layout%subtree(parent(f)), layout%subtree(f))
+      associate (parent => layout%parent(f))
+        work(parent) = work(parent) + work(f)
+        if (parent > 0) layout%subtree(parent) = min(layout%subtree(parent), layout%subtree(f))
+      end associate
     end do
     layout%flops = work(0)
     layout%shared = work(1:) > max(subtree_share*work(0), worth_sharing)
@@ -252,8 +257,7 @@ contains
 
   !> Factors follow each other. Borders are stacked, one stack for even and one for odd depths: a front takes those of its
   !> children off one and puts its own on the other. Every subtree has its stacks; shared fronts have theirs alone.
-  pure subroutine place_stores(parent, layout)
-    integer, intent(in) :: parent(:)
+  pure subroutine place_stores(layout)
     type(front_layout_t), intent(inout) :: layout
     integer, allocatable :: depth(:)
     integer(i8) :: top(0:1), peak(0:1)
@@ -261,7 +265,7 @@ contains
 
     allocate (depth(0:layout%nfront), source=0)
     do f = layout%nfront, 1, -1
-      depth(f) = depth(parent(f)) + 1
+      depth(f) = depth(layout%parent(f)) + 1
     end do
     allocate (layout%factor_start(layout%nfront), layout%border_start(layout%nfront))
     do f = 1, layout%nfront
@@ -276,8 +280,8 @@ contains
         layout%border_length = layout%border_length + border_size(f)
         cycle
       end if
-      if (parent(f) > 0) then
-        if (.not. layout%shared(parent(f))) cycle
+      if (layout%parent(f) > 0) then
+        if (.not. layout%shared(layout%parent(f))) cycle
       end if
       top = 0
       peak = 0

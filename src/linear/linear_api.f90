@@ -17,6 +17,7 @@ module linear_api
     procedure(factorise_i), deferred :: factorise
     procedure(substitute_i), deferred :: substitute
     procedure(release_i), deferred :: release
+    procedure :: invert => invert_nothing
   end type factors_t
 
   type :: solver_row_t
@@ -27,6 +28,8 @@ module linear_api
     real(wp) :: refine_above = 1.0e-14_wp
     !> Fewer operations of a factorisation are left to the fallback.
     real(wp) :: least_operations = 0.0_wp
+    !> Its factors find entries of the inverse.
+    logical :: inverts = .false.
     procedure(create_i), nopass, pointer :: create => null()
   end type solver_row_t
 
@@ -70,4 +73,18 @@ module linear_api
       class(factors_t), intent(inout) :: self
     end subroutine release_i
   end interface
+
+contains
+
+  !> Entries of the inverse in the rows and columns of these equations, where the member can find them cheaply: this one cannot.
+  subroutine invert_nothing(self, equations, entries, found)
+    class(factors_t), intent(inout) :: self
+    integer, intent(in) :: equations(:)      !! (n), none twice
+    real(wp), intent(out) :: entries(:, :)   !! (n, n) [unknown/residual]
+    logical, intent(out) :: found
+
+    entries = 0
+    found = .false.
+  end subroutine invert_nothing
+
 end module linear_api

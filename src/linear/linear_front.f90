@@ -14,6 +14,7 @@ contains
     row%name = 'FRONT'
     row%purpose = 'multifrontal, all threads, without pivoting; MUMPS where that is not accurate'
     row%fallback = 'MUMPS'
+    row%inverts = .true.
     row%create => create_front
   end function linear_front_row
 

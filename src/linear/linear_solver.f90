@@ -11,7 +11,7 @@ module linear_solver
   use vectors, only: length_of
   implicit none
   private
-  public :: linear_solver_t, choose_solver, analyse, factorise, solve_linear, release, return_to_chosen
+  public :: linear_solver_t, choose_solver, analyse, factorise, solve_linear, solve_unrefined, invert_at, release, return_to_chosen
 
   !> Backward error of a solve that is accepted at last.
   real(wp), parameter, public :: linear_tolerance = 1.0e-10_wp
@@ -203,6 +203,30 @@ contains
                 //to_text(linear_tolerance, 3))
     end if
   end subroutine solve_linear
+
+  !> Solve with the factors at hand, not refined: what is added to a solution that is. `found` is false without sound factors.
+  subroutine solve_unrefined(solver, x, found, error)
+    type(linear_solver_t), intent(inout) :: solver
+    real(wp), intent(inout) :: x(:)      !! (neq) [residual], then [unknown]
+    logical, intent(out) :: found
+    type(error_t), allocatable, intent(out) :: error
+
+    found = solver%sound
+    if (found) call solver%stages(solver%made_by)%factors%substitute(x, error)
+  end subroutine solve_unrefined
+
+  !> Entries of the inverse of the matrix at hand, in the rows and columns of these equations. `found` is false without sound
+  !> factors, and where the solver cannot find them.
+  subroutine invert_at(solver, equations, entries, found)
+    type(linear_solver_t), intent(inout) :: solver
+    integer, intent(in) :: equations(:)      !! (n), none twice
+    real(wp), intent(out) :: entries(:, :)   !! (n, n) [unknown/residual]
+    logical, intent(out) :: found
+
+    found = .false.
+    entries = 0
+    if (solver%sound) call solver%stages(solver%made_by)%factors%invert(equations, entries, found)
+  end subroutine invert_at
 
   !> Solve, then correct by the residual while that is worth it.
   subroutine refine(solver, pattern, rhs, x, error)

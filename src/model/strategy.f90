@@ -35,6 +35,8 @@ module strategy
     !> Largest errors that come of the path within steps: of the motion of a step over the motion, and of the stress over the
     !> stress; 0: not bounded, and where both are, none is estimated (path_error).
     real(wp) :: path_bound = 0.04_wp, rate_bound = 0.008_wp
+    !> Elements at most in a patch whose unknowns are eliminated before a correction; 0: none is (nonlinear_elimination).
+    integer :: patch = 0
     !> Place of the linear solver in their list; the first is the default.
     integer :: linear_solver = 1
     !> Of no account where a scene has fields of one quantity.

@@ -18,7 +18,7 @@ module element_loop
   use timers, only: ledger_t
   implicit none
   private
-  public :: element_buffers_t, run_elements, gather_forces, gather_geometry, gather_matrix, add_prescribed, group_geometry
+  public :: element_buffers_t, run_elements, run_few, gather_forces, gather_geometry, gather_matrix, add_prescribed, group_geometry
 
   !> Elements per block: their arrays stay in the first-level caches.
   integer, parameter :: block_size = 16
@@ -103,6 +103,30 @@ contains
       if (report%status /= block_done) return
     end do
   end subroutine run_elements
+
+  !> Some elements of a group, at a motion of the step, apart from the state of the step: drivers are as they were found last.
+  subroutine run_few(scene, row, kinematics, laws, dofs, instant, g, first, last, du, solution, drivers, force, matrix, report)
+    type(scene_t), intent(in) :: scene
+    type(elem_t), intent(in) :: row
+    type(kinematics_t), intent(in) :: kinematics
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
+    type(dofs_t), intent(in) :: dofs
+    type(instant_t), intent(in) :: instant
+    integer, intent(in) :: g, first, last   !! group, and elements of it
+    real(wp), intent(in) :: du(:)           !! (ndof) motion of every unknown [unknown]
+    type(solution_t), intent(in) :: solution
+    type(drivers_t), intent(in) :: drivers   !! of the points of the group
+    real(wp), intent(out) :: force(:, :)     !! (ndof of the element, nelem) [residual]
+    real(wp), intent(out) :: matrix(:, :, :) !! (ndof, ndof, nelem) [residual/unknown]
+    type(report_t), intent(out) :: report
+    real(wp), allocatable :: trial(:, :, :)
+
+    trial = solution%groups(g)%trial(:, :, first:last)
+    call run_block(scene, scene%groups(g), row, kinematics, laws, instant, dofs%groups(g)%nodes(:, first:last), &
+                   dofs%groups(g)%dof(:, first:last), dofs%groups(g)%layout, first, du, &
+                   solution%fields(displacement_field)%value, drivers%value(:, :, :, first:last), &
+                   solution%groups(g)%committed(:, :, first:last), trial, force, matrix, report)
+  end subroutine run_few
 
   !> One block: gather its geometry and motion, then call the element.
   subroutine run_block(scene, group, row, kinematics, laws, instant, nodes, dof, layout, first, du, displacement, drivers, &

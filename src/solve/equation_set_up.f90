@@ -15,6 +15,7 @@ module equation_set_up
   use linear_solver, only: analyse, choose_solver
   use ordering, only: order_equations
   use own_crossings, only: list_free_sides
+  use patches, only: map_patches
   use pairs, only: pairs_differ, pairs_t, start_pairs
   use resting_bodies, only: find_loose_bodies
   use scene, only: is_solid, role_load_factor, role_side_load, role_spring, role_volume_load, scene_t
@@ -45,6 +46,7 @@ contains
     call number_dofs(scene, equations%elems, equations%dofs)
     call find_axis_wall(scene, equations%laws, equations%dofs, equations%wall)
     call list_free_sides(scene, equations%free_sides)
+    if (scene%strategy%patch > 0) call map_patches(scene, equations%dofs, equations%patches)
     call find_loose_bodies(scene, equations%dofs, equations%loose)
     allocate (equations%resting(0))
     call list_solves(scene%fields, scene%strategy%coupling, equations%solves)

@@ -12,6 +12,7 @@ module equations
   use law_api, only: law_t
   use own_crossings, only: free_sides_t
   use pairs, only: pairs_t
+  use patches, only: patch_map_t
   use scene, only: scene_t
   use solves, only: solve_t
   use threads, only: team_t
@@ -52,6 +53,10 @@ module equations
     type(axis_wall_t) :: wall
     !> Sides of bodies that may pass through one another.
     type(free_sides_t) :: free_sides
+    !> Elements by their nodes, where patches are eliminated.
+    type(patch_map_t) :: patches
+    !> None is, in the attempts at a step that follow one which failed with a patch: it may have led past where a side snaps off.
+    logical :: without_patches = .false.
     !> Bodies of nodes that supports do not hold, of no size where there is none (resting_bodies).
     integer, allocatable :: loose(:)
     !> Unknowns at rest in the present step (ndof); of no size where no body is loose.

@@ -7,13 +7,16 @@ module iteration_history
   implicit none
   private
   public :: iteration_t
-  public :: caught, goes_to_and_fro, has_converged, in_circles, in_turmoil, is_near, judge, was_given_time, went_round
+  public :: caught, difficulty_of_patches, goes_to_and_fro, has_converged, in_circles, in_turmoil, is_near, judge
+  public :: was_given_time, went_round
 
   !> One line of the listing.
   type :: iteration_t
     real(wp) :: force_norm = 0.0_wp, displacement_norm = 0.0_wp, line_search = 1.0_wp
     !> Points opened, closed, stuck or slipped the other way.
     logical :: contact_changed = .false.
+    !> Iterations on the unknowns of a patch that was eliminated (nonlinear_elimination); 0 where none was.
+    integer :: inner = 0
   end type iteration_t
 
   !> A residual this many times larger than the first one, after `patience` iterations, counts as divergence.
@@ -37,6 +40,9 @@ module iteration_history
   integer, parameter :: for_balance = 2
   !> Heat through contact is linearised along the motion where the residual is below this (contact_heat_tangent).
   real(wp), parameter :: near_force = 1.0e-2_wp
+  !> What an iteration on the unknowns of a patch, after the first, counts in the difficulty of a step: with 0 steps get so long
+  !> that many fail, with 1 there are as many as without patches.
+  real(wp), parameter :: inner_share = 0.4_wp
   !> After so many short searches one after the other the whole correction is taken.
   integer, parameter :: short_searches = 2
 
@@ -74,6 +80,14 @@ contains
     was = .not. history(n)%force_norm > 0
     if (n > for_balance) was = was .or. all(history(n - for_balance:)%force_norm <= scene%strategy%force_norm)
   end function was_given_time
+
+  !> What iterations on the unknowns of patches add to the difficulty of a step.
+  pure function difficulty_of_patches(history) result(added)
+    type(iteration_t), intent(in) :: history(:)   !! (niteration)
+    real(wp) :: added
+
+    added = inner_share*sum(max(history%inner - 1, 0))
+  end function difficulty_of_patches
 
   !> Near the solution: the residual has fallen below a small share of the forces, and the set of points in contact is settled.
   pure function is_near(history)

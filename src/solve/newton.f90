@@ -17,11 +17,12 @@ module newton
   use fields, only: displacement_field
   use heat_correction, only: follow_content, is_steep
   use heat_record, only: heat_step_t
-  use iteration_history, only: caught, goes_to_and_fro, has_converged, in_circles, in_turmoil, is_near, iteration_t, judge, &
-                               was_given_time, went_round
+  use iteration_history, only: caught, difficulty_of_patches, goes_to_and_fro, has_converged, in_circles, in_turmoil, is_near, &
+                               iteration_t, judge, was_given_time, went_round
   use kinds, only: wp
   use linear_solver, only: return_to_chosen
   use line_search, only: manner_t, search_along
+  use nonlinear_elimination, only: take_eliminated
   use onset_motion, only: add_missing
   use path_record, only: path_step_t
   use predictor, only: lagging_dies, leaving_dies, predict, work_of_dies
@@ -39,6 +40,8 @@ module newton
     integer :: group = 0, element = 0
     !> Iterations in all, and those before the first augmentation: the difficulty of the step.
     integer :: iterations = 0, first_iterations = 0
+    !> What iterations on the unknowns of patches add to the latter.
+    real(wp) :: patch_difficulty = 0.0_wp
     !> It was found in so many parts (first_step_parts).
     integer :: parts = 1
     type(iteration_t), allocatable :: history(:)
@@ -137,7 +140,10 @@ contains
             .and. .not. (kept .and. afresh .and. line%force_norm > 0) &
             .and. pilots_in_equilibrium(equations, solution%fields, external, residual) &
             .and. (heat_in_balance(equations, residual, dt) .or. was_given_time(scene, outcome%history(first:)))) then
-          if (made%times == 0) outcome%first_iterations = outcome%iterations
+          if (made%times == 0) then
+            outcome%first_iterations = outcome%iterations
+            outcome%patch_difficulty = difficulty_of_patches(outcome%history)
+          end if
           call augment(scene, equations, solution, outcome%du, made, changed)
           if (.not. changed) exit
           first = size(outcome%history) + 1
@@ -185,10 +191,19 @@ contains
         work = work_of_dies(equations, missing)
         lags = lagging_dies(equations, missing)
       end if
-      ! between the two states contact may be as in neither
-      if (goes_to_and_fro(outcome%history(first:))) correction = 0.5_wp*correction
-      call search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, outcome%du, &
-                        line%line_search, report)
+      line%inner = 0
+      if (.not. any(abs(missing) > 0)) &
+        call take_eliminated(scene, equations, solution, dt, external, residual, outcome%iterations, correction, outcome%du, &
+                             line%inner, report, outcome%error)
+      if (allocated(outcome%error)) exit
+      if (line%inner > 0) then
+        line%line_search = 1
+      else
+        ! between the two states contact may be as in neither
+        if (goes_to_and_fro(outcome%history(first:))) correction = 0.5_wp*correction
+        call search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, outcome%du, &
+                          line%line_search, report)
+      end if
       if (any(abs(missing) > 0)) call follow_dies()
       if (allocated(outcome%error)) exit
       if (.not. abs(line%line_search) > 0) then
@@ -208,6 +223,8 @@ contains
     outcome%gave_way = made%gave_way
     outcome%strain = report%strain
     outcome%converged = .not. (allocated(outcome%reason) .or. allocated(outcome%error))
+    if (equations%solves(equations%now)%own(displacement_field)) equations%without_patches = .not. outcome%converged &
+      .and. (equations%without_patches .or. any(outcome%history%inner > 0))
     if (outcome%converged .and. report%passed < 1) then
       outcome%converged = .false.
       outcome%reason = 'a side goes through a die'

@@ -162,6 +162,7 @@ contains
     all%converged = all%converged .and. own%converged
     all%iterations = all%iterations + own%iterations
     all%first_iterations = max(all%first_iterations, own%first_iterations)
+    all%patch_difficulty = max(all%patch_difficulty, own%patch_difficulty)
     all%parts = max(all%parts, own%parts)
     all%event = min(all%event, own%event)
     if (allocated(own%event_reason)) all%event_reason = own%event_reason

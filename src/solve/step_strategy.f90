@@ -96,17 +96,20 @@ contains
 
   !> Proposal after an accepted step: by its iterations, and no longer than its strain increment and its error in time allow
   !> to foresee. A step shortened to hit a time does not shorten the proposal.
-  pure function after_success(scene, dt, proposed, iterations, strain, growth) result(next)
+  pure function after_success(scene, dt, proposed, iterations, strain, growth, added) result(next)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: dt, proposed
     integer, intent(in) :: iterations
     real(wp), intent(in) :: strain   !! largest strain increment of the step
     real(wp), intent(in), optional :: growth   !! largest factor by the error in time
+    real(wp), intent(in), optional :: added    !! what counts as iterations beside them
     real(wp) :: next
-    real(wp) :: factor
+    real(wp) :: factor, counted
 
     associate (s => scene%strategy)
-      factor = (real(s%nopti, wp)/real(max(iterations, 1), wp))**(1/s%nalpha)
+      counted = max(iterations, 1)
+      if (present(added)) counted = counted + added
+      factor = (real(s%nopti, wp)/counted)**(1/s%nalpha)
       factor = min(max(factor, s%dminmu), s%dmaxmu)
       next = dt*factor
       if (dt < proposed .and. factor >= 1) next = max(next, min(proposed, s%largest_step))
