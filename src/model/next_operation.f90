@@ -73,6 +73,9 @@ contains
     after%last_step = 0
     after%older_step = 0
     after%probation = fresh%probation
+    after%sunk_group = 0
+    after%sunk_depth = 0
+    after%sunk_share = 0
     after%largest_force = 0
     after%damping = 0
     after%damping_bound = after%work%damping
