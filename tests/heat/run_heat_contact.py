@@ -23,6 +23,7 @@ usage: run_heat_contact.py [-v] [-k]
   jumps as the side opens there is no equilibrium, and the message says what to do.
 - `billet`: pressed between chilled dies and remeshed twice: temperatures of the dies and the heat that they got go on, as
   does heat of plastic work and friction, work that has not become heat yet among it.
+- `layer`: a hot billet presses on a cold tool of few elements: new meshes make no heat of the steep temperatures at its face.
 """
 import glob
 import math
@@ -446,6 +447,59 @@ def billet(checks):
                     f"{least} to {most}, were {low} to {high}")
 
 
+LAYER = """TITLE  A hot billet pressed by a cold tool
+STATE  AXISYM
+KINEM  LOG
+BLOCK  billet PL8LS 4 m
+   0. 0.   10. 0.   10. 10.   0. 10.
+   6 1.   6 1.
+BLOCK  tool PL8LS 4 t
+   0. 10.   20. 10.   20. 20.   0. 20.
+   6 1.   3 1.
+LAW    m EPLA
+   100000. 0.3
+   LINEAR 100. 100.
+LAW    t ELA
+   200000. 0.3
+ADDEL  billet PL8TM h BILINEAR
+ADDEL  tool PL8TM h BILINEAR
+LAW    h HEAT
+   30. 4.
+START  T 1000. billet
+START  T 200. tool
+LAW    film COUL2D
+   PENETR 1.E-3   PHI 0.   AUGMENT 10
+DIE    face SIDES billet 3
+CNT2D  tool 1 face film
+COU2DC tool 1 face H 5.
+FIXED  billet 1 Y
+FIXED  billet 4 X
+FIXED  tool 4 X
+MOVE   tool 3 Y down
+LIC    down
+   0. 0.   0.5 -1.
+STRAT  0.01 1.E-6 0.02   6 3
+REMSH
+   TIMES 0.2 0.35
+PROBE  t_billet MEAN T billet
+PROBE  t_tool MEAN T tool
+END
+"""
+
+
+def layer(checks):
+    """What the billet loses the tool gains, over new meshes too: their volumes are 1 to 4, but for the elastic change."""
+    deck, out = write(os.path.join(checks.folder, "layer.lag"), LAYER), os.path.join(checks.folder, "layer")
+    result = cycle(deck, out)
+    checks.that(result.returncode == DONE, "layer: lagacycle", said(result))
+    if result.returncode != DONE:
+        return
+    checks.that([row["accepted"] for row in tries(out)].count("y") == 2, "layer: two new meshes", tries(out))
+    rows = history(out)
+    gained, lost = 4*(rows["t_tool"][-1] - 200), 1000 - rows["t_billet"][-1]
+    checks.small(abs(gained/lost - 1), 5e-3, "layer: heat of the tool over that of the billet")
+
+
 def shown(checks):
     """What TDIE gives is shown with the die: a temperature by time, one of a heat capacity, of the full circumference."""
     deck = os.path.join(checks.folder, "shown.lag")
@@ -472,6 +526,7 @@ def main():
     newton(checks)
     shrinks(checks)
     billet(checks)
+    layer(checks)
     checks.end()
 
 
