@@ -9,6 +9,7 @@ usage: run_heat_contact.py [-v] [-k]
 - `round`: the same of a quarter of a tube on a round die, and of two tubes with sides of other lengths: curves that are drawn as one are
   closed, however they are cut; a die the wrong way round, one beside the sides and one too rough are told.
 - `gap`: steady, across a gap by convection, a film of gas and radiation: the root of the balance.
+- `bore`: steady, across the wide gap between a tube and the bore around it by radiation: the area is that of the sides named.
 - `half`: two half spaces brought together (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, sec. 2.7 and 2.15): without resistance
   T = (b1 T1 + b2 T2)/(b1 + b2), b = sqrt(k rho c), at all times; with h T + (T1 - T) exp(g^2 t) erfc(g sqrt(t)), g = h (b1 + b2)/(b1 b2).
 - `shock`: a Biot number of 1000 on a coarse mesh, BILINEAR and implicit Euler: no temperature outside those at the start.
@@ -447,6 +448,43 @@ def billet(checks):
                     f"{least} to {most}, were {low} to {high}")
 
 
+BORE = """TITLE  A tube in a bore
+STATE  AXISYM
+KINEM  SMALL
+BLOCK  tube PL8TM 9 m
+   5. 0.   10. 0.   10. 2.   5. 2.
+   6 1.   1 1.
+BLOCK  bore PL8TM 9 m
+   15. 0.   20. 0.   20. 2.   15. 2.
+   6 1.   1 1.
+LAW    m HEAT
+   50. 3.6
+DIE    wall SIDES bore 4
+COU2DC tube 2 wall H 1. EPS 0.6 SIGMA 5.67E-11 ZERO 273.15 REACH 10.
+IMPOS  tube 4 T even 1000.
+IMPOS  bore 2 T even 100.
+LIC    even
+   0. 1.
+START  T 500.
+STRAT  1. 1.E-3 100.   4 3 0.25 2.
+STOP   2000.
+END
+"""
+
+
+def bore(checks):
+    """Q = 2 pi r1 l e s (T1^4 - T2^4), and Q ln(rb/ra)/(2 pi k l) in each tube."""
+    deck, out = write(os.path.join(checks.folder, "bore.lag"), BORE), os.path.join(checks.folder, "bore")
+    if not call(checks, deck, out):
+        return
+    low, high = 0.0, 1e6
+    for _ in range(200):
+        q = (low + high)/2
+        one, two = 1273.15 - q*math.log(2)/(200*math.pi), 373.15 + q*math.log(20/15)/(200*math.pi)
+        low, high = (q, high) if 40*math.pi*0.6*5.67e-11*(one**4 - two**4) > q else (low, q)
+    checks.small(abs(-history(out)["heat_through_tube.2/wall/COU2DC"][-1]/q - 1), 1e-3, "bore: heat by radiation")
+
+
 LAYER = """TITLE  A hot billet pressed by a cold tool
 STATE  AXISYM
 KINEM  LOG
@@ -519,6 +557,7 @@ def main():
     wall(checks)
     round_faces(checks)
     gap(checks)
+    bore(checks)
     half_spaces(checks)
     shock(checks)
     slide(checks)
