@@ -160,7 +160,8 @@ contains
     still = 0
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
-        if (group%pairs == 0 .or. faces_itself(scene, group)) cycle
+        ! heat between them has the pairs of its contact
+        if (group%pairs == 0 .or. group%host > 0 .or. faces_itself(scene, group)) cycle
         status = group%variables(find_variable(group%variables, 'contact_status'))%first
         piece_row = group%variables(find_variable(group%variables, 'die_piece'))%first
         xi_row = group%variables(find_variable(group%variables, 'die_xi'))%first

@@ -1,9 +1,10 @@
 !> What a solution holds, but contact, from the old mesh to the new one: progress, state of the solids, fields on nodes.
 module carry_solution
   use errors, only: error_t
-  use fields, only: displacement_field, on_nodes
+  use fields, only: displacement_field, has_corners_only, on_nodes
   use kept_members, only: member_memory_t
   use kinds, only: wp
+  use nodal_balance, only: keep_nodal_means
   use remeshing, only: carry_error
   use scene, only: scene_t
   use solution, only: solution_t
@@ -76,13 +77,14 @@ contains
     do k = 1, size(target%material)
       material(target%connectivity(:, k)) = target%material(k)
     end do
-    call carry_nodes(mesh, old, before, moved, material, options%outside, new, after, error)
+    call carry_nodes(mesh, target, old, before, moved, material, options%outside, new, after, error)
   end subroutine carry_solids
 
   !> What belongs to nodes, by the shape functions of the old mesh: origin of the material, and of every field on nodes the change
-  !> of the last step and the value; of the displacement the value is what was `moved`.
-  subroutine carry_nodes(mesh, old, before, moved, material, outside, new, after, error)
-    type(transfer_mesh_t), intent(in) :: mesh
+  !> of the last step and the value; of the displacement the value is what was `moved`. What is solved for beside the motion, as the
+  !> temperature, keeps its means.
+  subroutine carry_nodes(mesh, target, old, before, moved, material, outside, new, after, error)
+    type(transfer_mesh_t), intent(in) :: mesh, target
     type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
     real(wp), intent(in) :: moved(:, :)      !! (2, nnode) [length]
@@ -93,7 +95,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp), allocatable :: from(:, :), to(:, :)
     real(wp) :: farthest
-    integer :: f, n, pass
+    integer :: f, k, n, pass
 
     n = 2
     do f = 1, size(before%fields)
@@ -122,6 +124,14 @@ contains
       if (allocated(error)) return
     end do
     new%mesh%origin = to(1:2, :)
+    do f = 1, size(before%fields)
+      if (.not. is_carried(f) .or. before%fields(f)%given .or. before%fields(f)%quantity == 'motion') cycle
+      do k = 1, before%fields(f)%ncomp
+        call keep_nodal_means(mesh, before%fields(f)%value(k, :), has_corners_only(before%fields(f)), outside, target, &
+                              after%fields(f)%value(k, :), error)
+        if (allocated(error)) return
+      end do
+    end do
 
   contains
 

@@ -8,7 +8,7 @@ module transfer_balance
   use kinds, only: eps, wp
   implicit none
   private
-  public :: integral, keep_mean, keep_mean_fractions
+  public :: integral, keep_mean, keep_mean_fractions, same_integral
 
   !> Sweeps of the corrections; one is enough where |lambda| < 1.
   integer, parameter :: most_sweeps = 200

@@ -59,18 +59,19 @@ contains
       if (is_deformable(die)) return
       call sides_at_start(scene, group, sides, behind)
       reach = 4*extent_of(scene)
-      call deepest(sides, die, pilot_at(scene, group%die, 0.0_wp), reach, outlook%faces, outlook%depth, outlook%over_side)
+      call deepest(sides, die, pilot_at(scene, group%die, scene%strategy%begins), reach, outlook%faces, outlook%depth, &
+                   outlook%over_side)
       call find_pushes(sides, die, reach, outlook)
       call count_inside(behind, die, outlook)
       outlook%faces_at_end = outlook%faces
-      if (outlook%faces .and. outlook%depth >= 0) outlook%first = 0
+      if (outlook%faces .and. outlook%depth >= 0) outlook%first = scene%strategy%begins
       if (.not. moves(scene, group%die)) return
       pressed = .false.
       enters = .false.
-      pilot_before = pilot_at(scene, group%die, 0.0_wp)
+      pilot_before = pilot_at(scene, group%die, scene%strategy%begins)
       depth_before = outlook%depth
       do k = 1, ninstant
-        time = scene%strategy%end_time*k/ninstant
+        time = scene%strategy%begins + (scene%strategy%end_time - scene%strategy%begins)*k/ninstant
         pilot = pilot_at(scene, group%die, time)
         call deepest(sides, die, pilot, reach, faces, depth, over_side)
         if (faces) then

@@ -6,7 +6,7 @@ module deck_check
   use errors, only: error_t
   use law_api, only: law_t
   use law_registry, only: list_laws
-  use physics_check, only: check_physics
+  use physics_check, only: check_operation, check_physics
   use run_options, only: run_options_t, stem_of
   use scene, only: lacks_mesh, scene_t
   use scene_file, only: write_scene
@@ -34,12 +34,13 @@ contains
     type(operations_t) :: operations
     type(scene_t) :: own
 
+    call list_laws(laws)
     ! the part with which a later operation begins is not known to its deck
     if (scene%operation > 1) then
-      allocate (table(0), warnings(0))
+      allocate (table(0))
+      call check_operation(scene, laws, warnings)
       return
     end if
-    call list_laws(laws)
     if (scene%generation == 1) then
       call check_physics(scene, laws, table, warnings)
       return
@@ -95,9 +96,7 @@ contains
 
     call scene_lines(scene, lines)
     allocate (more(0))
-    allocate (table(0), warnings(0))
-    ! the part with which a later operation begins is not known yet
-    if (scene%operation <= 1) call look_at_deck(options, scene, table, warnings, error)
+    call look_at_deck(options, scene, table, warnings, error)
     if (allocated(error)) return
     call print_lines(lines, error)
     call print_lines(table, error)

@@ -21,7 +21,7 @@ module heat_check
   use weld_sources, only: felt_ahead, power_in_plane, share_within
   implicit none
   private
-  public :: check_heat
+  public :: check_exchanges, check_heat
 
   !> A torch with less of half its ellipse in its bodies is not where it was meant to be, or the mesh too coarse for it.
   real(wp), parameter :: expected_share = 0.9_wp
@@ -44,14 +44,9 @@ contains
     type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning)
     integer :: g
 
-    if (allocated(scene%sources) .and. .not. lacks_mesh(scene)) then
-      do g = 1, size(scene%sources)
-        call judge_torch(scene, g, warnings)
-      end do
-    end if
+    call check_exchanges(scene, warnings)
     do g = 1, size(scene%groups)
       call judge_start(scene, laws, g, warnings)
-      call judge_exchange(scene, g, warnings)
       call judge_radiation(scene, g, warnings)
     end do
     call judge_hardness(scene, warnings)
@@ -61,6 +56,22 @@ contains
       if (scene%groups(g)%role == role_heat_contact) call judge_heat_contact(scene, scene%groups(g), table, warnings)
     end do
   end subroutine check_heat
+
+  !> Of torches and sides: what can be told also of a later operation, whatever it begins with.
+  subroutine check_exchanges(scene, warnings)
+    type(scene_t), intent(in) :: scene
+    type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning)
+    integer :: g
+
+    if (allocated(scene%sources) .and. .not. lacks_mesh(scene)) then
+      do g = 1, size(scene%sources)
+        call judge_torch(scene, g, warnings)
+      end do
+    end if
+    do g = 1, size(scene%groups)
+      call judge_exchange(scene, g, warnings)
+    end do
+  end subroutine check_exchanges
 
   !> A body of a steel that begins below absolute zero, or as austenite below Ms: no temperature, or no phases, were given.
   subroutine judge_start(scene, laws, g, warnings)
@@ -262,12 +273,14 @@ contains
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: k   !! place in the scene's list
     type(string_t), allocatable, intent(inout) :: warnings(:)
-    real(wp) :: share, least, time, at, way, axis
+    real(wp) :: share, least, time, at, way, axis, begins
     integer :: i, j
     integer, parameter :: parts = 8
 
     associate (source => scene%sources(k), path => scene%sources(k)%path)
       axis = min(source%front, source%rear)
+      ! cards have the clock of the operation
+      begins = scene%strategy%begins
       way = 0
       ! steps end where the torch begins to be felt, crosses, and is gone
       if (source%crosses) way = min(source%speed*scene%strategy%largest_step, felt_ahead*axis)
@@ -277,7 +290,7 @@ contains
         do j = 1, parts
           time = path(1, i)
           if (i > 1) time = time - (path(1, i) - path(1, i - 1))*real(j - 1, wp)/parts
-          time = min(max(time, 0.0_wp), scene%strategy%end_time)
+          time = min(max(time, begins), scene%strategy%end_time)
           if (.not. power_in_plane(source, scene%multipliers, merge(source%crossing_time, time, source%crosses), 1.0_wp) > 0) cycle
           share = source_share(scene, k, time)
           if (share < least) at = time
@@ -289,13 +302,14 @@ contains
                   *min(scene%strategy%largest_step/(path(1, i) - path(1, i - 1)), 1.0_wp))
       end do
     end associate
-    if (least < expected_share) call add(warnings, 'GOLDAK '//to_text(k)//': at time '//to_text(at, 3)//' only ' &
+    if (least < expected_share) call add(warnings, 'GOLDAK '//to_text(k)//': at time '//to_text(at - begins, 3)//' only ' &
       //to_text(100*least, 3)//' % of half its ellipse is found in its bodies, which take all of the power: it ends outside them ' &
       //'(half a weld, of half the power, does), or elements are longer than its semi-axes')
     if (scene%sources(k)%crosses) then
-      share = share_within(scene%sources(k), 0.0_wp, scene%strategy%end_time)
-      if (share < whole_share) call add(warnings, 'GOLDAK '//to_text(k)//': from the start to the end of the run it leaves ' &
-        //to_text(100*share, 3)//' % of its heat in the plane: it crosses at time '//to_text(scene%sources(k)%crossing_time, 3) &
+      share = share_within(scene%sources(k), begins, scene%strategy%end_time)
+      if (share < whole_share) call add(warnings, 'GOLDAK '//to_text(k)//': from the start to the end of the ' &
+        //trim(merge('operation', 'run      ', scene%operation > 0))//' it leaves '//to_text(100*share, 3) &
+        //' % of its heat in the plane: it crosses at time '//to_text(scene%sources(k)%crossing_time - begins, 3) &
         //', too early or too late (CROSS, STOP)')
     end if
     if (way > axis) call add(warnings, 'GOLDAK '//to_text(k)//': it goes '//to_text(way/axis, 3) &

@@ -4,7 +4,7 @@ module physics_check
   use contact_outlook, only: lies_on, look_at_contact, moves, outlook_t
   use dies, only: is_deformable
   use fields, only: displacement_field
-  use heat_check, only: check_heat
+  use heat_check, only: check_exchanges, check_heat
   use kinds, only: wp
   use law_api, only: driver_count, find_parameter, law_t, solid_law
   use scene, only: axisymmetric, group_t, lacks_mesh, role_side_load, scene_t
@@ -13,7 +13,7 @@ module physics_check
   use touching_bodies, only: judge_touching
   implicit none
   private
-  public :: check_physics
+  public :: check_operation, check_physics, largest_overlap, words_of
 
   !> A part that begins deeper in a rigid die than this share of its side was not meant to.
   real(wp), parameter :: largest_overlap = 0.01_wp
@@ -66,6 +66,23 @@ contains
     if (.not. anything_acts(scene)) &
       call add(warnings, 'nothing moves and no load acts: all multipliers (LIC) are zero at all times')
   end subroutine check_physics
+
+  !> Warnings of the cards of a later operation, whatever form the part has then.
+  subroutine check_operation(scene, laws, warnings)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)                        !! (nlaw)
+    type(string_t), allocatable, intent(out) :: warnings(:)   !! (nwarning)
+    integer :: g
+
+    allocate (warnings(0))
+    call check_exchanges(scene, warnings)
+    do g = 1, size(scene%groups)
+      call judge_axis(scene, scene%groups(g), warnings)
+    end do
+    do g = 1, size(scene%materials)
+      call judge_friction(scene, laws, g, warnings)
+    end do
+  end subroutine check_operation
 
   !> Loads and exchanges of heat on sides of the axis of rotation, where there is no area: they do nothing.
   subroutine judge_axis(scene, group, warnings)

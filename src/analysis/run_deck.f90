@@ -34,6 +34,7 @@ module run_deck
   use member_reader, only: member_reader_t
   use memory_limits, only: require_memory
   use next_operation, only: begin_operation
+  use operation_outlook, only: look_at_beginning, warn_of_overlap
   use passed_planes, only: warn_of_passed_planes
   use remeshing, only: drop_triggers
   use run_facts, only: run_facts_t
@@ -273,6 +274,8 @@ contains
     call scene_lines(scene, lines)
     call list_lines(run%listing, lines)
     call look_at_deck(options, scene, lines, facts%warnings, error)
+    if (run%begins_operation .and. .not. allocated(error)) call look_at_beginning(scene, solution, lines)
+    if (.not. allocated(error)) call warn_of_overlap(scene, solution, facts%warnings)
     if (.not. allocated(error)) told = size(facts%warnings)
     if (options%progress .and. .not. (allocated(options%resume) .or. allocated(error))) &
       call print_lines(as_warnings(facts%warnings), error)

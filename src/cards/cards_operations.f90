@@ -164,6 +164,7 @@ contains
     type(scene_t), intent(inout) :: scene
     integer :: i
 
+    scene%strategy%begins = begins
     scene%strategy%end_time = begins + scene%strategy%end_time
     scene%strategy%save_times = begins + scene%strategy%save_times
     if (allocated(scene%strategy%watch_times)) scene%strategy%watch_times = begins + scene%strategy%watch_times

@@ -242,7 +242,8 @@ contains
     rule = rule_of_number(npoint)
   end subroutine read_rule
 
-  !> Nothing from outside can act on a side between two elements.
+  !> Nothing from outside can act on a side between two elements, nor on one of an element that is not there. Beside a body that is
+  !> asleep a side is free, such as the top of a weld pass before the next one is laid.
   subroutine refuse_inner_sides(cursor, draft, sides)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft
@@ -250,8 +251,12 @@ contains
     integer :: k
 
     do k = 1, size(sides, 2)
-      if (draft%sharing(sides(2, k)) == 1) cycle
-      call cursor%fail('this place is inside the part: one of its sides belongs to two elements')
+      if (draft%sharing(sides(2, k)) == 1 .and. draft%beginning(sides(2, k)) == sides(1, k)) cycle
+      if (draft%sharing(sides(2, k)) > 1) then
+        call cursor%fail('this place is inside the part: one of its sides belongs to two elements')
+      else
+        call cursor%fail('one of its sides belongs to a body that is asleep: expected it in operations that have the body')
+      end if
       return
     end do
   end subroutine refuse_inner_sides

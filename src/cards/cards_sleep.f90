@@ -14,7 +14,7 @@ module cards_sleep
   use text, only: string_t
   implicit none
   private
-  public :: may_sleep, put_to_sleep, sleep_keyword
+  public :: list_sleepers, may_sleep, put_to_sleep, sleep_keyword
 
   character(len=*), parameter :: sleep_keyword = 'ASLEEP'
 
@@ -35,6 +35,23 @@ contains
       end do
     end do
   end function may_sleep
+
+  !> Words of the ASLEEP cards of an operation, as they are read.
+  pure subroutine list_sleepers(deck, names)
+    type(deck_t), intent(in) :: deck
+    type(string_t), allocatable, intent(out) :: names(:)   !! (n)
+    type(string_t) :: more(1)
+    integer :: i, k
+
+    allocate (names(0))
+    do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword /= sleep_keyword) cycle
+      do k = 1, size(deck%cards(i)%head%fields)
+        more(1)%s = deck%cards(i)%head%fields(k)%text
+        names = [names, more]
+      end do
+    end do
+  end subroutine list_sleepers
 
   !> Take the bodies of the ASLEEP cards out of the scene of an operation, and what belongs to them.
   subroutine put_to_sleep(deck, scene, diagnostics)

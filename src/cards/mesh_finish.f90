@@ -120,21 +120,23 @@ contains
                                                      draft%scene%plane_state, group%variables)
   end subroutine fill_group
 
-  !> A side on the boundary is that of one element: its middle node shows it.
+  !> A side on the boundary is that of one element: its middle node shows it. Elements of bodies that are asleep are not there.
   subroutine count_sharing(draft, nnode)
     type(draft_t), intent(inout) :: draft
     integer, intent(in) :: nnode
     integer :: g, e, k
 
-    deallocate (draft%sharing, draft%owner)
-    allocate (draft%sharing(nnode), draft%owner(nnode), source=0)
+    deallocate (draft%sharing, draft%owner, draft%beginning)
+    allocate (draft%sharing(nnode), draft%owner(nnode), draft%beginning(nnode), source=0)
     do g = 1, size(draft%scene%groups)
+      if (any([(draft%sleepers(k)%s == draft%scene%groups(g)%name, k=1, size(draft%sleepers))])) cycle
       associate (group => draft%scene%groups(g))
         do e = 1, size(group%connectivity, 2)
           do k = 5, 8
             associate (node => group%connectivity(k, e))
               draft%sharing(node) = draft%sharing(node) + 1
               draft%owner(node) = group%material
+              draft%beginning(node) = group%connectivity(k - 4, e)
             end associate
           end do
         end do

@@ -29,8 +29,11 @@ module scene_draft
     type(location_t), allocatable :: group_where(:)
     !> Labels of explicit nodes in ascending order, and the nodes they belong to.
     integer, allocatable :: sorted_labels(:), labelled_nodes(:)
-    !> Of each node: elements which have it in the middle of a side, and the material of one of them.
-    integer, allocatable :: sharing(:), owner(:)
+    !> Bodies that are not there in this operation.
+    type(string_t), allocatable :: sleepers(:)
+    !> Of each node: elements there are which have it in the middle of a side; of one of them the material, and the node in which
+    !> the side begins, walked with the element on the left.
+    integer, allocatable :: sharing(:), owner(:), beginning(:)
     !> Nodes, groups and sides are all there: points and places can be looked up.
     logical :: mesh_sound = .false.
     !> No group is missing, and the state of each is known.
@@ -54,6 +57,7 @@ contains
     call draft%probes%clear()
     call draft%places%clear()
     allocate (draft%group_where(0), draft%sorted_labels(0), draft%labelled_nodes(0), draft%sharing(0), draft%owner(0))
+    allocate (draft%beginning(0), draft%sleepers(0))
   end subroutine start_draft
 
   !> The one card with this keyword, 0 when there is none; a second one is refused, and none where one is `required`.

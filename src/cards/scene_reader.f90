@@ -21,6 +21,7 @@ module scene_reader
   use cards_section, only: read_section, read_state
   use cards_side_dies, only: read_side_dies
   use cards_sides, only: read_contacts, read_pressures
+  use cards_sleep, only: list_sleepers
   use cards_start, only: read_start_values
   use cards_strategy, only: read_strategy
   use cards_temperature, only: read_temperatures_of_bodies, refuse_short_histories
@@ -97,6 +98,7 @@ contains
     end if
     ! without a mesh cards are read as where it has mistakes: nothing is searched in it
     if (has_contours(draft%scene%remesher) .and. has_own_mesh) parts%sound = .false.
+    call list_sleepers(deck, draft%sleepers)
     call finish_mesh(draft, parts, diagnostics)
     if (size(parts%bodies) == 0) call refuse_empty(deck, diagnostics)
 

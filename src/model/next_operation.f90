@@ -73,6 +73,9 @@ contains
     after%last_step = 0
     after%older_step = 0
     after%probation = fresh%probation
+    after%sunk_group = 0
+    after%sunk_depth = 0
+    after%sunk_share = 0
     after%largest_force = 0
     after%confinement = fresh%confinement
     after%damping = 0
@@ -93,8 +96,11 @@ contains
     do g = 1, size(old%groups)
       if (is_solid(old%groups(g))) was_there([old%groups(g)%connectivity]) = .true.
     end do
-    ! bodies have come or gone: volumes are compared with that of now
-    if (count(is_solid(old%groups)) /= count(is_solid(new%groups))) after%initial_volume = 0
+    ! bodies have come or gone: volumes are compared with that of now, and what temperatures make of them counts from now on
+    if (.not. same_bodies(old, new)) then
+      after%initial_volume = 0
+      after%work%grown = 0
+    end if
     do f = 1, size(after%fields)
       k = find_field(before%fields, after%fields(f)%name)
       if (k == 0 .or. .not. any(after%fields(f)%place == [on_nodes, on_section])) cycle
@@ -123,6 +129,19 @@ contains
         after%pairs(new%groups(g)%pairs)%piece = before%pairs(old%groups(k)%pairs)%piece
     end do
   end subroutine begin_operation
+
+  !> Are the bodies of both operations the same?
+  pure function same_bodies(old, new) result(same)
+    type(scene_t), intent(in) :: old, new
+    logical :: same
+    integer :: g, k
+
+    same = count(is_solid(old%groups)) == count(is_solid(new%groups))
+    do g = 1, size(new%groups)
+      if (.not. is_solid(new%groups(g))) cycle
+      same = same .and. any([(old%groups(k)%name == new%groups(g)%name, k=1, size(old%groups))])
+    end do
+  end function same_bodies
 
   !> Where the nodes of a body are that comes: it has no strain there.
   pure subroutine note_laid(group, displacement, laid)

@@ -67,6 +67,10 @@ module solution
     type(path_record_t) :: path
     !> Volume at the start, for the drift; 0 before it is measured.
     real(wp) :: initial_volume = 0.0_wp
+    !> The group in whose rigid die the part began deepest as a later operation began, where that was not meant; 0 for none. How
+    !> deep [length], 0 in the die's body altogether; and over the length of the side.
+    integer :: sunk_group = 0
+    real(wp) :: sunk_depth = 0.0_wp, sunk_share = 0.0_wp
     !> Worst values of all accepted steps so far.
     real(wp) :: worst_linear_residual = 0.0_wp, worst_penetration = 0.0_wp, worst_penetration_ratio = 0.0_wp
     real(wp) :: least_dissipation = 0.0_wp

@@ -18,8 +18,8 @@ module strategy
   type :: strategy_t
     !> First, least and largest step [time].
     real(wp) :: first_step = 0.0_wp, least_step = 0.0_wp, largest_step = 0.0_wp
-    !> End of the scene [time].
-    real(wp) :: end_time = 0.0_wp
+    !> Beginning and end of the scene; it begins at 0 but for a later operation [time].
+    real(wp) :: begins = 0.0_wp, end_time = 0.0_wp
     !> After n iterations the step is multiplied by (nopti/n)**(1/nalpha), within [dminmu, dmaxmu].
     integer :: nopti = 5
     real(wp) :: nalpha = 3.0_wp

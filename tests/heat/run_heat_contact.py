@@ -9,6 +9,7 @@ usage: run_heat_contact.py [-v] [-k]
 - `round`: the same of a quarter of a tube on a round die, and of two tubes with sides of other lengths: curves that are drawn as one are
   closed, however they are cut; a die the wrong way round, one beside the sides and one too rough are told.
 - `gap`: steady, across a gap by convection, a film of gas and radiation: the root of the balance.
+- `bore`: steady, across the wide gap between a tube and the bore around it by radiation: the area is that of the sides named.
 - `half`: two half spaces brought together (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, sec. 2.7 and 2.15): without resistance
   T = (b1 T1 + b2 T2)/(b1 + b2), b = sqrt(k rho c), at all times; with h T + (T1 - T) exp(g^2 t) erfc(g sqrt(t)), g = h (b1 + b2)/(b1 b2).
 - `shock`: a Biot number of 1000 on a coarse mesh, BILINEAR and implicit Euler: no temperature outside those at the start.
@@ -23,6 +24,7 @@ usage: run_heat_contact.py [-v] [-k]
   jumps as the side opens there is no equilibrium, and the message says what to do.
 - `billet`: pressed between chilled dies and remeshed twice: temperatures of the dies and the heat that they got go on, as
   does heat of plastic work and friction, work that has not become heat yet among it.
+- `layer`: a hot billet presses on a cold tool of few elements: new meshes make no heat of the steep temperatures at its face.
 """
 import glob
 import math
@@ -446,6 +448,96 @@ def billet(checks):
                     f"{least} to {most}, were {low} to {high}")
 
 
+BORE = """TITLE  A tube in a bore
+STATE  AXISYM
+KINEM  SMALL
+BLOCK  tube PL8TM 9 m
+   5. 0.   10. 0.   10. 2.   5. 2.
+   6 1.   1 1.
+BLOCK  bore PL8TM 9 m
+   15. 0.   20. 0.   20. 2.   15. 2.
+   6 1.   1 1.
+LAW    m HEAT
+   50. 3.6
+DIE    wall SIDES bore 4
+COU2DC tube 2 wall H 1. EPS 0.6 SIGMA 5.67E-11 ZERO 273.15 REACH 10.
+IMPOS  tube 4 T even 1000.
+IMPOS  bore 2 T even 100.
+LIC    even
+   0. 1.
+START  T 500.
+STRAT  1. 1.E-3 100.   4 3 0.25 2.
+STOP   2000.
+END
+"""
+
+
+def bore(checks):
+    """Q = 2 pi r1 l e s (T1^4 - T2^4), and Q ln(rb/ra)/(2 pi k l) in each tube."""
+    deck, out = write(os.path.join(checks.folder, "bore.lag"), BORE), os.path.join(checks.folder, "bore")
+    if not call(checks, deck, out):
+        return
+    low, high = 0.0, 1e6
+    for _ in range(200):
+        q = (low + high)/2
+        one, two = 1273.15 - q*math.log(2)/(200*math.pi), 373.15 + q*math.log(20/15)/(200*math.pi)
+        low, high = (q, high) if 40*math.pi*0.6*5.67e-11*(one**4 - two**4) > q else (low, q)
+    checks.small(abs(-history(out)["heat_through_tube.2/wall/COU2DC"][-1]/q - 1), 1e-3, "bore: heat by radiation")
+
+
+LAYER = """TITLE  A hot billet pressed by a cold tool
+STATE  AXISYM
+KINEM  LOG
+BLOCK  billet PL8LS 4 m
+   0. 0.   10. 0.   10. 10.   0. 10.
+   6 1.   6 1.
+BLOCK  tool PL8LS 4 t
+   0. 10.   20. 10.   20. 20.   0. 20.
+   6 1.   3 1.
+LAW    m EPLA
+   100000. 0.3
+   LINEAR 100. 100.
+LAW    t ELA
+   200000. 0.3
+ADDEL  billet PL8TM h BILINEAR
+ADDEL  tool PL8TM h BILINEAR
+LAW    h HEAT
+   30. 4.
+START  T 1000. billet
+START  T 200. tool
+LAW    film COUL2D
+   PENETR 1.E-3   PHI 0.   AUGMENT 10
+DIE    face SIDES billet 3
+CNT2D  tool 1 face film
+COU2DC tool 1 face H 5.
+FIXED  billet 1 Y
+FIXED  billet 4 X
+FIXED  tool 4 X
+MOVE   tool 3 Y down
+LIC    down
+   0. 0.   0.5 -1.
+STRAT  0.01 1.E-6 0.02   6 3
+REMSH
+   TIMES 0.2 0.35
+PROBE  t_billet MEAN T billet
+PROBE  t_tool MEAN T tool
+END
+"""
+
+
+def layer(checks):
+    """What the billet loses the tool gains, over new meshes too: their volumes are 1 to 4, but for the elastic change."""
+    deck, out = write(os.path.join(checks.folder, "layer.lag"), LAYER), os.path.join(checks.folder, "layer")
+    result = cycle(deck, out)
+    checks.that(result.returncode == DONE, "layer: lagacycle", said(result))
+    if result.returncode != DONE:
+        return
+    checks.that([row["accepted"] for row in tries(out)].count("y") == 2, "layer: two new meshes", tries(out))
+    rows = history(out)
+    gained, lost = 4*(rows["t_tool"][-1] - 200), 1000 - rows["t_billet"][-1]
+    checks.small(abs(gained/lost - 1), 5e-3, "layer: heat of the tool over that of the billet")
+
+
 def shown(checks):
     """What TDIE gives is shown with the die: a temperature by time, one of a heat capacity, of the full circumference."""
     deck = os.path.join(checks.folder, "shown.lag")
@@ -465,6 +557,7 @@ def main():
     wall(checks)
     round_faces(checks)
     gap(checks)
+    bore(checks)
     half_spaces(checks)
     shock(checks)
     slide(checks)
@@ -472,6 +565,7 @@ def main():
     newton(checks)
     shrinks(checks)
     billet(checks)
+    layer(checks)
     checks.end()
 
 

@@ -11,6 +11,8 @@ usage: run_operations.py [-v] [-k]
   operation the same part, by one command, also where that is stopped.
 - `closing`: an operation without REMSH after one with it: what its table of accuracy says.
 - `first_without`: one without before the first with it: its seconds are in the cost of the whole.
+- `beginning`: a die that a later operation puts deep into the part is told, after a stop too; one that goes on, or stands at the part's
+  height, is not. What the cards of a later operation say of torches and sides is told by --check.
 - `contour`: a BODY has its sizes from the first operation alone; the others may do without REMSH, the first one not.
 """
 import os
@@ -277,6 +279,59 @@ def checked(checks):
     checks.that(files == ["checked.indent.scene.json", "checked.release.scene.json", "checked.scene.json"], "--check: a scene each", files)
 
 
+TORCH = """TITLE  A bar crossed by a torch in its second operation
+STATE  PLSTN
+KINEM  SMALL
+BLOCK  bar PL8TM 4 heat
+   0. 0.   40. 0.   40. 20.   0. 20.
+   20 1.   10 1.
+LAW    heat HEAT
+   50. 3.6
+START  T 20.
+STRAT  0.1 1.E-4 0.3   6 3
+OPERA  before
+CONVE  bar 3 H 0.02 TS 20.
+STOP   30.
+OPERA  pass
+CONVE  bar 3 H 0.02 TS 20.
+GOLDAK bar P 1.E6 ETA 0.8 FRONT 3. REAR 6. WIDTH 8. DEPTH 8. INTO 0. -1. CROSS 8. {cross}
+   0. 20. 20.
+STOP   10.
+"""
+
+
+def told(out):
+    """Warnings of a run."""
+    return [item["text"] for item in summary(out)["warnings"]]
+
+
+def beginning(checks):
+    """What can be told as a later operation begins."""
+    for name, y, deep in (("deep", 8.8, True), ("goes_on", 9.0, False), ("above", 9.1, False)):
+        deck, out = done(checks, name, HEAD + "OPERA  one\n" + flat(10.0, 1.0) + STEP + "OPERA  two\n" + flat(y, 0.3) + STEP)
+        warnings = [line for line in told(out) if "as the operation before left it" in line]
+        checks.that((len(warnings) == 1 and "deep in die upper" in warnings[0]) if deep else not warnings, f"{name}: begins deep", warnings)
+        if not deep:
+            continue
+        again = checks.path(name + "-again")
+        rows = history(out)
+        code, _, stderr = stop_after(start([deck, "--out", again, "--threads", "1"]), again, rows["operation"].index(2) + 3, signal.SIGTERM, 0)
+        checks.that(code in (SIGNAL + signal.SIGTERM, DONE), f"{name}: stopped", f"{code} {stderr}")
+        if code != DONE:
+            result = run([deck, "--out", again, "--threads", "1", "--resume", os.path.join(again, name + ".ckp.h5")])
+            checks.that(result.returncode == DONE, f"{name}: resumed", said(result))
+        wrong = result_differences(out, again)
+        checks.that(not wrong and told(again) == told(out), f"{name}: told after a stop as in one go",
+                    "; ".join([*wrong, *told(again)]))
+    for cross, wanted in ((5.0, []), (9.9, ["crosses at time 9.9"])):
+        result = run([write(checks.path("torch.lag"), TORCH.format(cross=cross) + "END\n"), "--check"])
+        warnings = [line for line in result.stdout.splitlines() if line.startswith("WARNING")]
+        checks.that(len(warnings) == len(wanted) and all(words in line for words, line in zip(wanted, warnings)), f"torch at {cross}", warnings)
+    twice = TORCH.format(cross=5.0).replace("OPERA  pass\n", "OPERA  pass\nCONVE  bar 2 3 H 1. TS 20.\n")
+    result = run([write(checks.path("twice.lag"), twice + "END\n"), "--check"])
+    checks.that("have the sum of both exchanges" in result.stdout, "two exchanges on a side of the second operation", said(result))
+
+
 def main():
     with_h5py()
     checks = Checks()
@@ -285,6 +340,7 @@ def main():
     others(checks)
     at_once(checks)
     checked(checks)
+    beginning(checks)
     closing(checks)
     first_without(checks)
     contour(checks)

@@ -6,6 +6,8 @@ usage: run_weld_pass.py [-v] [-k] [--write]     --write puts the table of finer 
 - `bar`: between two walls a bar is laid at a high temperature beside another; both come to one temperature, then to that of the
   start. Elastic: the mean temperature and the stress are the integrals of what was laid (closed form). Stopped and resumed: the same
   bits. Put to sleep again, it leaves the other bar without stress.
+- `exposed`: the side where the other bar will be is free until then: what a bar alone gives off there, with large strains too, and pressed
+  there. The volume of both is compared with that when the other has come, without expansion. Named in the wrong operation it is refused.
 - `whole`: laid beside a bar of another heat capacity, which depends on the temperature, on four and on eight nodes an element, on meshes that
   differ: the common temperature is that of the heat of both (closed form).
 - `gap`: the first bar has come nearer by 15 % of the other's length before that is laid: no strain of it (KINEM SMALL), before and after
@@ -19,8 +21,8 @@ sys.dont_write_bytecode = True
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path[:0] = [os.path.join(TESTS, folder) for folder in ("runs", "cycle")]
 from remeshed import put_table  # noqa: E402
-from support import (DONE, NO_CONVERGENCE, SIGNAL, SOURCE, Checks, history, result_differences, run, said, start, stop_after,  # noqa: E402
-                     with_h5py, write)
+from support import (DONE, INPUT, NO_CONVERGENCE, SIGNAL, SOURCE, Checks, history, result_differences, run, said, start, stop_after,  # noqa: E402
+                     summary, with_h5py, write)
 
 E, ALPHA, LAID, N = 200000.0, 1e-5, 1020.0, 8
 BAR = f"""TITLE  A bar laid on hot beside another, between walls
@@ -129,6 +131,44 @@ def gap(checks):
     checks.that(result.returncode == NO_CONVERGENCE and "large strain in KINEM SMALL" in result.stderr, "pressed: refused", said(result))
 
 
+FREE = """PRES2D parent 2 3 10. load
+LIC    load
+   0. 0.  1. 1.
+CONVE  parent 2 H 0.5 TS 20.
+STOP   100.
+STRAT  0.01 1.E-6 10.   6 3  0.25 2.
+"""
+AT_FREE = ("heat_through_parent.2/CONVE", "stress", "t_parent", "x")
+
+
+def exposed(checks):
+    """The side beside a body that is asleep."""
+    text = BAR[:BAR.index("OPERA")].replace("KINEM  SMALL", "KINEM  LOG").replace("T 20. parent", "T 500. parent")
+    text += "PROBE  x NODE X 10. 0.\n"
+    later = "OPERA  laid\nSTOP   1000.\nSTRAT  0.01 1.E-6 100.   6 3  0.25 2.\n"
+    alone = "\n".join(line for line in text.replace("parent filler", "parent").split("\n") if "filler" not in line or "MEAN stress_xx parent" in line)
+    alone = alone.replace("\n   10. 0.   20. 0.   20. 1.   10. 1.\n   8 1.   1 1.", "")
+    runs = {}
+    for name, deck in (("exposed", text + "OPERA  before\nASLEEP filler\n" + FREE + later + "END\n"), ("alone", alone + FREE + "END\n")):
+        out = checks.path(name)
+        result = run([write(checks.path(name + ".lag"), deck), "--out", out, "--threads", "1"])
+        if not checks.that(result.returncode == DONE, f"{name}: runs", said(result)):
+            return
+        runs[name] = history(out)
+    last = len(runs["alone"]["step"]) - 1
+    for name in AT_FREE:
+        one, other = (next(values[last] for column, values in runs[which].items() if column == name) for which in ("exposed", "alone"))
+        checks.that(abs(one - other) < 1e-9*abs(other), f"exposed: {name} as of the bar alone", (one, other))
+    drift = summary(checks.path("exposed"))["checks"]["volume_drift_unloaded"]
+    checks.that(abs(drift) < 1e-5, "exposed: volume without expansion since both are there", drift)
+    for name, deck, words in (("sleeps", text + "OPERA  before\nASLEEP filler\nCONVE  filler 4 H 0.5 TS 20.\nSTOP   1.\nSTRAT  0.5 1.E-6 0.5   6 3\n",
+                               "CONVE: one of its sides belongs to a body that is asleep"),
+                              ("inside", text + "OPERA  both\nCONVE  parent 2 H 0.5 TS 20.\nSTOP   1.\nSTRAT  0.5 1.E-6 0.5   6 3\n",
+                               "CONVE: this place is inside the part")):
+        result = run([write(checks.path(name + ".lag"), deck + "END\n"), "--check"])
+        checks.that(result.returncode == INPUT and words in result.stderr, f"{name}: refused", said(result))
+
+
 WHOLE = """TITLE  laid hot, its heat capacity by temperature
 STATE  PLSTN
 KINEM  SMALL
@@ -209,6 +249,7 @@ def main():
     checks = Checks()
     bar(checks)
     gap(checks)
+    exposed(checks)
     whole(checks)
     if "--write" in sys.argv[1:]:
         table(checks)
