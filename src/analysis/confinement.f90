@@ -24,8 +24,8 @@ module confinement
   real(wp), parameter :: most_of_work = 0.5_wp
   !> Elastic change of the volume of a body from which it is told, and its mean pressure over the mean of von Mises' stress.
   real(wp), parameter :: least_change = 5.0e-3_wp, least_pressure = 2.0_wp
-  !> A change that is told whatever comes later: laws have a constant bulk modulus, that of metals grows by 4 to 6 times the pressure
-  !> (F.D. Murnaghan, Proc. Natl. Acad. Sci. 30 (1944) 244), so that the pressure is wrong by 6 to 9 %, at 5 GPa in steel.
+  !> A change that is told whatever comes later: laws have a constant bulk modulus, that of metals grows by 4 to 6 times the
+  !> pressure (F.D. Murnaghan, Proc. Natl. Acad. Sci. 30 (1944) 244): the pressure is wrong by 6 to 9 %, at 5 GPa in steel.
   real(wp), parameter :: lasting_change = 0.03_wp
   integer, parameter :: mean_stress = 2   !! among the measures of a stress
 
