@@ -77,8 +77,10 @@ contains
                  .or. is_save_time(scene, solution) .or. mesh_is_due(solution)
     if (fields_due) then
       call save_all(scene, solution, run, error)
-    else if (is_due(solution%step, scene%strategy%checkpoint_every) .or. caught_signal() /= 0) then
+    else if (is_due(solution%step, scene%strategy%checkpoint_every)) then
       call save_checkpoint(scene, solution, run, error)
+    else if (caught_signal() /= 0) then
+      call save_checkpoint(scene, solution, run, error, between_saves=.true.)
     end if
   end subroutine record
 
@@ -94,15 +96,17 @@ contains
   end subroutine save_all
 
   !> The checkpoint; the rows of the history up to it are on the disk before it is.
-  subroutine save_checkpoint(scene, solution, run, error)
+  subroutine save_checkpoint(scene, solution, run, error, between_saves)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(run_t), intent(inout) :: run
     type(error_t), allocatable, intent(out) :: error
+    logical, intent(in), optional :: between_saves   !! none was due
 
     call run%table%flush_rows(error)
     if (allocated(error)) return
-    call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, ends_now(scene, solution), error)
+    call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, scene, solution, ends_now(scene, solution), error, &
+                          between_saves)
   end subroutine save_checkpoint
 
   !> Where contact begins and ends in all contact groups.

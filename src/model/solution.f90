@@ -41,6 +41,8 @@ module solution
     type(pairs_t), allocatable :: pairs(:)
     !> The state comes from another mesh (or from none): equilibrium has yet to be found.
     logical :: unbalanced = .false.
+    !> Of a checkpoint: written as a signal stopped the run, where no save was due.
+    logical :: between_saves = .false.
     !> Lengths of late steps, and of those of a mesh that is new.
     type(probation_t) :: probation
     !> Viscous force over velocity and volume in the step to come, 0 where it is not damped (damping) [force time/length^4].

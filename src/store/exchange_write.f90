@@ -8,9 +8,11 @@ module exchange_write
   use errors, only: error_t
   use exchange_schema, only: deck_source, deck_source_t, schema_name, schema_version, visit_deck_source
   use hdf5_atomic, only: commit_atomic, create_atomic
+  use hdf5_file, only: hdf5_file_t
   use member_writer, only: member_writer_t
   use scene, only: scene_t
   use solution, only: solution_t
+  use system, only: file_exists
   use visit_remesher, only: visit_contact_ends
   use visit_scene, only: visit_scene_members
   use visit_solution, only: visit_solution_members
@@ -20,13 +22,15 @@ module exchange_write
 
 contains
 
-  !> Write the whole state of a run, atomically; the one before is kept beside it.
-  subroutine write_checkpoint(path, deck_path, deck_text, scene, solution, ends, error)
+  !> Write the whole state of a run, atomically; the one before is kept beside it, unless it was written between saves: what was
+  !> kept beside that stays then, so that a run which was stopped and goes on leaves the same two files as one in one go.
+  subroutine write_checkpoint(path, deck_path, deck_text, scene, solution, ends, error, between_saves)
     character(len=*), intent(in) :: path, deck_path, deck_text
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(contact_end_t), intent(in) :: ends(:)   !! (nend) where contact begins and ends now
     type(error_t), allocatable, intent(out) :: error
+    logical, intent(in), optional :: between_saves   !! a signal stops the run, and no save is due (default: one is)
     type(member_writer_t) :: writer
     type(deck_source_t) :: deck
     ! a visitor may change what it visits: this one is shown copies
@@ -43,10 +47,31 @@ contains
     allocate (shown_scene, source=scene)
     call visit_scene_members(writer, shown_scene)
     allocate (shown_solution, source=solution)
+    shown_solution%between_saves = .false.
+    if (present(between_saves)) shown_solution%between_saves = between_saves
     call visit_solution_members(writer, shown_solution)
     allocate (shown_ends, source=ends)
     call visit_contact_ends(writer, shown_ends)
-    call commit_atomic(writer%file, error, keep_previous=.true.)
+    call commit_atomic(writer%file, error, keep_previous=.not. is_between_saves(path))
   end subroutine write_checkpoint
+
+  !> Is there a checkpoint called `path` that was written between saves?
+  function is_between_saves(path)
+    character(len=*), intent(in) :: path
+    logical :: is_between_saves
+    type(hdf5_file_t) :: file
+    type(error_t), allocatable :: error
+    integer :: number
+
+    is_between_saves = .false.
+    if (.not. file_exists(path)) return
+    ! its hash is not compared: no more than one flag is asked for
+    call file%open(path, error, hashed=.true.)
+    if (allocated(error)) return
+    number = 0
+    if (file%has_attribute('progress', 'between_saves')) call file%read_attribute('progress', 'between_saves', number)
+    call file%close(error)
+    is_between_saves = number == 1 .and. .not. allocated(error)
+  end function is_between_saves
 
 end module exchange_write

@@ -202,7 +202,7 @@ def result_differences(first, second):
              for path in glob.glob(os.path.join(folder, "**"), recursive=True) if os.path.isfile(path)}
     for name in sorted(names):
         one, two = os.path.join(first, name), os.path.join(second, name)
-        if name.endswith((".log", ".1.h5", ".cost")) or (name.startswith("summary.") and name.endswith(".json")):
+        if name.endswith((".log", ".cost")) or (name.startswith("summary.") and name.endswith(".json")):
             continue
         if not (os.path.isfile(one) and os.path.isfile(two)):
             wrong.append(f"{name} is not in both folders")
