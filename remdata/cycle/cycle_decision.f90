@@ -8,12 +8,13 @@ module cycle_decision
   use cycle_refusal, only: refuse_first_steps, refuse_made, refuse_restart
   use cycle_situation, only: current_name, due_reason, ended_check, ended_lagamine, ended_nothing, ended_remdata, is_due, &
     is_first_mesh, is_read, mesh_name, situation_t, try_name
-  use cycle_table, only: agreed_way, any_agreed, way_agreed, way_anew, way_coarser, way_earlier, way_finer, way_mesher, &
-                         way_old_mesh, way_transfer
+  use cycle_table, only: agreed_way, any_agreed, first_reason, way_agreed, way_anew, way_coarser, way_earlier, way_finer, &
+    way_mesher, way_old_mesh, way_transfer
   use cycle_ways, only: is_whole, next_way, old_mesh_goes_on, old_state
   use cuts, only: stage_of_cuts
   use errors, only: exit_done, exit_input, exit_machine, exit_no_convergence, exit_remesh, exit_signal
   use kinds, only: wp
+  use own_contact, only: passes_itself_advice, passes_itself_words
   use text, only: to_text
   implicit none
   private
@@ -197,17 +198,21 @@ contains
   pure function no_way_left(s) result(action)
     type(situation_t), intent(in) :: s
     type(action_t) :: action
-    character(len=:), allocatable :: tried, heed
+    character(len=:), allocatable :: tried, heed, reason, first
 
     ! what is wrong with the scene, as a part that begins in a die or passes through itself, is told there
     heed = 'warnings in '//s%stem//'.log come first'
     tried = to_text(s%new%number - 1)//' tried, see '//s%table
+    reason = first_reason(s%rows, s%new%generation, s%new%old_end%facts%step)
+    if (reason /= '') tried = tried//'; the first: '//reason
+    first = ''
+    if (index(reason, passes_itself_words) > 0) first = passes_itself_advice//'; '
     if (is_first_mesh(s%new%old_end%facts)) then
       action = give_up(exit_no_convergence, 'no first mesh is good enough: '//tried, &
-                       heed//'; else the contour may want other ZPNT and ZONE cards, or sizes: REMSH SIZE, TURN and COUNT')
+                       first//heed//'; else the contour may want other ZPNT and ZONE cards, or sizes: REMSH SIZE, TURN and COUNT')
     else
       action = give_up(exit_no_convergence, 'no new mesh is good enough at '//place_of(s%new%old_end)//': '//tried, &
-                       'the checkpoint is '//s%stem//'.'//current_name//': lagamine --resume goes on with the old mesh; '// &
+                       first//'the checkpoint is '//s%stem//'.'//current_name//': lagamine --resume goes on with the old mesh; '// &
                        'shorter steps (STRAT), or other rows of REMSH (SIZE, ACCEPT, TRIES), beside the limits that --check '// &
                        'prints, may help; '//heed)
     end if

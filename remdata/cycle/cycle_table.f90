@@ -8,7 +8,7 @@ module cycle_table
   private
   public :: try_row_t, table_heading, number_of_columns, parse_table, line_of_cells
   public :: way_deck, way_transfer, way_finer, way_mesher, way_coarser, way_earlier, way_old_mesh, way_agreed, way_anew
-  public :: agreed_way, any_agreed, first_step_of, number_refused, was_refused, has_new_mesh, keeps_old_mesh, &
+  public :: agreed_way, any_agreed, first_reason, first_step_of, number_refused, was_refused, has_new_mesh, keeps_old_mesh, &
             transfer_is_responsible, mesh_is_responsible, took_earlier
 
   !> What is done for a new mesh, as the column `action` names it: as the deck says, another state transfer, finer or coarser
@@ -26,7 +26,7 @@ module cycle_table
     'lap_depth [length],removed_volume [volume],force_over_limit [-],remdata [s],restart [s],reason'
   !> Numbers of columns in it.
   integer, parameter :: at_generation = 1, at_stop_step = 3, at_stop_time = 4, at_step = 5, at_action = 7, at_accepted = 9, &
-                        at_stage = 10, at_error_after = 14, at_force = 25
+                        at_stage = 10, at_error_after = 14, at_force = 25, at_reason = 28
   integer, parameter :: number_of_columns = 28
   !> So many tries that were refused by the force of a die alone are several. They agree when their changes of the force differ by
   !> no more than its limit.
@@ -44,6 +44,7 @@ module cycle_table
     integer :: step = 0                      !! of the state that was remeshed
     character(len=:), allocatable :: action  !! one of the ways above
     character(len=:), allocatable :: stage   !! responsible, '' when accepted
+    character(len=:), allocatable :: reason  !! why it was refused, for the user
     logical :: accepted = .false.
     !> Estimated error of the stress on the new mesh [%]; the change of the force of a die over its limit, negative where it becomes
     !> smaller, where nothing else speaks against the mesh; each 0 where it is not known.
@@ -108,6 +109,7 @@ contains
     row%action = cells(at_action)%s
     row%accepted = cells(at_accepted)%s == 'y'
     row%stage = cells(at_stage)%s
+    row%reason = cells(at_reason)%s
     call read_known(cells(at_error_after)%s, row%error_after, status)
     if (status == 0) call read_known(cells(at_force)%s, row%force, status)
     if (status /= 0) return
@@ -179,6 +181,21 @@ contains
       if (is_refused(rows(k), generation, stop_step)) refused = refused .or. rows(k)%action == way
     end do
   end function was_refused
+
+  !> Why the first try was refused at this stop, '' where it is not known.
+  pure function first_reason(rows, generation, stop_step) result(reason)
+    type(try_row_t), intent(in) :: rows(:)   !! (ntry)
+    integer, intent(in) :: generation, stop_step
+    character(len=:), allocatable :: reason
+    integer :: k
+
+    reason = ''
+    do k = 1, size(rows)
+      if (.not. is_refused(rows(k), generation, stop_step)) cycle
+      if (allocated(rows(k)%reason)) reason = rows(k)%reason
+      return
+    end do
+  end function first_reason
 
   !> Step at which mesh `generation` began; 0 for the first.
   pure function first_step_of(rows, generation) result(step)

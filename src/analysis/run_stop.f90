@@ -8,6 +8,7 @@ module run_stop
   use kinds, only: wp
   use law_api, only: find_parameter, law_t
   use newton, only: outcome_t
+  use own_contact, only: passes_itself_advice, passes_itself_words
   use results, only: save_failure
   use run_record, only: run_t, save_all, at_end
   use scene, only: role_heat_contact, scene_t
@@ -66,8 +67,8 @@ contains
     if (is_steep(scene, run%equations%laws)) advice = advice//'; friction by M has no bound by the pressure but PHI: PHI 1 ' &
       //'beside M, above which an equilibrium need not exist'
     if (outcome%passes_itself) then
-      what = 'a body passes through itself'
-      advice = 'sides of one body that meet need contact as those of two bodies do, DIE name SIDES place and CNT2D place name law'
+      what = passes_itself_words
+      advice = passes_itself_advice
     end if
     if (solution%step > 0) advice = 'the last good state is in '//run%stem//'.ckp.h5, '//advice
     call fail(error, exit_no_convergence, what//': step '//to_text(solution%step + 1)//' from time ' &

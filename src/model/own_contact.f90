@@ -7,7 +7,11 @@ module own_contact
   use dies, only: is_deformable
   implicit none
   private
-  public :: faces_itself, pieces_to_meet
+  public :: faces_itself, passes_itself_advice, passes_itself_words, pieces_to_meet
+
+  !> Why a run ends whose body passes through itself where no contact is asked for, and what it needs.
+  character(len=*), parameter :: passes_itself_words = 'a body passes through itself', passes_itself_advice = &
+    'sides of one body that meet need contact as those of two bodies do, DIE name SIDES place and CNT2D place name law'
 
 contains
 
