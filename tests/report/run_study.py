@@ -92,6 +92,8 @@ class Study(unittest.TestCase):
         self.assertTrue(math.isnan(verdict.errors[1]), "the finest that reached its end is no error of its own")
         verdict = judge([2.0, 2.0, 2.0], [2.0, 2.0], [1.0, 2.0, 4.0], 2.0)
         self.assertTrue(math.isnan(verdict.half_costs) and all(map(math.isnan, verdict.orders)))
+        verdict = judge([0.5, 0.25], [2.0], [1.0, 2.0], 0.0)
+        self.assertEqual(([0.5, 0.25], 1.0), (verdict.errors, verdict.percent), "errors of what is 0 are no percents")
 
     def test_ladder_of_steps(self):
         """Backward Euler of an exponential: (1 + h)^-(4/h), truth e^-4, order 1; made once."""
@@ -159,6 +161,8 @@ class Study(unittest.TestCase):
                                ((*deck, "--ladder", "step=1.,.5", "--quantity", "t", "--exact", "u=1"), "of no --quantity"),
                                ((*deck, "--ladder", "step=1.,.5", "--quantity", "t", "--exact", "t=one"), "expected t=NUMBER"),
                                ((*deck, "--ladder", "step=1.,.5", "--quantity", "u"), "no such column; there are: time"),
+                               ((*deck, "--ladder", "step=1.,.5", "--quantity", "t@1.3"), "no step of a run ends at this time, the nearest at 1"),
+                               ((*deck, "--ladder", "step=1.,.5", "--quantity", "t@9"), "no step of a run ends at this time, the nearest at 4"),
                                ((*deck, "--ladder", "stop=1.,.5", "--quantity", "t"), "stop"),
                                ((*deck, "--ladder", "step=1.,.5", "--quantity", "t", "--jobs", "0"), "--jobs: expected 1 or more"),
                                (("nowhere.lag", "--ladder", "step=1.,.5", "--quantity", "t"), "nowhere.lag: cannot be read")):

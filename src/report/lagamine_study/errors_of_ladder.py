@@ -10,13 +10,19 @@ ROUND_OFF = 1e-10            # of errors: no order, no cost
 
 @dataclass
 class Verdict:
-    """Truth and where it comes from; relative errors of the runs, orders between neighbours, cost of half the error; not a number: unknown."""
+    """Truth and where it comes from; errors of the runs over it (as they are where it is 0), orders between neighbours, cost of half the error;
+    not a number: unknown."""
 
     truth: float
     source: str
     errors: List[float]
     orders: List[float]
     half_costs: float
+
+    @property
+    def percent(self) -> float:
+        """What errors are shown times: those over the truth in percent, others as they are."""
+        return 100.0 if self.truth else 1.0
 
 
 def judge(values: Sequence[float], ratios: Sequence[Optional[float]], seconds: Sequence[float], exact: Optional[float]) -> Verdict:

@@ -63,7 +63,10 @@ class Quantity:
             return float(values[-1])
         time = history["time"].values
         k = int(abs(time - self.time).argmin())
-        return float(values[k]) if abs(time[k] - self.time) <= 1e-9 * max(abs(self.time), abs(time[-1])) else float("nan")
+        if abs(time[k] - self.time) > 1e-9 * max(abs(self.time), abs(time[-1])):
+            raise ReportError(f"--quantity {self.text}: no step of a run ends at this time, the nearest at {time[k]:.9g} of {time[-1]:.9g}",
+                              advice="steps hit the times of every LIC and of SAVE TIMES, and @max, @min and the end are always there")
+        return float(values[k])
 
 
 def read_ladder(text: str, out: str) -> Ladder:

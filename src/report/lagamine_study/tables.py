@@ -46,14 +46,18 @@ def as_markdown(title: str, ladders: Sequence[Ladder], results: Dict[str, List[R
         for quantity in quantities:
             verdict = verdicts[ladder.name, quantity.text]
             lines += [f"## {quantity.text} over {ladder.name}", f"Truth {brief(verdict.truth, 7)}: {verdict.source}.{_price(verdict)}", "",
-                      "| run | value | error % | order | processor s | steps | iterations | elements |", "|---|---|---|---|---|---|---|---|"]
+                      f"| run | value | {_heading(verdict)} | order | processor s | steps | iterations | elements |", "|---|---|---|---|---|---|---|---|"]
             for k, result in enumerate(held):
                 order = verdict.orders[k - 1] if k else float("nan")
-                lines.append(f"| {result.rung.title} | {_cell(result.values[quantity.text], 7)} | {_cell(100 * verdict.errors[k], 3)} | {_cell(order, 3)} | "
+                lines.append(f"| {result.rung.title} | {_cell(result.values[quantity.text], 7)} | {_cell(verdict.percent * verdict.errors[k], 3)} | {_cell(order, 3)} | "
                              f"{_cell(result.seconds, 3)} | {_cell(result.steps)} | {_cell(result.iterations)} | {_cell(result.elements)} |")
             lines.append("")
         lines += [f"{result.rung.title} did not reach its end: {result.reason}" for result in held if result.code]
     return ("\n".join(lines).rstrip() + "\n").encode("utf-8")
+
+
+def _heading(verdict: Verdict) -> str:
+    return "error %" if verdict.truth else "error"
 
 
 def _price(verdict: Verdict) -> str:
@@ -72,12 +76,12 @@ def work_precision(ladders: Sequence[Ladder], results: Dict[str, List[Result]], 
     for panel, quantity in zip(axes.flat, quantities):
         for ladder, colour in zip(ladders, LINES * len(ladders)):
             verdict = verdicts[ladder.name, quantity.text]
-            known = [(result.seconds, 100 * error) for result, error in zip(results[ladder.name], verdict.errors) if error > 0 and result.seconds > 0]
+            known = [(result.seconds, verdict.percent * error) for result, error in zip(results[ladder.name], verdict.errors) if error > 0 and result.seconds > 0]
             if known:
                 panel.loglog(*zip(*known), marker="o", color=colour, label=ladder.name)
         panel.set_title(quantity.text)
         panel.set_xlabel("seconds of processor")
-        panel.set_ylabel("error %")
+        panel.set_ylabel(_heading(verdicts[ladders[0].name, quantity.text]))
         for axis in (panel.xaxis, panel.yaxis):
             plain_numbers(axis)
         if panel.get_legend_handles_labels()[0]:
