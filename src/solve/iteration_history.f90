@@ -14,6 +14,8 @@ module iteration_history
     real(wp) :: force_norm = 0.0_wp, displacement_norm = 0.0_wp, line_search = 1.0_wp
     !> Points opened, closed, stuck or slipped the other way.
     logical :: contact_changed = .false.
+    !> The whole correction was taken, whatever the residual, after searches that were all short.
+    logical :: watched = .false.
   end type iteration_t
 
   !> A residual this many times larger than the first one, after `patience` iterations, counts as divergence.
@@ -37,6 +39,8 @@ module iteration_history
   integer, parameter :: for_balance = 2
   !> Heat through contact is linearised along the motion where the residual is below this (contact_heat_tangent).
   real(wp), parameter :: near_force = 1.0e-2_wp
+  !> A search that ends below this share of the correction is short too where the residual is below this, and contact is settled.
+  real(wp), parameter :: before_turn = 0.35_wp, turn_force = 1.0e-3_wp
   !> After so many short searches one after the other the whole correction is taken.
   integer, parameter :: short_searches = 2
 
@@ -91,7 +95,7 @@ contains
     logical :: caught
 
     caught = size(history) > short_searches
-    if (caught) caught = all(abs(history(size(history) - short_searches + 1:)%line_search) < short_share)
+    if (caught) caught = all(is_short(history(size(history) - short_searches + 1:)))
     if (caught) caught = .not. went_round(history)
   end function caught
 
@@ -107,7 +111,7 @@ contains
     went_round = whole > short_searches + 1
     if (.not. went_round) return
     went_round = history(whole)%line_search >= 1 &
-                 .and. all(abs(history(whole - short_searches:whole - 1)%line_search) < short_share) &
+                 .and. all(is_short(history(whole - short_searches:whole - 1))) &
                  .and. history(n)%force_norm > circling*history(whole - 1)%force_norm
   end function went_round
 
@@ -123,6 +127,15 @@ contains
     in_turmoil = all(history(n - 1:)%contact_changed) &
                  .and. minval(history(n - 1:)%force_norm) > stagnant*minval(history(2:n - 2)%force_norm)
   end function in_turmoil
+
+  !> A search ended short of the correction: before a turn, where its first trials are tenths of the way to a stiffer far side.
+  elemental function is_short(line)
+    type(iteration_t), intent(in) :: line
+    logical :: is_short
+
+    is_short = abs(line%line_search) < short_share .or. abs(line%line_search) < before_turn .and. line%line_search > 0 &
+               .and. line%force_norm < turn_force .and. .not. line%contact_changed
+  end function is_short
 
   !> Corrections that follow the heat content go round in circles: the residual is hardly below the best so far.
   pure function in_circles(history)
@@ -140,7 +153,7 @@ contains
     type(iteration_t), intent(in) :: line
     logical :: is_under_way
 
-    is_under_way = line%contact_changed .or. line%line_search < 0
+    is_under_way = line%contact_changed .or. line%watched .or. line%line_search < 0
   end function is_under_way
 
   !> Contact still changes and the residual falls with it: a thin sheet between dies opens and closes point by point, whatever the
