@@ -134,7 +134,7 @@ contains
     ! only a motion that is not found is damped
     if (.not. (outcome%of_heat .or. outcome%passes_itself) &
         .and. (cutbacks > most_cutbacks_undamped .or. give_up .or. solution%damping > 0)) then
-      call damp(scene, dt, solution, run)
+      call damp(scene, dt, outcome, solution, run)
       ! more damping does what a shorter step cannot
       if (give_up .and. solution%damping > 0 .and. cutbacks < most_cutbacks_damped) then
         give_up = .false.
@@ -159,21 +159,26 @@ contains
     end if
   end subroutine answer_failure
 
-  !> The step is tried again with more damping than before, where a die withdraws.
-  subroutine damp(scene, dt, solution, run)
+  !> The step is tried again with more damping than before, where a die withdraws, or past a limit point.
+  subroutine damp(scene, dt, outcome, solution, run)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: dt   !! of the step that failed [time]
+    type(outcome_t), intent(in) :: outcome
     type(solution_t), intent(inout) :: solution
     type(run_t), intent(inout) :: run
+    logical :: past_limit
     integer :: die
 
     if (solution%damping > 0) then
       call strengthen_damping(solution)
       return
     end if
-    call begin_damping(scene, run%equations, solution, dt, die)
+    ! in the first step a part may begin deep in its dies, and nothing has been found yet that it could snap from
+    past_limit = solution%last_step > 0 .and. any(outcome%history%line_search < 0)
+    call begin_damping(scene, run%equations, solution, dt, past_limit, die)
     if (die > 0) &
-      call list_note(run%listing, 'note: step '//to_text(solution%step + 1)//': '//scene%dies(die)%name//' withdraws, and no ' &
+      call list_note(run%listing, 'note: step '//to_text(solution%step + 1)//': '//scene%dies(die)%name &
+                     //trim(merge(' moves past a limit point, and', ' withdraws, and               ', past_limit))//' no ' &
                      //'equilibrium is near: what it held is let go suddenly; steps are damped until there is one')
   end subroutine damp
 

@@ -8,6 +8,9 @@
 !> way to a steady state (C.T. Kelley, D.E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508-523), in steps that are accepted, so that
 !> flow and friction follow it.
 !>
+!> A die that goes on needs the same where the part has reached a limit point: a strip that is bent freely bears on a node or two of
+!> its dies, and snaps on to the next node where the bend becomes steep.
+!>
 !> c begins so that the force of the die would move the part by the side of an element within the step that failed. A step that
 !> fails again, or goes further than the path can be followed, makes it larger; others make it smaller. It ends where the forces
 !> are within the tolerance of equilibrium. Their work is booked, and told at the end. No release takes more than the elastic energy
@@ -64,13 +67,15 @@ contains
     end do
   end subroutine prepare_damping
 
-  !> The coefficient with which a step of length dt that failed is tried again where a die withdraws; 0 where none does.
-  subroutine begin_damping(scene, equations, solution, dt, die)
+  !> The coefficient with which a step of length dt that failed is tried again where a die withdraws, or past a limit point
+  !> where a die moves; 0 where none does.
+  subroutine begin_damping(scene, equations, solution, dt, past_limit, die)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt     !! of the step that failed [time]
-    integer, intent(out) :: die    !! the one that withdraws with the largest force, 0 where none does
+    logical, intent(in) :: past_limit   !! the step that failed has been past a limit point
+    integer, intent(out) :: die         !! the one that withdraws, or moves, with the largest force, 0 where none does
     real(wp), dimension(equations%dofs%ndof) :: rest, motion
     real(wp) :: driven(size(equations%dofs%prescribed)), force, largest
     type(report_t) :: report
@@ -91,8 +96,9 @@ contains
     associate (pilot => equations%dofs%fields(pilot_field)%number)
       do k = 1, size(pilot, 2)
         if (any(pilot(1:2, k) == 0)) cycle
+        if (.not. any(abs(motion(pilot(1:2, k))) > 0)) cycle
         ! one that turns a part over does not let it go
-        if (.not. dot_product(equations%force(pilot(1:2, k)), motion(pilot(1:2, k))) < 0) cycle
+        if (.not. (past_limit .or. dot_product(equations%force(pilot(1:2, k)), motion(pilot(1:2, k))) < 0)) cycle
         force = length_of(equations%force(pilot(1:2, k)))
         if (.not. force > largest) cycle
         largest = force

@@ -17,6 +17,8 @@ module iteration_history
     logical :: contact_changed = .false.
     !> Iterations on the unknowns of a patch that was eliminated (nonlinear_elimination); 0 where none was.
     integer :: inner = 0
+    !> The whole correction was taken, whatever the residual, after searches that were all short.
+    logical :: watched = .false.
   end type iteration_t
 
   !> A residual this many times larger than the first one, after `patience` iterations, counts as divergence.
@@ -43,6 +45,8 @@ module iteration_history
   !> What an iteration on the unknowns of a patch, after the first, counts in the difficulty of a step: with 0 steps get so long
   !> that many fail, with 1 there are as many as without patches.
   real(wp), parameter :: inner_share = 0.4_wp
+  !> A search that ends below this share of the correction is short too where the residual is below this, and contact is settled.
+  real(wp), parameter :: before_turn = 0.35_wp, turn_force = 1.0e-3_wp
   !> After so many short searches one after the other the whole correction is taken.
   integer, parameter :: short_searches = 2
 
@@ -105,7 +109,7 @@ contains
     logical :: caught
 
     caught = size(history) > short_searches
-    if (caught) caught = all(abs(history(size(history) - short_searches + 1:)%line_search) < short_share)
+    if (caught) caught = all(is_short(history(size(history) - short_searches + 1:)))
     if (caught) caught = .not. went_round(history)
   end function caught
 
@@ -121,7 +125,7 @@ contains
     went_round = whole > short_searches + 1
     if (.not. went_round) return
     went_round = history(whole)%line_search >= 1 &
-                 .and. all(abs(history(whole - short_searches:whole - 1)%line_search) < short_share) &
+                 .and. all(is_short(history(whole - short_searches:whole - 1))) &
                  .and. history(n)%force_norm > circling*history(whole - 1)%force_norm
   end function went_round
 
@@ -137,6 +141,15 @@ contains
     in_turmoil = all(history(n - 1:)%contact_changed) &
                  .and. minval(history(n - 1:)%force_norm) > stagnant*minval(history(2:n - 2)%force_norm)
   end function in_turmoil
+
+  !> A search ended short of the correction: before a turn, where its first trials are tenths of the way to a stiffer far side.
+  elemental function is_short(line)
+    type(iteration_t), intent(in) :: line
+    logical :: is_short
+
+    is_short = abs(line%line_search) < short_share .or. abs(line%line_search) < before_turn .and. line%line_search > 0 &
+               .and. line%force_norm < turn_force .and. .not. line%contact_changed
+  end function is_short
 
   !> Corrections that follow the heat content go round in circles: the residual is hardly below the best so far.
   pure function in_circles(history)
@@ -154,7 +167,7 @@ contains
     type(iteration_t), intent(in) :: line
     logical :: is_under_way
 
-    is_under_way = line%contact_changed .or. line%line_search < 0
+    is_under_way = line%contact_changed .or. line%watched .or. line%line_search < 0
   end function is_under_way
 
   !> Contact still changes and the residual falls with it: a thin sheet between dies opens and closes point by point, whatever the

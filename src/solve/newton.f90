@@ -213,6 +213,7 @@ contains
         if (made%gave_way) exit
         cycle
       end if
+      line%watched = caught(outcome%history(first:)) .and. manner%whole
       call note_contact(scene, solution, contact, line%contact_changed)
       line%contact_changed = line%contact_changed .or. followed .or. steep .or. any(held .neqv. equations%wall%held)
       held = equations%wall%held
@@ -283,6 +284,7 @@ contains
       correction = 0
       missing = 0
       line%contact_changed = .false.
+      line%watched = .false.
       contact = contact_set(scene, solution)
       held = equations%wall%held
     end subroutine start_again

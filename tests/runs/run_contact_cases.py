@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Contact that needs no care: an S-shaped die, a thin rib, a corner that enters a side, a part that leaves the end of a die and
-comes back. Every run reaches its end, no pressure pulls, and the part is nowhere deeper in the die than allowed: at its points of
-contact, and between them (on the rough S-shaped die by an eighth more at some instants, which ones goes with the lengths of the steps).
+comes back, a strip that is bent freely, one that springs back. Every run reaches its end, no pressure pulls, and the part is nowhere
+deeper in the die than allowed: at its points of contact, and between them (on the rough S-shaped die by an eighth more at some instants, which ones goes with the lengths of the steps).
 
 usage: run_contact_cases.py [-v] [-k]
 
@@ -9,10 +9,11 @@ Depth is looked for at 65 places of every side of every saved step, quadratic in
 parabolas as the fields file has it (die_depth.py), independently of the solver's search. It is compared with the allowed
 penetration, 1e-3 of the side, and with what the solver says of it in summary.json.
 """
+import math
 import sys
 
 sys.dont_write_bytecode = True
-from support import DONE, Checks, run, said, summary, with_h5py, write  # noqa: E402
+from support import DONE, Checks, history, run, said, summary, with_h5py, write  # noqa: E402
 
 ALLOWED = 1.0e-3
 # Between points of contact, over what is allowed at them. The S-shaped die with friction 0.2 to 0.4 and steps of 0.01 to 0.04: 0.94 to 1.18; a
@@ -118,6 +119,76 @@ END
 """
 
 
+# Bends between radii of 1.5, with sides of .5; the largest force of the punch on 80 x 4 elements.
+FINE = 49.14
+STRIP = """TITLE  A strip bent freely by a punch: it bears on a node or two of each die
+STATE  PLSTN
+KINEM  LOG
+BLOCK  strip PL8LS 4 metal
+   0. 0.   20. 0.   20. 1.2   0. 1.2
+   40 1.   3 1.
+LAW    metal EPLA
+   200000. 0.3
+   SWIFT 500. 0.01 0.2
+LAW    film COUL2D
+   PENETR 1.E-3   PHI 0.1   AUGMENT 10
+DIE    punch PILOT 0. 1.2
+   SEGM   8. 80.   8. 1.2
+   FILLT  1.5 1.E-3
+   SEGM   8. 1.2   -1. 1.2
+DIE    die
+   SEGM   9.5 -60.   9.5 0.
+   FILLT  1.5 1.E-3
+   SEGM   9.5 0.   80. 0.
+CNT2D  strip 3 punch film
+CNT2D  strip 1 die film
+FIXED  strip 4 X
+LIC    press
+   0. 0.   1. -7.
+MOVE   punch Y press
+STRAT  0.002 1.E-6 0.02   6 3
+SAVE   1000
+END
+"""
+
+
+# Air bending without friction, half of it, and release.
+THICK, YOUNG, POISSON, OPENING, RADIUS, STROKE = 1.2, 200000.0, 0.3, 16.0, 3.0, 8.0
+VEE = f"""TITLE  A strip bent in the air over a die with an opening of 90 degrees, and released
+STATE  PLSTN
+KINEM  LOG
+BLOCK  strip PL8LS 4 metal
+   0. 0.   30. 0.   30. {THICK}   0. {THICK}
+   60 1.   4 1.
+LAW    metal EPLA
+   {YOUNG} {POISSON}
+   SWIFT 500. 0.01 0.2
+LAW    dry COUL2D
+   PENETR 1.E-3   PHI 0.   AUGMENT 10
+DIE    punch PILOT 0. {THICK}
+   SEGM   60. {60 + THICK}   0. {THICK}
+   FILLT  {RADIUS} 1.E-3
+   SEGM   0. {THICK}   -60. {60 + THICK}
+DIE    die
+   SEGM   0. {-OPENING}   {OPENING} 0.
+   FILLT  {RADIUS} 1.E-3
+   SEGM   {OPENING} 0.   80. 0.
+CNT2D  strip 3 punch dry
+CNT2D  strip 1 die dry
+FIXED  strip 4 X
+LIC    press
+   0. 0.   1. {-STROKE}   1.3 2.
+MOVE   punch Y press
+STRAT  0.002 1.E-6 0.02   6 3
+SAVE   1000
+PROBE  in_x NODE X 24. 0.
+PROBE  in_y NODE Y 24. 0.
+PROBE  out_x NODE X 30. 0.
+PROBE  out_y NODE Y 30. 0.
+END
+"""
+
+
 def judge(checks, name, cards, points, phi):
     """One case."""
     import die_depth  # pylint: disable=import-outside-toplevel
@@ -159,12 +230,50 @@ def bending(checks):
     checks.that(ran["steps"] <= 60, "bending: steps as long as with points in contact", ran["steps"])
 
 
+def free_bending(checks):
+    """A strip bent by a punch until it is all but upright: it bears on a node or two of each die, and snaps from one to the next."""
+    deck = write(checks.path("strip.lag"), STRIP)
+    result = run([deck, "--out", checks.path("strip"), "--threads", "1"])
+    if not checks.that(result.returncode == DONE, "strip: done", said(result)):
+        return
+    ran = summary(checks.path("strip"))
+    print(f"strip: {ran['steps']} steps, {ran['iterations']} iterations, {ran['cutbacks']} cutbacks")
+    largest = max(history(checks.path("strip"))["force_y_punch"])
+    checks.that(abs(largest - FINE) < 0.03 * FINE, "strip: force of the punch as on a finer mesh", largest)
+
+
+def springback(checks):
+    """The leg of a strip bent in the air springs back by the elastic bending N s^2/2EI of plane strain: N is the force across it on the
+    die's radius, s its length from there to the punch. What is left out, the bend's own curve beside the straight leg, is below 3 %.
+    """
+    deck = write(checks.path("vee.lag"), VEE)
+    result = run([deck, "--out", checks.path("vee"), "--threads", "1"])
+    if not checks.that(result.returncode == DONE, "vee: done", said(result)):
+        return
+    rows = history(checks.path("vee"))
+    end = min(range(len(rows["time"])), key=lambda k: abs(rows["time"][k] - 1))
+    angles = [math.atan2(rows["out_y"][k] - rows["in_y"][k], rows["out_x"][k] - rows["in_x"][k]) for k in (end, -1)]
+    sine, cosine = math.sin(angles[0]), math.cos(angles[0])
+    # where the leg touches the die's radius, from the middle of the strip under the tip of the punch
+    across = OPENING + RADIUS * math.tan(math.pi / 8) - RADIUS * sine
+    up = RADIUS * (cosine - 1) - (THICK / 2 - STROKE + RADIUS * (math.sqrt(2) - 1))
+    leg = across * cosine + up * sine
+    force = abs(rows["force_y_punch"][end]) / cosine
+    bending = YOUNG / (1 - POISSON**2) * THICK**3 / 12
+    expected = force * leg**2 / (2 * bending)
+    found = angles[0] - angles[1]
+    print(f"vee: springs back by {math.degrees(found):.4g} degrees, closed form {math.degrees(expected):.4g}")
+    checks.that(abs(found / expected - 1) < 0.03, "vee: springback as of elastic bending", f"{found} against {expected}")
+
+
 def main():
     with_h5py()
     checks = Checks()
     for name, cards, points, phi in CASES:
         judge(checks, name, cards, points, phi)
     bending(checks)
+    free_bending(checks)
+    springback(checks)
     checks.end()
 
 

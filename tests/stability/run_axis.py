@@ -223,7 +223,7 @@ def pointed_die(checks):
 
 def resumed(checks):
     """A run that goes on from a checkpoint in which the wall holds the bore ends with the same bits."""
-    run = ring(checks, "whole", dict(STICKING, more="CKPT 2\nNORMS PATH 0 RATE 0\n"), (12, 6))
+    run = ring(checks, "whole", dict(STICKING, way=-1.05, more="CKPT 2\nNORMS PATH 0 RATE 0\n"), (12, 6))
     if not run.ok:
         return
     checks.that(run.history["bore"][-4:].max() < 0, "resumed: the wall holds the bore at the checkpoint", run.history["bore"][-4:])
