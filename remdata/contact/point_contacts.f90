@@ -135,8 +135,8 @@ contains
           if (.not. is_control_point(group%rule, p)) call try(xi(p), weight(p)*state(pressure, p, e), most, place)
           if (corner_place == 0) cycle
           if (.not. abs(state(corner_place, p, e)) < 1) cycle
-          call try(state(corner_place, p, e), corner_weight(xi, p, state(corner_place, p, e))*state(corner_pressure, p, e), &
-                   most, place)
+          call try(state(corner_place, p, e), corner_weight(xi, p, state(corner_place, p, e), group%pairs > 0) &
+                   *state(corner_pressure, p, e), most, place)
         end do
       end do
     end associate

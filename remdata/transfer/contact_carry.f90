@@ -249,7 +249,8 @@ contains
       ! at an end of the side it is the state of a node on the axis, which has no surface
       if (place < part%range(1) .or. place > part%range(2) .or. .not. abs(place) < 1) return
       call add_point(row%length + length_between(part, part%range(1), place), &
-                     corner_weight(xi, p, place)*line_jacobian(nodes, place, scene%plane_state == axisymmetric), p, e, row, &
+                     corner_weight(xi, p, place, scene%groups(g)%pairs > 0) &
+                     *line_jacobian(nodes, place, scene%plane_state == axisymmetric), p, e, row, &
                      variables(find_variable(variables, 'corner_pressure'))%first &
                      - variables(find_variable(variables, 'pressure'))%first)
       if (share_of_corner(place) < 1) row%reach(size(row%reach)) = &

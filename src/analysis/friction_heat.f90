@@ -59,7 +59,7 @@ contains
           do k = 1, size(rows)
             if (rows(k) > 0) work(k, :) = [state%committed(rows(k), p, e), state%trial(rows(k), p, e)]
           end do
-          energy = friction_energy(group%rule, xi, weight, p, work, section, x)
+          energy = friction_energy(group%rule, host%pairs > 0, xi, weight, p, work, section, x)
           area = weight(p)*area_at(xi(p), section(:, 2), x(:, :, 2))
           ! a point on the axis has no area
           if (area > 0) solution%groups(g)%trial(due, p, e) = (energy(2) - energy(1))/area

@@ -10,8 +10,9 @@ module gap_work
   use contact_point, only: at_between, at_piece, at_pressure, at_status, at_tau, at_xi, contact_block, penalties, side_length
   use contact_work, only: kept_work
   use control_point_contact, only: control_shares
-  use corner_weights, only: interval_before
+  use corner_weights, only: corner_length
   use dies, only: is_deformable
+  use edge_states, only: interval_at_start
   use element_loop, only: group_geometry
   use equations, only: equations_t
   use fields, only: displacement_field, pilot_field, section_field
@@ -70,7 +71,7 @@ contains
     integer, intent(in) :: g           !! place of the group
     real(wp), intent(out) :: work      !! per radian when axisymmetric [energy]
     real(wp), allocatable :: xi(:), weight(:), x(:, :, :)
-    real(wp) :: du(2, 3), from, to, area
+    real(wp) :: du(2, 3), area
     integer :: e, p, n
     logical :: corners
 
@@ -92,9 +93,12 @@ contains
             call add_point(before(:n, p, e), after(:n, p, e), xi(p), area)
           end if
           if (.not. corners) cycle
-          call interval_before(xi, p, from, to)
+          if (group%pairs > 0) then
+            if (interval_at_start(before(:, :, e), after(:, :, e), p) == 0) cycle
+          end if
           call add_point(before(n + 1:2*n, p, e), after(n + 1:2*n, p, e), before(2*n + 1, p, e), &
-                         area_at_corner(before(2*n + 1, p, e), to - from, solution%fields(section_field)%value(:, 1), x(:, :3, e), &
+                         area_at_corner(before(2*n + 1, p, e), corner_length(xi, p, group%pairs > 0), &
+                                        solution%fields(section_field)%value(:, 1), x(:, :3, e), &
                                         side_length(scene, group%connectivity(:, e))), &
                          share=share_at_corner(before(2*n + 1, p, e)))
         end do

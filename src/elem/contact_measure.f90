@@ -9,7 +9,8 @@ module contact_measure
   use contact_point, only: at_augmentation, at_between, at_penetration, at_piece, at_pressure, at_status, at_work, at_xi, &
                            contact_block, dissipated, is_released, penalties, side_length
   use contact_work, only: kept_work
-  use corner_weights, only: interval_before
+  use corner_weights, only: corner_length
+  use edge_states, only: beside_edges, interval_at_start
   use elem_api, only: totals_t
   use kinds, only: wp
   use law_api, only: contact_open, contact_slip, contact_stick, law_t
@@ -31,7 +32,9 @@ contains
   !> Uzawa: the pressure (or pull, of glue) reached becomes the multiplier, p = multiplier + AKP d, so that the same
   !> pressure needs no penetration any more. The side is judged at its points and between them. A point that has lost
   !> more than half of its pressure beyond a corner keeps its multiplier: the share that acts goes to zero, no pressure holds it.
-  !> So does a corner of which hardly anything acts any more near an end of the side: the node there holds the side.
+  !> So does a corner of which hardly anything acts any more near an end of the side: the node there holds the side. Points beside
+  !> an edge of another body are left to it: they are many, their areas small, and what one of them bore would be lost as it slides
+  !> past.
   subroutine augment(scene, group, times, committed, trial, changed)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
@@ -52,18 +55,37 @@ contains
     do e = 1, size(trial, 3)
       allowed = given%allowed*side_length(scene, group%connectivity(:, e))
       do k = 0, last, n
-        held = is_held(trial, k, n)
+        held = may_hold(group, trial, k, n)
         changed = changed .or. any(deep(trial(k + 1:k + n, :, e)) > allowed &
                                    .and. nint(trial(k + at_status, :, e)) /= contact_open .and. held(:, e))
       end do
-      changed = changed .or. any(peaks(trial(:, :, e), group%rule, worth_augmenting*allowed) > allowed)
+      held = .true.
+      if (group%pairs > 0) held = may_hold(group, trial, 0, n)
+      changed = changed .or. any(peaks(trial(:, :, e), group%rule, worth_augmenting*allowed) > allowed .and. held(:, e))
     end do
     if (.not. changed) return
     do k = 0, last, n
-      where (is_held(trial, k, n)) &
+      where (may_hold(group, trial, k, n)) &
         committed(k + at_augmentation, :, :) = trial(k + at_pressure, :, :) - trial(k + at_between, :, :)
     end do
   end subroutine augment
+
+  !> Points that are augmented, in the block of rows that follows row k.
+  pure function may_hold(group, state, k, n) result(yes)
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: state(:, :, :)   !! (nstate, npoint, nside) [unit of each component]
+    integer, intent(in) :: k, n
+    logical :: yes(size(state, 2), size(state, 3))
+    real(wp), allocatable :: xi(:), weight(:)
+    integer :: e
+
+    yes = is_held(state, k, n)
+    if (k > 0 .or. group%pairs == 0) return
+    call line_rule(group%rule, xi, weight)
+    do e = 1, size(yes, 2)
+      yes(:, e) = yes(:, e) .and. .not. beside_edges(state(:, :, e), xi)
+    end do
+  end function may_hold
 
   !> Points whose pressure can hold the side where it is, in the block of rows that follows row k: the points themselves, or the
   !> corners of the die.
@@ -125,8 +147,8 @@ contains
     real(wp), intent(in) :: before(:, :, :)   !! (nstate, npoint, nside) one step before [unit of each component]
     type(totals_t), intent(out) :: totals
     real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: side, penalty(2), from, to
-    integer :: e, p, n
+    real(wp) :: side, penalty(2)
+    integer :: e, p, q, n
     logical :: corners
 
     call line_rule(group%rule, xi, weight)
@@ -147,10 +169,13 @@ contains
         call add_point(state(:n, p, e), before(:n, p, e), area_of_point(group%rule, xi, weight, p, section, x(:, :, e)), &
                        is_control_point(group%rule, p), [1.0_wp, 1.0_wp])
         if (.not. corners) cycle
-        call interval_before(xi, p, from, to)
-        call add_point(state(n + 1:2*n, p, e), before(n + 1:2*n, p, e), &
-                       area_at_corner(state(2*n + 1, p, e), to - from, section, x(:, :, e), side), .false., &
-                       share_at_corner([before(2*n + 1, p, e), state(2*n + 1, p, e)]))
+        q = p
+        if (group%pairs > 0) q = interval_at_start(before(:, :, e), state(:, :, e), p)
+        if (q == 0) cycle
+        call add_point(state(n + 1:2*n, p, e), before(n + 1:2*n, q, e), &
+                       area_at_corner(state(2*n + 1, p, e), corner_length(xi, p, group%pairs > 0), section, x(:, :, e), side), &
+                       .false., &
+                       share_at_corner([before(2*n + 1, q, e), state(2*n + 1, p, e)]))
       end do
     end do
 

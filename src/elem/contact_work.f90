@@ -13,7 +13,7 @@ module contact_work
   use contact_areas, only: area_of_point
   use contact_point, only: area_at, at_augmentation, at_between, at_energy, at_penetration, at_pressure, at_status, at_tau, &
                            at_xi, is_released
-  use corner_weights, only: interval_before
+  use corner_weights, only: corner_length
   use kinds, only: wp
   use law_api, only: contact_open
   use quadrature, only: rule_t
@@ -50,21 +50,21 @@ contains
 
   !> Work that friction has done so far at a point of a side and at the corner of the die in the interval before it, at the start
   !> and at the end of a step.
-  pure function friction_energy(rule, xi, weight, p, work, section, x) result(energy)
+  pure function friction_energy(rule, of_body, xi, weight, p, work, section, x) result(energy)
     type(rule_t), intent(in) :: rule
+    logical, intent(in) :: of_body             !! the side faces another body
     real(wp), intent(in) :: xi(:), weight(:)   !! (npoint) its points and weights [-]
     integer, intent(in) :: p                   !! the point
     real(wp), intent(in) :: work(3, 2)         !! per present area of the point and of the corner [stress*length], place of that [-]
     real(wp), intent(in) :: section(3, 2)      !! thickness at the origin [length], and its slopes [-]
     real(wp), intent(in) :: x(2, 3, 2)         !! nodes of the side then [length]
     real(wp) :: energy(2)                      !! per radian when axisymmetric [energy]
-    real(wp) :: from, to
     integer :: k
 
-    call interval_before(xi, p, from, to)
     do k = 1, 2
       energy(k) = work(1, k)*area_of_point(rule, xi, weight, p, section(:, k), x(:, :, k))
-      if (work(2, k) > 0) energy(k) = energy(k) + work(2, k)*(to - from)*area_at(work(3, k), section(:, k), x(:, :, k))
+      if (work(2, k) > 0) energy(k) = energy(k) + work(2, k)*corner_length(xi, p, of_body) &
+                                      *area_at(work(3, k), section(:, k), x(:, :, k))
     end do
   end function friction_energy
 

@@ -25,7 +25,7 @@ module corner_contact
   use side_corners, only: closest_at_corner, corner_t, deepest_corner
   implicit none
   private
-  public :: corner_beside, end_on_axis, press_corner, press_corners
+  public :: corner_beside, corner_share, end_on_axis, press_corner, press_corners
 
   !> A corner acts on what is deeper than this share of the allowed penetration.
   real(wp), parameter :: corner_share = 0.5_wp

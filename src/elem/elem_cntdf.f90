@@ -18,32 +18,37 @@
 !> the other loses, point by point. Each side is coupled with a few pieces only (pairs): a closest point on
 !> another piece is reported, and the pairs are renewed before the result is used.
 !>
+!> An edge of the other body between two points is one more point of contact of the side (edge_contact).
+!>
 !> A body may face itself (own_contact): nothing tells then by its place whether a point is behind the wall that it belongs to or in
 !> the side that it has met, both are a depth. So a point goes on from the closest point of the last accepted instant, or takes the
 !> nearest gap. Only where it had none in reach, as in a first step, a depth counts that was none on the mesh as it began.
 !> The two sides that meet in the ground of a fold press on each other; beside any other corner a depth is the body itself.
 module elem_cntdf
-  use contact_point, only: act, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, meeting_t, &
-                           most_unknowns, no_surface, penalties, point_variables, rest, share_to_contact, touching, &
-                           show_on_axis, side_length, side_point, thinning
+  use contact_point, only: act, at_penetration, at_piece, at_status, at_work, at_xi, contact_block, contact_point_t, meeting_t, &
+                           most_unknowns, no_surface, penalties, rest, share_to_contact, touching, show_on_axis, side_length, &
+                           side_point, thinning
   use closest_point, only: closest_point_t
   use corner_faces, only: closest_on_piece
   use curve_search, only: box_distance, closest_facing_point, closest_opposed_point, follow_closest_point, looks_at
   use dies, only: die_t
+  use edge_contact, only: press_edges
+  use edge_release, only: edge_release_t, slide_past_edge
   use elem_api, only: elem_t, goes_on, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
   use elem_cnt2d, only: elem_cnt2d_row
   use kinds, only: eps, wp
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_open, law_t
   use own_contact, only: faces_itself, pieces_to_meet
+  use pair_forces, only: spread_force, spread_matrix
   use pairs, only: list_pieces, nodes_per_piece, pieces_in_reach, place_in_reach
   use parabolas, only: point_on, tangent_on
   use piecewise_curves, only: adjacent_piece
   use plane_vectors, only: cross, right_of
   use quadrature, only: line_rule
+  use rigid_contact, only: side_t
   use scene, only: axisymmetric, generalised_plane_strain, group_t, scene_t
   use shape_functions, only: line3
-  use state_variables, only: state_variable_t
   use vectors, only: length_of
   implicit none
   private
@@ -74,22 +79,8 @@ contains
     row%purpose = 'contact of a side with sides of another body'
     deallocate (row%unknowns)
     allocate (row%unknowns, source=[of_displacement(), of_section()])
-    row%variables => variables
     row%compute => compute
   end function elem_cntdf_row
-
-  !> That of a point, and the law's: contact with corners of other bodies is evaluated at integration points only.
-  pure subroutine variables(law, plane_state, list)
-    type(law_t), intent(in) :: law
-    integer, intent(in) :: plane_state
-    type(state_variable_t), allocatable, intent(out) :: list(:)
-    integer :: k
-
-    allocate (list, source=point_variables(law))
-    do k = 1, size(list)
-      list(k)%first = k
-    end do
-  end subroutine variables
 
   subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                      force, stiffness, report)
@@ -109,14 +100,21 @@ contains
     type(contact_point_t) :: point
     type(meeting_t) :: meeting
     type(closest_point_t) :: closest, nearest
+    type(side_t) :: own
+    type(edge_release_t) :: release
     real(wp), allocatable :: xi(:), weight(:)
     real(wp) :: side, section(3), phi(3), dphi(3), psi(3), dpsi(3), q(2), dq(2, most_unknowns), dxi(most_unknowns)
-    integer :: e, p, n, j, k, at, nnode, npiece, place(most_unknowns), pieces(pieces_in_reach*group%rule%n)
+    integer :: e, p, n, j, k, at, nnode, npiece, nblock, place(most_unknowns), pieces(pieces_in_reach*group%rule%n)
     logical, allocatable :: may(:, :)
-    logical :: axisym
+    logical :: axisym, dbg
+    character(8) :: v
 
+    call get_environment_variable('CDBG', v)
+    dbg = v /= ' '
+    if (dbg) write (77, *) 'eval', first, instant%tangent, instant%kept, instant%dt
     axisym = scene%plane_state == axisymmetric
     nnode = size(x, 2)
+    nblock = contact_block(.true., size(trial, 1))
     if (faces_itself(scene, group)) then
       allocate (may(size(scene%dies(group%die)%nodes, 2), size(x, 3)))
       call pieces_to_meet(scene, group, first, may)
@@ -128,14 +126,18 @@ contains
         force(:, e) = 0
         if (instant%tangent) stiffness(:, :, e) = 0
         trial(:, :, e) = committed(:, :, e)
-        call rest(trial(:, :, e))
+        call rest(trial(:nblock, :, e))
+        call rest(trial(nblock + 1:2*nblock, :, e))
         side = side_length(scene, group%connectivity(:, first + e - 1))
         section = scene%section
         if (scene%finite) section = instant%section + section_motion(layout, du(:, e))
         place(1:6) = [1, 2, 3, nnode + 1, nnode + 2, nnode + 3]
         place(13:15) = [2*nnode + 1, 2*nnode + 2, 2*nnode + 3]
-        trial(at_work, :, e) = committed(at_work, :, e)*thinning(xi, xi, section, section_motion(layout, du(:, e)), &
-                                                                x(:, 1:3, e), du(place(1:6), e))
+        associate (thickening => section_motion(layout, du(:, e)), at_edge => committed(2*nblock + 1, :, e))
+          trial(at_work, :, e) = committed(at_work, :, e)*thinning(xi, xi, section, thickening, x(:, 1:3, e), du(place(1:6), e))
+          trial(nblock + at_work, :, e) = committed(nblock + at_work, :, e) &
+                                          *thinning(at_edge, at_edge, section, thickening, x(:, 1:3, e), du(place(1:6), e))
+        end associate
         if (box_distance(die, box_of(x(:, 1:3, e), du(place(1:6), e))) > side) cycle
         call list_pieces(die, middle(:, e), npiece, pieces)
         do p = 1, size(xi)
@@ -149,11 +151,25 @@ contains
           ! a stale pair of a body's own side may be the far face of a wall
           if (allocated(may) .and. nearest%piece == 0) cycle
           call keep_closest_point(die, point, side, committed(at_piece, p, e), middle(p, e), nearest, closest)
+          release = edge_release_t()
+          if (.not. allocated(may)) then
+            call slide_past_edge(scene%mesh%coordinates, die, point%x, side, committed(:nblock, p, e), nearest, closest, release)
+          end if
+          if (nint(committed(at_status, p, e)) /= 0 .and. dbg) then
+            if (closest%piece /= nint(committed(at_piece, p, e)) .or. release%share < 1) &
+              write (77, '(a,2i4,i4,f9.5,a,i4,f9.5,es12.4,2f9.5,l2,3es12.4,f8.4)') 'sw', first + e - 1, p, &
+              nint(committed(at_piece, p, e)), committed(at_xi, p, e), ' ->', closest%piece, closest%xi, &
+              closest%d, closest%normal, closest%at_vertex, &
+              committed(at_penetration, p, e), committed(1, p, e), committed(6, p, e), &
+              release%share
+          end if
           if (closest%piece == 0) cycle
           ! a point on the axis has no surface: nothing acts there, and no contact is evaluated
           if (axisym .and. point%x(1) <= no_surface*side) cycle
           trial(at_penetration, p, e) = closest%d
           trial([at_piece, at_xi], p, e) = [real(nearest%piece, wp), nearest%xi]
+          ! past an edge its pressure is gone
+          if (.not. release%share > 0) cycle
           k = findloc(pieces(:npiece), closest%piece, 1)
           if (k == 0) then
             report%unpaired = .true.
@@ -165,12 +181,12 @@ contains
           call meet(closest, matmul(x(:, 1:3, e), phi), x(:, at + 1:at + 3, e), du(place(7:12), e), point, meeting, dxi)
           meeting%kept = instant%kept .and. goes_on(instant, group%die)
           call act(law, scene%materials(group%material), instant%dt, drivers(:, :, p, e), &
-                   penalties(scene%materials(group%material), group, side), point, meeting, weight(p), instant%tangent, &
-                   committed(:, p, e), trial(:, p, e), q, dq)
+                   penalties(scene%materials(group%material), group, side), point, meeting, weight(p)*release%share, &
+                   instant%tangent, committed(:nblock, p, e), trial(:nblock, p, e), q, dq)
           if (nint(committed(at_status, p, e)) /= contact_open) then
             report%jump = max(report%jump, abs(trial(at_penetration, p, e) - committed(at_penetration, p, e))/side)
           end if
-          report%event = min(report%event, share_to_contact(committed(:, p, e), trial(:, p, e), side))
+          report%event = min(report%event, share_to_contact(committed(:nblock, p, e), trial(:nblock, p, e), side))
           if (nint(trial(at_status, p, e)) == contact_open) cycle
           call spread_force([-phi, psi], q, place, force(:, e))
           if (.not. instant%tangent) cycle
@@ -178,8 +194,32 @@ contains
           ! the closest point moves along its side
           do j = 1, n
             call spread_force([0.0_wp, 0.0_wp, 0.0_wp, dpsi*dxi(j)], q, place, stiffness(:, place(j), e))
+            if (release%share < 1) call spread_force([-phi, psi]*(release%slope*dxi(j)/release%share), q, place, &
+                                                     stiffness(:, place(j), e))
           end do
         end do
+        if (.not. allocated(may)) then
+          own%x = x(:, 1:3, e)
+          own%du(1:6) = du(place(1:6), e)
+          own%section = section
+          own%thickening = section_motion(layout, du(:, e))
+          own%length = side
+          own%penalty = penalties(scene%materials(group%material), group, side)
+          own%dt = instant%dt
+          own%tangent = instant%tangent
+          own%kept = instant%kept .and. goes_on(instant, group%die)
+          call press_edges(die, law, scene%materials(group%material), drivers(:, :, :, e), axisym, own, xi, pieces(:npiece), &
+                           x(:, :, e), du(:, e), committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e), report)
+        end if
+        if (dbg) then
+          do p = 1, size(xi)
+            if (any(nint([committed(nblock + at_status, p, e), trial(nblock + at_status, p, e)]) /= 0)) &
+              write (77, '(a,2i4,2(f10.5,f4.0,4es12.4))') &
+              'edge', first+e-1, p, committed(2*nblock+1,p,e), committed(nblock+at_status,p,e), committed(nblock+[1,2,3,6],p,e), &
+              trial(2*nblock + 1, p, e), trial(nblock + at_status, p, e), trial(nblock + [1, 2, 3, 6], p, e)
+          end do
+          write(77,'(a,i4,*(f12.7))') 'side', first+e-1, x(:,1:3,e)+reshape(du([1,nnode+1,2,nnode+2,3,nnode+3],e),[2,3])
+        end if
         if (axisym) call show_on_axis(xi, x(1, 1:3, e) + du(1:3, e), side, trial(:, :, e))
       end do
     end associate
@@ -413,44 +453,5 @@ contains
       meeting%dslip = dot_product(n0, gap0)*(meeting%turn - turn_of_axes)
     end if
   end subroutine meet
-
-  !> The force q on the side met, and its opposite on the point's side.
-  pure subroutine spread_force(share, q, place, force)
-    real(wp), intent(in) :: share(6)   !! of the nodes of the point's side (negative), and of the side met
-    real(wp), intent(in) :: q(2)
-    integer, intent(in) :: place(:)
-    real(wp), intent(inout) :: force(:)
-    integer :: i
-
-    do i = 1, 6
-      force(place(row(i, 1))) = force(place(row(i, 1))) + share(i)*q(1)
-      force(place(row(i, 2))) = force(place(row(i, 2))) + share(i)*q(2)
-    end do
-  end subroutine spread_force
-
-  pure subroutine spread_matrix(share, dq, place, stiffness)
-    real(wp), intent(in) :: share(6), dq(:, :)
-    integer, intent(in) :: place(:)
-    real(wp), intent(inout) :: stiffness(:, :)
-    integer :: i, j, c
-
-    do j = 1, size(place)
-      do c = 1, 2
-        do i = 1, 6
-          associate (entry => stiffness(place(row(i, c)), place(j)))
-            entry = entry + share(i)*dq(c, j)
-          end associate
-        end do
-      end do
-    end do
-  end subroutine spread_matrix
-
-  !> Local unknown of component c of node i: side nodes 1 to 3, nodes of the side met 4 to 6.
-  pure function row(i, c)
-    integer, intent(in) :: i, c
-    integer :: row
-
-    row = merge(i, i + 3, i <= 3) + 3*(c - 1)
-  end function row
 
 end module elem_cntdf

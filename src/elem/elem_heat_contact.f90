@@ -132,7 +132,8 @@ contains
         if (row_due == 0 .or. .not. instant%content) cycle
         due = committed(row_due, p, e)*weight(p)*area_at(xi(p), section, x(:, 1:3, e))
         if (scene%strategy%coupling /= coupling_once) then
-        energy = friction_energy(group%rule, xi, weight, p, drivers([at_friction_work, at_corner_work, at_corner_place], :, p, e), &
+          energy = friction_energy(group%rule,.not. rigid, xi, weight, p, &
+                                 drivers([at_friction_work, at_corner_work, at_corner_place], :, p, e), &
                                    spread(section, 2, 2), reshape([x(:, 1:3, e), end_of_step()], [2, 3, 2]))
           due = due + energy(2) - energy(1)
         end if

@@ -9,7 +9,7 @@ module side_corners
   use closest_point, only: closest_point_t, stationary_points, whole_piece
   use dies, only: die_t
   use kinds, only: wp
-  use plane_vectors, only: left_of
+  use plane_vectors, only: left_of, right_of
   use shape_functions, only: line3
   implicit none
   private
@@ -23,8 +23,9 @@ module side_corners
     !> Piece and position on the die; in the pilot's axes the corner, and the normal of depth, inner for the die.
     integer :: piece = 0
     real(wp) :: xi = 0.0_wp, vertex(2) = 0.0_wp, normal(2) = 0.0_wp
-    !> That normal is the side's own and turns with it, else it is a face's.
+    !> That normal is the side's own and turns with it, else that of the face before the corner (1) or behind it (2).
     logical :: own = .false.
+    integer :: face = 0
     !> Depth [length].
     real(wp) :: d = 0.0_wp
   end type corner_t
@@ -74,9 +75,10 @@ contains
     corner%found = dot_product(inner, t1) >= -beside .and. dot_product(inner, t2) <= beside
     corner%own = dot_product(inner, t1) >= 0 .and. dot_product(inner, t2) <= 0
     corner%normal = -inner
+    corner%face = 0
     if (.not. corner%own) then
-      corner%normal = [t1(2), -t1(1)]
-      if (dot_product(inner, t1) >= 0) corner%normal = [t2(2), -t2(1)]
+      corner%face = merge(1, 2, dot_product(inner, t1) < 0)
+      corner%normal = right_of(merge(t1, t2, corner%face == 1))
     end if
     corner%d = dot_product(matmul(side, phi) - corner%vertex, corner%normal)
   end subroutine measure_corner

@@ -1,15 +1,19 @@
 !> The length that a corner of a die stands for where it presses into a side between two points (corner_contact).
 !>
-!> It is that of the interval between them. Toward an end of the side the weight goes to zero: the load of a corner that a node
-!> slides past goes over to the node gradually, and back again; a sudden change would leave positions without equilibrium.
+!> It is that of the interval between them. Facing another body a side has many points, and the corner is an edge of that body
+!> (edge_contact): it has half of the side, as between nodes, since a side does not resolve less. Toward an end of the
+!> side the weight goes to zero: the load of a corner that a node slides past goes over to the node gradually, and back again; a
+!> sudden change would leave positions without equilibrium.
 module corner_weights
   use kinds, only: wp
   implicit none
   private
-  public :: corner_weight, handing_over, interval_before, share_of_corner
+  public :: corner_length, corner_weight, handing_over, interval_before, share_of_corner
 
   !> A corner nearer than this to an end of the side, in xi, has lost a part of its weight to the node there.
   real(wp), parameter :: handing_over = 0.05_wp
+  !> Half the length of a side in xi.
+  real(wp), parameter :: half_of_side = 1.0_wp
 
 contains
 
@@ -22,16 +26,28 @@ contains
   end function share_of_corner
 
   !> Weight of a corner at a position on the side, in the interval before a point.
-  pure function corner_weight(xi, p, place) result(weight)
-    real(wp), intent(in) :: xi(:)   !! (npoint) of the side [-]
+  pure function corner_weight(xi, p, place, of_body) result(weight)
+    real(wp), intent(in) :: xi(:)      !! (npoint) of the side [-]
     integer, intent(in) :: p
-    real(wp), intent(in) :: place   !! [-]
+    real(wp), intent(in) :: place      !! [-]
+    logical, intent(in) :: of_body     !! the corner is an edge of another body
     real(wp) :: weight
+
+    weight = corner_length(xi, p, of_body)*share_of_corner(place)
+  end function corner_weight
+
+  !> Length in xi of a corner in the interval before a point.
+  pure function corner_length(xi, p, of_body) result(length)
+    real(wp), intent(in) :: xi(:)    !! (npoint) of the side [-]
+    integer, intent(in) :: p
+    logical, intent(in) :: of_body   !! the corner is an edge of another body
+    real(wp) :: length
     real(wp) :: from, to
 
     call interval_before(xi, p, from, to)
-    weight = (to - from)*share_of_corner(place)
-  end function corner_weight
+    length = to - from
+    if (of_body) length = half_of_side
+  end function corner_length
 
   !> The part of the side between a point and the one before; the last one goes on to the end of the side.
   pure subroutine interval_before(xi, p, from, to)

@@ -8,21 +8,26 @@
 module dies
   use kinds, only: wp
   use parabolas, only: tangent_on
-  use piecewise_curves, only: blunt, piecewise_curve_t, prepare_search
+  use piecewise_curves, only: adjacent_piece, blunt, piecewise_curve_t, prepare_search
   use plane_vectors, only: cross, turned
   use vectors, only: length_of
   implicit none
   private
-  public :: die_t, finish_die, is_deformable, is_straight, place_on_nodes, present_die, in_pilot_axes
+  public :: die_t, finish_die, is_deformable, is_straight, place_edges, place_on_nodes, present_die, in_pilot_axes
 
   !> Distance from a straight line over its length that is round-off of points as cards give them [-].
   real(wp), parameter :: straight = 1.0e-9_wp
 
+  !> Cosine of the least turn of a deformable die at an edge of its body, 30 degrees, in the mesh as it began: sides that follow
+  !> a curve turn by less where they meet.
+  real(wp), parameter :: edge_turn = 0.866_wp
+
   !> Its pieces are stored in the axes of the pilot.
   type, extends(piecewise_curve_t) :: die_t
     character(len=:), allocatable :: name
-    !> Corners of a rigid die that point to the part, open ends included: the point, and the tangents before and behind it
-    !> (x, y, t1x, t1y, t2x, t2y; ncorner), in the pilot's axes; the piece each belongs to, and the parent coordinate on it [-].
+    !> Corners of a rigid die that point to the part, open ends included, or edges of a deformable one in a step: the point, and
+    !> the tangents before and behind it (x, y, t1x, t1y, t2x, t2y; ncorner), in the pilot's axes; the piece each belongs to, and
+    !> the parent coordinate on it [-].
     real(wp), allocatable :: corners(:, :)
     integer, allocatable :: corner_piece(:)
     real(wp), allocatable :: corner_xi(:)
@@ -127,6 +132,30 @@ contains
     end do
     call finish_die(die)
   end subroutine place_on_nodes
+
+  !> Edges of a deformable die that has been placed on its nodes, as its corners: which they are is told by the mesh as it began.
+  !> Its ends are none, since the curve may go on as another body, or end on a line of symmetry.
+  pure subroutine place_edges(first, die)
+    real(wp), intent(in) :: first(:, :)   !! (2, nnode) nodes of the mesh as it began [length]
+    type(die_t), intent(inout) :: die
+    real(wp) :: list(6, size(die%pieces, 3)), t1(2), t2(2)
+    integer :: piece(size(die%pieces, 3)), k, next, n
+
+    n = 0
+    do k = 1, size(die%nodes, 2)
+      next = adjacent_piece(die, k, 1)
+      if (next == 0) cycle
+      t1 = end_tangent(first(:, die%nodes(:, k)), 1)
+      t2 = end_tangent(first(:, die%nodes(:, next)), -1)
+      if (cross(t1, t2) > 0 .or. dot_product(t1, t2) > edge_turn) cycle
+      n = n + 1
+      piece(n) = k
+      list(:, n) = [die%pieces(:, 3, k), end_tangent(die%pieces(:, :, k), 1), end_tangent(die%pieces(:, :, next), -1)]
+    end do
+    die%corners = list(:, :n)
+    die%corner_piece = piece(:n)
+    die%corner_xi = [(1.0_wp, k=1, n)]
+  end subroutine place_edges
 
   !> Points in the axes of a die's pilot [length].
   pure function in_pilot_axes(points, pilot) result(local)

@@ -1,7 +1,7 @@
 !> What elements are told of the instant at which they are evaluated: time, multipliers, dies, values of the fields, and the
 !> instants at which heat flows.
 module step_instants
-  use dies, only: is_deformable, place_on_nodes
+  use dies, only: is_deformable, place_edges, place_on_nodes
   use dofs, only: dofs_t
   use driver_values, only: nodal_values
   use drivers, only: is_scalar
@@ -70,7 +70,9 @@ contains
     end associate
     allocate (instant%dies, source=scene%dies)
     do k = 1, size(instant%dies)
-      if (is_deformable(instant%dies(k))) call place_on_nodes(coordinates, instant%dies(k))
+      if (.not. is_deformable(instant%dies(k))) cycle
+      call place_on_nodes(coordinates, instant%dies(k))
+      call place_edges(scene%mesh%coordinates, instant%dies(k))
     end do
   end subroutine make_instant
 

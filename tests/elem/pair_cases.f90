@@ -3,7 +3,7 @@
 !> plane strain of the section at last.
 module pair_cases
   use contact_point, only: at_piece
-  use dies, only: place_on_nodes
+  use dies, only: place_edges, place_on_nodes
   use elem_api, only: elem_t, instant_t, layout_of, report_t
   use element_cases, only: elem_row, kinematics_row, step_of_differences
   use fields, only: mechanical_fields
@@ -91,6 +91,7 @@ contains
 
     case%instant%dies = case%scene%dies
     call place_on_nodes(case%x + du, case%instant%dies(1))
+    call place_edges(case%scene%mesh%coordinates, case%instant%dies(1))
     allocate (trial(size(case%committed, 1), size(case%committed, 2), 1))
     allocate (nodes(0), dof(0))
     do

@@ -1,0 +1,83 @@
+!> A point of the side that slides past an edge from the face that presses it loses its pressure steadily, as on a rigid die
+!> (corner_release): the face goes on beyond its end. With a multiplier and no depth there would be no normal: that of the fan at
+!> the edge turns by a right angle within no way at all.
+module edge_release
+  use closest_point, only: closest_point_t, past_end
+  use contact_point, only: at_piece, at_status
+  use corner_faces, only: closest_on_piece
+  use corner_weights, only: handing_over
+  use dies, only: die_t
+  use kinds, only: wp
+  use law_api, only: contact_open
+  use piecewise_curves, only: adjacent_piece
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: edge_release_t, slide_past_edge
+
+  !> A point on the other face of an edge is on its own as long as it is less deep than this share of its side.
+  real(wp), parameter :: shallow = 0.01_wp
+
+  !> What is left of the pressure of a point beyond an edge, and its change with the parent coordinate on the face [-].
+  type :: edge_release_t
+    real(wp) :: share = 1.0_wp, slope = 0.0_wp
+  end type edge_release_t
+
+contains
+
+  !> A point that one face of an edge pressed as the step began is on it still, beside or beyond the edge, and loses its pressure on
+  !> the way; `closest` stays where that is not so.
+  pure subroutine slide_past_edge(first, die, point, length, committed, nearest, closest, release)
+    real(wp), intent(in) :: first(:, :)    !! (2, nnode) nodes of the mesh as it began [length]
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: point(2)       !! [length]
+    real(wp), intent(in) :: length         !! of the side of the point [length]
+    real(wp), intent(in) :: committed(:)   !! (nstate) of the point [unit of each component]
+    type(closest_point_t), intent(inout) :: nearest   !! where the next step begins
+    type(closest_point_t), intent(inout) :: closest   !! of this step
+    type(edge_release_t), intent(out) :: release
+    type(closest_point_t) :: found
+    real(wp) :: end, beyond
+    integer :: k, face, other
+    logical :: inside
+
+    face = nint(committed(at_piece))
+    if (face == 0 .or. nint(committed(at_status)) == contact_open) return
+    do k = 1, size(die%corners, 2)
+      end = 1
+      other = adjacent_piece(die, die%corner_piece(k), 1)
+      if (face == other) then
+        end = -1
+        other = die%corner_piece(k)
+      else if (face /= die%corner_piece(k)) then
+        cycle
+      end if
+      inside = closest%piece > 0 .and. closest%d > 0
+      if (inside .and. closest%piece /= other) cycle
+      ! the way of corner_release, in the parent coordinate on the face
+      beyond = handing_over*length/length_of(first(:, die%nodes(3, face)) - first(:, die%nodes(1, face)))
+      call closest_on_piece(die, face, point, end, beyond, found)
+      if (found%piece == 0) then
+        ! neither the fan of the edge nor its other face takes over what is left of a multiplier
+        if (.not. inside .and. (closest%piece == other .or. closest%at_vertex .and. closest%piece == die%corner_piece(k))) &
+          release%share = 0
+        cycle
+      end if
+      if (inside .and. .not. abs(found%d) < shallow*length) cycle
+      if (.not. end*found%xi > 1) then
+        if (.not. inside) cycle
+        closest = found
+        nearest = found
+        return
+      end if
+      release%slope = -end/beyond
+      release%share = max(0.0_wp, 1 + release%slope*(found%xi - end))
+      closest = found
+      nearest = found
+      ! the state of the point is beyond the end of the face, where there is no die to be deep in (is_released)
+      nearest%xi = sign(past_end, end)
+      return
+    end do
+  end subroutine slide_past_edge
+
+end module edge_release

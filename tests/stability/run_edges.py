@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""Sharp edges of deformable dies: a billet that flows over the inner edge of a ring, a block pressed into a softer one.
+
+usage: run_edges.py [-v] [-k]       -v prints every check, -k keeps the results
+
+Each scene is run with an elastic tool of three times the modulus of steel, and with a rigid die of the same shape. Numbers and bounds;
+`before` is what the code answered as long as edges were seen by the integration points alone (measured by this script).
+
+- `force`: of the tool at the end beside that of the rigid die.
+- `depth`: the largest of 65 places of each side, over the penetration allowed, in the last step.
+- `balance`: of the forces of both dies over the larger one.
+"""
+import json
+import os
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "patch"))
+from patch_support import Checks, Run  # noqa: E402
+
+BOUND = {"force": 0.02, "depth": 2.0, "balance": 1.0e-6}
+HEAD = """TITLE an edge of a deformable die
+STATE {state}
+KINEM LOG
+BLOCK b PL8LS 4 m
+   {block}
+LAW m EPLA
+   200000. 0.3
+   LINEAR {steel}
+LAW c COUL2D
+   PENETR 1.E-3 {friction} AUGMENT 10
+FIXED b 4 X
+LIC t
+   0. 0. 1. 1.
+STRAT 0.005 1.E-6 0.02 6 3
+STOP 1.
+"""
+TOOL = "BLOCK tool PL8LS 4 hard\n   {0}\nLAW hard ELA\n   600000. 0.3\n"
+# A billet pressed down onto a ring, whose inner side and upper side are the die.
+RING = "DIE upper PILOT 0. 15.\n   SEGM 30. 15. -1. 15.\nCNT2D b 3 upper c\nMOVE upper Y t -{travel}\nCNT2D b 1 2 face c\n"
+RING_SOFT = TOOL.format("{at} -6. 20. -6. 20. 0. {at} 0.\n   10 1. 6 1.") + "DIE face SIDES tool 3 4\nFIXED tool 1 XY\n"
+RING_RIGID = "DIE face PILOT 0. 0.\n   SEGM {at} -6. {at} 0.\n   SEGM {at} 0. 20. 0.\n"
+# A narrow block pressed into a wide one.
+PUNCH = "FIXED b 1 Y\nCNT2D b 3 face c\n"
+PUNCH_SOFT = TOOL.format("0. 0. {at} 0. {at} 8. 0. 8.\n   5 1. 8 1.") + "DIE face SIDES tool 1 2\nFIXED tool 4 X\nMOVE tool 3 Y t -{travel}\n"
+PUNCH_RIGID = "DIE face PILOT 0. 0.\n   SEGM {at} 8. {at} 0.\n   SEGM {at} 0. -1. 0.\nMOVE face Y t -{travel}\n"
+KINDS = {"ring": ("0. 0. 10. 0. 10. 15. 0. 15.\n   10 1. 15 1.", "700. 300.", RING, RING_SOFT, RING_RIGID),
+         "punch": ("0. -10. 16. -10. 16. 0. 0. 0.\n   {nx} 1. 10 1.", "300. 100.", PUNCH, PUNCH_SOFT, PUNCH_RIGID)}
+# Kind, plane state, place of the edge, friction, travel, elements along the block.
+SCENES = {"ring 5": ("ring", "AXISYM", 5, "PHI 0.1", 6, 10), "ring 6": ("ring", "AXISYM", 6, "PHI 0.1", 6, 10),
+          "ring 6.5": ("ring", "AXISYM", 6.5, "PHI 0.1", 6, 10), "ring 6 M": ("ring", "AXISYM", 6, "M 0.3", 6, 10),
+          "ring 6 plane": ("ring", "PLSTN", 6, "PHI 0.1", 4, 10), "punch 4.2": ("punch", "PLSTN", 4.2, "PHI 0.1", 3, 12),
+          "punch 4": ("punch", "PLSTN", 4, "PHI 0.1", 3, 12), "punch 3.3": ("punch", "PLSTN", 3.3, "PHI 0.1", 3, 17)}
+# Force and depth.
+BEFORE = {"ring 5": (0.0015, 19), "ring 6": (0.0035, 20), "ring 6.5": (0.029, 33), "ring 6 M": (0.0004, 20), "ring 6 plane": (0.040, 23),
+          "punch 4.2": (0.020, 17), "punch 4": (0.091, 19), "punch 3.3": (0.037, 24)}
+
+
+def force_and_depth(checks, name, scene, soft):
+    """Vertical force on the face at the end, depth over the allowed, balance of the forces on both dies."""
+    kind, state, place, friction, travel, nx = scene
+    block, steel, common, tool, rigid = KINDS[kind]
+    text = HEAD.format(state=state, block=block.format(nx=nx), steel=steel, friction=friction)
+    text += ((tool if soft else rigid) + common).format(at=place, travel=travel) + "END\n"
+    run = Run(checks, name.replace(" ", "-") + ("" if soft else "-rigid"), text)
+    if not run.ok:
+        return None
+    force = run.history["force_y_face"][-1]
+    balance = abs(force + run.history["force_y_upper"][-1])/abs(force) if kind == "ring" else 0.0
+    with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+        depth = json.load(file)["checks"]["max_penetration_sampled_over_allowed"]
+    return abs(force), depth, balance
+
+
+def main():
+    checks = Checks()
+    print(f"{'case':24s} {'number':8s} {'before':>9s} {'now':>9s} {'bound':>9s} {'margin':>7s}")
+    for name, scene in SCENES.items():
+        soft, rigid = (force_and_depth(checks, name, scene, kind) for kind in (True, False))
+        if not (soft and rigid):
+            continue
+        before = BEFORE[name]
+        rows = [("force", before[0], abs(soft[0]/rigid[0] - 1)), ("depth", before[1], soft[1]), ("balance", 0.0, soft[2])]
+        for what, old, now in rows:
+            print(f"{name:24s} {what:8s} {old:9.2g} {now:9.2g} {BOUND[what]:9.2g} {1 - now/BOUND[what]:7.2f}", flush=True)
+            checks.small(now, BOUND[what], f"{name}: {what}")
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
