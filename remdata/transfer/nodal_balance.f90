@@ -19,6 +19,8 @@ module nodal_balance
   public :: keep_nodal_means, mean_of_nodal
 
   integer, parameter :: most_sweeps = 50
+  !> New contours change the volume of a body by less than this share of it; more was cut off.
+  real(wp), parameter :: same_volume = 1.0e-3_wp
 
 contains
 
@@ -31,15 +33,15 @@ contains
     real(wp), intent(in) :: outside                 !! how far an element is extrapolated, in halves of an element
     real(wp), intent(inout) :: new_values(:)        !! (nnode) [unit of the field]
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: missing(1, size(new%volumes)), lower, upper
-    logical :: own(size(new_values))
+    real(wp) :: old_at_points(1, size(new%volumes)), lower, upper, mean, volume
+    logical :: own(size(new_values)), here(size(new%volumes))
     type(transfer_map_t) :: map
     integer :: m, k
 
     if (corners_only) call fill_middle(new, new_values)
     call shape_weights(old, old%connectivity, new%points, new%point_material, outside, map, error)
     if (allocated(error)) return
-    call carry(map, reshape(values, [1, size(values)]), missing)
+    call carry(map, reshape(values, [1, size(values)]), old_at_points)
     do m = 1, new%nmaterial
       own = .false.
       do k = 1, size(new%material)
@@ -57,8 +59,14 @@ contains
         upper = max(upper, maxval(values(old%connectivity(:, k))))
       end do
       if (.not. upper > lower) cycle
-      call take_off_here(new, m, own, missing(1, :), lower, upper, new_values)
-      call keep_mean_of_all(new, m, own, corners_only, mean_of_nodal(old, m, values), lower, upper, new_values)
+      call take_off_here(new, m, own, old_at_points(1, :), lower, upper, new_values)
+      here = new%point_material == m
+      volume = sum(new%volumes, mask=here)
+      mean = mean_of_nodal(old, m, values)
+      ! a part that was cut has the mean of what is left, as far as the new points see it
+      if (abs(volume - sum(old%volumes, mask=old%point_material == m)) > same_volume*volume) &
+        mean = sum(old_at_points(1, :)*new%volumes, mask=here)/volume
+      call keep_mean_of_all(new, m, own, corners_only, mean, lower, upper, new_values)
     end do
   end subroutine keep_nodal_means
 

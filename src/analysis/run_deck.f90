@@ -110,6 +110,7 @@ contains
       if (run%resume) call read_state(checkpoint, scene, solution, error)
       ! the reason why the run stopped is dropped: it goes on
       call drop_triggers(solution%estimate)
+      solution%between_saves = .false.
     end if
     call checkpoint%file%close(ignored)
     if (allocated(error)) return

@@ -28,7 +28,7 @@ contains
     call visitor%member('word', self%word, kept)
     call visitor%member('initial', self%initial, kept, self%unit)
     call visitor%member('declared', self%declared, kept)
-    call visitor%derived('given', 'the solver reads it from the deck; there are no new meshes with it')
+    call visitor%member('given', self%given, kept)
   end subroutine visit_field_declaration
 
   !> Of a field of a solution that was started. Values on nodes are carried by shape functions, forces on nodes belong to their

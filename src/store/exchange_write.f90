@@ -47,7 +47,6 @@ contains
     allocate (shown_scene, source=scene)
     call visit_scene_members(writer, shown_scene)
     allocate (shown_solution, source=solution)
-    shown_solution%between_saves = .false.
     if (present(between_saves)) shown_solution%between_saves = between_saves
     call visit_solution_members(writer, shown_solution)
     allocate (shown_ends, source=ends)

@@ -287,7 +287,7 @@ def resume(checks):
     shutil.copytree(out, again)
     old = glob.glob(os.path.join(again, "*.ckp.1.h5"))[0]
     result = call(deck, "--out", again, "--resume", old)
-    checks.that(result.returncode == DONE and not result_differences(out, again), "resume: the same bits", result.stdout)
+    checks.that(result.returncode == DONE and not result_differences(out, again, previous=False), "resume: the same bits", result.stdout)
     changed = Run(checks, name, BAR.format(state="PLSTN", nx=8, ny=2, step=0.05, heat=OWN.format(kind="")).replace("LOG", "SMALL").replace(
         "START T 900.", "START T 901."))
     result = call(deck, "--out", again, "--resume", old)

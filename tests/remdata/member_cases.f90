@@ -150,7 +150,7 @@ contains
     call contact_variables(scene%groups(4)%variables)
     scene%fixations = [fixation_t(nodes=[1, 3], component=2)]
     temperature = field_t(name='temperature', unit='temperature', dual='heat_flow', dual_unit='power', place=on_nodes, &
-                          at_corners=.true., ncomp=1, quantity='temperature', imposed_as_value=.true., &
+                          at_corners=.true., ncomp=1, quantity='temperature', imposed_as_value=.true., given=.true., &
                           transfer=transfer_nodal, word='T', initial=20.0_wp, declared=.true.)
     scene%fields = [mechanical_fields(), temperature]
     call fill_options()

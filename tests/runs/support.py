@@ -195,14 +195,15 @@ def h5_contents(path):
     return contents
 
 
-def result_differences(first, second):
-    """What differs between two folders of results that should be of one and the same run: names of files, and what in them."""
+def result_differences(first, second, previous=True):
+    """What differs between two folders of results that should be of one and the same run: names of files, and what in them; the checkpoint before
+    the last among them, but where a run was resumed from that one: the last one is kept in its place then."""
     wrong = []
     names = {os.path.relpath(path, folder) for folder in (first, second)
              for path in glob.glob(os.path.join(folder, "**"), recursive=True) if os.path.isfile(path)}
     for name in sorted(names):
         one, two = os.path.join(first, name), os.path.join(second, name)
-        if name.endswith((".log", ".cost")) or (name.startswith("summary.") and name.endswith(".json")):
+        if name.endswith((".log", ".cost") if previous else (".log", ".cost", ".1.h5")) or (name.startswith("summary.") and name.endswith(".json")):
             continue
         if not (os.path.isfile(one) and os.path.isfile(two)):
             wrong.append(f"{name} is not in both folders")
