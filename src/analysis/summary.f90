@@ -75,6 +75,7 @@ contains
     call json%add('dofs', sum(equations%solves%neq))
     call json%add('elements', solid_elements(scene))
     call json%add('linear_solver', equations%solves(1)%solver%row%name)
+    call json%add('patch_elements', equations%patch_size)
     call json%add('symmetric', all(equations%solves%pattern%symmetric))
     call json%add('factorisations', sum(equations%solves%solver%factorised))
     call json%add('factorisations_spared', sum(equations%solves%solver%reused))

@@ -59,6 +59,8 @@ contains
                  //to_text(operations, 3)//' operations; memory about '//to_text(bytes/2.0_wp**20, 3)//' MB'
     lines(4)%s = 'Memory left: '//megabytes(left)//' '//by_what//trim(merge(', too little', '            ', bytes > left))
     lines(5)%s = 'Expected: about '//to_text(seconds, 2)//' s per iteration on one core'
+    if (equations%patch_size > 0) lines(5)%s = lines(5)%s//'; patches of at most '//to_text(equations%patch_size)// &
+                                               ' elements (NORMS PATCH)'
   end subroutine unknowns_lines
 
 end module unknowns_summary

@@ -8,28 +8,33 @@ module patch_checks
   use linear_registry, only: list_solvers
   use scene, only: scene_t
   use scene_draft, only: draft_t, head_location
-  use strategy, only: coupling_monolithic
+  use strategy, only: coupling_monolithic, patch_by_matrix
   implicit none
   private
-  public :: refuse_patches
+  public :: settle_patches
 
 contains
 
-  !> PATCH in a scene that it is not for.
-  subroutine refuse_patches(deck, draft, diagnostics)
+  !> PATCH in a scene that it is not for; without the word there are none in it, nor where nothing is in contact with a rigid die:
+  !> there Newton's method is seldom held up by a few elements.
+  subroutine settle_patches(deck, draft, diagnostics)
     type(deck_t), intent(in) :: deck
-    type(draft_t), intent(in) :: draft
+    type(draft_t), intent(inout) :: draft
     type(diagnostics_t), intent(inout) :: diagnostics
     character(len=:), allocatable :: why
     integer :: i
 
     if (draft%scene%strategy%patch == 0) return
     why = what_prevents(draft%scene)
+    if (draft%scene%strategy%patch == patch_by_matrix) then
+      if (why /= '' .or. .not. any(draft%scene%groups%die > 0)) draft%scene%strategy%patch = 0
+      return
+    end if
     if (why == '') return
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword == 'NORMS') call diagnostics%add(head_location(deck%cards(i)), 'NORMS', 'PATCH: '//why)
     end do
-  end subroutine refuse_patches
+  end subroutine settle_patches
 
   !> Why no patch can be eliminated; '' where it can.
   function what_prevents(scene) result(why)

@@ -35,7 +35,7 @@ module scene_reader
   use elem_registry, only: list_elems
   use mesh_finish, only: finish_mesh
   use mesh_parts, only: mesh_parts_t, start_parts
-  use patch_checks, only: refuse_patches
+  use patch_checks, only: settle_patches
   use remesh, only: remesh_t
   use remeshed_parts, only: order_as_remeshed, replace_parts
   use remesher_options, only: has_contours
@@ -133,7 +133,7 @@ contains
     if (present(remesh)) call order_as_remeshed(remesh, draft%scene%groups)
     if (diagnostics%count() == 0) call declare_fields(draft%elems, draft%scene)
     if (diagnostics%count() == 0) call refuse_missing_drivers(draft, diagnostics)
-    if (diagnostics%count() == 0) call refuse_patches(deck, draft, diagnostics)
+    if (diagnostics%count() == 0) call settle_patches(deck, draft, diagnostics)
     if (diagnostics%count() == 0) call list_effects(deck, draft%laws, draft%elems, diagnostics, draft%scene)
     scene = draft%scene
   end subroutine read_scene

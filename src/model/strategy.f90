@@ -15,6 +15,9 @@ module strategy
   !> How the balance of heat is met in time: at one instant of the step or in the mean of its ends, or by TR-BDF2.
   integer, parameter :: scheme_theta = 1, scheme_tr_bdf2 = 2
 
+  !> Patches are eliminated where matrices are large enough to be worth it.
+  integer, parameter, public :: patch_by_matrix = -1
+
   type :: strategy_t
     !> First, least and largest step [time].
     real(wp) :: first_step = 0.0_wp, least_step = 0.0_wp, largest_step = 0.0_wp
@@ -36,7 +39,7 @@ module strategy
     !> stress; 0: not bounded, and where both are, none is estimated (path_error).
     real(wp) :: path_bound = 0.04_wp, rate_bound = 0.008_wp
     !> Elements at most in a patch whose unknowns are eliminated before a correction; 0: none is (nonlinear_elimination).
-    integer :: patch = 0
+    integer :: patch = patch_by_matrix
     !> Place of the linear solver in their list; the first is the default.
     integer :: linear_solver = 1
     !> Of no account where a scene has fields of one quantity.

@@ -7,6 +7,7 @@ module equation_set_up
   use elem_registry, only: list_elems
   use equations, only: equations_t
   use errors, only: error_t
+  use fields, only: displacement_field
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use kinematics_registry, only: list_kinematics
@@ -22,10 +23,16 @@ module equation_set_up
   use solution, only: solution_t
   use solves, only: list_solves, number_equations, quantities_of, set_up_pattern
   use state_variables, only: find_variable
+  use strategy, only: patch_by_matrix
   use vectors, only: length_of
   implicit none
   private
   public :: set_up, analyse_pattern, pair_up, renew_pairs
+
+  !> Patches of so many elements, where a factorisation takes so many operations or more (some 4500 unknowns): there the billet of
+  !> decks/upsetting, whose side folds onto the die, takes half of the seconds; smaller ones gain less, and some lose.
+  integer, parameter :: default_patch = 12
+  real(wp), parameter :: large_matrix = 5.0e7_wp
 
 contains
 
@@ -46,7 +53,6 @@ contains
     call number_dofs(scene, equations%elems, equations%dofs)
     call find_axis_wall(scene, equations%laws, equations%dofs, equations%wall)
     call list_free_sides(scene, equations%free_sides)
-    if (scene%strategy%patch > 0) call map_patches(scene, equations%dofs, equations%patches)
     call find_loose_bodies(scene, equations%dofs, equations%loose)
     allocate (equations%resting(0))
     call list_solves(scene%fields, scene%strategy%coupling, equations%solves)
@@ -85,7 +91,25 @@ contains
       if (allocated(error)) return
     end do
     equations%now = 1
+    equations%patch_size = chosen_patch_size(scene, equations)
+    if (equations%patch_size > 0) call map_patches(scene, equations%dofs, equations%patches)
   end subroutine set_up
+
+  !> Elements at most in a patch: as the deck says, otherwise by the matrix of the motion.
+  pure function chosen_patch_size(scene, equations) result(chosen)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    integer :: chosen
+    integer :: s
+
+    chosen = scene%strategy%patch
+    if (chosen /= patch_by_matrix) return
+    chosen = 0
+    do s = 1, size(equations%solves)
+      if (equations%solves(s)%own(displacement_field) .and. equations%solves(s)%solver%estimated_flops >= large_matrix) &
+        chosen = default_patch
+    end do
+  end function chosen_patch_size
 
   !> Order the equations of the present solve and let its solver analyse the pattern.
   subroutine analyse_pattern(equations, error)

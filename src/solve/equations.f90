@@ -53,7 +53,8 @@ module equations
     type(axis_wall_t) :: wall
     !> Sides of bodies that may pass through one another.
     type(free_sides_t) :: free_sides
-    !> Elements by their nodes, where patches are eliminated.
+    !> Elements at most in a patch (nonlinear_elimination), 0 where none is eliminated; elements by their nodes where patches are.
+    integer :: patch_size = 0
     type(patch_map_t) :: patches
     !> None is, in the attempts at a step that follow one which failed with a patch: it may have led past where a side snaps off.
     logical :: without_patches = .false.

@@ -107,7 +107,7 @@ contains
     integer :: g
 
     associate (solve => equations%solves(equations%now))
-      yes = scene%strategy%patch > 0 .and. solve%own(displacement_field) .and. .not. any(equations%wall%held)
+      yes = equations%patch_size > 0 .and. solve%own(displacement_field) .and. .not. any(equations%wall%held)
       do g = 1, size(scene%groups)
         if (solve%active(g)) yes = yes .and. .not. with_slopes(equations%drivers(g))
       end do
@@ -133,7 +133,7 @@ contains
 
     inner = 0
     associate (solve => equations%solves(equations%now))
-      call choose_patch(equations%dofs, equations%patches, solve%active, solve%equation, residual, scene%strategy%patch, own%patch)
+      call choose_patch(equations%dofs, equations%patches, solve%active, solve%equation, residual, equations%patch_size, own%patch)
       if (size(own%patch%unknown) == 0) return
       call begin_patch(scene, equations, solution, dt, du, own)
       call find_patch_motion(scene, equations, solution, own, residual, correction(own%patch%unknown), left, inner)
