@@ -71,7 +71,7 @@ def deck_with_friction(phi):
     """The deck with one Coulomb law on both faces."""
     with open(DECK, encoding="utf-8") as deck:
         text = deck.read()
-    for card, new in ((r"^CNT2D  billet 3  upper -3 stick", "CNT2D  billet 3  upper -3 rough"), (r"^LAW    stick.*\n(?: .*\n)*", ""),
+    for card, new in ((r"^CNT2D  billet 3  upper stick", "CNT2D  billet 3  upper rough"), (r"^LAW    stick.*\n(?: .*\n)*", ""),
                       (r"PHI 0\.5", f"PHI {phi:g}")):
         text, count = re.subn("(?m)" + card, new, text)
         if count != 1:
