@@ -1,5 +1,5 @@
-!> Interfaces of the dense kernels that are used, in both precisions, of the switch of OpenBLAS's own threads, and of what it
-!> reports about itself.
+!> Interfaces of the dense kernels that are used, in both precisions, of LAPACK's solution of dense systems, of the switch of
+!> OpenBLAS's own threads, and of what it reports about itself.
 module blas
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr
   use kinds, only: sp, wp
@@ -7,7 +7,7 @@ module blas
   implicit none
   private
   public :: blas_buffer
-  public :: dgemm, dgemv, sgemm, sgemv, keep_blas_to_one_thread, blas_core_name, blas_build
+  public :: dgemm, dgemv, dgetrf, dgetrs, sgemm, sgemv, keep_blas_to_one_thread, blas_core_name, blas_build
 
   !> Address space that OpenBLAS asks for, for ever if it is refused, in each thread that calls it first [bytes] (its BUFFER_SIZE,
   !> at most; little of it is used).
@@ -55,6 +55,26 @@ module blas
       real(sp), intent(in) :: x(*)        !! (:) [of any unit]
       real(sp), intent(inout) :: y(*)     !! (:) [of any unit]
     end subroutine sgemv
+
+    !> A := its factors L and U with partial pivoting; `info` is 0 where no pivot is zero.
+    subroutine dgetrf(m, n, a, lda, ipiv, info)
+      import :: wp
+      integer, intent(in) :: m, n, lda
+      real(wp), intent(inout) :: a(lda, *)   !! (lda, :) [of any unit]
+      integer, intent(out) :: ipiv(*)        !! (:) rows that were exchanged
+      integer, intent(out) :: info
+    end subroutine dgetrf
+
+    !> B := op(A)^-1 B by the factors of A.
+    subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
+      import :: wp
+      character, intent(in) :: trans
+      integer, intent(in) :: n, nrhs, lda, ldb
+      real(wp), intent(in) :: a(lda, *)      !! (lda, :) [of any unit]
+      integer, intent(in) :: ipiv(*)         !! (:)
+      real(wp), intent(inout) :: b(ldb, *)   !! (ldb, :) [of any unit]
+      integer, intent(out) :: info
+    end subroutine dgetrs
 
     subroutine openblas_set_num_threads(n) bind(c, name='openblas_set_num_threads')
       import :: c_int

@@ -106,12 +106,8 @@ contains
     real(wp) :: side, section(3), phi(3), dphi(3), psi(3), dpsi(3), q(2), dq(2, most_unknowns), dxi(most_unknowns)
     integer :: e, p, n, j, k, at, nnode, npiece, nblock, place(most_unknowns), pieces(pieces_in_reach*group%rule%n)
     logical, allocatable :: may(:, :)
-    logical :: axisym, dbg
-    character(8) :: v
+    logical :: axisym
 
-    call get_environment_variable('CDBG', v)
-    dbg = v /= ' '
-    if (dbg) write (77, *) 'eval', first, instant%tangent, instant%kept, instant%dt
     axisym = scene%plane_state == axisymmetric
     nnode = size(x, 2)
     nblock = contact_block(.true., size(trial, 1))
@@ -155,19 +151,6 @@ contains
           if (.not. allocated(may)) then
             call slide_past_edge(scene%mesh%coordinates, die, point%x, side, committed(:nblock, p, e), nearest, closest, release)
           end if
-          if (nint(committed(at_status, p, e)) /= 0 .and. dbg) then
-            if (closest%piece /= nint(committed(at_piece, p, e)) .or. release%share < 1) &
-              write (77, '(a,2i4,i4,f9.5,a,i4,f9.5,es12.4,2f9.5,l2,3es12.4,f8.4)') 'sw', first + e - 1, p, &
-              nint(committed(at_piece, p, e)), committed(at_xi, p, e), ' ->', closest%piece, closest%xi, &
-              closest%d, closest%normal, closest%at_vertex, &
-              committed(at_penetration, p, e), committed(1, p, e), committed(6, p, e), &
-              release%share
-          end if
-          if (closest%piece == 0) cycle
-          ! a point on the axis has no surface: nothing acts there, and no contact is evaluated
-          if (axisym .and. point%x(1) <= no_surface*side) cycle
-          trial(at_penetration, p, e) = closest%d
-          trial([at_piece, at_xi], p, e) = [real(nearest%piece, wp), nearest%xi]
           ! past an edge its pressure is gone
           if (.not. release%share > 0) cycle
           k = findloc(pieces(:npiece), closest%piece, 1)
@@ -210,15 +193,6 @@ contains
           own%kept = instant%kept .and. goes_on(instant, group%die)
           call press_edges(die, law, scene%materials(group%material), drivers(:, :, :, e), axisym, own, xi, pieces(:npiece), &
                            x(:, :, e), du(:, e), committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e), report)
-        end if
-        if (dbg) then
-          do p = 1, size(xi)
-            if (any(nint([committed(nblock + at_status, p, e), trial(nblock + at_status, p, e)]) /= 0)) &
-              write (77, '(a,2i4,2(f10.5,f4.0,4es12.4))') &
-              'edge', first+e-1, p, committed(2*nblock+1,p,e), committed(nblock+at_status,p,e), committed(nblock+[1,2,3,6],p,e), &
-              trial(2*nblock + 1, p, e), trial(nblock + at_status, p, e), trial(nblock + [1, 2, 3, 6], p, e)
-          end do
-          write(77,'(a,i4,*(f12.7))') 'side', first+e-1, x(:,1:3,e)+reshape(du([1,nnode+1,2,nnode+2,3,nnode+3],e),[2,3])
         end if
         if (axisym) call show_on_axis(xi, x(1, 1:3, e) + du(1:3, e), side, trial(:, :, e))
       end do

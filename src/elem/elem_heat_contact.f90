@@ -90,7 +90,7 @@ contains
     real(wp) :: y(2, 3), phi(3), dphi(3), length, thickness, area, darea(6), section(3), side, energy(2), due
     integer :: e, p, u, nnode, npiece, row_due, row_piece
     integer :: pieces(pieces_in_reach*group%rule%n), along(6)
-    logical :: rigid, corners
+    logical :: rigid, of_body, corners
     type(facing_t) :: facing
     type(shares_t) :: shares
 
@@ -100,7 +100,8 @@ contains
     if (instant%mode /= mode_advance) return
     nnode = size(x, 2)
     corners = has_corners_only(scene%fields(layout%field(temperature)))
-    rigid = .not. allocated(scene%dies(group%die)%nodes)
+    of_body = allocated(scene%dies(group%die)%nodes)
+    rigid = .not. of_body
     row_due = find_variable(group%variables, name_of_due)
     row_piece = find_variable(group%variables, name_of_piece)
     u = first_unknown(layout, displacement_field)
@@ -132,8 +133,8 @@ contains
         if (row_due == 0 .or. .not. instant%content) cycle
         due = committed(row_due, p, e)*weight(p)*area_at(xi(p), section, x(:, 1:3, e))
         if (scene%strategy%coupling /= coupling_once) then
-          energy = friction_energy(group%rule,.not. rigid, xi, weight, p, &
-                                 drivers([at_friction_work, at_corner_work, at_corner_place], :, p, e), &
+          energy = friction_energy(group%rule, of_body, xi, weight, p, &
+                                   drivers([at_friction_work, at_corner_work, at_corner_place], :, p, e), &
                                    spread(section, 2, 2), reshape([x(:, 1:3, e), end_of_step()], [2, 3, 2]))
           due = due + energy(2) - energy(1)
         end if

@@ -16,9 +16,8 @@
 !> X.-C. Cai, D.E. Keyes (SIAM J. Sci. Comput. 24 (2002) 183-200), where all else answers linearly. Equilibrium, and what is
 !> asked of it, is that of Newton's method: the way there is another one.
 module nonlinear_elimination
-  use blas, only: dgemm
+  use blas, only: dgemm, dgetrf, dgetrs
   use convergence, only: free_force
-  use dense_solve, only: factorise_dense, solve_dense
   use drivers, only: with_slopes
   use elem_api, only: block_done, report_t
   use equations, only: equations_t
@@ -205,14 +204,14 @@ contains
     real(wp), dimension(size(c), size(c)) :: tangent, stiffness
     real(wp) :: slope, norm, share
     integer, dimension(size(c)) :: pivot, pivot_of_stiffness
-    integer :: n, k, i, h
-    logical :: sound, regular, taken
+    integer :: n, k, i, h, info
+    logical :: sound, taken
 
     n = size(c)
     found = .false.
     stiffness = inverse
-    call factorise_dense(n, stiffness, pivot_of_stiffness, regular)
-    if (.not. regular) return
+    call dgetrf(n, n, stiffness, n, pivot_of_stiffness, info)
+    if (info /= 0) return
     call find_error()
     do k = 1, max_inner
       found = norm2(own%lever*error) <= found_below*norm2(own%lever*c)
@@ -223,10 +222,10 @@ contains
       do i = 1, n
         tangent(i, i) = tangent(i, i) + 1
       end do
-      call factorise_dense(n, tangent, pivot, regular)
-      if (.not. regular) return
+      call dgetrf(n, n, tangent, n, pivot, info)
+      if (info /= 0) return
       step = -error
-      call solve_dense(n, tangent, pivot, step)
+      call dgetrs('N', n, 1, tangent, n, pivot, step, n, info)
       start = c
       slope = dot_product(step, force)
       norm = norm2(force)
@@ -250,7 +249,7 @@ contains
     subroutine find_error()
       error = c - plain - matmul(inverse, left)
       force = error
-      call solve_dense(n, stiffness, pivot_of_stiffness, force)
+      call dgetrs('N', n, 1, stiffness, n, pivot_of_stiffness, force, n, info)
     end subroutine find_error
   end subroutine iterate
 
