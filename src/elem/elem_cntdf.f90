@@ -151,6 +151,11 @@ contains
           if (.not. allocated(may)) then
             call slide_past_edge(scene%mesh%coordinates, die, point%x, side, committed(:nblock, p, e), nearest, closest, release)
           end if
+          if (closest%piece == 0) cycle
+          ! a point on the axis has no surface: nothing acts there, and no contact is evaluated
+          if (axisym .and. point%x(1) <= no_surface*side) cycle
+          trial(at_penetration, p, e) = closest%d
+          trial([at_piece, at_xi], p, e) = [real(nearest%piece, wp), nearest%xi]
           ! past an edge its pressure is gone
           if (.not. release%share > 0) cycle
           k = findloc(pieces(:npiece), closest%piece, 1)
