@@ -96,6 +96,7 @@ contains
       call note_missing_austenite(scene, run%equations%laws, solution)
       call note_held_steels(scene, run%equations%laws, solution)
       cutbacks = 0
+      call note_damped_steps(solution, run)
       call note_step(solution%probation, length)
       call estimate(scene, run%estimator, run%equations%timers, solution)
       call list_step(run%listing, solution, outcome, run%totals)
@@ -176,11 +177,23 @@ contains
     ! in the first step a part may begin deep in its dies, and nothing has been found yet that it could snap from
     past_limit = solution%last_step > 0 .and. any(outcome%history%line_search < 0)
     call begin_damping(scene, run%equations, solution, dt, past_limit, die)
-    if (die > 0) &
-      call list_note(run%listing, 'note: step '//to_text(solution%step + 1)//': '//scene%dies(die)%name &
-                     //trim(merge(' moves past a limit point, and', ' withdraws, and               ', past_limit))//' no ' &
-                     //'equilibrium is near: what it held is let go suddenly; steps are damped until there is one')
+    if (die == 0) return
+    run%damped_from = solution%step + 1
+    call list_note(run%listing, 'note: step '//to_text(solution%step + 1)//': '//scene%dies(die)%name &
+                   //trim(merge(' moves past a limit point, and', ' withdraws, and               ', past_limit))//' no ' &
+                   //'equilibrium is near: what it held is let go suddenly; steps are damped until there is one')
   end subroutine damp
+
+  !> A step was accepted, and damping has ended with it.
+  subroutine note_damped_steps(solution, run)
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(inout) :: run
+
+    if (run%damped_from == 0 .or. solution%damping > 0) return
+    call list_note(run%listing, 'note: steps '//to_text(run%damped_from)//' to '//to_text(solution%step) &
+                   //' were damped: forces of dies and supports have viscous ones in them there')
+    run%damped_from = 0
+  end subroutine note_damped_steps
 
   !> Equations, the scene at rest, and files. A mesh that is refused has touched none of the results.
   subroutine start(scene, solution, run, error)
