@@ -338,6 +338,28 @@ class ReportTest(unittest.TestCase):
             with open(path, "rb") as file:
                 self.assertGreater(drawn_share(file.read()), BLANK, path)
 
+    def test_mesh_refused_in_the_end(self):
+        """What was computed on a last mesh that was refused is shown nowhere."""
+        folder = self.made("cycle")
+        path = os.path.join(folder, "cycle.csv")
+        with open(path, encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        titles = [title.split(" ")[0] for title in rows[0]]
+        last = dict(zip(titles, rows[-1]))
+        self.assertEqual("y", last["accepted"])
+        rows[-1][titles.index("accepted")] = "n"
+        before = Run(folder)
+        with open(path, "w", encoding="utf-8", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows(rows)
+        run = Run(folder)
+        self.assertEqual(len(before.generations) - 1, len(run.generations))
+        self.assertEqual(int(last["step"]), run.history["step"].values[-1])
+        self.assertLess(run.steps[-1].number, before.steps[-1].number)
+        result = report(folder)
+        self.assertEqual(0, result.returncode, result.stderr)
+        with open(os.path.join(folder, "report.html"), encoding="utf-8") as file:
+            self.assertIn(f"Mesh {last['generation']} was refused in the end", file.read())
+
     def check_narrow_screen(self, text):
         """A page as wide as the screen: the viewport is given, nothing is wider than a phone but what scrolls in its own box."""
         self.assertIn('<meta name="viewport" content="width=device-width, initial-scale=1">', text)

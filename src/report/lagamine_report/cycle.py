@@ -3,7 +3,7 @@ import csv
 import math
 import os
 from dataclasses import dataclass, field
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Optional
 
 from .errors import ReportError
 from .tables import number, read_object, read_text
@@ -95,6 +95,11 @@ def read_cycle(folder: str, name: str) -> List[Try]:
 def new_meshes(tries: List[Try]) -> List[Try]:
     """The accepted try of every new mesh."""
     return list({row.generation: row for row in tries if not row.refused and not row.keeps_old}.values())
+
+
+def refused_last(tries: List[Try]) -> Optional[Try]:
+    """The last try, where its mesh was refused and nothing went on from there."""
+    return tries[-1] if tries and tries[-1].refused and not tries[-1].keeps_old else None
 
 
 def optional_object(path: str) -> Dict[str, Any]:

@@ -8,9 +8,9 @@ from typing import Dict, List, Optional, Tuple
 import h5py
 import numpy as np
 
-from .cycle import read_cycle
+from .cycle import read_cycle, refused_last
 from .errors import ReportError
-from .tables import read_calls, read_history, read_history_so_far, read_notes, read_summary, with_entries
+from .tables import read_calls, read_history, read_history_so_far, read_notes, read_summary, rows_up_to, with_entries
 from .unfinished import stop_reason, unfinished_name, unfinished_summary
 
 AXISYMMETRIC = 2
@@ -81,7 +81,10 @@ class Run:
         self.notes = read_notes(os.path.join(folder, self.name + ".log"))
         self.calls = read_calls(os.path.join(folder, self.name + ".log"))
         self.tries = read_cycle(folder, self.name)
+        self.left_out = refused_last(self.tries)
         self.generations = [read_generation(path) for path in self._generation_files()]
+        if self.left_out:
+            self.history = rows_up_to(self.history, self.left_out.step)
         self.steps = [step for generation in self.generations for step in generation.steps]
         if not self.steps and self.ended:
             raise ReportError(f"{self.generations[0].path}: no saved steps{self._why_none()}")
@@ -92,7 +95,7 @@ class Run:
         self.die_names = list(dict.fromkeys(name for generation in self.generations for name in self._order_dies(generation)))
 
     def _generation_files(self) -> List[str]:
-        """NAME.g01.h5, NAME.g02.h5 ... without a gap."""
+        """NAME.g01.h5, NAME.g02.h5 ... without a gap. What was computed on a mesh that was refused in the end is no result, where there is another."""
         stem = os.path.join(self.folder, self.name)
         found = {}
         for path in glob.glob(glob.escape(stem) + ".g*.h5"):
@@ -103,6 +106,10 @@ class Run:
             if not self.ended and not self.history:     # it has only just begun
                 return []
             raise ReportError(f"{stem}.g01.h5: missing{self._why_none()}")
+        if self.left_out and min(found) < self.left_out.generation:
+            found = {number: path for number, path in found.items() if number < self.left_out.generation}
+        else:
+            self.left_out = None
         for number in range(min(found), max(found) + 1):
             if number not in found:
                 raise ReportError(f"{stem}.g{number:02d}.h5: missing, though there is {os.path.basename(found[max(found)])}")

@@ -117,6 +117,14 @@ def columns_of(path: str, text: str) -> Dict[str, Column]:
     return columns
 
 
+def rows_up_to(history: Dict[str, Column], step: int) -> Dict[str, Column]:
+    """The rows of a history up to a step."""
+    if "step" not in history:
+        return history
+    kept = history["step"].values <= step
+    return {name: Column(column.name, column.unit, column.values[kept]) for name, column in history.items()}
+
+
 def read_notes(path: str) -> Dict[str, List[str]]:
     """From the listing: the steps that were cut, and its warnings, each once: it has those of the deck before and after the steps.
 
