@@ -149,6 +149,8 @@ contains
     largest = -1
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
+        ! groups of dies (springs, heat capacities) have no nodes
+        if (size(group%connectivity) == 0) cycle
         mine = part(group%connectivity(1, 1)) == own
         if (mine .and. is_mechanical_load(group)) return
         if (group%die == 0 .or. group%material == 0) cycle

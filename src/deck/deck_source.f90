@@ -182,6 +182,7 @@ contains
     !> Both orders of the bytes of UTF-16.
     character(len=2), parameter :: wide_mark(2) = [char(255)//char(254), char(254)//char(255)]
     integer :: first, past, line, n
+    logical :: file_ended
 
     if (any(index(content, wide_mark) == 1)) then
       source%complete = .false.
@@ -194,6 +195,7 @@ contains
       call diagnostics%add(location_t(file, 1, 1), '', 'the file begins with a byte-order mark: save it as plain text')
     end if
     line = 0
+    file_ended = .false.
     do while (first <= len(content))
       past = end_of_line(content, first)
       line = line + 1
@@ -202,9 +204,19 @@ contains
       first = past + 1
       if (depth == 1) source%last%line = line
       if (source%nline == n .or. source%ended) cycle
+      if (file_ended) then
+        call diagnostics%add(location_t(file, line, verify(source%lines(n + 1)%text, ' ')), '', 'nothing may follow END')
+        source%nline = n
+        return
+      end if
       select case (upper_case(first_word(source%lines(n + 1)%text)))
       case ('END')
-        source%ended = .true.
+        file_ended = depth > 1
+        source%ended = .not. file_ended
+        if (.not. file_ended) cycle
+        ! That of an included file ends the file, and is no line of the deck.
+        call judge_end(source%lines(n + 1)%text, location_t(file, line, 1), diagnostics)
+        source%nline = n
       case ('INCLU')
         ! In small letters it is a mistake, which the reader of cards reports.
         source%complete = source%complete .and. index(source%lines(n + 1)%text, 'INCLU') == 1
@@ -214,6 +226,21 @@ contains
       end select
     end do
   end subroutine take_lines
+
+  !> The END of an included file is in capital letters and alone on its line, as that of a deck.
+  subroutine judge_end(text, where, diagnostics)
+    character(len=*), intent(in) :: text
+    type(location_t), intent(in) :: where
+    type(diagnostics_t), intent(inout) :: diagnostics
+    type(location_t) :: there
+
+    if (text(:3) /= 'END') &
+      call diagnostics%add(where, '', 'a keyword is written in capital letters: ''END'', not '''//text(:3)//'''')
+    if (len(text) == 3) return
+    there = where
+    there%column = 3 + verify(text(4:), ' ')
+    call diagnostics%add(there, 'END', 'expected the end of the line, found '''//text(there%column:)//'''')
+  end subroutine judge_end
 
   !> `INCLU file`, the path relative to the file it stands in.
   recursive subroutine include_file(card, where, open_files, depth, source, diagnostics)

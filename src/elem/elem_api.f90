@@ -67,8 +67,9 @@ module elem_api
   type :: flow_rule_t
     integer :: n = 1
     real(wp) :: weight(2) = [1.0_wp, 0.0_wp], share(2) = [1.0_wp, 0.0_wp]
-    !> Multipliers at these instants (nmultiplier, n).
-    real(wp), allocatable :: multipliers(:, :)
+    !> Multipliers at these instants (nmultiplier, n); and those of heat that a deck states (FLUX, HEATS), of which a step takes the
+    !> mean, so that its heat is the stated one.
+    real(wp), allocatable :: multipliers(:, :), stated(:, :)
     !> The instants (n), and the factors of the sources of torches there (nsource, n); not allocated where there is none.
     real(wp), allocatable :: times(:), source_factors(:, :)
   end type flow_rule_t

@@ -1,7 +1,8 @@
 !> FLUX, CONVE and RADIA: heat that passes the sides of bodies.
 !>
 !> Heat that comes in per area, q: FLUX an amplitude (by the temperature T of the surface, where a table is given) times a
-!> multiplier; CONVE h (Ts - T), the coefficient h like the amplitude of FLUX, Ts the temperature of the surroundings; RADIA
+!> multiplier, in the mean of the step; CONVE h (Ts - T), the coefficient h an amplitude as well, times a multiplier at the
+!> instant, Ts the temperature of the surroundings; RADIA
 !> h (Ta^4 - (T + Z)^4), h emissivity times Stefan's and Boltzmann's constant, Ta = Ts + Z, Z what makes the temperatures of the
 !> deck absolute (module radiation). F_i = -sum_k w_k integral phi_i q dA at the instants k of the flow rule
 !> (elem_api), on the side as it is at the end of the step; linearised exactly, along the displacements too. Where temperatures
@@ -136,7 +137,7 @@ contains
     subroutine add(here, along)
       real(wp), intent(in) :: here, along(3)
 
-      call flow_in(group%exchange, instant%flow%multipliers(:, k), here, q, slope)
+      call flow_in(group%exchange, instant%flow%multipliers(:, k), instant%flow%stated(:, k), here, q, slope)
       part = instant%flow%weight(k)
       force(:n, e) = force(:n, e) - share(:n)*(part*q*area)
       if (.not. instant%tangent) return
@@ -160,12 +161,13 @@ contains
   end subroutine compute
 
   !> Heat that comes in per area at a temperature of the surface, and its derivative.
-  pure subroutine flow_in(exchange, multipliers, t, q, slope)
+  pure subroutine flow_in(exchange, multipliers, stated, t, q, slope)
     type(exchange_t), intent(in) :: exchange
     real(wp), intent(in) :: multipliers(:)   !! (nmultiplier) at the instant [-]
+    real(wp), intent(in) :: stated(:)        !! (nmultiplier) of heat that is stated (elem_api) [-]
     real(wp), intent(in) :: t                !! [temperature]
     real(wp), intent(out) :: q, slope        !! [power/area], [power/area/temperature]
-    real(wp) :: h, dh, surroundings, powers, by_t, unused
+    real(wp) :: h, dh, factor, surroundings, powers, by_t, unused
 
     h = exchange%amplitude
     dh = 0
@@ -175,8 +177,10 @@ contains
       dh = exchange%amplitude*dh
     end if
     if (exchange%multiplier > 0) then
-      h = h*multipliers(exchange%multiplier)
-      dh = dh*multipliers(exchange%multiplier)
+      factor = multipliers(exchange%multiplier)
+      if (exchange%kind /= by_convection .and. exchange%kind /= by_radiation) factor = stated(exchange%multiplier)
+      h = h*factor
+      dh = dh*factor
     end if
     surroundings = exchange%surroundings
     if (exchange%surroundings_multiplier > 0) surroundings = surroundings*multipliers(exchange%surroundings_multiplier)

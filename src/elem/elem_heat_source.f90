@@ -100,7 +100,7 @@ contains
       real(wp) :: q, slope, weight
       integer :: i
 
-      call flow_in(group%exchange, instant%flow%multipliers(:, k), here, q, slope)
+      call flow_in(group%exchange, instant%flow%multipliers(:, k), instant%flow%stated(:, k), here, q, slope)
       weight = instant%flow%weight(k)*volume
       force(:n, e) = force(:n, e) - to(:n)*(weight*q)
       if (.not. instant%tangent) return

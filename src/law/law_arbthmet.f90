@@ -14,9 +14,9 @@ module law_arbthmet
   use law_api, only: driver_temperature, law_line, law_t, parameter, parameter_t
   use materials, only: has_number, material_t
   use phase_mechanics, only: has_yield, lacking_mechanical_data, lacking_viscosity, mixture_moduli
-  use phase_point, only: first_hardening, first_phases, flow_stress_of_point, place_cowper, place_isig, place_rate, place_stress, &
-                         place_time, place_trip, place_visco, place_zero, return_of_point, row_plastic, row_trip, row_work, &
-                         stress_row
+  use phase_point, only: first_hardening, first_phases, flow_stress_of_point, place_cowper, place_isig, place_melt, place_rate, &
+                         place_stress, place_time, place_trip, place_visco, place_zero, return_of_point, row_plastic, row_trip, &
+                         row_work, stress_row
   use phase_state, only: at_coldest, at_grain, first_fraction, never_cold, state_names, state_size, state_units
   use phase_step, only: advance_phases
   use state_variables, only: state_variable, transfer_fraction, transfer_scalar
@@ -75,7 +75,7 @@ contains
   function parameters() result(list)
     type(parameter_t), allocatable :: list(:)
 
-    allocate (list(8))
+    allocate (list(9))
     list(place_stress) = parameter('STRESS', 'stress', 'that of 1 MPa in units of the deck', above=0.0_wp)
     list(place_time) = parameter('TIME', '-', 'seconds of a unit of time: the law follows the kinetics itself; 0: others do', &
                                  lower=0.0_wp, default=0.0_wp)
@@ -87,6 +87,7 @@ contains
                                   lower=0.0_wp, default=0.0_wp)
     list(place_isig) = parameter('ISIG', '-', '1: stress acts on the kinetics that the law follows', lower=0.0_wp, upper=1.0_wp, &
                                  default=0.0_wp, whole=.true.)
+    list(place_melt) = parameter('MELT', 'temperature', 'from which on hardening is lost; 0: never', lower=0.0_wp, default=0.0_wp)
   end function parameters
 
   pure subroutine update(material, dt, drivers, trial_strain, committed, stress, elastic_strain, history, tangent, status)

@@ -4,7 +4,7 @@
 !> A q = q_trial - 3 G dp: the return of a steel whose flow stress is A times as large, after which deviators are divided by A.
 !> For a flow stress of slope R' that is dp = f A/(3 G + A R'), f = q_trial/A - R. The flow stress R is that of the mixture
 !> (phase_mechanics): yield and hardening; times a factor of the rate with RATE0 and COWPER; with VISCO plus the stress by the rate
-!> of each phase, the plastic rate being common to all.
+!> of each phase, the plastic rate being common to all. From MELT on the hardening is none, and stays so until it is colder.
 !> Sources: J.-B. Leblond, Int. J. Plasticity 5 (1989) 573-591; code_aster R4.04.02; J.C. Simo, R.L. Taylor, CMAME 48 (1985)
 !> 101-118.
 module phase_point
@@ -22,13 +22,13 @@ module phase_point
   use stress_measures, only: von_mises
   implicit none
   private
-  public :: place_stress, place_time, place_zero, place_trip, place_rate, place_cowper, place_visco, place_isig
+  public :: place_stress, place_time, place_zero, place_trip, place_rate, place_cowper, place_visco, place_isig, place_melt
   public :: row_plastic, row_work, row_trip, first_hardening, first_phases
   public :: return_of_point, flow_stress_of_point, flows, rate_row, stress_row
 
   !> Places among the values of a material.
   integer, parameter :: place_stress = 1, place_time = 2, place_zero = 3, place_trip = 4, place_rate = 5, place_cowper = 6, &
-                        place_visco = 7, place_isig = 8
+                        place_visco = 7, place_isig = 8, place_melt = 9
   !> Rows of the history: plastic strain, dissipated work, strain of transformation plasticity, hardening of the phases; then what
   !> follows where TIME is given, the plastic rate, and the stresses of ISIG.
   integer, parameter :: row_plastic = 1, row_work = 2, row_trip = 3, first_hardening = 4, &
@@ -71,11 +71,12 @@ contains
       status = law_done
       if (flows(material)) then
         call carry_hardening(steel, z(:, 1), z(:, 2), temperature(2), hardened)
+        if (is_molten(material, temperature(2))) hardened = 0
         if (rate_row(material) > 0) known(return_rows) = history(rate_row(material))
         call flow_of_mixture(material, z(:, 2), hardened, temperature(2), dt, known(return_rows), a, flow, curve)
         call return_point(flow, curve, curve, dt, trial, known, stress, elastic_strain, found, tangent, status)
         if (has_yield(steel) .and. .not. flow%below(1) > 0) status = law_not_converged
-        hardened = hardened + found(row_plastic)
+        if (.not. is_molten(material, temperature(2))) hardened = hardened + found(row_plastic)
         if (flow%rate_row > 0) history(rate_row(material)) = found(flow%rate_row)
       else
         stress = hooke_stress(flow%bulk, flow%shear, trial)
@@ -113,6 +114,16 @@ contains
                          1.0_wp, flow, curve)
     stress = flow_stress_at(flow, curve, curve, 0.0_wp, rate)
   end function flow_stress_of_point
+
+  !> What is molten forgets its hardening.
+  pure function is_molten(material, temperature) result(yes)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: temperature   !! [degC]
+    logical :: yes
+
+    yes = has_number(material, place_melt)
+    if (yes) yes = temperature >= material%values(place_melt) + material%values(place_zero)
+  end function is_molten
 
   !> The steel flows: it has yield stresses, or stresses by the rate that VISCO asks for.
   pure function flows(material) result(yes)

@@ -11,6 +11,7 @@
 module weld_sources
   use kinds, only: pi, wp
   use loads, only: multiplier_t, multiplier_at
+  use multiplier_means, only: mean_of_multiplier
   implicit none
   private
   public :: weld_source_t
@@ -100,6 +101,11 @@ contains
     real(wp) :: power                                  !! [power]
     real(wp) :: factors(2), slope, weight, centre
 
+    if (.not. source%crosses) then
+      power = source%efficiency*source%power
+      if (source%multiplier > 0) power = power*mean_of_multiplier(multipliers(source%multiplier), from, to)
+      return
+    end if
     factors = 1
     if (source%multiplier > 0) &
       factors = [multiplier_at(multipliers(source%multiplier), from), multiplier_at(multipliers(source%multiplier), to)]

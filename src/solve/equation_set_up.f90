@@ -6,7 +6,7 @@ module equation_set_up
   use elem_heat_contact, only: name_of_piece
   use elem_registry, only: list_elems
   use equations, only: equations_t
-  use errors, only: error_t
+  use errors, only: error_t, exit_machine, fail
   use fields, only: displacement_field
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
@@ -14,6 +14,7 @@ module equation_set_up
   use law_api, only: has_symmetric_tangent, solid_law
   use law_registry, only: list_laws
   use linear_solver, only: analyse, choose_solver
+  use memory_limits, only: require_memory
   use ordering, only: order_equations
   use own_crossings, only: list_free_sides
   use patches, only: map_patches
@@ -22,17 +23,21 @@ module equation_set_up
   use scene, only: is_solid, role_load_factor, role_side_load, role_spring, role_volume_load, scene_t
   use solution, only: solution_t
   use solves, only: list_solves, number_equations, quantities_of, set_up_pattern
+  use sparsity, only: entries_of
   use state_variables, only: find_variable
   use strategy, only: patch_by_matrix
+  use text, only: to_text
   use vectors, only: length_of
   implicit none
   private
-  public :: set_up, analyse_pattern, pair_up, renew_pairs
+  public :: set_up, analyse_pattern, pair_up, refuse_too_large, renew_pairs
 
   !> Patches of so many elements, where a factorisation takes so many operations or more (some 4500 unknowns): there the billet of
   !> decks/upsetting, whose side folds onto the die, takes half of the seconds; smaller ones gain less, and some lose.
   integer, parameter :: default_patch = 12
   real(wp), parameter :: large_matrix = 5.0e7_wp
+  !> Memory that an entry of an element matrix takes at least: its value, row, column and place [bytes].
+  real(wp), parameter :: bytes_of_entry = 20.0_wp
 
 contains
 
@@ -51,6 +56,8 @@ contains
     call list_kinematics(rows)
     equations%kinematics = rows(scene%kinematics_id)
     call number_dofs(scene, equations%elems, equations%dofs)
+    call refuse_too_large(entries_of(equations%dofs), error)
+    if (allocated(error)) return
     call find_axis_wall(scene, equations%laws, equations%dofs, equations%wall)
     call list_free_sides(scene, equations%free_sides)
     call find_loose_bodies(scene, equations%dofs, equations%loose)
@@ -94,6 +101,19 @@ contains
     equations%patch_size = chosen_patch_size(scene, equations)
     if (equations%patch_size > 0) call map_patches(scene, equations%dofs, equations%patches)
   end subroutine set_up
+
+  !> A mesh whose element matrices have more entries than can be counted, or than there is memory for.
+  subroutine refuse_too_large(entries, error)
+    real(wp), intent(in) :: entries   !! of all element matrices
+    type(error_t), allocatable, intent(out) :: error
+
+    if (entries > huge(1)) then
+      call fail(error, exit_machine, 'the mesh is too large: its element matrices have '//to_text(entries, 3) &
+                //' entries, at most '//to_text(real(huge(1), wp), 3)//' can be counted', 'use a coarser mesh')
+    else
+      call require_memory(bytes_of_entry*entries, 'the element matrices', error, address_space=0.0_wp)
+    end if
+  end subroutine refuse_too_large
 
   !> Elements at most in a patch: as the deck says, otherwise by the matrix of the motion.
   pure function chosen_patch_size(scene, equations) result(chosen)

@@ -32,6 +32,8 @@ module equations
     real(wp) :: share = 1.0_wp, reach = 1.0_wp
     !> Heat taken up and released counts; otherwise flows alone.
     logical :: content = .true.
+    !> Of flows alone: the length of the step over which stated heat is a mean; 0: it is that of the instant [time].
+    real(wp) :: mean_over = 0.0_wp
   end type stage_t
 
   type :: equations_t

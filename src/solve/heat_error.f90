@@ -75,13 +75,13 @@ contains
     if (two_stages .and. any(abs(heat) > 0)) then
       call solve_correction(equations, 2*heat/length, temperatures, outcome%error, at_hand=.true.)
       if (allocated(outcome%error)) return
-      middle = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures)
+      middle = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, two_stages, temperatures)
       heat = heat + (weight/diagonal)*(middle - heat)
     end if
     heat = heat + length*rates
     call solve_correction(equations, heat/length, temperatures, outcome%error, at_hand=.true.)
     if (allocated(outcome%error)) return
-    heat = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures)
+    heat = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, two_stages, temperatures)
     call measure_error(scene, equations, solution, outcome%du, temperatures, unused, outcome%heat%error_now)
     where (equations%solves(equations%now)%equation == 0) heat = 0
     outcome%heat%content_error = solution%heat%content_error
@@ -121,20 +121,25 @@ contains
   end subroutine leave
 
   !> Flows out of the nodes that come with a small change of the temperatures, at the end of the step.
-  function flows_of(scene, equations, solution, dt, du, after, temperatures) result(g)
+  function flows_of(scene, equations, solution, dt, du, after, two_stages, temperatures) result(g)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt
     real(wp), intent(in) :: du(:), after(:), temperatures(:)   !! (ndof) motion, its flows [power], the change [temperature]
+    logical, intent(in) :: two_stages
     real(wp) :: g(size(du))   !! [power]
 
-    call flows(scene, equations, solution, dt, du + small*temperatures, g)
+    if (two_stages) then
+      call flows(scene, equations, solution, dt, du + small*temperatures, g)
+    else
+      call flows(scene, equations, solution, dt, du + small*temperatures, g, mean_over=dt)
+    end if
     g = (g - after)/small
   end function flows_of
 
   !> Flows out of the nodes less the loads at an instant of the step, without what is taken up and released.
-  subroutine flows(scene, equations, solution, dt, du, g, reach)
+  subroutine flows(scene, equations, solution, dt, du, g, reach, mean_over)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -142,11 +147,13 @@ contains
     real(wp), intent(in) :: du(:)   !! (ndof) motion to there [unknown]
     real(wp), intent(out) :: g(:)   !! (ndof), 0 for the unknowns of other solves [power]
     real(wp), intent(in), optional :: reach   !! share of the step; the end, or the start for dt = 0, where absent
+    real(wp), intent(in), optional :: mean_over   !! length of the step over which stated heat is a mean (stage_t) [time]
     real(wp) :: external(size(du))
     type(report_t) :: report
 
     equations%stage = stage_t(content=.false., reach=merge(1.0_wp, 0.0_wp, dt > 0))
     if (present(reach)) equations%stage%reach = reach
+    if (present(mean_over)) equations%stage%mean_over = mean_over
     call evaluate(scene, equations, solution, dt, du, .false., report)
     equations%stage = stage_t()
     call external_forces(scene, equations%dofs, solution%time + dt, external)

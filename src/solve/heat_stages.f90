@@ -139,11 +139,11 @@ contains
       return
     end if
     rest = 0
-    call flows(scene, equations, solution, 0.0_wp, rest, before)
+    call flows(scene, equations, solution, 0.0_wp, rest, before, mean_over=dt)
     call solve_step(scene, equations, solution, dt, outcome, given=given, go_on=go_on)
     if (.not. outcome%converged) return
     call keep_evaluation(equations, kept)
-    call flows(scene, equations, solution, dt, outcome%du, after)
+    call flows(scene, equations, solution, dt, outcome%du, after, mean_over=dt)
     call estimate_error(scene, equations, solution, dt, 0.5_wp*(after - before), after, .false., outcome, &
                         at_hand=.not. scene%strategy%time_tolerance > 0 .and. outcome%iterations > 0)
     call return_to(kept, equations)

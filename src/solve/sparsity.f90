@@ -4,10 +4,11 @@
 !> a fixed order: gathering (not scattering) makes the sum the same for any number of threads.
 module sparsity
   use dofs, only: dofs_t
+  use kinds, only: wp
   use matrix_pattern, only: matrix_pattern_t
   implicit none
   private
-  public :: pattern_t, build_pattern
+  public :: pattern_t, build_pattern, entries_of
 
   type, extends(matrix_pattern_t) :: pattern_t
     !> Entries of the element matrices summed by nonzero k: entry(first(k):first(k+1)-1).
@@ -66,6 +67,18 @@ contains
     pattern%first = pattern%first(:n + 1)
     call map_forces(dofs, active, pattern)
   end subroutine build_pattern
+
+  !> How many entries all element matrices have, more than an integer holds perhaps.
+  pure function entries_of(dofs) result(n)
+    type(dofs_t), intent(in) :: dofs
+    real(wp) :: n
+    integer :: g
+
+    n = 0
+    do g = 1, size(dofs%groups)
+      n = n + real(size(dofs%groups(g)%dof), wp)*size(dofs%groups(g)%dof, 1)
+    end do
+  end function entries_of
 
   !> Row, column and place of every entry of every element matrix between free unknowns.
   subroutine list_entries(dofs, equation, active, pattern, row, column, entry)

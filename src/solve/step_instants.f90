@@ -11,6 +11,7 @@ module step_instants
   use fields, only: displacement_field, field_t, find_field, mechanical_fields, pilot_field, section_field
   use kinds, only: wp
   use loads, only: multiplier_at
+  use multiplier_means, only: mean_of_multiplier
   use scene, only: scene_t
   use solution, only: present_coordinates, solution_t
   use strategy, only: strategy_t
@@ -31,6 +32,7 @@ contains
     logical, intent(in) :: tangent   !! matrices are wanted
     type(instant_t), intent(out) :: instant
     real(wp), allocatable :: coordinates(:, :)
+    real(wp) :: length
     integer :: k, c
 
     instant%time = solution%time + dt
@@ -52,11 +54,20 @@ contains
     if (equations%remedy == remedy_none) call set_flow_rule(scene%strategy, instant%flow)
     instant%monotone = equations%remedy == remedy_monotone
     allocate (instant%flow%multipliers(size(scene%multipliers), instant%flow%n))
+    length = equations%stage%mean_over
+    ! the weights of the stages of a step make the mean themselves
+    if (equations%stage%content .and. equations%stage%share >= 1) length = dt
     do c = 1, instant%flow%n
       do k = 1, size(scene%multipliers)
         instant%flow%multipliers(k, c) = multiplier_at(scene%multipliers(k), solution%time + instant%flow%share(c)*dt)
       end do
     end do
+    instant%flow%stated = instant%flow%multipliers
+    if (length > 0) then
+      do k = 1, size(scene%multipliers)
+        instant%flow%stated(k, :) = mean_of_multiplier(scene%multipliers(k), solution%time, solution%time + length)
+      end do
+    end if
     if (any(scene%groups%source > 0)) call set_sources(scene, equations, solution, dt, instant)
     if (size(solution%fields) > size(mechanical_fields())) call list_values(equations%dofs, solution%fields, instant%values)
     if (size(solution%pairs) == 0) return

@@ -1,8 +1,8 @@
 !> Power of welding torches in a step.
 !>
 !> A torch that crosses the plane is there for a moment, which may be shorter than a step: its power at the instants at which heat
-!> flows (the end of the step, or those of the scheme) would tell little of its heat. So the powers at these instants are scaled
-!> such that the step takes exactly what the torch leaves in the plane meanwhile.
+!> flows (the end of the step, or those of the scheme) would tell little of its heat; so would that of one in the plane whose power
+!> rises or falls. So the powers at these instants are scaled such that the step takes exactly what the torch leaves meanwhile.
 module torch_steps
   use kinds, only: wp
   use scene, only: scene_t
@@ -31,7 +31,6 @@ contains
     allocate (step%scale(size(scene%sources)), source=1.0_wp)
     allocate (step%plus(size(scene%sources)), source=0.0_wp)
     do k = 1, size(scene%sources)
-      if (.not. scene%sources(k)%crosses) cycle
       mean = mean_power(scene%sources(k), scene%multipliers, from, from + dt, scene%section(1))
       sum_of_rule = 0
       do i = 1, size(share)

@@ -91,6 +91,7 @@ contains
     allocate (case%start(0, 1))
     allocate (case%instant%multipliers(1), source=1.0_wp)
     allocate (case%instant%flow%multipliers(1, 2), source=1.0_wp)
+    case%instant%flow%stated = case%instant%flow%multipliers
     case%scene%groups(1)%rule = rule_of_number(npoint)
     allocate (case%drivers(0, 2, abs(npoint), 1))
     case%scene%groups(1)%role = case%elem%role

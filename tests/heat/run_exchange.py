@@ -13,6 +13,7 @@ usage: run_exchange.py [-v] [-k]
 - `cylinder`: cooled by convection, Biot numbers 1 and 20: the series of Bessel's functions, and the order in time.
 - `wall_by_temperature`: LAMBDA linear in T: Kirchhoff's transform, T from a (T - T1) + b (T^2 - T1^2)/2 linear in place.
 - `source`: heat from the volume, a parabola; a body that only warms up.
+- `stated`: FLUX, HEATS and the power of GOLDAK by a LIC that rises and falls: all of it comes in, by all schemes.
 - `stefan`: freezing of a half space (F. Neumann): LAMBDA jumps and RHOC holds the latent heat: within 1 %.
 - `squeezed`: a block of perfect plasticity pressed to a plastic strain of 1 without loss of heat: QUINNEY sigma p/(rho c), in all ways of
   coupling.
@@ -119,7 +120,7 @@ def convection(checks):
             checks.small(max(abs(through[0] - 1), abs(through[1] + 1)), 1e-8, f"{run.name}: {power:.4f} W in and out")
 
 
-FLOWS = (HEAD + "BLOCK w PL8TM 9 m {kind}\n   1. 0. 2. 0. 2. 1. 1. 1.\n   4 1. 3 1.\nLAW m HEAT\n   20. 3.\nSTART T 500.\n"
+FLOWS = (HEAD + "BLOCK w PL8TM 9 m {kind}\n   1. 0. 2. 0. 2. 1. 1. 1.\n   4 1. 3 1.\nLAW m HEAT\n   20. 3.\nSTART T 430.\n"
          "CONVE w 2 H 30. TS 20.\nRADIA w 2 EPS 0.8 SIGMA 5.67E-8 ZERO 273.15 TS 20.\nFLUX w 3 Q 1.E3 on\nHEATS w Q 100.\n"
          "IMPOS w 4 T on 300.\nIMPOS w 1 T on 300.\nLIC on\n   0. 1. 0.1 0.5\nDIE d\n   SEGM 3. 1. 0. 1.\nCOU2DC w 3 d H 5.\nTDIE d T 100.\n"
          "STRAT 0.001 1.E-6 0.01 9 3\nSTOP 0.1\nTHETA {scheme}\n" + TIGHT + "END\n")
@@ -242,6 +243,20 @@ def source(checks):
             checks.small(np.max(np.abs(run.history["heat_imbalance"])), 1e-11, f"{run.name}: books")
 
 
+def stated(checks):
+    """Heat that a LIC states comes in as stated, by every scheme and in steps of any length: 1.25 times its value at 1."""
+    cards = (("flux", "FLUX wall 2 Q 3. on", 3*0.02), ("heats", "HEATS wall Q 3. on", 3*0.1*0.02),
+             ("goldak", "GOLDAK wall P 3. on ETA 0.5 FRONT 0.02 REAR 0.02 DEPTH 0.02 INTO 1. 0.\n   0. 0. 0.01", 1.5))
+    for name, card, rate in cards:
+        for scheme in ("1.", "0.7", "0.7 MEAN", "TRBDF2", "1. TOL 1."):
+            run = Run(checks, f"stated-{name}-{scheme.replace(' ', '').replace('.', '')}", HEAD.format(title="stated", state="PLSTN")
+                      + "BLOCK wall PL8TM 4 steel\n   0. 0. 0.1 0. 0.1 0.02 0. 0.02\n   8 1. 2 1.\nLAW steel HEAT\n   20. 2.E3\n" + card
+                      + "\nLIC on\n   0. 0. 0.5 1. 1. 1. 2. 0.\nSTRAT 0.3 1.E-5 0.3 9 3\nSTOP 4.\nTHETA " + scheme + "\n" + TIGHT + "END\n")
+            if run.ok:
+                taken = run.history["heat_in"][-1] + run.history["heat_released"][-1]
+                checks.small(abs(taken/(1.25*rate) - 1), 1e-10, f"{run.name}: heat")
+
+
 def stefan(checks):
     """Two-phase freezing."""
     solid, liquid = 3.0e6, 2.5759e6
@@ -325,7 +340,7 @@ def pressed_hot(checks):
 def main():
     """All cases."""
     checks = Checks()
-    for case in (radiation, wave, annulus, convection, flows, cylinder, by_temperature, source, stefan, plastic, pressed_hot):
+    for case in (radiation, wave, annulus, convection, flows, cylinder, by_temperature, source, stated, stefan, plastic, pressed_hot):
         case(checks)
     checks.end()
 

@@ -64,7 +64,7 @@ contains
     call set_nodes(steel)
   end function steel_of_tests
 
-  !> STRESS TIME ZERO TRIP RATE0 COWPER VISCO ISIG. With `follows` the law follows the kinetics, in seconds.
+  !> STRESS TIME ZERO TRIP RATE0 COWPER VISCO ISIG MELT. With `follows` the law follows the kinetics, in seconds.
   function steel_material(steel, follows) result(material)
     type(steel_t), intent(in) :: steel
     logical, intent(in) :: follows
@@ -73,7 +73,7 @@ contains
     material%name = 'steel'
     material%law = 'ARBTHMET'
     allocate (material%values, source=[1.0_wp, merge(1.0_wp, 0.0_wp, follows), 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
-                                      0.0_wp])
+                                      0.0_wp, 0.0_wp])
     allocate (material%curve(2, 0))
     allocate (material%steel, source=steel)
   end function steel_material

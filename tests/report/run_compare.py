@@ -104,7 +104,8 @@ class Compare(unittest.TestCase):
             self.assertIn(words, done.stderr)
 
     def test_refusals(self):
-        for arguments, words in ((("fine", "nowhere"), "nowhere: no such folder"), (("fine", "coarse", "--field", "mises"), "--field: for a single run"),
+        for arguments, words in ((("fine", "nowhere"), "nowhere: no such folder"), (("nodeck.lag",), "nodeck.lag: no such deck"),
+                                 (("fine", "coarse", "--field", "mises"), "--field: for a single run"),
                                  (("fine", "coarse", "-p", "a=1"), "-p: for a single run"), (("fine", "-p", "a=1"), "-p: for a deck")):
             done = self.report(*arguments)
             self.assertEqual((2, 1), (done.returncode, len(done.stderr.splitlines())), done.stderr)

@@ -86,6 +86,8 @@ WRONG["welded by EPLA"] = (HEATED, "none of their laws expands")
 HOT = {"FIXED  billet 1 Y\n": "FIXED  billet 1 Y\nADDEL  billet PL8TM hot\nLAW    hot HEAT\n   50. 3.6\nSTART  T 900.\nCONVE  billet 2 H 1. TS 0.\n"}
 WRONG["hot and moved away"] = ({**HOT, "1. -2.": "1. 2."}, "does not meet the part")
 WRONG["hot and pushed from one side"] = ({"FIXED  billet 1 Y\n": HOT["FIXED  billet 1 Y\n"].split("\n", 1)[1]}, "along Y from one side")
+WRONG["hot and pushed by a die that warms up"] = ({"FIXED  billet 1 Y\n": HOT["FIXED  billet 1 Y\n"].split("\n", 1)[1]
+                                                   + "COU2DC billet 3 upper H 1.\nTDIE   upper T 20. C 100.\n"}, "along Y from one side")
 WRONG["friction in percent"] = ({"PHI 0.3": "PHI 30."}, "its coefficient of friction is 30")
 # Two dies that press the billet through each other, and the flange around the bore into which it is pushed.
 PRESSED = {"FIXED  billet 1 Y\n": TABLE, "1. -2.": "1. -18."}

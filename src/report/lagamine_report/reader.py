@@ -62,7 +62,7 @@ class Run:
 
     def __init__(self, folder: str) -> None:
         if not os.path.isdir(folder):
-            raise ReportError(f"{folder}: no such folder")
+            raise ReportError(f"{folder}: no such {'deck' if folder.endswith('.lag') else 'folder'}")
         self.folder = folder
         self._names: Dict[Tuple[str, str], Tuple[str, ...]] = {}        # of groups in files, once they have been asked for
         summary, history = os.path.join(folder, "summary.json"), os.path.join(folder, "history.csv")
