@@ -9,8 +9,10 @@ module side_corners
   use closest_point, only: closest_point_t, stationary_points, whole_piece
   use dies, only: die_t
   use kinds, only: wp
+  use parabolas, only: point_on
   use plane_vectors, only: left_of, right_of
   use shape_functions, only: line3
+  use vectors, only: length_of
   implicit none
   private
   public :: corner_t, deepest_corner, closest_at_corner
@@ -43,25 +45,41 @@ contains
     real(wp), intent(in) :: reach        !! [length]
     type(corner_t), intent(out) :: corner
     type(corner_t) :: one
-    real(wp) :: box(4), xi(3)
-    integer :: k, r, n
+    real(wp) :: box(4)
+    integer :: k
 
     box = [minval(side, 2) - reach, maxval(side, 2) + reach]
     do k = 1, size(die%corners, 2)
       one%vertex = die%corners(1:2, k)
       if (any(one%vertex < box(1:2)) .or. any(one%vertex > box(3:4))) cycle
-      call stationary_points(side, one%vertex, whole_piece, n, xi)
-      do r = 1, n
-        if (xi(r) < from .or. .not. xi(r) < to) cycle
-        one%place = xi(r)
-        one%piece = die%corner_piece(k)
-        one%xi = die%corner_xi(k)
-        call measure_corner(die%corners(3:4, k), die%corners(5:6, k), side, one)
-        if (.not. (one%found .and. abs(one%d) < reach)) cycle
-        if (.not. corner%found .or. one%d > corner%d) corner = one
-      end do
+      one%place = nearest_place(side, one%vertex)
+      if (one%place < from .or. .not. one%place < to) cycle
+      one%piece = die%corner_piece(k)
+      one%xi = die%corner_xi(k)
+      call measure_corner(die%corners(3:4, k), die%corners(5:6, k), side, one)
+      if (.not. (one%found .and. abs(one%d) < reach)) cycle
+      if (.not. corner%found .or. one%d > corner%d) corner = one
     end do
   end subroutine deepest_corner
+
+  !> Place on a side that is the nearest to a corner, beyond the side where an end of it is. Where a side is bent the distance is
+  !> stationary at others as well: beyond the centre of curvature it has a maximum, and another minimum appears at a distance.
+  pure function nearest_place(side, vertex) result(place)
+    real(wp), intent(in) :: side(2, 3), vertex(2)   !! [length]
+    real(wp) :: place
+    real(wp) :: xi(3), least, distance
+    integer :: r, n
+
+    place = 2*whole_piece(2)
+    least = min(length_of(side(:, 1) - vertex), length_of(side(:, 3) - vertex))
+    call stationary_points(side, vertex, whole_piece, n, xi)
+    do r = 1, n
+      distance = length_of(point_on(side, xi(r)) - vertex)
+      if (.not. distance <= least) cycle
+      least = distance
+      place = xi(r)
+    end do
+  end function nearest_place
 
   !> Normal and depth of a corner between tangents t1 and t2.
   pure subroutine measure_corner(t1, t2, side, corner)
