@@ -6,7 +6,7 @@
 module point_contacts
   use boundary_sides, only: loop_t
   use contact_intervals, only: along, contact_interval_t, side_point_t
-  use corner_weights, only: corner_weight
+  use corner_weights, only: corner_weight, place_within
   use die_closest_points, only: point_on_side
   use die_corner_contact, only: find_corners
   use kinds, only: wp
@@ -134,8 +134,8 @@ contains
         do p = 1, size(xi)
           if (.not. is_control_point(group%rule, p)) call try(xi(p), weight(p)*state(pressure, p, e), most, place)
           if (corner_place == 0) cycle
-          if (.not. abs(state(corner_place, p, e)) < 1) cycle
-          call try(state(corner_place, p, e), corner_weight(xi, p, state(corner_place, p, e), group%pairs > 0) &
+          if (group%pairs == 0 .and. .not. abs(state(corner_place, p, e)) < 1) cycle
+          call try(place_within(state(corner_place, p, e)), corner_weight(xi, p, state(corner_place, p, e), group%pairs > 0) &
                    *state(corner_pressure, p, e), most, place)
         end do
       end do

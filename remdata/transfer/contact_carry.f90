@@ -5,7 +5,7 @@ module contact_carry
   use boundary_sides, only: loop_t
   use contact_intervals, only: contact_interval_t, is_before_corner, side_point_t
   use contour_assembly, only: contact_t
-  use corner_weights, only: corner_weight, share_of_corner
+  use corner_weights, only: corner_weight, place_within, share_of_corner
   use kinds, only: wp
   use new_scene, only: middle_position
   use offset_parabolas, only: length_between
@@ -224,7 +224,7 @@ contains
     real(wp) :: share
     integer :: n
 
-    share = 1 - share_of_corner(corner%xi)
+    share = 1 - share_of_corner(corner%xi, of_body=.false.)
     if (.not. (share > 0 .and. towards*corner%xi > 0)) return
     n = size(row%s)
     call add_neighbour(scene, g, loop, x, corner%side, real(towards, wp), row)
@@ -239,22 +239,23 @@ contains
     real(wp), intent(in) :: nodes(2, 3), xi(:), state(:, :, :)
     type(arc_t), intent(in) :: part
     type(interval_points_t), intent(inout) :: row
-    real(wp) :: place
+    real(wp) :: place, on_side, weight
 
-    associate (variables => scene%groups(g)%variables)
+    associate (variables => scene%groups(g)%variables, of_body => scene%groups(g)%pairs > 0)
       if (find_variable(variables, 'corner_place') == 0) return
       place = state(variables(find_variable(variables, 'corner_place'))%first, p, e)
       ! zero when open
       if (nint(state(variables(find_variable(variables, 'corner_contact_status'))%first, p, e)) == 0) return
-      ! at an end of the side it is the state of a node on the axis, which has no surface
-      if (place < part%range(1) .or. place > part%range(2) .or. .not. abs(place) < 1) return
-      call add_point(row%length + length_between(part, part%range(1), place), &
-                     corner_weight(xi, p, place, scene%groups(g)%pairs > 0) &
-                     *line_jacobian(nodes, place, scene%plane_state == axisymmetric), p, e, row, &
+      ! at an end of the side it is the state of a node on the axis, which has no surface; an edge beyond it acts at the node
+      if (.not. (of_body .or. abs(place) < 1)) return
+      on_side = place_within(place)
+      if (on_side < part%range(1) .or. on_side > part%range(2)) return
+      weight = corner_weight(xi, p, place, of_body)*line_jacobian(nodes, on_side, scene%plane_state == axisymmetric)
+      call add_point(row%length + length_between(part, part%range(1), on_side), weight, p, e, row, &
                      variables(find_variable(variables, 'corner_pressure'))%first &
                      - variables(find_variable(variables, 'pressure'))%first)
-      if (share_of_corner(place) < 1) row%reach(size(row%reach)) = &
-        length_between(part, min(place, sign(1.0_wp, place)), max(place, sign(1.0_wp, place)))
+      if (share_of_corner(place, of_body) < 1) row%reach(size(row%reach)) = &
+        length_between(part, min(on_side, sign(1.0_wp, place)), max(on_side, sign(1.0_wp, place)))
     end associate
   end subroutine add_corner
 

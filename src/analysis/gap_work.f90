@@ -100,7 +100,7 @@ contains
                          area_at_corner(before(2*n + 1, p, e), corner_length(xi, p, group%pairs > 0), &
                                         solution%fields(section_field)%value(:, 1), x(:, :3, e), &
                                         side_length(scene, group%connectivity(:, e))), &
-                         share=share_at_corner(before(2*n + 1, p, e)))
+                         share=share_at_corner(before(2*n + 1, p, e), group%pairs > 0))
         end do
       end do
     end associate

@@ -223,12 +223,13 @@ contains
   end function area_at_corner
 
   !> Share of its pressure with which the state of a corner acts: all of it of a node on the axis, which is at an end of its side.
-  elemental function share_at_corner(place) result(share)
-    real(wp), intent(in) :: place   !! on the side [-]
+  elemental function share_at_corner(place, of_body) result(share)
+    real(wp), intent(in) :: place     !! on the side [-]
+    logical, intent(in) :: of_body    !! the corner is an edge of another body
     real(wp) :: share
 
     share = 1
-    if (abs(place) < 1) share = share_of_corner(place)
+    if (of_body .or. abs(place) < 1) share = share_of_corner(place, of_body)
   end function share_at_corner
 
 end module axis_contact

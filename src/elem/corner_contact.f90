@@ -106,7 +106,7 @@ contains
       done = now(at_work)
       call corner_at(law, material, drivers, axisym, side, corner, to - from, before, now, force, stiffness)
       ! friction acts with the share of the corner
-      now(at_work) = done + share_of_corner(corner%place)*(now(at_work) - done)
+      now(at_work) = done + share_of_corner(corner%place, of_body=.false.)*(now(at_work) - done)
       if (nint(before(at_status)) /= contact_open) then
         report%jump = max(report%jump, abs(now(at_penetration) - before(at_penetration))/side%length)
       end if
@@ -166,12 +166,13 @@ contains
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: point
     type(drift_t) :: drift
-    real(wp) :: allowed, before(ndof), toward_end
+    real(wp) :: allowed, share, before(ndof), toward_end
 
     call place_point(side, corner%place, point)
     if (axisym .and. point%x(1) <= no_surface*side%length) return
+    share = share_of_corner(corner%place, of_body=.false.)
     allowed = corner_share*allowed_penetration(material)*side%length
-    if (.not. (committed(at_augmentation) + side%penalty(1)*(corner%d - allowed) > 0 .and. share_of_corner(corner%place) > 0)) then
+    if (.not. (committed(at_augmentation) + side%penalty(1)*(corner%d - allowed) > 0 .and. share > 0)) then
       ! its gap is known; at the very end of the side the next one has it
       trial([at_penetration, at_piece, at_xi]) = [corner%d, real(corner%piece, wp), corner%xi]
       return
@@ -179,8 +180,8 @@ contains
     call follow_corner(side, corner, point, drift)
     before = force
     call press(law, material, drivers, side, corner%place, point, closest_at_corner(corner), allowed, &
-               weight*share_of_corner(corner%place), committed, trial, force, stiffness, drift)
-    if (.not. (side%tangent .and. share_of_corner(corner%place) < 1)) return
+               weight*share, committed, trial, force, stiffness, drift)
+    if (.not. (side%tangent .and. share < 1)) return
     ! the share changes with the position: d(ln share) = -sign(place)/(1 - |place|) d(place)
     toward_end = sign(1.0_wp, corner%place)/(1 - abs(corner%place))
     stiffness = stiffness - toward_end*spread(force - before, 2, ndof)*spread(drift%dxi, 1, ndof)

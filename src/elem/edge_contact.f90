@@ -16,7 +16,7 @@ module edge_contact
   use contact_point, only: act, at_augmentation, at_penetration, at_piece, at_status, at_work, at_xi, contact_block, &
                            contact_point_t, meeting_t, most_unknowns, no_surface, share_to_contact, side_point, thinning
   use corner_contact, only: corner_share
-  use corner_weights, only: corner_length, interval_before, share_of_corner
+  use corner_weights, only: corner_length, handing_over, interval_before, share_of_corner
   use dies, only: die_t
   use edge_states, only: edge_at_start
   use elem_api, only: report_t
@@ -37,6 +37,10 @@ module edge_contact
 
   !> y'' of a side over its nodes.
   real(wp), parameter :: second(3) = [1.0_wp, -2.0_wp, 1.0_wp]
+
+  !> No depth of contact is as large: an edge that was deeper behind a side as the step began, over its length, without being in
+  !> contact with it, is beside another side of the body, as where that lies round the edge with a corner of its own.
+  real(wp), parameter :: deepest_start = 0.1_wp
 
   !> Nodes of a piece of the die at the start of the step [length], and their motion, x then y; the edge is the first or the third.
   type :: edge_piece_t
@@ -78,13 +82,14 @@ contains
     do p = 1, size(xi)
       call interval_before(xi, p, from, to)
       if (.not. to > from) cycle
-      call deepest_corner(die, nodes, from, to, side%length, corner)
+      call deepest_corner(die, nodes, from, to, side%length, corner, handing_over)
       if (.not. corner%found) cycle
       call take_piece(die, corner, pieces, x, du, piece, place)
       ! an edge that none of the side's points is coupled with is farther away than any of its points
       if (piece%node == 0) cycle
-      trial(at_place, p) = corner%place
       before = edge_at_start(committed, p, corner%piece)
+      if (nint(before(at_status)) == contact_open .and. depth_at_start(side, corner%place, piece) > deepest_start*side%length) cycle
+      trial(at_place, p) = corner%place
       associate (now => trial(n + 1:2*n, p))
         worn = thinning(committed(at_place:at_place, p), [corner%place], side%section, side%thickening, side%x, side%du(1:6))
         now(at_work) = before(at_work)*worn(1)
@@ -92,7 +97,7 @@ contains
         call edge_at(law, material, drivers(:, :, p), axisym, side, corner, piece, corner_length(xi, p, .true.), place, before, &
                      now, force, stiffness)
         ! friction acts with the share of the edge
-        now(at_work) = done + share_of_corner(corner%place)*(now(at_work) - done)
+        now(at_work) = done + share_of_corner(corner%place, of_body=.true.)*(now(at_work) - done)
         if (nint(before(at_status)) /= contact_open) then
           report%jump = max(report%jump, abs(now(at_penetration) - before(at_penetration))/side%length)
         end if
@@ -100,6 +105,18 @@ contains
       end associate
     end do
   end subroutine press_edges
+
+  !> How deep an edge was behind a place of the side as the step began [length].
+  pure function depth_at_start(side, place, piece) result(depth)
+    type(side_t), intent(in) :: side
+    real(wp), intent(in) :: place   !! [-]
+    type(edge_piece_t), intent(in) :: piece
+    real(wp) :: depth
+    real(wp) :: phi(3), dphi(3)
+
+    call line3(place, phi, dphi)
+    depth = dot_product(piece%x(:, piece%node) - matmul(side%x, phi), left_of(matmul(side%x, dphi)))
+  end function depth_at_start
 
   !> There is an edge within `reach` of the box around a side.
   pure function is_near(die, nodes, reach) result(near)
@@ -166,8 +183,8 @@ contains
     trial([at_penetration, at_piece, at_xi]) = [corner%d, real(corner%piece, wp), corner%xi]
     if (axisym .and. point%x(1) <= no_surface*side%length) return
     allowed = corner_share*allowed_penetration(material)*side%length
-    share = share_of_corner(corner%place)
-    ! its gap is known; at the very end of the side the next one has it
+    share = share_of_corner(corner%place, of_body=.true.)
+    ! its gap is known; where it is far enough beyond an end the next side has it
     if (.not. (committed(at_augmentation) + side%penalty(1)*(corner%d - allowed) > 0 .and. share > 0)) return
     call follow_edge(side, corner, piece, dphi, point, meeting, dxi)
     meeting%allowed = allowed
@@ -180,9 +197,9 @@ contains
     if (.not. side%tangent) return
     n = most_unknowns
     if (maxval(place) > size(force)) n = most_unknowns - 3
-    ! the share changes with the position: d(ln share) = -sign(place)/(1 - |place|) d(place)
+    ! the share changes with the position: d(ln share) = -sign(place)/(1 + handing_over - |place|) d(place)
     toward_end = 0
-    if (share < 1) toward_end = sign(1.0_wp, corner%place)/(1 - abs(corner%place))
+    if (share < 1) toward_end = sign(1.0_wp, corner%place)/(1 + handing_over - abs(corner%place))
     do j = 1, n
       dq(:, j) = dq(:, j) - toward_end*dxi(j)*q
     end do

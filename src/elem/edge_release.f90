@@ -1,6 +1,10 @@
 !> A point of the side that slides past an edge from the face that presses it loses its pressure steadily, as on a rigid die
 !> (corner_release): the face goes on beyond its end. With a multiplier and no depth there would be no normal: that of the fan at
 !> the edge turns by a right angle within no way at all.
+!>
+!> The side may rise beside the edge as it turns round it. What is left of the face is no wall that it rises into: with the share s
+!> of the pressure the depth that acts is at most a/(1 - s), with the penetration a that is allowed. So the penalty presses with no
+!> more than AKP a s/(1 - s), which is none at the end of the way, and all that the depth makes at its beginning.
 module edge_release
   use closest_point, only: closest_point_t, past_end
   use contact_point, only: at_piece, at_status
@@ -21,17 +25,21 @@ module edge_release
   !> What is left of the pressure of a point beyond an edge, and its change with the parent coordinate on the face [-].
   type :: edge_release_t
     real(wp) :: share = 1.0_wp, slope = 0.0_wp
+    !> The depth that acts is this one, and its change with that coordinate, where it is less than that of the point [length].
+    real(wp) :: depth = 0.0_wp, depth_slope = 0.0_wp
+    logical :: limited = .false.
   end type edge_release_t
 
 contains
 
   !> A point that one face of an edge pressed as the step began is on it still, beside or beyond the edge, and loses its pressure on
   !> the way; `closest` stays where that is not so.
-  pure subroutine slide_past_edge(first, die, point, length, committed, nearest, closest, release)
+  pure subroutine slide_past_edge(first, die, point, length, allowed, committed, nearest, closest, release)
     real(wp), intent(in) :: first(:, :)    !! (2, nnode) nodes of the mesh as it began [length]
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: point(2)       !! [length]
     real(wp), intent(in) :: length         !! of the side of the point [length]
+    real(wp), intent(in) :: allowed        !! penetration, 0 for none stated [length]
     real(wp), intent(in) :: committed(:)   !! (nstate) of the point [unit of each component]
     type(closest_point_t), intent(inout) :: nearest   !! where the next step begins
     type(closest_point_t), intent(inout) :: closest   !! of this step
@@ -72,6 +80,11 @@ contains
       end if
       release%slope = -end/beyond
       release%share = max(0.0_wp, 1 + release%slope*(found%xi - end))
+      release%limited = allowed > 0 .and. found%d*(1 - release%share) > allowed
+      if (release%limited) then
+        release%depth = allowed/(1 - release%share)
+        release%depth_slope = release%depth*release%slope/(1 - release%share)
+      end if
       closest = found
       nearest = found
       ! the state of the point is beyond the end of the face, where there is no die to be deep in (is_released)

@@ -74,7 +74,7 @@ contains
     do p = 2, size(xi)
       if (nint(state(n + at_piece, p)) == 0) cycle
       associate (place => state(2*n + 1, p))
-        if (share_of_corner(place) < 1) cycle
+        if (share_of_corner(place, of_body=.true.) < 1) cycle
         yes = yes .or. abs(xi - place) < max(handing_over, xi(p) - xi(p - 1))
       end associate
     end do

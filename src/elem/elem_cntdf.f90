@@ -29,9 +29,10 @@ module elem_cntdf
                            most_unknowns, no_surface, penalties, rest, share_to_contact, touching, show_on_axis, side_length, &
                            side_point, thinning
   use closest_point, only: closest_point_t
+  use contact_penalties, only: allowed_penetration
   use corner_faces, only: closest_on_piece
   use curve_search, only: box_distance, closest_facing_point, closest_opposed_point, follow_closest_point, looks_at
-  use dies, only: die_t
+  use dies, only: die_t, edge_turn
   use edge_contact, only: press_edges
   use edge_release, only: edge_release_t, slide_past_edge
   use elem_api, only: elem_t, goes_on, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
@@ -58,8 +59,6 @@ module elem_cntdf
   real(wp), parameter :: at_vertex = 64*eps
   !> A side reaches this far beyond its ends (parent coordinate) for a point that was on it; beyond the open end of the curve less.
   real(wp), parameter :: beyond = 0.2_wp, beyond_all = 0.05_wp
-  !> Cosine of the largest turn at a vertex that is taken for one of a smooth curve, about 6 degrees.
-  real(wp), parameter :: nearly_smooth = 0.995_wp
   !> A point that was deeper behind a side of its body, on the mesh as it began, than this share of its own side is behind a wall:
   !> no depth of contact is as large.
   real(wp), parameter :: wall_thickness = 0.02_wp
@@ -146,15 +145,17 @@ contains
           end if
           ! a stale pair of a body's own side may be the far face of a wall
           if (allocated(may) .and. nearest%piece == 0) cycle
-          call keep_closest_point(die, point, side, committed(at_piece, p, e), middle(p, e), nearest, closest)
+          call keep_closest_point(die, point, side, committed(:nblock, p, e), middle(p, e), nearest, closest)
           release = edge_release_t()
           if (.not. allocated(may)) then
-            call slide_past_edge(scene%mesh%coordinates, die, point%x, side, committed(:nblock, p, e), nearest, closest, release)
+            call slide_past_edge(scene%mesh%coordinates, die, point%x, side, &
+                                 allowed_penetration(scene%materials(group%material))*side, committed(:nblock, p, e), nearest, &
+                                 closest, release)
           end if
           if (closest%piece == 0) cycle
           ! a point on the axis has no surface: nothing acts there, and no contact is evaluated
           if (axisym .and. point%x(1) <= no_surface*side) cycle
-          trial(at_penetration, p, e) = closest%d
+          trial(at_penetration, p, e) = merge(release%depth, closest%d, release%limited)
           trial([at_piece, at_xi], p, e) = [real(nearest%piece, wp), nearest%xi]
           ! past an edge its pressure is gone
           if (.not. release%share > 0) cycle
@@ -167,6 +168,10 @@ contains
           place(7:12) = [at + 1, at + 2, at + 3, nnode + at + 1, nnode + at + 2, nnode + at + 3]
           call line3(closest%xi, psi, dpsi)
           call meet(closest, matmul(x(:, 1:3, e), phi), x(:, at + 1:at + 3, e), du(place(7:12), e), point, meeting, dxi)
+          if (release%limited) then
+            meeting%d = release%depth
+            meeting%dd = release%depth_slope*dxi
+          end if
           meeting%kept = instant%kept .and. goes_on(instant, group%die)
           call act(law, scene%materials(group%material), instant%dt, drivers(:, :, p, e), &
                    penalties(scene%materials(group%material), group, side), point, meeting, weight(p)*release%share, &
@@ -342,42 +347,61 @@ contains
 
   end subroutine find_own_closest_point
 
-  !> Closest point to a point of contact; but for the length of a step a point inside keeps the side it began with, beyond its
-  !> ends too.
+  !> Closest point to a point of contact; but for the length of a step a point inside, or one that its multiplier presses at a gap,
+  !> keeps the side it began with, beyond its ends too.
   !>
-  !> Sides of a bent mesh make slight corners, and the normal jumps there within a motion smaller than any iteration's: points
-  !> at a corner would change sides without end. Likewise points at the open end of the curve, where two bodies are flush:
-  !> round-off would decide whether they are on it, also those whose multiplier bears a pressure at a gap. True corners are left to
-  !> the search.
-  pure subroutine keep_closest_point(die, point, reach, last, middle, nearest, closest)
+  !> Sides of a bent mesh make slight corners, less slight where a node presses beside them, and the normal jumps there within a
+  !> motion smaller than any iteration's: points at a corner would change sides without end. Likewise points at the open end of the
+  !> curve, where two bodies are flush: round-off would decide whether they are on it, also those whose multiplier bears a pressure
+  !> at a gap; and where a node presses in the ground of a notch that it has made, with one face steep. Other corners as sharp as
+  !> an edge are left to the search.
+  pure subroutine keep_closest_point(die, point, reach, committed, middle, nearest, closest)
     type(die_t), intent(in) :: die
     type(contact_point_t), intent(in) :: point
     real(wp), intent(in) :: reach
-    real(wp), intent(in) :: last     !! piece at the start of the step, 0 where there was none
+    real(wp), intent(in) :: committed(:)   !! (nstate) of the point [unit of each component]
     integer, intent(in) :: middle    !! middle piece of the point's pairs, 0 for none
     type(closest_point_t), intent(inout) :: nearest   !! where the next step begins
     type(closest_point_t), intent(out) :: closest     !! of this step
     type(closest_point_t) :: same
     real(wp) :: from
     integer :: piece
+    logical :: pressed
 
     closest = nearest
-    piece = nint(last)
+    pressed = nint(committed(at_status)) /= contact_open
+    piece = nint(committed(at_piece))
     if (piece == 0) piece = middle
-    if (piece == 0 .or. closest%d < 0) return
+    if (piece == 0 .or. closest%d < 0 .and. .not. pressed) return
     from = closest%xi
     if (closest%piece /= piece) from = merge(1.0_wp, -1.0_wp, place_in_reach(die, piece, closest%piece) == pieces_in_reach)
-    if (closest%piece == 0) from = merge(1.0_wp, -1.0_wp, piece == size(die%nodes, 2))
+    if (closest%piece == 0) then
+      from = merge(1.0_wp, -1.0_wp, piece == size(die%nodes, 2))
+      if (adjacent_piece(die, piece, nint(from)) /= 0) return
+    end if
     call closest_on_piece(die, piece, point%x, from, merge(beyond_all, beyond, closest%piece == 0), same)
     if (same%piece == 0 .or. .not. abs(same%d) < reach) return
-    if (.not. (same%d > 0 .or. closest%piece == 0)) return
+    if (.not. (same%d > 0 .or. pressed .or. closest%piece == 0)) return
     if (closest%piece == 0) then
       if (.not. dot_product(same%normal, point%e_r) < 0) return
       nearest = same
     else
-      if (place_in_reach(die, closest%piece, piece) == 0 .or. dot_product(same%normal, closest%normal) < nearly_smooth) return
+      if (place_in_reach(die, closest%piece, piece) == 0) return
+      if (dot_product(same%normal, closest%normal) < edge_turn .and. .not. (pressed .and. turns_to_part())) return
     end if
     closest = same
+
+  contains
+
+    !> The die turns toward the part from the side that the point began with to the one where it is the closest.
+    pure function turns_to_part() result(yes)
+      logical :: yes
+      real(wp) :: turn
+
+      turn = cross(same%normal, closest%normal)
+      if (closest%piece == adjacent_piece(die, piece, -1)) turn = -turn
+      yes = closest%piece /= piece .and. turn > 0
+    end function turns_to_part
   end subroutine keep_closest_point
 
   !> Depth, slip and turn of the normal where a point meets a side, with their derivatives, and the motion of the closest

@@ -9,8 +9,10 @@ module side_corners
   use closest_point, only: closest_point_t, stationary_points, whole_piece
   use dies, only: die_t
   use kinds, only: wp
+  use parabolas, only: point_on
   use plane_vectors, only: left_of, right_of
   use shape_functions, only: line3
+  use vectors, only: length_of
   implicit none
   private
   public :: corner_t, deepest_corner, closest_at_corner
@@ -36,32 +38,54 @@ module side_corners
 contains
 
   !> The corner that is deepest between two positions on a side, if there is one nearer than `reach`.
-  pure subroutine deepest_corner(die, side, from, to, reach, corner)
+  pure subroutine deepest_corner(die, side, from, to, reach, corner, beyond)
     type(die_t), intent(in) :: die
     real(wp), intent(in) :: side(2, 3)   !! nodes of the side in the pilot's axes [length]
     real(wp), intent(in) :: from, to     !! positions on the side; `to` belongs to the next interval
     real(wp), intent(in) :: reach        !! [length]
     type(corner_t), intent(out) :: corner
+    real(wp), intent(in), optional :: beyond   !! the side goes on so far beyond its ends, 0 where absent [-]
     type(corner_t) :: one
-    real(wp) :: box(4), xi(3)
-    integer :: k, r, n
+    real(wp) :: box(4), more, range(2)
+    integer :: k
 
+    more = 0
+    if (present(beyond)) more = beyond
+    range = [from, to] + more*[merge(0, -1, from > -1), merge(0, 1, to < 1)]
     box = [minval(side, 2) - reach, maxval(side, 2) + reach]
     do k = 1, size(die%corners, 2)
       one%vertex = die%corners(1:2, k)
       if (any(one%vertex < box(1:2)) .or. any(one%vertex > box(3:4))) cycle
-      call stationary_points(side, one%vertex, whole_piece, n, xi)
-      do r = 1, n
-        if (xi(r) < from .or. .not. xi(r) < to) cycle
-        one%place = xi(r)
-        one%piece = die%corner_piece(k)
-        one%xi = die%corner_xi(k)
-        call measure_corner(die%corners(3:4, k), die%corners(5:6, k), side, one)
-        if (.not. (one%found .and. abs(one%d) < reach)) cycle
-        if (.not. corner%found .or. one%d > corner%d) corner = one
-      end do
+      one%place = nearest_place(side, one%vertex, more)
+      if (one%place < range(1) .or. .not. one%place < range(2)) cycle
+      one%piece = die%corner_piece(k)
+      one%xi = die%corner_xi(k)
+      call measure_corner(die%corners(3:4, k), die%corners(5:6, k), side, one)
+      if (.not. (one%found .and. abs(one%d) < reach)) cycle
+      if (.not. corner%found .or. one%d > corner%d) corner = one
     end do
   end subroutine deepest_corner
+
+  !> Place on a side that is the nearest to a corner, beyond the side where an end of it is. Where a side is bent the distance is
+  !> stationary at others as well: beyond the centre of curvature it has a maximum, and another minimum appears at a distance.
+  pure function nearest_place(side, vertex, beyond) result(place)
+    real(wp), intent(in) :: side(2, 3), vertex(2)   !! [length]
+    real(wp), intent(in) :: beyond                  !! length by which the side goes on [-]
+    real(wp) :: place
+    real(wp) :: xi(3), range(2), least, distance
+    integer :: r, n
+
+    range = whole_piece + [-beyond, beyond]
+    place = 2*range(2)
+    least = min(length_of(point_on(side, range(1)) - vertex), length_of(point_on(side, range(2)) - vertex))
+    call stationary_points(side, vertex, range, n, xi)
+    do r = 1, n
+      distance = length_of(point_on(side, xi(r)) - vertex)
+      if (.not. distance <= least) cycle
+      least = distance
+      place = xi(r)
+    end do
+  end function nearest_place
 
   !> Normal and depth of a corner between tangents t1 and t2.
   pure subroutine measure_corner(t1, t2, side, corner)

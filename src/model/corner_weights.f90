@@ -4,13 +4,18 @@
 !> (edge_contact): it has half of the side, as between nodes, since a side does not resolve less. Toward an end of the
 !> side the weight goes to zero: the load of a corner that a node slides past goes over to the node gradually, and back again; a
 !> sudden change would leave positions without equilibrium.
+!>
+!> An edge of another body goes over to the next side: on its way past the node it acts on both, on each as if that went on beyond
+!> its end, with shares whose sum is one. Where the body is bent round the edge, with one side along either face, each side needs
+!> the force of its own face; the points of the node, on one of them, cannot give both.
 module corner_weights
   use kinds, only: wp
   implicit none
   private
-  public :: corner_length, corner_weight, handing_over, interval_before, share_of_corner
+  public :: corner_length, corner_weight, handing_over, interval_before, place_within, share_of_corner
 
-  !> A corner nearer than this to an end of the side, in xi, has lost a part of its weight to the node there.
+  !> A corner nearer than this to an end of the side, in xi, has lost a part of its weight to the node there; an edge of a body one
+  !> that is nearer to it or as far beyond it to the next side.
   real(wp), parameter :: handing_over = 0.05_wp
   !> Half the length of a side in xi.
   real(wp), parameter :: half_of_side = 1.0_wp
@@ -18,12 +23,25 @@ module corner_weights
 contains
 
   !> Share of its weight that a corner at a position on the side has.
-  elemental function share_of_corner(place) result(share)
-    real(wp), intent(in) :: place
+  elemental function share_of_corner(place, of_body) result(share)
+    real(wp), intent(in) :: place      !! [-]
+    logical, intent(in) :: of_body     !! the corner is an edge of another body
     real(wp) :: share
 
-    share = min(1.0_wp, (1 - abs(place))/handing_over)
+    if (of_body) then
+      share = min(1.0_wp, max(0.0_wp, (1 + handing_over - abs(place))/(2*handing_over)))
+    else
+      share = min(1.0_wp, (1 - abs(place))/handing_over)
+    end if
   end function share_of_corner
+
+  !> Where an edge is on the side itself: that of one beyond an end is the end.
+  elemental function place_within(place) result(within)
+    real(wp), intent(in) :: place   !! [-]
+    real(wp) :: within
+
+    within = max(-1.0_wp, min(1.0_wp, place))
+  end function place_within
 
   !> Weight of a corner at a position on the side, in the interval before a point.
   pure function corner_weight(xi, p, place, of_body) result(weight)
@@ -33,7 +51,7 @@ contains
     logical, intent(in) :: of_body     !! the corner is an edge of another body
     real(wp) :: weight
 
-    weight = corner_length(xi, p, of_body)*share_of_corner(place)
+    weight = corner_length(xi, p, of_body)*share_of_corner(place, of_body)
   end function corner_weight
 
   !> Length in xi of a corner in the interval before a point.

@@ -13,7 +13,7 @@ module dies
   use vectors, only: length_of
   implicit none
   private
-  public :: die_t, finish_die, is_deformable, is_straight, place_edges, place_on_nodes, present_die, in_pilot_axes
+  public :: die_t, edge_turn, finish_die, is_deformable, is_straight, place_edges, place_on_nodes, present_die, in_pilot_axes
 
   !> Distance from a straight line over its length that is round-off of points as cards give them [-].
   real(wp), parameter :: straight = 1.0e-9_wp
