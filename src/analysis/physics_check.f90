@@ -38,6 +38,7 @@ contains
     type(string_t), allocatable, intent(out) :: table(:)      !! (nline)
     type(string_t), allocatable, intent(out) :: warnings(:)   !! (nwarning)
     type(outlook_t) :: outlook(size(scene%groups))
+    logical :: met
     integer :: g
 
     allocate (table(0), warnings(0))
@@ -52,7 +53,14 @@ contains
         if (group%die == 0 .or. group%material == 0) cycle
         call look_at_contact(scene, group, outlook(g))
         call add(table, 'contact    '//group%name//': '//words_of(scene, group, outlook(g)))
-        call judge_contact(scene, laws, group, outlook(g), warnings)
+      end associate
+    end do
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%die == 0 .or. group%material == 0) cycle
+        ! a die that slides along one side presses on another
+        met = any(scene%groups%die == group%die .and. outlook%first >= 0)
+        call judge_contact(scene, laws, group, outlook(g), met, warnings)
       end associate
     end do
     call judge_closing(scene, warnings)
@@ -128,11 +136,12 @@ contains
   end function words_of
 
   !> Parts in dies, dies walked the wrong way, dies that miss.
-  subroutine judge_contact(scene, laws, group, outlook, warnings)
+  subroutine judge_contact(scene, laws, group, outlook, met, warnings)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)
     type(group_t), intent(in) :: group
     type(outlook_t), intent(in) :: outlook
+    logical, intent(in) :: met   !! its die meets some sides
     type(string_t), allocatable, intent(inout) :: warnings(:)
 
     associate (die => scene%dies(group%die))
@@ -144,7 +153,7 @@ contains
         call add(warnings, group%name//': the part begins '//to_text(outlook%depth, 3)//' deep in die '//die%name &
                  //', '//to_text(100*outlook%over_side, 3)//' % of a side')
       else if (moves(scene, group%die) .and. outlook%first < 0) then
-        if (unloaded(scene, group%die) .and. .not. expands(scene, laws)) &
+        if (.not. met .and. unloaded(scene, group%die) .and. .not. expands(scene, laws)) &
           call add(warnings, group%name//': die '//die%name//' does not meet the part on all its way: moved the other way, ' &
                    //'or the stroke is too short')
       else if (moves(scene, group%die) .and. outlook%faces .and. .not. outlook%faces_at_end) then

@@ -314,17 +314,20 @@ contains
   end function share_to_contact
 
   !> Share of the way from a gap at the start to a depth at the end of the step after which the overlap is `overlap_aim` of the
-  !> side; the whole way where it ends below `overlap_limit`.
+  !> side; the whole way where it ends below `overlap_limit`. Of a point that overlaps as the step begins, and was open (a new mesh
+  !> has laid it deeper than the old one, and the multiplier that held it there without pressure ended as it opened), what the step
+  !> adds: no shorter one avoids the rest.
   pure function share_of_way(gap, depth, side) result(share)
     real(wp), intent(in) :: gap, depth   !! [length]
     real(wp), intent(in) :: side         !! length of the side [length]
     real(wp) :: share
-    real(wp) :: open
+    real(wp) :: open, overlap
 
     share = 1
-    if (depth <= overlap_limit*side) return
     open = max(gap, 0.0_wp)
-    share = (open + overlap_aim*side)/(open + depth)
+    overlap = depth - max(-gap, 0.0_wp)
+    if (overlap <= overlap_limit*side) return
+    share = (open + overlap_aim*side)/(open + overlap)
   end function share_of_way
 
   !> Stresses shown at a point on the axis, where none act: on the line through its two neighbours.

@@ -2,7 +2,8 @@
 !>
 !> Against the pressure p = multiplier + AKP d it is the integral of p dd. Penalties keep it as p**2/(2 AKP); what a
 !> multiplier takes when it replaces depth (Uzawa) is no energy that comes back. With p straight between both ends of the
-!> step both are (p0 + p1)/2 (d1 - d0). A point that closes begins at no pressure, one that opens ends there. Along the side
+!> step both are (p0 + p1)/2 (d1 - d0). A point that closes begins at no pressure, one that opens ends there: at the surface of the
+!> die, or with a negative multiplier as deep in it as that has no pressure. Along the side
 !> the tangential penalty keeps tau**2/(2 AKTAU). What is in contact between points (contact_between) keeps its
 !> own energy. A point that has lost more than half of its pressure beyond a corner of the die (corner_release) is as
 !> one that opens: the share that still acts goes to zero. A corner of the die near an end of the side acts with a share of its
@@ -41,9 +42,9 @@ contains
     if (was .and. is) then
       work = 0.5_wp*sum(pressure)*(after(at_penetration) - before(at_penetration))
     else if (is) then
-      work = 0.5_wp*pressure(2)*(pressure(2) - after(at_augmentation))/penalty(1)
+      work = 0.5_wp*pressure(2)*(pressure(2) - max(after(at_augmentation), 0.0_wp))/penalty(1)
     else if (was) then
-      work = -0.5_wp*pressure(1)*(pressure(1) - before(at_augmentation))/penalty(1)
+      work = -0.5_wp*pressure(1)*(pressure(1) - max(before(at_augmentation), 0.0_wp))/penalty(1)
     end if
     work = work + 0.5_wp*sum(tau)*(after(at_tau) - before(at_tau))/penalty(2) + after(at_energy) - before(at_energy)
   end function kept_work

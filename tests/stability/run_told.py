@@ -106,6 +106,9 @@ RIGHT = {"blocks joined": {"LAW    rough": BESIDE + "JOIN   billet 2 beside 4\nL
          "between two dies": {"FIXED  billet 1 Y\n": TABLE}, "pushed from both sides": {"FIXED  billet 1 Y\n": "PRES2D billet 1 3 1. press\n"},
          "heated and expanding": {**HEATED, "steel EPLA": "steel ELATH", "200000. 0.3\n": "200000. 0.3 1.E-5\n", "   LINEAR 700. 300.\n": ""},
          "heated and pressed": {**HEATED, "LIC    press\n": "PRES2D billet 3 3 1. press\nLIC    press\n", "   0. 0.   1. -2.\n": "   0. 0.   1. 5.\n"},
+         "a die that slides along one side and presses on another": {
+             "SEGM  30. 15.   -5. 15.": "SEGM  10. -5.   10. 15.\n   SEGM  10. 15.   -5. 15.",
+             "CNT2D  billet 3 upper -3 rough\n": "CNT2D  billet 3 upper -3 rough\nCNT2D  billet 2 upper -3 rough\n"},
          "a punch that goes on behind where the part stood": {"SEGM  30. 15.   -5. 15.": "ARC   3. 18.   0. 15.   -3. 18.   1.E-2",
                                                               "1. -2.": "1. -5."},
          "friction up to a limit": {"PHI 0.3": "PHI 5.   M 0.3"}, "below a drawing die": {"0. 0.   10. 0.   10. 15.   0. 15.": "0. -100.   10. -100.   9.5 0.   0. 0.", "2 1.   3 1.": "2 1.   20 1.",
