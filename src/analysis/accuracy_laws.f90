@@ -282,7 +282,7 @@ contains
   end subroutine choose_fineness
 
   !> Seconds and steps of a run, from the pilots. Steps that finer meshes ask for are added to those of shorter lengths. Seconds of
-  !> a step are those of the finest pilot by tasks, times what iterations a step grow from mesh to mesh and with stiffer contact,
+  !> a step are those of the finest pilot by tasks, times what evaluations a step grow from mesh to mesh and with stiffer contact,
   !> and fall with its length.
   pure subroutine expected_seconds(pilots, fineness, elements, seconds, steps)
     type(sample_t), intent(in) :: pilots(:)   !! (npilot)
@@ -291,7 +291,7 @@ contains
     real(wp), intent(out) :: seconds          !! [s]
     integer, intent(out) :: steps
     integer, allocatable :: meshes(:)
-    real(wp) :: by_mesh, by_length, iterations, fewer, stiffer
+    real(wp) :: by_mesh, by_length, growing, fewer, stiffer
     integer :: k, n, longer, shorter
 
     seconds = 0
@@ -300,10 +300,10 @@ contains
     n = size(meshes)
     if (n == 0) return
     by_mesh = 0
-    iterations = 0
+    growing = 0
     if (n > 1) then
       by_mesh = growth(real(pilots(meshes(n - 1))%steps, wp), real(pilots(meshes(n))%steps, wp), 2.0_wp, 1.0_wp)
-      iterations = growth(per_step(pilots(meshes(n - 1))), per_step(pilots(meshes(n))), 2.0_wp, 0.5_wp)
+      growing = growth(per_step(pilots(meshes(n - 1))), per_step(pilots(meshes(n))), 2.0_wp, 0.5_wp)
     end if
     by_length = 1
     fewer = 0
@@ -320,7 +320,7 @@ contains
       end if
       associate (finer => fineness%mesh/finest%fineness%mesh, longer_by => fineness%steps/short%fineness%steps)
         steps = nint(short%steps*longer_by**(-by_length) - first%steps + finest%steps*finer**by_mesh)
-        seconds = finer**iterations*per_step(short)/per_step(first)*longer_by**fewer*fineness%depth**(-stiffer)*steps/finest%steps &
+        seconds = finer**growing*per_step(short)/per_step(first)*longer_by**fewer*fineness%depth**(-stiffer)*steps/finest%steps &
                   *grown_seconds(finest%seconds, real(elements, wp)/finest%elements)
       end associate
     end associate
@@ -372,11 +372,12 @@ contains
     exponent = min(max(log(to/from)/log(factor), 0.0_wp), largest)
   end function growth
 
-  pure function per_step(sample) result(iterations)
+  !> Evaluations of a step: one in each iteration, and one before the first, whose matrix the error of its path takes too.
+  pure function per_step(sample) result(evaluations)
     type(sample_t), intent(in) :: sample
-    real(wp) :: iterations
+    real(wp) :: evaluations
 
-    iterations = real(max(sample%iterations, 1), wp)/max(sample%steps, 1)
+    evaluations = 1 + real(max(sample%iterations, 1), wp)/max(sample%steps, 1)
   end function per_step
 
 end module accuracy_laws
