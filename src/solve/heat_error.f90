@@ -66,22 +66,23 @@ contains
     logical, intent(in) :: two_stages
     type(outcome_t), intent(inout) :: outcome
     real(wp), dimension(size(rates)) :: heat, middle, temperatures
-    real(wp) :: length, unused
+    real(wp) :: length, mean_over, unused
 
     length = merge(diagonal, 1.0_wp, two_stages)*dt
+    mean_over = merge(0.0_wp, dt, two_stages)
     heat = 0
     call take(equations, find_field(scene%fields, 'temperature'), solution%heat%content_error, heat)
     call take(equations, find_field(scene%fields, 'die_temperature'), solution%heat%die_error, heat)
     if (two_stages .and. any(abs(heat) > 0)) then
       call solve_correction(equations, 2*heat/length, temperatures, outcome%error, at_hand=.true.)
       if (allocated(outcome%error)) return
-      middle = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, two_stages, temperatures)
+      middle = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures, mean_over)
       heat = heat + (weight/diagonal)*(middle - heat)
     end if
     heat = heat + length*rates
     call solve_correction(equations, heat/length, temperatures, outcome%error, at_hand=.true.)
     if (allocated(outcome%error)) return
-    heat = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, two_stages, temperatures)
+    heat = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures, mean_over)
     call measure_error(scene, equations, solution, outcome%du, temperatures, unused, outcome%heat%error_now)
     where (equations%solves(equations%now)%equation == 0) heat = 0
     outcome%heat%content_error = solution%heat%content_error
@@ -121,20 +122,16 @@ contains
   end subroutine leave
 
   !> Flows out of the nodes that come with a small change of the temperatures, at the end of the step.
-  function flows_of(scene, equations, solution, dt, du, after, two_stages, temperatures) result(g)
+  function flows_of(scene, equations, solution, dt, du, after, temperatures, mean_over) result(g)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt
     real(wp), intent(in) :: du(:), after(:), temperatures(:)   !! (ndof) motion, its flows [power], the change [temperature]
-    logical, intent(in) :: two_stages
+    real(wp), intent(in) :: mean_over   !! as of flows [time]
     real(wp) :: g(size(du))   !! [power]
 
-    if (two_stages) then
-      call flows(scene, equations, solution, dt, du + small*temperatures, g)
-    else
-      call flows(scene, equations, solution, dt, du + small*temperatures, g, mean_over=dt)
-    end if
+    call flows(scene, equations, solution, dt, du + small*temperatures, g, mean_over=mean_over)
     g = (g - after)/small
   end function flows_of
 
@@ -147,7 +144,7 @@ contains
     real(wp), intent(in) :: du(:)   !! (ndof) motion to there [unknown]
     real(wp), intent(out) :: g(:)   !! (ndof), 0 for the unknowns of other solves [power]
     real(wp), intent(in), optional :: reach   !! share of the step; the end, or the start for dt = 0, where absent
-    real(wp), intent(in), optional :: mean_over   !! length of the step over which stated heat is a mean (stage_t) [time]
+    real(wp), intent(in), optional :: mean_over   !! as that of stage_t [time]
     real(wp) :: external(size(du))
     type(report_t) :: report
 

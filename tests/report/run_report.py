@@ -338,7 +338,7 @@ class ReportTest(unittest.TestCase):
             with open(path, "rb") as file:
                 self.assertGreater(drawn_share(file.read()), BLANK, path)
 
-    def test_mesh_refused_in_the_end(self):
+    def test_last_mesh_refused(self):
         """What was computed on a last mesh that was refused is shown nowhere."""
         folder = self.made("cycle")
         path = os.path.join(folder, "cycle.csv")
@@ -358,7 +358,7 @@ class ReportTest(unittest.TestCase):
         result = report(folder)
         self.assertEqual(0, result.returncode, result.stderr)
         with open(os.path.join(folder, "report.html"), encoding="utf-8") as file:
-            self.assertIn(f"Mesh {last['generation']} was refused in the end", file.read())
+            self.assertIn(f"Mesh {last['generation']} was refused: pictures", file.read())
 
     def check_narrow_screen(self, text):
         """A page as wide as the screen: the viewport is given, nothing is wider than a phone but what scrolls in its own box."""

@@ -95,7 +95,7 @@ class Run:
         self.die_names = list(dict.fromkeys(name for generation in self.generations for name in self._order_dies(generation)))
 
     def _generation_files(self) -> List[str]:
-        """NAME.g01.h5, NAME.g02.h5 ... without a gap. What was computed on a mesh that was refused in the end is no result, where there is another."""
+        """NAME.g01.h5, NAME.g02.h5 ... without a gap. What was computed on a last mesh that was refused is no result, where there is another."""
         stem = os.path.join(self.folder, self.name)
         found = {}
         for path in glob.glob(glob.escape(stem) + ".g*.h5"):

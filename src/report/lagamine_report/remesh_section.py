@@ -27,7 +27,7 @@ def remesh_section(run: Run, pictures: Sequence[Picture]) -> Sections:
     parts = [f"<p>New meshes: {len(made)}; tries refused: {refused}. Height: of all bodies along y.</p>",
              table(HEAD, [*limits(made), *((look(row), cells(run, row)) for row in run.tries)])]
     if run.left_out:
-        parts.insert(1, f"<p><b>Mesh {run.left_out.generation} was refused in the end: pictures, curves and tables of the results end with the mesh "
+        parts.insert(1, f"<p><b>Mesh {run.left_out.generation} was refused: pictures, curves and tables of the results end with the mesh "
                         f"before it, step {run.left_out.step}.</b></p>")
     shown = shown_remeshes(run)
     if len(shown) < len(made):
