@@ -135,10 +135,11 @@ contains
         if (k == 1) then
           write (listing%unit, '(i10,es17.3)') k - 1, line%force_norm
         else if (patches) then
-          write (listing%unit, '(i10,es17.3,es19.3,f13.3,i7)') k - 1, line%force_norm, line%displacement_norm, line%line_search, &
-            line%inner
+          write (listing%unit, '(i10,es17.3,es19.3,f13.3,i7,a)') k - 1, line%force_norm, line%displacement_norm, line%line_search, &
+            line%inner, trim(merge(' *', '  ', line%past_limit))
         else
-          write (listing%unit, '(i10,es17.3,es19.3,f13.3)') k - 1, line%force_norm, line%displacement_norm, line%line_search
+          write (listing%unit, '(i10,es17.3,es19.3,f13.3,a)') k - 1, line%force_norm, line%displacement_norm, line%line_search, &
+            trim(merge(' *', '  ', line%past_limit))
         end if
       end associate
     end do

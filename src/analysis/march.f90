@@ -135,7 +135,7 @@ contains
     ! only a motion that is not found is damped
     if (.not. (outcome%of_heat .or. outcome%passes_itself) &
         .and. (cutbacks > most_cutbacks_undamped .or. give_up .or. solution%damping > 0)) then
-      call damp(scene, dt, outcome, solution, run)
+      call damp(scene, dt, on_probation, outcome, solution, run)
       ! more damping does what a shorter step cannot
       if (give_up .and. solution%damping > 0 .and. cutbacks < most_cutbacks_damped) then
         give_up = .false.
@@ -161,9 +161,10 @@ contains
   end subroutine answer_failure
 
   !> The step is tried again with more damping than before, where a die withdraws, or past a limit point.
-  subroutine damp(scene, dt, outcome, solution, run)
+  subroutine damp(scene, dt, on_probation, outcome, solution, run)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: dt   !! of the step that failed [time]
+    logical, intent(in) :: on_probation
     type(outcome_t), intent(in) :: outcome
     type(solution_t), intent(inout) :: solution
     type(run_t), intent(inout) :: run
@@ -174,8 +175,9 @@ contains
       call strengthen_damping(solution)
       return
     end if
-    ! in the first step a part may begin deep in its dies, and nothing has been found yet that it could snap from
-    past_limit = solution%last_step > 0 .and. any(outcome%history%line_search < 0)
+    ! in the first step a part may begin deep in its dies, and nothing has been found yet that it could snap from; on a new mesh the
+    ! fault may be the mesh's
+    past_limit = solution%last_step > 0 .and. .not. on_probation .and. any(outcome%history%past_limit)
     call begin_damping(scene, run%equations, solution, dt, past_limit, die)
     if (die == 0) return
     run%damped_from = solution%step + 1

@@ -8,7 +8,7 @@ module run_stop
   use kinds, only: wp
   use law_api, only: find_parameter, law_t
   use newton, only: outcome_t
-  use own_contact, only: passes_itself_advice, passes_itself_words
+  use own_contact, only: passes_itself_advice, passes_itself_words, thins_out_advice, thins_out_words
   use results, only: save_failure
   use run_record, only: run_t, save_all, at_end
   use scene, only: role_heat_contact, scene_t
@@ -66,7 +66,10 @@ contains
     what = 'no convergence'
     if (is_steep(scene, run%equations%laws)) advice = advice//'; friction by M has no bound by the pressure but PHI: PHI 1 ' &
       //'beside M, above which an equilibrium need not exist'
-    if (outcome%passes_itself) then
+    if (outcome%thins_out) then
+      what = thins_out_words
+      advice = thins_out_advice
+    else if (outcome%passes_itself) then
       what = passes_itself_words
       advice = passes_itself_advice
     end if

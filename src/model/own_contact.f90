@@ -7,11 +7,15 @@ module own_contact
   use dies, only: is_deformable
   implicit none
   private
-  public :: faces_itself, passes_itself_advice, passes_itself_words, pieces_to_meet
+  public :: faces_itself, passes_itself_advice, passes_itself_words, pieces_to_meet, thins_out_advice, thins_out_words
 
   !> Why a run ends whose body passes through itself where no contact is asked for, and what it needs.
   character(len=*), parameter :: passes_itself_words = 'a body passes through itself', passes_itself_advice = &
     'sides of one body that meet need contact as those of two bodies do, DIE name SIDES place and CNT2D place name law'
+  !> Why one ends whose body has thinned to nothing between two of its sides.
+  character(len=*), parameter :: thins_out_words = 'a body parts', thins_out_advice = &
+    'it has necked there and tears: what holds it back is too much (friction, the gap or the force of a holder, the size of the ' &
+    //'blank); PIERC parts a web under a die'
 
 contains
 

@@ -7,11 +7,17 @@ module contact_changes
   use kinds, only: wp
   use law_api, only: contact_open, contact_slip
   use scene, only: group_t, scene_t
-  use solution, only: solution_t
+  use solution, only: group_state_t, solution_t
   use state_variables, only: find_variable
   implicit none
   private
-  public :: contact_differs, contact_set, note_contact, loses_a_die, touching_dies
+  public :: contact_differs, contact_set, contact_states_t, loses_a_die, note_contact
+  public :: recall_contact, remember_contact, touching_dies
+
+  !> Trial states of all groups of contact.
+  type :: contact_states_t
+    type(group_state_t), allocatable :: groups(:)
+  end type contact_states_t
 
 contains
 
@@ -27,6 +33,31 @@ contains
     changed = any(now /= set)
     call move_alloc(now, set)
   end subroutine note_contact
+
+  !> Before another motion is tried: a search asks what was in contact where it begins.
+  subroutine remember_contact(scene, solution, states)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(contact_states_t), intent(out) :: states
+    integer :: g
+
+    allocate (states%groups(size(scene%groups)))
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%die > 0) states%groups(g)%trial = solution%groups(g)%trial
+    end do
+  end subroutine remember_contact
+
+  !> Back from a motion that is not taken.
+  subroutine recall_contact(scene, states, solution)
+    type(scene_t), intent(in) :: scene
+    type(contact_states_t), intent(inout) :: states
+    type(solution_t), intent(inout) :: solution
+    integer :: g
+
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%die > 0) call move_alloc(states%groups(g)%trial, solution%groups(g)%trial)
+    end do
+  end subroutine recall_contact
 
   !> A die that the sides of a group touched at the start of the step touches none of them in the trial state.
   pure function loses_a_die(scene, solution) result(loses)

@@ -20,7 +20,7 @@ module damping
   use convergence, only: relative_residual
   use dofs, only: prescribed_motion
   use elem_api, only: block_done, report_t
-  use elem_body_springs, only: mass_matrix, volume_of_body
+  use elem_body_springs, only: volume_of_body
   use equations, only: equations_t, take_turn
   use evaluation, only: evaluate
   use fields, only: displacement_field, pilot_field
@@ -28,12 +28,13 @@ module damping
   use scene, only: is_solid, scene_t
   use solution, only: present_coordinates, solution_t
   use vectors, only: length_of
+  use volumes_of_unknowns, only: volumes_of_nodes
   implicit none
   private
   public :: begin_damping, ease_damping, prepare_damping, strengthen_damping, work_of_damping
 
   !> Factors of the coefficient after a step that failed, and after one that was accepted.
-  real(wp), parameter :: stronger = 4.0_wp, weaker = 0.7_wp
+  real(wp), parameter :: stronger = 4.0_wp, weaker = 0.3_wp
 
 contains
 
@@ -42,29 +43,10 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(equations_t), intent(inout) :: equations
-    real(wp), allocatable :: x(:, :)
-    real(wp) :: share
-    integer :: g, e, j, c, d
 
     if (allocated(equations%damping)) deallocate (equations%damping)
     if (.not. solution%damping > 0) return
-    allocate (equations%damping(equations%dofs%ndof), source=0.0_wp)
-    allocate (x, source=present_coordinates(scene, solution))
-    do g = 1, size(scene%groups)
-      if (.not. is_solid(scene%groups(g))) cycle
-      associate (nodes => scene%groups(g)%connectivity)
-        do e = 1, size(nodes, 2)
-          share = solution%damping*sum(mass_matrix(scene%section, x(:, nodes(:, e))))/size(nodes, 1)
-          do j = 1, size(nodes, 1)
-            do c = 1, 2
-              d = equations%dofs%fields(displacement_field)%number(c, nodes(j, e))
-              if (d == 0) cycle
-              if (equations%dofs%is_free(d)) equations%damping(d) = equations%damping(d) + share
-            end do
-          end do
-        end do
-      end associate
-    end do
+    allocate (equations%damping, source=solution%damping*volumes_of_nodes(scene, equations, solution))
   end subroutine prepare_damping
 
   !> The coefficient with which a step of length dt that failed is tried again where a die withdraws, or past a limit point

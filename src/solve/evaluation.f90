@@ -16,7 +16,7 @@ module evaluation
   use threads, only: fit_to_load
   implicit none
   private
-  public :: evaluate, is_apart, measure_error
+  public :: add_diagonal, evaluate, is_apart, measure_error
 
 contains
 

@@ -19,6 +19,8 @@ module iteration_history
     integer :: inner = 0
     !> The whole correction was taken, whatever the residual, after searches that were all short.
     logical :: watched = .false.
+    !> The matrix led uphill: the state is past a limit point (pseudo_transient).
+    logical :: past_limit = .false.
   end type iteration_t
 
   !> A residual this many times larger than the first one, after `patience` iterations, counts as divergence.
@@ -49,6 +51,8 @@ module iteration_history
   real(wp), parameter :: before_turn = 0.35_wp, turn_force = 1.0e-3_wp
   !> After so many short searches one after the other the whole correction is taken.
   integer, parameter :: short_searches = 2
+  !> Iterations past a limit point are this many times as many at most.
+  integer, parameter :: times_for_limit = 3
 
 contains
 
@@ -103,7 +107,7 @@ contains
     end associate
   end function is_near
 
-  !> The last searches were all short: they do not get past a turn of loading to unloading. One that went back is not short.
+  !> The last searches were all short: they do not get past a turn of loading to unloading.
   pure function caught(history)
     type(iteration_t), intent(in) :: history(:)   !! (niteration)
     logical :: caught
@@ -147,8 +151,8 @@ contains
     type(iteration_t), intent(in) :: line
     logical :: is_short
 
-    is_short = abs(line%line_search) < short_share .or. abs(line%line_search) < before_turn .and. line%line_search > 0 &
-               .and. line%force_norm < turn_force .and. .not. line%contact_changed
+    is_short = line%line_search < short_share .or. line%line_search < before_turn .and. line%force_norm < turn_force &
+               .and. .not. line%contact_changed
   end function is_short
 
   !> Corrections that follow the heat content go round in circles: the residual is hardly below the best so far.
@@ -162,12 +166,12 @@ contains
     if (in_circles) in_circles = history(n)%force_norm > circling*minval(history(2:n - 1)%force_norm)
   end function in_circles
 
-  !> Contact changed, or the search went back: the residual need not fall.
+  !> Contact changed, or the state is past a limit point: the residual need not fall.
   elemental function is_under_way(line)
     type(iteration_t), intent(in) :: line
     logical :: is_under_way
 
-    is_under_way = line%contact_changed .or. line%watched .or. line%line_search < 0
+    is_under_way = line%contact_changed .or. line%watched .or. line%past_limit
   end function is_under_way
 
   !> Contact still changes and the residual falls with it: a thin sheet between dies opens and closes point by point, whatever the
@@ -186,6 +190,17 @@ contains
                                              minval(norms(n - peeling_window + 1:)) < peeling*minval(norms(2:n - peeling_window))
     end associate
   end function falls_on
+
+  !> On the way from a limit point to an equilibrium further on, which may take a few times as many iterations as others.
+  pure function leaves_limit(scene, history) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(iteration_t), intent(in) :: history(:)   !! (niteration)
+    logical :: yes
+    integer :: n
+
+    n = size(history)
+    yes = n <= times_for_limit*scene%strategy%max_iterations .and. any(history(max(n - patience, 1):)%past_limit)
+  end function leaves_limit
 
   !> Contact changes to and fro between two states, and whole corrections lead from each to the other.
   pure function goes_to_and_fro(history)
@@ -211,7 +226,7 @@ contains
     associate (norms => history%force_norm)
       if (.not. norms(n + 1) <= huge(1.0_wp)) then
         reason = 'not a number in the forces'
-      else if (n >= scene%strategy%max_iterations .and. .not. falls_on(history)) then
+      else if (n >= scene%strategy%max_iterations .and. .not. (falls_on(history) .or. leaves_limit(scene, history))) then
         reason = to_text(n)//' iterations without convergence (residual '//to_text(norms(n + 1), 3)//')'
       else if (n > patience .and. norms(n + 1) > hopeless*norms(min(2, n + 1))) then
         reason = 'diverged: residual '//to_text(norms(n + 1), 3)

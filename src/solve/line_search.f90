@@ -18,11 +18,6 @@
 !> springs back in a correction far longer than the gap. Then shares are tried, each a tenth of the one before, as long as they
 !> touch the die again; the shortest that does is found within a factor of two between the last two of them, and is taken,
 !> whatever the residual: with the die in its matrix the next correction is the right one.
-!>
-!> A correction on which the residual does negative work is an ascent direction: the state is past a limit point,
-!> as where a side lifts off a die it was bent around. If the whole of it is no better, the correction is reversed (s = -1): the
-!> forces drive the body in that direction, whatever the residual. Equilibrium is further on, and no shorter step would find it
-!> nearer (J.J. More, D.C. Sorensen, Math. Programming 16 (1979) 1-20: directions of negative curvature).
 module line_search
   use contact_changes, only: loses_a_die
   use convergence, only: free_force, slope_along
@@ -54,8 +49,8 @@ module line_search
 
 contains
 
-  !> Move `du` along the correction by the share `s` and evaluate there; s = -1 reverses the correction. s = 0: every share tried
-  !> fails, and `report` states why. A prescribed motion still missing is taken without search.
+  !> Move `du` along the correction by the share `s` and evaluate there. s = 0: every share tried fails, and `report` states why. A
+  !> prescribed motion still missing is taken without search.
   subroutine search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, du, s, report)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -69,13 +64,12 @@ contains
     real(wp), intent(out) :: s
     type(report_t), intent(out) :: report
     real(wp) :: start(size(du)), trial, slope0, slope, enough, best, norm, norm0, near(2), far(2), touching, missed
-    logical :: ascent, accepted, lost
+    logical :: accepted, lost
     integer :: k, most
 
     start = du
     trial = 1
     slope0 = slope_along(equations, correction, residual)
-    ascent = slope0 < 0
     enough = merge(search_closely_above, search_above, manner%closely)
     if (manner%exactly) enough = search_exactly_above
     norm0 = free_force(equations, residual)
@@ -102,38 +96,26 @@ contains
         best = abs(slope)
         s = trial
       end if
-      accepted = manner%whole .or. any(abs(missing) > 0) .or. (norm < real_fall*norm0 .and. .not. manner%exactly)
-      if (.not. ascent) accepted = accepted .or. abs(slope) <= enough*slope0 &
-                                      .or. (k == 1 .and. norm < norm0 .and. .not. manner%exactly)
+      accepted = manner%whole .or. any(abs(missing) > 0) .or. (norm < real_fall*norm0 .and. .not. manner%exactly) &
+                 .or. abs(slope) <= enough*slope0 .or. (k == 1 .and. norm < norm0 .and. .not. manner%exactly)
       if (accepted) then
         s = trial
         return
       end if
       if (lost) then
         if (.not. loses_a_die(scene, solution)) touching = trial
-        if (abs(touching) > abs(trial)) missed = trial
-        if (abs(touching) > 0) then
-          if (abs(missed) > near_touch*abs(touching)) exit
+        if (touching > trial) missed = trial
+        if (touching > 0) then
+          if (missed > near_touch*touching) exit
           trial = tenth*touching
-          if (abs(missed) > 0) trial = sign(sqrt(touching*missed), touching)
-          cycle
-        end if
-      end if
-      if (ascent .and. k == 1) then
-        du = start - correction
-        call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
-        if (report%status == block_done) then
-          s = -1
-          if (.not. lost .or. loses_a_die(scene, solution)) return
-          touching = -1
-          trial = -tenth
+          if (missed > 0) trial = sqrt(touching*missed)
           cycle
         end if
       end if
       call narrow(trial, slope, near, far)
     end do
-    if (abs(touching) > 0) s = touching
-    if (.not. abs(s) > 0) return
+    if (touching > 0) s = touching
+    if (.not. s > 0) return
     du = start + s*correction + missing
     call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
   end subroutine search_along

@@ -25,6 +25,7 @@ module newton
   use nonlinear_elimination, only: take_eliminated
   use onset_motion, only: add_missing
   use path_record, only: path_step_t
+  use pseudo_transient, only: ease_shift, shift_t, solve_shifted, turn_downhill
   use predictor, only: lagging_dies, leaving_dies, predict, work_of_dies
   use scene, only: scene_t
   use solution, only: solution_t
@@ -52,6 +53,8 @@ module newton
     logical :: of_heat = .false.
     !> The equilibrium found has a body that passes through itself.
     logical :: passes_itself = .false.
+    !> It has thinned to nothing where it does.
+    logical :: thins_out = .false.
     !> Balance of heat in time.
     type(heat_step_t) :: heat
     !> Path within the step.
@@ -87,6 +90,7 @@ contains
     type(augmentations_t) :: made
     type(iteration_t) :: line
     type(manner_t) :: manner
+    type(shift_t) :: shift
     type(report_t) :: report
     integer, allocatable :: contact(:)
     logical, allocatable :: held(:, :)
@@ -94,7 +98,7 @@ contains
     real(wp) :: work(size(scene%dies))
     logical :: lags(size(scene%dies)), left_by(size(scene%dies))
     logical :: staying(equations%dofs%ndof)
-    logical :: changed, followed, again, kept, steep, afresh
+    logical :: changed, followed, again, kept, steep, afresh, taken
     integer :: first
 
     allocate (outcome%history(0), outcome%du(equations%dofs%ndof))
@@ -162,7 +166,7 @@ contains
 
       if (is_near(outcome%history(first:))) call follow_contact(scene, equations, solution, dt, outcome%du)
       call add_missing(equations, missing, residual)
-      call solve_correction(equations, residual, correction, outcome%error)
+      call solve_for_correction()
       if (allocated(outcome%error)) then
         call set_solver_cause(outcome)
         if (allocated(outcome%error) .or. made%times == 0) exit
@@ -172,7 +176,7 @@ contains
       end if
       outcome%linear_residual = max(outcome%linear_residual, equations%solves(equations%now)%solver%residual)
       call follow_content(scene, equations, solution, outcome%du, correction, followed)
-      manner = manner_t(whole=caught(outcome%history(first:)), &
+      manner = manner_t(whole=caught(outcome%history(first:)) .and. .not. shift%value > 0, &
                         closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
       if (steep) manner = manner_t(exactly=.true.)
       ! forces with contact kept are no measure of those without
@@ -192,11 +196,20 @@ contains
         lags = lagging_dies(equations, missing)
       end if
       line%inner = 0
-      if (.not. any(abs(missing) > 0)) &
+      if (.not. any(abs(missing) > 0) .and. .not. shift%value > 0) &
         call take_eliminated(scene, equations, solution, dt, external, residual, outcome%iterations, correction, outcome%du, &
                              line%inner, report, outcome%error)
       if (allocated(outcome%error)) exit
-      if (line%inner > 0) then
+      taken = line%inner > 0
+      if (shift%uphill .and. .not. taken) &
+        call turn_downhill(scene, equations, solution, dt, external, residual, shift, correction, outcome%du, taken, report, &
+                           outcome%error)
+      if (allocated(outcome%error)) then
+        call set_solver_cause(outcome)
+        exit
+      end if
+      line%past_limit = shift%value > 0
+      if (taken) then
         line%line_search = 1
       else
         ! between the two states contact may be as in neither
@@ -206,7 +219,7 @@ contains
       end if
       if (any(abs(missing) > 0)) call follow_dies()
       if (allocated(outcome%error)) exit
-      if (.not. abs(line%line_search) > 0) then
+      if (.not. line%line_search > 0) then
         call set_cause(report, outcome)
         if (made%times == 0) exit
         call start_again()
@@ -246,6 +259,21 @@ contains
 
   contains
 
+    !> The correction of the residual. A missing motion is given, and past a limit point of a load factor the way leads up and down.
+    subroutine solve_for_correction()
+      integer :: n
+
+      n = size(outcome%history)
+      shift%uphill = .false.
+      if (any(abs(missing) > 0) .or. scene%load_factor%multiplier > 0 &
+          .or. .not. equations%solves(equations%now)%own(displacement_field)) then
+        call solve_correction(equations, residual, correction, outcome%error)
+        return
+      end if
+      if (n > first) call ease_shift(outcome%history(n)%line_search, outcome%history(n - 1)%force_norm, line%force_norm, shift)
+      call solve_shifted(equations, residual, shift, correction, outcome%error)
+    end subroutine solve_for_correction
+
     !> Multipliers are others, the motion is the same: so is all but contact, whose strains are none.
     subroutine evaluate_multipliers()
       real(wp) :: strain
@@ -261,7 +289,7 @@ contains
       integer :: now(size(touched))
 
       now = 0
-      if (abs(line%line_search) > 0) now = touching_dies(scene, solution)
+      if (line%line_search > 0) now = touching_dies(scene, solution)
       missing = 0
       leaving = leaving_dies(lags, work, touched, now) .and. .not. left_by
       if (.not. any(leaving)) return

@@ -17,6 +17,7 @@
 !> asked of it, is that of Newton's method: the way there is another one.
 module nonlinear_elimination
   use blas, only: dgemm, dgetrf, dgetrs
+  use contact_changes, only: contact_states_t, recall_contact, remember_contact
   use convergence, only: free_force
   use drivers, only: with_slopes
   use elem_api, only: block_done, report_t
@@ -29,7 +30,7 @@ module nonlinear_elimination
   use patch_equations, only: begin_patch, evaluate_patch, patch_equations_t
   use patches, only: choose_patch
   use scene, only: scene_t
-  use solution, only: group_state_t, solution_t
+  use solution, only: solution_t
   implicit none
   private
   public :: take_eliminated
@@ -64,9 +65,9 @@ contains
     type(report_t), intent(inout) :: report
     type(error_t), allocatable, intent(out) :: error
     real(wp), dimension(size(du)) :: start, eliminated
-    type(group_state_t) :: before(size(solution%groups))
+    type(contact_states_t) :: before
     type(report_t) :: trial
-    integer :: g, timer
+    integer :: timer
 
     inner = 0
     if (iteration >= most_iterations .or. equations%without_patches .or. .not. has_patches(scene, equations)) return
@@ -76,9 +77,7 @@ contains
     call eliminate(scene, equations, solution, dt, residual, du, eliminated, inner, error)
     call equations%timers%stop(timer)
     if (inner == 0 .or. allocated(error)) return
-    do g = 1, size(before)
-      if (scene%groups(g)%die > 0) before(g)%trial = solution%groups(g)%trial
-    end do
+    call remember_contact(scene, solution, before)
     start = du
     du = start + eliminated
     call evaluate(scene, equations, solution, dt, du, .true., trial, corrected_from=start)
@@ -89,12 +88,9 @@ contains
         return
       end if
     end if
-    ! a search asks what was in contact where it begins
     inner = 0
     du = start
-    do g = 1, size(before)
-      if (scene%groups(g)%die > 0) call move_alloc(before(g)%trial, solution%groups(g)%trial)
-    end do
+    call recall_contact(scene, before, solution)
   end subroutine take_eliminated
 
   !> The present solve is of the motion, and elements can be evaluated apart: nothing that the others find in the same iteration

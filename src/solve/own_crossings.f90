@@ -38,6 +38,8 @@ module own_crossings
     !> The group of elements of one of the sides.
     integer :: group = 0
     real(wp) :: point(2) = 0.0_wp   !! [length]
+    !> The body was between the sides, not a gap.
+    logical :: thinned = .false.
   end type own_crossing_t
 
 contains
@@ -84,11 +86,11 @@ contains
     real(wp), intent(in) :: du(:)   !! (ndof) motion of the step [unknown]
     type(free_sides_t), intent(in) :: sides
     type(own_crossing_t), intent(out) :: crossing
-    type(offset_parabola_t) :: arcs(size(sides%nodes, 2))
+    type(offset_parabola_t) :: arcs(size(sides%nodes, 2)), at_start(2)
     real(wp) :: xi(2, most_crossings)
     logical, allocatable :: held(:)
     integer, allocatable :: pairs(:, :)
-    integer :: number, i, m, r
+    integer :: number, i, m, r, s
 
     if (size(arcs) == 0) return
     do i = 1, size(arcs)
@@ -107,11 +109,26 @@ contains
           crossing%found = .true.
           crossing%group = sides%group(i)
           crossing%point = point_at(arcs(i), xi(1, r))
+          do s = 1, 2
+            at_start(s)%points = present_nodes(scene, dofs, solution, 0*du, sides%nodes(:, pairs(s, m)))
+          end do
+          crossing%thinned = is_behind(at_start, xi(:, r))
           return
         end do
       end associate
     end do
   end subroutine find_own_crossing
+
+  !> The place on the second side is behind the one on the first, on the side of the body.
+  pure function is_behind(arcs, xi) result(yes)
+    type(offset_parabola_t), intent(in) :: arcs(2)   !! walked with the body on the left
+    real(wp), intent(in) :: xi(2)
+    logical :: yes
+
+    associate (along => arcs(1)%points(:, 3) - arcs(1)%points(:, 1))
+      yes = cross(along, point_at(arcs(2), xi(2)) - point_at(arcs(1), xi(1))) > 0
+    end associate
+  end function is_behind
 
   !> Nodes of a side at the end of the step [length].
   pure function present_nodes(scene, dofs, solution, du, nodes) result(x)

@@ -64,8 +64,10 @@ contains
     if (.not. crossing%found) return
     outcome%converged = .false.
     outcome%passes_itself = .true.
-    outcome%reason = scene%groups(crossing%group)%name//' passes through itself at x = '//to_text(crossing%point(1), 5)//', y = ' &
-                     //to_text(crossing%point(2), 5)
+    outcome%thins_out = crossing%thinned
+    outcome%reason = scene%groups(crossing%group)%name &
+                     //trim(merge(' has thinned to nothing', ' passes through itself ', crossing%thinned)) &
+                     //' at x = '//to_text(crossing%point(1), 5)//', y = '//to_text(crossing%point(2), 5)
   end subroutine judge_contours
 
   !> Matrices factorised, or found so, for the motion since the start.

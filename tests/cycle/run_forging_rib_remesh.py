@@ -159,7 +159,8 @@ def ends_of_contact(checks, out, generation):
     The corrected contour goes through all ends, and new meshes have nodes where it begins and ceases to follow the die. One that is
     less than 5 % of a side beside a corner or a point in contact has its node there: the new side may be off the end itself by what
     penetration is allowed. On the axis nothing holds a node of the old mesh: the end is no deeper in the die than is allowed, wherever
-    that has sunk. Ends that are not kept are those of gaps narrower than 1 % of a side, which are contact too."""
+    that has sunk. Ends that are not kept are those of gaps narrower than 1 % of a side, which are contact too, and of a node that touches
+    beyond a free side shorter than the smallest element, which is left out."""
     names = [glob.glob(os.path.join(out, f"*.g{g:02d}.{kind}.h5"))[0] for g, kind in ((generation - 1, "end"), (generation, "start"))]
     with h5py.File(names[0], "r") as old, h5py.File(names[1], "r") as new:
         nodes = old["mesh/coordinates"][()] + old["fields/displacement/value"][()]
@@ -179,6 +180,9 @@ def ends_of_contact(checks, out, generation):
     for _, x in kept:
         checks.that(numpy.min(numpy.hypot(*(contour[:, 0] - x).T)) < ON_CONTOUR * size, f"mesh {generation}: a node where the contour "
                     "begins or ceases to follow the die", x)
+    # contact of a single node, ended beside where it begins
+    alone = [min(numpy.hypot(*(found[other] - found[k])) for other in range(len(found)) if begins[other] != begins[k])
+             < SHORTEST * length(contact[sides[k]]) for k in range(len(found))]
     outer, exact = 0, 0.0
     for k, (side, first) in enumerate(zip(sides, begins)):
         near = min([numpy.hypot(*(x - found[k])) for begin, x in kept if begin == first], default=numpy.inf)
@@ -195,6 +199,9 @@ def ends_of_contact(checks, out, generation):
             outer += 1
             checks.that(off[k] < PENETR * length(contact[side]), f"mesh {generation}: an end beside a node lies on the contour but for "
                         "what penetration is allowed", (found[k], off[k]))
+        elif alone[k]:
+            checks.that(off[k] <= reported["contour"]["largest_move"], f"mesh {generation}: a node that touches beyond a free side too "
+                        "short for the mesh is off the contour by what that was moved", (found[k], off[k]))
         else:
             new = contour[numpy.argmin(numpy.hypot(*(contour[:, 1] - found[k]).T))]
             checks.that(off[k] < GAP * length(new), f"mesh {generation}: the end of a gap in contact is within 1 % of the side of "

@@ -1,0 +1,138 @@
+!> Corrections past a limit point: by a matrix that is shifted until they lead downhill.
+!>
+!> A correction on which the residual does negative work leads uphill: past a limit point, as where a strip slides off the node that
+!> it was bent around, the matrix has a negative eigenvalue, and Newton's method goes to where equilibrium was unstable. Forces
+!> drive the body the other way, to an equilibrium further on. So, unless the residual falls by half on the whole correction all the
+!> same, viscous forces are added to the matrix, not to the residual:
+!>
+!>     (K + s V) c = r
+!>
+!> with the volume V around each node: the pseudo-transient way to a steady state (C.T. Kelley, D.E. Keyes, SIAM J. Numer. Anal.
+!> 35 (1998) 508-523). s begins so that the work on the correction is as much above zero as it was below (more, where other
+!> directions still lead uphill: J.J. More, D.C. Sorensen, Math. Programming 16 (1979) 1-20, for directions of negative curvature).
+!> It falls with the residual, and rises where that does or a correction goes too far. What is found at the end is an equilibrium:
+!> none of it is viscous.
+module pseudo_transient
+  use contact_changes, only: contact_states_t, recall_contact, remember_contact
+  use convergence, only: free_force, slope_along
+  use corrections, only: solve_correction
+  use elem_api, only: block_done, report_t
+  use equations, only: equations_t
+  use errors, only: error_t
+  use evaluation, only: add_diagonal, evaluate
+  use kinds, only: wp
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use volumes_of_unknowns, only: volumes_of_motion
+  implicit none
+  private
+  public :: ease_shift, shift_t, solve_shifted, turn_downhill
+
+  !> State of the iterations of a step.
+  type :: shift_t
+    !> s now, 0 where the matrix is as it is, and the largest so far [force/length^4, per radian when axisymmetric].
+    real(wp) :: value = 0.0_wp, largest = 0.0_wp
+    !> Volume around every unknown of the motion, where a shift has been needed (ndof) [volume].
+    real(wp), allocatable :: volume(:)
+    !> The last correction leads uphill, and the shifted matrix that it was found by (nnz) [residual/unknown].
+    logical :: uphill = .false.
+    real(wp), allocatable :: matrix(:)
+  end type shift_t
+
+  !> A shift that is not enough becomes this many times larger, so often at most.
+  real(wp), parameter :: larger = 4.0_wp
+  integer, parameter :: most_shifts = 8
+  !> It rises where the residual does, or where less than a share of the correction is taken; where more than another is, it falls
+  !> with the residual, to `least_fall` at least, and ends where that falls to `fall`.
+  real(wp), parameter :: rise = 4.0_wp, least_taken = 0.2_wp, most_taken = 0.5_wp, least_fall = 0.5_wp, fall = 0.1_wp
+  !> Below this share of the largest one there is none.
+  real(wp), parameter :: least_share = 1.0e-3_wp
+  !> An uphill correction is taken where the residual falls to this part of what it was.
+  real(wp), parameter :: real_fall = 0.5_wp
+
+contains
+
+  !> Correction of the free unknowns of the present solve for a residual, by the matrix with the shift of now; whether it leads
+  !> uphill.
+  subroutine solve_shifted(equations, residual, shift, correction, error)
+    type(equations_t), intent(inout) :: equations
+    real(wp), intent(in) :: residual(:)      !! (ndof) [residual]
+    type(shift_t), intent(inout) :: shift
+    real(wp), intent(out) :: correction(:)   !! (ndof) [unknown]
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (solve => equations%solves(equations%now))
+      if (shift%value > 0) call add_diagonal(solve%pattern, solve%equation, shift%value*shift%volume, solve%values)
+      call solve_correction(equations, residual, correction, error)
+      if (allocated(error)) return
+      shift%uphill = slope_along(equations, correction, residual) < 0
+      ! what is evaluated next has another matrix
+      if (shift%uphill) shift%matrix = solve%values
+    end associate
+  end subroutine solve_shifted
+
+  !> After a correction that leads uphill: it is taken, and the motion moved by it, where the residual falls by half; else it
+  !> becomes one that leads downhill, by a larger shift.
+  subroutine turn_downhill(scene, equations, solution, dt, external, residual, shift, correction, du, taken, report, error)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt                         !! [time]
+    real(wp), intent(in) :: external(:), residual(:)   !! (ndof) [residual]
+    type(shift_t), intent(inout) :: shift
+    real(wp), intent(inout) :: correction(:)           !! (ndof) [unknown]
+    real(wp), intent(inout) :: du(:)                   !! (ndof) motion of the step [unknown]
+    logical, intent(out) :: taken
+    type(report_t), intent(inout) :: report
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: start(size(du))
+    type(contact_states_t) :: before
+    type(report_t) :: trial
+    integer :: k
+
+    start = du
+    call remember_contact(scene, solution, before)
+    du = start + correction
+    call evaluate(scene, equations, solution, dt, du, .true., trial, corrected_from=start)
+    taken = trial%status == block_done
+    if (taken) taken = free_force(equations, external - equations%force) < real_fall*free_force(equations, residual)
+    if (taken) then
+      report = trial
+      return
+    end if
+    du = start
+    call recall_contact(scene, before, solution)
+    if (.not. allocated(shift%volume)) allocate (shift%volume, source=volumes_of_motion(scene, equations, solution))
+    associate (solve => equations%solves(equations%now))
+      solve%values = shift%matrix
+      do k = 1, most_shifts
+        associate (more => max((larger - 1)*shift%value, &
+                               2*abs(slope_along(equations, correction, residual))/sum(shift%volume*correction**2)))
+          call add_diagonal(solve%pattern, solve%equation, more*shift%volume, solve%values)
+          shift%value = shift%value + more
+        end associate
+        call solve_correction(equations, residual, correction, error)
+        if (allocated(error)) exit
+        if (.not. slope_along(equations, correction, residual) < 0) exit
+      end do
+    end associate
+    shift%largest = max(shift%largest, shift%value)
+  end subroutine turn_downhill
+
+  !> The shift of the next iteration, after one that took a share of its correction.
+  elemental subroutine ease_shift(share, before, now, shift)
+    real(wp), intent(in) :: share         !! [-]
+    real(wp), intent(in) :: before, now   !! norm of the residual [-]
+    type(shift_t), intent(inout) :: shift
+
+    if (.not. shift%value > 0) return
+    if (now > before .or. share < least_taken) then
+      shift%value = rise*shift%value
+    else if (share > most_taken) then
+      shift%value = min(least_fall*before, now)/before*shift%value
+      if (now < fall*before) shift%value = 0
+    end if
+    if (shift%value < least_share*shift%largest) shift%value = 0
+  end subroutine ease_shift
+
+end module pseudo_transient
