@@ -130,7 +130,7 @@ contains
     type(unheld_die_t) :: unheld
     logical :: give_up
 
-    if (index(outcome%reason, 'singular') > 0) unheld = find_unheld_die(scene, run%equations, solution)
+    unheld = find_unheld_die(scene, run%equations, solution, index(outcome%reason, 'singular') > 0)
     solution%cutbacks = solution%cutbacks + 1
     call after_failure(scene, dt, solution%next_step, give_up)
     call list_cutback(run%listing, scene, solution, dt, solution%next_step, outcome)

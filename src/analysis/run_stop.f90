@@ -36,7 +36,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: late
     real(wp), allocatable :: residual(:, :)
-    character(len=:), allocatable :: where_at, advice, what
+    character(len=:), allocatable :: where_at, advice, limit, what
 
     where_at = ''
     if (outcome%group > 0) where_at = ', element '//to_text(outcome%element)//' of '//scene%groups(outcome%group)%name
@@ -50,15 +50,17 @@ contains
         advice = 'the residual force is in '//run%stem//'.failed.xdmf; '
       end if
     end if
+    limit = limit_load_words(scene, solution)
     ! attempts beyond a limit load lose the die too
-    if (unheld%die > 0 .and. limit_load_words(scene, solution) == '') then
-      advice = advice//unheld_die_words(scene, solution, unheld)
-    else if (.not. outcome%of_heat) then
-      advice = sudden_force_words(scene, solution)//limit_load_words(scene, solution)//advice//'a limit load' &
-               //way_past_limit(scene)//', a mesh too distorted or a least step too large in STRAT are the usual causes'
-    else
+    if (unheld%die > 0 .and. limit == '') advice = advice//unheld_die_words(scene, solution, unheld)
+    if (outcome%of_heat) then
       advice = advice//'numbers that jump along the temperature, NORMS near round-off or a least step too large in ' &
                //'STRAT are the usual causes'
+    else if (unheld%die == 0 .or. limit /= '') then
+      advice = sudden_force_words(scene, solution)//limit//advice//'a limit load'//way_past_limit(scene) &
+               //', a mesh too distorted or a least step too large in STRAT are the usual causes'
+    else if (index(outcome%reason, 'singular') == 0) then
+      advice = advice//'; a mesh too distorted or a least step too large in STRAT are other causes'
     end if
     if (solution%confinement%now) advice = confinement_words(scene, solution%confinement)//'; '//advice
     if (index(outcome%reason, 'singular') > 0 .and. any(may_stand_alone(scene%groups))) advice = advice//'; a body of few ' &

@@ -30,19 +30,20 @@ module unheld_dies
 
 contains
 
-  !> The first component of a die that no force answers in the matrix of an attempt that failed for a singular matrix.
-  pure function find_unheld_die(scene, equations, solution) result(unheld)
+  !> The first component of a die that no force answers in the last matrix of an attempt that failed.
+  pure function find_unheld_die(scene, equations, solution, singular) result(unheld)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
+    logical, intent(in) :: singular   !! the attempt failed for a singular matrix
     type(unheld_die_t) :: unheld
     logical :: unresisted(3, size(scene%dies))
     integer :: s, k, before(size(scene%dies)), now(size(scene%dies))
 
     if (size(scene%die_forces) == 0) return
-    unresisted = .false.
+    unresisted = equations%slides
     do s = 1, size(equations%solves)
-      if (equations%solves(s)%own(pilot_field)) unresisted = unresisted_pilots(equations%dofs, equations%solves(s))
+      if (singular .and. equations%solves(s)%own(pilot_field)) unresisted = unresisted_pilots(equations%dofs, equations%solves(s))
     end do
     if (.not. any(unresisted)) return
     before = touching_dies(scene, solution, at_start=.true.)

@@ -7,7 +7,7 @@ module corrections
   use kinds, only: wp
   use linear_solver, only: factorise, solve_linear
   use resting_bodies, only: hold_loose, motion_of_loose
-  use resting_dies, only: hold_resting_dies
+  use resting_dies, only: hold_free_dies
   use solves, only: solve_t
   implicit none
   private
@@ -40,7 +40,7 @@ contains
       factors = .false.
       if (present(at_hand)) factors = at_hand
       if (.not. factors) then
-        if (solve%own(pilot_field)) call hold_resting_dies(equations%dofs, residual, solve)
+        if (solve%own(pilot_field)) call hold_free_dies(equations%dofs, residual, solve, equations%slides)
         call equations%timers%add('factorisation', timer)
         call equations%timers%start(timer)
         call factorise(solve%solver, solve%values, error)

@@ -76,6 +76,7 @@ contains
     real(wp) :: ratio
     integer :: k
 
+    equations%slides = .false.
     ! what moves at once does so in the first step, not while equilibrium is restored at fixed time
     call prescribed_motion(scene, equations%dofs, solution%fields, dt > 0 .and. .not. solution%last_step > 0, solution%time, &
                            solution%time + dt, motion)

@@ -2,8 +2,9 @@
 !>
 !> A pilot that FORCE or FREE releases has nothing to hold it but contact and springs. Where it has neither, and no force is on it
 !> at the end of a step, it is in equilibrium wherever it is: it is not predicted to go on with its last motion, and until a contact
-!> closes its equation, which is empty, has a diagonal. Neither changes a force. Where a force is on it the equation stays empty,
-!> and the matrix is singular.
+!> closes its equation, which is empty, has a diagonal. Where all points that touch it slide, friction does not answer its motion
+!> across them: its equation has a diagonal too. None of this changes a force. Where a force is on it that nothing answers the
+!> equation stays empty, and the matrix is singular.
 module resting_dies
   use contact_changes, only: touching_dies
   use dofs, only: dofs_t
@@ -15,7 +16,7 @@ module resting_dies
   use solves, only: solve_t
   implicit none
   private
-  public :: has_spring, hold_resting_dies, idle_dies, leave_dies_at_rest, unresisted_pilots
+  public :: has_spring, hold_free_dies, idle_dies, leave_dies_at_rest, unresisted_pilots
 
   !> Entries of the matrix below this share of the largest one are round-off.
   real(wp), parameter :: nothing = 1.0e-14_wp
@@ -60,37 +61,44 @@ contains
     end do
   end subroutine leave_dies_at_rest
 
-  !> A diagonal for the empty equations of pilots without a residual.
-  pure subroutine hold_resting_dies(dofs, residual, solve)
+  !> A diagonal for the equations of pilots that have no column: for those that are empty and without a residual, and for those of
+  !> dies whose points all slide, as large as what their pressures make of friction. A die that friction alone holds comes so to
+  !> where one of its points sticks.
+  pure subroutine hold_free_dies(dofs, residual, solve, slides)
     type(dofs_t), intent(in) :: dofs
     real(wp), intent(in) :: residual(:)     !! (ndof) [residual]
     type(solve_t), intent(inout) :: solve   !! its matrix
-    logical :: empty(0:solve%neq)
-    real(wp) :: largest
+    logical, intent(out) :: slides(:, :)    !! (3, ndie) components of pilots held in the latter way
+    real(wp) :: column(0:solve%neq), row(solve%neq), diagonal(0:solve%neq)
     integer :: c, k
 
-    empty = .false.
+    slides = .false.
     associate (pilot => dofs%fields(pilot_field)%number)
+      if (.not. any(solve%equation(pack(pilot, pilot > 0)) > 0)) return
+      call largest_of_columns(solve%pattern, solve%values, column)
+      row = 0
+      do k = 1, solve%pattern%nnz
+        row(solve%pattern%row(k)) = row(solve%pattern%row(k)) + abs(solve%values(k))
+      end do
+      diagonal = 0
       do k = 1, size(pilot, 2)
         do c = 1, size(pilot, 1)
           if (pilot(c, k) == 0) cycle
-          if (.not. abs(residual(pilot(c, k))) > 0) empty(solve%equation(pilot(c, k))) = .true.
+          associate (equation => solve%equation(pilot(c, k)))
+            if (equation == 0) cycle
+            if (column(equation) > nothing*column(0)) cycle
+            slides(c, k) = row(equation) > nothing*column(0)
+            if (slides(c, k)) diagonal(equation) = row(equation)
+            if (.not. (slides(c, k) .or. abs(residual(pilot(c, k))) > 0)) diagonal(equation) = column(0)
+          end associate
         end do
       end do
     end associate
-    empty(0) = .false.
-    if (.not. any(empty)) return
+    if (.not. any(diagonal > 0)) return
     do k = 1, solve%pattern%nnz
-      if (.not. abs(solve%values(k)) > 0) cycle
-      empty(solve%pattern%row(k)) = .false.
-      empty(solve%pattern%column(k)) = .false.
+      if (solve%pattern%row(k) == solve%pattern%column(k)) solve%values(k) = solve%values(k) + diagonal(solve%pattern%row(k))
     end do
-    if (.not. any(empty)) return
-    largest = maxval(abs(solve%values))
-    do k = 1, solve%pattern%nnz
-      if (solve%pattern%row(k) == solve%pattern%column(k) .and. empty(solve%pattern%row(k))) solve%values(k) = largest
-    end do
-  end subroutine hold_resting_dies
+  end subroutine hold_free_dies
 
   !> Components of pilots that have an equation, and whose motion changes no force of the last matrix of the solve.
   pure function unresisted_pilots(dofs, solve) result(unresisted)

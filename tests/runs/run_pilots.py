@@ -190,6 +190,23 @@ def gaps(checks):
     checks.that(len({rows["displacement_y_press"][k] for k in paused}) == 1, "it rests in the pause", paused)
 
 
+def across(checks):
+    """A die presses a block flat, and is pulled across it by less than friction bears: it slides with the block that spreads, and
+    some point of it sticks, another one as the block gets wider. Without friction nothing says where it is, and no force is on it."""
+    tall = {"0. 0.   10. 0.   10. 5.   0. 5.": "0. 0.   10. 0.   10. 15.   0. 15.", "8 1.   4 1.": "8 1.   6 1.",
+            "SEGM  40. 5.   -20. 5.": "SEGM  40. 15.   -1. 15."}
+    between = "FIXED  block 4 X\nDIE    anvil\n   SEGM  -1. 0.   40. 0.\nCNT2D  block 1 2 anvil skin"
+    steel = "EPLA\n   200000. 0.3\n   SWIFT 700. 0.01 0.2"
+    for name, force, coefficient in (("across", 100.0, 0.1), ("smooth", 0.0, 0.0)):
+        rows = run_deck(checks, name, kinematics="LOG", law=steel, skin=f"PENETR 1.E-3 PHI {coefficient}", fixed=between, replaced=tall,
+                        pilot="5. 15.", cards="MOVE   press Y load -5.\n" + (f"FORCE  press X -{force} load" if force else "FREE   press X"))
+        for step, time in enumerate(rows["time"]):
+            close(checks, f"force {name}, step {step + 1}", rows["force_x_press"][step], force * time, 1e-6)
+        way = rows["displacement_x_press"][-1]
+        checks.that(way > 1.0 or not force, f"way {name}", way)
+        checks.that(len(rows["time"]) < 150, f"number of steps {name}", len(rows["time"]))
+
+
 def lost(checks):
     """A free die that nothing holds cannot be solved for: the run says which, when, and what to do; and of friction by M alone, what
     bounds it."""
@@ -233,7 +250,7 @@ def floating(checks):
 
 def main():
     checks = Checks()
-    for part in (compression, springs, balance, friction_factor, cohesion, gaps, lost, floating):
+    for part in (compression, springs, balance, friction_factor, cohesion, gaps, across, lost, floating):
         part(checks)
     checks.end()
 
