@@ -50,8 +50,8 @@ contains
         advice = 'the residual force is in '//run%stem//'.failed.xdmf; '
       end if
     end if
-    limit = limit_load_words(scene, solution)
     ! attempts beyond a limit load lose the die too
+    limit = limit_load_words(scene, solution, unheld%die == 0 .and. any(outcome%history%line_search < 0))
     if (unheld%die > 0 .and. limit == '') advice = advice//unheld_die_words(scene, solution, unheld)
     if (outcome%of_heat) then
       advice = advice//'numbers that jump along the temperature, NORMS near round-off or a least step too large in ' &

@@ -114,12 +114,15 @@ contains
     end function last_place
   end function unheld_die_words
 
-  !> A die under a force that goes ever further for it: its force is near the largest that the part bears.
-  function limit_load_words(scene, solution) result(words)
+  !> A die under a force that grows, and that goes ever further for it, or past a limit point in the attempt that failed: its force
+  !> is near the largest that the part bears, or of a part of its way, as where a node passes an edge.
+  function limit_load_words(scene, solution, past_limit) result(words)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
+    logical, intent(in) :: past_limit   !! the attempt has been past a limit point
     character(len=:), allocatable :: words
     real(wp) :: force, more, way, further
+    logical :: far
     integer :: k
 
     words = ''
@@ -132,10 +135,16 @@ contains
         way = pilots%value(load%component, load%die) - scene%dies(load%die)%pilot(load%component)
         further = pilots%last_increment(load%component, load%die)
         if (.not. (more*force > 0 .and. way*force > 0 .and. further*force > 0)) cycle
-        if (further*force < goes_far*way*more) cycle
-        words = 'die '//scene%dies(load%die)%name//' under FORCE goes '//to_text(further*force/(way*more), 3)//' times as far ' &
-                //'for a little more force as it did for all of it, '//to_text(abs(circumference(scene)*force), 5)//', as at a ' &
-                //'limit load: MOVE in place of FORCE leads beyond it; '
+        far = further*force >= goes_far*way*more
+        if (.not. (far .or. past_limit)) cycle
+        words = 'die '//scene%dies(load%die)%name//' under FORCE '
+        if (far) then
+          words = words//'goes '//to_text(further*force/(way*more), 3)//' times as far for a little more force as it did for ' &
+                  //'all of it, '
+        else
+          words = words//'goes past a limit point at '
+        end if
+        words = words//to_text(abs(circumference(scene)*force), 5)//', as at a limit load: MOVE in place of FORCE leads beyond it; '
         return
       end associate
     end do

@@ -8,6 +8,7 @@
 !> goes too far, and along the normal of the die there is one.
 module seating
   use closest_point, only: closest_point_t
+  use contact_point, only: touching
   use curve_search, only: closest_facing_point
   use dies, only: die_t, in_pilot_axes, is_deformable
   use dofs, only: dofs_t
@@ -122,7 +123,7 @@ contains
     way = 0
     do k = 1, most_steps
       call find_gap(scene, x, die, pilot + [way*direction, 0.0_wp], longest, gap, side)
-      if (gap <= 0) return
+      if (gap <= touching*side) return
       way = way + gap + in_touch*side
       if (way > longest) exit
     end do
