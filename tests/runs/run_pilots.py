@@ -190,6 +190,29 @@ def gaps(checks):
     checks.that(len({rows["displacement_y_press"][k] for k in paused}) == 1, "it rests in the pause", paused)
 
 
+def stops(checks):
+    """A fixed body beside the part limits the way of a die under a force, and in an operation a die that begins far off comes to the
+    part."""
+    stop = "BLOCK  stop PL8LS 4 hard\n   20. 0.   22. 0.   22. 4.8   20. 4.8\n   1 1.   1 1.\nLAW    hard ELA\n   1.E6 0.\nFIXED  stop 1 XY\n"
+    alone = run_deck(checks, "unstopped", kinematics="LOG", law=PLASTIC, cards="FORCE  press Y -200. load")
+    rows = run_deck(checks, "stopped", kinematics="LOG", law=PLASTIC, cards=stop + "CNT2D  stop 3 press skin\nFORCE  press Y -200. load")
+    close(checks, "force that block and stop share", rows["force_y_press"][-1], 200.0, 1e-8)
+    checks.that(alone["displacement_y_press"][-1] < -0.5 and abs(rows["displacement_y_press"][-1] + 0.2) < 2e-3, "a stop bears the rest",
+                (alone["displacement_y_press"][-1], rows["displacement_y_press"][-1]))
+
+    # the same die begins again at its first place, half a unit off
+    deck = deck_of(checks, "again", kinematics="LOG", law=PLASTIC, cards="")
+    with open(deck, encoding="utf-8") as file:
+        text = file.read().replace("END\n", "")
+    die, load = text[text.index("DIE"):text.index("FIXED")], text[text.index("LIC"):text.index("STRAT")]
+    text = text.replace(die, "").replace(load, "")
+    write(deck, f"{text}OPERA  first\n{die}{load}MOVE   press Y load -0.5\nOPERA  second\n{die}{load}FORCE  press Y -200. load\nEND\n")
+    result = run([deck, "--out", checks.path("again")])
+    if checks.that(result.returncode == DONE, "a second operation under a force", said(result)):
+        rows = history(checks.path("again"))
+        close(checks, "depth in a second operation", rows["displacement_y_press"][-1], alone["displacement_y_press"][-1], 5e-3)
+
+
 def across(checks):
     """A die presses a block flat, and is pulled across it by less than friction bears: it slides with the block that spreads, and
     some point of it sticks, another one as the block gets wider. Without friction nothing says where it is, and no force is on it."""
@@ -250,7 +273,7 @@ def floating(checks):
 
 def main():
     checks = Checks()
-    for part in (compression, springs, balance, friction_factor, cohesion, gaps, across, lost, floating):
+    for part in (compression, springs, balance, friction_factor, cohesion, gaps, stops, across, lost, floating):
         part(checks)
     checks.end()
 
