@@ -36,6 +36,7 @@ module march
   use step_strategy, only: after_failure, after_success, choose_step
   use system, only: caught_signal, join_path
   use text, only: to_text, two_digits
+  use unheld_dies, only: find_unheld_die, unheld_die_t
   use watch_mesh, only: answer_distress, ask_for_trims, estimate, estimate_stress, look_at_mesh, mesh_is_due
   implicit none
   private
@@ -126,8 +127,10 @@ contains
     type(solution_t), intent(inout) :: solution
     type(run_t), intent(inout) :: run
     type(error_t), allocatable, intent(out) :: error
+    type(unheld_die_t) :: unheld
     logical :: give_up
 
+    unheld = find_unheld_die(scene, run%equations, solution, index(outcome%reason, 'singular') > 0)
     solution%cutbacks = solution%cutbacks + 1
     call after_failure(scene, dt, solution%next_step, give_up)
     call list_cutback(run%listing, scene, solution, dt, solution%next_step, outcome)
@@ -155,7 +158,7 @@ contains
     else if (give_up) then
       ! resumed, it ends the same way
       solution%next_step = dt
-      call stop_here(scene, solution, dt, outcome, run, error)
+      call stop_here(scene, solution, dt, outcome, unheld, run, error)
       if (on_probation) call refuse_mesh(scene, solution, outcome, run, error)
     end if
   end subroutine answer_failure

@@ -7,6 +7,7 @@ module physics_check
   use heat_check, only: check_exchanges, check_heat
   use kinds, only: wp
   use law_api, only: driver_count, find_parameter, law_t, solid_law
+  use resting_dies, only: has_spring
   use scene, only: axisymmetric, group_t, lacks_mesh, role_side_load, scene_t
   use supports, only: free_motions, is_mechanical_load
   use text, only: add => add_text, string_t, to_text
@@ -127,6 +128,7 @@ contains
     else
       words = 'gap '//to_text(-outlook%depth, 4)//' at the start'
     end if
+    if (outlook%faces .and. outlook%depth < 0 .and. is_pushed(scene, group%die, outlook)) words = words//', which its FORCE closes'
     if (.not. moves(scene, group%die) .or. abs(outlook%first) <= 0) return
     if (outlook%first > 0) then
       words = words//', met at about time '//to_text(outlook%first, 3)//' by the die''s motion'
@@ -134,6 +136,28 @@ contains
       words = words//', not met by the die''s motion'
     end if
   end function words_of
+
+  !> A force pushes what is free of a die along X or Y to the sides that face it, and no spring holds it there (seating).
+  pure function is_pushed(scene, die, outlook) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: die
+    type(outlook_t), intent(in) :: outlook
+    logical :: yes
+    real(wp) :: force
+    integer :: k
+
+    yes = .false.
+    do k = 1, size(scene%die_forces)
+      associate (load => scene%die_forces(k))
+        if (load%die /= die .or. load%component > 2 .or. load%multiplier == 0) cycle
+        if (has_spring(scene, die, load%component)) cycle
+        associate (value => scene%multipliers(load%multiplier)%value)
+          force = load%amplitude*value(maxloc(abs(value), 1))
+        end associate
+        yes = yes .or. force*outlook%least_push(load%component) > 0 .or. force*outlook%largest_push(load%component) > 0
+      end associate
+    end do
+  end function is_pushed
 
   !> Parts in dies, dies walked the wrong way, dies that miss.
   subroutine judge_contact(scene, laws, group, outlook, met, warnings)

@@ -17,7 +17,7 @@ module run_stop
   use strategy, only: coupling_once
   use system, only: caught_signal
   use text, only: to_text
-  use untouched_dies, only: untouched_die_advice
+  use unheld_dies, only: limit_load_words, sudden_force_words, unheld_die_t, unheld_die_words
   use watch_mesh, only: mesh_is_due, remesh_reason
   implicit none
   private
@@ -26,16 +26,17 @@ module run_stop
 contains
 
   !> The smallest step has failed: report why, where, and what to try; write the field of the residual.
-  subroutine stop_here(scene, solution, dt, outcome, run, error)
+  subroutine stop_here(scene, solution, dt, outcome, unheld, run, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: dt
     type(outcome_t), intent(in) :: outcome
+    type(unheld_die_t), intent(in) :: unheld   !! what nothing held in the last attempt
     type(run_t), intent(in) :: run
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: late
     real(wp), allocatable :: residual(:, :)
-    character(len=:), allocatable :: where_at, advice, what
+    character(len=:), allocatable :: where_at, advice, limit, what
 
     where_at = ''
     if (outcome%group > 0) where_at = ', element '//to_text(outcome%element)//' of '//scene%groups(outcome%group)%name
@@ -49,14 +50,18 @@ contains
         advice = 'the residual force is in '//run%stem//'.failed.xdmf; '
       end if
     end if
-    if (.not. outcome%of_heat) then
-      advice = advice//'a limit load'//way_past_limit(scene)//', a mesh too distorted or a least step too large in STRAT are ' &
-               //'the usual causes'
-    else
+    ! attempts beyond a limit load lose the die too
+    limit = limit_load_words(scene, solution, unheld%die == 0 .and. any(outcome%history%line_search < 0))
+    if (unheld%die > 0 .and. limit == '') advice = advice//unheld_die_words(scene, solution, unheld)
+    if (outcome%of_heat) then
       advice = advice//'numbers that jump along the temperature, NORMS near round-off or a least step too large in ' &
                //'STRAT are the usual causes'
+    else if (unheld%die == 0 .or. limit /= '') then
+      advice = sudden_force_words(scene, solution)//limit//advice//'a limit load'//way_past_limit(scene) &
+               //', a mesh too distorted or a least step too large in STRAT are the usual causes'
+    else if (index(outcome%reason, 'singular') == 0) then
+      advice = advice//'; a mesh too distorted or a least step too large in STRAT are other causes'
     end if
-    advice = untouched_die_advice(scene, solution)//advice
     if (solution%confinement%now) advice = confinement_words(scene, solution%confinement)//'; '//advice
     if (index(outcome%reason, 'singular') > 0 .and. any(may_stand_alone(scene%groups))) advice = advice//'; a body of few ' &
       //'elements with 4 integration points has a motion that nothing resists, 9 points with MEAN have none'

@@ -4,6 +4,7 @@ module supports
   use dies, only: is_deformable
   use fields, only: displacement_field
   use kinds, only: wp
+  use resting_dies, only: has_spring
   use scene, only: axisymmetric, group_t, is_solid, role_side_load, role_volume_load, scene_t
   use text, only: string_t
   implicit none
@@ -37,9 +38,13 @@ contains
           if (held(scene, part, own, c)) cycle
           if (sprung(scene, part, own, c)) cycle
           if (touched) then
-            if (pressed_from_one_side(scene, outlook, part, own, c)) &
+            if (floats_with_dies(scene, part, own, c)) then
+              call add(group%name//': nothing says where it is along '//directions(c:c)//', no support, and all dies that face ' &
+                       //'it are free there (FORCE, FREE): a support, a SPRNG card, or MOVE for one of them does')
+            else if (pressed_from_one_side(scene, outlook, part, own, c)) then
               call add(group%name//': dies press it along '//directions(c:c)//' from one side, and nothing holds it on the ' &
                        //'other, no support and no contact: they would push it ahead of them')
+            end if
           else if (near) then
             call add(group%name//': nothing holds it in '//directions(c:c)//' before it meets a die: contact alone does, and ' &
                      //'there is a gap')
@@ -165,6 +170,30 @@ contains
     if (any(part(scene%forces%node) == own)) return
     yes = driven .and. (least >= least_component .or. largest <= -least_component)
   end function pressed_from_one_side
+
+  !> Rigid dies face the part, and all of them are free in a direction, without a spring: they and the part move in it as one.
+  pure function floats_with_dies(scene, part, own, component) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: part(:), own, component
+    logical :: yes
+    integer :: g
+
+    yes = .false.
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%die == 0 .or. group%material == 0) cycle
+        if (is_deformable(scene%dies(group%die))) then
+          ! another body, which may hold it
+          yes = .false.
+          return
+        end if
+        if (part(group%connectivity(1, 1)) /= own) cycle
+        yes = any(scene%die_forces%die == group%die .and. scene%die_forces%component == component) &
+              .and. .not. has_spring(scene, group%die, component)
+        if (.not. yes) return
+      end associate
+    end do
+  end function floats_with_dies
 
   !> A load on sides or in a volume that is no heat.
   pure function is_mechanical_load(group) result(yes)

@@ -3,10 +3,11 @@ module corrections
   use equation_set_up, only: analyse_pattern
   use equations, only: equations_t
   use errors, only: error_t, exit_no_convergence
-  use fields, only: displacement_field
+  use fields, only: displacement_field, pilot_field
   use kinds, only: wp
   use linear_solver, only: factorise, solve_linear
   use resting_bodies, only: hold_loose, motion_of_loose
+  use resting_dies, only: hold_free_dies
   use solves, only: solve_t
   implicit none
   private
@@ -39,6 +40,7 @@ contains
       factors = .false.
       if (present(at_hand)) factors = at_hand
       if (.not. factors) then
+        if (solve%own(pilot_field)) call hold_free_dies(equations%dofs, residual, solve, equations%slides)
         call equations%timers%add('factorisation', timer)
         call equations%timers%start(timer)
         call factorise(solve%solver, solve%values, error)

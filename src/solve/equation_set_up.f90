@@ -61,6 +61,7 @@ contains
     call find_axis_wall(scene, equations%laws, equations%dofs, equations%wall)
     call list_free_sides(scene, equations%free_sides)
     call find_loose_bodies(scene, equations%dofs, equations%loose)
+    allocate (equations%slides(3, size(scene%dies)), source=.false.)
     allocate (equations%resting(0))
     call list_solves(scene%fields, scene%strategy%coupling, equations%solves)
     do s = 1, size(equations%solves)

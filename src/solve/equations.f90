@@ -64,6 +64,8 @@ module equations
     integer, allocatable :: loose(:)
     !> Unknowns at rest in the present step (ndof); of no size where no body is loose.
     logical, allocatable :: resting(:)
+    !> Components of pilots that friction alone holds, and whose points all slide, in the last correction (3, ndie).
+    logical, allocatable :: slides(:, :)
     type(ledger_t) :: timers
     type(team_t) :: team
     !> Internal force (element forces summed) at the last evaluation, and the sum of their sizes (ndof).

@@ -22,8 +22,9 @@
 !> most points that touched such a die no longer do after it, the step starts again so, with the die where it goes: contact is then
 !> open, and the part springs back from its own forces.
 !>
-!> A body that nothing holds starts at rest (resting_bodies). What prescribed unknowns still miss is left for the first iteration
-!> to spread.
+!> A body that nothing holds starts at rest (resting_bodies), as does a free die that nothing acts on (resting_dies); one that a
+!> force pushes over a gap starts in touch with what it meets (seating). What prescribed unknowns still miss is left for the first
+!> iteration to spread.
 module predictor
   use acceptance, only: is_first_step
   use dofs, only: dofs_t, prescribed_motion
@@ -36,7 +37,9 @@ module predictor
   use onset_motion, only: extend_onset
   use path_bend, only: bend_of_path
   use resting_bodies, only: leave_at_rest
+  use resting_dies, only: leave_dies_at_rest
   use scene, only: scene_t
+  use seating, only: seat_dies
   use solution, only: solution_t
   use turning_back, only: reversed_unknowns, turn_back
   implicit none
@@ -73,6 +76,7 @@ contains
     real(wp) :: ratio
     integer :: k
 
+    equations%slides = .false.
     ! what moves at once does so in the first step, not while equilibrium is restored at fixed time
     call prescribed_motion(scene, equations%dofs, solution%fields, dt > 0 .and. .not. solution%last_step > 0, solution%time, &
                            solution%time + dt, motion)
@@ -224,6 +228,8 @@ contains
       where (back) du = -onset*du
       call leave_at_rest(scene, equations%dofs, equations%loose, solution, solution%time + dt, du, &
                          equations%resting)
+      call leave_dies_at_rest(scene, equations%dofs, solution, external, du)
+      if (.not. found) call seat_dies(scene, equations%dofs, solution, external, equations%size, du)
       if (present(given)) du = merge(given, du, fixed)
       do k = 1, size(motion)
         associate (p => equations%dofs%prescribed(k))

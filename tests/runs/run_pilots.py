@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""Dies that are free: forces, moments and springs on pilots, and friction by the factor m, against closed forms.
+"""Dies that are free: forces, moments and springs on pilots, gaps and pauses, what is said of dies that nothing holds, and friction
+by the factor m, against closed forms.
 
 usage: run_pilots.py [-v] [-k]       -v prints every check, -k keeps the results
 """
 import math
+import re
 import sys
 
 sys.dont_write_bytecode = True
-from support import DONE, Checks, history, run, said, write  # noqa: E402
+from support import DONE, NO_CONVERGENCE, Checks, history, run, said, write  # noqa: E402
 
 # A block under a die that is wider than it; the die's pilot stands over the middle of the block.
 BLOCK = """TITLE  {title}
@@ -34,15 +36,30 @@ PLASTIC = "EPLA\n   1000. 0.3\n   LINEAR 10. 50."
 SMOOTH = "PENETR 1.E-3 PHI 0."
 
 
-def run_deck(checks, name, **parts):
-    """Run a deck; the columns of its history."""
+def deck_of(checks, name, replaced=None, **parts):
+    """Write a deck, with some of its text replaced; its path."""
     text = BLOCK.format(**{"state": "PLSTN", "kinematics": "SMALL", "law": ELASTIC, "skin": SMOOTH, "pilot": "5. 5.",
                            "fixed": "FIXED  block 1 Y\nFIXED  block 4 X", "title": name, **parts})
+    for old, new in (replaced or {}).items():
+        assert old in text, old
+        text = text.replace(old, new)
     deck = checks.path(name + ".lag")
     write(deck, text)
-    result = run([deck, "--out", checks.path(name)])
+    return deck
+
+
+def run_deck(checks, name, **parts):
+    """Run a deck; the columns of its history."""
+    result = run([deck_of(checks, name, **parts), "--out", checks.path(name)])
     checks.that(result.returncode == DONE, f"{name}: runs to its end", said(result))
     return history(checks.path(name))
+
+
+def fail_deck(checks, name, **parts):
+    """Run a deck that finds no equilibrium; what the run says."""
+    result = run([deck_of(checks, name, **parts), "--out", checks.path(name)])
+    checks.that(result.returncode == NO_CONVERGENCE, f"{name}: finds no equilibrium", said(result))
+    return result
 
 
 def close(checks, what, found, wanted, tolerance):
@@ -145,21 +162,118 @@ END
                     (friction[-1], max(friction), largest))
 
 
+def gaps(checks):
+    """A force takes its die over a gap, at once, to the depth that it has without one; a die that no force acts on rests where it
+    is, and is taken up again."""
+    force, side = 20.0, 10.0 / 8
+    sunk = force / 10 / 1000.0 * 5 + force / 10 * 1e-3 * side / (0.01 * 1000.0)
+    raised = "SEGM  40. 5.   -20. 5."
+    for name, gap, cards in (("gap", 1.0, ""), ("oblique", 0.5, "FIXED  block 2 X\nFORCE  press X 5. load\nSPRNG  press X 10."),
+                             ("far", 8.0, "FREE   press X")):
+        rows = run_deck(checks, name, cards=f"FORCE  press Y -{force} load\n{cards}", pilot=f"5. {5 + gap}",
+                        replaced={raised: f"SEGM  40. {5 + gap}   -20. {5 + gap}"})
+        close(checks, f"depth over a gap, {name}", -rows["displacement_y_press"][-1], sunk + gap, 1e-7)
+        for step, time in enumerate(rows["time"]):
+            close(checks, f"force over a gap, {name}, step {step + 1}", rows["force_y_press"][step], force * time, 1e-8)
+        if name == "far":
+            checks.that(not any(rows["displacement_x_press"]), "nothing moves it along X", rows["displacement_x_press"])
+    checked = run([checks.path("gap.lag"), "--check"])
+    checks.that("gap 1 at the start, which its FORCE closes" in checked.stdout and "WARNING" not in checked.stdout,
+                "a gap that a force closes, before the run", said(checked))
+
+    # off and on again, twice; in the second pause the die has no force for some steps
+    rows = run_deck(checks, "paused", cards=f"FORCE  press Y -{force} load",
+                    replaced={"0. 0.   1. 1.": "0. 0.   0.2 1.   0.4 0.   0.5 1.   0.6 0.   0.9 0.   1. 1."})
+    close(checks, "depth after two pauses", -rows["displacement_y_press"][-1], sunk, 1e-7)
+    paused = [k for k, time in enumerate(rows["time"]) if 0.6 < time < 0.9]
+    checks.that(len(paused) > 1 and not any(rows["force_y_press"][k] for k in paused), "no force in the pause", paused)
+    checks.that(len({rows["displacement_y_press"][k] for k in paused}) == 1, "it rests in the pause", paused)
+
+
+def stops(checks):
+    """A fixed body beside the part limits the way of a die under a force, and in an operation a die that begins far off comes to the
+    part."""
+    stop = "BLOCK  stop PL8LS 4 hard\n   20. 0.   22. 0.   22. 4.8   20. 4.8\n   1 1.   1 1.\nLAW    hard ELA\n   1.E6 0.\nFIXED  stop 1 XY\n"
+    alone = run_deck(checks, "unstopped", kinematics="LOG", law=PLASTIC, cards="FORCE  press Y -200. load")
+    rows = run_deck(checks, "stopped", kinematics="LOG", law=PLASTIC, cards=stop + "CNT2D  stop 3 press skin\nFORCE  press Y -200. load")
+    close(checks, "force that block and stop share", rows["force_y_press"][-1], 200.0, 1e-8)
+    checks.that(alone["displacement_y_press"][-1] < -0.5 and abs(rows["displacement_y_press"][-1] + 0.2) < 2e-3, "a stop bears the rest",
+                (alone["displacement_y_press"][-1], rows["displacement_y_press"][-1]))
+
+    # the same die begins again at its first place, half a unit off
+    deck = deck_of(checks, "again", kinematics="LOG", law=PLASTIC, cards="")
+    with open(deck, encoding="utf-8") as file:
+        text = file.read().replace("END\n", "")
+    die, load = text[text.index("DIE"):text.index("FIXED")], text[text.index("LIC"):text.index("STRAT")]
+    text = text.replace(die, "").replace(load, "")
+    write(deck, f"{text}OPERA  first\n{die}{load}MOVE   press Y load -0.5\nOPERA  second\n{die}{load}FORCE  press Y -200. load\nEND\n")
+    result = run([deck, "--out", checks.path("again")])
+    if checks.that(result.returncode == DONE, "a second operation under a force", said(result)):
+        rows = history(checks.path("again"))
+        close(checks, "depth in a second operation", rows["displacement_y_press"][-1], alone["displacement_y_press"][-1], 5e-3)
+
+
+def across(checks):
+    """A die presses a block flat, and is pulled across it by less than friction bears: it slides with the block that spreads, and
+    some point of it sticks, another one as the block gets wider. Without friction nothing says where it is, and no force is on it."""
+    tall = {"0. 0.   10. 0.   10. 5.   0. 5.": "0. 0.   10. 0.   10. 15.   0. 15.", "8 1.   4 1.": "8 1.   6 1.",
+            "SEGM  40. 5.   -20. 5.": "SEGM  40. 15.   -1. 15."}
+    between = "FIXED  block 4 X\nDIE    anvil\n   SEGM  -1. 0.   40. 0.\nCNT2D  block 1 2 anvil skin"
+    steel = "EPLA\n   200000. 0.3\n   SWIFT 700. 0.01 0.2"
+    for name, force, coefficient in (("across", 100.0, 0.1), ("smooth", 0.0, 0.0)):
+        rows = run_deck(checks, name, kinematics="LOG", law=steel, skin=f"PENETR 1.E-3 PHI {coefficient}", fixed=between, replaced=tall,
+                        pilot="5. 15.", cards="MOVE   press Y load -5.\n" + (f"FORCE  press X -{force} load" if force else "FREE   press X"))
+        for step, time in enumerate(rows["time"]):
+            close(checks, f"force {name}, step {step + 1}", rows["force_x_press"][step], force * time, 1e-6)
+        way = rows["displacement_x_press"][-1]
+        checks.that(way > 1.0 or not force, f"way {name}", way)
+        checks.that(len(rows["time"]) < 150, f"number of steps {name}", len(rows["time"]))
+
+
 def lost(checks):
-    """A free die that touches nothing cannot be solved for: the run says what to do; and of friction by M alone, what bounds it."""
+    """A free die that nothing holds cannot be solved for: the run says which, when, and what to do; and of friction by M alone, what
+    bounds it."""
+    pulled = "FORCE  press Y 1. load"
     for name, skin, word, told in (("lost", SMOOTH, "SPRNG", True), ("by_factor", "PENETR 1.E-3 M 0.3", "PHI 1 beside M", True),
                                    ("by_both", "PENETR 1.E-3 M 0.3 PHI 1.", "PHI 1 beside M", False)):
-        deck = checks.path(name + ".lag")
-        write(deck, BLOCK.format(title=name, state="PLSTN", kinematics="SMALL", law="EPLA\n   1000. 0.3\n   LINEAR 10. 0.", skin=skin,
-                                 pilot="5. 6.", fixed="FIXED  block 1 Y\nFIXED  block 4 X", cards="FORCE  press Y -1. load").replace(
-                                     "SEGM  40. 5.   -20. 5.", "SEGM  40. 6.   -20. 6."))
-        result = run([deck, "--out", checks.path(name)])
-        checks.that(result.returncode == 3 and (word in result.stderr) == told, f"a die that touches nothing is reported, {skin}", said(result))
+        result = fail_deck(checks, name, kinematics="SMALL", law="EPLA\n   1000. 0.3\n   LINEAR 10. 0.", skin=skin, pilot="5. 6.",
+                           cards=pulled, replaced={"SEGM  40. 5.   -20. 5.": "SEGM  40. 6.   -20. 6."})
+        checks.that((word in result.stderr) == told, f"a die that touches nothing is reported, {skin}", said(result))
+
+    result = fail_deck(checks, "let_go", cards="FORCE  press Y -20. load", replaced={"0. 0.   1. 1.": "0. 0.   0.5 1.   1. -1."})
+    checks.that("die press is free along Y, and at time 0.7" in result.stderr and "block.3/press, the side at node" in result.stderr
+                and "SPRNG" in result.stderr and "limit load" not in result.stderr, "a force that pulls a die off", said(result))
+
+    result = fail_deck(checks, "slides", skin="PENETR 1.E-3 PHI 0.1", fixed="FIXED  block 1 XY",
+                       cards="FORCE  press Y -20. load\nFORCE  press X 3. load")
+    checks.that("die press is free along X, and nothing resists it there: what touches it slides" in result.stderr,
+                "a force that friction cannot bear", said(result))
+
+    # 11.5 on each unit of length: 2/sqrt(3) of the yield stress
+    result = fail_deck(checks, "limit", law="EPLA\n   1000. 0.3\n   LINEAR 10. 0.", cards="FORCE  press Y -130. load")
+    words = re.search(r"die press under FORCE goes (\S+) times as far for a little more force as it did for all of it, (\S+),",
+                      result.stderr)
+    checks.that(words and "MOVE in place of FORCE leads beyond it" in result.stderr, "a limit load is told", said(result))
+    if words:
+        checks.that(abs(float(words[2])/(20/math.sqrt(3)*10) - 1) < 0.01, "the limit load", words[2])
+
+    result = fail_deck(checks, "sudden", kinematics="LOG", law="EPLA\n   1000. 0.3\n   LINEAR 10. 5.", cards="FORCE  press Y -200. load",
+                       replaced={"0. 0.   1. 1.": "0. 1.   1. 1."})
+    checks.that("the FORCE on die press acts at once, with 200 in the first step" in result.stderr, "a force at once", said(result))
+
+
+def floating(checks):
+    """Two dies under forces, and a part between them that nothing else holds, are anywhere: told before the run."""
+    both = "FORCE  press Y -20. load\nDIE    anvil\n   SEGM  -20. 0.   40. 0.\nCNT2D  block 1 anvil skin\nFORCE  anvil Y 20. load"
+    for name, more, told in (("floating", "", True), ("tied", "\nSPRNG  anvil Y 1.", False)):
+        deck = deck_of(checks, name, fixed="FIXED  block 4 X", cards=both + more)
+        checked = run([deck, "--check"])
+        checks.that(("block: nothing says where it is along Y" in checked.stdout) == told, f"dies and part float, {name}", said(checked))
 
 
 def main():
     checks = Checks()
-    for part in (compression, springs, balance, friction_factor, cohesion, lost):
+    for part in (compression, springs, balance, friction_factor, cohesion, gaps, stops, across, lost, floating):
         part(checks)
     checks.end()
 

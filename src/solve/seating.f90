@@ -1,0 +1,166 @@
+!> Dies under a force that touch nothing: a step starts where the force has taken them to the part.
+!>
+!> Over a gap nothing resists a free die, and the matrix is singular: Newton's method cannot find the way that a force has to push
+!> it. But where it comes to is known: along the force, to the first side that it meets. There the step starts, just in touch; the
+!> equilibrium is found from there as ever. A die that meets no side so stays where it is.
+!>
+!> The way is made of steps as long as the least gap (conservative advancement: B. Mirtich, PhD thesis, Berkeley 1996, ch. 2): none
+!> goes too far, and along the normal of the die there is one.
+module seating
+  use closest_point, only: closest_point_t
+  use contact_point, only: touching
+  use curve_search, only: closest_facing_point
+  use dies, only: die_t, in_pilot_axes, is_deformable
+  use dofs, only: dofs_t
+  use fields, only: displacement_field, pilot_field
+  use kinds, only: wp
+  use resting_dies, only: has_spring, idle_dies
+  use scene, only: role_contact, scene_t
+  use solution, only: present_coordinates, solution_t
+  use vectors, only: length_of
+  implicit none
+  private
+  public :: seat_dies
+
+  !> Depth over the length of the side at which a die is in touch: above round-off of coordinates, far below what contact allows.
+  real(wp), parameter :: in_touch = 1.0e-9_wp
+  !> Steps of the way at most; and its length over the size of the scene.
+  integer, parameter :: most_steps = 100
+  real(wp), parameter :: longest_way = 2.0_wp
+
+contains
+
+  !> Move the pilots of such dies in the motion of a prediction.
+  subroutine seat_dies(scene, dofs, solution, external, scale, du)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(in) :: dofs
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: external(:)   !! (ndof) forces at the end of the step [residual]
+    real(wp), intent(in) :: scale         !! size of the scene [length]
+    real(wp), intent(inout) :: du(:)      !! (ndof) motion of the step [unknown]
+    logical :: idle(size(scene%dies))
+    real(wp), allocatable :: x(:, :)
+    real(wp) :: pilot(3), push(2), way
+    integer :: k
+
+    if (size(scene%die_forces) == 0) return
+    idle = idle_dies(scene, solution)
+    do k = 1, size(scene%dies)
+      if (.not. idle(k) .or. is_deformable(scene%dies(k))) cycle
+      push = force_on(k)
+      if (.not. any(abs(push) > 0)) cycle
+      if (.not. allocated(x)) call place_nodes()
+      pilot = solution%fields(pilot_field)%value(:, k)
+      call add_motion(dofs%fields(pilot_field)%number(:, k), pilot)
+      call find_way(scene, x, k, pilot, push/length_of(push), longest_way*scale, way)
+      if (.not. way > 0) cycle
+      push = way*push/length_of(push)
+      call move(dofs%fields(pilot_field)%number(1:2, k), push)
+    end do
+
+  contains
+
+    !> Force on what is free of a die, along X and Y, where no spring ties it.
+    function force_on(die) result(force)
+      integer, intent(in) :: die
+      real(wp) :: force(2)   !! [force]
+      integer :: i
+
+      force = 0
+      do i = 1, size(scene%die_forces)
+        associate (load => scene%die_forces(i))
+          if (load%die /= die .or. load%component > 2) cycle
+          associate (d => dofs%fields(pilot_field)%number(load%component, die))
+            if (d > 0 .and. .not. has_spring(scene, die, load%component)) force(load%component) = external(d)
+          end associate
+        end associate
+      end do
+    end function force_on
+
+    !> Nodes at the motion of the prediction.
+    subroutine place_nodes()
+      integer :: n
+
+      allocate (x, source=present_coordinates(scene, solution))
+      do n = 1, size(x, 2)
+        call add_motion(dofs%fields(displacement_field)%number(:, n), x(:, n))
+      end do
+    end subroutine place_nodes
+
+    subroutine add_motion(number, value)
+      integer, intent(in) :: number(:)          !! unknowns, 0 for none
+      real(wp), intent(inout) :: value(:)       !! [unknown]
+      integer :: c
+
+      do c = 1, size(number)
+        if (number(c) > 0) value(c) = value(c) + du(number(c))
+      end do
+    end subroutine add_motion
+
+    subroutine move(number, by)
+      integer, intent(in) :: number(:)   !! unknowns, 0 for none
+      real(wp), intent(in) :: by(:)      !! [unknown]
+      integer :: c
+
+      do c = 1, size(number)
+        if (number(c) > 0) du(number(c)) = du(number(c)) + by(c)
+      end do
+    end subroutine move
+  end subroutine seat_dies
+
+  !> How far a die goes in a direction until it is in touch with a side that faces it; 0 where it touches one now, or meets none.
+  pure subroutine find_way(scene, x, die, pilot, direction, longest, way)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: x(:, :)        !! (2, nnode) [length]
+    integer, intent(in) :: die
+    real(wp), intent(in) :: pilot(3)       !! (x, y, angle) [length and radian]
+    real(wp), intent(in) :: direction(2)   !! [-]
+    real(wp), intent(in) :: longest        !! [length]
+    real(wp), intent(out) :: way           !! [length]
+    real(wp) :: gap, side
+    integer :: k
+
+    way = 0
+    do k = 1, most_steps
+      call find_gap(scene, x, die, pilot + [way*direction, 0.0_wp], longest, gap, side)
+      if (gap <= touching*side) return
+      way = way + gap + in_touch*side
+      if (way > longest) exit
+    end do
+    way = 0
+  end subroutine find_way
+
+  !> Least gap between a die and the nodes of the sides that face it, below 0 for a depth, and the length of that side; huge where
+  !> no side faces it.
+  pure subroutine find_gap(scene, x, die, pilot, reach, gap, side)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: x(:, :)      !! (2, nnode) [length]
+    integer, intent(in) :: die
+    real(wp), intent(in) :: pilot(3)     !! (x, y, angle) [length and radian]
+    real(wp), intent(in) :: reach        !! [length]
+    real(wp), intent(out) :: gap, side   !! [length]
+    real(wp) :: local(2, 3), chord(2), length
+    type(closest_point_t) :: closest
+    integer :: g, e, i
+
+    gap = huge(gap)
+    side = 0
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%role /= role_contact .or. scene%groups(g)%die /= die) cycle
+      do e = 1, size(scene%groups(g)%connectivity, 2)
+        local = in_pilot_axes(x(:, scene%groups(g)%connectivity(:, e)), pilot)
+        chord = local(:, 3) - local(:, 1)
+        length = length_of(chord)
+        do i = 1, 3
+          call closest_facing_point(scene%dies(die), local(:, i), [-chord(2), chord(1)]/length, reach, closest)
+          ! contact is sought within the length of a side
+          if (closest%piece == 0 .or. closest%d > length) cycle
+          if (-closest%d > gap) cycle
+          gap = -closest%d
+          side = length
+        end do
+      end do
+    end do
+  end subroutine find_gap
+
+end module seating
