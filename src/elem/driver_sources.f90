@@ -15,7 +15,7 @@ module driver_sources
   use stress_measures, only: measure_names, nmeasure
   implicit none
   private
-  public :: find_drivers, missing_driver, driver_of_others
+  public :: find_bodies_behind, find_drivers, missing_driver, driver_of_others
 
 contains
 
