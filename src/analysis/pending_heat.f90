@@ -93,7 +93,8 @@ contains
         call quad8_rule(group%rule%n, rule)
         do e = 1, size(heat, 2)
           volume = volumes_of_work(scene, solution, g, e)
-          if (size(drivers(g)%value, 1) > n) volume = volume*drivers(g)%value(n + 1, 1, :, e)
+          if (size(drivers(g)%value, 1) > n .and. .not. (scene%finite .and. scene%plane_state == plane_stress)) &
+            volume = volume*drivers(g)%value(n + 1, 1, :, e)
           do p = 1, size(heat, 1)
             temperature = dot_product(rule%phi(:, p), solution%fields(find_field(solution%fields, temperature_field)) &
                                       %value(1, group%connectivity(:, e)))

@@ -9,8 +9,9 @@
 !> over the volume ratio that points then have (1 on the first mesh; kept where new meshes may come). Work is per volume of now
 !> without elastic strain, a larger one of a body that has expanded: dv_n is that at the start of the step, so that no work is lost
 !> of a step whose motion is found after the temperature. In plane stress of finite strains, where PL8TM does not know the
-!> thickness, it is dv0. e is the volume strain, ln(dv) where kinematics are finite, of the motion that PL8LS gives the body.
-!> Linearised exactly, along the displacements too, but for the plastic work.
+!> thickness at the end, it is dv0, and heat flows in the thickness at the start of the step. e is the volume strain, ln(dv) where
+!> kinematics are finite, of the motion that PL8LS gives the body. Linearised exactly, along the displacements too, but for the
+!> plastic work.
 !> Source: K.J. Bathe, Finite Element Procedures, sec. 7.2; R.W. Lewis et al., The Finite Element Method in Heat Transfer Analysis.
 module elem_pl8tm
   use elem_api, only: block_inverted, elem_t, first_unknown, instant_t, layout_t, mode_error, mode_restore, report_t, &
@@ -149,6 +150,7 @@ contains
       if (ratio > 0) place%dv0(:rule%npoint) = place%dv0(:rule%npoint)/committed(ratio, :, e)
       if (kinematics%finite .and. scene%plane_state == plane_stress) then
         place%worked = place%dv0
+        if (size(drivers, 1) > m) place%dv(:rule%npoint) = place%dv(:rule%npoint)*drivers(m + 1, 1, :, e)
       else if (size(drivers, 1) > m) then
         place%worked(:rule%npoint) = place%worked(:rule%npoint)*drivers(m + 1, 1, :, e)
       end if
