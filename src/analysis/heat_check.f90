@@ -1,6 +1,7 @@
 !> What can be told of the heat of a deck before it runs: torches beside their bodies, dies beside sides, sides cooled twice, sides
 !> that radiate below absolute zero, steels without hardness, steels that begin below absolute zero, austenite that is too cold.
 module heat_check
+  use absolute_zeros, only: judge_zeros
   use contact_outlook, only: gaps_at_rest
   use cycle_heat_check, only: judge_cycle_heat
   use dies, only: is_deformable
@@ -49,6 +50,7 @@ contains
       call judge_start(scene, laws, g, warnings)
       call judge_radiation(scene, g, warnings)
     end do
+    call judge_zeros(scene, laws, warnings)
     call judge_hardness(scene, warnings)
     call judge_cycle_heat(scene, laws, warnings)
     if (scene%fields(displacement_field)%declared) return

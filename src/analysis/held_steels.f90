@@ -1,9 +1,9 @@
 !> Steels of a CCT diagram (card CCT) that are held, or cool more slowly than its slowest history: a diagram of coolings says
 !> nothing of time at one temperature, and nothing forms then.
 !>
-!> What is told is what the slowest history would have formed in the time: its growth per second at that temperature. By Scheil's
-!> rule of additivity this is the growth in a hold, where the growth of the history depends on the temperature and the fractions
-!> alone (E. Scheil, Arch. Eisenhuettenwes. 8 (1935) 565).
+!> What is told is what the histories would have formed in the time: the largest growth per second at that temperature of those that
+!> form more in the end than would be there. By Scheil's rule of additivity this is the growth in a hold, where the growth of the
+!> history depends on the temperature and the fractions alone (E. Scheil, Arch. Eisenhuettenwes. 8 (1935) 565).
 module held_steels
   use cct_histories, only: cct_increments
   use dual_numbers, only: dual_t
@@ -50,7 +50,7 @@ contains
         do e = 1, size(group%connectivity, 2)
           associate (corners => group%connectivity(:ncorner, e), points => solution%groups(g)%committed(:, :, e))
             most = max(most, missing_in(material%steel, seconds, sum(temperature(corners))/ncorner + zero, &
-                                        sum(change(corners))/ncorner, state_of(group, points)))
+                                        sum(change(corners))/ncorner, solution%held_growth, state_of(group, points)))
           end associate
         end do
       end associate
@@ -88,27 +88,33 @@ contains
     state(phase_count + 1) = sum(points(grain, :))/size(points, 2)
   end function state_of
 
-  !> What the slowest history would have formed above Ms in the part of a step that was too slow for it.
-  pure function missing_in(steel, seconds, temperature, change, state) result(missing)
+  !> What the histories would have formed above Ms in the part of a step that was too slow for the slowest of them.
+  pure function missing_in(steel, seconds, temperature, change, before, state) result(missing)
     type(steel_t), intent(in) :: steel
     real(wp), intent(in) :: seconds       !! length of the step [s]
     real(wp), intent(in) :: temperature   !! at its end [degC]
     real(wp), intent(in) :: change        !! of the temperature in the step [K]
+    real(wp), intent(in) :: before        !! what is missing so far [-]
     real(wp), intent(in) :: state(:)      !! (phase_count + 1)
     real(wp) :: missing                   !! [-]
     type(dual_t) :: ms, formed(3), z(3)
-    real(wp) :: slowest, idle
+    real(wp) :: rates(steel%cct%n), idle, left
+    integer :: k
 
     missing = 0
     associate (cct => steel%cct, grain => state(phase_count + 1))
-      slowest = cct%rate(1)*exp(-cct%grain_factor*(grain - cct%grain_reference))
-      idle = slowest*seconds - max(0.0_wp, -change)
+      rates = cct%rate*exp(-cct%grain_factor*(grain - cct%grain_reference))
+      idle = seconds - max(0.0_wp, -change)/rates(1)
       ms = martensite_start(steel, dual_t(sum(state(ferrite:bainite))))
       if (.not. (idle > 0 .and. state(austenite) > 0 .and. temperature > ms%value)) return
       z%value = state(ferrite:bainite)
-      call cct_increments(cct, dual_t(width/slowest), dual_t(temperature + 0.5_wp*width), dual_t(temperature - 0.5_wp*width), &
-                          dual_t(grain), z, formed)
-      missing = min(max(0.0_wp, sum(formed%value))/width*idle, state(austenite))
+      do k = 1, cct%n
+        left = sum(cct%z(:, cct%first(k + 1) - 1)) - sum(z%value) - before
+        if (.not. left > 0) cycle
+        call cct_increments(cct, dual_t(width/rates(k)), dual_t(temperature + 0.5_wp*width), dual_t(temperature - 0.5_wp*width), &
+                            dual_t(grain), z, formed)
+        missing = max(missing, min(sum(formed%value)*rates(k)/width*idle, left, state(austenite)))
+      end do
     end associate
   end function missing_in
 
@@ -125,8 +131,8 @@ contains
       associate (steel => scene%materials(scene%groups(g)%material)%steel)
         call add_text(warnings, scene%groups(g)%name//': it was held, or cooled more slowly than the slowest history of the ' &
                       //'CCT diagram of the steel '//steel%name//' ('//to_text(steel%cct%rate(1), 3)//' K/s): by such a diagram ' &
-                      //'nothing forms at one temperature, and up to '//to_text(100*solution%held_growth, 2)//' % that this ' &
-                      //'history forms in the time have not: holds need TTT, AVRAMI or LI')
+                      //'nothing forms at one temperature, and up to '//to_text(100*solution%held_growth, 2)//' % that its ' &
+                      //'histories form in the time have not: holds need TTT, AVRAMI or LI')
       end associate
       return
     end do

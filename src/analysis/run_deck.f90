@@ -22,6 +22,7 @@ module run_deck
   use floating_bodies, only: warn_of_floating_bodies, warn_of_idle_dies
   use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
   use judge_remesh, only: agreed_words
+  use heat_handed_over, only: hand_heat_over
   use heated_steels, only: warn_of_missing_austenite
   use held_steels, only: warn_of_held_steels
   use kinds, only: wp
@@ -191,6 +192,7 @@ contains
       if (allocated(error)) return
       call begin_operation(scene, solution, next, after)
       call share_heat(scene, next, laws, after)
+      call hand_heat_over(scene, solution, next, laws, after)
       run%deck_path = first%deck_path
       run%deck_text = first%deck_text
       run%folder = first%folder

@@ -11,6 +11,7 @@ module summary
   use history, only: circumference
   use json_writer, only: json_t
   use law_api, only: find_parameter
+  use pending_heat, only: pending
   use restart_report, only: add_restart
   use restore_balance, only: balance_t
   use run_facts, only: run_facts_t
@@ -100,6 +101,8 @@ contains
       call json%add('heat_stored', circumference(scene)*solution%heat_stored)
       call json%add('heat_in', circumference(scene)*solution%heat_in)
       call json%add('heat_released', circumference(scene)*solution%heat_released)
+      if (allocated(equations%laws)) &
+        call json%add('heat_due', circumference(scene)*pending(scene, equations%laws, equations%drivers, solution))
     end if
     call json%end_object()
     call json%end_object()

@@ -11,11 +11,13 @@ module summary_table
   use kinds, only: wp
   use path_advice, only: motion_advice, stress_advice
   use path_record, only: motion_error, stress_error
+  use pending_heat, only: pending
   use penetration_advice, only: advice_at_points, advice_between_points, sides_that_span, states_penetration
   use run_facts, only: run_facts_t, unloaded_drift
   use scene, only: scene_t, solid_elements
   use solution, only: solution_t
   use spring_check, only: has_body_springs, spring_advice, spring_force, spring_share
+  use strategy, only: coupling_once
   use system, only: cpu_seconds, peak_memory_mb
   use text, only: string_t, to_text
   implicit none
@@ -58,6 +60,7 @@ contains
                //to_text(circumference(scene)*solution%heat_in, 4)//', released ' &
                //to_text(circumference(scene)*solution%heat_released, 4)//'; imbalance ' &
                //to_text(100*heat_imbalance(solution), 2)//' % of what passed')
+    call put_due()
     if (has_heat(scene)) call put_heat(solution%heat)
     if (scene%follows_path) then
       call put('  errors of the path within steps: motion '//to_text(100*motion_error(solution%path), 3)//' % in sum, stress ' &
@@ -100,6 +103,16 @@ contains
     call put('')
 
   contains
+
+    !> What no step has released yet.
+    subroutine put_due()
+      real(wp) :: heat
+
+      if (.not. (has_heat(scene) .and. allocated(equations%laws)) .or. scene%strategy%coupling /= coupling_once) return
+      heat = pending(scene, equations%laws, equations%drivers, solution)
+      if (abs(heat) > 0) call put('  heat of friction and plastic work of the last step, which the next one would release: ' &
+                                  //to_text(circumference(scene)*heat, 4))
+    end subroutine put_due
 
     !> What accuracy in time was had, and temperatures that cannot be there.
     subroutine put_heat(heat)

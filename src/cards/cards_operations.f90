@@ -13,11 +13,13 @@ module cards_operations
   use diagnostics, only: diagnostics_t
   use elem_api, only: elem_t
   use elem_registry, only: list_elems
+  use fields, only: displacement_field
   use kinds, only: wp
   use remesh, only: remesh_t
   use scene, only: scene_t
   use scene_draft, only: head_location, words_of
   use scene_reader, only: read_scene
+  use state_variables, only: name_of_heat_due, state_variable, state_variable_t, total_components, transfer_scalar
   use text, only: string_t
   implicit none
   private
@@ -152,11 +154,29 @@ contains
     scene%operations = operations%count
     scene%operation_name = operations%names(k)%s
     if (diagnostics%count() > mistakes) return
+    if (k > 1) call keep_heat_due(scene)
     begins = 0
     if (k > 1) begins = operations%ends(k - 1)
     operations%ends(k) = begins + scene%strategy%end_time
     if (k > 1) call delay(begins, scene)
   end subroutine read_operation
+
+  !> Bodies that deform and conduct heat take over what the operation before has left of the heat of its last step.
+  pure subroutine keep_heat_due(scene)
+    type(scene_t), intent(inout) :: scene
+    type(state_variable_t) :: due
+    integer :: g
+
+    if (.not. scene%fields(displacement_field)%declared) return
+    due = state_variable(name_of_heat_due, 'energy/length^3', transfer_scalar)
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%elem /= 'PL8TM') cycle
+        due%first = total_components(group%variables) + 1
+        group%variables = [group%variables, due]
+      end associate
+    end do
+  end subroutine keep_heat_due
 
   !> Times of an operation count from its beginning; those of a run go on.
   pure subroutine delay(begins, scene)

@@ -1,7 +1,8 @@
 !> Where the drivers of the points of each group come from: fields, states of other formulations, stress, the body behind.
 module driver_sources
   use drivers, only: at_body_effusivity, at_corner_place, at_die_effusivity, at_status, driver_source_t, drivers_t, flow_name, &
-                     from_effusivity, from_field, from_flow, from_itself, from_nothing, from_state, from_stress, from_unloading, &
+                     from_effusivity, from_field, from_flow, from_itself, from_nothing, from_state, from_stress, from_stretch, &
+                     from_unloading, &
                      is_scalar, of_contact
   use fields, only: find_field
   use kinds, only: wp
@@ -9,13 +10,13 @@ module driver_sources
   use law_api, only: driver_count, driver_t, driver_temperature, heat_law, law_t, solid_law
   use materials, only: has_number
   use point_temperatures, only: temperature_field
-  use scene, only: host_of, is_solid, role_contact, role_heat_contact, scene_t
+  use scene, only: host_of, is_solid, plane_stress, role_contact, role_heat_contact, scene_t
   use state_variables, only: find_variable
   use strategy, only: coupling_monolithic
   use stress_measures, only: measure_names, nmeasure
   implicit none
   private
-  public :: find_drivers, missing_driver, driver_of_others
+  public :: find_bodies_behind, find_drivers, missing_driver, driver_of_others
 
 contains
 
@@ -41,7 +42,7 @@ contains
           n = driver_count(laws(law))
           if (n == 1 .and. group%role /= role_contact) n = 0
           m = n
-          if (is_heated_by_work(scene, g, laws(law))) m = n + 1
+          if (is_heated_by_work(scene, g, laws(law)) .or. is_stretched(scene, g, laws(law))) m = n + 1
         end if
         allocate (drivers(g)%value(m, 2, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
         allocate (drivers(g)%source(m))
@@ -55,7 +56,11 @@ contains
             drivers(g)%source(k) = source_of(scene, g, laws(law)%drivers(k - 1)%name)
         end do
         if (m > n) then
-          drivers(g)%source(m) = source_of_unloading(scene, source_of(scene, g, work_name))
+          if (is_stretched(scene, g, laws(law))) then
+            drivers(g)%source(m) = source_of_stretch(scene, g)
+          else
+            drivers(g)%source(m) = source_of_unloading(scene, source_of(scene, g, work_name))
+          end if
           drivers(g)%value(m, :, :, :) = 1
         end if
         if (follows_temperature(scene, laws, g, drivers(g)%source)) then
@@ -87,6 +92,31 @@ contains
       if (law%drivers(k)%name == work_name) yes = is_asked_for(scene, g, law%drivers(k))
     end do
   end function is_heated_by_work
+
+  !> Heat in a body whose thickness stretches.
+  pure function is_stretched(scene, g, law) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g   !! number of the group
+    type(law_t), intent(in) :: law
+    logical :: yes
+
+    yes = law%kind == heat_law .and. scene%finite .and. scene%plane_state == plane_stress .and. scene%groups(g)%host > 0
+    if (yes) yes = find_variable(scene%groups(scene%groups(g)%host)%variables, 'stretch_zz') > 0
+  end function is_stretched
+
+  !> The stretch across the plane of the body that a group is a formulation on.
+  pure function source_of_stretch(scene, g) result(source)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g   !! number of the group
+    type(driver_source_t) :: source
+
+    source%kind = from_stretch
+    allocate (source%group(size(scene%groups)), source%row(size(scene%groups)), source=0)
+    associate (host => scene%groups(g)%host)
+      source%group(host) = host
+      source%row(host) = scene%groups(host)%variables(find_variable(scene%groups(host)%variables, 'stretch_zz'))%first
+    end associate
+  end function source_of_stretch
 
   !> Elastic strain where plastic work is.
   pure function source_of_unloading(scene, work) result(source)

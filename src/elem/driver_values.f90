@@ -1,7 +1,7 @@
 !> Values of the drivers at the start and at the end of a step.
 module driver_values
   use drivers, only: at_body_effusivity, driver_source_t, drivers_t, from_effusivity, from_field, from_flow, from_itself, &
-                     from_state, from_stress, from_unloading, is_scalar
+                     from_state, from_stress, from_stretch, from_unloading, is_scalar
   use fields, only: field_t, has_corners_only
   use kinds, only: wp
   use law_api, only: driver_temperature, law_t
@@ -112,6 +112,11 @@ contains
             own%value(k, 1, :, e) = unloaded_at_points(scene, solution, g, own%source(k), e)
             own%value(k, 2, :, e) = own%value(k, 1, :, e)
           end do
+        case (from_stretch)
+          ! so does this
+          if (at == 2) cycle
+          own%value(k, 1, :, :) = solution%groups(group%host)%committed(own%source(k)%row(group%host), :, :)
+          own%value(k, 2, :, :) = own%value(k, 1, :, :)
         case (from_itself)
           if (at == 1) own%value(k, at, :, :) = solution%groups(g)%committed(own%source(k)%row(g), :, :)
         case (from_flow)

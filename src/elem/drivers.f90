@@ -11,7 +11,8 @@
 !> both bodies, those of the accepted state, where heat of friction is shared by them.
 !>
 !> Behind the drivers of a law for heat that plastic work drives is one of the element: the volume that the work is per, free of
-!> elastic strain, over the volume of the point, at the start of the step.
+!> elastic strain, over the volume of the point, at the start of the step. In plane stress of large strain, where work is per volume
+!> at the start of the scene, it is the stretch of the thickness then, also where no plastic work becomes heat.
 !>
 !> Where each driver comes from is found once (`driver_sources`); its values are taken in every evaluation (`driver_values`).
 module drivers
@@ -21,13 +22,13 @@ module drivers
   implicit none
   private
   public :: stress_driver_count, hand_over_stress, from_nothing, from_field, from_state, from_flow, from_itself, &
-            from_effusivity, from_stress, from_unloading, flow_name, at_status, at_pressure, at_gap, at_die_piece, at_die_xi, &
-            at_friction_work, at_corner_work, at_corner_place, at_body_effusivity, at_die_effusivity, of_contact, &
+            from_effusivity, from_stress, from_unloading, from_stretch, flow_name, at_status, at_pressure, at_gap, at_die_piece, &
+            at_die_xi, at_friction_work, at_corner_work, at_corner_place, at_body_effusivity, at_die_effusivity, of_contact, &
             driver_source_t, drivers_t, with_slopes, drives_heat, drivers_of_half, own_states_at_end, is_scalar
 
   !> Where a driver comes from. A state variable of the formulation itself is that at the start of the step.
   integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3, from_itself = 4, from_effusivity = 5, &
-                        from_stress = 6, from_unloading = 7
+                        from_stress = 6, from_unloading = 7, from_stretch = 8
   !> Name of the flow stress of the body behind a side.
   character(len=*), parameter :: flow_name = 'flow_stress'
 

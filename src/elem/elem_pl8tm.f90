@@ -9,8 +9,9 @@
 !> over the volume ratio that points then have (1 on the first mesh; kept where new meshes may come). Work is per volume of now
 !> without elastic strain, a larger one of a body that has expanded: dv_n is that at the start of the step, so that no work is lost
 !> of a step whose motion is found after the temperature. In plane stress of finite strains, where PL8TM does not know the
-!> thickness, it is dv0. e is the volume strain, ln(dv) where kinematics are finite, of the motion that PL8LS gives the body.
-!> Linearised exactly, along the displacements too, but for the plastic work.
+!> thickness at the end, it is dv0, and heat flows in the thickness at the start of the step. e is the volume strain, ln(dv) where
+!> kinematics are finite, of the motion that PL8LS gives the body. Linearised exactly, along the displacements too, but for the
+!> plastic work.
 !> Source: K.J. Bathe, Finite Element Procedures, sec. 7.2; R.W. Lewis et al., The Finite Element Method in Heat Transfer Analysis.
 module elem_pl8tm
   use elem_api, only: block_inverted, elem_t, first_unknown, instant_t, layout_t, mode_error, mode_restore, report_t, &
@@ -25,7 +26,7 @@ module elem_pl8tm
   use scene, only: group_t, plane_stress, role_body, scene_t
   use sections, only: thickness_at
   use shape_functions, only: quad4, quad8_corner
-  use state_variables, only: find_variable, name_of_ratio, state_variable_t
+  use state_variables, only: find_variable, name_of_heat_due, name_of_ratio, state_variable_t
   implicit none
   private
   public :: elem_pl8tm_row
@@ -114,7 +115,7 @@ contains
     type(functions_t) :: own
     type(heat_points_t) :: place
     real(wp) :: motion(16)
-    integer :: e, k, u, ratio, n, m
+    integer :: e, k, u, ratio, due, n, m
 
     force = 0
     if (instant%content .and. instant%mode /= mode_error) trial = committed
@@ -129,7 +130,9 @@ contains
     ! behind the law's own state
     ratio = find_variable(group%variables, name_of_ratio)
     if (ratio > 0) ratio = group%variables(ratio)%first
-    n = merge(ratio - 1, size(committed, 1), ratio > 0)
+    due = find_variable(group%variables, name_of_heat_due)
+    if (due > 0) due = group%variables(due)%first
+    n = size(committed, 1) - count([ratio, due] > 0)
     m = min(size(drivers, 1), driver_count(law))
     call quad8_rule(group%rule%n, rule)
     call functions_of(group%option == bilinear, rule, own)
@@ -147,6 +150,7 @@ contains
       if (ratio > 0) place%dv0(:rule%npoint) = place%dv0(:rule%npoint)/committed(ratio, :, e)
       if (kinematics%finite .and. scene%plane_state == plane_stress) then
         place%worked = place%dv0
+        if (size(drivers, 1) > m) place%dv(:rule%npoint) = place%dv(:rule%npoint)*drivers(m + 1, 1, :, e)
       else if (size(drivers, 1) > m) then
         place%worked(:rule%npoint) = place%worked(:rule%npoint)*drivers(m + 1, 1, :, e)
       end if
@@ -161,6 +165,10 @@ contains
                            du(:own%n, e), start(:own%n, e), force(:, e), stiffness(:, :, e), report%heat_stored)
           call add_released(instant, law, material, rule%npoint, own, place, drivers(:m, :, :, e), du(:own%n, e), &
                             start(:own%n, e), u, committed(:n, :, e), trial(:n, :, e), force(:, e), stiffness(:, :, e), report)
+          if (due > 0) then
+            call add_due(instant, rule%npoint, own, place, committed(due, :, e), force(:, e), report)
+            trial(due, :, e) = 0
+          end if
         end if
         do k = 1, instant%flow%n
           call add_flow(instant, k, law, material, kinematics%finite, rule%npoint, own, place, drivers(:m, :, :, e), &
@@ -397,6 +405,24 @@ contains
     report%heat_stored = report%heat_stored - counted
     report%heat_released = report%heat_released - sum(heat)*instant%dt - counted
   end subroutine add_released
+
+  !> Heat that the operation before has left, in this step.
+  pure subroutine add_due(instant, npoint, own, place, due, force, report)
+    type(instant_t), intent(in) :: instant
+    integer, intent(in) :: npoint
+    type(functions_t), intent(in) :: own
+    type(heat_points_t), intent(in) :: place
+    real(wp), intent(in) :: due(:)              !! (npoint) per volume at the start of the scene [energy/length^3]
+    real(wp), intent(inout) :: force(:)         !! [power]
+    type(report_t), intent(inout) :: report
+    real(wp) :: heat(own%n)
+
+    if (.not. any(abs(due) > 0)) return
+    heat = matmul(own%phi(:own%n, :npoint), due*place%dv0(:npoint))
+    force(:own%n) = force(:own%n) - heat/instant%dt
+    report%source = report%source + sum((heat/instant%dt)**2)
+    report%heat_released = report%heat_released + sum(heat)
+  end subroutine add_due
 
   !> Heat conducted at one of the instants of the flow rule.
   pure subroutine add_flow(instant, k, law, material, finite, npoint, own, place, drivers, change, start, u, force, stiffness)

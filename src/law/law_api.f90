@@ -336,7 +336,7 @@ contains
       choosing = law%lines(i)%kind == line_choice
       n = n + size(law%lines(i)%parameters)
     end do
-    yes = size(material%values) == n
+    yes = size(material%values) == n .and. (allocated(material%steel) .or. .not. law%of_steel)
   end function is_complete
 
   !> Drivers of a law, the temperature among them.

@@ -12,7 +12,7 @@ module next_operation
   use state_variables, only: find_variable
   implicit none
   private
-  public :: begin_operation, mesh_for_operation, remesh_of
+  public :: begin_operation, mesh_for_operation, remesh_of, same_group
 
   !> What many small motions leave of their sum, over the size of what moves.
   real(wp), parameter :: round_off = 1.0e4_wp*eps

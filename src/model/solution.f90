@@ -83,7 +83,7 @@ module solution
     real(wp) :: worst_fraction = 0.0_wp
     !> Largest share of an element that should have become austenite on heating, of a steel without its kinetics (heated_steels).
     real(wp) :: missing_austenite = 0.0_wp
-    !> Share that a steel of a CCT diagram alone should have formed in holds, by its slowest history (held_steels).
+    !> Share that a steel of a CCT diagram alone should have formed in holds, by its histories (held_steels).
     real(wp) :: held_growth = 0.0_wp
     !> Parts without room to flow.
     type(confinement_record_t) :: confinement

@@ -6,7 +6,7 @@ module state_variables
   implicit none
   private
   public :: state_variable_t, state_variable, component_names, find_variable, is_transfer_kind, total_components
-  public :: name_of_ratio
+  public :: name_of_heat_due, name_of_ratio
   public :: transfer_scalar, transfer_tensor, transfer_fraction, transfer_contact, transfer_recompute
 
   character(len=*), parameter :: transfer_scalar = 'scalar'
@@ -16,6 +16,8 @@ module state_variables
   !> Name of a variable of bodies that conduct heat: volume at the start of the mesh over that of the same mass at the start of the
   !> scene. REMDATA multiplies it by what the volume has changed on a mesh.
   character(len=*), parameter :: name_of_ratio = 'volume_ratio'
+  !> Name of another one: heat per volume at the start of the scene that an operation has left, to be released in the next step.
+  character(len=*), parameter :: name_of_heat_due = 'heat_due'
   character(len=*), parameter :: transfer_recompute = 'recompute'
 
   !> One declared part of the state. Units are words: `stress`, `length`, `-`, ... since decks are free in their units.

@@ -11,6 +11,7 @@ usage: run_processes.py [-v] [-k]
 - `waits`: a section before its torch comes, in which nothing moves yet: as few steps as elsewhere.
 - `probes`: the mean temperature of a body is the heat that it took up over its capacity; the extremes are those of its nodes.
 - `mirrored`: a quench of a tooth and of its mirror image, whose nodes are numbered otherwise: the same steps, iterations and temperatures.
+- `stretched`: a bar drawn to twice its length conducts a quarter of the heat, in plane stress as in generalised plane strain.
 - `told`: warnings before a run.
 """
 import json
@@ -155,6 +156,19 @@ def mirrored(checks):
         checks.that(max(right["iterations"]) <= 3, "mirrored: quadratic convergence", list(right["iterations"]))
 
 
+def stretched(checks):
+    """A body that keeps its volume, drawn to twice its length, conducts a quarter of the heat: half the section, twice the way."""
+    for state, more in (("PLSTS 0.5", ""), ("GPLSTN 0.5", "SECTN E FREE\nSECTN KX HELD\nSECTN KY HELD\n")):
+        for kind, solve in (("", "ONCE"), ("BILINEAR", "MONOLITHIC")):
+            run = Run(checks, f"stretched-{state[:5]}-{solve}", f"TITLE stretched\nSTATE {state}\n{more}KINEM LOG\nBLOCK b PL8LS 4 s\n   0. 0. 10. 0. 10. 10. 0. 10.\n"
+                      f"   3 1. 3 1.\nLAW s EPLA\n   200000. 0.3\n   LINEAR 1. 1.\nADDEL b PL8TM h {kind}\nLAW h HEAT\n   10. 1.E-3\nIMPOS b 4 T on 0.\n"
+                      "IMPOS b 2 T on 100.\nFIXED b 1 Y\nFIXED b 4 X\nMOVE b 2 X pull 10.\nLIC on\n   0. 1.\nLIC pull\n   0. 0. 1. 1. 1.2 1.\n"
+                      f"SOLVE {solve}\nSTRAT 0.02 1.E-6 0.04 50 3\nEND\n")
+            if run.ok:
+                flow = run.history["heat_through_b.2/IMPOS"][-1]
+                checks.small(abs(flow/(10*100/10*10*0.5/4) - 1), 3e-4, f"{run.name}: {flow:.3f}")
+
+
 def told(checks):
     steel = "STEEL s\nSOURCE 'round numbers'\nTEMPS MS 300\nMARTEN BETA 0.011\nPHASE ALL\n   LAMBDA 30\n   RHOC 4.5\nEND\n"
     with open(os.path.join(checks.folder, "soft.met"), "w") as file:
@@ -185,6 +199,15 @@ def told(checks):
             lines = [line["text"] for line in summary(run)["warnings"]]
             checks.that([f"bar: it begins at {start}, which is {start + zero:g} degC" in line for line in lines] == [True]*cold,
                         f"begins at {start} with ZERO {zero}: told", lines)
+    # absolute zero is one temperature, whichever card says it; 273 for 273.15 is no mistake
+    for steel_zero, zero, apart in ((0., 273.15, False), (0., 273., False), (-273.15, 0., False), (-273.15, 273.15, True), (0., 0., True)):
+        run = Run(checks, f"zeros{steel_zero:g}{zero:g}", "TITLE zeros\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+                  f"   2 1.   2 1.\nLAW hot META\n   STEEL soft.met s\n   ENERGY 1. ZERO {steel_zero}\nSTART T 1200.\n"
+                  f"RADIA bar 2 EPS 0.8 SIGMA 5.67E-11 ZERO {zero} TS 300.\nSTRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
+        if run.ok:
+            lines = [line["text"] for line in summary(run)["warnings"]]
+            checks.that(["absolute zero is" in line and "by bar.2/RADIA" in line and "by LAW hot" in line for line in lines] == [True]*apart,
+                        f"zeros {steel_zero:g} and {zero:g}: told", lines)
     # air until water comes: never both
     run = Run(checks, "in-turns", "TITLE in turns\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
               "   2 1.   2 1.\nLAW hot HEAT\n   30. 4.5\nSTART T 100.\nLIC air\n   0. 1.   1. 1.   1.1 0.   2. 0.\nLIC water\n   0. 0.   1. 0.   1.1 1.   2. 1.\n"
@@ -196,6 +219,6 @@ def told(checks):
 if __name__ == "__main__":
     all_checks = Checks()
     law_file(all_checks)
-    for case in (melting, bree, waits, probes, mirrored, told):
+    for case in (melting, bree, waits, probes, mirrored, stretched, told):
         case(all_checks)
     sys.exit(all_checks.end())

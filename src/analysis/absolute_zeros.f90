@@ -1,0 +1,72 @@
+!> Offsets of temperatures of a deck: what makes one absolute is the same on all cards. Radiation has it as ZERO, G'Sell-Jonas as
+!> TABS, and a steel has in ZERO what makes it degC, 273.15 less.
+module absolute_zeros
+  use kinds, only: wp
+  use law_api, only: find_parameter, law_t
+  use loads, only: by_radiation
+  use scene, only: role_heat_contact, scene_t
+  use text, only: add_text, string_t, to_text
+  implicit none
+  private
+  public :: judge_zeros
+
+  !> Of freezing water [K].
+  real(wp), parameter :: freezing = 273.15_wp
+  !> 273 for 273.15 is no mistake [temperature].
+  real(wp), parameter :: slack = 1.0_wp
+
+contains
+
+  !> A warning where two cards have other temperatures in mind.
+  subroutine judge_zeros(scene, laws, warnings)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)                          !! (nlaw)
+    type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning)
+    character(len=:), allocatable :: first
+    real(wp) :: zero
+    logical :: told
+    integer :: k, p, a
+
+    told = .false.
+    do k = 1, size(scene%groups)
+      associate (group => scene%groups(k))
+        if (group%role == role_heat_contact) then
+          if (group%heat_contact%radiation > 0) call compare(group%name, group%heat_contact%zero)
+        else if (group%exchange%kind == by_radiation) then
+          call compare(group%name, group%exchange%zero)
+        end if
+      end associate
+    end do
+    do k = 1, size(scene%materials)
+      associate (material => scene%materials(k), law => laws(scene%materials(k)%law_id))
+        p = find_parameter(law, 'ZERO')
+        if (law%of_steel .and. p > 0) call compare('LAW '//material%name, freezing + material%values(p))
+        p = find_parameter(law, 'TABS')
+        a = find_parameter(law, 'A')
+        if (p == 0 .or. a == 0) cycle
+        ! without A nothing depends on it
+        if (material%values(a) > 0) call compare('LAW '//material%name, material%values(p))
+      end associate
+    end do
+
+  contains
+
+    subroutine compare(name, this)
+      character(len=*), intent(in) :: name
+      real(wp), intent(in) :: this   !! to be added to make a temperature absolute [temperature]
+
+      if (told) return
+      if (.not. allocated(first)) then
+        first = name
+        zero = this
+      else if (abs(this - zero) > slack) then
+        told = .true.
+        call add_text(warnings, 'absolute zero is '//to_text(-zero, 5)//' by '//first//', and '//to_text(-this, 5)//' by '//name &
+                      //': ZERO of RADIA and COU2DC, and TABS, make temperatures of the deck absolute, ZERO of a steel makes ' &
+                      //'them degC: in kelvin they are 0 and -273.15, in degC 273.15 and 0')
+      end if
+    end subroutine compare
+
+  end subroutine judge_zeros
+
+end module absolute_zeros
