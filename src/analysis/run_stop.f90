@@ -51,7 +51,7 @@ contains
       end if
     end if
     ! attempts beyond a limit load lose the die too
-    limit = limit_load_words(scene, solution, unheld%die == 0 .and. any(outcome%history%line_search < 0))
+    limit = limit_load_words(scene, solution, unheld%die == 0 .and. any(outcome%history%past_limit))
     if (unheld%die > 0 .and. limit == '') advice = advice//unheld_die_words(scene, solution, unheld)
     if (outcome%of_heat) then
       advice = advice//'numbers that jump along the temperature, NORMS near round-off or a least step too large in ' &

@@ -75,8 +75,9 @@ contains
               //'or MOVE drives it'
     else
       words = words//', and at time '//to_text(solution%time, 6)//' it loses the last that carries it'//last_place() &
-              //': a SPRNG card holds it, a fixed body beside the part that faces it (CNT2D) stops it as distance blocks do, ' &
-              //'MOVE in place of FORCE drives it, or an operation (OPERA) goes on without it'
+              //': the part slides out from under it, or flows away as at a limit load (a die that MOVE drives, in place of ' &
+              //'FORCE, goes beyond it); a fixed body beside the part that faces it (CNT2D) stops it as distance blocks do, ' &
+              //'or an operation (OPERA) goes on without it'
     end if
 
   contains

@@ -51,20 +51,22 @@ contains
 
   !> The coefficient with which a step of length dt that failed is tried again where a die withdraws, or past a limit point
   !> where a die moves; 0 where none does.
-  subroutine begin_damping(scene, equations, solution, dt, past_limit, die)
+  subroutine begin_damping(scene, equations, solution, dt, past_limit, die, withdraws)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt     !! of the step that failed [time]
     logical, intent(in) :: past_limit   !! the step that failed has been past a limit point
     integer, intent(out) :: die         !! the one that withdraws, or moves, with the largest force, 0 where none does
+    logical, intent(out) :: withdraws   !! it does the former
     real(wp), dimension(equations%dofs%ndof) :: rest, motion
     real(wp) :: driven(size(equations%dofs%prescribed)), force, largest
     type(report_t) :: report
-    logical :: at_rest
+    logical :: at_rest, back
     integer :: k
 
     die = 0
+    withdraws = .false.
     if (.not. scene%fields(displacement_field)%declared .or. scene%load_factor%multiplier > 0) return
     at_rest = .not. solution%last_step > 0
     call prescribed_motion(scene, equations%dofs, solution%fields, at_rest, solution%time, solution%time + dt, driven)
@@ -80,11 +82,13 @@ contains
         if (any(pilot(1:2, k) == 0)) cycle
         if (.not. any(abs(motion(pilot(1:2, k))) > 0)) cycle
         ! one that turns a part over does not let it go
-        if (.not. (past_limit .or. dot_product(equations%force(pilot(1:2, k)), motion(pilot(1:2, k))) < 0)) cycle
+        back = dot_product(equations%force(pilot(1:2, k)), motion(pilot(1:2, k))) < 0
+        if (.not. (past_limit .or. back)) cycle
         force = length_of(equations%force(pilot(1:2, k)))
         if (.not. force > largest) cycle
         largest = force
         die = k
+        withdraws = back
       end do
     end associate
     if (die == 0) return

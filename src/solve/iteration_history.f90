@@ -51,8 +51,6 @@ module iteration_history
   real(wp), parameter :: before_turn = 0.35_wp, turn_force = 1.0e-3_wp
   !> After so many short searches one after the other the whole correction is taken.
   integer, parameter :: short_searches = 2
-  !> Iterations past a limit point are this many times as many at most.
-  integer, parameter :: times_for_limit = 3
 
 contains
 
@@ -191,17 +189,6 @@ contains
     end associate
   end function falls_on
 
-  !> On the way from a limit point to an equilibrium further on, which may take a few times as many iterations as others.
-  pure function leaves_limit(scene, history) result(yes)
-    type(scene_t), intent(in) :: scene
-    type(iteration_t), intent(in) :: history(:)   !! (niteration)
-    logical :: yes
-    integer :: n
-
-    n = size(history)
-    yes = n <= times_for_limit*scene%strategy%max_iterations .and. any(history(max(n - patience, 1):)%past_limit)
-  end function leaves_limit
-
   !> Contact changes to and fro between two states, and whole corrections lead from each to the other.
   pure function goes_to_and_fro(history)
     type(iteration_t), intent(in) :: history(:)   !! (niteration)
@@ -226,7 +213,7 @@ contains
     associate (norms => history%force_norm)
       if (.not. norms(n + 1) <= huge(1.0_wp)) then
         reason = 'not a number in the forces'
-      else if (n >= scene%strategy%max_iterations .and. .not. (falls_on(history) .or. leaves_limit(scene, history))) then
+      else if (n >= scene%strategy%max_iterations .and. .not. falls_on(history)) then
         reason = to_text(n)//' iterations without convergence (residual '//to_text(norms(n + 1), 3)//')'
       else if (n > patience .and. norms(n + 1) > hopeless*norms(min(2, n + 1))) then
         reason = 'diverged: residual '//to_text(norms(n + 1), 3)

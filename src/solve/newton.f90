@@ -25,7 +25,7 @@ module newton
   use nonlinear_elimination, only: take_eliminated
   use onset_motion, only: add_missing
   use path_record, only: path_step_t
-  use pseudo_transient, only: ease_shift, shift_t, solve_shifted, turn_downhill
+  use pseudo_transient, only: ease_shift, goes_past_limits, shift_t, solve_shifted, turn_downhill
   use predictor, only: lagging_dies, leaving_dies, predict, work_of_dies
   use scene, only: scene_t
   use solution, only: solution_t
@@ -98,7 +98,7 @@ contains
     real(wp) :: work(size(scene%dies))
     logical :: lags(size(scene%dies)), left_by(size(scene%dies))
     logical :: staying(equations%dofs%ndof)
-    logical :: changed, followed, again, kept, steep, afresh, taken
+    logical :: changed, followed, again, kept, steep, afresh, goes_on, taken
     integer :: first
 
     allocate (outcome%history(0), outcome%du(equations%dofs%ndof))
@@ -123,6 +123,7 @@ contains
       return
     end if
 
+    goes_on = goes_past_limits(scene, equations%dofs, outcome%du + missing)
     again = .false.
     if (present(go_on)) again = go_on .and. .not. equations%solves(equations%now)%own(displacement_field)
     steep = is_steep(scene, equations)
@@ -201,14 +202,15 @@ contains
                              line%inner, report, outcome%error)
       if (allocated(outcome%error)) exit
       taken = line%inner > 0
-      if (shift%uphill .and. .not. taken) &
+      line%past_limit = shift%uphill .and. .not. taken
+      if (line%past_limit .and. goes_on) &
         call turn_downhill(scene, equations, solution, dt, external, residual, shift, correction, outcome%du, taken, report, &
                            outcome%error)
       if (allocated(outcome%error)) then
         call set_solver_cause(outcome)
         exit
       end if
-      line%past_limit = shift%value > 0
+      line%past_limit = line%past_limit .and. .not. taken .or. shift%value > 0
       if (taken) then
         line%line_search = 1
       else

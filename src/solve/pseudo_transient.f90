@@ -11,22 +11,23 @@
 !> 35 (1998) 508-523). s begins so that the work on the correction is as much above zero as it was below (more, where other
 !> directions still lead uphill: J.J. More, D.C. Sorensen, Math. Programming 16 (1979) 1-20, for directions of negative curvature).
 !> It falls with the residual, and rises where that does or a correction goes too far. What is found at the end is an equilibrium:
-!> none of it is viscous.
+!> none of it is viscous. Under given loads alone there is none to be looked for: a limit point is a limit load (goes_past_limits).
 module pseudo_transient
   use contact_changes, only: contact_states_t, recall_contact, remember_contact
   use convergence, only: free_force, slope_along
   use corrections, only: solve_correction
+  use dofs, only: dofs_t
   use elem_api, only: block_done, report_t
   use equations, only: equations_t
   use errors, only: error_t
   use evaluation, only: add_diagonal, evaluate
   use kinds, only: wp
-  use scene, only: scene_t
+  use scene, only: role_side_load, role_volume_load, scene_t
   use solution, only: solution_t
   use volumes_of_unknowns, only: volumes_of_motion
   implicit none
   private
-  public :: ease_shift, shift_t, solve_shifted, turn_downhill
+  public :: ease_shift, goes_past_limits, shift_t, solve_shifted, turn_downhill
 
   !> State of the iterations of a step.
   type :: shift_t
@@ -118,6 +119,24 @@ contains
     end associate
     shift%largest = max(shift%largest, shift%value)
   end subroutine turn_downhill
+
+  !> Past a limit point equilibrium is looked for further on: where a die or a support moves, or nothing loads the part. Under given
+  !> loads alone the point is a limit load, and the run ends there.
+  pure function goes_past_limits(scene, dofs, motion) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(in) :: dofs
+    real(wp), intent(in) :: motion(:)   !! (ndof) of prescribed unknowns in the step [unknown]
+    logical :: yes
+    integer :: k
+
+    yes = .not. (size(scene%forces) > 0 .or. size(scene%die_forces) > 0 &
+                 .or. any(scene%groups%role == role_side_load .or. scene%groups%role == role_volume_load))
+    do k = 1, size(dofs%prescribed)
+      associate (d => dofs%prescribed(k)%dof)
+        yes = yes .or. dofs%quantity(d) == 1 .and. abs(motion(d)) > 0
+      end associate
+    end do
+  end function goes_past_limits
 
   !> The shift of the next iteration, after one that took a share of its correction.
   elemental subroutine ease_shift(share, before, now, shift)

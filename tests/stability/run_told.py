@@ -218,7 +218,8 @@ def free_dies(checks):
     """What is told of a free die at which a run stops: the card that holds one that touches nothing; of one that touches, how to go
     beyond its largest force."""
     pushed = {"MOVE   upper Y press": "FORCE  upper Y 1. press", "1. -2.": "1. -20000."}
-    for name, more, phrase in (("apart", {"30. 15.   -5. 15.": "30. 16.   -5. 16."}, "die upper is free along Y and touches nothing: a SPRNG"),
+    for name, more, phrase in (("apart", {"30. 15.   -5. 15.": "30. 16.   -5. 16.", "1. -2.": "1. 20000."},
+                                "die upper is free along Y and touches nothing, nor does a force push it to a side that faces it: a SPRNG"),
                                ("too much", {"   LINEAR 700. 300.": "   LINEAR 700. 0.", "KINEM  LOG": "KINEM  SMALL", "1.E-4 0.1": "0.1 0.1"},
                                 "a die that MOVE drives, in place of FORCE")):
         run = Run(checks, name.replace(" ", "-"), changed(checks, {**pushed, **more}), NO_CONVERGENCE)
