@@ -34,6 +34,8 @@ module iteration_history
   !> Beyond the largest number of iterations the residual falls on when the best of the last `patience` is below this share of the
   !> best before.
   real(wp), parameter :: falling = 0.7_wp
+  !> Nor is a step cut whose last two iterations each brought the residual to this share.
+  real(wp), parameter :: about_to_end = 0.1_wp
   !> As long as a sheet peels off a die, point by point, contact changes in each iteration, corrections are whole, and the best of
   !> the last `peeling_window` is below this share of the best before: the number of points ends it.
   real(wp), parameter :: peeling = 0.97_wp
@@ -172,6 +174,17 @@ contains
     is_under_way = line%contact_changed .or. line%watched .or. line%past_limit
   end function is_under_way
 
+  !> The residual falls fast: an iteration or two are missing.
+  pure function is_about_to_end(history) result(yes)
+    type(iteration_t), intent(in) :: history(:)   !! (niteration)
+    logical :: yes
+    integer :: n
+
+    n = size(history)
+    yes = n > 2
+    if (yes) yes = all(history(n - 1:n)%force_norm < about_to_end*history(n - 2:n - 1)%force_norm)
+  end function is_about_to_end
+
   !> Contact still changes and the residual falls with it: a thin sheet between dies opens and closes point by point, whatever the
   !> length of the step.
   pure function falls_on(history)
@@ -213,7 +226,7 @@ contains
     associate (norms => history%force_norm)
       if (.not. norms(n + 1) <= huge(1.0_wp)) then
         reason = 'not a number in the forces'
-      else if (n >= scene%strategy%max_iterations .and. .not. falls_on(history)) then
+      else if (n >= scene%strategy%max_iterations .and. .not. (falls_on(history) .or. is_about_to_end(history))) then
         reason = to_text(n)//' iterations without convergence (residual '//to_text(norms(n + 1), 3)//')'
       else if (n > patience .and. norms(n + 1) > hopeless*norms(min(2, n + 1))) then
         reason = 'diverged: residual '//to_text(norms(n + 1), 3)

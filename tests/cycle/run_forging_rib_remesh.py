@@ -178,8 +178,10 @@ def ends_of_contact(checks, out, generation):
     checks.that(reported["contour"]["off_ends"] < ON_CONTOUR, f"mesh {generation}: the corrected contour goes through the ends of contact",
                 reported["contour"]["off_ends"])
     for _, x in kept:
-        checks.that(numpy.min(numpy.hypot(*(contour[:, 0] - x).T)) < ON_CONTOUR * size, f"mesh {generation}: a node where the contour "
-                    "begins or ceases to follow the die", x)
+        away = numpy.hypot(*(contour[:, 0] - x).T)
+        k = numpy.argmin(away)
+        checks.that(away[k] < max(ON_CONTOUR * size, SHORTEST * length(contour[k])), f"mesh {generation}: a node where the contour "
+                    "begins or ceases to follow the die, or within 5 % of a side of it", (x, away[k]))
     # contact of a single node, ended beside where it begins
     alone = [min(numpy.hypot(*(found[other] - found[k])) for other in range(len(found)) if begins[other] != begins[k])
              < SHORTEST * length(contact[sides[k]]) for k in range(len(found))]

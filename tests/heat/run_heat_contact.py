@@ -340,7 +340,7 @@ END
 FLAT = ("DIE    upper PILOT 0. 15.\n   SEGM  40. 15.   -1. 15.\nCNT2D  billet 3 upper -3 rough\nTDIE   upper T 250. C 2.E5\n")
 PRESS = "Y press\nLIC    press\n   0. 0.   0.9 -9."
 MOVED = FLAT + "MOVE   upper " + PRESS
-BENT = MOVED.replace("SEGM  40. 15.   -1. 15.", "PARAB 40. 15.   10. 14.5   -1. 15.")
+BENT = MOVED.replace("SEGM  40. 15.   -1. 15.", "PARAB 40. 15.5   10. 15.   -1. 15.5")
 PUSHED = FLAT + "FORCE  upper Y 2.E4 load\nLIC    load\n   0. -0.3  0.03 -0.7"
 BODY = ("BLOCK  tool PL8LS 4 elastic\n   0. 15.   25. 15.   25. 25.   0. 25.\n   9 1.  3 1.\nLAW    elastic ELA\n   200000. 0.3\n"
         "ADDEL  tool PL8TM warm BILINEAR\nLAW    warm HEAT\n   30. 4.5\nSTART  T 250. tool\nDIE    upper SIDES tool 1\n"
