@@ -73,6 +73,9 @@ contains
     else if (unheld%now > 0) then
       words = words//', and nothing resists it there: what touches it slides, and friction bears no more; a SPRNG card holds it, ' &
               //'or MOVE drives it'
+    else if (.not. still_presses()) then
+      words = words//', and at time '//to_text(solution%time, 6)//' its force lets it go'//last_place() &
+              //': a SPRNG card holds it, or an operation (OPERA) goes on without it'
     else
       words = words//', and at time '//to_text(solution%time, 6)//' it loses the last that carries it'//last_place() &
               //': the part slides out from under it, or flows away as at a limit load (a die that MOVE drives, in place of ' &
@@ -81,6 +84,22 @@ contains
     end if
 
   contains
+
+    !> Its force is as large as a step ago, or larger.
+    function still_presses() result(yes)
+      logical :: yes
+      real(wp) :: force
+      integer :: k
+
+      yes = .false.
+      do k = 1, size(scene%die_forces)
+        associate (load => scene%die_forces(k))
+          if (load%die /= unheld%die .or. load%component /= unheld%component .or. load%multiplier == 0) cycle
+          force = force_at(scene, load, solution%time)
+          yes = abs(force) > 0 .and. force*(force - force_at(scene, load, solution%time - solution%last_step)) >= 0
+        end associate
+      end do
+    end function still_presses
 
     !> Where the die bore on the part at the start of the step.
     function last_place() result(place)
