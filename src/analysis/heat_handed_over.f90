@@ -106,7 +106,7 @@ contains
     real(wp) :: share, to_die
     integer :: e, p, piece
 
-    heat = heat_of_friction(old, before, g)
+    allocate (heat, source=heat_of_friction(old, before, g))
     if (.not. any(abs(heat) > 0)) return
     associate (contact => old%groups(g)%heat_contact, at_points => drivers(g)%value, nodes => old%groups(g)%connectivity)
       call find_bodies_behind(old, nodes(2, :), part%body, part%element, part%side)
