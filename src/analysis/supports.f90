@@ -181,7 +181,7 @@ contains
     yes = .false.
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
-        if (group%die == 0 .or. group%material == 0) cycle
+        if (group%die == 0 .or. group%material == 0 .or. size(group%connectivity) == 0) cycle
         if (is_deformable(scene%dies(group%die))) then
           ! another body, which may hold it
           yes = .false.

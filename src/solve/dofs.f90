@@ -13,7 +13,7 @@ module dofs
   use text, only: string_t
   implicit none
   private
-  public :: dofs_t, field_dofs_t, group_dofs_t, number_dofs, number_pairs, prescribed_motion, move_fields
+  public :: dofs_t, field_dofs_t, group_dofs_t, is_driven, number_dofs, number_pairs, prescribed_motion, move_fields
 
   !> Unknown of each component of a field at each place (ncomp, place), 0 where there is none.
   type :: field_dofs_t
@@ -372,6 +372,21 @@ contains
       end do
     end associate
   end subroutine number_elements
+
+  !> A support or a die moves: some prescribed unknown that is a motion.
+  pure function is_driven(dofs, motion) result(yes)
+    type(dofs_t), intent(in) :: dofs
+    real(wp), intent(in) :: motion(:)   !! (nprescribed) [unknown]
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    do k = 1, size(motion)
+      associate (q => dofs%quantity(dofs%prescribed(k)%dof))
+        if (dofs%quantities(q)%s == 'motion') yes = yes .or. abs(motion(k)) > 0
+      end associate
+    end do
+  end function is_driven
 
   !> Motion of the prescribed unknowns from time t0 (or from rest) to t1, in the order of the list.
   pure subroutine prescribed_motion(scene, dofs, fields, from_rest, t0, t1, motion)

@@ -7,7 +7,7 @@ module evaluation
   use equations, only: equations_t, solves_heat
   use fields, only: displacement_field
   use kinds, only: wp
-  use matrix_pattern, only: matrix_pattern_t
+  use matrix_pattern, only: add_to_diagonal, matrix_pattern_t
   use resting_bodies, only: hold_resting
   use round_off_floors, only: set_floors
   use scene, only: scene_t
@@ -90,22 +90,20 @@ contains
     call equations%timers%stop(timer)
   end subroutine evaluate
 
-  !> Add to the diagonal of a matrix.
+  !> Add to the diagonal of a matrix, unknown by unknown.
   pure subroutine add_diagonal(pattern, equation, added, values)
     class(matrix_pattern_t), intent(in) :: pattern
     integer, intent(in) :: equation(:)     !! (ndof) of every unknown, 0 where it has none
     real(wp), intent(in) :: added(:)       !! (ndof) [residual/unknown]
     real(wp), intent(inout) :: values(:)   !! (nnz) [residual/unknown]
     real(wp) :: diagonal(0:pattern%neq)
-    integer :: d, k
+    integer :: d
 
     diagonal = 0
     do d = 1, size(equation)
       diagonal(equation(d)) = added(d)
     end do
-    do k = 1, pattern%nnz
-      if (pattern%row(k) == pattern%column(k)) values(k) = values(k) + diagonal(pattern%row(k))
-    end do
+    call add_to_diagonal(pattern, diagonal, values)
   end subroutine add_diagonal
 
   !> Groups whose multipliers are carried forward.

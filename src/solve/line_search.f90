@@ -29,7 +29,7 @@ module line_search
   use solution, only: solution_t
   implicit none
   private
-  public :: search_along, manner_t, short_share
+  public :: manner_t, real_fall, search_along, short_share
 
   !> How to search: take the whole whatever the residual, or find the zero along the correction more closely.
   type :: manner_t

@@ -123,7 +123,8 @@ contains
       return
     end if
 
-    goes_on = goes_past_limits(scene, equations%dofs, outcome%du + missing)
+    goes_on = goes_past_limits(scene, equations%dofs, outcome%du(equations%dofs%prescribed%dof) &
+                               + missing(equations%dofs%prescribed%dof))
     again = .false.
     if (present(go_on)) again = go_on .and. .not. equations%solves(equations%now)%own(displacement_field)
     steep = is_steep(scene, equations)

@@ -27,7 +27,7 @@
 !> iteration to spread.
 module predictor
   use acceptance, only: is_first_step
-  use dofs, only: dofs_t, prescribed_motion
+  use dofs, only: dofs_t, is_driven, prescribed_motion
   use elem_api, only: block_done, report_t
   use equations, only: equations_t, solves_heat
   use errors, only: error_t
@@ -112,7 +112,7 @@ contains
     if (allocated(error)) return
     if (.not. (begun .or. found) .and. report%status == block_done .and. report%event >= 1 &
         .and. report%jump > smooth_contact) then
-      kept = is_driven()
+      kept = is_driven(equations%dofs, motion)
       call start_from(merge(ratio, onset*ratio, kept))
     end if
     if (report%status /= block_done .and. abs(ratio) > 0) then
@@ -131,7 +131,7 @@ contains
 
       if (.not. (present(given) .or. found .or. any(back) .or. is_first_step(solution%probation)) &
           .and. abs(share) > 0 .and. dt > scene%strategy%least_step .and. is_apart(scene, equations)) then
-        if (is_driven()) then
+        if (is_driven(equations%dofs, motion)) then
           call start_from(share, alone=.true.)
           if (report%status == block_done .and. report%between) call try_bend(share)
           if (report%status == block_done .and. (report%event < 1 .or. report%jump > smooth_contact)) return
@@ -156,7 +156,7 @@ contains
 
     !> Start at the motion of the onset, with contact kept; where there is none, as on any mesh.
     subroutine start_on_new_mesh()
-      if (.not. is_driven()) return
+      if (.not. is_driven(equations%dofs, motion)) return
       kept = .true.
       call start_from(onset*ratio)
       if (report%status == block_done) then
@@ -202,19 +202,6 @@ contains
         end associate
       end do
     end function is_motion
-
-    !> A support or a die is moved in the step.
-    function is_driven()
-      logical :: is_driven
-      integer :: i
-
-      is_driven = .false.
-      do i = 1, size(motion)
-        associate (q => equations%dofs%quantity(equations%dofs%prescribed(i)%dof))
-          if (equations%dofs%quantities(q)%s == 'motion') is_driven = is_driven .or. abs(motion(i)) > 0
-        end associate
-      end do
-    end function is_driven
 
     !> Evaluate at the last motion times a share, with the bend of the path where it is the whole of it; what is given is taken as
     !> it is.

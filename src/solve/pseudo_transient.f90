@@ -16,12 +16,13 @@ module pseudo_transient
   use contact_changes, only: contact_states_t, recall_contact, remember_contact
   use convergence, only: free_force, slope_along
   use corrections, only: solve_correction
-  use dofs, only: dofs_t
+  use dofs, only: dofs_t, is_driven
   use elem_api, only: block_done, report_t
   use equations, only: equations_t
   use errors, only: error_t
   use evaluation, only: add_diagonal, evaluate
   use kinds, only: wp
+  use line_search, only: real_fall
   use scene, only: role_side_load, role_volume_load, scene_t
   use solution, only: solution_t
   use volumes_of_unknowns, only: volumes_of_motion
@@ -48,8 +49,6 @@ module pseudo_transient
   real(wp), parameter :: rise = 4.0_wp, least_taken = 0.2_wp, most_taken = 0.5_wp, least_fall = 0.5_wp, fall = 0.1_wp
   !> Below this share of the largest one there is none.
   real(wp), parameter :: least_share = 1.0e-3_wp
-  !> An uphill correction is taken where the residual falls to this part of what it was.
-  real(wp), parameter :: real_fall = 0.5_wp
 
 contains
 
@@ -125,17 +124,12 @@ contains
   pure function goes_past_limits(scene, dofs, motion) result(yes)
     type(scene_t), intent(in) :: scene
     type(dofs_t), intent(in) :: dofs
-    real(wp), intent(in) :: motion(:)   !! (ndof) of prescribed unknowns in the step [unknown]
+    real(wp), intent(in) :: motion(:)   !! (nprescribed) of the step [unknown]
     logical :: yes
-    integer :: k
 
-    yes = .not. (size(scene%forces) > 0 .or. size(scene%die_forces) > 0 &
-                 .or. any(scene%groups%role == role_side_load .or. scene%groups%role == role_volume_load))
-    do k = 1, size(dofs%prescribed)
-      associate (d => dofs%prescribed(k)%dof)
-        yes = yes .or. dofs%quantity(d) == 1 .and. abs(motion(d)) > 0
-      end associate
-    end do
+    yes = is_driven(dofs, motion)
+    if (yes .or. size(scene%forces) > 0 .or. size(scene%die_forces) > 0) return
+    yes = .not. any(scene%groups%role == role_side_load .or. scene%groups%role == role_volume_load)
   end function goes_past_limits
 
   !> The shift of the next iteration, after one that took a share of its correction.

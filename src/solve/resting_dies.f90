@@ -10,7 +10,7 @@ module resting_dies
   use dofs, only: dofs_t
   use fields, only: pilot_field
   use kinds, only: wp
-  use matrix_pattern, only: matrix_pattern_t
+  use matrix_pattern, only: add_to_diagonal, matrix_pattern_t
   use scene, only: role_spring, scene_t
   use solution, only: solution_t
   use solves, only: solve_t
@@ -94,10 +94,7 @@ contains
         end do
       end do
     end associate
-    if (.not. any(diagonal > 0)) return
-    do k = 1, solve%pattern%nnz
-      if (solve%pattern%row(k) == solve%pattern%column(k)) solve%values(k) = solve%values(k) + diagonal(solve%pattern%row(k))
-    end do
+    if (any(diagonal > 0)) call add_to_diagonal(solve%pattern, diagonal, solve%values)
   end subroutine hold_free_dies
 
   !> Components of pilots that have an equation, and whose motion changes no force of the last matrix of the solve.
