@@ -40,7 +40,13 @@ contains
     do k = 1, size(scene%materials)
       associate (material => scene%materials(k), law => laws(scene%materials(k)%law_id))
         p = find_parameter(law, 'ZERO')
-        if (law%of_steel .and. p > 0) call compare('LAW '//material%name, freezing + material%values(p))
+        if (law%of_steel .and. p > 0) then
+          if (abs(material%values(p) - freezing) < slack) &
+            call add_text(warnings, 'LAW '//material%name//': with ZERO '//to_text(material%values(p), 5)//' what is 0 in this ' &
+                          //'deck is '//to_text(material%values(p), 5)//' degC for the steel: ZERO is what is added to make ' &
+                          //'temperatures degC, -273.15 for a deck in kelvin')
+          call compare('LAW '//material%name, freezing + material%values(p))
+        end if
         p = find_parameter(law, 'TABS')
         a = find_parameter(law, 'A')
         if (p == 0 .or. a == 0) cycle

@@ -31,6 +31,7 @@ module march
   use scene, only: scene_t
   use small_strain, only: refuse_large_strain
   use solution, only: solution_t
+  use spent_polynomials, only: refuse_spent_polynomials
   use spurious_mode, only: has_mean_dilatation, spurious_limit
   use step_solves, only: solve_fields
   use step_strategy, only: after_failure, after_success, choose_step
@@ -110,6 +111,7 @@ contains
       if (allocated(error)) exit
       call record(scene, solution, outcome, run, error)
       if (.not. allocated(error)) call refuse_large_strain(scene, run%equations%laws, solution, error)
+      if (.not. allocated(error)) call refuse_spent_polynomials(scene, run%equations%laws, solution, error)
       if (.not. allocated(error)) call refuse_lost_equilibrium(scene, solution, error)
       if (allocated(error)) exit
       if (caught_signal() /= 0 .or. mesh_is_due(solution)) exit

@@ -312,7 +312,7 @@ contains
     real(wp), intent(in) :: drivers(:, :, :)        !! (ndriver, 2, npoint)
     real(wp), intent(in) :: change(:), now(:)       !! temperatures that the error belongs to, and present ones (n)
     type(report_t), intent(inout) :: report
-    real(wp) :: given(max(1, size(drivers, 1)), 9), taken(9), capacity(9), error(9), volume(9)
+    real(wp) :: given(max(1, size(drivers, 1)), 9), taken(9), capacity(9), error(9), volume(9), least
     integer :: n, m
 
     n = own%n
@@ -330,28 +330,36 @@ contains
     end if
     call law%store(material, given(:, :m), given(:, :m), taken(:m), capacity(:m))
     report%temperature_square = report%temperature_square + sum(volume(:m)*error(:m)**2)
-    error(:m) = error(:m)*capacity(:m)/least_capacity(law, material, given(:, 1))
+    least = least_capacity(law, material, given(:, 1))
+    ! a smooth capacity holds no latent heat
+    if (least > 0) error(:m) = error(:m)*capacity(:m)/least
     report%error_square = report%error_square + sum(volume(:m)*error(:m)**2)
     report%error_volume = report%error_volume + sum(volume(:m))
   end subroutine add_error
 
-  !> The least heat capacity at the temperatures of a material's card, or from one of them to the next.
+  !> The least heat capacity at the temperatures where it bends, or from one of them to the next; 0 where it bends nowhere.
   pure function least_capacity(law, material, drivers) result(least)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: drivers(:)   !! (ndriver) that go with the temperature
     real(wp) :: least                    !! [energy/length^3/temperature]
     real(wp) :: given(size(drivers), 1), taken(1), capacity(1)
-    integer :: k, n
+    real(wp), allocatable :: temperatures(:)
+    integer :: k
 
+    least = 0
+    if (associated(law%bends)) then
+      call law%bends(material, temperatures)
+    else if (allocated(material%temperatures)) then
+      allocate (temperatures, source=material%temperatures)
+    else
+      return
+    end if
     given(:, 1) = drivers
-    n = 1
-    if (allocated(material%temperatures)) n = size(material%temperatures)
-    least = huge(least)
-    do k = 1, n
-      if (allocated(material%temperatures)) given(driver_temperature, 1) = material%temperatures(k)
+    do k = 1, size(temperatures)
+      given(driver_temperature, 1) = temperatures(k)
       call law%store(material, given, given, taken, capacity)
-      if (capacity(1) > 0) least = min(least, capacity(1))
+      if (capacity(1) > 0 .and. .not. (least > 0 .and. least < capacity(1))) least = capacity(1)
     end do
   end function least_capacity
 

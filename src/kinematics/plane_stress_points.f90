@@ -64,9 +64,23 @@ contains
         met(i) = .not. abs(step) > round_off_strain
         strain(i) = strain(i) + step
       end do
-      if (all(met)) return
+      if (all(met)) exit
     end do
     where (.not. met) status = law_not_converged
+    call condense(n, tangent, trial)
   end subroutine update_plane_stress
+
+  !> Stresses in the plane at sigma_zz = 0, along the tangent: the strain across the plane is known to round-off, which a large bulk
+  !> modulus turns into a pressure beside which what acts in the plane is small.
+  pure subroutine condense(n, tangent, trial)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: tangent(4, 5, n)   !! [stress]
+    real(wp), intent(inout) :: trial(:, :)     !! (nstate, n) [unit of each component]
+    integer :: i
+
+    do i = 1, n
+      if (tangent(4, 5, i) > 0) trial(1:3, i) = trial(1:3, i) - tangent(1:3, 5, i)/tangent(4, 5, i)*trial(4, i)
+    end do
+  end subroutine condense
 
 end module plane_stress_points

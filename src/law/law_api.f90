@@ -121,6 +121,8 @@ module law_api
     !> Of laws for the conduction of heat.
     procedure(law_conduct_i), nopass, pointer :: conduct => null()
     procedure(law_store_i), nopass, pointer :: store => null()
+    !> Not associated where the capacity bends at the temperatures of the card alone.
+    procedure(law_bends_i), nopass, pointer :: bends => null()
     procedure(law_swell_i), nopass, pointer :: swell => null()
     !> Heat that a point releases, of laws for the conduction of heat; not associated where there is none.
     procedure(law_release_i), nopass, pointer :: release => null()
@@ -213,6 +215,13 @@ module law_api
       real(wp), intent(out) :: taken(:)                 !! (n) [energy/length^3] per volume of the start
       real(wp), intent(out) :: capacity(:)              !! (n) [energy/length^3/temperature]
     end subroutine law_store_i
+
+    !> Temperatures at which the heat capacity of `store` bends or jumps, ascending; none where it is a smooth function.
+    pure subroutine law_bends_i(material, temperatures)
+      import :: material_t, wp
+      type(material_t), intent(in) :: material
+      real(wp), allocatable, intent(out) :: temperatures(:)   !! (nbend)
+    end subroutine law_bends_i
 
     !> Heat that a point releases in a step beside what flows, and its derivative by the temperature at the end.
     pure subroutine law_release_i(material, dt, drivers, committed, released, of_work, slope, history, surplus)

@@ -9,7 +9,7 @@
 !> conductivity, TIME the seconds of its unit of time, ZERO what makes its temperatures degC. QUINNEY turns plastic work into heat.
 !> Source: S. Denis, D. Farias, A. Simon, ISIJ Int. 32 (1992) 316; kinetics: where they stand.
 module law_meta
-  use heat_of_phases, only: heat_taken, lacking_heat_data, mixture_conductivity
+  use heat_of_phases, only: capacity_bends, heat_taken, lacking_heat_data, mixture_conductivity
   use heat_sources, only: share_of_work, work_heated, work_name
   use kinds, only: wp
   use law_api, only: driver_t, driver_temperature, heat_law, law_line, law_t, parameter, parameter_t
@@ -59,6 +59,7 @@ contains
     row%drivers(phase_count + 1) = driver_t(work_name, place_share)
     row%conduct => conduct
     row%store => store
+    row%bends => bends
     row%swell => swell
     row%release => release
     row%check => check
@@ -125,6 +126,14 @@ contains
     taken = taken*material%values(place_energy)
     capacity = capacity*material%values(place_energy)
   end subroutine store
+
+  !> Those of austenite.
+  pure subroutine bends(material, temperatures)
+    type(material_t), intent(in) :: material
+    real(wp), allocatable, intent(out) :: temperatures(:)
+
+    allocate (temperatures, source=capacity_bends(material%steel, austenite) - material%values(place_zero))
+  end subroutine bends
 
   !> Phases at the end of the step, their latent heat, by how much they take up less heat than austenite, and the share of the
   !> plastic work that has not become heat yet.

@@ -11,7 +11,7 @@ module heat_of_phases
   use text, only: add_text, string_t
   implicit none
   private
-  public :: heat_taken, mixture_conductivity, lacking_heat_data
+  public :: capacity_bends, heat_taken, mixture_conductivity, lacking_heat_data
 
 contains
 
@@ -35,6 +35,23 @@ contains
       end if
     end associate
   end subroutine heat_taken
+
+  !> Temperatures of the table by which a phase has its heat capacity; none where it is a number or a polynomial.
+  pure function capacity_bends(steel, phase) result(temperatures)
+    type(steel_t), intent(in) :: steel
+    integer, intent(in) :: phase
+    real(wp), allocatable :: temperatures(:)   !! (nbend) [degC]
+
+    associate (h => steel%properties(prop_content, phase), c => steel%properties(prop_rhoc, phase))
+      if (is_given(h) .and. h%form == curve_table) then
+        temperatures = h%t
+      else if (is_given(c) .and. c%form == curve_table) then
+        temperatures = c%t
+      else
+        allocate (temperatures(0))
+      end if
+    end associate
+  end function capacity_bends
 
   !> Value and slope of a heat content; a table goes on with the slope of its ends.
   pure subroutine content_at(h, temperature, content, slope)

@@ -13,6 +13,7 @@ usage: run_processes.py [-v] [-k]
 - `mirrored`: a quench of a tooth and of its mirror image, whose nodes are numbered otherwise: the same steps, iterations and temperatures.
 - `stretched`: a bar drawn to twice its length conducts a quarter of the heat, in plane stress as in generalised plane strain.
 - `told`: warnings before a run.
+- `spent`: a polynomial of a steel whose conductivity, capacity or yield stress falls below 0 on the way: the run ends with 3 and says which, where.
 """
 import json
 import math
@@ -190,6 +191,14 @@ def told(checks):
             lines = [line["text"] for line in summary(run)["warnings"] if "below absolute zero" in line["text"]]
             checks.that(len(lines) == cold, f"radiates from {start} with ZERO {zero}: told", summary(run)["warnings"])
             checks.that(abs(run.history["heat_through_bar/GOLDAK"][-1]) == 0, "a torch without power heats nothing")
+    # 273.15 for -273.15
+    for zero in (0., -273.15, 273.15, 20.):
+        run = Run(checks, f"zero-{zero:g}", "TITLE zero\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+                  f"   2 1.   2 1.\nLAW hot META\n   STEEL soft.met s\n   ENERGY 1. ZERO {zero}\nSTART T {900 - zero}\nCONVE bar 2 H 1. TS {20 - zero}\n"
+                  "STRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
+        if run.ok:
+            checks.that(any("-273.15 for a deck in kelvin" in line["text"] for line in summary(run)["warnings"]) == (zero > 200),
+                        f"ZERO {zero}: told", summary(run)["warnings"])
     # a steel in degC by ZERO of its law; what begins as martensite is not told to begin below Ms
     for start, zero, cold in ((-300, 0., True), (-200, 0., False), (20, -300., True), (20, -273.15, False)):
         run = Run(checks, f"begins-{start}-{zero:g}", "TITLE begins\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"

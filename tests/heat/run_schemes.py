@@ -17,6 +17,7 @@ usage: run_schemes.py [-v] [-k]
   numbers by temperature, every scheme makes steps again, in the end without flows against the fall of the temperature: none is outside.
 - `latent`: freezing of a half space (F. Neumann) by intervals of melting, meshes and steps that differ by 1000, 5 and 10: within 1 %
   and with one cutback at most (68 of the first of them once); a corner that melts, in the plane.
+- `steel`: a steel of austenite alone that melts has the steps and the errors of HEATH by the same numbers, walked either way.
 - `factors`: a linear problem factorises once for each length of a step; one by temperature at every iteration.
 - `phases`: what forms of a phase in a cooling that takes long, by TR-BDF2 as by implicit Euler: kinetics see the whole time.
 - `resume`: from the older checkpoint on, the same bits.
@@ -248,6 +249,28 @@ def latent(checks):
             checks.small(abs(checks_of(run)["heat_imbalance"]), 1e-8, f"{run.name}: books of heat")
 
 
+def steel(checks):
+    """The error of the heat content is one over the least capacity of the material, whatever law has it, and whichever node of an
+    element comes first."""
+    with open(os.path.join(checks.folder, "melts.met"), "w", encoding="utf-8") as file:
+        file.write("STEEL s\nSOURCE 'round numbers'\nEXPAND TOTAL 20\nPHASE AUSTENITE\n   LAMBDA 30\n"
+                   "   H TABLE 0 0  1400 6300  1500 9000  1700 10000\nEND\n")
+    rows = "".join(f"   TEMP {t}.\n   30. {h}.\n" for t, h in ((0, 0), (1400, 6300), (1500, 9000), (1700, 10000)))
+    laws = {"heath": "LAW hot HEATH\n" + rows, "meta": "LAW hot META\n   STEEL melts.met s\n   ENERGY 1.\n"}
+    ends = []
+    for law, text in laws.items():
+        for corners, side in (("0. 0. 10. 0. 10. 1. 0. 1.", 2), ("10. 1. 0. 1. 0. 0. 10. 0.", 4)):
+            for option in ("BILINEAR", ""):
+                run = Run(checks, f"steel-{law}-{side}{option[:1]}", HEAD.format(title="steel", state="PLSTN")
+                          + f"BLOCK bar PL8TM 4 hot {option}\n   {corners}\n   10 1. 1 1.\n{text}START T 1550.\n"
+                          f"CONVE bar {side} H 2. TS 20.\nTHETA 1. TOL 5.\nSTRAT 0.1 1.E-5 2. 9 3\nSTOP 5.\nPROBE t NODE T 0. 0.\nEND\n")
+                if run.ok:
+                    ends.append((option, checks_of(run)["error_in_time_end"], run.history["t"][-1], len(run.history["t"])))
+    for option in ("BILINEAR", ""):
+        alike = np.array([end[1:] for end in ends if end[0] == option])
+        checks.small(np.max(np.abs(alike/alike[0] - 1)), 1e-6, f"steel {option}: error, temperature, steps {alike[0]} by either law and way")
+
+
 def factors(checks):
     """How often a matrix is factorised."""
     for scheme in ("1.", "0.5 MEAN", "TRBDF2"):
@@ -309,6 +332,7 @@ def main():
     bounds(checks)
     bounds_of_any(checks)
     latent(checks)
+    steel(checks)
     factors(checks)
     phases(checks)
     resume(checks)
