@@ -32,17 +32,18 @@ module elem_cntdf
   use contact_penalties, only: allowed_penetration
   use corner_faces, only: closest_on_piece
   use curve_search, only: box_distance, closest_facing_point, closest_opposed_point, follow_closest_point, looks_at
-  use dies, only: die_t, edge_turn
+  use dies, only: die_t
   use edge_contact, only: press_edges
   use edge_release, only: edge_release_t, slide_past_edge
   use elem_api, only: elem_t, goes_on, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
   use elem_cnt2d, only: elem_cnt2d_row
+  use kept_side, only: beyond_all, handed_over_t, keep_closest_point
   use kinds, only: eps, wp
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_open, law_t
   use own_contact, only: faces_itself, pieces_to_meet
   use pair_forces, only: spread_force, spread_matrix
-  use pairs, only: list_pieces, nodes_per_piece, pieces_in_reach, place_in_reach
+  use pairs, only: list_pieces, nodes_per_piece, pieces_in_reach
   use parabolas, only: point_on, tangent_on
   use piecewise_curves, only: adjacent_piece
   use plane_vectors, only: cross, right_of
@@ -57,8 +58,6 @@ module elem_cntdf
 
   !> At a vertex the normal turns about the closest point: turn d = 1 to some round-off.
   real(wp), parameter :: at_vertex = 64*eps
-  !> A side reaches this far beyond its ends (parent coordinate) for a point that was on it; beyond the open end of the curve less.
-  real(wp), parameter :: beyond = 0.2_wp, beyond_all = 0.05_wp
   !> A point that was deeper behind a side of its body, on the mesh as it began, than this share of its own side is behind a wall:
   !> no depth of contact is as large.
   real(wp), parameter :: wall_thickness = 0.02_wp
@@ -101,9 +100,12 @@ contains
     type(closest_point_t) :: closest, nearest
     type(side_t) :: own
     type(edge_release_t) :: release
-    real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: side, section(3), phi(3), dphi(3), psi(3), dpsi(3), q(2), dq(2, most_unknowns), dxi(most_unknowns)
-    integer :: e, p, n, j, k, at, nnode, npiece, nblock, place(most_unknowns), pieces(pieces_in_reach*group%rule%n)
+    type(handed_over_t) :: handed
+    real(wp), allocatable :: xi(:), weight(:), there(:)
+    real(wp) :: side, section(3), phi(3), dphi(3), psi(3), dpsi(3), q(2), dq(2, most_unknowns), dxi(most_unknowns), &
+                way(most_unknowns)
+    integer :: e, p, n, j, k, at, nnode, npiece, nblock, kept_piece, place(most_unknowns), along(most_unknowns), &
+               pieces(pieces_in_reach*group%rule%n)
     logical, allocatable :: may(:, :)
     logical :: axisym
 
@@ -145,7 +147,8 @@ contains
           end if
           ! a stale pair of a body's own side may be the far face of a wall
           if (allocated(may) .and. nearest%piece == 0) cycle
-          call keep_closest_point(die, point, side, committed(:nblock, p, e), middle(p, e), nearest, closest)
+          call keep_closest_point(die, point, side, committed(:nblock, p, e), middle(p, e), nearest, closest, handed)
+          kept_piece = closest%piece
           release = edge_release_t()
           if (.not. allocated(may)) then
             call slide_past_edge(scene%mesh%coordinates, die, point%x, side, &
@@ -153,43 +156,28 @@ contains
                                  closest, release)
           end if
           if (closest%piece == 0) cycle
+          if (release%share < 1 .or. closest%piece /= kept_piece .or. nearest%piece == kept_piece) handed = handed_over_t()
           ! a point on the axis has no surface: nothing acts there, and no contact is evaluated
           if (axisym .and. point%x(1) <= no_surface*side) cycle
           trial(at_penetration, p, e) = merge(release%depth, closest%d, release%limited)
           trial([at_piece, at_xi], p, e) = [real(nearest%piece, wp), nearest%xi]
           ! past an edge its pressure is gone
           if (.not. release%share > 0) cycle
-          k = findloc(pieces(:npiece), closest%piece, 1)
-          if (k == 0) then
-            report%unpaired = .true.
-            cycle
+          there = trial(:nblock, p, e)
+          call press(closest, (1 - handed%share)*release%share, trial(:nblock, p, e))
+          if (handed%share > 0) then
+            way = merge(1, 0, instant%tangent)*handed%slope*dxi
+            along = place
+            call hand_over(-way/(1 - handed%share))
+            there(at_penetration) = nearest%d
+            call press(nearest, handed%share, there)
+            call hand_over(way/handed%share)
+            call share_state(handed%share, there, trial(:nblock, p, e))
           end if
-          at = 3 + nodes_per_piece*(k - 1)
-          place(7:12) = [at + 1, at + 2, at + 3, nnode + at + 1, nnode + at + 2, nnode + at + 3]
-          call line3(closest%xi, psi, dpsi)
-          call meet(closest, matmul(x(:, 1:3, e), phi), x(:, at + 1:at + 3, e), du(place(7:12), e), point, meeting, dxi)
-          if (release%limited) then
-            meeting%d = release%depth
-            meeting%dd = release%depth_slope*dxi
-          end if
-          meeting%kept = instant%kept .and. goes_on(instant, group%die)
-          call act(law, scene%materials(group%material), instant%dt, drivers(:, :, p, e), &
-                   penalties(scene%materials(group%material), group, side), point, meeting, weight(p)*release%share, &
-                   instant%tangent, committed(:nblock, p, e), trial(:nblock, p, e), q, dq)
           if (nint(committed(at_status, p, e)) /= contact_open) then
             report%jump = max(report%jump, abs(trial(at_penetration, p, e) - committed(at_penetration, p, e))/side)
           end if
           report%event = min(report%event, share_to_contact(committed(:nblock, p, e), trial(:nblock, p, e), side))
-          if (nint(trial(at_status, p, e)) == contact_open) cycle
-          call spread_force([-phi, psi], q, place, force(:, e))
-          if (.not. instant%tangent) cycle
-          call spread_matrix([-phi, psi], dq(:, :n), place(:n), stiffness(:, :, e))
-          ! the closest point moves along its side
-          do j = 1, n
-            call spread_force([0.0_wp, 0.0_wp, 0.0_wp, dpsi*dxi(j)], q, place, stiffness(:, place(j), e))
-            if (release%share < 1) call spread_force([-phi, psi]*(release%slope*dxi(j)/release%share), q, place, &
-                                                     stiffness(:, place(j), e))
-          end do
         end do
         if (.not. allocated(may)) then
           own%x = x(:, 1:3, e)
@@ -208,7 +196,67 @@ contains
       end do
     end associate
     if (.not. goes_on(instant, group%die)) report%jump = 0
+
+  contains
+
+    !> The force between the point and a side that it meets, which bears this share of it; its state goes on to `state`.
+    subroutine press(met, share, state)
+      type(closest_point_t), intent(in) :: met
+      real(wp), intent(in) :: share
+      real(wp), intent(inout) :: state(:)   !! (nstate) [unit of each component]
+
+      q = 0
+      dxi = 0
+      k = findloc(pieces(:npiece), met%piece, 1)
+      if (k == 0) then
+        report%unpaired = .true.
+        return
+      end if
+      at = 3 + nodes_per_piece*(k - 1)
+      place(7:12) = [at + 1, at + 2, at + 3, nnode + at + 1, nnode + at + 2, nnode + at + 3]
+      call line3(met%xi, psi, dpsi)
+      call meet(met, matmul(x(:, 1:3, e), phi), x(:, at + 1:at + 3, e), du(place(7:12), e), point, meeting, dxi)
+      if (release%limited) then
+        meeting%d = release%depth
+        meeting%dd = release%depth_slope*dxi
+      end if
+      meeting%kept = instant%kept .and. goes_on(instant, group%die)
+      call act(law, scene%materials(group%material), instant%dt, drivers(:, :, p, e), &
+               penalties(scene%materials(group%material), group, side), point, meeting, weight(p)*share, instant%tangent, &
+               committed(:nblock, p, e), state, q, dq)
+      if (nint(state(at_status)) == contact_open) return
+      call spread_force([-phi, psi], q, place, force(:, e))
+      if (.not. instant%tangent) return
+      call spread_matrix([-phi, psi], dq(:, :n), place(:n), stiffness(:, :, e))
+      ! the closest point moves along its side
+      do j = 1, n
+        call spread_force([0.0_wp, 0.0_wp, 0.0_wp, dpsi*dxi(j)], q, place, stiffness(:, place(j), e))
+        if (release%share < 1) call spread_force([-phi, psi]*(release%slope*dxi(j)/release%share), q, place, &
+                                                 stiffness(:, place(j), e))
+      end do
+    end subroutine press
+
+    !> The share of the force just made changes with the way along the side that the point began with.
+    subroutine hand_over(change)
+      real(wp), intent(in) :: change(:)   !! (nunknown) of the share over the share, along the unknowns of that side [1/unknown]
+
+      do j = 1, n
+        if (abs(change(j)) > 0) call spread_force([-phi, psi]*change(j), q, place, stiffness(:, along(j), e))
+      end do
+    end subroutine hand_over
   end subroutine compute
+
+  !> The state of a point that is on two sides: that of the first becomes the mean of both; it is in contact where one of them is.
+  pure subroutine share_state(share, other, state)
+    real(wp), intent(in) :: share, other(:)   !! of the other one, and its state [unit of each component]
+    real(wp), intent(inout) :: state(:)
+    real(wp) :: status
+
+    status = state(at_status)
+    if (nint(status) == contact_open .or. share > 0.5_wp .and. nint(other(at_status)) /= contact_open) status = other(at_status)
+    state = state + share*(other - state)
+    state(at_status) = status
+  end subroutine share_state
 
   !> Smallest box around the nodes of a side (xmin, ymin, xmax, ymax).
   pure function box_of(x, du) result(box)
@@ -346,63 +394,6 @@ contains
     end function is_own_node
 
   end subroutine find_own_closest_point
-
-  !> Closest point to a point of contact; but for the length of a step a point inside, or one that its multiplier presses at a gap,
-  !> keeps the side it began with, beyond its ends too.
-  !>
-  !> Sides of a bent mesh make slight corners, less slight where a node presses beside them, and the normal jumps there within a
-  !> motion smaller than any iteration's: points at a corner would change sides without end. Likewise points at the open end of the
-  !> curve, where two bodies are flush: round-off would decide whether they are on it, also those whose multiplier bears a pressure
-  !> at a gap; and where a node presses in the ground of a notch that it has made, with one face steep. Other corners as sharp as
-  !> an edge are left to the search.
-  pure subroutine keep_closest_point(die, point, reach, committed, middle, nearest, closest)
-    type(die_t), intent(in) :: die
-    type(contact_point_t), intent(in) :: point
-    real(wp), intent(in) :: reach
-    real(wp), intent(in) :: committed(:)   !! (nstate) of the point [unit of each component]
-    integer, intent(in) :: middle    !! middle piece of the point's pairs, 0 for none
-    type(closest_point_t), intent(inout) :: nearest   !! where the next step begins
-    type(closest_point_t), intent(out) :: closest     !! of this step
-    type(closest_point_t) :: same
-    real(wp) :: from
-    integer :: piece
-    logical :: pressed
-
-    closest = nearest
-    pressed = nint(committed(at_status)) /= contact_open
-    piece = nint(committed(at_piece))
-    if (piece == 0) piece = middle
-    if (piece == 0 .or. closest%d < 0 .and. .not. pressed) return
-    from = closest%xi
-    if (closest%piece /= piece) from = merge(1.0_wp, -1.0_wp, place_in_reach(die, piece, closest%piece) == pieces_in_reach)
-    if (closest%piece == 0) then
-      from = merge(1.0_wp, -1.0_wp, piece == size(die%nodes, 2))
-      if (adjacent_piece(die, piece, nint(from)) /= 0) return
-    end if
-    call closest_on_piece(die, piece, point%x, from, merge(beyond_all, beyond, closest%piece == 0), same)
-    if (same%piece == 0 .or. .not. abs(same%d) < reach) return
-    if (.not. (same%d > 0 .or. pressed .or. closest%piece == 0)) return
-    if (closest%piece == 0) then
-      if (.not. dot_product(same%normal, point%e_r) < 0) return
-      nearest = same
-    else
-      if (place_in_reach(die, closest%piece, piece) == 0) return
-      if (dot_product(same%normal, closest%normal) < edge_turn .and. .not. (pressed .and. turns_to_part())) return
-    end if
-    closest = same
-
-  contains
-
-    !> The die turns toward the part from the side that the point began with to the one where it is the closest.
-    pure function turns_to_part() result(yes)
-      logical :: yes
-      real(wp) :: turn
-
-      turn = cross(same%normal, closest%normal)
-      if (closest%piece == adjacent_piece(die, piece, -1)) turn = -turn
-      yes = closest%piece /= piece .and. turn > 0
-    end function turns_to_part
-  end subroutine keep_closest_point
 
   !> Depth, slip and turn of the normal where a point meets a side, with their derivatives, and the motion of the closest
   !> point along the side. Unknowns 7 to 12 are those of the side met.

@@ -111,7 +111,8 @@ contains
     real(wp) :: along(2), way(2)
     integer :: k, i
 
-    yes = .not. die%closed
+    yes = .not. die%closed .and. size(die%pieces, 3) > 0
+    if (.not. yes) return
     along = die%pieces(:, 3, size(die%pieces, 3)) - die%pieces(:, 1, 1)
     do k = 1, size(die%pieces, 3)
       do i = 2, 3

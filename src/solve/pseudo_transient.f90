@@ -23,6 +23,7 @@ module pseudo_transient
   use evaluation, only: add_diagonal, evaluate
   use kinds, only: wp
   use line_search, only: real_fall
+  use pairs, only: pairs_differ, pairs_t
   use scene, only: role_side_load, role_volume_load, scene_t
   use solution, only: solution_t
   use volumes_of_unknowns, only: volumes_of_motion
@@ -88,9 +89,11 @@ contains
     real(wp) :: start(size(du))
     type(contact_states_t) :: before
     type(report_t) :: trial
+    type(pairs_t), allocatable :: pairs(:)
     integer :: k
 
     start = du
+    pairs = solution%pairs
     call remember_contact(scene, solution, before)
     du = start + correction
     call evaluate(scene, equations, solution, dt, du, .true., trial, corrected_from=start)
@@ -104,6 +107,12 @@ contains
     call recall_contact(scene, before, solution)
     if (.not. allocated(shift%volume)) allocate (shift%volume, source=volumes_of_motion(scene, equations, solution))
     associate (solve => equations%solves(equations%now))
+      if (pairs_differ(scene, pairs, solution%pairs)) then
+        ! sides of bodies that met others on the way have a matrix of other places
+        call evaluate(scene, equations, solution, dt, du, .true., trial)
+        call add_diagonal(solve%pattern, solve%equation, shift%value*shift%volume, solve%values)
+        shift%matrix = solve%values
+      end if
       solve%values = shift%matrix
       do k = 1, most_shifts
         associate (more => max((larger - 1)*shift%value, &
