@@ -173,6 +173,7 @@ contains
             meeting%dd = release%depth_slope*dxi
           end if
           meeting%kept = instant%kept .and. goes_on(instant, group%die)
+          meeting%softness = instant%softness
           call act(law, scene%materials(group%material), instant%dt, drivers(:, :, p, e), &
                    penalties(scene%materials(group%material), group, side), point, meeting, weight(p)*release%share, &
                    instant%tangent, committed(:nblock, p, e), trial(:nblock, p, e), q, dq)
@@ -201,6 +202,7 @@ contains
           own%dt = instant%dt
           own%tangent = instant%tangent
           own%kept = instant%kept .and. goes_on(instant, group%die)
+          own%softness = instant%softness
           call press_edges(die, law, scene%materials(group%material), drivers(:, :, :, e), axisym, own, xi, pieces(:npiece), &
                            x(:, :, e), du(:, e), committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e), report)
         end if
