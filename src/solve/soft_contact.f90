@@ -24,7 +24,7 @@ module soft_contact
   !> The equilibrium of a share need not be exact, and takes no more than so many iterations.
   real(wp), parameter :: near_enough = 1.0e-2_wp
   integer, parameter :: most_iterations = 12
-  !> Contact has changed in one of so many last iterations of a step that failed.
+  !> Contact kept changing where it did so in each of so many last iterations.
   integer, parameter :: last_iterations = 5
 
 contains
@@ -63,7 +63,7 @@ contains
   end subroutine stiffen
 
   !> An attempt has ended: after one that failed while contact changed the next is soft, or the other way. One that is to be made
-  !> shorter before it has begun says nothing.
+  !> shorter before it has begun says nothing; past a limit point contact is not what fails it (pseudo_transient).
   pure subroutine end_softly(converged, history, equations)
     logical, intent(in) :: converged
     type(iteration_t), intent(in) :: history(:)   !! (niteration)
@@ -72,7 +72,9 @@ contains
 
     equations%softness = 1
     if (size(history) == 0 .or. .not. equations%solves(equations%now)%own(displacement_field)) return
-    changing = any(history(max(size(history) - last_iterations + 1, 1):)%contact_changed)
+    changing = size(history) > last_iterations
+    if (changing) changing = all(history(size(history) - last_iterations + 1:)%contact_changed) &
+                             .and. .not. any(history%past_limit)
     equations%softly = .not. (converged .or. equations%softly) .and. changing
   end subroutine end_softly
 
