@@ -57,6 +57,8 @@ module contact_point
     real(wp) :: bearing = 1.0_wp
     !> A point in contact at the start of the step follows its law linearised at the depth it had then (instant_t).
     logical :: kept = .false.
+    !> Share of the penalties of a point without a pressure at the start of the step (instant_t) [-].
+    real(wp) :: softness = 1.0_wp
     real(wp), dimension(most_unknowns) :: dd, dslip, turn
   end type meeting_t
 
@@ -201,9 +203,11 @@ contains
     real(wp), intent(out) :: tangent(2, 2)   !! of both by depth and slip [stress/length]
     real(wp), intent(out) :: dslip(most_unknowns)   !! derivatives of the slip that counts [length/unknown]
     logical, intent(out) :: open
-    real(wp) :: slip, depth, gap, share, stress(2), law_tangent(3, 3), change
+    real(wp) :: slip, depth, gap, share, stiffness(2), stress(2), law_tangent(3, 3), change
     integer :: status
 
+    stiffness = penalty
+    if (.not. committed(at_pressure) > 0) stiffness = meeting%softness*penalty
     slip = meeting%slip
     dslip = meeting%dslip
     depth = meeting%d - meeting%allowed
@@ -222,7 +226,7 @@ contains
     end if
     ! nothing moves across the plane: the second tangential component stays at rest
     associate (bearing => meeting%bearing)
-      call law%slide(material, dt, drivers, penalty/bearing, committed(at_augmentation)/bearing, depth, [slip, 0.0_wp], &
+      call law%slide(material, dt, drivers, stiffness/bearing, committed(at_augmentation)/bearing, depth, [slip, 0.0_wp], &
                      [committed(at_tau)/bearing, 0.0_wp], committed(npoint_state + 1:), pressure, stress, &
                      trial(npoint_state + 1:), law_tangent, status)
       pressure = bearing*(pressure + law_tangent(1, 1)*change)
@@ -236,7 +240,7 @@ contains
     if (open) return
     trial(at_augmentation) = committed(at_augmentation)
     trial(at_slip) = committed(at_slip) + slip
-    trial(at_work) = trial(at_work) + dissipated(committed, trial, penalty(2))
+    trial(at_work) = trial(at_work) + dissipated(committed, trial, stiffness(2))
   end subroutine answer
 
   !> Work that friction took in a step, per present area: the part of the slip that the tangential penalty does not store.

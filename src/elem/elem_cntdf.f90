@@ -163,7 +163,7 @@ contains
           trial([at_piece, at_xi], p, e) = [real(nearest%piece, wp), nearest%xi]
           ! past an edge its pressure is gone
           if (.not. release%share > 0) cycle
-          there = trial(:nblock, p, e)
+          if (handed%share > 0) there = trial(:nblock, p, e)
           call press(closest, (1 - handed%share)*release%share, trial(:nblock, p, e))
           if (handed%share > 0) then
             way = merge(1, 0, instant%tangent)*handed%slope*dxi
@@ -189,6 +189,7 @@ contains
           own%dt = instant%dt
           own%tangent = instant%tangent
           own%kept = instant%kept .and. goes_on(instant, group%die)
+          own%softness = instant%softness
           call press_edges(die, law, scene%materials(group%material), drivers(:, :, :, e), axisym, own, xi, pieces(:npiece), &
                            x(:, :, e), du(:, e), committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e), report)
         end if
@@ -221,6 +222,7 @@ contains
         meeting%dd = release%depth_slope*dxi
       end if
       meeting%kept = instant%kept .and. goes_on(instant, group%die)
+      meeting%softness = instant%softness
       call act(law, scene%materials(group%material), instant%dt, drivers(:, :, p, e), &
                penalties(scene%materials(group%material), group, side), point, meeting, weight(p)*share, instant%tangent, &
                committed(:nblock, p, e), state, q, dq)

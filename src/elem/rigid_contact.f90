@@ -41,6 +41,8 @@ module rigid_contact
     real(wp) :: dt = 0.0_wp
     !> Matrices are wanted; contact is kept (instant_t).
     logical :: tangent = .true., kept = .false.
+    !> Share of the penalties of points without a pressure at the start of the step (instant_t) [-].
+    real(wp) :: softness = 1.0_wp
   end type side_t
 
   !> Derivatives of a point's position on the side, and of the angle by which the normal of depth turns.
@@ -118,6 +120,7 @@ contains
     meeting%allowed = allowed
     if (present(dallowed)) meeting%dd(:ndof) = meeting%dd(:ndof) - dallowed
     meeting%kept = side%kept
+    meeting%softness = side%softness
     if (present(bearing)) meeting%bearing = bearing
     if (present(released)) meeting%kept = meeting%kept .and. .not. released
     call act(law, material, side%dt, drivers, side%penalty, point, meeting, weight, side%tangent, committed, trial, q, dq)

@@ -82,6 +82,9 @@ contains
     after%damping_bound = after%work%damping
     after%friction_apart = 0
     after%path%error = fresh%path%error
+    ! what its last steps erred says nothing of the first ones now, which no estimate is made of (settle_path)
+    after%path%motion_rate = 0
+    after%path%stress_rate = 0
     ! the dies are others, with temperatures of their own
     after%heat%die_error = fresh%heat%die_error
     after%estimate = fresh%estimate

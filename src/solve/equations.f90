@@ -60,6 +60,9 @@ module equations
     type(patch_map_t) :: patches
     !> None is, in the attempts at a step that follow one which failed with a patch: it may have led past where a side snaps off.
     logical :: without_patches = .false.
+    !> New contact comes in softly in the next attempt at the step, and with this share of its penalties now (soft_contact).
+    logical :: softly = .false.
+    real(wp) :: softness = 1.0_wp
     !> Bodies of nodes that supports do not hold, of no size where there is none (resting_bodies).
     integer, allocatable :: loose(:)
     !> Unknowns at rest in the present step (ndof); of no size where no body is loose.

@@ -28,6 +28,7 @@ module newton
   use pseudo_transient, only: ease_shift, goes_past_limits, shift_t, solve_shifted, turn_downhill
   use predictor, only: lagging_dies, leaving_dies, predict, work_of_dies
   use scene, only: scene_t
+  use soft_contact, only: begin_softly, end_softly, is_stage_done, stiffen
   use solution, only: solution_t
   use text, only: to_text
   implicit none
@@ -86,6 +87,22 @@ contains
     real(wp), intent(in), optional :: left(:)    !! (ndof) part of the residual to be left, 0 where absent [residual]
     real(wp), intent(in), optional :: given(:)   !! (ndof) motion of other solves' unknowns; of all with go_on [unknown]
     logical, intent(in), optional :: go_on       !! from `given` for the own unknowns too
+
+    call begin_softly(scene, dt, equations)
+    call find_equilibrium(scene, equations, solution, dt, outcome, left, given, go_on)
+    call end_softly(outcome%converged, outcome%history, equations)
+  end subroutine solve_step
+
+  !> The same with the softness of contact as it is at the start, and none at the end.
+  subroutine find_equilibrium(scene, equations, solution, dt, outcome, left, given, go_on)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt
+    type(outcome_t), intent(out) :: outcome
+    real(wp), intent(in), optional :: left(:)    !! (ndof) as in solve_step [residual]
+    real(wp), intent(in), optional :: given(:)   !! (ndof) [unknown]
+    logical, intent(in), optional :: go_on
     real(wp), dimension(equations%dofs%ndof) :: external, missing, residual, correction
     type(augmentations_t) :: made
     type(iteration_t) :: line
@@ -141,13 +158,20 @@ contains
       line%displacement_norm = relative_motion(equations, solution%fields, correction, outcome%du)
       outcome%history = [outcome%history, line]
       outcome%iterations = size(outcome%history) - 1
-      if (.not. any(abs(missing) > 0)) then
+      if (is_stage_done(equations, outcome%history(first:)) .and. .not. any(abs(missing) > 0)) then
+        call stiffen(equations)
+        first = size(outcome%history) + 1
+        correction = 0
+        call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
+        cycle
+      end if
+      if (.not. (any(abs(missing) > 0) .or. equations%softness < 1)) then
         if (has_converged(scene, outcome%history(first:), again .or. kept .and. (outcome%iterations == 0 .or. afresh)) &
             .and. .not. (kept .and. afresh .and. line%force_norm > 0) &
             .and. pilots_in_equilibrium(equations, solution%fields, external, residual) &
             .and. (heat_in_balance(equations, residual, dt) .or. was_given_time(scene, outcome%history(first:)))) then
           if (made%times == 0) then
-            outcome%first_iterations = outcome%iterations
+            outcome%first_iterations = size(outcome%history) - first
             outcome%patch_difficulty = difficulty_of_patches(outcome%history)
           end if
           call augment(scene, equations, solution, outcome%du, made, changed)
@@ -198,7 +222,7 @@ contains
         lags = lagging_dies(equations, missing)
       end if
       line%inner = 0
-      if (.not. any(abs(missing) > 0) .and. .not. shift%value > 0) &
+      if (.not. (any(abs(missing) > 0) .or. shift%value > 0 .or. equations%softness < 1)) &
         call take_eliminated(scene, equations, solution, dt, external, residual, outcome%iterations, correction, outcome%du, &
                              line%inner, report, outcome%error)
       if (allocated(outcome%error)) exit
@@ -319,7 +343,7 @@ contains
       contact = contact_set(scene, solution)
       held = equations%wall%held
     end subroutine start_again
-  end subroutine solve_step
+  end subroutine find_equilibrium
 
   !> Cause of a failed step: the element, and what failed in it.
   subroutine set_cause(report, outcome)

@@ -92,8 +92,8 @@ contains
     type(pairs_t), allocatable :: pairs(:)
     integer :: k
 
+    allocate (pairs, source=solution%pairs)
     start = du
-    pairs = solution%pairs
     call remember_contact(scene, solution, before)
     du = start + correction
     call evaluate(scene, equations, solution, dt, du, .true., trial, corrected_from=start)

@@ -13,6 +13,7 @@ usage: run_operations.py [-v] [-k]
 - `first_without`: one without before the first with it: its seconds are in the cost of the whole.
 - `beginning`: a die that a later operation puts deep into the part is told, after a stop too; one that goes on, or stands at the part's
   height, is not. What the cards of a later operation say of torches and sides is told by --check.
+- `path_errors`: what a release adds to the error of the stress by the path.
 - `contour`: a BODY has its sizes from the first operation alone; the others may do without REMSH, the first one not.
 """
 import os
@@ -332,6 +333,18 @@ def beginning(checks):
     checks.that("have the sum of both exchanges" in result.stdout, "two exchanges on a side of the second operation", said(result))
 
 
+def path_errors(checks):
+    """A part that springs back elastically errs no more in its stress than before, however long the steps are beside the last ones
+    of the operation before, in which the punch went aside and the path bent."""
+    text = HEAD.replace("NORMS  FORCE 1.E-9 DISPL 1.E-8 PATH 0 RATE 0\n", "").replace("PHI 0.1", "PHI 0.3") + "OPERA  press\n"
+    text += PUNCH.replace("9.2", "10.") + "LIC    aside\n   0. 0.   0.9998 0.   0.9999 0.01   1. 0.02\nMOVE   punch X aside\n"
+    _, out = done(checks, "errs", text + "STRAT  0.02 1.E-6 0.02   9 3\n" + RELEASE)
+    rows = history(out)
+    before = rows["path_error_stress"][list(rows["operation"]).index(2) - 1]
+    after = rows["path_error_stress"][-1]
+    checks.that(0 < before and after < 10 * before, "errs: a release makes no error of the stress", (before, after))
+
+
 def main():
     with_h5py()
     checks = Checks()
@@ -344,6 +357,7 @@ def main():
     closing(checks)
     first_without(checks)
     contour(checks)
+    path_errors(checks)
     checks.end()
 
 

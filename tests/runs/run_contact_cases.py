@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Contact that needs no care: an S-shaped die, a thin rib, a corner that enters a side, a part that leaves the end of a die and
-comes back, a strip that is bent freely, one that is bent upright, one that springs back, a cup that tears. Every other run reaches its end, no
+comes back, a strip that is bent freely, one that is bent upright, one that lies on its die, one that springs back, a cup that tears. Every other run reaches its end, no
 pressure pulls, and the part is nowhere
 deeper in the die than allowed: at its points of contact, and between them (on the rough S-shaped die by an eighth more at some instants, which ones goes with the lengths of the steps).
 
@@ -186,6 +186,42 @@ STRAT  0.002 1.E-7 0.02   6 3
 SAVE   1000
 END
 """
+# Lies on a die, and is bent off it: all of its flange touches at the start.
+PUNCH_L, DIE_L, GAP_L = 15.0, 25.1, 1.02
+LYING = f"""TITLE  A strip on a die under a holder that hardly leaves it a gap
+STATE  PLSTN
+KINEM  LOG
+PARAM  sides 70
+BLOCK  sheet PL8LS 4 steel
+   0. 0.   60. 0.   60. 1.   0. 1.
+   $sides 1.   4 1.
+LAW    steel EPLA
+   200000. 0.3
+   SWIFT 500. 0.01 0.2
+LAW    film COUL2D
+   PENETR 0.01   PHI 0.1
+DIE    punch PILOT 0. 1.
+   SEGM   20. 80.   20. 1.
+   FILLT  20-{PUNCH_L} 1.E-3
+   SEGM   20. 1.   -1. 1.
+DIE    die
+   SEGM   21.1 -80.   21.1 0.
+   FILLT  {DIE_L}-21.1 1.E-3
+   SEGM   21.1 0.   90. 0.
+DIE    holder
+   SEGM   90. {GAP_L}   21.1 {GAP_L}
+CNT2D  sheet 3 punch film
+CNT2D  sheet 1 die film
+CNT2D  sheet 3 holder film
+FIXED  sheet 4 X
+LIC    press
+   0. 0.   1. -25.
+MOVE   punch Y press
+STRAT  1.E-4 1.E-6 0.02   5 3
+STOP   0.05
+SAVE   1000
+END
+"""
 # The wall of a cup whose flange is clamped in a gap that it thickens into.
 TORN = """TITLE  A cup that tears
 STATE  AXISYM
@@ -318,6 +354,27 @@ def free_bending(checks, name, cards, fine):
     return ran["steps"]
 
 
+def lying(checks):
+    """A strip that touches its die all along peels off it in the first step, however many sides there are. The force is that of elastic
+    bending between four lines, P c^2 (a + c/3)/EI = travel, a from the middle to the punch's radius, c from there to the die's."""
+    deck = write(checks.path("lying.lag"), LYING)
+    reach = DIE_L - PUNCH_L
+    stiffness = 200000 / (1 - 0.3**2) / 12 / (reach**2 * (PUNCH_L + reach / 3))
+    # nodes bear, up to half a side away from where the radii begin
+    for sides, limit in ((35, 0.2), (70, 0.04), (140, 0.04)):
+        out = checks.path(f"lying-{sides}")
+        result = run([deck, "--out", out, "--threads", "1", "-p", f"sides={sides}"])
+        if not checks.that(result.returncode == DONE, f"lying on {sides} sides: done", said(result)):
+            continue
+        rows = history(out)
+        expected = stiffness * -rows["displacement_y_punch"][0]
+        print(f"lying on {sides} sides: {rows['force_y_punch'][0]:.4g} in the first step, closed form {expected:.4g}")
+        checks.that(abs(rows["force_y_punch"][0] / expected - 1) < limit, f"lying on {sides} sides: force of elastic bending",
+                    rows["force_y_punch"][0] / expected)
+        cutbacks = summary(out)["cutbacks"]
+        checks.that(cutbacks < 10, f"lying on {sides} sides: less than 10 cutbacks", cutbacks)
+
+
 def tears(checks):
     """A cup whose flange cannot thicken: its wall necks until nothing is left of it, and the run says that, not that it folds."""
     result = run([write(checks.path("cup.lag"), TORN), "--out", checks.path("cup"), "--threads", "1"])
@@ -361,6 +418,7 @@ def main():
     # 1 444 where a correction past a limit point is reversed
     steps = free_bending(checks, "upright", UPRIGHT, FINE_U)
     checks.that(steps < 900, "upright: at most 900 steps", steps)
+    lying(checks)
     tears(checks)
     springback(checks)
     checks.end()
