@@ -16,7 +16,9 @@ import forging
 
 DECK = os.path.join(ROOT, "decks", "forging_zones", "forging_zones.lag")
 README = os.path.join(os.path.dirname(DECK), "README.md")
-SAME = 1e-4  # what the reference gives again, on another machine too
+# What the reference gives again on another machine: rounding decides how its steps are cut. The kernels of four processors (OPENBLAS_CORETYPE Zen,
+# Haswell, Nehalem, Prescott) differ by 0.13 % in a force, and by 1.7 % in the largest penetration of all points and steps.
+SAME, SAME_PENETRATION = 2e-3, 2.5e-2
 
 
 def no_first_mesh(checks):
@@ -49,8 +51,8 @@ def main():
         put_table(README, forging.MARK, lines)
         forging.write_reference(fine)
     for key, value in forging.read_reference().items():
-        checks.that(abs(value / fine[key] - 1) < SAME, f"the reference kept in a file is that of this run: {key}",
-                    (value, fine[key]))
+        same = SAME_PENETRATION if "penetration" in key[0] else SAME
+        checks.that(abs(value / fine[key] - 1) < same, f"the reference kept in a file is that of this run: {key}", (value, fine[key]))
     checks.end()
 
 
