@@ -166,7 +166,7 @@ contains
           if (handed%share > 0) there = trial(:nblock, p, e)
           call press(closest, (1 - handed%share)*release%share, trial(:nblock, p, e))
           if (handed%share > 0) then
-            way = merge(1, 0, instant%tangent)*handed%slope*dxi
+            way = handed%slope*dxi
             along = place
             call hand_over(-way/(1 - handed%share))
             there(at_penetration) = nearest%d
@@ -242,8 +242,9 @@ contains
     subroutine hand_over(change)
       real(wp), intent(in) :: change(:)   !! (nunknown) of the share over the share, along the unknowns of that side [1/unknown]
 
+      if (.not. instant%tangent) return
       do j = 1, n
-        if (abs(change(j)) > 0) call spread_force([-phi, psi]*change(j), q, place, stiffness(:, along(j), e))
+        call spread_force([-phi, psi]*change(j), q, place, stiffness(:, along(j), e))
       end do
     end subroutine hand_over
   end subroutine compute

@@ -112,8 +112,9 @@ contains
         call evaluate(scene, equations, solution, dt, du, .true., trial)
         call add_diagonal(solve%pattern, solve%equation, shift%value*shift%volume, solve%values)
         shift%matrix = solve%values
+      else
+        solve%values = shift%matrix
       end if
-      solve%values = shift%matrix
       do k = 1, most_shifts
         associate (more => max((larger - 1)*shift%value, &
                                2*abs(slope_along(equations, correction, residual))/sum(shift%volume*correction**2)))
