@@ -58,7 +58,7 @@ module contact_point
     !> A point in contact at the start of the step follows its law linearised at the depth it had then (instant_t).
     logical :: kept = .false.
     !> Share of the penalties of a point without a pressure at the start of the step (instant_t) [-].
-    real(wp) :: softness = 1.0_wp
+    real(wp) :: penalty_share = 1.0_wp
     real(wp), dimension(most_unknowns) :: dd, dslip, turn
   end type meeting_t
 
@@ -207,7 +207,7 @@ contains
     integer :: status
 
     stiffness = penalty
-    if (.not. committed(at_pressure) > 0) stiffness = meeting%softness*penalty
+    if (.not. committed(at_pressure) > 0) stiffness = meeting%penalty_share*penalty
     slip = meeting%slip
     dslip = meeting%dslip
     depth = meeting%d - meeting%allowed

@@ -198,7 +198,7 @@ contains
     trial(at_piece) = nodes(2)%face%piece
     trial(at_xi) = nodes(2)%face%xi
     control%meeting%kept = side%kept .and. .not. released
-    control%meeting%softness = side%softness
+    control%meeting%penalty_share = side%penalty_share
     call answer(law, material, side%dt, drivers, side%penalty, control%meeting, committed, trial, pressure, tau, law_tangent, &
                 dslip, open)
     if (open) return

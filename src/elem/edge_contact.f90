@@ -189,7 +189,7 @@ contains
     call follow_edge(side, corner, piece, dphi, point, meeting, dxi)
     meeting%allowed = allowed
     meeting%kept = side%kept
-    meeting%softness = side%softness
+    meeting%penalty_share = side%penalty_share
     call act(law, material, side%dt, drivers, side%penalty, point, meeting, weight*share, side%tangent, committed, trial, q, dq)
     if (nint(trial(at_status)) == contact_open) return
     psi = 0

@@ -95,7 +95,7 @@ module elem_api
     real(wp), allocatable :: corrected_from(:, :)
     real(wp) :: section_from(3) = 0.0_wp
     !> Share of the penalties with which points that had no pressure at the start of the step press (soft_contact) [-].
-    real(wp) :: softness = 1.0_wp
+    real(wp) :: penalty_share = 1.0_wp
     !> Sides press on dies at their points alone, not between them (contact_between).
     logical :: points_alone = .false.
     !> Values of all unknowns at the start of the step (ndof); not allocated where mechanics is all there is.

@@ -175,7 +175,7 @@ contains
     side%dt = instant%dt
     side%tangent = instant%tangent
     side%kept = instant%kept .and. goes_on(instant, group%die)
-    side%softness = instant%softness
+    side%penalty_share = instant%penalty_share
   end subroutine begin_side
 
   !> States without contact; the work of friction goes with the area.

@@ -189,7 +189,7 @@ contains
           own%dt = instant%dt
           own%tangent = instant%tangent
           own%kept = instant%kept .and. goes_on(instant, group%die)
-          own%softness = instant%softness
+          own%penalty_share = instant%penalty_share
           call press_edges(die, law, scene%materials(group%material), drivers(:, :, :, e), axisym, own, xi, pieces(:npiece), &
                            x(:, :, e), du(:, e), committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e), report)
         end if
@@ -222,7 +222,7 @@ contains
         meeting%dd = release%depth_slope*dxi
       end if
       meeting%kept = instant%kept .and. goes_on(instant, group%die)
-      meeting%softness = instant%softness
+      meeting%penalty_share = instant%penalty_share
       call act(law, scene%materials(group%material), instant%dt, drivers(:, :, p, e), &
                penalties(scene%materials(group%material), group, side), point, meeting, weight(p)*share, instant%tangent, &
                committed(:nblock, p, e), state, q, dq)

@@ -42,7 +42,7 @@ module rigid_contact
     !> Matrices are wanted; contact is kept (instant_t).
     logical :: tangent = .true., kept = .false.
     !> Share of the penalties of points without a pressure at the start of the step (instant_t) [-].
-    real(wp) :: softness = 1.0_wp
+    real(wp) :: penalty_share = 1.0_wp
   end type side_t
 
   !> Derivatives of a point's position on the side, and of the angle by which the normal of depth turns.
@@ -120,7 +120,7 @@ contains
     meeting%allowed = allowed
     if (present(dallowed)) meeting%dd(:ndof) = meeting%dd(:ndof) - dallowed
     meeting%kept = side%kept
-    meeting%softness = side%softness
+    meeting%penalty_share = side%penalty_share
     if (present(bearing)) meeting%bearing = bearing
     if (present(released)) meeting%kept = meeting%kept .and. .not. released
     call act(law, material, side%dt, drivers, side%penalty, point, meeting, weight, side%tangent, committed, trial, q, dq)

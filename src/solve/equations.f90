@@ -62,7 +62,7 @@ module equations
     logical :: without_patches = .false.
     !> New contact comes in softly in the next attempt at the step, and with this share of its penalties now (soft_contact).
     logical :: softly = .false.
-    real(wp) :: softness = 1.0_wp
+    real(wp) :: penalty_share = 1.0_wp
     !> Bodies of nodes that supports do not hold, of no size where there is none (resting_bodies).
     integer, allocatable :: loose(:)
     !> Unknowns at rest in the present step (ndof); of no size where no body is loose.

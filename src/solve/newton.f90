@@ -93,7 +93,7 @@ contains
     call end_softly(outcome%converged, outcome%history, equations)
   end subroutine solve_step
 
-  !> The same with the softness of contact as it is at the start, and none at the end.
+  !> The same, with the share of the penalties that new contact begins with.
   subroutine find_equilibrium(scene, equations, solution, dt, outcome, left, given, go_on)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -165,7 +165,7 @@ contains
         call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
         cycle
       end if
-      if (.not. (any(abs(missing) > 0) .or. equations%softness < 1)) then
+      if (.not. (any(abs(missing) > 0) .or. equations%penalty_share < 1)) then
         if (has_converged(scene, outcome%history(first:), again .or. kept .and. (outcome%iterations == 0 .or. afresh)) &
             .and. .not. (kept .and. afresh .and. line%force_norm > 0) &
             .and. pilots_in_equilibrium(equations, solution%fields, external, residual) &
@@ -222,7 +222,7 @@ contains
         lags = lagging_dies(equations, missing)
       end if
       line%inner = 0
-      if (.not. (any(abs(missing) > 0) .or. shift%value > 0 .or. equations%softness < 1)) &
+      if (.not. (any(abs(missing) > 0) .or. shift%value > 0 .or. equations%penalty_share < 1)) &
         call take_eliminated(scene, equations, solution, dt, external, residual, outcome%iterations, correction, outcome%du, &
                              line%inner, report, outcome%error)
       if (allocated(outcome%error)) exit

@@ -35,9 +35,9 @@ contains
     real(wp), intent(in) :: dt   !! [time]
     type(equations_t), intent(inout) :: equations
 
-    equations%softness = 1
+    equations%penalty_share = 1
     if (equations%softly .and. dt > 0 .and. equations%mode == mode_advance .and. any(scene%groups%die > 0) &
-        .and. equations%solves(equations%now)%own(displacement_field)) equations%softness = first_share
+        .and. equations%solves(equations%now)%own(displacement_field)) equations%penalty_share = first_share
   end subroutine begin_softly
 
   !> The equilibrium of the present share is found, or has been sought long enough.
@@ -47,7 +47,7 @@ contains
     logical :: done
     integer :: n
 
-    done = equations%softness < 1 .and. size(history) > 1
+    done = equations%penalty_share < 1 .and. size(history) > 1
     if (.not. done) return
     n = size(history)
     done = n > most_iterations .or. history(n)%force_norm < near_enough .and. .not. history(n)%contact_changed
@@ -57,9 +57,9 @@ contains
   pure subroutine stiffen(equations)
     type(equations_t), intent(inout) :: equations
 
-    equations%softness = factor*equations%softness
+    equations%penalty_share = factor*equations%penalty_share
     ! powers of ten are not exact
-    if (2*equations%softness > 1) equations%softness = 1
+    if (2*equations%penalty_share > 1) equations%penalty_share = 1
   end subroutine stiffen
 
   !> An attempt has ended: after one that failed while contact changed the next is soft, or the other way. One that is to be made
@@ -70,7 +70,7 @@ contains
     type(equations_t), intent(inout) :: equations
     logical :: changing
 
-    equations%softness = 1
+    equations%penalty_share = 1
     if (size(history) == 0 .or. .not. equations%solves(equations%now)%own(displacement_field)) return
     changing = size(history) > last_iterations
     if (changing) changing = all(history(size(history) - last_iterations + 1:)%contact_changed) &

@@ -42,7 +42,7 @@ contains
     instant%reach = equations%stage%reach
     instant%tangent = tangent
     instant%mode = equations%mode
-    instant%softness = equations%softness
+    instant%penalty_share = equations%penalty_share
     instant%solved = equations%solves(equations%now)%own
     instant%pilots = solution%fields(pilot_field)%value
     instant%section = solution%fields(section_field)%value(:, 1)
