@@ -106,7 +106,6 @@ contains
     real(wp), dimension(equations%dofs%ndof) :: external, missing, residual, correction
     type(augmentations_t) :: made
     type(iteration_t) :: line
-    type(manner_t) :: manner
     type(shift_t) :: shift
     type(report_t) :: report
     integer, allocatable :: contact(:)
@@ -115,127 +114,154 @@ contains
     real(wp) :: work(size(scene%dies))
     logical :: lags(size(scene%dies)), left_by(size(scene%dies))
     logical :: staying(equations%dofs%ndof)
-    logical :: changed, followed, again, kept, steep, afresh, goes_on, taken
+    logical :: again, kept, steep, afresh, goes_on, changed, ends
     integer :: first
 
     allocate (outcome%history(0), outcome%du(equations%dofs%ndof))
-    call begin_augmentations(size(scene%groups), made)
-    call return_to_chosen(equations%solves(equations%now)%solver)
-    call external_forces(scene, equations%dofs, solution%time + dt, external)
-    if (present(left)) external = external - left
-    call predict(scene, equations, solution, dt, external, given, go_on, outcome%du, missing, kept, staying, report, &
-                 outcome%error)
-    if (allocated(outcome%error)) return
-    if (report%status /= block_done) then
-      call set_cause(report, outcome)
-      return
-    end if
-    if (dt > scene%strategy%least_step) then
-      outcome%event = report%event
-      ! the motion of a prediction that keeps contact goes straight on where that will follow the die
-      if (.not. kept) outcome%event = min(outcome%event, report%passed)
-    end if
-    if (outcome%event < 1) then
-      outcome%event_reason = 'contact begins'
-      return
-    end if
-
-    goes_on = goes_past_limits(scene, equations%dofs, outcome%du(equations%dofs%prescribed%dof) &
-                               + missing(equations%dofs%prescribed%dof))
-    again = .false.
-    if (present(go_on)) again = go_on .and. .not. equations%solves(equations%now)%own(displacement_field)
-    steep = is_steep(scene, equations)
-    first = 1
-    correction = 0
-    allocate (contact, source=contact_set(scene, solution))
-    held = equations%wall%held
-    left_by = .false.
-    afresh = .false.
+    call start_motion()
+    if (allocated(outcome%error) .or. allocated(outcome%reason) .or. outcome%event < 1) return
+    call start_iterations()
     do
+      call measure_residual()
+      if (is_stage_done(equations, outcome%history(first:)) .and. .not. is_missing_motion()) then
+        call stiffen_contact()
+        cycle
+      end if
+      if (is_in_equilibrium()) then
+        call augment_contact(changed)
+        if (.not. changed) exit
+        cycle
+      end if
+      call judge(scene, outcome%history(first:), outcome%reason)
+      ends = .false.
+      if (.not. allocated(outcome%reason)) call correct(ends)
+      if (ends .or. allocated(outcome%error)) exit
+      if (allocated(outcome%reason)) then
+        if (made%times == 0) exit
+        call start_again()
+        if (made%gave_way) exit
+      end if
+    end do
+    call conclude()
+
+  contains
+
+    !> The motion that the step begins with: the prediction, unless contact would begin within it.
+    subroutine start_motion()
+      call begin_augmentations(size(scene%groups), made)
+      call return_to_chosen(equations%solves(equations%now)%solver)
+      call external_forces(scene, equations%dofs, solution%time + dt, external)
+      if (present(left)) external = external - left
+      call predict(scene, equations, solution, dt, external, given, go_on, outcome%du, missing, kept, staying, report, &
+                   outcome%error)
+      if (allocated(outcome%error)) return
+      if (report%status /= block_done) then
+        call set_cause(report, outcome)
+        return
+      end if
+      if (dt > scene%strategy%least_step) then
+        outcome%event = report%event
+        ! the motion of a prediction that keeps contact goes straight on where that will follow the die
+        if (.not. kept) outcome%event = min(outcome%event, report%passed)
+      end if
+      if (outcome%event < 1) outcome%event_reason = 'contact begins'
+    end subroutine start_motion
+
+    !> What the iterations begin with.
+    subroutine start_iterations()
+      goes_on = goes_past_limits(scene, equations%dofs, outcome%du(equations%dofs%prescribed%dof) &
+                                 + missing(equations%dofs%prescribed%dof))
+      again = .false.
+      if (present(go_on)) again = go_on .and. .not. equations%solves(equations%now)%own(displacement_field)
+      steep = is_steep(scene, equations)
+      first = 1
+      correction = 0
+      allocate (contact, source=contact_set(scene, solution))
+      held = equations%wall%held
+      left_by = .false.
+      afresh = .false.
+    end subroutine start_iterations
+
+    !> The residual of the motion, and its norms: a line of the history.
+    subroutine measure_residual()
       residual = external - equations%force
       if (size(outcome%history) == 0) call weigh_quantities(equations, external, residual)
       line%force_norm = relative_residual(equations, solution%fields, external, residual, outcome%du)
       line%displacement_norm = relative_motion(equations, solution%fields, correction, outcome%du)
       outcome%history = [outcome%history, line]
       outcome%iterations = size(outcome%history) - 1
-      if (is_stage_done(equations, outcome%history(first:)) .and. .not. any(abs(missing) > 0)) then
-        call stiffen(equations)
-        first = size(outcome%history) + 1
-        correction = 0
-        call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
-        cycle
-      end if
-      if (.not. (any(abs(missing) > 0) .or. equations%penalty_share < 1)) then
-        if (has_converged(scene, outcome%history(first:), again .or. kept .and. (outcome%iterations == 0 .or. afresh)) &
-            .and. .not. (kept .and. afresh .and. line%force_norm > 0) &
-            .and. pilots_in_equilibrium(equations, solution%fields, external, residual) &
-            .and. (heat_in_balance(equations, residual, dt) .or. was_given_time(scene, outcome%history(first:)))) then
-          if (made%times == 0) then
-            outcome%first_iterations = size(outcome%history) - first
-            outcome%patch_difficulty = difficulty_of_patches(outcome%history)
-          end if
-          call augment(scene, equations, solution, outcome%du, made, changed)
-          if (.not. changed) exit
-          first = size(outcome%history) + 1
-          correction = 0
-          call evaluate_multipliers()
-          cycle
-        end if
-      end if
-      call judge(scene, outcome%history(first:), outcome%reason)
-      if (allocated(outcome%reason)) then
-        if (made%times == 0) exit
-        call start_again()
-        if (made%gave_way) exit
-        cycle
-      end if
+    end subroutine measure_residual
 
+    !> Prescribed unknowns have not made all of their motion.
+    function is_missing_motion() result(is)
+      logical :: is
+
+      is = any(abs(missing) > 0)
+    end function is_missing_motion
+
+    !> New contact presses with a larger share of its penalties; norms begin anew.
+    subroutine stiffen_contact()
+      call stiffen(equations)
+      first = size(outcome%history) + 1
+      correction = 0
+      call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
+    end subroutine stiffen_contact
+
+    !> The whole of the motion is made, contact has its whole penalties, and all norms are met.
+    function is_in_equilibrium() result(is)
+      logical :: is
+
+      is = .not. (is_missing_motion() .or. equations%penalty_share < 1)
+      if (.not. is) return
+      is = has_converged(scene, outcome%history(first:), again .or. kept .and. (outcome%iterations == 0 .or. afresh)) &
+           .and. .not. (kept .and. afresh .and. line%force_norm > 0) &
+           .and. pilots_in_equilibrium(equations, solution%fields, external, residual) &
+           .and. (heat_in_balance(equations, residual, dt) .or. was_given_time(scene, outcome%history(first:)))
+    end function is_in_equilibrium
+
+    !> Multipliers of contact are carried forward from an equilibrium, where they change.
+    subroutine augment_contact(changed)
+      logical, intent(out) :: changed
+
+      if (made%times == 0) then
+        outcome%first_iterations = size(outcome%history) - first
+        outcome%patch_difficulty = difficulty_of_patches(outcome%history)
+      end if
+      call augment(scene, equations, solution, outcome%du, made, changed)
+      if (.not. changed) return
+      first = size(outcome%history) + 1
+      correction = 0
+      call evaluate_multipliers()
+    end subroutine augment_contact
+
+    !> One correction of the motion. Where none is found `outcome` holds the reason; where there cannot be any, the attempt ends.
+    subroutine correct(ends)
+      logical, intent(out) :: ends
+      logical :: followed, taken
+      type(manner_t) :: manner
+
+      ends = .false.
       if (is_near(outcome%history(first:))) call follow_contact(scene, equations, solution, dt, outcome%du)
       call add_missing(equations, missing, residual)
       call solve_for_correction()
       if (allocated(outcome%error)) then
         call set_solver_cause(outcome)
-        if (allocated(outcome%error) .or. made%times == 0) exit
-        call start_again()
-        if (made%gave_way) exit
-        cycle
+        return
       end if
       outcome%linear_residual = max(outcome%linear_residual, equations%solves(equations%now)%solver%residual)
       call follow_content(scene, equations, solution, outcome%du, correction, followed)
-      manner = manner_t(whole=caught(outcome%history(first:)) .and. .not. shift%value > 0, &
-                        closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
-      if (steep) manner = manner_t(exactly=.true.)
-      ! forces with contact kept are no measure of those without
-      if (kept .and. afresh) manner%whole = .true.
+      manner = manner_of_search(followed)
       afresh = .false.
-      ! past a limit point the way to equilibrium leads up and down
-      if (scene%load_factor%multiplier > 0) manner%whole = .true.
-      if (followed) then
-        manner%whole = .true.
-        if (in_circles(outcome%history(first:))) correction = 0.5_wp*correction
-      end if
-      if (any(abs(missing) > 0)) then
+      if (followed .and. in_circles(outcome%history(first:))) correction = 0.5_wp*correction
+      if (is_missing_motion()) then
         ! a missing motion is taken without search, by what it moves alone
         where (staying) correction = 0
         touched = touching_dies(scene, solution)
         work = work_of_dies(equations, missing)
         lags = lagging_dies(equations, missing)
       end if
-      line%inner = 0
-      if (.not. (any(abs(missing) > 0) .or. shift%value > 0 .or. equations%penalty_share < 1)) &
-        call take_eliminated(scene, equations, solution, dt, external, residual, outcome%iterations, correction, outcome%du, &
-                             line%inner, report, outcome%error)
-      if (allocated(outcome%error)) exit
-      taken = line%inner > 0
-      line%past_limit = shift%uphill .and. .not. taken
-      if (line%past_limit .and. goes_on) &
-        call turn_downhill(scene, equations, solution, dt, external, residual, shift, correction, outcome%du, taken, report, &
-                           outcome%error)
-      if (allocated(outcome%error)) then
-        call set_solver_cause(outcome)
-        exit
-      end if
-      line%past_limit = line%past_limit .and. .not. taken .or. shift%value > 0
+      call take_without_search(taken, ends)
+      if (ends .or. allocated(outcome%error)) return
       if (taken) then
         line%line_search = 1
       else
@@ -244,47 +270,55 @@ contains
         call search_along(scene, equations, solution, dt, external, residual, missing, correction, manner, outcome%du, &
                           line%line_search, report)
       end if
-      if (any(abs(missing) > 0)) call follow_dies()
-      if (allocated(outcome%error)) exit
+      if (is_missing_motion()) call follow_dies()
+      if (allocated(outcome%error)) return
       if (.not. line%line_search > 0) then
         call set_cause(report, outcome)
-        if (made%times == 0) exit
-        call start_again()
-        if (made%gave_way) exit
-        cycle
+        return
       end if
       line%watched = caught(outcome%history(first:)) .and. manner%whole
       call note_contact(scene, solution, contact, line%contact_changed)
       line%contact_changed = line%contact_changed .or. followed .or. steep .or. any(held .neqv. equations%wall%held)
       held = equations%wall%held
       correction = line%line_search*correction
-    end do
+    end subroutine correct
 
-    outcome%augmentations = made%times
-    outcome%gave_way = made%gave_way
-    outcome%strain = report%strain
-    outcome%converged = .not. (allocated(outcome%reason) .or. allocated(outcome%error))
-    if (equations%solves(equations%now)%own(displacement_field)) equations%without_patches = .not. outcome%converged &
-      .and. (equations%without_patches .or. any(outcome%history%inner > 0))
-    if (outcome%converged .and. report%passed < 1) then
-      outcome%converged = .false.
-      outcome%reason = 'a side goes through a die'
-      if (dt > scene%strategy%least_step) then
-        outcome%event = report%passed
-        outcome%event_reason = 'a die would go through a side'
+    !> How the correction is searched along.
+    function manner_of_search(followed) result(manner)
+      logical, intent(in) :: followed   !! the correction follows the heat content
+      type(manner_t) :: manner
+
+      manner = manner_t(whole=caught(outcome%history(first:)) .and. .not. shift%value > 0, &
+                        closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
+      if (steep) manner = manner_t(exactly=.true.)
+      ! forces with contact kept are no measure of those without; past a limit point the way to equilibrium leads up and down
+      if (kept .and. afresh .or. scene%load_factor%multiplier > 0 .or. followed) manner%whole = .true.
+    end function manner_of_search
+
+    !> A correction with a patch eliminated, or one past a limit point by which the residual falls by half, is taken without a
+    !> search. Past a limit point any other becomes one that leads downhill; where its matrix has no factors the attempt ends.
+    subroutine take_without_search(taken, ends)
+      logical, intent(out) :: taken, ends
+
+      ends = .false.
+      taken = .false.
+      line%inner = 0
+      if (.not. (is_missing_motion() .or. shift%value > 0 .or. equations%penalty_share < 1)) &
+        call take_eliminated(scene, equations, solution, dt, external, residual, outcome%iterations, correction, outcome%du, &
+                             line%inner, report, outcome%error)
+      if (allocated(outcome%error)) return
+      taken = line%inner > 0
+      line%past_limit = shift%uphill .and. .not. taken
+      if (line%past_limit .and. goes_on) &
+        call turn_downhill(scene, equations, solution, dt, external, residual, shift, correction, outcome%du, taken, report, &
+                           outcome%error)
+      if (allocated(outcome%error)) then
+        call set_solver_cause(outcome)
+        ends = .true.
+        return
       end if
-    end if
-    ! who leaves a part of the residual judges the strain of his parts
-    if (outcome%converged .and. outcome%strain > scene%strategy%strain_bound &
-        .and. .not. (present(left) .and. equations%mode == mode_advance)) then
-      outcome%converged = .false.
-      outcome%reason = 'strain increment '//to_text(outcome%strain, 3)//' above '//to_text(scene%strategy%strain_bound, 3)
-    end if
-    if (outcome%converged) return
-    outcome%residual = residual
-    call put_back(made, solution)
-
-  contains
+      line%past_limit = line%past_limit .and. .not. taken .or. shift%value > 0
+    end subroutine take_without_search
 
     !> The correction of the residual. A missing motion is given, and past a limit point of a load factor the way leads up and down.
     subroutine solve_for_correction()
@@ -343,6 +377,34 @@ contains
       contact = contact_set(scene, solution)
       held = equations%wall%held
     end subroutine start_again
+
+    !> What the attempt has found: an equilibrium, unless the step is too long for it to be taken.
+    subroutine conclude()
+      outcome%augmentations = made%times
+      outcome%gave_way = made%gave_way
+      outcome%strain = report%strain
+      outcome%converged = .not. (allocated(outcome%reason) .or. allocated(outcome%error))
+      if (equations%solves(equations%now)%own(displacement_field)) equations%without_patches = .not. outcome%converged &
+        .and. (equations%without_patches .or. any(outcome%history%inner > 0))
+      if (outcome%converged .and. report%passed < 1) then
+        outcome%converged = .false.
+        outcome%reason = 'a side goes through a die'
+        if (dt > scene%strategy%least_step) then
+          outcome%event = report%passed
+          outcome%event_reason = 'a die would go through a side'
+        end if
+      end if
+      ! who leaves a part of the residual judges the strain of his parts
+      if (outcome%converged .and. outcome%strain > scene%strategy%strain_bound &
+          .and. .not. (present(left) .and. equations%mode == mode_advance)) then
+        outcome%converged = .false.
+        outcome%reason = 'strain increment '//to_text(outcome%strain, 3)//' above '//to_text(scene%strategy%strain_bound, 3)
+      end if
+      if (outcome%converged) return
+      outcome%residual = residual
+      call put_back(made, solution)
+    end subroutine conclude
+
   end subroutine find_equilibrium
 
   !> Cause of a failed step: the element, and what failed in it.
