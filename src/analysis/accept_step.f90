@@ -16,12 +16,12 @@ module accept_step
   use heat_flows, only: book_heat_flows
   use heat_record, only: note_heat_step
   use kinds, only: wp
-  use newton, only: outcome_t
   use path_record, only: note_path_step
   use phase_books, only: book_fractions
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use spring_check, only: has_body_springs
+  use step_outcome, only: outcome_t
   use text, only: to_text
   use vectors, only: length_of
   use work_books, only: work_t

@@ -11,13 +11,13 @@ module history
   use heat_flows, only: heat_flow_names
   use history_columns, only: columns_of_die_heat, columns_of_steps
   use kinds, only: pi, wp
-  use newton, only: outcome_t
   use path_record, only: motion_error, stress_error
   use point_volumes, only: volumes_of_points
   use probes, only: probe_maximum, probe_mean, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
   use quad8_geometry, only: quad8_rule, quad8_rule_t
   use scene, only: axisymmetric, generalised_plane_strain, scene_t
   use solution, only: solution_t
+  use step_outcome, only: outcome_t
   use stress_measures, only: stress_measure
   use text, only: add_text, string_t
   implicit none

@@ -5,11 +5,11 @@ module listing
   use errors, only: error_t, exit_machine, fail
   use file_kinds, only: refuse_to_replace
   use kinds, only: wp
-  use newton, only: outcome_t
   use restore_balance, only: balance_t
   use scene, only: scene_t
   use solution, only: solution_t
   use standard_streams, only: print_error, print_line, print_part
+  use step_outcome, only: outcome_t
   use system, only: is_terminal, wall_seconds
   use text, only: string_t, to_text
   implicit none

@@ -20,7 +20,6 @@ module march
   use listing, only: list_balance, list_cutback, list_event, list_lines, list_note, list_step, show_progress
   use lost_equilibrium, only: refuse_lost_equilibrium
   use memory_limits, only: require_memory
-  use newton, only: outcome_t
   use path_record, only: note_attempt
   use probation, only: is_too_short, pass_probation, refuse_after_all
   use restart_report, only: write_restart
@@ -33,6 +32,7 @@ module march
   use solution, only: solution_t
   use spent_polynomials, only: refuse_spent_polynomials
   use spurious_mode, only: has_mean_dilatation, spurious_limit
+  use step_outcome, only: outcome_t
   use step_solves, only: solve_fields
   use step_strategy, only: after_failure, after_success, choose_step
   use system, only: caught_signal, join_path

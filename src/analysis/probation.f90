@@ -9,10 +9,10 @@ module probation
   use judge_remesh, only: advice_after_refusal, bad_shape
   use kinds, only: wp
   use listing, only: list_lines, listing_t
-  use newton, only: outcome_t
   use residual_place, only: least_shape, place_residual, residual_place_t
   use scene, only: is_solid, scene_t
   use solution, only: present_coordinates, solution_t
+  use step_outcome, only: outcome_t
   use text, only: string_t, to_text, two_digits
   implicit none
   private

@@ -19,7 +19,7 @@ module restore_balance
   use external_loads, only: external_forces
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
-  use newton, only: outcome_t, solve_step
+  use newton, only: solve_step
   use path_record, only: settle_path
   use quadrature, only: is_control_point, rule_along
   use residual_distance, only: relative_distance, work_of_correction
@@ -28,6 +28,7 @@ module restore_balance
   use scene, only: scene_t
   use solution, only: solution_t
   use state_variables, only: find_variable
+  use step_outcome, only: outcome_t
   use system, only: wall_seconds
   use vectors, only: length_of
   implicit none

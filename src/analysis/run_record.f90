@@ -14,13 +14,13 @@ module run_record
   use history, only: write_row
   use kinds, only: eps, wp
   use listing, only: listing_t
-  use newton, only: outcome_t
   use own_contact, only: faces_itself
   use restore_balance, only: balance_t
   use results, only: results_t, save_fields
   use scene, only: scene_t
   use solution, only: present_coordinates, solution_t
   use state_variables, only: find_variable
+  use step_outcome, only: outcome_t
   use system, only: caught_signal
   use text, only: string_t
   use watch_mesh, only: mesh_is_due

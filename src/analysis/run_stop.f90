@@ -7,13 +7,13 @@ module run_stop
   use heat_contacts, only: jumps_at_opening
   use kinds, only: wp
   use law_api, only: find_parameter, law_t
-  use newton, only: outcome_t
   use own_contact, only: passes_itself_advice, passes_itself_words, thins_out_advice, thins_out_words
   use results, only: save_failure
   use run_record, only: run_t, save_all, at_end
   use scene, only: role_heat_contact, scene_t
   use solution, only: solution_t
   use spurious_mode, only: may_stand_alone
+  use step_outcome, only: outcome_t
   use strategy, only: coupling_once
   use system, only: caught_signal
   use text, only: to_text

@@ -20,9 +20,9 @@ module heat_error
   use external_loads, only: external_forces
   use fields, only: find_field
   use kinds, only: wp
-  use newton, only: outcome_t
   use scene, only: scene_t
   use solution, only: solution_t
+  use step_outcome, only: outcome_t
   implicit none
   private
   public :: diagonal, estimate_error, flows, weight

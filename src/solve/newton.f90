@@ -9,14 +9,12 @@ module newton
   use contact_heat_tangent, only: follow_contact
   use convergence, only: heat_in_balance, pilots_in_equilibrium, relative_motion, relative_residual, weigh_quantities
   use corrections, only: solve_correction
-  use elem_api, only: block_done, block_inverted, block_without_source, mode_advance, report_t
+  use elem_api, only: block_done, mode_advance, report_t
   use equations, only: equations_t
-  use errors, only: error_t, exit_no_convergence
   use evaluation, only: evaluate, is_apart
   use external_loads, only: external_forces
   use fields, only: displacement_field
   use heat_correction, only: follow_content, is_steep
-  use heat_record, only: heat_step_t
   use iteration_history, only: caught, difficulty_of_patches, goes_to_and_fro, has_converged, in_circles, in_turmoil, is_near, &
                                iteration_t, judge, was_given_time, went_round
   use kinds, only: wp
@@ -24,55 +22,16 @@ module newton
   use line_search, only: manner_t, search_along
   use nonlinear_elimination, only: take_eliminated
   use onset_motion, only: add_missing
-  use path_record, only: path_step_t
   use pseudo_transient, only: ease_shift, goes_past_limits, shift_t, solve_shifted, turn_downhill
   use predictor, only: lagging_dies, leaving_dies, predict, work_of_dies
   use scene, only: scene_t
   use soft_contact, only: begin_softly, end_softly, is_stage_done, stiffen
   use solution, only: solution_t
+  use step_outcome, only: outcome_t, set_cause, set_solver_cause
   use text, only: to_text
   implicit none
   private
-  public :: solve_step, outcome_t
-
-  type :: outcome_t
-    logical :: converged = .false.
-    !> Why the step must be cut back, when it has not converged; and the element that failed, when there is one.
-    character(len=:), allocatable :: reason
-    integer :: group = 0, element = 0
-    !> Iterations in all, and those before the first augmentation: the difficulty of the step.
-    integer :: iterations = 0, first_iterations = 0
-    !> What iterations on the unknowns of patches add to the latter.
-    real(wp) :: patch_difficulty = 0.0_wp
-    !> It was found in so many parts (first_step_parts).
-    integer :: parts = 1
-    type(iteration_t), allocatable :: history(:)
-    !> The step should be no longer than this share of it; why.
-    real(wp) :: event = 1.0_wp
-    character(len=:), allocatable :: event_reason
-    !> The solve that failed is one of heat alone.
-    logical :: of_heat = .false.
-    !> The equilibrium found has a body that passes through itself.
-    logical :: passes_itself = .false.
-    !> It has thinned to nothing where it does.
-    logical :: thins_out = .false.
-    !> Balance of heat in time.
-    type(heat_step_t) :: heat
-    !> Path within the step.
-    type(path_step_t) :: path
-    !> Motion of every unknown (ndof).
-    real(wp), allocatable :: du(:)
-    !> Residual force of every unknown where a failed step stopped (ndof).
-    real(wp), allocatable :: residual(:)
-    !> Largest strain increment, worst residual of the linear solves.
-    real(wp) :: strain = 0.0_wp, linear_residual = 0.0_wp
-    !> Multipliers of contact were carried forward so many times.
-    integer :: augmentations = 0
-    !> A further augmentation had no equilibrium: the one before it was kept.
-    logical :: gave_way = .false.
-    !> The machine failed, not the step.
-    type(error_t), allocatable :: error
-  end type outcome_t
+  public :: solve_step
 
 contains
 
@@ -406,30 +365,5 @@ contains
     end subroutine conclude
 
   end subroutine find_equilibrium
-
-  !> Cause of a failed step: the element, and what failed in it.
-  subroutine set_cause(report, outcome)
-    type(report_t), intent(in) :: report
-    type(outcome_t), intent(inout) :: outcome
-
-    if (report%status == block_inverted) then
-      outcome%reason = 'an element turned inside out'
-    else if (report%status == block_without_source) then
-      outcome%reason = 'the torch of GOLDAK is off its bodies while it has power: end its power (LIC) or its path there'
-    else
-      outcome%reason = 'a law did not converge'
-    end if
-    outcome%group = report%group
-    outcome%element = report%element
-  end subroutine set_cause
-
-  !> A matrix that the solver cannot factorise cuts the step back; a failure of the machine does not.
-  subroutine set_solver_cause(outcome)
-    type(outcome_t), intent(inout) :: outcome
-
-    if (outcome%error%code /= exit_no_convergence) return
-    outcome%reason = outcome%error%message
-    deallocate (outcome%error)
-  end subroutine set_solver_cause
 
 end module newton

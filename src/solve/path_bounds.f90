@@ -11,11 +11,11 @@
 module path_bounds
   use equations, only: equations_t
   use kinds, only: eps, wp
-  use newton, only: outcome_t
   use path_error, only: at_corner, bend_of, estimate_path, on_nodes
   use path_record, only: mean_square, stress_before, stress_scale
   use scene, only: scene_t
   use solution, only: solution_t
+  use step_outcome, only: outcome_t
   use strategy, only: strategy_t
   use text, only: to_text
   implicit none

@@ -18,7 +18,6 @@ module path_error
   use fields, only: displacement_field
   use kinds, only: eps, wp
   use kinematics_api, only: first_history
-  use newton, only: outcome_t
   use path_record, only: mean_square, path_step_t, stress_scale
   use path_states, only: advance_beside, begin_beside, has_path, root_energy, unbalanced_forces
   use path_stress, only: stress_with_motion
@@ -26,6 +25,7 @@ module path_error
   use round_off_floors, only: round_off_motion
   use scene, only: scene_t
   use solution, only: solution_t
+  use step_outcome, only: outcome_t
   use strategy, only: strategy_t
   implicit none
   private

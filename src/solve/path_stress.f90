@@ -26,10 +26,10 @@ module path_stress
   use fields, only: displacement_field
   use kinds, only: wp
   use kinematics_api, only: first_history
-  use newton, only: outcome_t
   use path_states, only: advance_beside, begin_beside, root_energy, unbalanced_forces
   use scene, only: plane_stress, scene_t
   use solution, only: group_state_t, solution_t
+  use step_outcome, only: outcome_t
   implicit none
   private
   public :: stress_with_motion

@@ -10,12 +10,12 @@ module step_solves
   use first_step_parts, only: solve_motion
   use heat_stages, only: is_heat_alone, solve_heat
   use kinds, only: wp
-  use newton, only: outcome_t
   use own_crossings, only: find_own_crossing, own_crossing_t
   use path_bounds, only: judge_path
   use predictor, only: proportion
   use scene, only: scene_t
   use solution, only: solution_t
+  use step_outcome, only: outcome_t
   use strategy, only: coupling_converged
   use stress_exchange, only: advance_exchange, begin_exchange, end_exchange, stress_exchange_t
   use text, only: to_text
