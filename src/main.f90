@@ -4,9 +4,10 @@ program lagamine
   use card_print, only: print_cards
   use errors, only: error_t, exit_done
   use kinds, only: wp
+  use law_print, only: print_law
   use memory_limits, only: require_memory
   use point_run, only: run_point
-  use run_deck, only: print_law, run_options_on_deck
+  use run_deck, only: run_options_on_deck
   use run_options, only: read_options, run_options_t, usage_text
   use run_version, only: blas_words, print_version
   use standard_streams, only: claim_standard_streams, print_error, print_line

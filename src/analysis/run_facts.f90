@@ -17,7 +17,8 @@ module run_facts
     !> What is seldom meant of the deck (physics_check).
     type(string_t), allocatable :: warnings(:)
     integer :: exit_code = 0, threads = 1
-    real(wp) :: wall = 0.0_wp
+    !> Seconds by the clock, and of all processors.
+    real(wp) :: wall = 0.0_wp, processor = 0.0_wp
     !> Errors that are estimated, and what half of them costs.
     type(closing_t) :: closing
   end type run_facts_t

@@ -1,0 +1,197 @@
+!> What a run ends with, whatever has happened: warnings, what it has cost and reached, summary and listing.
+module run_ending
+  use accuracy_laws, only: sample_t
+  use accuracy_plan, only: accuracy_lines, accuracy_warning, judge_run
+  use accuracy_rules, only: fineness_t
+  use accuracy_samples, only: add_cost, read_sample
+  use blas, only: blas_build, blas_core_name
+  use closing_table, only: close_cycle, close_run
+  use confinement, only: warn_of_confinement
+  use cost_file, only: cost_t
+  use crossed_bodies, only: warn_of_crossed_bodies
+  use cut_report, only: warn_of_webs
+  use errors, only: error_t, exit_done, exit_no_convergence
+  use floating_bodies, only: warn_of_floating_bodies, warn_of_idle_dies
+  use heated_steels, only: warn_of_missing_austenite
+  use held_steels, only: warn_of_held_steels
+  use judge_remesh, only: agreed_words
+  use kinds, only: wp
+  use listing, only: close_listing, end_progress, list_lines
+  use passed_planes, only: warn_of_passed_planes
+  use run_facts, only: run_facts_t
+  use run_options, only: run_options_t
+  use run_record, only: run_t
+  use run_version, only: blas_words, version_text
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use standard_streams, only: print_line, print_lines
+  use summary, only: write_summary
+  use summary_table, only: summary_lines
+  use system, only: join_path
+  use text, only: add_text, string_t
+  implicit none
+  private
+  public :: end_run
+
+contains
+
+  !> End a run, or an operation of one. `error` is why it cannot go on, where it cannot; else what has failed here.
+  subroutine end_run(options, scene, solution, nbefore, run, facts, error)
+    type(run_options_t), intent(in) :: options
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: nbefore   !! warnings that were told before the run
+    type(run_t), intent(inout) :: run
+    type(run_facts_t), intent(inout) :: facts   !! with those warnings and seconds
+    type(error_t), allocatable, intent(inout) :: error
+    type(error_t), allocatable :: late
+    type(string_t), allocatable :: lines(:)
+
+    call end_progress(run%listing)
+    if (allocated(error)) call add_warnings(facts%warnings, error)
+    call warn_at_end(scene, solution, run, facts%warnings)
+    facts%version = version_text
+    facts%deck = options%deck
+    facts%deck_text = run%deck_text
+    facts%overrides = options%overrides
+    facts%status = merge('done   ', 'stopped', run%exit_code == exit_done)
+    facts%status = trim(facts%status)
+    facts%stop_reason = run%stop_reason
+    facts%exit_code = run%exit_code
+    facts%threads = run%equations%team%most
+    facts%blas = blas_words(blas_build(), blas_core_name())
+    call close_run(scene, run%equations, solution, run%totals%volume, facts%closing)
+    ! of an operation without REMSH too, where others have it
+    if (run%has_new_meshes .or. (scene%accuracy%asked > 0 .and. allocated(options%fineness))) &
+      call close_cost(options, scene, solution, run, facts, late)
+    call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
+    call list_lines(run%listing, lines)
+    call close_listing(run%listing)
+    call write_summary(join_path(run%folder, summary_name(scene, run)), facts, scene, run%equations, solution, run%totals, &
+                       run%balance, late)
+    if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
+    if (.not. allocated(error)) call print_end(options, scene, run%exit_code, facts, nbefore, lines, error)
+  end subroutine end_run
+
+  !> What the state at the end gives cause to say.
+  subroutine warn_at_end(scene, solution, run, warnings)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(in) :: run
+    type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning)
+
+    if (allocated(run%balance)) then
+      if (run%balance%agreed) call add_text(warnings, agreed_words(run%balance))
+    end if
+    call warn_of_confinement(scene, solution, warnings)
+    call warn_of_passed_planes(scene, solution, warnings)
+    if (run%exit_code /= exit_done) return
+    call warn_of_webs(scene, solution, warnings)
+    call warn_of_missing_austenite(scene, solution, warnings)
+    call warn_of_held_steels(scene, solution, warnings)
+    call warn_of_floating_bodies(scene, run%equations%loose, solution, warnings)
+    call warn_of_crossed_bodies(scene, run%equations%free_sides, solution, warnings)
+    call warn_of_idle_dies(scene, run%equations, solution, run%totals%volume, warnings)
+  end subroutine warn_at_end
+
+  !> The summary on standard output; with progress, only what is new in it at the end of a run.
+  subroutine print_end(options, scene, exit_code, facts, nbefore, lines, error)
+    type(run_options_t), intent(in) :: options
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: exit_code
+    type(run_facts_t), intent(in) :: facts
+    integer, intent(in) :: nbefore           !! warnings that were told before the run
+    type(string_t), intent(in) :: lines(:)   !! (nline) of the summary
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: late
+    type(string_t), allocatable :: reached(:)
+
+    if (.not. (options%quiet .or. options%progress)) then
+      if (scene%operation > 0) call print_line('operation '//scene%operation_name, late)
+      call print_lines(lines, late)
+      ! scripts read first why a run has stopped
+      if (allocated(late) .and. exit_code == exit_done) call move_alloc(late, error)
+    else if (options%progress .and. exit_code == exit_done) then
+      if (allocated(facts%closing%accuracy)) then
+        call accuracy_lines(facts%closing%accuracy, reached)
+        call print_lines(reached, error)
+      end if
+      if (.not. allocated(error)) call print_lines(closing_warnings(lines, facts%warnings(:nbefore)), error)
+    end if
+  end subroutine print_end
+
+  !> Warnings among the lines of the summary that were not printed before the run.
+  pure function closing_warnings(lines, before) result(list)
+    type(string_t), intent(in) :: lines(:)    !! (nline) of the summary
+    type(string_t), intent(in) :: before(:)   !! (nwarning) of the deck
+    type(string_t), allocatable :: list(:)
+    integer :: k, j
+
+    allocate (list(0))
+    do k = 1, size(lines)
+      if (index(lines(k)%s, 'WARNING: ') == 0) cycle
+      do j = 1, size(before)
+        if (index(lines(k)%s, before(j)%s) > 0) exit
+      end do
+      if (j > size(before)) call add_text(list, trim(adjustl(lines(k)%s)))
+    end do
+  end function closing_warnings
+
+  !> What was seen of the deck before the run may be why it cannot go on.
+  pure subroutine add_warnings(warnings, error)
+    type(string_t), intent(in) :: warnings(:)   !! (nwarning) of the deck
+    type(error_t), intent(inout) :: error
+    character(len=:), allocatable :: words
+    integer :: k
+
+    if (error%code /= exit_no_convergence .or. size(warnings) == 0) return
+    words = 'WARNING before the run: '//warnings(1)%s
+    do k = 2, size(warnings)
+      words = words//'; '//warnings(k)%s
+    end do
+    if (allocated(error%advice)) words = words//'; '//error%advice
+    error%advice = words
+  end subroutine add_warnings
+
+  !> What a run of a deck with ACCURACY or REMSH has cost, over all its meshes; and what one with ACCURACY that has come to its end
+  !> has reached. A warning where that is less than asked.
+  subroutine close_cost(options, scene, solution, run, facts, error)
+    type(run_options_t), intent(in) :: options
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(in) :: run
+    type(run_facts_t), intent(inout) :: facts
+    type(error_t), allocatable, intent(out) :: error
+    type(sample_t) :: sample
+    type(fineness_t) :: fineness
+    type(cost_t) :: cost
+    character(len=:), allocatable :: words
+    logical :: there
+
+    if (allocated(options%fineness)) fineness = options%fineness
+    call add_cost(run%stem, run%deck_text, fineness, scene, run%equations, solution, facts%processor, &
+                  merge(facts%closing%stress, -1.0_wp, facts%closing%space), &
+                  run%exit_code == exit_done .and. scene%operation >= scene%operations, &
+                  run%begins_operation .or. allocated(options%resume), cost, error)
+    if (allocated(error)) return
+    call close_cycle(scene, cost, join_path(run%folder, 'history.csv'), facts%closing)
+    if (.not. (cost%finished .and. allocated(run%plan))) return
+    call read_sample(options, run%deck_text, options%fineness, run%plan%columns, sample, there)
+    if (.not. there) return
+    allocate (facts%closing%accuracy)
+    call judge_run(run%plan, sample, facts%closing%accuracy)
+    words = accuracy_warning(facts%closing%accuracy)
+    if (len(words) > 0) call add_text(facts%warnings, words)
+  end subroutine close_cost
+
+  !> The summary of an operation that others follow has a name of its own.
+  pure function summary_name(scene, run) result(name)
+    type(scene_t), intent(in) :: scene
+    type(run_t), intent(in) :: run
+    character(len=:), allocatable :: name
+
+    name = 'summary.json'
+    if (run%exit_code == exit_done .and. scene%operation < scene%operations) name = 'summary.'//scene%operation_name//'.json'
+  end function summary_name
+
+end module run_ending
