@@ -5,7 +5,7 @@ module pending_heat
   use contact_point, only: area_at
   use drivers, only: drivers_t
   use elem_heat_contact, only: name_of_due
-  use fields, only: displacement_field, find_field, section_field
+  use fields, only: find_field, section_field
   use heat_sources, only: share_of_work, work_heated, work_name
   use kinds, only: wp
   use law_api, only: driver_count, find_parameter, law_t

@@ -8,7 +8,6 @@ module cards_probes
   use field_places, only: refuse_without_field
   use history_columns, only: own_columns_named
   use kinds, only: wp
-  use mesh, only: nearest_node
   use probe_components, only: find_component, read_component, set_component
   use probe_places, only: is_off, nearest_point, read_point
   use probes, only: probe_maximum, probe_mean, probe_minimum, probe_node, probe_point, probe_reaction, probe_t

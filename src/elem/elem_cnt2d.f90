@@ -19,7 +19,7 @@
 !> moment about it. Everything is linearised exactly, the curvature of the die included.
 module elem_cnt2d
   use axis_contact, only: press_axis
-  use closest_point, only: closest_point_t, closest_within_piece
+  use closest_point, only: closest_point_t
   use contact_areas, only: areas_with_control
   use contact_between, only: press_between
   use contact_measure, only: augment, measure
@@ -37,7 +37,7 @@ module elem_cnt2d
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_law, contact_open, law_t
   use materials, only: material_t
-  use plane_vectors, only: cross, turned
+  use plane_vectors, only: turned
   use quadrature, only: line_rule, rule_along, rule_control
   use side_contact, only: press_side
   use rigid_contact, only: closest_or_followed, ndof, nodes_in_axes, place_point, press, side_t

@@ -8,8 +8,7 @@ module latent_heat
   use dual_numbers, only: dual_t, operator(*), operator(-)
   use heat_of_phases, only: heat_taken
   use kinds, only: wp
-  use phases_there, only: phases_that_form
-  use steels, only: austenite, bainite, martensite, prop_content, prop_latent, prop_rhoc, steel_t, tempered, unknown_temperature
+  use steels, only: austenite, bainite, martensite, prop_content, prop_latent, prop_rhoc, steel_t, tempered
   use temperature_curves, only: curve_at, dual_curve_at, is_given, same_curve
   implicit none
   private

@@ -10,7 +10,7 @@ module seating
   use closest_point, only: closest_point_t
   use contact_point, only: touching
   use curve_search, only: closest_facing_point
-  use dies, only: die_t, in_pilot_axes, is_deformable
+  use dies, only: in_pilot_axes, is_deformable
   use dofs, only: dofs_t
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp

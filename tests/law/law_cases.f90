@@ -1,6 +1,5 @@
 !> Materials and single points for the tests of laws and of what is built on them.
 module law_cases
-  use contact_penalties, only: penalty_parameters
   use kinds, only: wp
   use law_api, only: driver_temperature, find_parameter, law_t
   use law_registry, only: list_laws

@@ -4,9 +4,8 @@ module steel_materials
   use kinds, only: wp
   use materials, only: material_t
   use steel_build, only: set_nodes
-  use steels, only: austenite, bainite, expansion_incremental, expansion_total, martensite, phase_count, plasticity_desalos, &
-                    prop_alpha, prop_modulus, prop_plasticity, prop_poisson, prop_rise, prop_saturation, prop_strain, prop_yield, &
-                    prop_young, steel_t
+  use steels, only: austenite, expansion_incremental, expansion_total, phase_count, plasticity_desalos, prop_alpha, prop_modulus, &
+                    prop_plasticity, prop_poisson, prop_strain, prop_yield, prop_young, steel_t
   use temperature_curves, only: curve_polynomial, temperature_curve_t
   implicit none
   private

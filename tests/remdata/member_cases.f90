@@ -3,8 +3,8 @@ module member_cases
   use contact_ends, only: contact_end_t
   use contour_cases, only: add_block, add_contact, add_die, begin_scene, box, polyline, start
   use cuts, only: cut_record_t, cut_t
-  use dies, only: die_t, is_deformable, place_on_nodes
-  use fields, only: displacement_field, field_t, mechanical_fields, on_nodes, transfer_nodal
+  use dies, only: die_t, place_on_nodes
+  use fields, only: field_t, mechanical_fields, on_nodes, transfer_nodal
   use kept_members, only: member_memory_t
   use kinds, only: wp
   use loads, only: fixation_t
@@ -14,8 +14,6 @@ module member_cases
   use solution, only: solution_t
   use state_variables, only: state_variable, state_variable_t, transfer_contact, transfer_recompute, transfer_scalar, &
     transfer_tensor
-  use text, only: to_text
-  use visitors, only: visitor_t
   use mesh_windows, only: mesh_window_t
   use zone_marks, only: contour_card_t, mark_crossing, zone_card_t, zone_mark_t
   implicit none
