@@ -3,7 +3,8 @@
 !> What is an integral over sides, as a force is, is kept as such, whatever the lengths of old and new sides are; other variables
 !> are those of the old point that presses most.
 module point_carry
-  use contact_carry, only: add_integrals, interval_points_t, list_carried, old_row, status_row, surface
+  use contact_carry, only: add_integrals, list_carried
+  use interval_points, only: interval_points_t, old_row, status_row, surface
   use kinds, only: wp
   use part_contour, only: contour_t
   use point_contacts, only: point_contact_t
