@@ -4,7 +4,7 @@ module text
   use kinds, only: i8, wp
   implicit none
   private
-  public :: string_t, to_text, upper_case, nearest_word, edit_distance, join, two_digits, add_text
+  public :: string_t, to_text, upper_case, nearest_word, edit_distance, join, padded, two_digits, add_text
 
   !> A text of its own length, so that arrays of words need no padding.
   type :: string_t
@@ -155,5 +155,14 @@ contains
     end do
     d = row(len(b))
   end function edit_distance
+
+  !> Text with blanks up to a width, and at least one.
+  pure function padded(s, width) result(t)
+    character(len=*), intent(in) :: s
+    integer, intent(in) :: width
+    character(len=:), allocatable :: t
+
+    t = s//repeat(' ', max(1, width - len(s)))
+  end function padded
 
 end module text

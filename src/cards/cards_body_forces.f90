@@ -1,6 +1,6 @@
 !> BFORC, CENTR and SPRNG on bodies: forces on the volume of bodies, a group of load elements each.
 module cards_body_forces
-  use cards_sides, only: append_group, start_group
+  use card_groups, only: close_group, start_group
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
@@ -9,7 +9,7 @@ module cards_body_forces
   use fields, only: displacement_field
   use kinds, only: pi, wp
   use scene, only: axisymmetric, group_t
-  use scene_draft, only: close_card, draft_t, words_of
+  use scene_draft, only: draft_t, words_of
   use text, only: string_t
   implicit none
   private
@@ -59,12 +59,7 @@ contains
         group%name = group%name//'/'//draft%multipliers%words(k)%s
       end if
       if (.not. cursor%failed()) call refuse_second(cursor, draft, group, diagnostics)
-      call close_card(draft, cursor, deck%cards(i))
-      if (cursor%failed()) then
-        draft%groups_sound = .false.
-      else
-        call append_group(draft, group, cursor%where())
-      end if
+      call close_group(draft, cursor, deck%cards(i), group)
     end do
   end subroutine read_body_forces
 

@@ -1,7 +1,7 @@
 !> TDIE: the temperature of a rigid die, given in time or of a heat capacity.
 module cards_die_heat
+  use card_groups, only: append_group, start_group
   use cards_heat, only: read_multiplier
-  use cards_sides, only: append_group, start_group
   use deck_cursor, only: cursor_t
   use deck_reader, only: card_t
   use diagnostics, only: diagnostics_t, location_t

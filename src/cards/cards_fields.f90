@@ -1,10 +1,10 @@
 !> ADDEL, IMPOS and SOLVE: further formulations on bodies, values of their fields where they are imposed, and how fields are
 !> coupled.
 module cards_fields
+  use card_groups, only: append_group
   use card_places, only: place_t, read_place
   use cards_laws, only: read_material
   use cards_mesh, only: is_body_elem, read_option
-  use cards_sides, only: append_group
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t

@@ -1,7 +1,8 @@
 !> FLUX, CONVE, RADIA and HEATS: heat that passes sides of bodies, or comes from their volume; THETA: its balance in time.
 module cards_heat
+  use card_groups, only: close_group, start_group
   use card_places, only: numbers_after_name, read_sides
-  use cards_sides, only: append_group, refuse_inner_sides, start_group
+  use cards_sides, only: refuse_inner_sides
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
@@ -58,12 +59,7 @@ contains
                                                                          //diagnostics%place(draft%group_where(g)))
         end do
       end associate
-      call close_card(draft, cursor, deck%cards(i))
-      if (cursor%failed()) then
-        draft%groups_sound = .false.
-      else
-        call append_group(draft, group, cursor%where())
-      end if
+      call close_group(draft, cursor, deck%cards(i), group)
     end do
   end subroutine read_exchanges
 

@@ -1,8 +1,9 @@
 !> COU2DC: heat between sides and dies; TDIE by cards_die_heat.
 module cards_heat_contact
+  use card_groups, only: append_group, start_group
   use card_places, only: read_sides
   use cards_die_heat, only: find_die, read_die
-  use cards_sides, only: append_group, refuse_inner_sides, start_group
+  use cards_sides, only: refuse_inner_sides
   use contact_rule, only: rule_on_body
   use deck_cursor, only: cursor_t
   use deck_reader, only: card_t, deck_t

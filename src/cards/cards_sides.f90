@@ -1,12 +1,13 @@
 !> CNT2D and PRES2D: elements that lie on sides of bodies.
 module cards_sides
+  use card_groups, only: append_group, close_group, start_group
   use card_places, only: numbers_after_name, read_sides
   use cards_laws, only: read_material
   use contact_penalties, only: tangential_share
   use contact_rule, only: rule_on_body, rule_on_die
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
-  use diagnostics, only: diagnostics_t, location_t
+  use diagnostics, only: diagnostics_t
   use dies, only: is_deformable
   use kinds, only: wp
   use law_api, only: contact_law, find_parameter, is_complete, law_of_material
@@ -16,7 +17,7 @@ module cards_sides
   use text, only: to_text, upper_case
   implicit none
   private
-  public :: read_contacts, read_pressures, refuse_inner_sides, start_group, append_group
+  public :: read_contacts, read_pressures, refuse_inner_sides
 
   !> Points of a side: Gauss, or at equal distances with the ends (negative).
   integer, parameter :: rules(10) = [2, 3, 4, -3, -5, -9, -17, -33, -65, -129]
@@ -176,38 +177,9 @@ contains
                                                                          //diagnostics%place(draft%group_where(g)))
         end do
       end if
-      call close_card(draft, cursor, deck%cards(i))
-      if (cursor%failed()) then
-        draft%groups_sound = .false.
-      else
-        call append_group(draft, group, cursor%where())
-      end if
+      call close_group(draft, cursor, deck%cards(i), group)
     end do
   end subroutine read_pressures
-
-  !> A group of load elements without state.
-  subroutine start_group(elem, draft, group)
-    character(len=*), intent(in) :: elem
-    type(draft_t), intent(in) :: draft
-    type(group_t), intent(out) :: group
-
-    group%name = ''
-    group%elem = elem
-    group%elem_id = find_elem(draft%elems, elem)
-    ! a program of fewer elements refuses the card: no body has the field that it acts on
-    if (group%elem_id > 0) group%role = draft%elems(group%elem_id)%role
-    allocate (group%variables(0))
-  end subroutine start_group
-
-  !> Add a group to the scene, and the place of its card.
-  subroutine append_group(draft, group, where)
-    type(draft_t), intent(inout) :: draft
-    type(group_t), intent(in) :: group
-    type(location_t), intent(in) :: where
-
-    draft%scene%groups = [draft%scene%groups, group]
-    draft%group_where = [draft%group_where, where]
-  end subroutine append_group
 
   !> The word for the nodes of a side and what is deeper between them (contact_between).
   subroutine read_along(cursor, group)

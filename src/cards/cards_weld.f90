@@ -1,7 +1,7 @@
 !> GOLDAK: the heat of a welding torch (weld_sources).
 module cards_weld
+  use card_groups, only: append_group, start_group
   use cards_heat, only: read_heated_body, read_multiplier
-  use cards_sides, only: append_group, start_group
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t

@@ -2,7 +2,7 @@
 module law_manual
   use kinds, only: wp
   use law_api, only: contact_law, find_parameter, heat_law, kind_names, law_line_t, law_t, line_choice, line_pairs, parameter_t
-  use text, only: add_text, string_t, to_text
+  use text, only: add_text, padded, string_t, to_text
   implicit none
   private
   public :: law_card, law_list
@@ -160,14 +160,5 @@ contains
     if (parameter%optional .and. parameter%default < huge(1.0_wp)) s = s//'; default '//to_text(parameter%default)
     if (parameter%optional .and. .not. parameter%default < huge(1.0_wp)) s = s//'; default: no bound'
   end function parameter_line
-
-  !> Text with blanks up to a width, and at least one.
-  pure function padded(s, width) result(t)
-    character(len=*), intent(in) :: s
-    integer, intent(in) :: width
-    character(len=:), allocatable :: t
-
-    t = s//repeat(' ', max(1, width - len(s)))
-  end function padded
 
 end module law_manual

@@ -12,7 +12,7 @@ module scene_summary
   use remeshing, only: criterion_names, has_limit, is_upper, ncriteria, never
   use scene, only: axisymmetric, generalised_plane_strain, group_t, lacks_mesh, plane_state_names, scene_t
   use sections, only: section_drive_t, section_forced, section_moved, section_names
-  use text, only: string_t, to_text
+  use text, only: padded, string_t, to_text
   use weld_sources, only: weld_source_t
   implicit none
   private
@@ -319,14 +319,5 @@ contains
     end function temperature_of
 
   end subroutine scene_lines
-
-  !> Text with blanks up to a width, and at least one.
-  pure function padded(s, width) result(t)
-    character(len=*), intent(in) :: s
-    integer, intent(in) :: width
-    character(len=:), allocatable :: t
-
-    t = s//repeat(' ', max(1, width - len(s)))
-  end function padded
 
 end module scene_summary

@@ -3,7 +3,7 @@
 !> Lists are described by one entry, `<k>`; a part that is there only sometimes is described too.
 module member_schema
   use kinds, only: wp
-  use text, only: string_t, to_text
+  use text, only: padded, string_t, to_text
   use visitors, only: visitor_t
   implicit none
   private
@@ -164,14 +164,6 @@ contains
     line = padded(line, path_width + type_width + extents_width + unit_width)//' '//padded(carried, carried_width)//range
     self%lines = [self%lines, string_t(trim(line))]
   end subroutine add
-
-  pure function padded(words, width)
-    character(len=*), intent(in) :: words
-    integer, intent(in) :: width
-    character(len=max(width, len(words) + 1)) :: padded
-
-    padded = words
-  end function padded
 
   pure function range_of_reals(low, high) result(range)
     real(wp), intent(in), optional :: low, high
