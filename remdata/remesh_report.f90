@@ -109,6 +109,25 @@ contains
       call json%add(facts%timers%name(k), facts%timers%seconds(k))
     end do
     call json%end_object()
+    call add_contour(json, facts)
+    call add_mesh(json, facts)
+    call json%begin_array('materials')
+    if (allocated(facts%materials%volumes)) call add_materials(json, facts%materials)
+    call json%end_array()
+    call json%begin_array('transfer')
+    if (allocated(facts%transfer%rows)) call add_rows(json, facts%transfer%rows)
+    if (allocated(facts%contacts)) call add_rows(json, facts%contacts)
+    call json%end_array()
+    call json%end_object()
+    call json%write_file(path, error)
+  end subroutine write_facts
+
+  !> What the correction of the contour has done, laps that were cut off, and where contact begins and ends.
+  subroutine add_contour(json, facts)
+    type(json_t), intent(inout) :: json
+    type(remesh_facts_t), intent(in) :: facts
+    integer :: k
+
     call json%begin_object('contour')
     call json%add('largest_move', facts%contour%largest_move)
     call json%add('largest_shift', facts%contour%largest_shift)
@@ -145,6 +164,13 @@ contains
     end if
     call json%end_array()
     call json%end_object()
+  end subroutine add_contour
+
+  !> Shape of the mesh, what it misses, and the errors that are expected on it.
+  subroutine add_mesh(json, facts)
+    type(json_t), intent(inout) :: json
+    type(remesh_facts_t), intent(in) :: facts
+
     call json%begin_object('mesh')
     call json%add('mesher', facts%mesher)
     call json%add('scaled_jacobian', facts%mesh%scaled_jacobian)
@@ -161,16 +187,7 @@ contains
     call json%add('expected_error_worst', facts%expected%worst)
     call json%add('elements_over_wanted', facts%expected%elements)
     call json%end_object()
-    call json%begin_array('materials')
-    if (allocated(facts%materials%volumes)) call add_materials(json, facts%materials)
-    call json%end_array()
-    call json%begin_array('transfer')
-    if (allocated(facts%transfer%rows)) call add_rows(json, facts%transfer%rows)
-    if (allocated(facts%contacts)) call add_rows(json, facts%contacts)
-    call json%end_array()
-    call json%end_object()
-    call json%write_file(path, error)
-  end subroutine write_facts
+  end subroutine add_mesh
 
   !> Volumes of materials that share sides, per unit thickness or per radian.
   subroutine add_materials(json, kept)

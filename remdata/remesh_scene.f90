@@ -51,6 +51,7 @@ module remesh_scene
 
 contains
 
+  !> Read a checkpoint, make the new mesh, carry the state to it and write the new checkpoint.
   subroutine remesh_checkpoint(options, facts, error)
     type(remesh_options_t), intent(in) :: options
     type(remesh_facts_t), intent(out) :: facts
@@ -108,28 +109,9 @@ contains
     call find_seams(old, before, contours, seams)
     call begin_task(facts, 'mesh', 'sizes')
     call requested_sizes(old, before, contours, first, options%same_sizes, sizes, learned)
-    if (all(old%remesher%mesher /= [by_free, by_gmsh]) .and. .not. is_cut) then
-      call begin_task(facts, 'mesh', 'zones')
-      call plan_zones(old, present_coordinates(old, before), before%fields(pilot_field)%value, materials_of(old, before), &
-                      contours, interfaces, plan, error)
-      call begin_task(facts, 'mesh', 'mesh')
-      if (.not. allocated(error)) call make_mesh(old, before, contours, plan, sizes, options%finer, mesh, facts, error)
-    end if
-    if (is_cut .or. needs_free_mesh(old%remesher, error)) then
-      call make_free_mesh(old, before, contours, seams, sizes, options, plan, mesh, facts, error)
-    else if (.not. allocated(error) .and. may_be_free(old%remesher)) then
-      call take_better_mesh(old, before, contours, seams, sizes, options%finer, plan, mesh, facts)
-    end if
+    call mesh_bodies(old, before, contours, interfaces, seams, sizes, options, is_cut, plan, mesh, facts, error)
     if (allocated(error)) return
-    if (old%plane_state == axisymmetric) call put_on_axis(mesh%coordinates)
-    call set_up_new_scene(old, contours, plan, mesh, new, error)
-    if (allocated(error)) return
-    new%generation = facts%generation
-    call fit_pairs(contours, mesh, new, facts%fit)
-    if (allocated(facts%contour%opened)) call close_folds(contours, facts%contour%opened, mesh, new)
-    ! by the lengths that the sides have in the checkpoint, where it is read
-    call choose_rules(new)
-    if (facts%fit > 0 .or. allocated(facts%contour%opened)) call check_shape(mesh, facts%mesh, error)
+    call lay_scene_on_mesh(old, contours, plan, mesh, new, facts, error)
     if (allocated(error)) return
     call start_solution(new, after)
     if (first) then
@@ -146,6 +128,57 @@ contains
     facts%old_elements = solid_elements(old)
     facts%new_elements = solid_elements(new)
   end subroutine remesh_checkpoint
+
+  !> Mesh the corrected contours: in zones, where the deck or the contours have some, otherwise, or where that is better, without.
+  subroutine mesh_bodies(old, before, contours, interfaces, seams, sizes, options, is_cut, plan, mesh, facts, error)
+    type(scene_t), intent(in) :: old
+    type(solution_t), intent(in) :: before
+    type(contour_t), intent(in) :: contours(:)       !! (ncontour)
+    type(interface_t), intent(in) :: interfaces(:)   !! (ninterface)
+    type(seams_t), intent(in) :: seams
+    type(size_field_t), intent(in) :: sizes
+    type(remesh_options_t), intent(in) :: options
+    logical, intent(in) :: is_cut
+    type(plan_t), intent(out) :: plan
+    type(new_mesh_t), intent(out) :: mesh
+    type(remesh_facts_t), intent(inout) :: facts
+    type(error_t), allocatable, intent(out) :: error
+
+    if (all(old%remesher%mesher /= [by_free, by_gmsh]) .and. .not. is_cut) then
+      call begin_task(facts, 'mesh', 'zones')
+      call plan_zones(old, present_coordinates(old, before), before%fields(pilot_field)%value, materials_of(old, before), &
+                      contours, interfaces, plan, error)
+      call begin_task(facts, 'mesh', 'mesh')
+      if (.not. allocated(error)) call make_mesh(old, before, contours, plan, sizes, options%finer, mesh, facts, error)
+    end if
+    if (is_cut .or. needs_free_mesh(old%remesher, error)) then
+      call make_free_mesh(old, before, contours, seams, sizes, options, plan, mesh, facts, error)
+    else if (.not. allocated(error) .and. may_be_free(old%remesher)) then
+      call take_better_mesh(old, before, contours, seams, sizes, options%finer, plan, mesh, facts)
+    end if
+    if (allocated(error)) return
+    if (old%plane_state == axisymmetric) call put_on_axis(mesh%coordinates)
+  end subroutine mesh_bodies
+
+  !> The scene on the new mesh: sides of bodies in contact are fitted to each other, folds closed.
+  subroutine lay_scene_on_mesh(old, contours, plan, mesh, new, facts, error)
+    type(scene_t), intent(in) :: old
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
+    type(plan_t), intent(in) :: plan
+    type(new_mesh_t), intent(inout) :: mesh
+    type(scene_t), intent(out) :: new
+    type(remesh_facts_t), intent(inout) :: facts
+    type(error_t), allocatable, intent(out) :: error
+
+    call set_up_new_scene(old, contours, plan, mesh, new, error)
+    if (allocated(error)) return
+    new%generation = facts%generation
+    call fit_pairs(contours, mesh, new, facts%fit)
+    if (allocated(facts%contour%opened)) call close_folds(contours, facts%contour%opened, mesh, new)
+    ! by the lengths that the sides have in the checkpoint, where it is read
+    call choose_rules(new)
+    if (facts%fit > 0 .or. allocated(facts%contour%opened)) call check_shape(mesh, facts%mesh, error)
+  end subroutine lay_scene_on_mesh
 
   !> Make the cuts that are due. The facts have what came of all cuts of the scene.
   subroutine cut_bodies(old, before, contours, facts, is_cut, error)
