@@ -180,7 +180,7 @@ module elem_api
     !> Its matrix is symmetric when the law's is; not with this option in large strain (-1: with any).
     logical :: symmetric = .true.
     integer :: unsymmetric_option = -1
-    !> Effect to which its time is added (page 6).
+    !> Effect to which its time is added (module effects).
     character(len=:), allocatable :: effect
     procedure(elem_variables_i), nopass, pointer :: variables => null()
     procedure(elem_compute_i), nopass, pointer :: compute => null()

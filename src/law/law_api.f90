@@ -108,7 +108,7 @@ module law_api
     integer :: swells_with = 0
     !> It is so also where its numbers depend on the temperature and that is an unknown.
     logical :: symmetric_by_temperature = .true.
-    !> Effects it needs, names separated by blanks (page 6).
+    !> Effects it needs, names separated by blanks (module effects).
     character(len=:), allocatable :: effects
     procedure(law_update_i), nopass, pointer :: update => null()
     procedure(law_slide_i), nopass, pointer :: slide => null()
