@@ -257,8 +257,9 @@ contains
   !> New points of a group on the arcs of an interval.
   pure subroutine new_row(scene, g, contours, c, interval, mesh, row)
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: g, c, interval
-    type(contour_t), intent(in) :: contours(:)
+    integer, intent(in) :: g                     !! group
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
+    integer, intent(in) :: c, interval           !! contour, and its contact interval
     type(new_mesh_t), intent(in) :: mesh
     type(interval_points_t), intent(out) :: row
     type(interval_points_t) :: unsorted

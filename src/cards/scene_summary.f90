@@ -72,7 +72,31 @@ contains
     end do
     if (scene%accuracy%asked > 0) call put('accuracy   '//to_text(100*scene%accuracy%asked, 3)//' % asked (lagamine --forecast ' &
                                            //'says what that takes)')
-    if (scene%remesh%on) then
+    if (scene%remesh%on) call put_remesh()
+    do k = 1, size(scene%effects)
+      associate (effect => scene%effects(k))
+        if (effect%on) then
+          call put('effect     '//padded(effect%name, 16)//'on   '//effect%why//'; adds '//effect%adds)
+        else
+          call put('effect     '//padded(effect%name, 16)//'off  '//effect%why)
+        end if
+      end associate
+    end do
+
+  contains
+
+    subroutine put(s)
+      character(len=*), intent(in) :: s
+      type(string_t) :: line
+
+      line%s = s
+      lines = [lines, line]
+    end subroutine put
+
+    !> Limits at which a new mesh is due, and what it will be.
+    subroutine put_remesh()
+      integer :: k
+
       if (scene%remesh%stress_error < never) call put_limit('stress_error', 'above '//to_text(scene%remesh%stress_error) &
                                                             //strain_text(scene%remesh%error_strain))
       do k = 1, ncriteria
@@ -99,26 +123,7 @@ contains
           call put('window     '//window_text(wish%windows(k), name_of_die(wish%windows(k)%die)))
         end do
       end associate
-    end if
-    do k = 1, size(scene%effects)
-      associate (effect => scene%effects(k))
-        if (effect%on) then
-          call put('effect     '//padded(effect%name, 16)//'on   '//effect%why//'; adds '//effect%adds)
-        else
-          call put('effect     '//padded(effect%name, 16)//'off  '//effect%why)
-        end if
-      end associate
-    end do
-
-  contains
-
-    subroutine put(s)
-      character(len=*), intent(in) :: s
-      type(string_t) :: line
-
-      line%s = s
-      lines = [lines, line]
-    end subroutine put
+    end subroutine put_remesh
 
     subroutine put_limit(name, limit)
       character(len=*), intent(in) :: name, limit
