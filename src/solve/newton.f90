@@ -82,7 +82,7 @@ contains
     call start_iterations()
     do
       call measure_residual()
-      if (is_stage_done(equations, outcome%history(first:)) .and. .not. is_missing_motion()) then
+      if (is_stage_done(scene, equations, outcome%history(first:)) .and. .not. is_missing_motion()) then
         call stiffen_contact()
         cycle
       end if

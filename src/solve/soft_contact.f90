@@ -40,8 +40,10 @@ contains
         .and. equations%solves(equations%now)%own(displacement_field)) equations%penalty_share = first_share
   end subroutine begin_softly
 
-  !> The equilibrium of the present share is found, or has been sought long enough.
-  pure function is_stage_done(equations, history) result(done)
+  !> The equilibrium of the present share is found, or has been sought long enough. Points that bear nothing may go on opening and
+  !> closing in it.
+  pure function is_stage_done(scene, equations, history) result(done)
+    type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(iteration_t), intent(in) :: history(:)   !! (niteration) of this share
     logical :: done
@@ -50,7 +52,8 @@ contains
     done = equations%penalty_share < 1 .and. size(history) > 1
     if (.not. done) return
     n = size(history)
-    done = n > most_iterations .or. history(n)%force_norm < near_enough .and. .not. history(n)%contact_changed
+    done = n > most_iterations .or. history(n)%force_norm < near_enough .and. .not. history(n)%contact_changed &
+           .or. history(n)%force_norm <= scene%strategy%force_norm
   end function is_stage_done
 
   !> The next share.
