@@ -49,7 +49,7 @@ contains
     due = any(ways%thickness <= scene%remesher%cuts(k)%thickness)
   end function cut_is_due
 
-  !> Make all cuts that are due; `records` tells what came of them.
+  !> Make all cuts that are due; `records` holds what came of them.
   subroutine make_cuts(scene, solution, contours, records, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution

@@ -200,7 +200,7 @@ contains
     type(action_t) :: action
     character(len=:), allocatable :: tried, heed, reason, first
 
-    ! what is wrong with the scene, as a part that begins in a die or passes through itself, is told there
+    ! what is wrong with the scene, as a part that begins in a die or passes through itself, is reported there
     heed = 'warnings in '//s%stem//'.log come first'
     tried = to_text(s%new%number - 1)//' tried, see '//s%table
     reason = first_reason(s%rows, s%new%generation, s%new%old_end%facts%step)

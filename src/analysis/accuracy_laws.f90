@@ -151,7 +151,7 @@ contains
 
   end subroutine shortest_steps
 
-  !> The second run has so many more steps that their errors can be told from the difference. Steps that a largest length does not
+  !> The second run has so many more steps that their errors can be seen from the difference. Steps that a largest length does not
   !> limit, as they grow from a short first one or follow instants that are hit, hardly change with it.
   pure logical function steps_differ(coarse, fine)
     type(sample_t), intent(in) :: coarse, fine   !! that differ in the length of their steps

@@ -108,7 +108,7 @@ contains
       goes_on = .not. allocated(error) .and. code == exit_done
     end function goes_on
 
-    !> The last pilot has so many more steps than the first that their errors can be told.
+    !> The last pilot has so many more steps than the first that their errors can be seen.
     logical function enough_steps()
       enough_steps = .true.
       if (size(plan%pilots) > 1) enough_steps = steps_differ(plan%pilots(1), plan%pilots(size(plan%pilots)))

@@ -194,7 +194,7 @@ contains
     end do
   end subroutine sample_contacts
 
-  !> Depth of sides that face their own body: at the points in contact, which are many. Elsewhere nothing tells by its place
+  !> Depth of sides that face their own body: at the points in contact, which are many. Elsewhere nothing says by its place
   !> whether a point is in contact.
   pure subroutine deepest_points(scene, group, state, allowed, depth, ratio)
     type(scene_t), intent(in) :: scene

@@ -2,7 +2,7 @@
 !>
 !> Metal flows at constant volume. Where dies enclose it and go on, its elastic volume is pressed together, and their forces are
 !> those of its bulk modulus: equilibrium is found as ever, by far beyond what tools bear, and the run ends with 0. Such a step is
-!> told by its work, most of which goes into elastic energy, while the body flows: its mean pressure is well above its flow stress.
+!> known by its work, most of which goes into elastic energy, while the body flows: its mean pressure is well above its flow stress.
 !> Where a die is only about to be filled, or has an exit, most of the work is that of the flow; what was noted while pressure was
 !> built up, as at the start of an extrusion, is dropped then.
 module confinement
@@ -22,9 +22,9 @@ module confinement
 
   !> Share of the work of a step that goes into elastic energy.
   real(wp), parameter :: most_of_work = 0.5_wp
-  !> Elastic change of the volume of a body from which it is told, and its mean pressure over the mean of von Mises' stress.
+  !> Elastic change of the volume of a body from which on it is reported, and its mean pressure over the mean of von Mises' stress.
   real(wp), parameter :: least_change = 5.0e-3_wp, least_pressure = 2.0_wp
-  !> A change that is told whatever comes later: laws have a constant bulk modulus, that of metals grows by 4 to 6 times the
+  !> A change that is reported whatever comes later: laws have a constant bulk modulus, that of metals grows by 4 to 6 times the
   !> pressure (F.D. Murnaghan, Proc. Natl. Acad. Sci. 30 (1944) 244): the pressure is wrong by 6 to 9 %, at 5 GPa in steel.
   real(wp), parameter :: lasting_change = 0.03_wp
   integer, parameter :: mean_stress = 2   !! among the measures of a stress

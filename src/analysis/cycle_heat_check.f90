@@ -1,4 +1,4 @@
-!> What can be told of the heat of steels whose phases become austenite again: whether LATENT and the heat capacities of the phases
+!> What can be said of the heat of steels whose phases become austenite again: whether LATENT and the heat capacities of the phases
 !> close a cycle, or heat is made of nothing in each.
 module cycle_heat_check
   use kinds, only: wp

@@ -1,4 +1,4 @@
-!> What is told of a deck before it runs: `--check`, and the warnings that a run begins with.
+!> What is reported of a deck before it runs: `--check`, and the warnings that a run begins with.
 module deck_check
   use cards_operations, only: list_operations, operations_t, read_operation
   use deck_reader, only: deck_t, read_deck
@@ -21,7 +21,7 @@ module deck_check
 
 contains
 
-  !> What can be told of the deck before a run: of its own mesh or contours, whatever mesh the scene has now. The table of places
+  !> What can be said of the deck before a run: of its own mesh or contours, whatever mesh the scene has now. The table of places
   !> and their dies is empty for a later mesh.
   subroutine look_at_deck(options, scene, table, warnings, error)
     type(run_options_t), intent(in) :: options
@@ -100,7 +100,7 @@ contains
     if (allocated(error)) return
     call print_lines(lines, error)
     call print_lines(table, error)
-    ! a scene that is too large for this machine is told all the same
+    ! a scene that is too large for this machine is reported all the same
     if (.not. lacks_mesh(scene)) call unknowns_lines(scene, more, too_large)
     call print_lines(more, error)
     call print_lines(as_warnings(warnings), error)

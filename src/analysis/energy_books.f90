@@ -184,7 +184,7 @@ contains
     end do
   end function work_of_overlap
 
-  !> Elastic energy where a run begins or goes on: what a new mesh changed is told apart.
+  !> Elastic energy where a run begins or goes on: what a new mesh changed is kept apart.
   pure subroutine start_stored(totals, solution)
     type(totals_t), intent(in) :: totals
     type(solution_t), intent(inout) :: solution

@@ -1,7 +1,7 @@
 !> Bodies that nothing holds when a run ends: let go by their dies, they float; or dies have pushed them ahead without strain.
 !>
 !> Such a body rests where it was let go (resting_bodies): no force says where it would be. One that still lies against a die, as a
-!> forging on its anvil when the punch has gone up, is where it would be anyway, and is not told.
+!> forging on its anvil when the punch has gone up, is where it would be anyway, and is not reported.
 module floating_bodies
   use contact_outlook, only: gaps_at_rest
   use dies, only: is_deformable

@@ -1,4 +1,4 @@
-!> What can be told of the heat of a deck before it runs: torches beside their bodies, dies beside sides, sides cooled twice, sides
+!> What can be said of the heat of a deck before it runs: torches beside their bodies, dies beside sides, sides cooled twice, sides
 !> that radiate below absolute zero, steels without hardness, steels that begin below absolute zero, austenite that is too cold.
 module heat_check
   use absolute_zeros, only: judge_zeros
@@ -59,7 +59,7 @@ contains
     end do
   end subroutine check_heat
 
-  !> Of torches and sides: what can be told also of a later operation, whatever it begins with.
+  !> Of torches and sides: what can be said also of a later operation, whatever it begins with.
   subroutine check_exchanges(scene, warnings)
     type(scene_t), intent(in) :: scene
     type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning)

@@ -14,7 +14,7 @@ module heated_steels
   private
   public :: note_missing_austenite, warn_of_missing_austenite
 
-  !> Less than this share is told by nobody: a diagram and Ac1 are no better known.
+  !> Less than this share is reported by nobody: a diagram and Ac1 are no better known.
   real(wp), parameter :: expected_share = 0.05_wp
   integer, parameter :: ncorner = 4
 

@@ -1,7 +1,7 @@
 !> Steels of a CCT diagram (card CCT) that are held, or cool more slowly than its slowest history: a diagram of coolings says
 !> nothing of time at one temperature, and nothing forms then.
 !>
-!> What is told is what the histories would have formed in the time: the largest growth per second at that temperature of those that
+!> Reported is what the histories would have formed in the time: the largest growth per second at that temperature of those that
 !> form more in the end than would be there. By Scheil's rule of additivity this is the growth in a hold, where the growth of the
 !> history depends on the temperature and the fractions alone (E. Scheil, Arch. Eisenhuettenwes. 8 (1935) 565).
 module held_steels
@@ -20,7 +20,7 @@ module held_steels
   private
   public :: note_held_steels, warn_of_held_steels
 
-  !> Less than this share is told by nobody: a diagram is no better known.
+  !> Less than this share is reported by nobody: a diagram is no better known.
   real(wp), parameter :: expected_share = 0.05_wp
   integer, parameter :: ncorner = 4
   !> Temperatures over which the growth of a history is measured [K].

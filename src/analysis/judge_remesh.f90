@@ -121,7 +121,7 @@ contains
     alone = len(what) == 0
   end function force_alone
 
-  !> What is told of a mesh that is taken up although a force changes.
+  !> What is reported of a mesh that is taken up although a force changes.
   pure function agreed_words(balance) result(words)
     type(balance_t), intent(in) :: balance
     character(len=:), allocatable :: words

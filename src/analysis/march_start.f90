@@ -71,7 +71,7 @@ contains
   end subroutine start_march
 
   !> An operation begins: what the dies of the one before and its supports carried is taken off the part, at fixed time. What this
-  !> changes of the elastic energy is told apart, as on a new mesh.
+  !> changes of the elastic energy is kept apart, as on a new mesh.
   subroutine release_part(scene, solution, run, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution

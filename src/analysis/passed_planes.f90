@@ -12,7 +12,7 @@ module passed_planes
   private
   public :: warn_of_passed_planes
 
-  !> Depth behind the plane that is told, and distance of nodes from one that is straight, over the size of the body.
+  !> Depth behind the plane that is reported, and distance of nodes from one that is straight, over the size of the body.
   real(wp), parameter :: deep = 1.0e-3_wp, straight = 1.0e-9_wp
   character(len=*), parameter :: axes = 'xy'
 

@@ -104,7 +104,7 @@ contains
     advice = advice//shorter
   end function advice_between_points
 
-  !> What is told of a side that spans a bend of its die at the end of a run; empty where none does.
+  !> What is reported of a side that spans a bend of its die at the end of a run; empty where none does.
   function sides_that_span(scene, solution) result(words)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution

@@ -1,4 +1,4 @@
-!> What can be told of a deck before it runs: how parts and dies stand to each other, and what is seldom meant.
+!> What can be said of a deck before it runs: how parts and dies stand to each other, and what is seldom meant.
 module physics_check
   use closing_dies, only: judge_closing
   use contact_outlook, only: lies_on, look_at_contact, moves, outlook_t

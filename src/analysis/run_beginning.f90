@@ -1,4 +1,4 @@
-!> What a run begins with, before its first step: threads, files, and what is told of the deck.
+!> What a run begins with, before its first step: threads, files, and what is reported of the deck.
 module run_beginning
   use accuracy_plan, only: plan_lines
   use atomic, only: refuse_place

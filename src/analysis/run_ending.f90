@@ -40,7 +40,7 @@ contains
     type(run_options_t), intent(in) :: options
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
-    integer, intent(in) :: nbefore   !! warnings that were told before the run
+    integer, intent(in) :: nbefore   !! warnings that were reported before the run
     type(run_t), intent(inout) :: run
     type(run_facts_t), intent(inout) :: facts   !! with those warnings and seconds
     type(error_t), allocatable, intent(inout) :: error
@@ -100,7 +100,7 @@ contains
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: exit_code
     type(run_facts_t), intent(in) :: facts
-    integer, intent(in) :: nbefore           !! warnings that were told before the run
+    integer, intent(in) :: nbefore           !! warnings that were reported before the run
     type(string_t), intent(in) :: lines(:)   !! (nline) of the summary
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: late

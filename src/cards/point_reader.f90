@@ -106,7 +106,7 @@ contains
     integer :: k
 
     if (path%material%law_id == 0 .or. size(path%material%values) == 0) return
-    ! a file with mistakes is told already, and what the law needs depends on the steel
+    ! a file with mistakes is reported already, and what the law needs depends on the steel
     if (draft%laws(path%material%law_id)%of_steel .and. .not. allocated(path%material%steel)) return
     law = law_of_material(draft%laws(path%material%law_id), path%material)
     do k = 1, driver_count(law) - 1

@@ -40,13 +40,13 @@ module deck_card
     !> Included files in place, overrides at the head, comments gone.
     character(len=:), allocatable :: text
     type(card_t), allocatable :: cards(:)
-    !> False when a file could not be read: nothing is told then of names that are missing.
+    !> False when a file could not be read: nothing is reported then of names that are missing.
     logical :: complete = .true.
   end type deck_t
 
 contains
 
-  !> One error where the file is of another kind than what is read: what it lacks of this one is not told.
+  !> One error where the file is of another kind than what is read: what it lacks of this one is not reported.
   subroutine refuse_other_kind(deck, kind, diagnostics, refused)
     type(deck_t), intent(in) :: deck
     integer, intent(in) :: kind   !! what is read

@@ -20,7 +20,7 @@ module path_crossings
 contains
 
   !> Share of a path after which it goes into the body behind a curve and is lost there: it comes out through another wall, or it
-  !> ends where no closest point within reach tells its depth. 1 where nothing is passed.
+  !> ends where no closest point within reach gives its depth. 1 where nothing is passed.
   !>
   !> A path that cuts off a bend of the curve comes out through the same wall: its normals there point the same way.
   pure function share_before_passing(curve, from, to, e_r, reach) result(share)

@@ -134,7 +134,7 @@ contains
     call finish_die(die)
   end subroutine place_on_nodes
 
-  !> Edges of a deformable die that has been placed on its nodes, as its corners: which they are is told by the mesh as it began.
+  !> Edges of a deformable die that has been placed on its nodes, as its corners: the mesh as it began says which they are.
   !> Its ends are none, since the curve may go on as another body, or end on a line of symmetry.
   pure subroutine place_edges(first, die)
     real(wp), intent(in) :: first(:, :)   !! (2, nnode) nodes of the mesh as it began [length]

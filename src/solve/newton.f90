@@ -1,4 +1,4 @@
-!> Newton's method for one step.
+!> Newton's method for one step: from a predicted motion, correction by correction, to an equilibrium.
 !>
 !> A step has converged when the residual force is below `force_norm` of the forces at work, and the
 !> correction still to come (the last one times the last fall of the residual) is below
@@ -22,8 +22,8 @@ module newton
   use line_search, only: manner_t, search_along
   use nonlinear_elimination, only: take_eliminated
   use onset_motion, only: add_missing
-  use pseudo_transient, only: ease_shift, goes_past_limits, shift_t, solve_shifted, turn_downhill
   use predictor, only: lagging_dies, leaving_dies, predict, work_of_dies
+  use pseudo_transient, only: ease_shift, goes_past_limits, shift_t, solve_shifted, turn_downhill
   use scene, only: scene_t
   use soft_contact, only: begin_softly, end_softly, is_stage_done, stiffen
   use solution, only: solution_t
@@ -62,18 +62,28 @@ contains
     real(wp), intent(in), optional :: left(:)    !! (ndof) as in solve_step [residual]
     real(wp), intent(in), optional :: given(:)   !! (ndof) [unknown]
     logical, intent(in), optional :: go_on
-    real(wp), dimension(equations%dofs%ndof) :: external, missing, residual, correction
+    !> Forces at the end of the step and what is left of them [residual]; prescribed motion that is still missing, and the last
+    !> correction [unknown].
+    real(wp), dimension(equations%dofs%ndof) :: external, residual, missing, correction
     type(augmentations_t) :: made
     type(iteration_t) :: line
     type(shift_t) :: shift
     type(report_t) :: report
+    !> Status of all points of contact, and what the wall of the axis holds, as they were.
     integer, allocatable :: contact(:)
     logical, allocatable :: held(:, :)
+    !> Of each die: points that touch it, work on its missing motion, it lags behind its motion, it has left the part.
     integer :: touched(size(scene%dies))
     real(wp) :: work(size(scene%dies))
     logical :: lags(size(scene%dies)), left_by(size(scene%dies))
+    !> Unknowns that keep their motion where others turn back.
     logical :: staying(equations%dofs%ndof)
-    logical :: again, kept, steep, afresh, goes_on, changed, ends
+    !> The step is begun where an earlier turn ended; from a prediction that keeps contact; from a new one, as dies leave the part.
+    logical :: again, kept, afresh
+    !> A heat capacity varies much; past a limit point equilibrium is looked for further on.
+    logical :: steep, goes_on
+    logical :: changed, ends
+    !> Line of the history with which the present search began: norms are judged from there on.
     integer :: first
 
     allocate (outcome%history(0), outcome%du(equations%dofs%ndof))
