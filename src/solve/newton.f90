@@ -138,7 +138,7 @@ contains
 
     !> What the iterations begin with.
     subroutine start_iterations()
-      goes_on = goes_past_limits(scene, equations%dofs, outcome%du(equations%dofs%prescribed%dof) &
+      goes_on = goes_past_limits(scene, equations%dofs, solution, dt, outcome%du(equations%dofs%prescribed%dof) &
                                  + missing(equations%dofs%prescribed%dof))
       again = .false.
       if (present(go_on)) again = go_on .and. .not. equations%solves(equations%now)%own(displacement_field)

@@ -11,7 +11,7 @@
 !> 35 (1998) 508-523). s begins so that the work on the correction is as much above zero as it was below (more, where other
 !> directions still lead uphill: J.J. More, D.C. Sorensen, Math. Programming 16 (1979) 1-20, for directions of negative curvature).
 !> It falls with the residual, and rises where that does or a correction goes too far. What is found at the end is an equilibrium:
-!> none of it is viscous. Under given loads alone there is none to be looked for: a limit point is a limit load (goes_past_limits).
+!> none of it is viscous. Under loads that grow there is none to be looked for: a limit point is a limit load (goes_past_limits).
 module pseudo_transient
   use contact_changes, only: contact_states_t, recall_contact, remember_contact
   use convergence, only: free_force, slope_along
@@ -23,8 +23,10 @@ module pseudo_transient
   use evaluation, only: add_diagonal, evaluate
   use kinds, only: wp
   use line_search, only: real_fall
+  use loads, only: multiplier_at
   use pairs, only: pairs_differ, pairs_t
   use scene, only: role_side_load, role_volume_load, scene_t
+  use sections, only: section_forced
   use solution, only: solution_t
   use volumes_of_unknowns, only: volumes_of_motion
   implicit none
@@ -129,17 +131,49 @@ contains
     shift%largest = max(shift%largest, shift%value)
   end subroutine turn_downhill
 
-  !> Past a limit point equilibrium is looked for further on: where a die or a support moves, or nothing loads the part. Under given
-  !> loads alone the point is a limit load, and the run ends there.
-  pure function goes_past_limits(scene, dofs, motion) result(yes)
+  !> Past a limit point equilibrium is looked for further on: where a die or a support moves, or no load grows. Under loads that
+  !> grow, and nothing else that drives the part, the point is a limit load, and the run ends there. Loads that rest are borne at
+  !> the start of the step: heat, phases or creep drive the part then, and where they press it on rough dies the matrix, which is
+  !> not symmetric, may lead uphill without any limit.
+  pure function goes_past_limits(scene, dofs, solution, dt, motion) result(yes)
     type(scene_t), intent(in) :: scene
     type(dofs_t), intent(in) :: dofs
-    real(wp), intent(in) :: motion(:)   !! (nprescribed) of the step [unknown]
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt           !! [time]
+    real(wp), intent(in) :: motion(:)    !! (nprescribed) of the step [unknown]
     logical :: yes
+    integer :: g, k
 
     yes = is_driven(dofs, motion)
-    if (yes .or. size(scene%forces) > 0 .or. size(scene%die_forces) > 0) return
-    yes = .not. any(scene%groups%role == role_side_load .or. scene%groups%role == role_volume_load)
+    if (yes) return
+    yes = .true.
+    do k = 1, size(scene%forces)
+      yes = yes .and. rests(scene%forces(k)%multiplier)
+    end do
+    do k = 1, size(scene%die_forces)
+      yes = yes .and. rests(scene%die_forces(k)%multiplier)
+    end do
+    do k = 1, size(scene%section_drives)
+      if (scene%section_drives(k)%kind == section_forced) yes = yes .and. rests(scene%section_drives(k)%multiplier)
+    end do
+    do g = 1, size(scene%groups)
+      if (any(scene%groups(g)%role == [role_side_load, role_volume_load])) yes = yes .and. rests(scene%groups(g)%multiplier)
+    end do
+
+  contains
+
+    !> A multiplier does not grow in the step; 0 is none, as of exchanges of heat, and one may be found (LOADF).
+    pure logical function rests(multiplier)
+      integer, intent(in) :: multiplier
+      real(wp) :: before
+
+      rests = multiplier == 0 .or. multiplier == scene%load_factor%multiplier
+      if (rests) return
+      before = 0
+      ! what is there at the start of a run acts in its first step
+      if (solution%last_step > 0) before = abs(multiplier_at(scene%multipliers(multiplier), solution%time))
+      rests = .not. abs(multiplier_at(scene%multipliers(multiplier), solution%time + dt)) > before
+    end function rests
   end function goes_past_limits
 
   !> The shift of the next iteration, after one that took a share of its correction.

@@ -13,6 +13,9 @@ usage: run_processes.py [-v] [-k]
 - `mirrored`: a quench of a tooth and of its mirror image, whose nodes are numbered otherwise: the same steps, iterations and temperatures.
 - `stretched`: a bar drawn to twice its length conducts a quarter of the heat, in plane stress as in generalised plane strain.
 - `told`: warnings before a run.
+- `pressed`: a ring quenched between rough dies, the upper one under a force that rests: Newton's method is not caught between points
+  that stick and slip, where its matrix leads uphill; and an arch under a force that rests, which snaps through as it cools, to where it
+  is pushed to by the same force when it is cold.
 - `spent`: a polynomial of a steel whose conductivity, capacity or yield stress falls below 0 on the way: the run ends with 3 and says which, where.
 """
 import json
@@ -46,6 +49,27 @@ PHASE  AUSTENITE
    ALPHA  1.E-5
    SY     200
    ET     0
+STEEL  m
+SOURCE 'round numbers of a steel that hardens'
+TEMPS  MS 300
+MARTEN BETA 0.011
+EXPAND TOTAL 20
+TRIP   DESALOS
+PHASE  ALL
+   LAMBDA 30
+   RHOC   4.5
+   E      TABLE 20 205000  800 140000
+   NU     0.3
+PHASE  AUSTENITE
+   ALPHA  22E-6
+   SY     TABLE 20 220  800 50
+   ET     1500
+PHASE  MARTENSITE
+   ALPHA  12E-6
+   DEPS   0.0105
+   SY     1200
+   ET     6000
+   KTP    8E-5
 END
 """
 
@@ -120,6 +144,50 @@ def waits(checks):
               "STRAT 0.02 1.E-5 0.5 6 3\nSTOP 2.\nEND\n")
     if run.ok:
         checks.that(last(run, "step") < 120, "torch that is waited for: few steps")
+
+
+def pressed(checks):
+    run = Run(checks, "pressed", "TITLE press quench\nSTATE AXISYM\nKINEM LOG\nBLOCK ring PL8LS 4 steel\n   25. 0.   75. 0.   75. 8.   25. 8.\n"
+              "   16 1.   3 1.\nLAW steel ARBTHMET\n   STEEL steel.met m\n   STRESS 1.\nADDEL ring PL8TM heat BILINEAR\nLAW heat META\n"
+              "   STEEL steel.met m\n   ENERGY 1.\nSTART T 850.\nLAW dry COUL2D\n   PENETR 1.E-3 PHI 0.4\n"
+              "DIE lower PILOT 0. 0.\n   SEGM 40. -5. 40. 0.\n   FILLT 1. 1.E-3\n   SEGM 40. 0. 68. 0.\n   FILLT 1. 1.E-3\n   SEGM 68. 0. 68. -5.\n"
+              "DIE upper PILOT 0. 8.\n   SEGM 64. 13. 64. 8.\n   FILLT 1. 1.E-3\n   SEGM 64. 8. 30. 8.\n   FILLT 1. 1.E-3\n   SEGM 30. 8. 30. 13.\n"
+              "DIE mandrel PILOT 0. 0.\n   SEGM 24.9 13. 24.9 -5.\nCNT2D ring 1 lower dry\nCNT2D ring 3 upper dry\nCNT2D ring 4 mandrel dry\n"
+              "FORCE upper Y -2.E5 hold\nLIC hold\n   0. 0.   0.1 1.\nCONVE ring 2 4 H 3. TS 50.\nCONVE ring 1 H 0.8 TS 50.\nCONVE ring 3 H 2. TS 50.\n"
+              "COU2DC ring 1 lower H 3.\nCOU2DC ring 3 upper H 3.\nCOU2DC ring 4 mandrel H 3.\nTDIE lower T 60.\nTDIE upper T 60.\nTDIE mandrel T 60.\n"
+              "THETA 1. TOL 3.\nSTRAT 0.01 1.E-6 5. 14 9 0.25 1.5\nSTOP 12.\nEND\n")
+    if run.ok:
+        # 24 before, the shortest step 1e-6
+        checks.that(last(run, "cutbacks") <= 3, "pressed: no step is caught", last(run, "cutbacks"))
+        checks.small(abs(last(run, "force_y_upper")/2e5 - 1), 1e-6, "pressed: the force is borne")
+    tips = []
+    # cold before it is pushed, or pushed before it is cold
+    for name, heat, motion in (("cools", "0. 600.   1. 600.   2. 20.", "FORCE POINT 0. 6. Y -25. push\nLIC push\n   0. 0.   1. 1.\n"),
+                               ("pushed", "0. 600.   0.5 20.", "MOVE POINT 0. 6. Y push {tip}\nLIC push\n   0. 0.   0.5 0.   2. 1.\n"
+                                "PROBE force REACT Y POINT 0. 6.\n")):
+        run = Run(checks, f"arch-{name}", "TITLE arch\nSTATE PLSTN\nKINEM LOG\nBLOCK arch PL8LS 4 steel\n   0. 5.   50. 0.   50. 1.   0. 6.\n"
+                  "   20 1.   2 1.\nLAW steel ELATH\n   200000. 0.3 1.2E-5\nTEMPE arch 1. heat\n"
+                  f"LIC heat\n   {heat}\nFIXED arch 2 XY\nFIXED arch 4 X\nPROBE tip NODE UY 0. 6.\n" + motion.format(tip=tips[-1] if tips else 0)
+                  + "STRAT 0.01 1.E-6 0.05 5 3\nSTOP 2.\nEND\n")
+        if not run.ok:
+            return
+        tips.append(last(run, "tip"))
+    checks.that(tips[0] < -3, "arch: it has snapped through", tips)
+    checks.small(abs(last(run, "force")/-25 - 1), 1e-4, "arch: the force that it was cooled under")
+
+
+def spent(checks):
+    # each falls with the temperature and is 0 at 400
+    for word, number in (("LAMBDA", "POLY -80 0.2"), ("RHOC", "POLY -4 0.01"), ("SY", "POLY -400 1.")):
+        with open(os.path.join(checks.folder, "spent.met"), "w") as file:
+            file.write("STEEL p\nSOURCE 'round numbers'\nEXPAND TOTAL 0\nPHASE AUSTENITE\n" + "".join(
+                f"   {name} {number if name == word else value}\n"
+                for name, value in (("LAMBDA", "50"), ("RHOC", "3.6"), ("E", "200000"), ("NU", "0.3"), ("ALPHA", "1.E-5"), ("SY", "200"), ("ET", "0"))) + "END\n")
+        run = Run(checks, f"spent-{word.lower()}", "TITLE spent\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8LS 4 steel\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+                  "   2 1.   2 1.\nLAW steel ARBTHMET\n   STEEL spent.met p\n   STRESS 1.\nADDEL bar PL8TM hot BILINEAR\nLAW hot META\n"
+                  "   STEEL spent.met p\n   ENERGY 1.\nSTART T 700.\nFIXED bar 1 Y\nFIXED bar 4 X\nIMPOS bar 2 T cools 1.\nLIC cools\n   0. 700.   10. 100.\n"
+                  "STRAT 0.1 1.E-5 0.2 5 3\nSTOP 10.\nEND\n", code=3)
+        checks.that(f"{word} of austenite" in run.said.lower().replace(word.lower(), word), f"spent: {word} is named", run.said[-400:])
 
 
 def probes(checks):
@@ -228,6 +296,6 @@ def told(checks):
 if __name__ == "__main__":
     all_checks = Checks()
     law_file(all_checks)
-    for case in (melting, bree, waits, probes, mirrored, stretched, told):
+    for case in (melting, bree, waits, pressed, probes, mirrored, stretched, spent, told):
         case(all_checks)
     sys.exit(all_checks.end())
