@@ -18,9 +18,9 @@ module dies
   !> Distance from a straight line over its length that is round-off of points as cards give them [-].
   real(wp), parameter :: straight = 1.0e-9_wp
 
-  !> Cosine of the least turn of a deformable die at an edge of its body, 30 degrees, in the mesh as it began: sides that follow
-  !> a curve turn by less where they meet.
-  real(wp), parameter :: edge_turn = 0.866_wp
+  !> Cosine of the least turn of a deformable die at an edge of its body, 10 degrees, in the mesh as it began: sides that follow
+  !> a curve turn by less where they meet, since a parabola over an arc of 80 degrees ends within 4 degrees of it.
+  real(wp), parameter :: edge_turn = 0.985_wp
 
   !> Its pieces are stored in the axes of the pilot.
   type, extends(piecewise_curve_t) :: die_t
