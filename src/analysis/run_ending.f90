@@ -64,6 +64,7 @@ contains
     ! of an operation without REMSH too, where others have it
     if (run%has_new_meshes .or. (scene%accuracy%asked > 0 .and. allocated(options%fineness))) &
       call close_cost(options, scene, solution, run, facts, late)
+    if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
     call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
     call list_lines(run%listing, lines)
     call close_listing(run%listing)
