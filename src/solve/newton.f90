@@ -9,7 +9,7 @@ module newton
   use contact_heat_tangent, only: follow_contact
   use convergence, only: heat_in_balance, pilots_in_equilibrium, relative_motion, relative_residual, weigh_quantities
   use corrections, only: solve_correction
-  use elem_api, only: block_done, mode_advance, mode_restore, report_t
+  use elem_api, only: block_done, mode_advance, report_t
   use equations, only: equations_t
   use evaluation, only: evaluate, is_apart
   use external_loads, only: external_forces
@@ -245,7 +245,7 @@ contains
         call set_cause(report, outcome)
         return
       end if
-      line%watched = caught(outcome%history(first:)) .and. manner%whole .or. is_let_go()
+      line%watched = caught(outcome%history(first:)) .and. manner%whole .or. equations%let_go
       call note_contact(scene, solution, contact, line%contact_changed)
       line%contact_changed = line%contact_changed .or. followed .or. steep .or. any(held .neqv. equations%wall%held)
       held = equations%wall%held
@@ -261,17 +261,9 @@ contains
                         closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
       if (steep) manner = manner_t(exactly=.true.)
       ! forces with contact kept are no measure of those without; past a limit point the way to equilibrium leads up and down
-      if (kept .and. afresh .or. scene%load_factor%multiplier > 0 .or. followed .or. is_let_go()) manner%whole = .true.
+      if (kept .and. afresh .or. scene%load_factor%multiplier > 0 .or. followed .or. equations%let_go) &
+        manner%whole = .true.
     end function manner_of_search
-
-    !> Dies have let the part go, and none is left. A slender one bends far then: each correction stretches it by the square of its
-    !> turn, and the next one takes that back, so that the residual rises and falls in turns. A search would stop where the stretch
-    !> begins.
-    function is_let_go() result(is)
-      logical :: is
-
-      is = equations%mode == mode_restore .and. .not. any(scene%groups%die > 0)
-    end function is_let_go
 
     !> A correction with a patch eliminated, or one past a limit point by which the residual falls by half, is taken without a
     !> search. Past a limit point any other becomes one that leads downhill; where its matrix has no factors the attempt ends.
