@@ -10,6 +10,7 @@ Settings: .fprettify.rc above each file. Two things are arranged here:
 import contextlib
 import difflib
 import io
+import multiprocessing
 import os
 import re
 import sys
@@ -52,6 +53,13 @@ def keep_continuations(old, new):
     return "".join(after)
 
 
+def texts(path):
+    """The text of the file, and the text as it should be."""
+    with open(path, encoding="utf-8") as source:
+        old = source.read()
+    return old, keep_continuations(old, formatted(path))
+
+
 def fortran_files(places):
     for place in places:
         if os.path.isfile(place):
@@ -67,10 +75,9 @@ def main(arguments):
         return 2
     files = [os.path.abspath(file) for file in fortran_files(arguments[1:])]
     changed = 0
-    for path in files:
-        with open(path, encoding="utf-8") as source:
-            old = source.read()
-        new = keep_continuations(old, formatted(path))
+    with multiprocessing.Pool() as pool:
+        pairs = pool.map(texts, files, chunksize=8)
+    for path, (old, new) in zip(files, pairs):
         if new == old:
             continue
         changed += 1
