@@ -85,7 +85,7 @@ contains
     solution%unbalanced = .false.
     if (.not. scene%fields(displacement_field)%declared) return
     balance%before = run%totals
-    run%equations%let_go = .true.
+    run%equations%let_go = .not. run%equations%kinematics%hypoelastic
     call restore_equilibrium(scene, run%equations, solution, balance, outcome)
     run%equations%let_go = .false.
     if (allocated(outcome%error)) then

@@ -23,6 +23,8 @@ module kinematics_api
     logical :: finite = .true.
     !> With a law of symmetric tangent the matrix of a solid is symmetric.
     logical :: symmetric = .true.
+    !> Stress depends on the way to a motion, even where nothing flows: long ways must be made in short steps.
+    logical :: hypoelastic = .false.
     procedure(kinematics_update_i), nopass, pointer :: update => null()
   end type kinematics_t
 

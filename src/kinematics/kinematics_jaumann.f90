@@ -26,6 +26,7 @@ contains
     row%purpose = 'large strain, hypoelastic, Hughes-Winget rotation'
     row%finite = .true.
     row%symmetric = .false.
+    row%hypoelastic = .true.
     row%update => update
   end function kinematics_jaumann_row
 

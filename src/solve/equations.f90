@@ -65,7 +65,8 @@ module equations
     real(wp) :: penalty_share = 1.0_wp
     !> Equilibrium is restored where the dies and supports of the operation before let the part go. A slender part bends far then:
     !> each correction stretches it by the square of its turn, and the next one takes that back, so that the residual rises and
-    !> falls in turns. A search would stop where the stretch begins: corrections are taken whole.
+    !> falls in turns. A search would stop where the stretch begins: corrections are taken whole, and most of the way is made at
+    !> once. Not where the stress depends on the way (hypoelastic).
     logical :: let_go = .false.
     !> Bodies of nodes that supports do not hold, of no size where there is none (resting_bodies).
     integer, allocatable :: loose(:)

@@ -261,8 +261,7 @@ contains
                         closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
       if (steep) manner = manner_t(exactly=.true.)
       ! forces with contact kept are no measure of those without; past a limit point the way to equilibrium leads up and down
-      if (kept .and. afresh .or. scene%load_factor%multiplier > 0 .or. followed .or. equations%let_go) &
-        manner%whole = .true.
+      if (kept .and. afresh .or. scene%load_factor%multiplier > 0 .or. followed .or. equations%let_go) manner%whole = .true.
     end function manner_of_search
 
     !> A correction with a patch eliminated, or one past a limit point by which the residual falls by half, is taken without a

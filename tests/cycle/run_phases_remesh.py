@@ -12,35 +12,16 @@ usage: run_phases_remesh.py [-v] [-k] [--all]
   tempered, with a new mesh in each of the four: fractions, Scheil sums, grains, hardness and Hollomon-Jaffe's parameter end as on the deck's own mesh.
 """
 import math
+import os
 import sys
 
 sys.dont_write_bytecode = True
+sys.path.append(os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "heat"))
+from hardening_steel import hardening_steel  # noqa: E402
 from remeshed import cycle, tries, within_limits  # noqa: E402
 from support import DONE, Checks, history, run, said, write  # noqa: E402
 
-STEEL = """STEEL  base
-SOURCE 'made up, for tests'
-TEMPS  MS 300
-MARTEN BETA 0.011
-EXPAND TOTAL 20
-TRIP   DESALOS
-PHASE  ALL
-   LAMBDA 30
-   RHOC   4.5
-   E      TABLE 20 205000  800 140000
-   NU     0.3
-PHASE  AUSTENITE
-   ALPHA  22E-6
-   SY     TABLE 20 220  800 50
-   ET     500
-PHASE  MARTENSITE
-   ALPHA  12E-6
-   DEPS   0.0105
-   SY     1200
-   ET     1000
-   KTP    8E-5
-END
-"""
+STEEL = hardening_steel("base", 500, 1000)
 HEAD = """TITLE  Billet of a steel with phases
 STATE  AXISYM
 KINEM  LOG

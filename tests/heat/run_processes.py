@@ -25,6 +25,7 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "patch"))
+from hardening_steel import hardening_steel  # noqa: E402
 from patch_support import Checks, Run  # noqa: E402
 
 STEEL = """STEEL  s
@@ -49,29 +50,7 @@ PHASE  AUSTENITE
    ALPHA  1.E-5
    SY     200
    ET     0
-STEEL  m
-SOURCE 'round numbers of a steel that hardens'
-TEMPS  MS 300
-MARTEN BETA 0.011
-EXPAND TOTAL 20
-TRIP   DESALOS
-PHASE  ALL
-   LAMBDA 30
-   RHOC   4.5
-   E      TABLE 20 205000  800 140000
-   NU     0.3
-PHASE  AUSTENITE
-   ALPHA  22E-6
-   SY     TABLE 20 220  800 50
-   ET     1500
-PHASE  MARTENSITE
-   ALPHA  12E-6
-   DEPS   0.0105
-   SY     1200
-   ET     6000
-   KTP    8E-5
-END
-"""
+""" + hardening_steel("m", 1500, 6000)
 
 
 def law_file(checks):

@@ -14,7 +14,8 @@ usage: run_operations.py [-v] [-k]
 - `beginning`: a die that a later operation puts deep into the part is told, after a stop too; one that goes on, or stands at the part's
   height, is not. What the cards of a later operation say of torches and sides is told by --check.
 - `path_errors`: what a release adds to the error of the stress by the path.
-- `let_go`: slender elastic strips, bent by a third to four fifths of their length, spring back to where they were, also onto a die.
+- `let_go`: slender elastic strips, bent by a third to four fifths of their length, spring back to where they were, also onto a die; with JAUMANN,
+  whose stress depends on the way, one bent by a tenth.
 - `contour`: a BODY has its sizes from the first operation alone; the others may do without REMSH, the first one not.
 """
 import os
@@ -350,9 +351,10 @@ def let_go(checks):
     """A strip that its support lets go turns by up to 70 degrees, at fixed time; searches along its corrections would stop where they
     stretch it (446 iterations, and no equilibrium)."""
     table = "LAW    tool COUL2D\n   PENETR 0.01   PHI 0.1\nDIE    table\n   SEGM   -10. 0.   150. 0.\nCNT2D  strip 1 table tool\n"
-    for thickness, way, n, die in ((0.5, 30, 50, ""), (0.5, 60, 50, ""), (0.25, 80, 100, ""), (0.5, 60, 50, table)):
-        name = f"let_go {thickness} {way} {bool(die)}"
-        text = ("TITLE  Strip let go\nSTATE  PLSTN\nKINEM  LOG\nBLOCK  strip PL8LS 4 steel\n"
+    for kinem, thickness, way, n, die, limit in (("LOG", 0.5, 30, 50, "", 1e-6), ("LOG", 0.5, 60, 50, "", 1e-6), ("LOG", 0.25, 80, 100, "", 1e-6),
+                                                 ("LOG", 0.5, 60, 50, table, 1e-6), ("JAUMANN", 0.5, 10, 50, "", 1e-4)):
+        name = f"let_go {kinem} {thickness} {way}{' table' if die else ''}"
+        text = (f"TITLE  Strip let go\nSTATE  PLSTN\nKINEM  {kinem}\nBLOCK  strip PL8LS 4 steel\n"
                 f"   0. 0.   100. 0.   100. {thickness}   0. {thickness}\n   {n} 1.   2 1.\n"
                 "LAW    steel EPLA\n   200000. 0.3\n   LINEAR 1.E5 1000.\nFIXED  strip 4 XY\n"
                 "PROBE  tip_x NODE X 100. 0.\nPROBE  tip_y NODE Y 100. 0.\n"
@@ -361,7 +363,7 @@ def let_go(checks):
         _, out = done(checks, name.replace(" ", "_"), text)
         rows = history(out)
         place = rows["tip_x"][-1], rows["tip_y"][-1]
-        checks.that(abs(place[0] - 100) < 1e-6 and abs(place[1]) < 1e-6, f"{name}: the tip is where it was", place)
+        checks.that(max(abs(place[0] - 100), abs(place[1])) < limit, f"{name}: the tip is where it was", place)
 
 
 def main():
