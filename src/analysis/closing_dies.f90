@@ -3,14 +3,14 @@
 !> Only surfaces that face each other over a gap at first count: a plate wider than the bore it goes into crosses the wall of
 !> that, at a right angle, and nothing is between the two.
 module closing_dies
-  use contact_outlook, only: moves, pilot_at
+  use contact_outlook, only: moves
   use curve_search, only: closest_facing_point
   use closest_point, only: closest_point_t
   use dies, only: die_t, is_deformable
   use kinds, only: wp
   use parabolas, only: point_on, tangent_on
   use plane_vectors, only: left_of, turned
-  use scene, only: scene_t
+  use scene, only: pilot_at, scene_t
   use starting_sides, only: extent_of
   use text, only: add => add_text, string_t, to_text
   use vectors, only: length_of
@@ -60,11 +60,11 @@ contains
     integer :: k, at
 
     reach = 4*extent_of(scene)
-    last = reshape([pilot_at(scene, a, 0.0_wp), pilot_at(scene, b, 0.0_wp)], [3, 2])
+    last = reshape([pilot_at(scene, a, scene%strategy%begins), pilot_at(scene, b, scene%strategy%begins)], [3, 2])
     call look(scene%dies(a), scene%dies(b), last, reach, faced, before, places)
     way = 0
     do k = 1, ninstant
-      time = scene%strategy%end_time*k/ninstant
+      time = scene%strategy%begins + (scene%strategy%end_time - scene%strategy%begins)*k/ninstant
       pilots = reshape([pilot_at(scene, a, time), pilot_at(scene, b, time)], [3, 2])
       way = way + length_of(pilots(1:2, 2) - last(1:2, 2) - pilots(1:2, 1) + last(1:2, 1))
       last = pilots

@@ -6,16 +6,15 @@ module contact_outlook
   use closest_point, only: closest_point_t
   use dies, only: die_t, in_pilot_axes, is_deformable, present_die
   use kinds, only: wp
-  use loads, only: multiplier_at
   use piecewise_curves, only: adjacent_piece
   use plane_vectors, only: turned
-  use scene, only: group_t, scene_t
+  use scene, only: group_t, pilot_at, scene_t
   use shape_functions, only: line3
   use starting_sides, only: extent_of, sides_at_start
   use vectors, only: length_of
   implicit none
   private
-  public :: lies_on, look_at_contact, moves, pilot_at, gaps_at_rest, outlook_t
+  public :: lies_on, look_at_contact, moves, gaps_at_rest, outlook_t
 
   !> Instants at which a moving die is looked at.
   integer, parameter :: ninstant = 50
@@ -130,24 +129,6 @@ contains
       end associate
     end do
   end function moves
-
-  !> Pilot of a die by its motions.
-  pure function pilot_at(scene, die, time) result(pilot)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: die
-    real(wp), intent(in) :: time
-    real(wp) :: pilot(3)
-    integer :: k
-
-    pilot = scene%dies(die)%pilot
-    do k = 1, size(scene%die_motions)
-      associate (motion => scene%die_motions(k))
-        if (motion%die /= die .or. motion%multiplier == 0) cycle
-        pilot(motion%component) = scene%dies(die)%pilot(motion%component) &
-                                  + motion%amplitude*multiplier_at(scene%multipliers(motion%multiplier), time)
-      end associate
-    end do
-  end function pilot_at
 
   !> Depth of the deepest node of the sides, the largest gap closed first.
   pure subroutine deepest(sides, die, pilot, reach, faces, depth, over_side)

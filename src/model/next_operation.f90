@@ -7,7 +7,7 @@ module next_operation
   use fields, only: displacement_field, find_field, on_nodes, on_section, pilot_field
   use kinds, only: eps, wp
   use remesh, only: remesh_t
-  use scene, only: group_t, is_solid, scene_t
+  use scene, only: group_t, is_solid, pilot_at, scene_t
   use solution, only: solution_t, start_solution
   use state_variables, only: find_variable
   implicit none
@@ -67,6 +67,9 @@ contains
     integer :: f, g, k
 
     call start_solution(new, fresh, before%time)
+    do k = 1, size(new%dies)
+      fresh%fields(pilot_field)%value(:, k) = pilot_at(new, k, before%time)
+    end do
     after = before
     after%unbalanced = .true.
     after%next_step = fresh%next_step

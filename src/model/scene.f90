@@ -6,8 +6,8 @@ module scene
   use fields, only: field_t
   use heat_contacts, only: die_heat_t, heat_contact_t
   use kinds, only: wp
-  use loads, only: die_force_t, die_motion_t, exchange_t, field_history_t, fixation_t, load_factor_t, multiplier_t, nodal_force_t, &
-                   start_t
+  use loads, only: die_force_t, die_motion_t, exchange_t, field_history_t, fixation_t, load_factor_t, multiplier_at, multiplier_t, &
+                   nodal_force_t, start_t
   use materials, only: material_t
   use mesh, only: mesh_t
   use probes, only: probe_t
@@ -20,7 +20,7 @@ module scene
   use weld_sources, only: weld_source_t
   implicit none
   private
-  public :: scene_t, group_t, plane_state_names, host_of, is_solid, lacks_mesh, solid_elements
+  public :: scene_t, group_t, plane_state_names, host_of, is_later_operation, is_solid, lacks_mesh, pilot_at, solid_elements
   public :: role_body, role_second, role_contact, role_side_load, role_volume_load, role_spring, role_heat_contact, role_die_heat
   public :: role_load_factor
   public :: plane_strain, axisymmetric, plane_stress, generalised_plane_strain
@@ -165,6 +165,33 @@ contains
     host = scene%groups(g)%host
     if (host == 0) host = g
   end function host_of
+
+  !> An operation that follows another. Its dies stand from its beginning where their multipliers begin, which may be how the one
+  !> before has left them; at the beginning of a run they stand where the deck has them, and are moved there in the first step.
+  pure function is_later_operation(scene) result(yes)
+    type(scene_t), intent(in) :: scene
+    logical :: yes
+
+    yes = scene%operation > 1
+  end function is_later_operation
+
+  !> Pilot of a die by its motions.
+  pure function pilot_at(scene, die, time) result(pilot)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: die
+    real(wp), intent(in) :: time   !! [time]
+    real(wp) :: pilot(3)           !! x, y, angle [length], [length], [rad]
+    integer :: k
+
+    pilot = scene%dies(die)%pilot
+    do k = 1, size(scene%die_motions)
+      associate (motion => scene%die_motions(k))
+        if (motion%die /= die .or. motion%multiplier == 0) cycle
+        pilot(motion%component) = scene%dies(die)%pilot(motion%component) &
+                                  + motion%amplitude*multiplier_at(scene%multipliers(motion%multiplier), time)
+      end associate
+    end do
+  end function pilot_at
 
   !> Bodies are given by their contours, and no mesh has been made of them yet.
   pure function lacks_mesh(scene) result(yes)

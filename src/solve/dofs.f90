@@ -8,7 +8,7 @@ module dofs
   use kinds, only: wp
   use loads, only: instants_around, multiplier_at
   use pairs, only: most_pieces, nodes_per_piece, paired_nodes, pairs_t, start_pairs
-  use scene, only: scene_t
+  use scene, only: is_later_operation, scene_t
   use sections, only: section_forced, section_moved
   use text, only: string_t
   implicit none
@@ -37,6 +37,8 @@ module dofs
     integer :: field = 0, component = 0, place = 0
     !> History of the scene that gives the value, and the row there; 0 for others.
     integer :: history = 0, row = 0
+    !> It has moved already, before the first step, by what the multiplier begins with.
+    logical :: moved = .false.
   end type prescribed_t
 
   type :: dofs_t
@@ -218,7 +220,7 @@ contains
         associate (motion => scene%die_motions(k))
           if (pilot(1, motion%die) == 0) cycle
           d = pilot(motion%component, motion%die)
-          by_dof(d) = prescribed_t(d, motion%amplitude, motion%multiplier)
+          by_dof(d) = prescribed_t(d, motion%amplitude, motion%multiplier, moved=is_later_operation(scene))
         end associate
       end do
       if (allocated(scene%die_heats)) call list_die_temperatures()
@@ -420,7 +422,7 @@ contains
           motion(k) = p%amplitude*motion(k) - fields(p%field)%value(p%component, p%place)
           cycle
         end if
-        if (.not. from_rest) motion(k) = motion(k) - multiplier_at(scene%multipliers(p%multiplier), t0)
+        if (p%moved .or. .not. from_rest) motion(k) = motion(k) - multiplier_at(scene%multipliers(p%multiplier), t0)
         motion(k) = p%amplitude*motion(k)
       end associate
     end do

@@ -7,6 +7,7 @@ usage: run_operations.py [-v] [-k]
 - `release`: an operation without dies leaves the part as a die that is lifted does.
 - `heat`, `pair`: heat alone; bodies in contact in generalised plane strain, which the next operation finds as they were.
 - `at_once`: a multiplier that begins an operation with another value than 0.
+- `held`: a die whose multiplier begins the second operation where the first has left it stands there from the beginning.
 - `strokes`: press, release, press with another die; stopped anywhere and resumed to the same bits; with a new mesh in each
   operation the same part, by one command, also where that is stopped.
 - `closing`: an operation without REMSH after one with it: what its table of accuracy says.
@@ -253,6 +254,20 @@ def at_once(checks):
         checks.that(abs(rows["corner"][row]/way - 1) < 1e-9, f"at once: {way}", rows["corner"][row])
 
 
+def held(checks):
+    """A die of both operations, driven by a multiplier that begins the second where it ended the first."""
+    die = ("DIE    upper PILOT 0. 10.\n   SEGM   40. 10.   -1. 10.\nCNT2D  block 3 upper -3 film\n")
+    second = "OPERA  two\nLIC    press\n   0. -1.   0.5 -1.   1. -1.5\nMOVE   upper Y press\n"
+    _, out = done(checks, "held", HEAD + STEP + die + "OPERA  one\nLIC    press\n   0. 0.   1. -1.\nMOVE   upper Y press\n" + second)
+    rows = history(out)
+    change = rows["operation"].index(2)
+    for column in ("force_y_upper", "elastic_energy", "plastic_work", "external_work"):
+        checks.that(abs(rows[column][change]/rows[column][change - 1] - 1) < 1e-6, f"held: {column}", rows[column][change - 1:change + 1])
+    checks.that(abs(rows["displacement_y_upper"][change] + 1) < 1e-12, "held: the die stays where it is", rows["displacement_y_upper"][change])
+    _, whole = done(checks, "in_one", HEAD + STEP + die + "LIC    press\n   0. 0.   1. -1.   1.5 -1.   2. -1.5\nMOVE   upper Y press\n")
+    near(checks, "held", rows, history(whole), ("force_y_upper", "corner", "width", "plastic_work", "external_work"), 1e-4)
+
+
 def contour(checks):
     """A body by its contour, pressed and released: the release asks for no meshes and has no REMSH."""
     block = HEAD[HEAD.index("BLOCK"):HEAD.index("LAW    metal")]
@@ -373,6 +388,7 @@ def main():
     strokes(checks)
     others(checks)
     at_once(checks)
+    held(checks)
     checked(checks)
     beginning(checks)
     closing(checks)
