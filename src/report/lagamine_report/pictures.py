@@ -13,6 +13,7 @@ from .words import DIRECTIONS, brief, field_title
 
 MAIN_FIELDS = ["mises", "plastic_strain", "temperature"]
 HIDDEN_FIELDS = ["applied_force"]
+TITLE_WIDTH = 2.7   # of a panel with the instant in its title [inch]
 FLAT = 2.5      # width over height of drawings that want more width than others
 
 
@@ -24,9 +25,10 @@ def mesh_picture(view: SceneView) -> Picture:
     beside = (box[1] - box[0]) < 2.2 * (box[3] - box[2])
     wide = view.panel(box, 4.6 if beside else 8.6, 4.8)
     rows, columns = (1, 2) if beside else (2, 1)
-    fig, axes = figure(rows, columns, (columns * (wide[0] + 0.6), rows * (wide[1] + 0.6)), grid=False)
+    fig, axes = figure(rows, columns, (columns * (max(wide[0], TITLE_WIDTH) + 0.6), rows * (wide[1] + 0.6)), grid=False)
     for panel, step, word in zip(axes.flat, (first, last), ("start", "end")):
         view.frame(panel, box)
+        panel.set_anchor("W")       # its title beside that of the next one
         view.dies(panel, step, box)
         x = view.coordinates(step)
         view.mesh(panel, step.generation, x)
