@@ -13,11 +13,9 @@ from matplotlib.tri import Triangulation
 from .geometry import Triangles, all_sides, die_body, die_curve, element_thickness, part_thickness
 from .parabolas import elements_patch, sides_patch
 from .reader import Generation, Run, Step
-from .style import BODIES, DIE_FILL, DIE_LINE, INK, POINTS, POSITIVE, SIGNED, SOFT, panel_size
+from .style import BODIES, DIE_FILL, DIE_LINE, DIE_SHARE, INK, LINE_SHARE, POINTS, POSITIVE, SIGNED, SOFT, panel_size
 
 UNIFORM = 1e-5  # share of a value below which differences are not drawn: they would be all digits and no picture
-LINE_SHARE = 0.1    # of what lines stand around: they are no wider, so that a thin part, or small elements, show their colours
-DIE_SHARE = 0.3     # the same of the lines of dies, beside the part
 ABOVE = 1.0     # where titles stand when no ticks are above: matplotlib looks for them otherwise, at the cost of a layout
 Box = Tuple[float, float, float, float]
 
