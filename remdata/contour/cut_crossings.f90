@@ -4,6 +4,7 @@
 !> sorted along the cut: from the first to the second it runs through the body, from the third to the fourth, and so on. One that
 !> lies close to a corner, or to an end of contact, is put there, so that no short side is left to be meshed.
 module cut_crossings
+  use arcs, only: arc_t
   use boundary_curves, only: boundary_curve_t, closest_position, joint_point, kind_end, point_on, position_t
   use kinds, only: wp
   use offset_parabolas, only: point_at
@@ -40,36 +41,16 @@ contains
     real(wp), intent(in) :: close                !! to a joint [length]
     type(cut_crossing_t), allocatable, intent(out) :: list(:)   !! (ncrossing) along the line
     logical, intent(out) :: odd
-    type(cut_crossing_t) :: one
-    real(wp) :: before, now, xi, last
-    integer :: c, k, i
+    real(wp) :: before
+    integer :: c, k
 
     allocate (list(0))
     do c = 1, size(contours)
       if (.not. among(c)) cycle
-      associate (boundary => contours(c)%boundary)
-        before = height(point_at(boundary%arcs(size(boundary%arcs)), boundary%arcs(size(boundary%arcs))%range(2)))
-        do k = 1, size(boundary%arcs)
-          associate (arc => boundary%arcs(k))
-            last = arc%range(1)
-            do i = 0, parts
-              xi = arc%range(1) + (arc%range(2) - arc%range(1))*i/parts
-              now = height(point_at(arc, xi))
-              if ((now < 0) .neqv. (before < 0)) then
-                one%contour = c
-                one%position = position_t(k, root(last, xi, before < 0))
-                one%enters = before < 0
-                one%along = dot_product(point_on(boundary, one%position) - line(1:2), line(3:4) - line(1:2)) &
-                            /dot_product(line(3:4) - line(1:2), line(3:4) - line(1:2))
-                if (one%along >= -at_its_end .and. one%along <= 1 + at_its_end) then
-                  call put_at_joint(boundary, close, one%position)
-                  call insert(one, list)
-                end if
-              end if
-              before = now
-              last = xi
-            end do
-          end associate
+      associate (arcs => contours(c)%boundary%arcs)
+        before = height(point_at(arcs(size(arcs)), arcs(size(arcs))%range(2)))
+        do k = 1, size(arcs)
+          call follow_arc(c, k, before, list)
         end do
       end associate
     end do
@@ -82,6 +63,46 @@ contains
 
   contains
 
+    !> Crossings of an arc; `before` is the height where it begins, and then where it ends.
+    pure subroutine follow_arc(c, k, before, list)
+      integer, intent(in) :: c, k   !! contour, and arc of it
+      real(wp), intent(inout) :: before
+      type(cut_crossing_t), allocatable, intent(inout) :: list(:)
+      real(wp) :: now, xi, last
+      integer :: i
+
+      associate (arc => contours(c)%boundary%arcs(k))
+        last = arc%range(1)
+        do i = 0, parts
+          xi = arc%range(1) + (arc%range(2) - arc%range(1))*i/parts
+          now = height(point_at(arc, xi))
+          if ((now < 0) .neqv. (before < 0)) &
+            call add_crossing(c, position_t(k, root(arc, last, xi, before < 0)), before < 0, list)
+          before = now
+          last = xi
+        end do
+      end associate
+    end subroutine follow_arc
+
+    !> A crossing of the line through the ends of the cut is one of the cut where it is between them.
+    pure subroutine add_crossing(c, position, enters, list)
+      integer, intent(in) :: c
+      type(position_t), intent(in) :: position
+      logical, intent(in) :: enters
+      type(cut_crossing_t), allocatable, intent(inout) :: list(:)
+      type(cut_crossing_t) :: one
+
+      one%contour = c
+      one%position = position
+      one%enters = enters
+      associate (boundary => contours(c)%boundary, way => line(3:4) - line(1:2))
+        one%along = dot_product(point_on(boundary, position) - line(1:2), way)/dot_product(way, way)
+        if (one%along < -at_its_end .or. one%along > 1 + at_its_end) return
+        call put_at_joint(boundary, close, one%position)
+      end associate
+      call insert(one, list)
+    end subroutine add_crossing
+
     !> Distance from the line, positive where it is kept, times its length.
     pure function height(point) result(h)
       real(wp), intent(in) :: point(2)
@@ -91,7 +112,9 @@ contains
       if (cross(line(3:4) - line(1:2), kept - line(1:2)) < 0) h = -h
     end function height
 
-    pure function root(from, to, is_below) result(middle)
+    !> Where the arc crosses the line between two of its parent coordinates.
+    pure function root(arc, from, to, is_below) result(middle)
+      type(arc_t), intent(in) :: arc
       real(wp), intent(in) :: from, to
       logical, intent(in) :: is_below   !! at `from`
       real(wp) :: middle
@@ -102,7 +125,7 @@ contains
       high = to
       do n = 1, halvings
         middle = 0.5_wp*(low + high)
-        if ((height(point_at(contours(c)%boundary%arcs(k), middle)) < 0) .eqv. is_below) then
+        if ((height(point_at(arc, middle)) < 0) .eqv. is_below) then
           low = middle
         else
           high = middle

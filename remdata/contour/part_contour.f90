@@ -37,12 +37,8 @@ module part_contour
     !> `kind_entry` or `kind_exit`, contour, and the arc that begins there.
     integer :: kind = 0, contour = 0, arc = 0
     integer :: group = 0, die = 0
-    !> The part's parabola: side of the loop, its middle node, parent coordinate on it.
-    integer :: side = 0, middle = 0
-    real(wp) :: part_xi = 0.0_wp
-    !> The die's parabola, and parent coordinate on it.
-    integer :: piece = 0
-    real(wp) :: die_xi = 0.0_wp
+    !> Place among the contour's contacts, and the piece of the die.
+    integer :: contact = 0, piece = 0
     real(wp) :: point(2) = 0.0_wp   !! [length]
     !> Depth in the die: zero where the part leaves it, but not at a corner of the part [length].
     real(wp) :: depth = 0.0_wp
@@ -310,11 +306,11 @@ contains
     do k = 1, size(contour%contacts)
       associate (contact => contour%contacts(k))
         if (contact%begins) then
-          one = limit_at(contact%interval%from%side, contact%interval%from%xi, 1)
+          one = limit_at(1)
           limits = [limits, one]
         end if
         if (contact%ends) then
-          one = limit_at(contact%interval%to%side, contact%interval%to%xi, 2)
+          one = limit_at(2)
           limits = [limits, one]
         end if
       end associate
@@ -322,9 +318,8 @@ contains
 
   contains
 
-    pure function limit_at(side, xi, which) result(limit)
-      integer, intent(in) :: side, which
-      real(wp), intent(in) :: xi
+    pure function limit_at(which) result(limit)
+      integer, intent(in) :: which   !! 1 where it begins, 2 where it ends
       type(contact_limit_t) :: limit
 
       associate (contact => contour%contacts(k))
@@ -333,14 +328,11 @@ contains
         limit%arc = merge(contact%first, contact%next, which == 1)
         limit%group = contact%interval%group
         limit%die = contact%number
-        limit%side = modulo(side - 1, size(contour%loop%sides, 2)) + 1
-        limit%middle = contour%loop%sides(2, limit%side)
-        limit%part_xi = xi
+        limit%contact = k
         limit%point = joint_point(contour%boundary, limit%arc)
         associate (section => contact%sections(merge(1, size(contact%sections), which == 1)))
           associate (closest => section%closest_points(merge(1, size(section%closest_points), which == 1)))
             limit%piece = closest%piece
-            limit%die_xi = closest%xi
             limit%depth = closest%d
           end associate
         end associate

@@ -262,7 +262,7 @@ contains
     energy = 0
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
-        if (group%elem == 'BSPRG') then
+        if (group%is_spring) then
           call springs_of_body(scene, group, solution%fields(displacement_field)%value, force, of_body)
           energy = energy + of_body
         end if

@@ -42,7 +42,7 @@ contains
     told(0) = .true.
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
-        if (group%elem == 'BSPRG') told(loose(group%connectivity(1, 1))) = .true.
+        if (group%is_spring) told(loose(group%connectivity(1, 1))) = .true.
       end associate
     end do
     do g = 1, size(scene%groups)

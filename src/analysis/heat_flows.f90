@@ -6,15 +6,12 @@ module heat_flows
   use fields, only: find_field
   use heat_books, only: has_heat, heat_from_die, heat_through
   use kinds, only: wp
-  use scene, only: group_t, role_heat_contact, scene_t
+  use scene, only: role_heat_contact, scene_t
   use solution, only: solution_t
   use text, only: string_t
   implicit none
   private
   public :: book_heat_flows, heat_flow_names
-
-  !> Elements of loads that act on temperatures.
-  character(len=6), parameter :: loads(5) = ['FLUX  ', 'CONVE ', 'RADIA ', 'HEATS ', 'GOLDAK']
 
 contains
 
@@ -82,20 +79,12 @@ contains
     allocate (groups(0), fixations(0))
     if (.not. has_heat(scene)) return
     f = find_field(scene%fields, 'temperature')
-    groups = pack([(g, g=1, size(scene%groups))], passes_heat(scene%groups))
+    groups = pack([(g, g=1, size(scene%groups))], scene%groups%brings_heat)
     do k = 1, size(scene%fixations)
       if (scene%fixations(k)%field /= f) cycle
       if (.not. any([(scene%fixations(fixations(n))%label == scene%fixations(k)%label, n=1, size(fixations))])) &
         fixations = [fixations, k]
     end do
   end subroutine find_boundaries
-
-  !> Heat passes its sides, or is released in its volume.
-  elemental function passes_heat(group) result(yes)
-    type(group_t), intent(in) :: group
-    logical :: yes
-
-    yes = group%role == role_heat_contact .or. any(group%elem == loads)
-  end function passes_heat
 
 end module heat_flows

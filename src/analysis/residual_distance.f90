@@ -57,7 +57,7 @@ contains
         end do
       end do
       do g = 1, size(scene%groups)
-        if (scene%groups(g)%elem /= 'BSPRG') cycle
+        if (.not. scene%groups(g)%is_spring) cycle
         pull = pull_of_springs(scene, scene%groups(g), motion)
         do k = 1, size(pull)
           associate (d => number(scene%groups(g)%direction, k))

@@ -10,7 +10,7 @@ module run_stop
   use own_contact, only: passes_itself_advice, passes_itself_words, thins_out_advice, thins_out_words
   use results, only: save_failure
   use run_record, only: run_t, save_all, at_end
-  use scene, only: role_heat_contact, scene_t
+  use scene, only: role_heat_contact, role_side_load, scene_t
   use solution, only: solution_t
   use spurious_mode, only: may_stand_alone
   use step_outcome, only: outcome_t
@@ -104,12 +104,11 @@ contains
   pure function way_past_limit(scene)
     type(scene_t), intent(in) :: scene
     character(len=:), allocatable :: way_past_limit
-    integer :: g
 
     way_past_limit = ''
     if (scene%load_factor%multiplier > 0) then
       way_past_limit = ' at which the measure of LOADF turns back (that of a node may go on, as across a crack, a neck or a dent)'
-    else if (size(scene%forces) > 0 .or. any([(scene%groups(g)%elem == 'PRES2D', g=1, size(scene%groups))])) then
+    else if (size(scene%forces) > 0 .or. any(scene%groups%role == role_side_load .and. .not. scene%groups%brings_heat)) then
       way_past_limit = ' (LOADF finds the loads beyond it)'
     else if (size(scene%die_forces) > 0) then
       if (any(scene%die_forces%multiplier > 0)) way_past_limit = ' (a die that MOVE drives, in place of FORCE, goes beyond it)'

@@ -19,12 +19,8 @@ contains
   pure function has_body_springs(scene) result(yes)
     type(scene_t), intent(in) :: scene
     logical :: yes
-    integer :: g
 
-    yes = .false.
-    do g = 1, size(scene%groups)
-      yes = yes .or. scene%groups(g)%elem == 'BSPRG'
-    end do
+    yes = any(scene%groups%is_spring)
   end function has_body_springs
 
   !> Largest force of the springs of a body in a direction now, per radian when axisymmetric [force].
@@ -37,7 +33,7 @@ contains
 
     largest = 0
     do g = 1, size(scene%groups)
-      if (scene%groups(g)%elem /= 'BSPRG') cycle
+      if (.not. scene%groups(g)%is_spring) cycle
       call springs_of_body(scene, scene%groups(g), solution%fields(displacement_field)%value, force, energy)
       largest = max(largest, abs(force))
     end do

@@ -199,9 +199,8 @@ contains
   pure function is_mechanical_load(group) result(yes)
     type(group_t), intent(in) :: group
     logical :: yes
-    character(len=6), parameter :: heating(*) = ['FLUX  ', 'CONVE ', 'RADIA ', 'HEATS ', 'GOLDAK']
 
-    yes = any(group%role == [role_side_load, role_volume_load]) .and. .not. any(heating == group%elem)
+    yes = any(group%role == [role_side_load, role_volume_load]) .and. .not. group%brings_heat
   end function is_mechanical_load
 
   !> Weak springs hold the part in a direction, and with it against a turn.
@@ -214,7 +213,7 @@ contains
     yes = .false.
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
-        if (group%elem == 'BSPRG' .and. group%direction == component) yes = yes .or. part(group%connectivity(1, 1)) == own
+        if (group%is_spring .and. group%direction == component) yes = yes .or. part(group%connectivity(1, 1)) == own
       end associate
     end do
   end function sprung

@@ -3,6 +3,7 @@ module card_groups
   use deck_cursor, only: cursor_t
   use deck_reader, only: card_t
   use diagnostics, only: location_t
+  use elem_api, only: acts_on
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, find_elem
   implicit none
@@ -21,7 +22,13 @@ contains
     group%elem = elem
     group%elem_id = find_elem(draft%elems, elem)
     ! a program of fewer elements refuses the card: no body has the field that it acts on
-    if (group%elem_id > 0) group%role = draft%elems(group%elem_id)%role
+    if (group%elem_id > 0) then
+      associate (row => draft%elems(group%elem_id))
+        group%role = row%role
+        group%brings_heat = acts_on(row, 'temperature')
+        group%is_spring = row%is_spring
+      end associate
+    end if
     allocate (group%variables(0))
   end subroutine start_group
 

@@ -204,7 +204,7 @@ contains
                                               //scene%multipliers(scene%groups(g)%multiplier)%name
       if (scene%groups(g)%elem == 'CENTR') s = s//'^2'
       if (scene%groups(g)%elem == 'LOADF') s = found_by()
-      if (scene%groups(g)%elem == 'BSPRG') s = ', '//to_text(scene%groups(g)%stiffness, 3)//' per volume'
+      if (scene%groups(g)%is_spring) s = ', '//to_text(scene%groups(g)%stiffness, 3)//' per volume'
       if (any(scene%groups(g)%elem == [character(len=5) :: 'FLUX', 'CONVE', 'RADIA', 'HEATS'])) s = exchange_of(scene%groups(g))
       if (scene%groups(g)%source > 0) s = torch_of(scene%sources(scene%groups(g)%source))
       if (scene%groups(g)%temperature_history > 0) s = s//history_of(scene%histories(scene%groups(g)%temperature_history))

@@ -177,6 +177,8 @@ module elem_api
     type(unknown_t), allocatable :: unknowns(:)
     !> Works on the present geometry even where kinematics are SMALL.
     logical :: follows = .false.
+    !> Springs between a body and where it is on the first geometry.
+    logical :: is_spring = .false.
     !> Its matrix is symmetric when the law's is; not with this option in large strain (-1: with any).
     logical :: symmetric = .true.
     integer :: unsymmetric_option = -1

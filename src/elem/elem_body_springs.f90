@@ -29,6 +29,7 @@ contains
     row%role = role_volume_load
     allocate (row%unknowns, source=[of_displacement()])
     row%effect = 'body force'
+    row%is_spring = .true.
     row%follows = .true.
     allocate (row%options(0))
     row%variables => no_variables

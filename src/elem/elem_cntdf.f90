@@ -96,15 +96,12 @@ contains
     real(wp), intent(inout) :: stiffness(:, :, :)
     type(report_t), intent(out) :: report
     type(contact_point_t) :: point
-    type(meeting_t) :: meeting
     type(closest_point_t) :: closest, nearest
-    type(side_t) :: own
     type(edge_release_t) :: release
     type(handed_over_t) :: handed
     real(wp), allocatable :: xi(:), weight(:), there(:)
-    real(wp) :: side, section(3), phi(3), dphi(3), psi(3), dpsi(3), q(2), dq(2, most_unknowns), dxi(most_unknowns), &
-                way(most_unknowns)
-    integer :: e, p, n, j, k, at, nnode, npiece, nblock, kept_piece, place(most_unknowns), along(most_unknowns), &
+    real(wp) :: side, section(3), phi(3), dphi(3), psi(3), dpsi(3), q(2), dxi(most_unknowns), way(most_unknowns)
+    integer :: e, p, n, nnode, npiece, nblock, place(most_unknowns), along(most_unknowns), &
                pieces(pieces_in_reach*group%rule%n)
     logical, allocatable :: may(:, :)
     logical :: axisym
@@ -120,79 +117,13 @@ contains
     call line_rule(group%rule, xi, weight)
     associate (die => instant%dies(group%die), middle => instant%pairs(group%pairs)%piece(:, first:first + size(x, 3) - 1))
       do e = 1, size(x, 3)
-        force(:, e) = 0
-        if (instant%tangent) stiffness(:, :, e) = 0
-        trial(:, :, e) = committed(:, :, e)
-        call rest(trial(:nblock, :, e))
-        call rest(trial(nblock + 1:2*nblock, :, e))
-        side = side_length(scene, group%connectivity(:, first + e - 1))
-        section = scene%section
-        if (scene%finite) section = instant%section + section_motion(layout, du(:, e))
-        place(1:6) = [1, 2, 3, nnode + 1, nnode + 2, nnode + 3]
-        place(13:15) = [2*nnode + 1, 2*nnode + 2, 2*nnode + 3]
-        associate (thickening => section_motion(layout, du(:, e)), at_edge => committed(2*nblock + 1, :, e))
-          trial(at_work, :, e) = committed(at_work, :, e)*thinning(xi, xi, section, thickening, x(:, 1:3, e), du(place(1:6), e))
-          trial(nblock + at_work, :, e) = committed(nblock + at_work, :, e) &
-                                          *thinning(at_edge, at_edge, section, thickening, x(:, 1:3, e), du(place(1:6), e))
-        end associate
+        call begin_side()
         if (box_distance(die, box_of(x(:, 1:3, e), du(place(1:6), e))) > side) cycle
         call list_pieces(die, middle(:, e), npiece, pieces)
         do p = 1, size(xi)
-          call line3(xi(p), phi, dphi)
-          call side_point(phi, dphi, section, x(:, 1:3, e), du(place(1:6), e), most_unknowns, point)
-          if (allocated(may)) then
-            call find_own_closest_point(scene, group, first + e - 1, die, may(:, e), point, phi, side, committed(:, p, e), nearest)
-          else
-            call closest_facing_point(die, point%x, point%e_r, side, nearest)
-          end if
-          ! a stale pair of a body's own side may be the far face of a wall
-          if (allocated(may) .and. nearest%piece == 0) cycle
-          call keep_closest_point(die, point, side, committed(:nblock, p, e), middle(p, e), nearest, closest, handed)
-          kept_piece = closest%piece
-          release = edge_release_t()
-          if (.not. allocated(may)) then
-            call slide_past_edge(scene%mesh%coordinates, die, point%x, side, &
-                                 allowed_penetration(scene%materials(group%material))*side, committed(:nblock, p, e), nearest, &
-                                 closest, release)
-          end if
-          if (closest%piece == 0) cycle
-          if (release%share < 1 .or. closest%piece /= kept_piece .or. nearest%piece == kept_piece) handed = handed_over_t()
-          ! a point on the axis has no surface: nothing acts there, and no contact is evaluated
-          if (axisym .and. point%x(1) <= no_surface*side) cycle
-          trial(at_penetration, p, e) = merge(release%depth, closest%d, release%limited)
-          trial([at_piece, at_xi], p, e) = [real(nearest%piece, wp), nearest%xi]
-          ! past an edge its pressure is gone
-          if (.not. release%share > 0) cycle
-          if (handed%share > 0) there = trial(:nblock, p, e)
-          call press(closest, (1 - handed%share)*release%share, trial(:nblock, p, e))
-          if (handed%share > 0) then
-            way = handed%slope*dxi
-            along = place
-            call hand_over(-way/(1 - handed%share))
-            there(at_penetration) = nearest%d
-            call press(nearest, handed%share, there)
-            call hand_over(way/handed%share)
-            call share_state(handed%share, there, trial(:nblock, p, e))
-          end if
-          if (nint(committed(at_status, p, e)) /= contact_open) then
-            report%jump = max(report%jump, abs(trial(at_penetration, p, e) - committed(at_penetration, p, e))/side)
-          end if
-          report%event = min(report%event, share_to_contact(committed(:nblock, p, e), trial(:nblock, p, e), side))
+          call press_point(die, middle(p, e))
         end do
-        if (.not. allocated(may)) then
-          own%x = x(:, 1:3, e)
-          own%du(1:6) = du(place(1:6), e)
-          own%section = section
-          own%thickening = section_motion(layout, du(:, e))
-          own%length = side
-          own%penalty = penalties(scene%materials(group%material), group, side)
-          own%dt = instant%dt
-          own%tangent = instant%tangent
-          own%kept = instant%kept .and. goes_on(instant, group%die)
-          own%penalty_share = instant%penalty_share
-          call press_edges(die, law, scene%materials(group%material), drivers(:, :, :, e), axisym, own, xi, pieces(:npiece), &
-                           x(:, :, e), du(:, e), committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e), report)
-        end if
+        if (.not. allocated(may)) call press_edges_met(die)
         if (axisym) call show_on_axis(xi, x(1, 1:3, e) + du(1:3, e), side, trial(:, :, e))
       end do
     end associate
@@ -200,11 +131,113 @@ contains
 
   contains
 
+    !> A side that nothing presses on: its length, its section, and where its unknowns stand; its points are at rest, with the
+    !> friction work that they had, per area of now.
+    subroutine begin_side()
+      force(:, e) = 0
+      if (instant%tangent) stiffness(:, :, e) = 0
+      trial(:, :, e) = committed(:, :, e)
+      call rest(trial(:nblock, :, e))
+      call rest(trial(nblock + 1:2*nblock, :, e))
+      side = side_length(scene, group%connectivity(:, first + e - 1))
+      section = scene%section
+      if (scene%finite) section = instant%section + section_motion(layout, du(:, e))
+      place(1:6) = [1, 2, 3, nnode + 1, nnode + 2, nnode + 3]
+      place(13:15) = [2*nnode + 1, 2*nnode + 2, 2*nnode + 3]
+      associate (thickening => section_motion(layout, du(:, e)), at_edge => committed(2*nblock + 1, :, e))
+        trial(at_work, :, e) = committed(at_work, :, e)*thinning(xi, xi, section, thickening, x(:, 1:3, e), du(place(1:6), e))
+        trial(nblock + at_work, :, e) = committed(nblock + at_work, :, e) &
+                                        *thinning(at_edge, at_edge, section, thickening, x(:, 1:3, e), du(place(1:6), e))
+      end associate
+    end subroutine begin_side
+
+    !> The point meets the die, or is handed over from a side of it to the next.
+    subroutine press_point(die, middle)
+      type(die_t), intent(in) :: die
+      integer, intent(in) :: middle   !! piece of the die that the point is paired with
+
+      call line3(xi(p), phi, dphi)
+      call side_point(phi, dphi, section, x(:, 1:3, e), du(place(1:6), e), most_unknowns, point)
+      call find_closest_point(die, middle)
+      ! a point on the axis has no surface: nothing acts there, and no contact is evaluated
+      if (closest%piece == 0 .or. axisym .and. point%x(1) <= no_surface*side) return
+      trial(at_penetration, p, e) = merge(release%depth, closest%d, release%limited)
+      trial([at_piece, at_xi], p, e) = [real(nearest%piece, wp), nearest%xi]
+      ! past an edge its pressure is gone
+      if (.not. release%share > 0) return
+      if (handed%share > 0) there = trial(:nblock, p, e)
+      call press(closest, (1 - handed%share)*release%share, trial(:nblock, p, e))
+      if (handed%share > 0) call press_next()
+      if (nint(committed(at_status, p, e)) /= contact_open) then
+        report%jump = max(report%jump, abs(trial(at_penetration, p, e) - committed(at_penetration, p, e))/side)
+      end if
+      report%event = min(report%event, share_to_contact(committed(:nblock, p, e), trial(:nblock, p, e), side))
+    end subroutine press_point
+
+    !> The closest point, on no piece where there is none; the nearest one, to which the point may be handed over, and what an edge
+    !> that it slides past leaves of it.
+    subroutine find_closest_point(die, middle)
+      type(die_t), intent(in) :: die
+      integer, intent(in) :: middle   !! piece of the die that the point is paired with
+      integer :: kept_piece
+
+      closest = closest_point_t()
+      if (allocated(may)) then
+        call find_own_closest_point(scene, group, first + e - 1, die, may(:, e), point, phi, side, committed(:, p, e), nearest)
+      else
+        call closest_facing_point(die, point%x, point%e_r, side, nearest)
+      end if
+      ! a stale pair of a body's own side may be the far face of a wall
+      if (allocated(may) .and. nearest%piece == 0) return
+      call keep_closest_point(die, point, side, committed(:nblock, p, e), middle, nearest, closest, handed)
+      kept_piece = closest%piece
+      release = edge_release_t()
+      if (.not. allocated(may)) then
+        call slide_past_edge(scene%mesh%coordinates, die, point%x, side, &
+                             allowed_penetration(scene%materials(group%material))*side, committed(:nblock, p, e), nearest, &
+                             closest, release)
+      end if
+      if (release%share < 1 .or. closest%piece /= kept_piece .or. nearest%piece == kept_piece) handed = handed_over_t()
+    end subroutine find_closest_point
+
+    !> What the next side bears of a point that is handed over to it.
+    subroutine press_next()
+      way = handed%slope*dxi
+      along = place
+      call hand_over(-way/(1 - handed%share))
+      there(at_penetration) = nearest%d
+      call press(nearest, handed%share, there)
+      call hand_over(way/handed%share)
+      call share_state(handed%share, there, trial(:nblock, p, e))
+    end subroutine press_next
+
+    !> The edges of the die that the side meets between its points.
+    subroutine press_edges_met(die)
+      type(die_t), intent(in) :: die
+      type(side_t) :: own
+
+      own%x = x(:, 1:3, e)
+      own%du(1:6) = du(place(1:6), e)
+      own%section = section
+      own%thickening = section_motion(layout, du(:, e))
+      own%length = side
+      own%penalty = penalties(scene%materials(group%material), group, side)
+      own%dt = instant%dt
+      own%tangent = instant%tangent
+      own%kept = instant%kept .and. goes_on(instant, group%die)
+      own%penalty_share = instant%penalty_share
+      call press_edges(die, law, scene%materials(group%material), drivers(:, :, :, e), axisym, own, xi, pieces(:npiece), &
+                       x(:, :, e), du(:, e), committed(:, :, e), trial(:, :, e), force(:, e), stiffness(:, :, e), report)
+    end subroutine press_edges_met
+
     !> The force between the point and a side that it meets, which bears this share of it; its state goes on to `state`.
     subroutine press(met, share, state)
       type(closest_point_t), intent(in) :: met
       real(wp), intent(in) :: share
       real(wp), intent(inout) :: state(:)   !! (nstate) [unit of each component]
+      type(meeting_t) :: meeting
+      real(wp) :: dq(2, most_unknowns)
+      integer :: j, k, at
 
       q = 0
       dxi = 0
@@ -241,6 +274,7 @@ contains
     !> The share of the force just made changes with the way along the side that the point began with.
     subroutine hand_over(change)
       real(wp), intent(in) :: change(:)   !! (nunknown) of the share over the share, along the unknowns of that side [1/unknown]
+      integer :: j
 
       if (.not. instant%tangent) return
       do j = 1, n

@@ -90,9 +90,8 @@ contains
     real(wp), intent(inout) :: stiffness(:, :, :)
     type(report_t), intent(out) :: report
     real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: y(2, 3), phi(3), dphi(3), own(3), tangent(2), length, thickness, area, darea(6), section(3), t(3), q, slope, part
-    real(wp) :: share(3)
-    integer :: e, p, k, j, n, u, i
+    real(wp) :: y(2, 3), own(3), area, darea(6), section(3)
+    integer :: e, p, k, n, u
 
     force = 0
     if (instant%tangent) stiffness = 0
@@ -106,36 +105,51 @@ contains
       y = x(:, :, e)
       if (u > 0 .and. kinematics%finite) y = y + transpose(reshape(du(u:u + 5, e), [3, 2]))
       do p = 1, size(xi)
-        call line3(xi(p), phi, dphi)
-        tangent = matmul(y, dphi)
-        length = length_of(tangent)
-        thickness = thickness_at(section, matmul(y, phi))
-        area = weight(p)*length*thickness
-        darea(1:3) = weight(p)*(dphi*tangent(1)/length*thickness + length*section(2)*phi)
-        darea(4:6) = weight(p)*(dphi*tangent(2)/length*thickness + length*section(3)*phi)
-        own = phi
-        if (n == 2) own(1:2) = 0.5_wp*[1 - xi(p), 1 + xi(p)]
+        call place_point(xi(p), weight(p))
         do k = 1, instant%flow%n
-          t(:n) = start(:n, e) + instant%flow%share(k)*du(:n, e)
-          if (n == 2) then
-            do i = 1, 2
-              share = 0
-              share(i) = own(i)
-              call add(t(i), unit_of(i))
-            end do
-          else
-            share = own
-            call add(dot_product(own, t), own)
-          end if
+          call add_flow(start(:n, e) + instant%flow%share(k)*du(:n, e))
         end do
       end do
     end do
 
   contains
 
+    !> The area of a point of the side, its derivatives, and the functions of the temperature there.
+    subroutine place_point(xi, weight)
+      real(wp), intent(in) :: xi, weight
+      real(wp) :: phi(3), dphi(3), tangent(2), length, thickness
+
+      call line3(xi, phi, dphi)
+      tangent = matmul(y, dphi)
+      length = length_of(tangent)
+      thickness = thickness_at(section, matmul(y, phi))
+      area = weight*length*thickness
+      darea(1:3) = weight*(dphi*tangent(1)/length*thickness + length*section(2)*phi)
+      darea(4:6) = weight*(dphi*tangent(2)/length*thickness + length*section(3)*phi)
+      own = phi
+      if (n == 2) own = [0.5_wp*[1 - xi, 1 + xi], 0.0_wp]
+    end subroutine place_point
+
+    !> The heat of a point at one of the instants, where the nodes have these temperatures; all of it at the ends of the side where
+    !> temperatures stand there.
+    subroutine add_flow(t)
+      real(wp), intent(in) :: t(:)   !! (n) [temperature]
+      integer :: i
+
+      if (n == 2) then
+        do i = 1, 2
+          call add(t(i), own(i)*unit_of(i), unit_of(i))
+        end do
+      else
+        call add(dot_product(own, t), own, own)
+      end if
+    end subroutine add_flow
+
     !> The heat at a temperature: to the nodes by `share`; the temperature depends on theirs by `along`.
-    subroutine add(here, along)
-      real(wp), intent(in) :: here, along(3)
+    subroutine add(here, share, along)
+      real(wp), intent(in) :: here, share(3), along(3)
+      real(wp) :: q, slope, part
+      integer :: j
 
       call flow_in(group%exchange, instant%flow%multipliers(:, k), instant%flow%stated(:, k), here, q, slope)
       part = instant%flow%weight(k)

@@ -55,8 +55,8 @@ contains
     type(quad8_rule_t) :: rule
     type(functions_t) :: own
     type(heat_points_t) :: place
-    real(wp) :: motion(16), t(8), share(8), volume
-    integer :: e, k, p, j, n, u
+    real(wp) :: motion(16), t(8)
+    integer :: e, k, p, n, u
 
     force = 0
     if (instant%tangent) stiffness = 0
@@ -78,21 +78,28 @@ contains
       do k = 1, instant%flow%n
         t(:n) = start(:n, e) + instant%flow%share(k)*du(:n, e)
         do p = 1, rule%npoint
-          volume = place%dv(p)
-          if (n == 8) then
-            call add(dot_product(own%phi(:n, p), t(:n)), own%phi(:, p), own%phi(:, p))
-          else
-            do j = 1, n
-              share = 0
-              share(j) = 1
-              call add(t(j), own%phi(j, p)*share, share)
-            end do
-          end if
+          call add_point()
         end do
       end do
     end do
 
   contains
+
+    !> The source at a point; all of it on the corners where temperatures stand there.
+    subroutine add_point()
+      real(wp) :: share(8)
+      integer :: j
+
+      if (n == 8) then
+        call add(dot_product(own%phi(:n, p), t(:n)), own%phi(:, p), own%phi(:, p))
+        return
+      end if
+      do j = 1, n
+        share = 0
+        share(j) = 1
+        call add(t(j), own%phi(j, p)*share, share)
+      end do
+    end subroutine add_point
 
     !> The source at a temperature: to the nodes by `to`; the temperature depends on theirs by `along`.
     subroutine add(here, to, along)
@@ -101,7 +108,7 @@ contains
       integer :: i
 
       call flow_in(group%exchange, instant%flow%multipliers(:, k), instant%flow%stated(:, k), here, q, slope)
-      weight = instant%flow%weight(k)*volume
+      weight = instant%flow%weight(k)*place%dv(p)
       force(:n, e) = force(:n, e) - to(:n)*(weight*q)
       if (.not. instant%tangent) return
       do i = 1, n

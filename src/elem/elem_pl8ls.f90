@@ -91,9 +91,7 @@ contains
     real(wp) :: given(driver_count(law), 2, group%rule%n*size(x, 3)), section(3, 2)
     real(wp) :: functions(8, group%rule%n), warmer(4, group%rule%n, size(x, 3))   ! d(stress)/d(temperature)
     integer :: status(group%rule%n, size(x, 3))
-    real(wp) :: strain
-    logical :: valid
-    integer :: e, p, n, nb, nstate, k
+    integer :: e, n, nb, nstate
 
     nb = size(x, 3)
     n = size(du, 1)
@@ -101,51 +99,14 @@ contains
     nstate = size(committed, 1)
     call quad8_rule(group%rule%n, rule)
     do e = 1, nb
-      call sections_of_step(scene, kinematics%finite, instant, layout, du(:, e), section)
-      call motion(rule, section, kinematics%finite, x(:, :, e), du(:, e), nx(:, :, e), ny(:, :, e), zx(:, :, e), dv(:, e), &
-                  f(:, :, e), strain, valid)
-      report%strain = max(report%strain, strain)
-      if (.not. valid) then
-        report%status = block_inverted
-        report%element = first + e - 1
-        force = 0
-        return
-      end if
-      if (.not. group%option == mean_option) cycle
-      call first_element(scene, rule, group%connectivity(:, first + e - 1), own)
-      call share_dilatation(kinematics%finite, own, dv(:, e), f(:, :, e), valid)
-      if (.not. valid) then
-        report%status = block_inverted
-        report%element = first + e - 1
-        force = 0
-        return
-      end if
+      call move_points(e)
+      if (report%status == 0) cycle
+      force = 0
+      return
     end do
-
-    ! a body with a TEMPE card has that temperature also where others of the scene have a field
-    if (temperature_place(layout) > 0 .and. group%temperature_multiplier == 0) then
-      functions = projected_functions(rule)
-      do e = 1, nb
-        p = (e - 1)*group%rule%n
-        call point_temperatures_of(layout, functions, du(:, e), start(:, e), &
-                                   given(driver_temperature, :, p + 1:p + group%rule%n))
-      end do
-    else
-      given(driver_temperature, :, :) = spread(group_temperature(group, instant), 2, group%rule%n*nb)
-    end if
-    do k = 2, size(given, 1)
-      given(k, :, :) = reshape(drivers(k, :2, :, :), [2, group%rule%n*nb])
-    end do
-    if (scene%plane_state == plane_stress) then
-      call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, given, &
-                               f, committed, trial, tangent, status)
-      trial(nstate, :, :) = committed(nstate, :, :)*f(5, :, :)
-      if (kinematics%finite) dv = dv*trial(nstate, :, :)
-    else
-      call kinematics%update(law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, given, &
-                             f, committed, trial, tangent, status)
-    end if
-
+    call find_drivers()
+    call update_points(committed, given, f, trial, tangent, status)
+    if (scene%plane_state == plane_stress .and. kinematics%finite) dv = dv*trial(nstate, :, :)
     do e = 1, nb
       if (any(status(:, e) /= law_done) .and. report%status == 0) then
         report%status = block_law_failed
@@ -157,13 +118,80 @@ contains
       end if
       call forces_of(e, instant%tangent, trial(1:4, :, e), dv(:, e), force(:n, e), stiffness(:n, :n, e))
     end do
-    if (.not. instant%tangent .or. n == size(du, 1) .or. report%status /= 0 .or. group%temperature_multiplier > 0) return
-    if (.not. instant%solved(layout%field(temperature_place(layout)))) return
-    call add_columns_of_temperature()
-    if (heated_by_work(scene, group, layout, instant) > 0) call add_work()
-    if (size(drivers, 2) == 4 .and. instant%mode == mode_advance .and. instant%content) call add_latent()
+    if (instant%tangent .and. report%status == 0 .and. follows_temperature()) call couple_to_temperature()
 
   contains
+
+    !> Geometry of an element at the end of the step, and the motion of its points.
+    subroutine move_points(element)
+      integer, intent(in) :: element
+      real(wp) :: strain
+      logical :: valid
+
+      call sections_of_step(scene, kinematics%finite, instant, layout, du(:, element), section)
+      call motion(rule, section, kinematics%finite, x(:, :, element), du(:, element), nx(:, :, element), ny(:, :, element), &
+                  zx(:, :, element), dv(:, element), f(:, :, element), strain, valid)
+      report%strain = max(report%strain, strain)
+      if (valid .and. group%option == mean_option) then
+        call first_element(scene, rule, group%connectivity(:, first + element - 1), own)
+        call share_dilatation(kinematics%finite, own, dv(:, element), f(:, :, element), valid)
+      end if
+      if (valid) return
+      report%status = block_inverted
+      report%element = first + element - 1
+    end subroutine move_points
+
+    !> The temperature is an unknown of the scene. A body with a TEMPE card has that temperature also where others have a field.
+    pure function follows_temperature() result(follows)
+      logical :: follows
+
+      follows = temperature_place(layout) > 0 .and. group%temperature_multiplier == 0
+    end function follows_temperature
+
+    !> What drives the points, at both ends of the step: the temperature, and what else the law asks for.
+    subroutine find_drivers()
+      integer :: i, k, p
+
+      if (follows_temperature()) then
+        functions = projected_functions(rule)
+        do i = 1, nb
+          p = (i - 1)*group%rule%n
+          call point_temperatures_of(layout, functions, du(:, i), start(:, i), &
+                                     given(driver_temperature, :, p + 1:p + group%rule%n))
+        end do
+      else
+        given(driver_temperature, :, :) = spread(group_temperature(group, instant), 2, group%rule%n*nb)
+      end if
+      do k = 2, size(given, 1)
+        given(k, :, :) = reshape(drivers(k, :2, :, :), [2, group%rule%n*nb])
+      end do
+    end subroutine find_drivers
+
+    !> State at the end of a step from the state `before`; in plane stress the motion across the plane is found.
+    subroutine update_points(before, driven, g, after, moduli, answers)
+      real(wp), intent(in), contiguous :: before(:, :, :), driven(:, :, :)
+      real(wp), intent(inout), contiguous :: g(:, :, :)
+      real(wp), intent(inout), contiguous :: after(:, :, :)
+      real(wp), intent(out), contiguous :: moduli(:, :, :, :)
+      integer, intent(out), contiguous :: answers(:, :)
+
+      if (scene%plane_state == plane_stress) then
+        call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, driven, &
+                                 g, before, after, moduli, answers)
+        after(nstate, :, :) = before(nstate, :, :)*g(5, :, :)
+      else
+        call kinematics%update(law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, driven, &
+                               g, before, after, moduli, answers)
+      end if
+    end subroutine update_points
+
+    !> Derivatives along the temperatures, where they are solved for too, and of the heat that the mechanics releases.
+    subroutine couple_to_temperature()
+      if (.not. instant%solved(layout%field(temperature_place(layout)))) return
+      call add_columns_of_temperature()
+      if (heated_by_work(scene, group, layout, instant) > 0) call add_work()
+      if (size(drivers, 2) == 4 .and. instant%mode == mode_advance .and. instant%content) call add_latent()
+    end subroutine couple_to_temperature
 
     !> Forces of the stresses at the points of an element on its mechanical unknowns, and the matrix where it is wanted.
     subroutine forces_of(element, wanted, stress, volume, f_element, k_element)
@@ -210,7 +238,7 @@ contains
     subroutine add_columns_of_temperature()
       real(wp), dimension(4, group%rule%n, nb) :: high, low
       real(wp) :: change, shape(8, layout%count(temperature_place(layout))), unused(n, n)
-      integer :: u, k
+      integer :: u, k, p
 
       u = temperature_place(layout)
       change = epsilon(1.0_wp)**(1.0_wp/3)*maxval(abs(given(driver_temperature, :, :)))
@@ -245,9 +273,10 @@ contains
 
     !> State at the end of the step from the state `before`, were temperatures higher and the motion g.
     subroutine update_at(before, change, g, other)
-      real(wp), intent(in) :: before(:, :, :), change
-      real(wp), intent(inout) :: g(:, :, :)
-      real(wp), intent(out) :: other(:, :, :)
+      real(wp), intent(in), contiguous :: before(:, :, :)
+      real(wp), intent(in) :: change
+      real(wp), intent(inout), contiguous :: g(:, :, :)
+      real(wp), intent(out), contiguous :: other(:, :, :)
       real(wp) :: shifted(size(given, 1), 2, group%rule%n*nb), unused(4, 5, group%rule%n, nb)
       integer :: answers(group%rule%n, nb), k
 
@@ -259,13 +288,7 @@ contains
           shifted(k, 2, :) = shifted(k, 2, :) + change*reshape(drivers(k, 3, :, :), [group%rule%n*nb])
         end do
       end if
-      if (scene%plane_state == plane_stress) then
-        call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, shifted, &
-                                 g, before, other, unused, answers)
-      else
-        call kinematics%update(law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, shifted, g, before, &
-                               other, unused, answers)
-      end if
+      call update_points(before, shifted, g, other, unused, answers)
     end subroutine update_at
 
     !> d(heat)/d(motion) and d(heat)/d(temperature) of the plastic work, by differences of the whole update. The work of the step
@@ -346,7 +369,7 @@ contains
     !> The same of latent heat that the stress drives (METAMEC), from the derivatives of the stress.
     subroutine add_latent()
       real(wp) :: slopes(ncomponent + 1, group%rule%n, nb), share(group%rule%n, nb)
-      integer :: i
+      integer :: i, p
 
       share = 1
       do i = 1, nb

@@ -53,7 +53,7 @@ contains
     integer, intent(in) :: connectivity(:, :)   !! (8, nelem)
     type(patches_t), intent(out) :: patches
     integer, allocatable :: start(:), around(:), seen_element(:), seen_vertex(:)
-    integer :: v, nvertex, pass, reach, at, i, k
+    integer :: v, nvertex, pass
 
     call number_vertices(connectivity, patches)
     nvertex = size(patches%node)
@@ -69,24 +69,12 @@ contains
         patches%first(v + 1) = patches%first(v)
         patches%first_donor(v + 1) = patches%first_donor(v)
         if (has_own(v)) then
-          do i = start(v), start(v + 1) - 1
-            call add(around(i), v, seen_element, patches%element, patches%first(v + 1))
-          end do
-          cycle
+          call list_own(v, seen_element, patches)
+        else
+          call list_donors(v, .false., seen_vertex, patches)
+          if (.not. has_donors(v)) call list_donors(v, .true., seen_vertex, patches)
+          if (.not. has_donors(v)) call widen(patches%vertex, start, around, v, seen_element, patches%element, patches%first(v + 1))
         end if
-        do reach = 1, 2   ! along the sides, else across the elements
-          do i = start(v), start(v + 1) - 1
-            at = findloc(patches%vertex(:, around(i)), v, 1)
-            do k = 1, 4
-              if (mod(k - at, 2) == 0 .eqv. reach == 1) cycle
-              if (has_own(patches%vertex(k, around(i)))) call add(patches%vertex(k, around(i)), v, seen_vertex, patches%donor, &
-                                                                  patches%first_donor(v + 1))
-            end do
-          end do
-          if (patches%first_donor(v + 1) > patches%first_donor(v)) exit
-        end do
-        if (patches%first_donor(v + 1) > patches%first_donor(v)) cycle
-        call widen(patches%vertex, start, around, v, seen_element, patches%element, patches%first(v + 1))
       end do
       if (pass == 2) exit
       deallocate (patches%element, patches%donor)
@@ -100,6 +88,42 @@ contains
 
       has_own = start(v + 1) - start(v) >= least_elements
     end function has_own
+
+    pure logical function has_donors(v)
+      integer, intent(in) :: v
+
+      has_donors = patches%first_donor(v + 1) > patches%first_donor(v)
+    end function has_donors
+
+    !> List the elements around vertex v.
+    pure subroutine list_own(v, seen, patches)
+      integer, intent(in) :: v
+      integer, intent(inout) :: seen(:)
+      type(patches_t), intent(inout) :: patches
+      integer :: i
+
+      do i = start(v), start(v + 1) - 1
+        call add(around(i), v, seen, patches%element, patches%first(v + 1))
+      end do
+    end subroutine list_own
+
+    !> List the vertices with patches of their own that vertex v meets along the sides of elements, or across these.
+    pure subroutine list_donors(v, across, seen, patches)
+      integer, intent(in) :: v
+      logical, intent(in) :: across
+      integer, intent(inout) :: seen(:)
+      type(patches_t), intent(inout) :: patches
+      integer :: i, k, at
+
+      do i = start(v), start(v + 1) - 1
+        at = findloc(patches%vertex(:, around(i)), v, 1)
+        do k = 1, 4
+          if (mod(k - at, 2) == 0 .neqv. across) cycle
+          if (has_own(patches%vertex(k, around(i)))) &
+            call add(patches%vertex(k, around(i)), v, seen, patches%donor, patches%first_donor(v + 1))
+        end do
+      end do
+    end subroutine list_donors
 
   end subroutine find_patches
 

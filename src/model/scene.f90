@@ -50,6 +50,8 @@ module scene
     integer :: elem_id = 0
     !> Material (position in the scene's list); 0 for elements without a law.
     integer :: material = 0
+    !> What the element of a load states of itself: it brings heat; it is springs of a body.
+    logical :: brings_heat = .false., is_spring = .false.
     !> Integration points of an element: of the square for bodies, of the line for sides.
     type(rule_t) :: rule
     !> Points on sides whose number is chosen by the lengths of sides, anew on every mesh.

@@ -30,6 +30,8 @@ contains
     call visitor%member('die', self%die, kept, low=0)
     call visitor%derived('pairs', 'counted: groups that face deformable dies, in their order')
     call visitor%derived('elem_id', of_the_deck)
+    call visitor%derived('brings_heat', of_the_deck)
+    call visitor%derived('is_spring', of_the_deck)
     call visitor%derived('option', of_the_deck)
     call visitor%derived('modulus', 'the solver finds it from the bodies behind the sides')
     call visitor%derived('tangential_share', 'the solver finds it from the law')

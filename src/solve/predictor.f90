@@ -71,46 +71,24 @@ contains
     type(report_t), intent(out) :: report
     type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: left(:)     !! (ndie) dies that leave the part: they start where they go
-    logical :: fixed(size(du)), at_place(size(du)), back(size(du)), turning(size(du)), dies(size(scene%dies)), found, begun
-    real(wp) :: motion(size(equations%dofs%prescribed)), before(size(du)), bend(size(du))
-    real(wp) :: ratio
-    integer :: k
+    !> Unknowns that are given, that belong to dies where they go, that turn back.
+    logical, dimension(size(du)) :: fixed, at_place, back
+    !> Dies that turn back; the start is that of an earlier turn; it is at the onset of the motion of a new mesh.
+    logical :: dies(size(scene%dies)), goes_on, begun
+    !> Motion of prescribed unknowns in the step, and the bend of the path [unknown].
+    real(wp) :: motion(size(equations%dofs%prescribed)), bend(size(du))
+    real(wp) :: ratio   !! length of the step over that of the last one, 0 without one [-]
 
     equations%slides = .false.
-    ! what moves at once does so in the first step, not while equilibrium is restored at fixed time
-    call prescribed_motion(scene, equations%dofs, solution%fields, dt > 0 .and. .not. solution%last_step > 0, solution%time, &
-                           solution%time + dt, motion)
-    found = .false.
-    if (present(go_on)) found = go_on
-    fixed = .not. equations%solves(equations%now)%is_own .or. found
-    at_place = .false.
-    if (present(left)) then
-      associate (pilot => equations%dofs%fields(pilot_field)%number)
-        do k = 1, size(left)
-          if (left(k)) at_place(pack(pilot(:, k), pilot(:, k) > 0)) = .true.
-        end do
-      end associate
-    end if
-    ratio = 0
-    if (solution%last_step > 0) ratio = dt/solution%last_step
-    back = at_place
-    if (.not. found .and. ratio > 0) then
-      call proportion(equations%dofs, solution%fields, ratio, before)
-      back = back .or. reversed_unknowns(equations%dofs, before, motion)
-    end if
-    call turn_back(scene, equations%dofs, solution, back, turning, dies)
-    back = turning
-    staying = .false.
-    if (any(back)) staying = is_motion() .and. .not. back
+    call find_given()
+    call find_turning()
     kept = .false.
     bend = 0
     call try_from(ratio)
     begun = .false.
-    if (is_first_step(solution%probation) .and. .not. (any(back) .or. found) .and. ratio > 0 .and. report%event >= 1 &
-        .and. .not. solves_heat(scene, equations) .and. equations%solves(equations%now)%own(displacement_field)) &
-      call start_on_new_mesh()
+    if (is_first_on_mesh()) call start_on_new_mesh()
     if (allocated(error)) return
-    if (.not. (begun .or. found) .and. report%status == block_done .and. report%event >= 1 &
+    if (.not. (begun .or. goes_on) .and. report%status == block_done .and. report%event >= 1 &
         .and. report%jump > smooth_contact) then
       kept = is_driven(equations%dofs, motion)
       call start_from(merge(ratio, onset*ratio, kept))
@@ -119,17 +97,61 @@ contains
       kept = .false.
       call start_from(0.0_wp)
     end if
-
     call find_missing()
 
   contains
+
+    !> What is known of the motion: that of prescribed unknowns, of unknowns of other solves, of dies that leave the part.
+    subroutine find_given()
+      integer :: k
+
+      ! what moves at once does so in the first step, not while equilibrium is restored at fixed time
+      call prescribed_motion(scene, equations%dofs, solution%fields, dt > 0 .and. .not. solution%last_step > 0, solution%time, &
+                             solution%time + dt, motion)
+      goes_on = .false.
+      if (present(go_on)) goes_on = go_on
+      fixed = .not. equations%solves(equations%now)%is_own .or. goes_on
+      at_place = .false.
+      if (.not. present(left)) return
+      associate (pilot => equations%dofs%fields(pilot_field)%number)
+        do k = 1, size(left)
+          if (left(k)) at_place(pack(pilot(:, k), pilot(:, k) > 0)) = .true.
+        end do
+      end associate
+    end subroutine find_given
+
+    !> What turns back: dies and supports that do so, and what they move. Where anything does, other motions stay as they are.
+    subroutine find_turning()
+      logical :: turning(size(du))
+      real(wp) :: before(size(du))
+
+      ratio = 0
+      if (solution%last_step > 0) ratio = dt/solution%last_step
+      back = at_place
+      if (.not. goes_on .and. ratio > 0) then
+        call proportion(equations%dofs, solution%fields, ratio, before)
+        back = back .or. reversed_unknowns(equations%dofs, before, motion)
+      end if
+      call turn_back(scene, equations%dofs, solution, back, turning, dies)
+      back = turning
+      staying = .false.
+      if (any(back)) staying = is_motion() .and. .not. back
+    end subroutine find_turning
+
+    !> The first step on a new mesh, where mechanics alone is solved for and contact does not begin within the step.
+    function is_first_on_mesh() result(is)
+      logical :: is
+
+      is = is_first_step(solution%probation) .and. .not. (any(back) .or. goes_on) .and. ratio > 0 .and. report%event >= 1 &
+           .and. .not. solves_heat(scene, equations) .and. equations%solves(equations%now)%own(displacement_field)
+    end function is_first_on_mesh
 
     !> Start from a share of the last motion. Where contact alone tells that it is not to be begun with, for another evaluation
     !> follows, or the step is cut short where contact begins, nothing else is evaluated.
     subroutine try_from(share)
       real(wp), intent(in) :: share
 
-      if (.not. (present(given) .or. found .or. any(back) .or. is_first_step(solution%probation)) &
+      if (.not. (present(given) .or. goes_on .or. any(back) .or. is_first_step(solution%probation)) &
           .and. abs(share) > 0 .and. dt > scene%strategy%least_step .and. is_apart(scene, equations)) then
         if (is_driven(equations%dofs, motion)) then
           call start_from(share, alone=.true.)
@@ -209,6 +231,7 @@ contains
       real(wp), intent(in) :: share
       logical, intent(in), optional :: alone   !! contact alone, without matrices
       logical :: whole
+      integer :: k
 
       call proportion(equations%dofs, solution%fields, share, du)
       if (.not. abs(share - ratio) > 0) du = du + bend
@@ -216,7 +239,7 @@ contains
       call leave_at_rest(scene, equations%dofs, equations%loose, solution, solution%time + dt, du, &
                          equations%resting)
       call leave_dies_at_rest(scene, equations%dofs, solution, external, du)
-      if (.not. found) call seat_dies(scene, equations%dofs, solution, external, equations%size, du)
+      if (.not. goes_on) call seat_dies(scene, equations%dofs, solution, external, equations%size, du)
       if (present(given)) du = merge(given, du, fixed)
       do k = 1, size(motion)
         associate (p => equations%dofs%prescribed(k))

@@ -1,12 +1,13 @@
 !> Scenes of blocks and dies in known states, for the tests of the contour.
 module contour_cases
   use block_mesh, only: block_t, mesh_block
-  use boundary_curves, only: boundary_curve_t
+  use boundary_curves, only: boundary_curve_t, kind_entry
   use contact_contour, only: find_contact_ends
   use contact_ends, only: contact_end_t
   use dies, only: die_t, finish_die, present_die
   use fields, only: displacement_field, mechanical_fields, pilot_field
   use kinds, only: wp
+  use part_contour, only: contact_limit_t, contour_t
   use quadrature, only: line_rule, rule_of_number
   use scene, only: axisymmetric, group_t, plane_strain, role_body, role_contact, scene_t
   use shape_functions, only: line3
@@ -15,7 +16,8 @@ module contour_cases
   use vectors, only: length_of
   implicit none
   private
-  public :: begin_scene, add_block, join_nodes, add_contact, add_die, polyline, start, ends_of, touch, box, arc_side, joints_of_kind
+  public :: begin_scene, add_block, join_nodes, add_contact, add_die, polyline, place_limit, start, ends_of, touch, box, arc_side
+  public :: joints_of_kind
 
 contains
 
@@ -244,5 +246,28 @@ contains
 
     allocate (joints, source=pack([(k, k=1, size(boundary%kinds))], [(any(boundary%kinds(k) == kinds), k=1, size(boundary%kinds))]))
   end function joints_of_kind
+
+  !> Where an end of contact is on the part and on the die: side of the loop, parent coordinates on it and on the piece of the die.
+  pure subroutine place_limit(contour, limit, side, part_xi, die_xi)
+    type(contour_t), intent(in) :: contour
+    type(contact_limit_t), intent(in) :: limit
+    integer, intent(out) :: side
+    real(wp), intent(out) :: part_xi, die_xi
+
+    associate (contact => contour%contacts(limit%contact))
+      if (limit%kind == kind_entry) then
+        side = contact%interval%from%side
+        part_xi = contact%interval%from%xi
+        die_xi = contact%sections(1)%closest_points(1)%xi
+      else
+        side = contact%interval%to%side
+        part_xi = contact%interval%to%xi
+        associate (section => contact%sections(size(contact%sections)))
+          die_xi = section%closest_points(size(section%closest_points))%xi
+        end associate
+      end if
+    end associate
+    side = modulo(side - 1, size(contour%loop%sides, 2)) + 1
+  end subroutine place_limit
 
 end module contour_cases

@@ -10,7 +10,7 @@ from PIL import Image
 from .errors import ReportError
 from .reader import Run, Step
 from .scene_view import SceneView, colour_bar, scale_for, value_range
-from .style import figure, panel_size
+from .style import figure
 from .words import brief, field_title
 
 MOST_FRAMES = 48
@@ -55,7 +55,7 @@ def _frames(run: Run, field: str) -> List[Step]:
 def _drawn(view: SceneView, steps: List[Step], field: str, scale) -> List[Image.Image]:
     """A picture an instant, all of one size: the layout of the first is kept."""
     box = view.box(steps, 0.1)
-    inches = panel_size(box[1] - box[0], box[3] - box[2], 6.6, 5.6)
+    inches = view.panel(box, 6.6, 5.6)
     fig, panels = figure(1, 1, (inches[0] + 1.5, inches[1] + 0.7), grid=False)
     axes = panels[0, 0]
     canvas = FigureCanvasAgg(fig)

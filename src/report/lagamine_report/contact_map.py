@@ -9,7 +9,7 @@ from .geometry import line3, side_points
 from .picture import Picture, when
 from .reader import Group
 from .scene_view import SceneView, colour_bar, scale_for
-from .style import POSITIVE, figure, panel_size
+from .style import POSITIVE, figure
 from .tractions import recovered_tractions
 from .words import brief
 
@@ -39,7 +39,7 @@ def pressure_picture(view: SceneView) -> Optional[Picture]:
         return None
     feet, inward, values = (np.concatenate(parts) for parts in zip(*held))
     box = view.box([step])
-    inches = panel_size(box[1] - box[0], box[3] - box[2], 7.4, 5.0)
+    inches = view.panel(box, 7.4, 5.0)
     fig, axes = figure(1, 1, (inches[0] + 1.4, inches[1] + 0.5), grid=False)
     panel = axes[0, 0]
     view.frame(panel, box)

@@ -8,10 +8,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from .deck_scene import COMPONENTS, DISPLACEMENT, Driven, Scene, side_label
-from .geometry import all_sides, die_curve, hatching, line3, side_curves
+from .geometry import all_sides, die_curve, element_thickness, hatching, line3, part_thickness, side_curves
 from .parabolas import elements_patch, sides_patch
 from .picture import Picture
-from .style import BODIES, DIE_LINE, INK, LINES, SOFT, figure
+from .style import BODIES, DIE_LINE, DIE_SHARE, INK, LINE_SHARE, LINES, POINTS, SOFT, figure
 from .words import brief
 
 MOTION, SUPPORT, LOAD, HEAT, CONTACT, ZONE = LINES[1], LINES[2], LINES[6], LINES[4], LINES[0], LINES[3]
@@ -30,6 +30,24 @@ class DeckView:
         self.size = float((self.high - self.low).max())
         self.legend: List = []
         self.fig, self.axes = self._axes()
+        self.thin = self._thickness()
+        self.paper_width = self.paper * self.thin
+
+    def _thickness(self) -> float:
+        """How thin the thinnest body is."""
+        found = [self.size]
+        for group in self.scene.bodies():
+            if group["name"] in self.scene.contours:
+                curve = self.scene.contours[group["name"]][0][:, 0]
+                after = np.roll(curve, -1, axis=0)
+                found.append(abs((curve[:, 0] * after[:, 1] - curve[:, 1] * after[:, 0]).sum()) / max(np.hypot(*(after - curve).T).sum(), 1e-300))
+            elif len(group["nodes"]):
+                found.append(part_thickness(self.scene.x, group["nodes"], all_sides(group["nodes"])[1]))
+        return min(found)
+
+    def width(self, usual: float, share: float = LINE_SHARE, least: float = 0.0) -> float:
+        """Of a line [point]: of a thin body no more than a share of what it is on paper."""
+        return min(usual, max(least, share * self.paper_width))
 
     def _axes(self) -> Tuple[object, Axes]:
         """Equal scales; room for dies and motions around the part."""
@@ -44,6 +62,7 @@ class DeckView:
             low[0] = max(low[0], -0.12 * self.size)
         width, height = high - low
         scale = min(9.2 / width, 7.2 / height)
+        self.paper = POINTS * scale     # points of paper per length
         fig, panels = figure(1, 1, (max(width * scale, 3.2) + 0.7, max(height * scale, 1.6) + 0.6), grid=False)
         axes = panels[0, 0]
         axes.set_aspect("equal")
@@ -73,7 +92,7 @@ class DeckView:
                 pieces, rows = self.scene.contours[group["name"]]
                 curve = np.einsum("pk,skd->spd", line3(np.linspace(-1, 1, 17)), pieces).reshape(-1, 2)
                 self.axes.fill(*curve.T, color=colour, lw=0)
-                self.axes.plot(*curve.T, color=INK, lw=1.2, zorder=3)
+                self.axes.plot(*curve.T, color=INK, lw=self.width(1.2), zorder=3)
                 for row in np.unique(rows):
                     self._number(str(row), pieces[rows == row])
                 words = f"{group['name']}: by its contour, no mesh yet{law}"
@@ -84,9 +103,9 @@ class DeckView:
         nodes = [group["nodes"] for group in self.scene.bodies() if len(group["nodes"])]
         if nodes:
             every, outline = all_sides(np.concatenate(nodes))
-            width = 0.5 if len(every) < 3000 else 0.2
+            width = min(0.5 if len(every) < 3000 else 0.2, LINE_SHARE * self.paper * element_thickness(self.scene.x, np.concatenate(nodes)))
             self.axes.add_artist(sides_patch(self.scene.x[every], edgecolor="#8aa0b5", linewidth=width, zorder=1.5))
-            self.axes.add_artist(sides_patch(self.scene.x[outline], edgecolor=INK, linewidth=1.1, zorder=3))
+            self.axes.add_artist(sides_patch(self.scene.x[outline], edgecolor=INK, linewidth=self.width(1.1), zorder=3))
             ends = {tuple(side) for side in np.sort(outline[:, [0, 2]], axis=1).tolist()}
             for name, sides in self.scene.sides.items():
                 free = [tuple(sorted((int(side[0]), int(side[2])))) in ends for side in sides]
@@ -94,20 +113,24 @@ class DeckView:
                     self._number(side_label(name, names)[0], self.scene.x[sides[free]])
 
     def _number(self, text: str, sides: np.ndarray) -> None:
-        """Number or name of a set of sides (side, 3, 2), inside of its middle, or of the side next to it that has no point of a zone with its name."""
+        """Number or name of a set of sides (side, 3, 2), inside of its middle, or of the side next to it that has no point of a zone with its name; outside where
+        the body is thin and the number would stand beyond its other side."""
         taken = np.array(list(self.scene.zone_places().values())).reshape(-1, 2)
         clear = [np.hypot(*(taken - side[1]).T).min(initial=np.inf) > 0.08 * self.size for side in sides]
         side = sides[min(range(len(sides)), key=lambda k: (not clear[k], abs(k - len(sides) // 2)))]
         way = side[2] - side[0]
         left = np.array([-way[1], way[0]]) / max(np.hypot(*way), 1e-300)
-        self.axes.text(*(side[1] + 0.022 * self.size * left), text, fontsize=8.5, ha="center", va="center", color=LINES[0], zorder=6, fontweight="bold",
+        inwards = 0.022 * self.size
+        if self.thin < min(2 * inwards, 0.25 * np.hypot(*(sides[:, 2] - sides[:, 0]).T).sum()):
+            inwards = -inwards
+        self.axes.text(*(side[1] + inwards * left), text, fontsize=8.5, ha="center", va="center", color=LINES[0], zorder=6, fontweight="bold",
                        bbox={"boxstyle": "round,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.65})
 
     def contacts(self) -> None:
         found = [group for group in self.scene.groups if group["role"] == "contact"]
         for group in found:
             curves = side_curves(self.scene.x, group["nodes"]) if len(group["nodes"]) else side_curves_of(self.scene.place(group["name"].split("/")[0]))
-            self.axes.add_collection(LineCollection(curves, colors=CONTACT, linewidths=3.4, alpha=0.35, zorder=3.2))
+            self.axes.add_collection(LineCollection(curves, colors=CONTACT, linewidths=self.width(3.4, 0.5, 1.0), alpha=0.35, zorder=3.2))
         if found:
             self.key(CONTACT, "contact: " + ", ".join(group["name"] for group in found), lw=3.4, alpha=0.35)
 
@@ -121,7 +144,7 @@ class DeckView:
                 self.axes.plot(*curve.T, color=DIE_LINE, lw=2.2, dashes=(2, 1.2), zorder=4)
             else:
                 rigid = True
-                self.axes.plot(*curve.T, color=DIE_LINE, lw=1.6, zorder=4, solid_joinstyle="round")
+                self.axes.plot(*curve.T, color=DIE_LINE, lw=self.width(1.6, DIE_SHARE, 0.4), zorder=4, solid_joinstyle="round")
                 strokes = hatching(curve, 0.016 * self.size, 0.026 * self.size)
                 self.axes.add_collection(LineCollection(strokes[self.inside(strokes[:, 0])], colors=SOFT, linewidths=0.7, zorder=0.8))
             at, outward = self._on_die(curve)

@@ -32,6 +32,24 @@ def side_points(npoint: int, found: int) -> np.ndarray:
     return np.array(LOBATTO_3 if npoint == -3 else GAUSS.get(found, np.linspace(-1, 1, found)))
 
 
+def areas(x: np.ndarray, topology: np.ndarray) -> np.ndarray:
+    """Areas of elements (element, 8) of nodes x (node, 2), by polygons."""
+    loop = x[topology[:, [0, 4, 1, 5, 2, 6, 3, 7]]]
+    after = np.roll(loop, -1, axis=1)
+    return 0.5 * np.abs((loop[..., 0] * after[..., 1] - loop[..., 1] * after[..., 0]).sum(axis=1))
+
+
+def element_thickness(x: np.ndarray, topology: np.ndarray) -> float:
+    """The shorter way across elements, in the median."""
+    ways = [np.hypot(*(x[topology[:, one]] - x[topology[:, other]]).T) for one, other in ((4, 6), (5, 7))]
+    return float(np.median(np.minimum(*ways)))
+
+
+def part_thickness(x: np.ndarray, topology: np.ndarray, outline: np.ndarray) -> float:
+    """Twice the area over the length of the outline (side, 3): of a strip its thickness, of a square half its side."""
+    return 2 * areas(x, topology).sum() / max(np.hypot(*(x[outline[:, 2]] - x[outline[:, 0]]).T).sum(), 1e-300)
+
+
 class Triangles:
     """Elements cut into small triangles on which the 8-node shape functions are followed; half as many along a side where the picture is small."""
 

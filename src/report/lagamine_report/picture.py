@@ -11,12 +11,12 @@ from matplotlib.figure import Figure
 from PIL import Image, ImageChops
 
 from .reader import Run, Step
+from .style import POINTS
 from .words import brief
 
 
 PAGE_DPI = 130      # of pictures of pixels in the page
 MARGIN = 0.08       # around a picture [inch]
-POINTS = 72         # of an inch, the unit of drawings
 ROOM = 1.5          # for what is wider than its panel [inch]
 
 

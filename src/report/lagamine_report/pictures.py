@@ -8,11 +8,13 @@ from .errors import ReportError
 from .picture import Picture, when
 from .reader import Run, Step
 from .scene_view import SceneView, colour_bar, is_uniform, scale_for, value_range
-from .style import INK, SOFT, figure, panel_size
+from .style import INK, SOFT, figure
 from .words import DIRECTIONS, brief, field_title
 
 MAIN_FIELDS = ["mises", "plastic_strain", "temperature"]
 HIDDEN_FIELDS = ["applied_force"]
+TITLE_WIDTH = 2.7   # of a panel with the instant in its title [inch]
+FLAT = 2.5      # width over height of drawings that want more width than others
 
 
 def mesh_picture(view: SceneView) -> Picture:
@@ -21,11 +23,12 @@ def mesh_picture(view: SceneView) -> Picture:
     first, last = run.steps[0], run.steps[-1]
     box = view.box([first, last])
     beside = (box[1] - box[0]) < 2.2 * (box[3] - box[2])
-    wide = panel_size(box[1] - box[0], box[3] - box[2], 4.6 if beside else 8.6, 4.8)
+    wide = view.panel(box, 4.6 if beside else 8.6, 4.8)
     rows, columns = (1, 2) if beside else (2, 1)
-    fig, axes = figure(rows, columns, (columns * (wide[0] + 0.6), rows * (wide[1] + 0.6)), grid=False)
+    fig, axes = figure(rows, columns, (columns * (max(wide[0], TITLE_WIDTH) + 0.6), rows * (wide[1] + 0.6)), grid=False)
     for panel, step, word in zip(axes.flat, (first, last), ("start", "end")):
         view.frame(panel, box)
+        panel.set_anchor("W")       # its title beside that of the next one
         view.dies(panel, step, box)
         x = view.coordinates(step)
         view.mesh(panel, step.generation, x)
@@ -99,7 +102,7 @@ def fields_picture(view: SceneView, names: Sequence[str], name: str = "fields", 
     width, height = box[1] - box[0], box[3] - box[2]
     columns = max(1, min(len(shown), 3 if small else 2, int((3.2 if small else 2.2) * 2.2 * height / width) or 1))
     rows = -(-len(shown) // columns)
-    inches = panel_size(width, height, 9.2 / columns - 1.1, 2.9 if small else 4.6)
+    inches = view.panel(box, 9.2 / columns - 1.1, 2.9 if small else 4.6)
     fig, axes = figure(rows, columns, (columns * (inches[0] + 1.1), rows * (inches[1] + (0.75 if small else 0.55))), grid=False)
     if small:
         fig.get_layout_engine().set(h_pad=0.1)      # inch: titles under the ranges of the row above
@@ -153,9 +156,11 @@ def series_picture(view: SceneView, field: str, most: int = 8) -> Optional[Pictu
 def _grid(view: SceneView, steps: Sequence[Step], widest: float, highest: float):
     """Small panels with one frame for all steps, dies drawn; returns figure and cells."""
     box = view.box(steps, 0.1)
-    if len(steps) < 5:      # these few stand in one row
+    if box[1] - box[0] > FLAT * (box[3] - box[2]):      # two in a row
+        widest = 2 * widest
+    elif len(steps) < 5:    # these few stand in one row
         widest = min(widest, 9.2 / len(steps) - 0.25)
-    inches = panel_size(box[1] - box[0], box[3] - box[2], widest, highest)
+    inches = view.panel(box, widest, highest)
     columns = min(len(steps), max(1, int(9.2 / (inches[0] + 0.2))))
     rows = -(-len(steps) // columns)
     columns = -(-len(steps) // rows)

@@ -6,7 +6,7 @@ import numpy as np
 from .picture import Picture, when
 from .reader import Run, Step
 from .scene_view import SceneView, colour_bar, scale_for, value_range
-from .style import figure, panel_size
+from .style import figure
 from .words import brief
 
 STRAIN = "plastic_strain"
@@ -33,7 +33,7 @@ def strain_rate_picture(view: SceneView) -> Optional[Picture]:
     before, last, rate = found
     low, high = value_range(rate)
     box = view.box([last])
-    inches = panel_size(box[1] - box[0], box[3] - box[2], 7.4, 4.2)
+    inches = view.panel(box, 7.4, 4.2)
     fig, axes = figure(1, 1, (inches[0] + 1.4, inches[1] + 0.5), grid=False)
     panel = axes[0, 0]
     view.frame(panel, box)

@@ -11,7 +11,7 @@ from .geometry import element_curves, element_sizes
 from .picture import Picture
 from .reader import Run, Step
 from .scene_view import ABOVE, SceneView
-from .style import POSITIVE, figure, panel_size
+from .style import POSITIVE, figure
 from .words import brief
 
 LAST_SHOWN = 3
@@ -47,7 +47,7 @@ def remesh_picture(view: SceneView, row: Try) -> Picture:
         largest = max(error.max() for error in errors)
         shades.append(("error of the stress [%]", [100 * np.maximum(error, largest * 10.0**-DECADES) for error in errors]))
     beside = (box[1] - box[0]) < 2.2 * (box[3] - box[2])
-    inches = panel_size(box[1] - box[0], box[3] - box[2], 3.9 if beside else 7.8, 3.6)
+    inches = view.panel(box, 3.9 if beside else 7.8, 3.6)
     rows, columns = (1, 2) if beside else (2, 1)
     fig, axes = figure(len(shades), 1, (columns * (inches[0] + GAP) + 1.2, len(shades) * rows * (inches[1] + TITLE)), grid=False)
     for shared, (title, values) in zip(axes.flat, shades):

@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
 
-from .geometry import Triangles, all_sides, die_body, die_curve
+from .geometry import Triangles, all_sides, die_body, die_curve, element_thickness, part_thickness
 from .parabolas import elements_patch, sides_patch
 from .reader import Generation, Run, Step
-from .style import BODIES, DIE_FILL, DIE_LINE, INK, POSITIVE, SIGNED, SOFT
+from .style import BODIES, DIE_FILL, DIE_LINE, DIE_SHARE, INK, LINE_SHARE, POINTS, POSITIVE, SIGNED, SOFT, panel_size
 
 UNIFORM = 1e-5  # share of a value below which differences are not drawn: they would be all digits and no picture
 ABOVE = 1.0     # where titles stand when no ticks are above: matplotlib looks for them otherwise, at the cost of a layout
@@ -29,6 +29,7 @@ class SceneView:
         self._triangles: Dict[Tuple[int, bool], Triangles] = {}
         self._sides: Dict[int, Tuple[np.ndarray, np.ndarray]] = {}
         self._places: Dict[Tuple[str, str], np.ndarray] = {}
+        self.paper = np.inf     # points of paper per length, in the panels of now
 
     def triangles(self, generation: Generation, small: bool = False) -> Triangles:
         key = generation.number, small
@@ -60,6 +61,16 @@ class SceneView:
             low[0] = max(low[0], -0.35 * more)
         return low[0], high[0], low[1], high[1]
 
+    def panel(self, box: Box, widest: float, highest: float) -> Tuple[float, float]:
+        """Inches of the panels that are drawn next; widths of lines follow from them."""
+        inches = panel_size(box[1] - box[0], box[3] - box[2], widest, highest)
+        self.paper = POINTS * min(inches[0] / (box[1] - box[0]), inches[1] / (box[3] - box[2]))
+        return inches
+
+    def part_width(self, generation: Generation, x: np.ndarray) -> float:
+        """How thin the part is on paper [point]."""
+        return self.paper * part_thickness(x, generation.topology, self.sides(generation)[1])
+
     def frame(self, axes: Axes, box: Box, bare: bool = False) -> None:
         """Equal scales, limits, and nothing that distracts."""
         axes.set_aspect("equal")
@@ -85,18 +96,22 @@ class SceneView:
         """Dies where their pilots stand, a band of their body in grey."""
         thickness = 0.045 * max(box[1] - box[0], box[3] - box[2])
         pilots = self.run.pilots(step)
+        room = DIE_SHARE * self.part_width(step.generation, self.coordinates(step))
+        line = {"lw": 1.4, "zorder": 4} if room > 1.4 else {"lw": max(room, 0.3), "zorder": 1.3}      # beside a thin part, not on it
         for name, pieces in step.generation.dies.items():
             curve = die_curve(pieces, pilots[name])
             for sign in (1, -1) if self.mirror else (1,):
                 flip = np.array([sign, 1])
                 axes.add_collection(PolyCollection([die_body(curve, thickness) * flip], facecolors=DIE_FILL, edgecolors="none", zorder=0.8), autolim=False)
-                axes.plot(*(curve * flip).T, color=DIE_LINE, lw=1.4, zorder=4, solid_joinstyle="round")
+                axes.plot(*(curve * flip).T, color=DIE_LINE, solid_joinstyle="round", **line)
 
     def outline(self, axes: Axes, generation: Generation, x: np.ndarray, **look) -> None:
         sides = self.sides(generation)[1]
+        look = {"edgecolor": INK, "linewidth": 1.0, "zorder": 3, **look}
+        look["linewidth"] = min(look["linewidth"], LINE_SHARE * self.part_width(generation, x))
         if self.mirror:     # the axis is no side of the whole
             sides = sides[(np.abs(x[sides, 0]) > 1e-9 * np.abs(x).max()).any(axis=1)]
-        self._lines(axes, x[sides], **{"edgecolor": INK, "linewidth": 1.0, "zorder": 3, **look})
+        self._lines(axes, x[sides], **look)
 
     def mesh(self, axes: Axes, generation: Generation, x: np.ndarray, fill: bool = True, **look) -> None:
         """All sides as curves, bodies in pale colours."""
@@ -106,7 +121,9 @@ class SceneView:
                 for sign in (1, -1) if self.mirror else (1,):
                     axes.add_artist(elements_patch(x * np.array([sign, 1]), group.connectivity, facecolor=BODIES[k % len(BODIES)], zorder=1))
         width = 0.7 if len(generation.topology) < 1500 else 0.4 if len(generation.topology) < 6000 else 0.2
-        self._lines(axes, x[self.sides(generation)[0]], **{"edgecolor": "#46627c", "linewidth": width, "zorder": 2, **look})
+        look = {"edgecolor": "#46627c", "linewidth": width, "zorder": 2, **look}
+        look["linewidth"] = min(look["linewidth"], LINE_SHARE * self.paper * element_thickness(x, generation.topology))
+        self._lines(axes, x[self.sides(generation)[0]], **look)
 
     def _lines(self, axes: Axes, sides: np.ndarray, **look) -> None:
         """Sides (side, 3, 2); an artist and not a patch of the axes, whose limits are set."""

@@ -38,12 +38,18 @@ def since(curve: Cooling, start: float) -> Tuple[np.ndarray, np.ndarray]:
 
 def has_diagrams(steel: dict) -> bool:
     """There is something to draw."""
-    return bool(steel.get("isothermal") or steel.get("coolings"))
+    return bool(steel.get("isothermal") or _forms_while_it_cools(steel))
+
+
+def _forms_while_it_cools(steel: dict) -> bool:
+    """Something forms at one of the rates at least."""
+    held = steel.get("coolings")
+    return bool(held) and any(value is not None for curve in (held["end"], *(phase.get("start", []) for phase in held["phases"])) for value in curve)
 
 
 def diagram_picture(steel: dict, curves: Sequence[Cooling] = (), name: str = "diagram") -> Picture:
     """The isothermal diagram and that of continuous cooling, those that the steel has."""
-    panels = [draw for draw, key in ((_isothermal, "isothermal"), (_cooling, "coolings")) if steel.get(key)]
+    panels = [draw for draw, shown in ((_isothermal, steel.get("isothermal")), (_cooling, _forms_while_it_cools(steel))) if shown]
     fig, axes = figure(1, len(panels), (4.6 * len(panels) + 0.6, 4.4))
     start, word = start_of_times(steel)
     drawn = [(curve.name, *since(curve, start)) for curve in curves]

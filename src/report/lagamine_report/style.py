@@ -12,6 +12,9 @@ DIE_FILL, DIE_LINE = "#c3c9cf", "#4a5560"
 LINES = ["#1f5f99", "#c8562c", "#3b8a5a", "#8a5aa8", "#b08a1e", "#4f9aa8", "#a8415b", "#6b7a88"]
 GOOD, WARN = "#2e7d4f", "#b3541e"
 POSITIVE, SIGNED = "viridis", "RdBu_r"
+POINTS = 72              # of an inch, the unit of lines and drawings
+LINE_SHARE = 0.1         # of what lines stand around: they are no wider, so that a thin part, or small elements, show their colours
+DIE_SHARE = 0.3          # the same of the lines of dies, beside the part
 SHORTEST_AXIS = 6.0      # of logarithms: the largest number on it over the smallest
 MANY_DECADES = 2.5       # on an axis: no numbers between the powers of ten
 
