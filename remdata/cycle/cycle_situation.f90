@@ -4,7 +4,7 @@ module cycle_situation
   use cycle_table, only: try_row_t
   use cuts, only: trim_trigger, web_trigger
   use exchange, only: checkpoint_facts_t
-  use remeshing, only: trigger_words
+  use remeshing, only: of_distress, trigger_words
   use text, only: to_text, two_digits
   implicit none
   private
@@ -111,7 +111,7 @@ contains
     type(checkpoint_facts_t), intent(in) :: facts
     logical :: yes
 
-    yes = is_due_by(facts, 'distress') .or. is_due_by(facts, trim_trigger) .or. is_due_by(facts, web_trigger)
+    yes = is_due_by(facts, of_distress) .or. is_due_by(facts, trim_trigger) .or. is_due_by(facts, web_trigger)
   end function must_be_replaced
 
   !> This limit has been passed.

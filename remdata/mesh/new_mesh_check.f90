@@ -10,6 +10,7 @@ module new_mesh_check
   use part_contour, only: contour_t
   use plane_vectors, only: cross
   use remeshing, only: aspect_ratio, largest_angle, least_angle, middle_share, ncriteria, scaled_jacobian
+  use sharp_corners, only: share_of_corner
   use text, only: to_text
   use vectors, only: length_of
   use zone_mesh, only: new_mesh_t
@@ -32,8 +33,6 @@ module new_mesh_check
 
   !> Limits of every element; a new mesh stays some way from those at which another one is due (remesh_defaults).
   real(wp), parameter :: least_scaled_jacobian = 0.25_wp, least_angle_allowed = 20.0_wp
-  !> The element in a sharp corner has at least this share of the corner's angle and sine: its sides are parabolas.
-  real(wp), parameter :: share_of_corner = 0.9_wp
   !> Middle nodes lie in the middle third.
   real(wp), parameter :: largest_middle_share = 1.0_wp/3
   !> Nodes lie on the contour within this share of their side.

@@ -5,6 +5,7 @@ module judge_remesh
   use cuts, only: was_just_cut
   use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
+  use residual_place, only: bad_shape
   use restore_balance, only: balance_t
   use scene, only: scene_t
   use solution, only: solution_t
@@ -12,11 +13,9 @@ module judge_remesh
   use vectors, only: length_of
   implicit none
   private
-  public :: advice_after_refusal, agreed_words, bad_shape, carried_change, energy_change, find_fault, force_alone, force_along, &
+  public :: advice_after_refusal, agreed_words, carried_change, energy_change, find_fault, force_alone, force_along, &
             force_change, force_limit, limit_lines, refuse_remesh
 
-  !> Elements of a smaller scaled Jacobian are distorted (the remesher makes none).
-  real(wp), parameter :: bad_shape = 0.2_wp
   !> Pressures that miss the force of a die by more than this share of the largest were lost in the transfer. (Found: 0.27 where
   !> a point in a corner carried much of the force; Newton's method finds the rest.)
   real(wp), parameter :: lost_pressure = 0.5_wp

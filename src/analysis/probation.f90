@@ -6,10 +6,10 @@ module probation
   use equations, only: equations_t
   use errors, only: error_t, exit_no_convergence, fail
   use json_writer, only: json_t
-  use judge_remesh, only: advice_after_refusal, bad_shape
+  use judge_remesh, only: advice_after_refusal
   use kinds, only: wp
   use listing, only: list_lines, listing_t
-  use residual_place, only: least_shape, place_residual, residual_place_t
+  use residual_place, only: bad_shape, least_shape, place_residual, residual_place_t
   use scene, only: is_solid, scene_t
   use solution, only: present_coordinates, solution_t
   use step_outcome, only: outcome_t

@@ -3,12 +3,11 @@ module residual_place
   use dofs, only: dofs_t
   use fields, only: displacement_field
   use kinds, only: wp
-  use mesh_quality, only: element_shape, shape_places, shape_places_t
-  use remeshing, only: ncriteria, scaled_jacobian
   use scene, only: is_solid, scene_t
+  use sharp_corners, only: least_scaled_jacobian
   implicit none
   private
-  public :: least_shape, place_residual, residual_place_t
+  public :: bad_shape, least_shape, place_residual, residual_place_t
 
   type :: residual_place_t
     !> Node that carries most of it, 0 where there is none.
@@ -19,6 +18,9 @@ module residual_place
     !> Share of its square at nodes of sides that face dies.
     real(wp) :: at_contact = 0.0_wp
   end type residual_place_t
+
+  !> Elements of a smaller scaled Jacobian are distorted (the remesher makes none but in sharper corners).
+  real(wp), parameter :: bad_shape = 0.2_wp
 
 contains
 
@@ -61,28 +63,33 @@ contains
     place%at_contact = sum(square, mask=on_side)/sum(square)
   end subroutine place_residual
 
-  !> Least scaled Jacobian of the elements, or of those around a node.
+  !> Least scaled Jacobian of the elements, or of those around a node, but where a corner of their material is sharper itself.
   pure function least_shape(scene, x, node) result(least)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: x(:, :)   !! nodes (2, nnode) [length]
     integer, intent(in), optional :: node
     real(wp) :: least
-    type(shape_places_t) :: places
-    real(wp) :: measures(ncriteria)
-    integer :: g, e
+    integer, allocatable :: connectivity(:, :), material(:)
+    logical, allocatable :: counts(:)
+    integer :: nelem, n, g, e
 
-    least = 1
-    places = shape_places()
+    nelem = 0
+    do g = 1, size(scene%groups)
+      if (is_solid(scene%groups(g))) nelem = nelem + size(scene%groups(g)%connectivity, 2)
+    end do
+    allocate (connectivity(8, nelem), material(nelem), counts(nelem))
+    n = 0
     do g = 1, size(scene%groups)
       if (.not. is_solid(scene%groups(g))) cycle
       do e = 1, size(scene%groups(g)%connectivity, 2)
-        if (present(node)) then
-          if (.not. any(scene%groups(g)%connectivity(:, e) == node)) cycle
-        end if
-        measures = element_shape(places, x(:, scene%groups(g)%connectivity(:, e)))
-        least = min(least, measures(scaled_jacobian))
+        n = n + 1
+        connectivity(:, n) = scene%groups(g)%connectivity(:, e)
+        material(n) = scene%groups(g)%material
       end do
     end do
+    counts = .true.
+    if (present(node)) counts = [(any(connectivity(:, e) == node), e=1, nelem)]
+    least = least_scaled_jacobian(x, connectivity, material, bad_shape, counts)
   end function least_shape
 
 end module residual_place

@@ -3,8 +3,9 @@ module restart_report
   use errors, only: error_t
   use history, only: circumference
   use dies, only: is_deformable
-  use judge_remesh, only: bad_shape, carried_change, energy_change, force_alone, force_along, force_change, force_limit
+  use judge_remesh, only: carried_change, energy_change, force_alone, force_along, force_change, force_limit
   use json_writer, only: json_t
+  use residual_place, only: bad_shape
   use restore_balance, only: balance_t
   use scene, only: scene_t
   use solution, only: solution_t

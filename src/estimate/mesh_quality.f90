@@ -17,7 +17,7 @@ module mesh_quality
   use vectors, only: length_of
   implicit none
   private
-  public :: shape_places_t, shape_places, element_shape, mesh_shape, is_bad
+  public :: corner_angles, shape_places_t, shape_places, element_shape, mesh_shape, is_bad
 
   integer, parameter :: ncorner = 4, npoint = 9, nplace = ncorner + npoint
 
@@ -58,11 +58,7 @@ contains
       det(k) = cross(a(:, k), b(:, k))
       sides(k) = length_of(a(:, k))*length_of(b(:, k))
     end do
-    ! sides leave a corner along (a, b), (b, -a), (-a, -b), (-b, a)
-    do k = 1, ncorner
-      place = dot_product(a(:, k), b(:, k))
-      angle(k) = modulo(atan2(det(k), merge(place, -place, mod(k, 2) == 1)), 2*pi)
-    end do
+    angle = corner_angles(places, x)
     measures(least_angle) = minval(angle)*180/pi
     measures(largest_angle) = maxval(angle)*180/pi
 
@@ -81,6 +77,23 @@ contains
     medians = [length_of(x(:, 7) - x(:, 5)), length_of(x(:, 6) - x(:, 8))]
     measures(aspect_ratio) = over(maxval(medians), minval(medians))
   end function element_shape
+
+  !> Angles at the corners of an element, between the tangents of its sides; above pi where it is concave [rad].
+  pure function corner_angles(places, x) result(angle)
+    type(shape_places_t), intent(in) :: places
+    real(wp), intent(in) :: x(2, 8)   !! nodes [length]
+    real(wp) :: angle(ncorner)
+    real(wp) :: a(2), b(2), along
+    integer :: k
+
+    ! sides leave a corner along (a, b), (b, -a), (-a, -b), (-b, a)
+    do k = 1, ncorner
+      a = matmul(x, places%dphi(1, :, k))
+      b = matmul(x, places%dphi(2, :, k))
+      along = dot_product(a, b)
+      angle(k) = modulo(atan2(cross(a, b), merge(along, -along, mod(k, 2) == 1)), 2*pi)
+    end do
+  end function corner_angles
 
   !> A quotient, for elements that may be of no size.
   pure function over(a, b) result(ratio)

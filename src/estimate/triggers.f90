@@ -15,7 +15,7 @@ module triggers
   use fields, only: displacement_field, pilot_field
   use kinds, only: eps, wp
   use mesh_quality, only: element_shape, is_bad, shape_places, shape_places_t
-  use remeshing, only: criterion_names, ncriteria, never, scaled_jacobian, stroke_t, trigger_t
+  use remeshing, only: criterion_names, ncriteria, never, of_distress, scaled_jacobian, stroke_t, trigger_t
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use web_thickness, only: measure_web, web_t
@@ -146,7 +146,7 @@ contains
     integer, intent(in) :: cutbacks
     type(trigger_t) :: trigger
 
-    trigger%name = 'distress'
+    trigger%name = of_distress
     trigger%value = real(cutbacks, wp)
     trigger%limit = real(scene%remesh%distress, wp)
   end function distress_trigger

@@ -6,9 +6,12 @@ module remeshing
   implicit none
   private
   public :: carry_error, remesh_rules_t, stroke_t, stress_error_of_all, trigger_t, estimate_t
-  public :: drop_triggers, has_limit, trigger_words
+  public :: drop_triggers, has_limit, of_distress, trigger_words
   public :: ncriteria, criterion_names, is_upper, never
   public :: least_angle, largest_angle, middle_share, jacobian_ratio, scaled_jacobian, aspect_ratio
+
+  !> Why a new mesh is due: cutbacks one after the other, or a step that can be cut back no more.
+  character(len=*), parameter :: of_distress = 'distress'
 
   !> Criteria of the shape of an element, by position in the lists below (mesh_quality measures them).
   integer, parameter :: least_angle = 1, largest_angle = 2, middle_share = 3, jacobian_ratio = 4, scaled_jacobian = 5, &
@@ -105,14 +108,18 @@ contains
     after%stress_left = 1
   end subroutine carry_error
 
-  !> Why a new mesh is due: `aspect_ratio 12.3 (limit 10)`.
+  !> Why a new mesh is due: `aspect_ratio 12.3 (limit 10)`. Fewer cutbacks than the limit lead to the least step.
   pure function trigger_words(name, value, limit) result(words)
     character(len=*), intent(in) :: name       !! of the trigger
     real(wp), intent(in) :: value, limit       !! in the unit of what `name` measures
     character(len=:), allocatable :: words
 
     words = name
-    if (name /= trim_trigger) words = words//' '//to_text(value, 4)//' (limit '//to_text(limit)//')'
+    if (name == of_distress .and. value < limit) then
+      words = words//' '//to_text(value, 4)//' at the least step (limit '//to_text(limit)//')'
+    else if (name /= trim_trigger) then
+      words = words//' '//to_text(value, 4)//' (limit '//to_text(limit)//')'
+    end if
   end function trigger_words
 
   !> No new mesh is due any more.

@@ -3,7 +3,7 @@
 
 usage: run_neighbours.py [--seed S] [--number N] [--first K] [--scene NAME] [-v] [-k]     default: seed 1, the first 2 of them, of scenes in turn, and those of HARD
 
-Neighbour K of a seed is the same whatever N is. Ends with 0 or 3, where 3 comes with a reason; at least 57 of 60 with 0. Prints a table, and one of the changes of the die force at new meshes (force_changes.py).
+Neighbour K of a seed is the same whatever N is. Ends with 0 or 3, where 3 comes with a reason; at least 57 of 60 with 0. At most one try at a new mesh in twenty is refused. Prints a table, and one of the changes of the die force at new meshes (force_changes.py).
 """
 import os
 import random
@@ -15,9 +15,10 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from scenes import HEAD, SCENES, badly_shaped, force_table, line, run_scene  # noqa: E402
 from support import DONE, NO_CONVERGENCE, Checks  # noqa: E402
 
-FAILED = 3 / 60
-# Seed and number of neighbours that did not end: a strip that hardly rubs on its tool (.002) slid to and fro from one iteration to the next.
-HARD = ((33, 33),)
+FAILED, REFUSED = 3 / 60, 1 / 20
+# Seed and number of neighbours that were hard. The first did not end: a strip that hardly rubs on its tool (.002) slid to and fro from one iteration to the next. Of the second, a hard core in
+# a soft shell that is pressed out between it and the die, 20 of 39 new meshes were refused: in the sharp corner of the shell no element is better than the corner.
+HARD = ((33, 33), (38, 12))
 # Quick scenes come first in the draw, so that the first ones are a test.
 ORDER = ("bimetal", "side_pressing", "can", "teeth", "two_strokes", "h_section", "indentation", "piercing", "ring_70", "springback",
          "extrusion_long", "heading")
@@ -38,7 +39,7 @@ def main():
     checks = Checks()
     seed, number, first = value_of("--seed", 1), value_of("--number", 2), value_of("--first", 0)
     scene = value_of("--scene", "")
-    failed, outs = 0, []
+    failed, refused, meshes, outs = 0, 0, 0, []
     print("\n".join(HEAD))
     neighbours = [(seed, k) for k in range(first, first + number)]
     if not {"--seed", "--number", "--first", "--scene"} & set(sys.argv):
@@ -52,6 +53,7 @@ def main():
             checks.that(False, f"{name} {seed}/{k}: ends in time", f"{late.timeout:.0f} s, {parameters}")
             continue
         failed += found["code"] != DONE
+        refused, meshes = refused + found["refused"], meshes + found["meshes"]
         outs.append(found["out"])
         checks.that(not badly_shaped(found), f"{name} {seed}/{k}: shape of the meshes", badly_shaped(found))
         said = ", ".join(f"{key} {value:g}" for key, value in parameters.items())
@@ -61,6 +63,7 @@ def main():
                     (found["code"], found["said"]))
     print("\n".join(["", *force_table(outs)]))
     checks.that(failed <= FAILED * len(neighbours), "neighbours that end with 3", f"{failed} of {len(neighbours)}")
+    checks.that(refused <= REFUSED * (refused + meshes), "tries refused", f"{refused} of {refused + meshes}")
     checks.end()
 
 

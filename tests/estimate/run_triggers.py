@@ -239,6 +239,7 @@ def distress(checks):
     go(checks, "given-up", text, SMALL, 3)
     folder = go(checks, "last-step", add_cards(text, "REMSH\n   DISTRESS 50"), SMALL, REMESH)
     checks.that(triggers(checks, folder)["distress"][1] == 50.0, "DISTRESS: a step that can be cut back no more")
+    checks.that("at the least step (limit 50)" in summary(folder)["stop_reason"], "DISTRESS: says so", summary(folder)["stop_reason"])
     resume(checks, folder, SMALL, 3)
 
 
