@@ -2,7 +2,8 @@
 !>
 !> A correction on which the residual does negative work leads uphill: past a limit point, as where a strip slides off the node that
 !> it was bent around, the matrix has a negative eigenvalue, and Newton's method goes to where equilibrium was unstable. Forces
-!> drive the body the other way, to an equilibrium further on. So viscous forces are added to the matrix, not to the residual:
+!> drive the body the other way, to an equilibrium further on. So, unless the residual falls by half on the whole correction all the
+!> same, viscous forces are added to the matrix, not to the residual:
 !>
 !>     (K + s V) c = r
 !>
@@ -10,10 +11,7 @@
 !> 35 (1998) 508-523). s begins so that the work on the correction is as much above zero as it was below (more, where other
 !> directions still lead uphill: J.J. More, D.C. Sorensen, Math. Programming 16 (1979) 1-20, for directions of negative curvature).
 !> It falls with the residual, and rises where that does or a correction goes too far. What is found at the end is an equilibrium:
-!> none of it is viscous. In contact, where the matrix also leads uphill between points that stick and slip, open and close, a
-!> whole correction is taken all the same if the residual falls by half on it; without contact it would fall so too, towards a
-!> branch that the body does not come to: the heated column that bulges against its own bend. Under loads that grow there is
-!> none to be looked for: a limit point is a limit load (goes_past_limits).
+!> none of it is viscous. Under loads that grow there is none to be looked for: a limit point is a limit load (goes_past_limits).
 module pseudo_transient
   use contact_changes, only: contact_states_t, recall_contact, remember_contact
   use convergence, only: free_force, slope_along
@@ -27,7 +25,7 @@ module pseudo_transient
   use line_search, only: real_fall
   use loads, only: multiplier_at
   use pairs, only: pairs_differ, pairs_t
-  use scene, only: role_contact, role_side_load, role_volume_load, scene_t
+  use scene, only: role_side_load, role_volume_load, scene_t
   use sections, only: section_forced
   use solution, only: solution_t
   use volumes_of_unknowns, only: volumes_of_motion
@@ -76,8 +74,8 @@ contains
     end associate
   end subroutine solve_shifted
 
-  !> After a correction that leads uphill: in contact it is taken, and the motion moved by it, where the residual falls by half;
-  !> else it becomes one that leads downhill, by a larger shift.
+  !> After a correction that leads uphill: it is taken, and the motion moved by it, where the residual falls by half; else it
+  !> becomes one that leads downhill, by a larger shift.
   subroutine turn_downhill(scene, equations, solution, dt, external, residual, shift, correction, du, taken, report, error)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -96,22 +94,19 @@ contains
     type(pairs_t), allocatable :: pairs(:)
     integer :: k
 
-    taken = .false.
     allocate (pairs, source=solution%pairs)
-    if (any(scene%groups%role == role_contact)) then
-      start = du
-      call remember_contact(scene, solution, before)
-      du = start + correction
-      call evaluate(scene, equations, solution, dt, du, .true., trial, corrected_from=start)
-      taken = trial%status == block_done
-      if (taken) taken = free_force(equations, external - equations%force) < real_fall*free_force(equations, residual)
-      if (taken) then
-        report = trial
-        return
-      end if
-      du = start
-      call recall_contact(scene, before, solution)
+    start = du
+    call remember_contact(scene, solution, before)
+    du = start + correction
+    call evaluate(scene, equations, solution, dt, du, .true., trial, corrected_from=start)
+    taken = trial%status == block_done
+    if (taken) taken = free_force(equations, external - equations%force) < real_fall*free_force(equations, residual)
+    if (taken) then
+      report = trial
+      return
     end if
+    du = start
+    call recall_contact(scene, before, solution)
     if (.not. allocated(shift%volume)) allocate (shift%volume, source=volumes_of_motion(scene, equations, solution))
     associate (solve => equations%solves(equations%now))
       if (pairs_differ(scene, pairs, solution%pairs)) then
