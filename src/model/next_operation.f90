@@ -70,6 +70,7 @@ contains
     do k = 1, size(new%dies)
       fresh%fields(pilot_field)%value(:, k) = pilot_at(new, k, before%time)
     end do
+    call keep_free_dies(old, before, new, fresh%fields(pilot_field)%value)
     after = before
     after%unbalanced = .true.
     after%next_step = fresh%next_step
@@ -135,6 +136,22 @@ contains
         after%pairs(new%groups(g)%pairs)%piece = before%pairs(old%groups(k)%pairs)%piece
     end do
   end subroutine begin_operation
+
+  !> A die of both operations that is free in the new one, to go where its force takes it, begins where the one before has left it.
+  pure subroutine keep_free_dies(old, before, new, pilots)
+    type(scene_t), intent(in) :: old, new
+    type(solution_t), intent(in) :: before
+    real(wp), intent(inout) :: pilots(:, :)   !! x, y, angle (3, ndie) [length], [length], [rad]
+    integer :: i, k
+
+    do i = 1, size(new%die_forces)
+      associate (die => new%die_forces(i)%die, component => new%die_forces(i)%component)
+        do k = 1, size(old%dies)
+          if (same_die(old%dies(k), new%dies(die))) pilots(component, die) = before%fields(pilot_field)%value(component, k)
+        end do
+      end associate
+    end do
+  end subroutine keep_free_dies
 
   !> Are the bodies of both operations the same?
   pure function same_bodies(old, new) result(same)

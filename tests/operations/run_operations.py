@@ -7,7 +7,8 @@ usage: run_operations.py [-v] [-k]
 - `release`: an operation without dies leaves the part as a die that is lifted does.
 - `heat`, `pair`: heat alone; bodies in contact in generalised plane strain, which the next operation finds as they were.
 - `at_once`: a multiplier that begins an operation with another value than 0.
-- `held`: a die whose multiplier begins the second operation where the first has left it stands there from the beginning.
+- `held`: a die whose multiplier begins the second operation where the first has left it stands there from the beginning;
+  one under a force goes on where it is.
 - `strokes`: press, release, press with another die; stopped anywhere and resumed to the same bits; with a new mesh in each
   operation the same part, by one command, also where that is stopped.
 - `closing`: an operation without REMSH after one with it: what its table of accuracy says.
@@ -266,6 +267,12 @@ def held(checks):
     checks.that(abs(rows["displacement_y_upper"][change] + 1) < 1e-12, "held: the die stays where it is", rows["displacement_y_upper"][change])
     _, whole = done(checks, "in_one", HEAD + STEP + die + "LIC    press\n   0. 0.   1. -1.   1.5 -1.   2. -1.5\nMOVE   upper Y press\n")
     near(checks, "held", rows, history(whole), ("force_y_upper", "corner", "width", "plastic_work", "external_work"), 1e-4)
+    _, out = done(checks, "rests", HEAD + STEP + die + "OPERA  one\nLIC    push\n   0. 0.   1. 1.\nFORCE  upper Y -3000. push\n"
+                  + "OPERA  two\nLIC    push\n   0. 1.   1. 1.\nFORCE  upper Y -3000. push\n")
+    rows = history(out)
+    change = rows["operation"].index(2)
+    for column in ("displacement_y_upper", "force_y_upper", "elastic_energy", "plastic_work", "external_work"):
+        checks.that(abs(rows[column][-1]/rows[column][change - 1] - 1) < 1e-9, f"under a force: {column}", (rows[column][change - 1], rows[column][-1]))
 
 
 def contour(checks):
