@@ -2,7 +2,7 @@
 module operation_outlook
   use contact_outlook, only: look_at_contact, outlook_t
   use dies, only: is_deformable
-  use fields, only: displacement_field
+  use fields, only: displacement_field, pilot_field
   use physics_check, only: largest_overlap, words_of
   use scene, only: scene_t
   use solution, only: present_coordinates, solution_t
@@ -21,12 +21,17 @@ contains
     type(string_t), allocatable, intent(out) :: table(:)   !! (nline)
     type(scene_t) :: now
     type(outlook_t) :: outlook
-    integer :: g
+    integer :: g, k
 
     allocate (table(0))
     if (.not. scene%fields(displacement_field)%declared) return
     now = scene
     now%mesh%coordinates = present_coordinates(scene, solution)
+    do k = 1, size(scene%die_forces)
+      associate (die => scene%die_forces(k)%die, component => scene%die_forces(k)%component)
+        now%dies(die)%pilot(component) = solution%fields(pilot_field)%value(component, die)
+      end associate
+    end do
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
         if (group%die == 0 .or. group%material == 0) cycle

@@ -137,7 +137,8 @@ contains
     end do
   end subroutine begin_operation
 
-  !> A die of both operations that is free in the new one, to go where its force takes it, begins where the one before has left it.
+  !> A die of both operations that is free in the new one, to go where its force takes it, begins where the one before has left it;
+  !> unless its card puts it elsewhere now.
   pure subroutine keep_free_dies(old, before, new, pilots)
     type(scene_t), intent(in) :: old, new
     type(solution_t), intent(in) :: before
@@ -147,7 +148,9 @@ contains
     do i = 1, size(new%die_forces)
       associate (die => new%die_forces(i)%die, component => new%die_forces(i)%component)
         do k = 1, size(old%dies)
-          if (same_die(old%dies(k), new%dies(die))) pilots(component, die) = before%fields(pilot_field)%value(component, k)
+          if (.not. same_die(old%dies(k), new%dies(die))) cycle
+          if (same_place(new%dies(die), old%dies(k)%pilot, new%dies(die)%pilot)) &
+            pilots(component, die) = before%fields(pilot_field)%value(component, k)
         end do
       end associate
     end do

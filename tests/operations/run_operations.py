@@ -273,6 +273,13 @@ def held(checks):
     change = rows["operation"].index(2)
     for column in ("displacement_y_upper", "force_y_upper", "elastic_energy", "plastic_work", "external_work"):
         checks.that(abs(rows[column][-1]/rows[column][change - 1] - 1) < 1e-9, f"under a force: {column}", (rows[column][change - 1], rows[column][-1]))
+    higher = die.replace("10.", "12.")
+    _, other = done(checks, "higher", HEAD + STEP + "OPERA  one\n" + die + "LIC    push\n   0. 0.   1. 1.\nFORCE  upper Y -3000. push\n"
+                    + "OPERA  two\n" + higher + "LIC    push\n   0. 1.   1. 1.\nFORCE  upper Y -3000. push\n")
+    for name, folder, words in (("rests", out, "deep at the start"), ("higher", other, "gap 2.95")):
+        with open(os.path.join(folder, name + ".log"), encoding="utf-8") as file:
+            told_place = [line.strip() for line in file if line.startswith("contact    block.3/upper: ")][-1]
+        checks.that(words in told_place, f"{name}: where its die begins", told_place)
 
 
 def contour(checks):
