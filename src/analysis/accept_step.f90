@@ -64,6 +64,11 @@ contains
     solution%step = solution%step + 1
     solution%iterations = solution%iterations + outcome%iterations
     solution%worst_linear_residual = max(solution%worst_linear_residual, outcome%linear_residual)
+    solution%stays_unstable = outcome%stays_unstable
+    if (outcome%unstable > 0) then
+      if (solution%unstable_steps == 0) solution%unstable_from = solution%time
+      solution%unstable_steps = solution%unstable_steps + 1
+    end if
 
     call book_deformable_dies(scene, equations, solution, error)
     if (allocated(error)) return

@@ -28,7 +28,7 @@ module run_ending
   use summary, only: write_summary
   use summary_table, only: summary_lines
   use system, only: join_path
-  use text, only: add_text, string_t
+  use text, only: add_text, string_t, to_text
   implicit none
   private
   public :: end_run
@@ -86,6 +86,9 @@ contains
     end if
     call warn_of_confinement(scene, solution, warnings)
     call warn_of_passed_planes(scene, solution, warnings)
+    if (solution%unstable_steps > 0) call add_text(warnings, 'the equilibria of '//to_text(solution%unstable_steps) &
+      //' steps, the first at time '//to_text(solution%unstable_from, 6)//', are not stable: a perfect part stays in them, any '// &
+      'other buckles or necks (move nodes by a thousandth of the thickness to see how)')
     if (run%exit_code /= exit_done) return
     call warn_of_webs(scene, solution, warnings)
     call warn_of_missing_austenite(scene, solution, warnings)

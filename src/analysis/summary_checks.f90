@@ -51,6 +51,7 @@ contains
       call json%add('spring_share', spring_share(scene, solution))
     end if
     call json%add('spurious_mode', solution%worst_spurious)
+    if (solution%unstable_steps > 0) call json%add('unstable_steps', solution%unstable_steps)
     if (has_fractions(scene)) then
       call json%add('phase_fractions', solution%worst_fraction)
       call json%add('phase_fractions_allowed', fraction_slack)

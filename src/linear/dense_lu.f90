@@ -3,7 +3,9 @@
 !>
 !> A block LU factorisation (J.W. Demmel, N.J. Higham, R.S. Schreiber, Numer. Linear Algebra Appl. 2 (1995) 173-190): all work is
 !> in matrix products, also that of a solve; triangular solves of few rows reach a fifth of the speed of products. Blocks are
-!> so small that their inverses cost no accuracy (backward errors of 1e-16 in tests/solve).
+!> so small that their inverses cost no accuracy (backward errors of 1e-16 in tests/solve). They are found pivot by pivot, so those
+!> below 0 are as many as the eigenvalues below 0 of a symmetric matrix (J.J. Sylvester's law of inertia), and odd where any
+!> other has a determinant below 0.
 !>
 !> Columns are cut into strips of fixed width, and a thread does whole strips: results do not depend on the number of threads.
 module dense_lu
@@ -19,18 +21,19 @@ module dense_lu
 
 contains
 
-  !> One thread. `regular` becomes false when a pivot is zero or NaN.
-  subroutine eliminate(p, n, pivot, row, border, regular)
+  !> One thread. `regular` becomes false when a pivot is zero or NaN; `negative` pivots are counted.
+  subroutine eliminate(p, n, pivot, row, border, regular, negative)
     integer, intent(in) :: p, n                     !! pivots, order
     real(rk), intent(inout) :: pivot(n, p)          !! pivot columns [residual/unknown]; inverses of their blocks and U there
     real(rk), intent(inout) :: row(p, n - p)        !! rest of the pivot rows [residual/unknown]; U there
     real(rk), intent(out) :: border(n - p, n - p)   !! what elimination adds to the border [residual/unknown]
     logical, intent(inout) :: regular
+    integer, intent(inout) :: negative
     integer :: k, w
 
     do k = 1, p, block
       w = min(block, p - k + 1)
-      call invert(w, pivot(k, k), n, regular)
+      call invert(w, pivot(k, k), n, regular, negative)
       if (.not. regular) return
       if (k + w <= p) call reduce_block(w, p - k - w + 1, n - k + 1, pivot(k, k), n, pivot(k, k + w), n)
     end do
@@ -38,17 +41,18 @@ contains
   end subroutine eliminate
 
   !> The same by all threads of the team, called by one of them.
-  subroutine eliminate_shared(p, n, pivot, row, border, regular)
+  subroutine eliminate_shared(p, n, pivot, row, border, regular, negative)
     integer, intent(in) :: p, n
     real(rk), intent(inout) :: pivot(n, p)          !! pivot columns [residual/unknown]
     real(rk), intent(inout) :: row(p, n - p)        !! rest of the pivot rows [residual/unknown]
     real(rk), intent(out) :: border(n - p, n - p)   !! [residual/unknown]
     logical, intent(inout) :: regular
+    integer, intent(inout) :: negative
     integer :: k, w, j
 
     do k = 1, p, block
       w = min(block, p - k + 1)
-      call invert(w, pivot(k, k), n, regular)
+      call invert(w, pivot(k, k), n, regular, negative)
       if (.not. regular) return
       do j = k + w, p, strip
         !$omp task default(shared) firstprivate(j, k, w)
@@ -97,25 +101,26 @@ contains
 
   !> a := a^-1, halved again and again: for a = [A B; C D] with X = A^-1 B, Y = C A^-1 and S = (D - C X)^-1
   !> it is [A^-1 + X S Y, -X S; -S Y, S].
-  recursive subroutine invert(n, a, lda, regular)
+  recursive subroutine invert(n, a, lda, regular, negative)
     integer, intent(in) :: n, lda
     real(rk), intent(inout) :: a(lda, *)
     logical, intent(inout) :: regular
+    integer, intent(inout) :: negative
     real(rk) :: x(block, block), y(block, block)
     integer :: h, r
 
     if (n <= narrow) then
-      call invert_narrow(n, a, lda, regular)
+      call invert_narrow(n, a, lda, regular, negative)
       return
     end if
     h = (n + 1)/2
     r = n - h
-    call invert(h, a, lda, regular)
+    call invert(h, a, lda, regular, negative)
     if (.not. regular) return
     call gemm('N', 'N', h, r, h, 1.0_rk, a, lda, a(1, h + 1), lda, 0.0_rk, x, block)
     call gemm('N', 'N', r, h, h, 1.0_rk, a(h + 1, 1), lda, a, lda, 0.0_rk, y, block)
     call gemm('N', 'N', r, r, h, -1.0_rk, a(h + 1, 1), lda, x, block, 1.0_rk, a(h + 1, h + 1), lda)
-    call invert(r, a(h + 1, h + 1), lda, regular)
+    call invert(r, a(h + 1, h + 1), lda, regular, negative)
     if (.not. regular) return
     call gemm('N', 'N', h, r, r, -1.0_rk, x, block, a(h + 1, h + 1), lda, 0.0_rk, a(1, h + 1), lda)
     call gemm('N', 'N', r, h, r, -1.0_rk, a(h + 1, h + 1), lda, y, block, 0.0_rk, a(h + 1, 1), lda)
@@ -123,10 +128,11 @@ contains
   end subroutine invert
 
   !> The same by Gauss-Jordan elimination, in an array whose extents are known when it is compiled.
-  pure subroutine invert_narrow(n, a, lda, regular)
+  pure subroutine invert_narrow(n, a, lda, regular, negative)
     integer, intent(in) :: n, lda
     real(rk), intent(inout) :: a(lda, n)
     logical, intent(inout) :: regular
+    integer, intent(inout) :: negative
     real(rk) :: b(narrow, narrow), column(narrow), inverse, above
     integer :: j, k
 
@@ -137,6 +143,7 @@ contains
         regular = .false.
         return
       end if
+      if (b(k, k) < 0) negative = negative + 1
       inverse = 1/b(k, k)
       column = -inverse*b(:, k)
       column(k) = 0

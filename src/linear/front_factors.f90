@@ -46,6 +46,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     call decompose(self%fronts, values, sound)
+    self%negative = self%fronts%negative
   end subroutine factorise_front
 
   subroutine substitute_front(self, x, error)

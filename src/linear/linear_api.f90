@@ -12,6 +12,8 @@ module linear_api
   type, abstract :: factors_t
     !> Entries of the factors and operations of a factorisation, as planned.
     real(wp) :: entries = 0.0_wp, operations = 0.0_wp
+    !> Eigenvalues below 0 of the matrix factorised last; of one that is not symmetric only that they are odd is sure.
+    integer :: negative = 0
   contains
     procedure(plan_i), deferred :: plan
     procedure(factorise_i), deferred :: factorise
@@ -28,6 +30,8 @@ module linear_api
     real(wp) :: refine_above = 1.0e-14_wp
     !> Fewer operations of a factorisation are left to the fallback.
     real(wp) :: least_operations = 0.0_wp
+    !> Its factors are of single precision: the sign of a small pivot is not sure.
+    logical :: single = .false.
     !> Its factors find entries of the inverse.
     logical :: inverts = .false.
     procedure(create_i), nopass, pointer :: create => null()

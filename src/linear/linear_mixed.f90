@@ -21,6 +21,7 @@ contains
     row%refine_above = 1.0e-11_wp
     ! fewer gain nothing (tests/bench, linear solvers)
     row%least_operations = 5.0e7_wp
+    row%single = .true.
     row%inverts = .true.
     row%create => create_front
   end function linear_mixed_row

@@ -11,7 +11,8 @@ module linear_solver
   use vectors, only: length_of
   implicit none
   private
-  public :: linear_solver_t, choose_solver, analyse, factorise, solve_linear, solve_unrefined, invert_at, release, return_to_chosen
+  public :: linear_solver_t, choose_solver, analyse, factorise, solve_linear, solve_unrefined, invert_at, negative_eigenvalues, &
+            release, return_to_chosen, use_working_precision
 
   !> Backward error of a solve that is accepted at last.
   real(wp), parameter, public :: linear_tolerance = 1.0e-10_wp
@@ -227,6 +228,28 @@ contains
     entries = 0
     if (solver%sound) call solver%stages(solver%made_by)%factors%invert(equations, entries, found)
   end subroutine invert_at
+
+  !> Matrices are factorised in working precision for the rest of the step.
+  subroutine use_working_precision(solver, pattern, error)
+    type(linear_solver_t), intent(inout) :: solver
+    class(matrix_pattern_t), intent(in) :: pattern
+    type(error_t), allocatable, intent(out) :: error
+
+    do while (solver%stages(solver%now)%row%single .and. solver%now < size(solver%stages))
+      solver%now = solver%now + 1
+      if (.not. allocated(solver%stages(solver%now)%factors)) call plan_stage(solver, solver%now, pattern, error)
+      if (allocated(error)) return
+    end do
+  end subroutine use_working_precision
+
+  !> Eigenvalues below 0 of the matrix at hand; of one that is not symmetric only that they are odd is sure.
+  pure function negative_eigenvalues(solver) result(n)
+    type(linear_solver_t), intent(in) :: solver
+    integer :: n
+
+    n = 0
+    if (solver%sound) n = solver%stages(solver%made_by)%factors%negative
+  end function negative_eigenvalues
 
   !> Solve, then correct by the residual while that is worth it.
   subroutine refine(solver, pattern, rhs, x, error)

@@ -23,6 +23,8 @@ module multifrontal
     type(front_layout_t) :: layout
     !> Factors of all fronts; matrices of their borders; what borders send on in a solve.
     real(rk), allocatable :: factors(:), borders(:), sent(:)
+    !> Pivots below 0.
+    integer :: negative = 0
   end type multifrontal_t
 
 contains
@@ -57,47 +59,52 @@ contains
     real(wp), intent(in) :: values(:)   !! (nnz) [residual/unknown]
     logical, intent(out) :: regular
     logical :: sound(solver%layout%nfront)
+    integer :: negative(solver%layout%nfront)
 
+    negative = 0
     !$omp parallel if (any(solver%layout%shared)) default(shared)
     !$omp single
-    call decompose_below(solver%layout, values, 0, solver%factors, solver%borders, sound)
+    call decompose_below(solver%layout, values, 0, solver%factors, solver%borders, sound, negative)
     !$omp end single
     !$omp end parallel
     regular = all(sound)
+    solver%negative = sum(negative)
   end subroutine decompose
 
   !> Children of front f, then the front itself.
-  recursive subroutine decompose_below(layout, values, f, factors, borders, sound)
+  recursive subroutine decompose_below(layout, values, f, factors, borders, sound, negative)
     type(front_layout_t), intent(in) :: layout
     real(wp), intent(in) :: values(:)
     integer, intent(in) :: f
     real(rk), intent(inout) :: factors(layout%factor_length + 1), borders(layout%border_length + 1)
     logical, intent(inout) :: sound(:)
+    integer, intent(inout) :: negative(:)
     integer :: k, c, s
 
     do k = layout%child_first(f), layout%child_first(f + 1) - 1
       !$omp task default(shared) firstprivate(k) private(c, s) if (k < layout%child_first(f + 1) - 1)
       c = layout%child(k)
       if (layout%shared(c)) then
-        call decompose_below(layout, values, c, factors, borders, sound)
+        call decompose_below(layout, values, c, factors, borders, sound, negative)
       else
         do s = layout%subtree(c), c
-          call decompose_front(layout, values, s, factors, borders, sound)
+          call decompose_front(layout, values, s, factors, borders, sound, negative)
         end do
       end if
       !$omp end task
     end do
     !$omp taskwait
-    if (f > 0) call decompose_front(layout, values, f, factors, borders, sound)
+    if (f > 0) call decompose_front(layout, values, f, factors, borders, sound, negative)
   end subroutine decompose_below
 
   !> Assemble a front and eliminate its pivots.
-  subroutine decompose_front(layout, values, f, factors, borders, sound)
+  subroutine decompose_front(layout, values, f, factors, borders, sound, negative)
     type(front_layout_t), intent(in) :: layout
     real(wp), intent(in) :: values(:)
     integer, intent(in) :: f
     real(rk), intent(inout) :: factors(layout%factor_length + 1), borders(layout%border_length + 1)
     logical, intent(inout) :: sound(:)
+    integer, intent(inout) :: negative(:)
     integer :: k, c, p, n
 
     p = layout%first(f + 1) - layout%first(f)
@@ -118,9 +125,9 @@ contains
       end do
       if (.not. sound(f)) return
       if (layout%shared(f)) then
-        call eliminate_shared(p, n, factors(pivot), factors(row), borders(border), sound(f))
+        call eliminate_shared(p, n, factors(pivot), factors(row), borders(border), sound(f), negative(f))
       else
-        call eliminate(p, n, factors(pivot), factors(row), borders(border), sound(f))
+        call eliminate(p, n, factors(pivot), factors(row), borders(border), sound(f), negative(f))
       end if
       if (n == p) return
       do k = layout%child_first(f), layout%child_first(f + 1) - 1

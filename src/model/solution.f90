@@ -79,6 +79,11 @@ module solution
     !> Largest share of the spurious mode in the motion of an element (spurious_mode), and the element.
     real(wp) :: worst_spurious = 0.0_wp
     integer :: spurious_group = 0, spurious_element = 0
+    !> The last equilibrium is not stable, and no stable one was found (newton): so it goes on.
+    logical :: stays_unstable = .false.
+    !> Steps whose equilibrium is not stable (stability), and the end of the first of them [time].
+    integer :: unstable_steps = 0
+    real(wp) :: unstable_from = 0.0_wp
     !> By how much fractions of phases have left [0, 1], or their sum 1.
     real(wp) :: worst_fraction = 0.0_wp
     !> Largest share of an element that should have become austenite on heating, of a steel without its kinetics (heated_steels).

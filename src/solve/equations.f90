@@ -63,6 +63,8 @@ module equations
     !> New contact comes in softly in the next attempt at the step, and with this share of its penalties now (soft_contact).
     logical :: softly = .false.
     real(wp) :: penalty_share = 1.0_wp
+    !> Corrections lead downhill alone: the equilibrium found before was not stable (newton). One that is not is taken.
+    logical :: downhill = .false., takes_unstable = .false.
     !> Equilibrium is restored where the dies and supports of the operation before let the part go. A slender part bends far then:
     !> each correction stretches it by the square of its turn, and the next one takes that back, so that the residual rises and
     !> falls in turns. A search would stop where the stretch begins: corrections are taken whole, and most of the way is made at

@@ -24,6 +24,8 @@ module iteration_history
   end type iteration_t
 
   !> A residual this many times larger than the first one, after `patience` iterations, counts as divergence.
+  !> So many times the most iterations of a step are for corrections that keep to the way downhill.
+  integer, parameter :: times_downhill = 3
   real(wp), parameter :: hopeless = 1.0e3_wp
   integer, parameter :: patience = 6
   !> The residual stagnates when the best of the last `patience` - 1 iterations is above this share of the best before, and
@@ -216,19 +218,21 @@ contains
   end function goes_to_and_fro
 
   !> Reason to stop the iterations, if there is one.
-  pure subroutine judge(scene, history, reason)
+  pure subroutine judge(scene, history, downhill, reason)
     type(scene_t), intent(in) :: scene
     type(iteration_t), intent(in) :: history(:)   !! (niteration)
+    logical, intent(in) :: downhill               !! corrections keep to the way downhill, on which the residual may grow
     character(len=:), allocatable, intent(out) :: reason
-    integer :: n
+    integer :: n, most
 
     n = size(history) - 1
+    most = merge(times_downhill, 1, downhill)*scene%strategy%max_iterations
     associate (norms => history%force_norm)
       if (.not. norms(n + 1) <= huge(1.0_wp)) then
         reason = 'not a number in the forces'
-      else if (n >= scene%strategy%max_iterations .and. .not. (falls_on(history) .or. is_about_to_end(history))) then
+      else if (n >= most .and. .not. (falls_on(history) .or. is_about_to_end(history))) then
         reason = to_text(n)//' iterations without convergence (residual '//to_text(norms(n + 1), 3)//')'
-      else if (n > patience .and. norms(n + 1) > hopeless*norms(min(2, n + 1))) then
+      else if (n > patience .and. .not. downhill .and. norms(n + 1) > hopeless*norms(min(2, n + 1))) then
         reason = 'diverged: residual '//to_text(norms(n + 1), 3)
       else if (n >= patience) then
         if (minval(norms(n - patience + 3:)) > stagnant*minval(norms(2:n - patience + 2)) &

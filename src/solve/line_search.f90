@@ -14,6 +14,9 @@
 !> Where points of contact change to and fro, the corrections from the states on both sides of the change go too far
 !> in turns; the caller may ask for a closer search, which stops between them.
 !>
+!> Past a limit point the residual grows along a way that leads downhill: the zero is sought further on, and no fall of the whole
+!> residual will do.
+!>
 !> Where no point touches a die that was touched at the start of the step, nothing may hold the part, and a slender one
 !> springs back in a correction far longer than the gap. Then shares are tried, each a tenth of the one before, as long as they
 !> touch the die again; the shortest that does is found within a factor of two between the last two of them, and is taken,
@@ -33,7 +36,7 @@ module line_search
 
   !> How to search: take the whole whatever the residual, or find the zero along the correction more closely.
   type :: manner_t
-    logical :: whole = .false., closely = .false., exactly = .false.
+    logical :: whole = .false., closely = .false., exactly = .false., downhill = .false.
   end type manner_t
 
   !> A search that ends below this share of the correction is short.
@@ -81,7 +84,7 @@ contains
     missed = 0
     lost = loses_a_die(scene, solution)
     most = merge(max_touches, max_searches, lost)
-    if (manner%exactly) most = max_exact_searches
+    if (manner%exactly .or. manner%downhill) most = max_exact_searches
     do k = 1, most
       du = start + trial*correction + missing
       call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
@@ -96,8 +99,8 @@ contains
         best = abs(slope)
         s = trial
       end if
-      accepted = manner%whole .or. any(abs(missing) > 0) .or. (norm < real_fall*norm0 .and. .not. manner%exactly) &
-                 .or. abs(slope) <= enough*slope0 .or. (k == 1 .and. norm < norm0 .and. .not. manner%exactly)
+      accepted = manner%whole .or. any(abs(missing) > 0) .or. abs(slope) <= enough*slope0 &
+                 .or. .not. (manner%exactly .or. manner%downhill) .and. (norm < real_fall*norm0 .or. k == 1 .and. norm < norm0)
       if (accepted) then
         s = trial
         return
@@ -112,7 +115,7 @@ contains
           cycle
         end if
       end if
-      call narrow(trial, slope, near, far)
+      call narrow(manner%downhill, trial, slope, near, far)
     end do
     if (touching > 0) s = touching
     if (.not. s > 0) return
@@ -122,7 +125,8 @@ contains
 
   !> The next share to try, after `trial` gave `slope`: `near` and `far` (share, slope) are the ends of the bracket of the zero;
   !> `far` is 0 while there is none.
-  pure subroutine narrow(trial, slope, near, far)
+  pure subroutine narrow(outwards, trial, slope, near, far)
+    logical, intent(in) :: outwards   !! further on while there is no bracket
     real(wp), intent(inout) :: trial, near(2), far(2)
     real(wp), intent(in) :: slope
 
@@ -134,7 +138,8 @@ contains
       far(2) = 0.5_wp*far(2)
       near = [trial, slope]
     else
-      trial = 0.5_wp*trial
+      if (outwards) near = [trial, slope]
+      trial = merge(2.0_wp, 0.5_wp, outwards)*trial
       return
     end if
     trial = near(1) + (far(1) - near(1))*min(0.9_wp, max(0.1_wp, near(2)/(near(2) - far(2))))

@@ -27,7 +27,9 @@ module newton
   use scene, only: scene_t
   use soft_contact, only: begin_softly, end_softly, is_stage_done, stiffen
   use solution, only: solution_t
+  use stability, only: ways_to_leave
   use step_outcome, only: outcome_t, set_cause, set_solver_cause
+  use step_strategy, only: is_shortest
   use text, only: to_text
   implicit none
   private
@@ -35,8 +37,10 @@ module newton
 
 contains
 
-  !> Find the equilibrium of the present solve at the end of a step of length dt. A step that fails leaves the committed state as it
-  !> was.
+  !> Find the equilibrium of the present solve at the end of a step of length dt. One that is not stable is left: the forces say to
+  !> which side, by corrections that lead downhill alone. A perfect part stays where it is, and in the shortest step nothing else
+  !> may be found: the equilibrium that is not stable is taken then, and in later steps until they are stable again. A step that
+  !> fails leaves the committed state as it was.
   subroutine solve_step(scene, equations, solution, dt, outcome, left, given, go_on)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -46,9 +50,28 @@ contains
     real(wp), intent(in), optional :: left(:)    !! (ndof) part of the residual to be left, 0 where absent [residual]
     real(wp), intent(in), optional :: given(:)   !! (ndof) motion of other solves' unknowns; of all with go_on [unknown]
     logical, intent(in), optional :: go_on       !! from `given` for the own unknowns too
+    type(iteration_t), allocatable :: history(:)
 
     call begin_softly(scene, dt, equations)
+    equations%takes_unstable = solution%stays_unstable
     call find_equilibrium(scene, equations, solution, dt, outcome, left, given, go_on)
+    if (outcome%unstable > 0 .and. .not. equations%takes_unstable) then
+      history = outcome%history
+      equations%downhill = .true.
+      call find_equilibrium(scene, equations, solution, dt, outcome, left, given, go_on)
+      equations%downhill = .false.
+      history = [history, outcome%history]
+      if (.not. allocated(outcome%error) .and. &
+          (outcome%converged .and. outcome%unstable > 0 .or. .not. outcome%converged .and. is_shortest(scene, dt))) then
+        equations%takes_unstable = .true.
+        call find_equilibrium(scene, equations, solution, dt, outcome, left, given, go_on)
+        history = [history, outcome%history]
+      end if
+      outcome%left_unstable = .not. equations%takes_unstable
+      outcome%history = history
+      outcome%iterations = size(history) - 1
+    end if
+    outcome%stays_unstable = equations%takes_unstable .and. outcome%unstable > 0
     call end_softly(outcome%converged, outcome%history, equations)
   end subroutine solve_step
 
@@ -101,7 +124,7 @@ contains
         if (.not. changed) exit
         cycle
       end if
-      call judge(scene, outcome%history(first:), outcome%reason)
+      call judge(scene, outcome%history(first:), equations%downhill, outcome%reason)
       ends = .false.
       if (.not. allocated(outcome%reason)) call correct(ends)
       if (ends .or. allocated(outcome%error)) exit
@@ -140,6 +163,7 @@ contains
     subroutine start_iterations()
       goes_on = goes_past_limits(scene, equations%dofs, solution, dt, outcome%du(equations%dofs%prescribed%dof) &
                                  + missing(equations%dofs%prescribed%dof))
+      goes_on = equations%downhill .or. goes_on .and. .not. equations%takes_unstable
       again = .false.
       if (present(go_on)) again = go_on .and. .not. equations%solves(equations%now)%own(displacement_field)
       steep = is_steep(scene, equations)
@@ -260,6 +284,7 @@ contains
       manner = manner_t(whole=caught(outcome%history(first:)) .and. .not. shift%value > 0, &
                         closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
       if (steep) manner = manner_t(exactly=.true.)
+      if (equations%downhill) manner = manner_t(downhill=.true.)
       ! forces with contact kept are no measure of those without; past a limit point the way to equilibrium leads up and down
       if (kept .and. afresh .or. scene%load_factor%multiplier > 0 .or. followed .or. equations%let_go) manner%whole = .true.
     end function manner_of_search
@@ -272,7 +297,8 @@ contains
       ends = .false.
       taken = .false.
       line%inner = 0
-      if (.not. (is_missing_motion() .or. shift%value > 0 .or. equations%penalty_share < 1)) &
+      if (.not. (is_missing_motion() .or. shift%value > 0 .or. equations%penalty_share < 1 &
+            .or. equations%downhill)) &
         call take_eliminated(scene, equations, solution, dt, external, residual, outcome%iterations, correction, outcome%du, &
                              line%inner, report, outcome%error)
       if (allocated(outcome%error)) return
@@ -300,8 +326,9 @@ contains
         call solve_correction(equations, residual, correction, outcome%error)
         return
       end if
-      if (n > first) call ease_shift(outcome%history(n)%line_search, outcome%history(n - 1)%force_norm, line%force_norm, shift)
-      call solve_shifted(equations, residual, shift, correction, outcome%error)
+      if (n > first) call ease_shift(outcome%history(n)%line_search, outcome%history(n - 1)%force_norm, line%force_norm, &
+                                     equations%downhill, shift)
+      call solve_shifted(scene, equations, residual, shift, correction, outcome%error)
     end subroutine solve_for_correction
 
     !> Multipliers are others, the motion is the same: so is all but contact, whose strains are none.
@@ -368,6 +395,12 @@ contains
           .and. .not. (present(left) .and. equations%mode == mode_advance)) then
         outcome%converged = .false.
         outcome%reason = 'strain increment '//to_text(outcome%strain, 3)//' above '//to_text(scene%strategy%strain_bound, 3)
+      end if
+      if (outcome%converged .and. outcome%iterations > 0) then
+        call ways_to_leave(scene, equations, shift%value > 0, outcome%unstable, outcome%error)
+        if (outcome%unstable > 0 .and. .not. (equations%downhill .or. equations%takes_unstable)) &
+          outcome%reason = 'the equilibrium found is not stable'
+        outcome%converged = .not. (allocated(outcome%reason) .or. allocated(outcome%error))
       end if
       if (outcome%converged) return
       outcome%residual = residual

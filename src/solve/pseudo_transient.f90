@@ -1,9 +1,8 @@
 !> Corrections past a limit point: by a matrix that is shifted until they lead downhill.
 !>
-!> A correction on which the residual does negative work leads uphill: past a limit point, as where a strip slides off the node that
+!> A correction c of the motion leads uphill where c K c is negative: past a limit point, as where a strip slides off the node that
 !> it was bent around, the matrix has a negative eigenvalue, and Newton's method goes to where equilibrium was unstable. Forces
-!> drive the body the other way, to an equilibrium further on. So, unless the residual falls by half on the whole correction all the
-!> same, viscous forces are added to the matrix, not to the residual:
+!> drive the body the other way, to an equilibrium further on. So viscous forces are added to the matrix, not to the residual:
 !>
 !>     (K + s V) c = r
 !>
@@ -11,10 +10,13 @@
 !> 35 (1998) 508-523). s begins so that the work on the correction is as much above zero as it was below (more, where other
 !> directions still lead uphill: J.J. More, D.C. Sorensen, Math. Programming 16 (1979) 1-20, for directions of negative curvature).
 !> It falls with the residual, and rises where that does or a correction goes too far. What is found at the end is an equilibrium:
-!> none of it is viscous. Under loads that grow there is none to be looked for: a limit point is a limit load (goes_past_limits).
+!> none of it is viscous. Where contact makes c K c negative, that of the bodies alone being positive, there may be no limit: points
+!> stick and slip, open and close, by a matrix that is not symmetric. A whole correction is taken then if the residual falls by half
+!> on it. That of bodies would fall so too, towards a branch that they do not come to: a heated column bulges against its own bend.
+!> Under loads that grow there is no equilibrium to be looked for: a limit point is a limit load (goes_past_limits).
 module pseudo_transient
   use contact_changes, only: contact_states_t, recall_contact, remember_contact
-  use convergence, only: free_force, slope_along
+  use convergence, only: free_force
   use corrections, only: solve_correction
   use dofs, only: dofs_t, is_driven
   use elem_api, only: block_done, report_t
@@ -22,10 +24,12 @@ module pseudo_transient
   use errors, only: error_t
   use evaluation, only: add_diagonal, evaluate
   use kinds, only: wp
+  use linear_solver, only: negative_eigenvalues
   use line_search, only: real_fall
   use loads, only: multiplier_at
+  use matrix_pattern, only: quadratic_form
   use pairs, only: pairs_differ, pairs_t
-  use scene, only: role_side_load, role_volume_load, scene_t
+  use scene, only: role_contact, role_side_load, role_volume_load, scene_t
   use sections, only: section_forced
   use solution, only: solution_t
   use volumes_of_unknowns, only: volumes_of_motion
@@ -39,8 +43,9 @@ module pseudo_transient
     real(wp) :: value = 0.0_wp, largest = 0.0_wp
     !> Volume around every unknown of the motion, where a shift has been needed (ndof) [volume].
     real(wp), allocatable :: volume(:)
-    !> The last correction leads uphill, and the shifted matrix that it was found by (nnz) [residual/unknown].
-    logical :: uphill = .false.
+    !> The last correction leads uphill, and does so by the matrix of bodies alone; the shifted matrix that it was found by (nnz)
+    !> [residual/unknown].
+    logical :: uphill = .false., of_bodies = .false.
     real(wp), allocatable :: matrix(:)
   end type shift_t
 
@@ -57,25 +62,76 @@ contains
 
   !> Correction of the free unknowns of the present solve for a residual, by the matrix with the shift of now; whether it leads
   !> uphill.
-  subroutine solve_shifted(equations, residual, shift, correction, error)
+  subroutine solve_shifted(scene, equations, residual, shift, correction, error)
+    type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     real(wp), intent(in) :: residual(:)      !! (ndof) [residual]
     type(shift_t), intent(inout) :: shift
     real(wp), intent(out) :: correction(:)   !! (ndof) [unknown]
     type(error_t), allocatable, intent(out) :: error
+    real(wp) :: work
 
     associate (solve => equations%solves(equations%now))
       if (shift%value > 0) call add_diagonal(solve%pattern, solve%equation, shift%value*shift%volume, solve%values)
       call solve_correction(equations, residual, correction, error)
       if (allocated(error)) return
-      shift%uphill = slope_along(equations, correction, residual) < 0
+      shift%uphill = work_along(equations, correction) < 0 .or. equations%downhill .and. negative_eigenvalues(solve%solver) > 0
       ! what is evaluated next has another matrix
-      if (shift%uphill) shift%matrix = solve%values
+      if (.not. shift%uphill) return
+      shift%matrix = solve%values
+      work = work_of_bodies(scene, equations, correction)
+      if (shift%value > 0) work = work + shift%value*sum(shift%volume*correction**2)
+      shift%of_bodies = work < 0
     end associate
   end subroutine solve_shifted
 
-  !> After a correction that leads uphill: it is taken, and the motion moved by it, where the residual falls by half; else it
-  !> becomes one that leads downhill, by a larger shift.
+  !> c K c of a correction of the motion, by the matrix of now. Where temperatures are found in the same solve it is not the work of
+  !> the residual, a part of which they answer.
+  pure function work_along(equations, correction) result(work)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: correction(:)   !! (ndof) [unknown]
+    real(wp) :: work
+    real(wp) :: x(equations%solves(equations%now)%neq)
+    integer :: d
+
+    associate (solve => equations%solves(equations%now))
+      x = 0
+      do d = 1, equations%dofs%ndof
+        if (solve%equation(d) > 0 .and. equations%dofs%quantity(d) == 1) x(solve%equation(d)) = correction(d)
+      end do
+      work = quadratic_form(solve%pattern, solve%values, x)
+    end associate
+  end function work_along
+
+  !> The same by the matrices of all elements but those of contact.
+  pure function work_of_bodies(scene, equations, correction) result(work)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: correction(:)   !! (ndof) [unknown]
+    real(wp) :: work
+    real(wp) :: motion(size(correction))
+    integer :: g, e, j, m, ndof
+
+    motion = merge(correction, 0.0_wp, equations%dofs%quantity == 1)
+    work = 0
+    associate (solve => equations%solves(equations%now))
+      do g = 1, size(scene%groups)
+        if (.not. solve%active(g) .or. scene%groups(g)%role == role_contact) cycle
+        associate (dof => equations%dofs%groups(g)%dof)
+          ndof = size(dof, 1)
+          do e = 1, size(dof, 2)
+            do j = 1, ndof
+              m = solve%pattern%matrix_start(g) + ((e - 1)*ndof + j - 1)*ndof
+              work = work + motion(dof(j, e))*dot_product(equations%buffers%matrix(m + 1:m + ndof), motion(dof(:, e)))
+            end do
+          end do
+        end associate
+      end do
+    end associate
+  end function work_of_bodies
+
+  !> After a correction that leads uphill: where contact makes it so and the residual falls by half on it, it is taken, and the
+  !> motion moved by it; else it becomes one that leads downhill, by a larger shift.
   subroutine turn_downhill(scene, equations, solution, dt, external, residual, shift, correction, du, taken, report, error)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -95,18 +151,21 @@ contains
     integer :: k
 
     allocate (pairs, source=solution%pairs)
-    start = du
-    call remember_contact(scene, solution, before)
-    du = start + correction
-    call evaluate(scene, equations, solution, dt, du, .true., trial, corrected_from=start)
-    taken = trial%status == block_done
-    if (taken) taken = free_force(equations, external - equations%force) < real_fall*free_force(equations, residual)
-    if (taken) then
-      report = trial
-      return
+    taken = .false.
+    if (.not. (shift%of_bodies .or. equations%downhill)) then
+      start = du
+      call remember_contact(scene, solution, before)
+      du = start + correction
+      call evaluate(scene, equations, solution, dt, du, .true., trial, corrected_from=start)
+      taken = trial%status == block_done
+      if (taken) taken = free_force(equations, external - equations%force) < real_fall*free_force(equations, residual)
+      if (taken) then
+        report = trial
+        return
+      end if
+      du = start
+      call recall_contact(scene, before, solution)
     end if
-    du = start
-    call recall_contact(scene, before, solution)
     if (.not. allocated(shift%volume)) allocate (shift%volume, source=volumes_of_motion(scene, equations, solution))
     associate (solve => equations%solves(equations%now))
       if (pairs_differ(scene, pairs, solution%pairs)) then
@@ -119,13 +178,14 @@ contains
       end if
       do k = 1, most_shifts
         associate (more => max((larger - 1)*shift%value, &
-                               2*abs(slope_along(equations, correction, residual))/sum(shift%volume*correction**2)))
+                               2*abs(work_along(equations, correction))/sum(shift%volume*correction**2)))
           call add_diagonal(solve%pattern, solve%equation, more*shift%volume, solve%values)
           shift%value = shift%value + more
         end associate
         call solve_correction(equations, residual, correction, error)
         if (allocated(error)) exit
-        if (.not. slope_along(equations, correction, residual) < 0) exit
+        if (work_along(equations, correction) < 0) cycle
+        if (.not. (equations%downhill .and. negative_eigenvalues(solve%solver) > 0)) exit
       end do
     end associate
     shift%largest = max(shift%largest, shift%value)
@@ -177,13 +237,14 @@ contains
   end function goes_past_limits
 
   !> The shift of the next iteration, after one that took a share of its correction.
-  elemental subroutine ease_shift(share, before, now, shift)
+  elemental subroutine ease_shift(share, before, now, downhill, shift)
     real(wp), intent(in) :: share         !! [-]
     real(wp), intent(in) :: before, now   !! norm of the residual [-]
+    logical, intent(in) :: downhill       !! the search kept to the way downhill, on which the residual may grow
     type(shift_t), intent(inout) :: shift
 
     if (.not. shift%value > 0) return
-    if (now > before .or. share < least_taken) then
+    if (now > before .and. .not. downhill .or. share < least_taken) then
       shift%value = rise*shift%value
     else if (share > most_taken) then
       shift%value = min(least_fall*before, now)/before*shift%value

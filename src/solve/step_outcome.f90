@@ -45,6 +45,11 @@ module step_outcome
     integer :: augmentations = 0
     !> A further augmentation had no equilibrium: the one before it was kept.
     logical :: gave_way = .false.
+    !> Eigenvalues below 0 of the matrix at the equilibrium: it is not stable. One found before it was not.
+    integer :: unstable = 0
+    logical :: left_unstable = .false.
+    !> The last word on it: no stable one was found in the shortest step.
+    logical :: stays_unstable = .false.
     !> The machine failed, not the step.
     type(error_t), allocatable :: error
   end type outcome_t

@@ -173,6 +173,11 @@ contains
     all%linear_residual = max(all%linear_residual, own%linear_residual)
     all%augmentations = max(all%augmentations, own%augmentations)
     all%gave_way = all%gave_way .or. own%gave_way
+    if (.not. is_heat) then
+      all%unstable = own%unstable
+      all%stays_unstable = own%stays_unstable
+    end if
+    all%left_unstable = all%left_unstable .or. own%left_unstable
     if (own%converged) return
     all%of_heat = is_heat
     all%group = own%group

@@ -9,7 +9,7 @@ module step_strategy
   use weld_sources, only: times_to_hit
   implicit none
   private
-  public :: choose_step, after_success, after_failure
+  public :: choose_step, after_success, after_failure, is_shortest
 
   !> A failed step is tried again with this share of its length.
   real(wp), parameter :: cutback = 0.5_wp
@@ -127,7 +127,15 @@ contains
     logical, intent(out) :: give_up
 
     next = cutback*dt
-    give_up = next < scene%strategy%least_step
+    give_up = is_shortest(scene, dt)
   end subroutine after_failure
+
+  !> A step that fails cannot be cut back.
+  pure logical function is_shortest(scene, dt)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: dt   !! [time]
+
+    is_shortest = cutback*dt < scene%strategy%least_step
+  end function is_shortest
 
 end module step_strategy

@@ -16,6 +16,9 @@ usage: run_processes.py [-v] [-k]
 - `pressed`: a ring quenched between rough dies, the upper one under a force that rests: Newton's method is not caught between points
   that stick and slip, where its matrix leads uphill; and an arch under a force that rests, which snaps through as it cools, to where it
   is pushed to by the same force when it is cold.
+- `buckles`: a strip between walls that is heated beyond Euler's load (S.P. Timoshenko, J.M. Gere, Theory of Elastic Stability, 2nd ed.,
+  section 2.1) bulges to the side that it is bent to by a fiftieth of its thickness, at any length of steps, and bears that load. A straight one stays as it is, and the run says
+  that it is not stable.
 - `spent`: a polynomial of a steel whose conductivity, capacity or yield stress falls below 0 on the way: the run ends with 3 and says which, where.
 """
 import json
@@ -155,6 +158,47 @@ def pressed(checks):
     checks.small(abs(last(run, "force")/-25 - 1), 1e-4, "arch: the force that it was cooled under")
 
 
+STRIP = """TITLE  A strip between walls, heated
+STATE  PLSTS
+KINEM  LOG
+BLOCK  strip PL8LS 4 steel
+   0. 0.   50. {bend}   50. 1+{bend}   0. 1.
+   40 1.   2 1.
+   SIDE 1 MID 25. .55*{bend}
+   SIDE 3 MID 25. 1+.55*{bend}
+LAW    steel ELATH
+   200000. 0.3 1.E-5
+TEMPE  strip 400. up
+LIC    up
+   0. 0.   1. 1.
+FIXED  strip 4 XY
+FIXED  strip 2 X
+STRAT  {step} 1.E-6 {step} 5 3
+STOP   1.
+PROBE  middle NODE UY 50. {bend}
+PROBE  force REACT X strip 4
+END
+"""
+
+
+def buckles(checks):
+    euler = 4*math.pi**2*200000/12/100**2
+    ends = []
+    for bend, step in ((0.02, 0.01), (0.02, 0.05), (0.02, 0.2), (0.02, 1.0), (0.0002, 1.0)):
+        run = Run(checks, f"buckles-{bend}-{step}", STRIP.format(bend=bend, step=step))
+        if not run.ok:
+            return
+        ends.append(last(run, "middle"))
+        checks.small(abs(last(run, "force")/euler - 1), 0.012, f"buckles from {bend} in steps of {step}: Euler's load")
+    run = Run(checks, "buckles-straight", STRIP.format(bend=0, step=0.2))
+    if run.ok:
+        checks.that(last(run, "force") > 10*euler and any("are not stable" in line["text"] for line in summary(run)["warnings"]),
+                    "buckles: a straight strip stays so, and that is told", summary(run)["warnings"])
+    checks.that(ends[0] > 3, "buckles: to the side that it is bent to", ends[0])
+    checks.small(max(abs(end/ends[0] - 1) for end in ends[:-1]), 1e-4, "buckles: the same in steps of any length")
+    checks.small(abs(ends[-1]/ends[0] - 1), 0.01, "buckles: nearly the same from a hundredth of the bend, in one step")
+
+
 def spent(checks):
     # each falls with the temperature and is 0 at 400
     for word, number in (("LAMBDA", "POLY -80 0.2"), ("RHOC", "POLY -4 0.01"), ("SY", "POLY -400 1.")):
@@ -275,6 +319,6 @@ def told(checks):
 if __name__ == "__main__":
     all_checks = Checks()
     law_file(all_checks)
-    for case in (melting, bree, waits, pressed, probes, mirrored, stretched, spent, told):
+    for case in (melting, bree, waits, pressed, buckles, probes, mirrored, stretched, spent, told):
         case(all_checks)
     sys.exit(all_checks.end())

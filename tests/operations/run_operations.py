@@ -384,7 +384,7 @@ def let_go(checks):
                                                  ("LOG", 0.5, 60, 50, table, 1e-6), ("JAUMANN", 0.5, 10, 50, "", 1e-4)):
         name = f"let_go {kinem} {thickness} {way}{' table' if die else ''}"
         text = (f"TITLE  Strip let go\nSTATE  PLSTN\nKINEM  {kinem}\nBLOCK  strip PL8LS 4 steel\n"
-                f"   0. 0.   100. 0.   100. {thickness}   0. {thickness}\n   {n} 1.   2 1.\n"
+                f"   0. 0.   100. 0.   100. {thickness}   0. {thickness}\n   {n} 1.   2 1.\nNORMS  FORCE 1.E-9 DISPL 1.E-8\n"
                 "LAW    steel EPLA\n   200000. 0.3\n   LINEAR 1.E5 1000.\nFIXED  strip 4 XY\n"
                 "PROBE  tip_x NODE X 100. 0.\nPROBE  tip_y NODE Y 100. 0.\n"
                 f"OPERA  bend\nLIC    up\n   0. 0.   1. {way}\nMOVE   strip 2 Y up\nSTRAT  0.02 1.E-6 0.1   6 3\n"
