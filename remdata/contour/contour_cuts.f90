@@ -143,8 +143,8 @@ contains
     end if
   end subroutine trim_body
 
-  !> Through the web under a die. What is as thin goes with the slug: of all ways that are short enough the one is taken that
-  !> leaves least of the piece that is kept.
+  !> Through the web under a die. What is as thin goes with the slug, and the rim of it that no element could resolve, a lip which
+  !> the die would fold under its edge: of all these ways the one is taken that leaves least of the piece that is kept.
   subroutine pierce_body(scene, solution, cut, contours, of_body, pieces, record, error)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -171,7 +171,7 @@ contains
     least = huge(least)
     if (clean) then
       do k = 1, size(ways)
-        if (ways(k)%thickness > cut%thickness) cycle
+        if (.not. is_beside_thin(k)) cycle
         call part_at(k, kept_first, some, clean)
         if (.not. clean) cycle
         volume = volume_inside(some(1)%boundary, scene%plane_state == axisymmetric)
@@ -188,6 +188,23 @@ contains
       'the web must part the body in two; of a hole, or of half a body, the piece that is kept has a point KEEP x y')
 
   contains
+
+    !> Where a way begins the web is thin enough, or it is within the smallest element from there: a point has a way across no
+    !> longer than that of another by more than its distance from it, but where it leads elsewhere, as along the part.
+    pure function is_beside_thin(way) result(beside)
+      integer, intent(in) :: way
+      logical :: beside
+      integer :: i
+
+      real(wp) :: apart
+
+      beside = .false.
+      do i = 1, size(ways)
+        if (ways(i)%thickness > cut%thickness) cycle
+        apart = length_of(ways(i)%from - ways(way)%from)
+        beside = beside .or. apart <= scene%remesher%smallest .and. ways(way)%thickness <= ways(i)%thickness + apart
+      end do
+    end function is_beside_thin
 
     !> The piece on one side of way k.
     subroutine part_at(way, first, found, is_clean)

@@ -21,6 +21,7 @@ module march_start
   use scene, only: scene_t
   use solution, only: solution_t
   use step_outcome, only: outcome_t
+  use sudden_loads, only: sudden_load_words
   use system, only: join_path
   use text, only: to_text, two_digits
   use watch_mesh, only: ask_for_trims, estimate_stress, mesh_is_due
@@ -96,7 +97,8 @@ contains
     if (.not. balance%restored) then
       call fail(error, exit_no_convergence, 'operation '//scene%operation_name//': the part, released from the operation before, ' &
                 //'finds no equilibrium at time '//to_text(solution%time)//': '//balance%reason, &
-                'hold it by supports (FIXED) or by a die that it lies on, or lift the dies at the end of the operation before')
+                sudden_load_words(scene, solution, at_release=.true.)//'hold it by supports (FIXED) or by a die that it lies on, ' &
+                //'or lift the dies at the end of the operation before')
       return
     end if
     run%totals = balance%after

@@ -15,9 +15,10 @@ module run_stop
   use spurious_mode, only: may_stand_alone
   use step_outcome, only: outcome_t
   use strategy, only: coupling_once
+  use sudden_loads, only: sudden_load_words
   use system, only: caught_signal
   use text, only: to_text
-  use unheld_dies, only: limit_load_words, sudden_force_words, unheld_die_t, unheld_die_words
+  use unheld_dies, only: limit_load_words, unheld_die_t, unheld_die_words
   use watch_mesh, only: mesh_is_due, remesh_reason
   implicit none
   private
@@ -57,7 +58,7 @@ contains
       advice = advice//'numbers that jump along the temperature, NORMS near round-off or a least step too large in ' &
                //'STRAT are the usual causes'
     else if (unheld%die == 0 .or. limit /= '') then
-      advice = sudden_force_words(scene, solution)//limit//advice//'a limit load'//way_past_limit(scene) &
+      advice = sudden_load_words(scene, solution, at_release=.false.)//limit//advice//'a limit load'//way_past_limit(scene) &
                //', a mesh too distorted or a least step too large in STRAT are the usual causes'
     else if (index(outcome%reason, 'singular') == 0) then
       advice = advice//'; a mesh too distorted or a least step too large in STRAT are other causes'

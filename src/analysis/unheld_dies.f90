@@ -14,7 +14,7 @@ module unheld_dies
   use text, only: to_text
   implicit none
   private
-  public :: find_unheld_die, limit_load_words, sudden_force_words, unheld_die_t, unheld_die_words
+  public :: find_unheld_die, limit_load_words, unheld_die_t, unheld_die_words
 
   character(len=*), parameter :: names(3) = ['along X ', 'along Y ', 'to turn ']
   !> A force is near a limit where its die goes so many times as far for a little more of it as it did for all of it.
@@ -169,27 +169,6 @@ contains
       end associate
     end do
   end function limit_load_words
-
-  !> A force that acts at once in the first step: no shorter step has less of it.
-  function sudden_force_words(scene, solution) result(words)
-    type(scene_t), intent(in) :: scene
-    type(solution_t), intent(in) :: solution
-    character(len=:), allocatable :: words
-    integer :: k
-
-    words = ''
-    if (solution%step > 0) return
-    do k = 1, size(scene%die_forces)
-      associate (load => scene%die_forces(k))
-        if (load%multiplier == 0) cycle
-        if (.not. abs(force_at(scene, load, solution%time)) > 0) cycle
-        words = 'the FORCE on die '//scene%dies(load%die)%name//' acts at once, with ' &
-                //to_text(abs(circumference(scene)*force_at(scene, load, solution%time)), 5) &
-                //' in the first step however short: let its LIC begin at 0; '
-        return
-      end associate
-    end do
-  end function sudden_force_words
 
   !> Force on a pilot at a time, per radian when axisymmetric.
   pure function force_at(scene, load, time) result(force)

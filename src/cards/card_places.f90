@@ -107,12 +107,19 @@ contains
 
   contains
 
+    !> The sides of a set but those that are there: a cut (TRIM, PIERC) that leads from one set to another belongs to both.
     subroutine add_sides(set)
       integer, intent(in) :: set
+      integer :: there, i
 
       associate (more => draft%scene%mesh%sides(set)%nodes)
         if (.not. draft%mesh_sound) return
-        sides = reshape([sides, more], [3, size(sides, 2) + size(more, 2)])
+        there = size(sides, 2)
+        do i = 1, merge(size(more, 2), 0, there > 0)
+          if (any(sides(1, :there) == more(1, i) .and. sides(2, :there) == more(2, i))) cycle
+          sides = reshape([sides, more(:, i)], [3, size(sides, 2) + 1])
+        end do
+        if (there == 0) sides = more
         if (has_zones(draft%scene%remesher) .and. any(draft%sharing(more(2, :)) > 1)) &
           call cursor%fail('with ZONE cards a new mesh has other sides inside the part: expected sides on its boundary')
       end associate

@@ -10,7 +10,7 @@ module contact_measure
                            contact_block, dissipated, is_released, penalties, side_length
   use contact_work, only: kept_work
   use corner_weights, only: corner_length
-  use edge_states, only: beside_edges, interval_at_start
+  use edge_states, only: augment_edges, beside_edges, interval_at_start
   use elem_api, only: totals_t
   use kinds, only: wp
   use law_api, only: contact_open, contact_slip, contact_stick, law_t
@@ -65,8 +65,14 @@ contains
     end do
     if (.not. changed) return
     do k = 0, last, n
-      where (may_hold(group, trial, k, n)) &
-        committed(k + at_augmentation, :, :) = trial(k + at_pressure, :, :) - trial(k + at_between, :, :)
+      held = may_hold(group, trial, k, n)
+      if (k > 0 .and. group%pairs > 0) then
+        do e = 1, size(trial, 3)
+          call augment_edges(held(:, e), committed(:, :, e), trial(:, :, e))
+        end do
+      else
+        where (held) committed(k + at_augmentation, :, :) = trial(k + at_pressure, :, :) - trial(k + at_between, :, :)
+      end if
     end do
   end subroutine augment
 

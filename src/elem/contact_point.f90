@@ -189,7 +189,9 @@ contains
   !> Pressure and friction of a meeting, and their derivatives by depth and slip; the state of the point goes on from committed to
   !> trial.
   !>
-  !> When contact begins inside the step only the share d/(d - d_start) of the way counts as slip.
+  !> When contact begins inside the step only the share d/(d - d_start) of the way counts as slip, with the depth d that the penalty
+  !> needs for the pressure: what a multiplier has taken of it is in there, for it takes nothing of the way. (With the depth that is
+  !> left the share would go to 0 as multipliers are carried forward, and all of the slip would count beyond depth 0.)
   pure subroutine answer(law, material, dt, drivers, penalty, meeting, committed, trial, pressure, tau, tangent, dslip, open)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
@@ -203,7 +205,7 @@ contains
     real(wp), intent(out) :: tangent(2, 2)   !! of both by depth and slip [stress/length]
     real(wp), intent(out) :: dslip(most_unknowns)   !! derivatives of the slip that counts [length/unknown]
     logical, intent(out) :: open
-    real(wp) :: slip, depth, gap, share, stiffness(2), stress(2), law_tangent(3, 3), change
+    real(wp) :: slip, depth, gap, reached, share, stiffness(2), stress(2), law_tangent(3, 3), change
     integer :: status
 
     stiffness = penalty
@@ -212,9 +214,11 @@ contains
     dslip = meeting%dslip
     depth = meeting%d - meeting%allowed
     gap = meeting%allowed - committed(at_penetration)
-    if (nint(committed(at_status)) == contact_open .and. gap > 0 .and. depth > 0) then
-      share = depth/(depth + gap)
-      dslip = share*dslip + slip*gap/(depth + gap)**2*meeting%dd
+    reached = depth
+    if (committed(at_augmentation) > 0) reached = depth + committed(at_augmentation)/stiffness(1)
+    if (nint(committed(at_status)) == contact_open .and. gap > 0 .and. reached > 0) then
+      share = reached/(reached + gap)
+      dslip = share*dslip + slip*gap/(reached + gap)**2*meeting%dd
       slip = share*slip
     end if
 

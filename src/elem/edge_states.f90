@@ -1,18 +1,18 @@
 !> States of the edges of a deformable die on a side (edge_contact): each is in the interval between two points of the side where
 !> the edge is, and goes on from there to the next as the side slides.
 module edge_states
-  use contact_point, only: at_augmentation, at_piece, at_status, at_xi, contact_block
+  use contact_point, only: at_augmentation, at_between, at_piece, at_pressure, at_status, at_xi, contact_block
   use corner_weights, only: handing_over, share_of_corner
   use kinds, only: wp
   use law_api, only: contact_open
   implicit none
   private
-  public :: beside_edges, edge_at_start, interval_at_start
+  public :: augment_edges, beside_edges, edge_at_start, interval_at_start
 
 contains
 
-  !> State of an edge in the interval before a point as the step began: where it was in contact in another interval of the side,
-  !> what it was there, but its work, which stays where it was done.
+  !> State of an edge in the interval before a point as the step began: where it was in another interval of the side, what it was
+  !> there, but its work, which stays where it was done.
   pure function edge_at_start(committed, p, piece) result(state)
     real(wp), intent(in) :: committed(:, :)   !! (nstate, npoint) [unit of each component]
     integer, intent(in) :: p
@@ -22,13 +22,52 @@ contains
 
     n = size(state)
     state = committed(n + 1:2*n, p)
-    q = interval_with(committed, p, piece)
+    q = interval_of_start(committed, p, piece)
     if (q == 0 .or. q == p) return
     associate (other => committed(n + 1:2*n, q))
       state(:at_augmentation) = other(:at_augmentation)
       state([at_piece, at_xi]) = other([at_piece, at_xi])
     end associate
   end function edge_at_start
+
+  !> The pressure of each edge becomes its multiplier, in the interval where it was as the step began: that is where the state it
+  !> goes on from is looked up, wherever it slides. One that was in none is in the interval where it is now.
+  pure subroutine augment_edges(held, committed, trial)
+    logical, intent(in) :: held(:)                !! (npoint) the edge in the interval before a point is augmented
+    real(wp), intent(inout) :: committed(:, :)    !! (nstate, npoint) [unit of each component]
+    real(wp), intent(in) :: trial(:, :)           !! (nstate, npoint) [unit of each component]
+    real(wp) :: multiplier(size(trial, 2))
+    logical :: there(size(trial, 2))
+    integer :: p, q, n
+
+    n = contact_block(.true., size(trial, 1))
+    multiplier = merge(0.0_wp, committed(n + at_augmentation, :), held)
+    there = nint(trial(n + at_status, :)) /= contact_open
+    do p = 1, size(trial, 2)
+      if (.not. there(p)) cycle
+      q = interval_of_start(committed, p, nint(trial(n + at_piece, p)))
+      if (q == 0) q = p
+      multiplier(q) = committed(n + at_augmentation, q)
+      if (held(p)) multiplier(q) = trial(n + at_pressure, p) - trial(n + at_between, p)
+      committed(n + at_piece, q) = trial(n + at_piece, p)
+    end do
+    committed(n + at_augmentation, :) = multiplier
+  end subroutine augment_edges
+
+  !> The interval of a side in which an edge was as the step began: in contact, or else known to be, an interval itself where it was
+  !> there; 0 for none.
+  pure function interval_of_start(committed, p, piece) result(q)
+    real(wp), intent(in) :: committed(:, :)   !! (nstate, npoint) [unit of each component]
+    integer, intent(in) :: p, piece
+    integer :: q
+    logical :: known(size(committed, 2))
+
+    q = interval_with(committed, p, piece)
+    if (q > 0) return
+    known = nint(committed(contact_block(.true., size(committed, 1)) + at_piece, :)) == piece
+    q = p
+    if (.not. known(p)) q = findloc(known, .true., 1)
+  end function interval_of_start
 
   !> The interval of a side in which an edge is in contact, an interval itself where it is there; 0 for none.
   pure function interval_with(states, p, piece) result(q)

@@ -15,7 +15,7 @@ module kept_side
 
   !> A side reaches this far beyond its ends (parent coordinate) for a point that was on it; beyond the open end of the curve less.
   real(wp), parameter :: beyond = 0.2_wp, beyond_all = 0.05_wp
-  !> From this parent coordinate on it hands the point over.
+  !> From this parent coordinate on it hands over a point that was in contact; all the way of one that was not begins at its end.
   real(wp), parameter :: hands_over = 1.1_wp
 
   !> Share of a point that is on the side where it is now, and its change with the parent coordinate on that it began with [-].
@@ -25,14 +25,16 @@ module kept_side
 
 contains
 
-  !> Closest point to a point of contact; but for the length of a step a point inside, or one that its multiplier presses at a gap,
-  !> keeps the side it began with, beyond its ends too.
+  !> Closest point to a point of contact; but for the length of a step the point keeps the side it began with, beyond its ends too.
   !>
   !> Sides of a bent mesh make slight corners, less slight where a node presses beside them, and the normal jumps there within a
   !> motion smaller than any iteration's: points at a corner would change sides without end. Likewise points at the open end of the
   !> curve, where two bodies are flush: round-off would decide whether they are on it, also those whose multiplier bears a pressure
   !> at a gap; and where a node presses in the ground of a notch that it has made, with one face steep. Other corners as sharp as
   !> an edge are left to the search.
+  !>
+  !> Which side it is depends on where the point is alone, not on the sign of its depth: both sides have another depth beyond the
+  !> corner, and one that has met the die in the step, with its multiplier at a depth of 0, would change sides there.
   pure subroutine keep_closest_point(die, point, reach, committed, middle, nearest, closest, handed)
     type(die_t), intent(in) :: die
     type(contact_point_t), intent(in) :: point
@@ -43,7 +45,7 @@ contains
     type(closest_point_t), intent(out) :: closest     !! of this step
     type(handed_over_t), intent(out) :: handed
     type(closest_point_t) :: same
-    real(wp) :: from
+    real(wp) :: from, way(2)
     integer :: piece
     logical :: pressed
 
@@ -51,7 +53,7 @@ contains
     pressed = nint(committed(at_status)) /= contact_open
     piece = nint(committed(at_piece))
     if (piece == 0) piece = middle
-    if (piece == 0 .or. closest%d < 0 .and. .not. pressed) return
+    if (piece == 0) return
     from = closest%xi
     if (closest%piece /= piece) from = merge(1.0_wp, -1.0_wp, place_in_reach(die, piece, closest%piece) == pieces_in_reach)
     if (closest%piece == 0) then
@@ -60,20 +62,20 @@ contains
     end if
     call closest_on_piece(die, piece, point%x, from, merge(beyond_all, beyond, closest%piece == 0), same)
     if (same%piece == 0 .or. .not. abs(same%d) < reach) return
-    if (.not. (same%d > 0 .or. pressed .or. closest%piece == 0)) return
     if (closest%piece == 0) then
       if (.not. dot_product(same%normal, point%e_r) < 0) return
       nearest = same
     else
       if (place_in_reach(die, closest%piece, piece) == 0) return
       if (dot_product(same%normal, closest%normal) < edge_turn .and. .not. (pressed .and. turns_to_part())) return
-      if (closest%piece /= piece) handed%share = (abs(same%xi) - hands_over)/(1 + beyond - hands_over)
+      way = merge([hands_over, 1 + beyond], [1.0_wp, hands_over], pressed)
+      if (closest%piece /= piece) handed%share = (abs(same%xi) - way(1))/(way(2) - way(1))
       if (.not. handed%share < 1) then
         handed%share = 0
         return
       end if
       handed%share = max(0.0_wp, handed%share)
-      handed%slope = sign(1/(1 + beyond - hands_over), same%xi)
+      handed%slope = sign(1/(way(2) - way(1)), same%xi)
     end if
     closest = same
 

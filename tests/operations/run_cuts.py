@@ -8,6 +8,8 @@ usage: run_cuts.py [-v] [-k] [--seed N]
 - `heat`: a block of 25 in thickness whose temperature rises in proportion to x, cut along an inclined line: the volume, and the heat that is left, which closed forms give.
 - `punch`: a blank without hardening, punched through. The slug's volume is that of the cut; the force at the cut is near that of shear along
   the web, 2 pi r w k, between one time it (nothing but shear) and twice (pressed together as well).
+- `through`: punches of two edge radii go through the blank; the slug's volume is that under the punch, and what the cut leaves is no lip.
+- `corner`: a corner of the disc cut off, whose surface belongs to both sides of a contact.
 - killed at random and gone on with by the same command, `flash` comes to the same history.
 - Lines beside the part, through its inside, and that leave two pieces are refused, each in one line.
 """
@@ -24,7 +26,7 @@ sys.dont_write_bytecode = True
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path[:0] = [os.path.join(TESTS, folder) for folder in ("runs", "cycle", "patch")]
 from remeshed import CYCLE, cycle, tries  # noqa: E402
-from support import DONE, Checks, history, run, summary, with_h5py, write  # noqa: E402
+from support import DONE, Checks, history, run, said, summary, with_h5py, write  # noqa: E402
 
 INPUT = 2
 FLASH = """TITLE  Disc pressed, trimmed, pressed on
@@ -263,6 +265,29 @@ def punched(checks):
     checks.that(abs(abs(rows["force_y_punch"][at]) / told["force"] - 1) < 0.05, "punch: force in the history", rows["force_y_punch"][at])
 
 
+def punched_through(checks):
+    """The cut begins where the punch ends: no lip is left under its edge, which it would fold until no mesh fits it."""
+    for radius in (0.2, 0.7):
+        out = checks.path(f"through-{radius}")
+        text = PUNCH.replace("1. -2.", "1. -4.5").replace("FILLT  0.4", f"FILLT  {radius}", 1)
+        result = cycle(write(os.path.join(checks.folder, "through.lag"), text), out, "--quiet")
+        if not checks.that(result.returncode == DONE, f"through, {radius}: done", said(result)):
+            continue
+        slug = math.pi * 10**2 * 4
+        removed = summary(out)["cuts"][1]["volume_removed"]
+        checks.that(abs(removed / slug - 1) < 0.06, f"through, {radius}: volume of the slug over that under the punch", removed / slug)
+
+
+def corner_cut(checks):
+    """A cut that leads from one of the sides of a contact to the other belongs to both, and is there once."""
+    out = checks.path("corner")
+    first, rest = FLASH.split("OPERA  trim\n")
+    again = rest.split("OPERA  again\n")[1]
+    text = first + "OPERA  trim\nTRIM   disc  16. 1.   6. 7.  KEEP 1. 1.\n" + again
+    result = cycle(write(os.path.join(checks.folder, "corner.lag"), text), out, "--quiet")
+    checks.that(result.returncode == DONE, "corner: done", said(result))
+
+
 def same_history(one, other):
     with open(os.path.join(one, "history.csv"), newline="", encoding="utf-8") as a, \
             open(os.path.join(other, "history.csv"), newline="", encoding="utf-8") as b:
@@ -319,6 +344,8 @@ def main():
     whole = pressed(checks, deck)
     warm(checks)
     punched(checks)
+    punched_through(checks)
+    corner_cut(checks)
     if whole:
         killed(checks, deck, whole, seed, 4)
     refused(checks)

@@ -7,6 +7,7 @@ usage: run_operations.py [-v] [-k]
 - `release`: an operation without dies leaves the part as a die that is lifted does.
 - `heat`, `pair`: heat alone; bodies in contact in generalised plane strain, which the next operation finds as they were.
 - `at_once`: a multiplier that begins an operation with another value than 0.
+- `sudden`: a load that begins an operation at once, far above what the part bears, is named by the run that ends there.
 - `held`: a die whose multiplier begins the second operation where the first has left it stands there from the beginning;
   one under a force goes on where it is.
 - `strokes`: press, release, press with another die; stopped anywhere and resumed to the same bits; with a new mesh in each
@@ -28,7 +29,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "runs"))
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "cycle"))
 from remeshed import cycle, tries, within_limits  # noqa: E402
-from support import DONE, SIGNAL, Checks, history, result_differences, run, said, start, stop_after, summary, with_h5py, write  # noqa: E402
+from support import DONE, NO_CONVERGENCE, SIGNAL, Checks, history, result_differences, run, said, start, stop_after, summary, with_h5py, write  # noqa: E402
 
 HEAD = """TITLE  Block pressed in operations
 STATE  PLSTN
@@ -395,6 +396,19 @@ def let_go(checks):
         checks.that(max(abs(place[0] - 100), abs(place[1])) < limit, f"{name}: the tip is where it was", place)
 
 
+def sudden(checks):
+    """Loads that begin an operation far above what the part bears: the run that ends there names them."""
+    for name, load, word in (("release", "FORCE  POINT 10. 10. Y -200000. load", "acts at once, with 200000 as the part is released: let its LIC begin at 0"),
+                             ("die", flat(9.5, 0).split("LIC")[0] + "FORCE  upper Y -20000. load",
+                              "the FORCE on die upper acts at once, with 20000 in the first step however short: let its LIC begin at 0"),
+                             ("side", "PRES2D block 3 2 900. load",
+                              "the load on block.3/load acts at once, with 900 in the first step however short: let its LIC begin at 0")):
+        deck = write(checks.path(f"sudden-{name}.lag"), HEAD + STEP + "OPERA  press\n" + flat(10, 0.5) + "OPERA  load\nLIC    load\n   0. 1.   1. 1.\n"
+                     + load + "\nEND\n")
+        result = run([deck, "--out", checks.path(f"sudden-{name}")])
+        checks.that(result.returncode == NO_CONVERGENCE and word in result.stderr, f"sudden, {name}: told", said(result))
+
+
 def main():
     with_h5py()
     checks = Checks()
@@ -402,6 +416,7 @@ def main():
     strokes(checks)
     others(checks)
     at_once(checks)
+    sudden(checks)
     held(checks)
     checked(checks)
     beginning(checks)
