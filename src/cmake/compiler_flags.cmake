@@ -13,7 +13,7 @@ function(flags_of compilers)
     "$<${here}:${flags_STRICT}>"
     "$<${here}:${flags_RESULTS}>"
     "$<$<AND:${here},$<OR:$<CONFIG:Debug>,$<CONFIG:Checked>>>:${flags_CHECKS}>"
-    "$<$<AND:${here},$<CONFIG:Debug>>:-O1>"
+    "$<$<AND:${here},$<CONFIG:Debug>>:-g;-O1>"
     "$<$<AND:${here},$<BOOL:${LAGAMINE_NATIVE}>>:${flags_NATIVE}>"
     "$<$<AND:${here},$<BOOL:${LAGAMINE_WERROR}>>:${flags_WERROR}>")
 endfunction()
@@ -23,17 +23,16 @@ endfunction()
 # Memory that temporaries do not get ends the program in words (-fcheck=mem, src/base/memory_limits.f90), not in a crash.
 flags_of(GNU
   STRICT -fcheck=mem -std=f2008 -pedantic -Wall -Wextra -Wno-unused-dummy-argument -Wimplicit-interface -Wconversion -fimplicit-none
-  CHECKS -g -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -fbacktrace
+  CHECKS -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -fbacktrace
   NATIVE -march=native
   WERROR -Werror -Wno-error=maybe-uninitialized)
 flags_of(Intel,IntelLLVM
   STRICT "SHELL:-stand f08" "SHELL:-warn all,nounused"
-  CHECKS -g "SHELL:-check all,noarg_temp_created,nouninit" -fpe0 -init=snan,arrays -traceback
+  CHECKS "SHELL:-check all,noarg_temp_created,nouninit" -fpe0 -init=snan,arrays -traceback
   RESULTS -fp-model=precise
   NATIVE -xHost
   WERROR "SHELL:-warn errors")
 flags_of(LLVMFlang,Flang
-  CHECKS -g
   NATIVE -march=native)
 
 set(here "$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>")
