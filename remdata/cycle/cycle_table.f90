@@ -296,7 +296,11 @@ contains
         way = row%action
       end associate
     end do
-    if (n < several .or. least*largest < 0 .or. largest - least > agree_within) way = ''
+    if (n < several) then
+      way = ''
+    else if (least*largest < 0 .or. largest - least > agree_within) then
+      way = ''
+    end if
   end function agreed_way
 
   !> Was a mesh taken up on which several tries agreed?

@@ -64,6 +64,7 @@ contains
     integer, intent(in) :: passes                 !! on each grid
     real(wp), intent(inout) :: x(:, 0:, 0:)       !! (2, 0:n, 0:m) [length]
     real(wp), allocatable :: coarse(:, :, :), before(:, :, :), density(:, :)
+    real(wp) :: around(2, 9)
     integer :: n(2), half(2), i, j, pass, times
 
     n = ubound(log_density)
@@ -93,8 +94,10 @@ contains
     do pass = 1, times
       do j = 1, n(2) - 1
         do i = 1, n(1) - 1
-          x(:, i, j) = relaxed(reshape(x(:, i - 1:i + 1, j - 1:j + 1), [2, 9]), &
-                               0.5_wp*(log_density(i + 1, j) - log_density(i - 1, j)), &
+          around(:, 1:3) = x(:, i - 1:i + 1, j - 1)
+          around(:, 4:6) = x(:, i - 1:i + 1, j)
+          around(:, 7:9) = x(:, i - 1:i + 1, j + 1)
+          x(:, i, j) = relaxed(around, 0.5_wp*(log_density(i + 1, j) - log_density(i - 1, j)), &
                                0.5_wp*(log_density(i, j + 1) - log_density(i, j - 1)))
         end do
       end do

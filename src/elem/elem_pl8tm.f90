@@ -21,7 +21,7 @@ module elem_pl8tm
   use kinematics_api, only: kinematics_t
   use law_api, only: driver_count, driver_temperature, heat_law, law_t
   use materials, only: material_t
-  use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
+  use quad8_geometry, only: derivatives, determinant, quad8_rule, quad8_rule_t
   use quadrature, only: square_rule
   use scene, only: group_t, plane_stress, role_body, scene_t
   use sections, only: thickness_at
@@ -212,20 +212,23 @@ contains
     real(wp), intent(in) :: motion(16)          !! of the nodes, x then y [length]
     type(heat_points_t), intent(out) :: place
     real(wp) :: y(2, 8), nx(8), ny(8), detj, before, thickness, jacobian(2, 2), section(3)
+    logical :: moved
     integer :: p
 
     y = x
     if (finite) y = x + transpose(reshape(motion, [8, 2]))
     section = scene%section
     if (finite) section = instant%section
+    moved = finite .or. any(abs(x - x0) > 0)
     do p = 1, rule%npoint
-      call derivatives(rule%dphi(:, :, p), x0, nx, ny, detj)
-      place%dv0(p) = detj*rule%weight(p)*thickness_at(scene%section, matmul(x0, rule%phi(:, p)))
-      call derivatives(rule%dphi(:, :, p), x, nx, ny, detj)
-      before = detj*thickness_at(section, matmul(x, rule%phi(:, p)))
-      place%worked(p) = before*rule%weight(p)
       call derivatives(rule%dphi(:, :, p), y, nx, ny, detj)
       thickness = thickness_at(section, matmul(y, rule%phi(:, p)))
+      place%dv0(p) = detj*rule%weight(p)*thickness
+      before = detj*thickness
+      if (finite) before = determinant(rule%dphi(:, :, p), x)*thickness_at(section, matmul(x, rule%phi(:, p)))
+      if (moved) place%dv0(p) = determinant(rule%dphi(:, :, p), x0)*rule%weight(p) &
+                                *thickness_at(scene%section, matmul(x0, rule%phi(:, p)))
+      place%worked(p) = before*rule%weight(p)
       place%valid = place%valid .and. detj > 0 .and. thickness > 0
       if (.not. place%valid) return
       place%dv(p) = detj*thickness*rule%weight(p)

@@ -7,7 +7,7 @@ module quad8_geometry
   use shape_functions, only: quad8
   implicit none
   private
-  public :: quad8_rule_t, quad8_rule, derivatives, places, slopes
+  public :: quad8_rule_t, quad8_rule, derivatives, determinant, places, slopes
 
   integer, parameter, public :: max_points = 9
   !> Points summed at once, and how often that covers all of them.
@@ -109,5 +109,15 @@ contains
       ny = 0
     end if
   end subroutine derivatives
+
+  !> The determinant alone, the same to the last bit.
+  pure function determinant(dphi, x) result(detj)
+    real(wp), intent(in) :: dphi(2, 8)   !! [-]
+    real(wp), intent(in) :: x(2, 8)      !! nodes [length]
+    real(wp) :: detj                     !! [length^2]
+
+    detj = dot_product(dphi(1, :), x(1, :))*dot_product(dphi(2, :), x(2, :)) &
+           - dot_product(dphi(1, :), x(2, :))*dot_product(dphi(2, :), x(1, :))
+  end function determinant
 
 end module quad8_geometry

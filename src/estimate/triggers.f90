@@ -48,8 +48,10 @@ contains
       if (scene%remesh%contact < never) call find_misfits(scene, solution, others)
       limit = max(scene%remesh%stress_error, worse*solution%estimate%first_stress)
       ! where the mesh is due anyhow its error is a reason from the first strain on
-      if (solution%estimate%stress > limit .and. (size(others) > 0 .or. error_counts(solution, limit, scene%remesh%error_strain))) &
-        call add(found, 'stress_error', solution%estimate%stress, limit)
+      if (solution%estimate%stress > limit) then
+        if (size(others) > 0 .or. error_counts(solution, limit, scene%remesh%error_strain)) &
+          call add(found, 'stress_error', solution%estimate%stress, limit)
+      end if
       found = [found, others]
     else if (any(abs(scene%remesh%shape) < never) .and. (was_good(scene, solution) .or. is_on_probation(solution%probation))) then
       call find_bad_shapes(scene, solution, found, only_turned_over=.true.)

@@ -19,7 +19,7 @@ with_h5py()
 import h5py  # noqa: E402
 import numpy as np  # noqa: E402
 
-from die_depth import depth, shape  # noqa: E402
+from die_depth import depths, shape  # noqa: E402
 from run_contact_cases import HEAD, PRESSED, S_DIE, WEDGE  # noqa: E402
 
 REMESH = 4
@@ -189,8 +189,8 @@ def misfits(checks, name, text, limit, wanted):
                     points = points[::2]
                 known = {part: max([0.0] + [p[names.index(part + "penetration")] for p in points if round(p[names.index(part + status)]) > 0])
                          for part, status in (("", "contact_status"), ("corner_", "contact_status"))}
-                depths = [depth(pieces, p) for p in shape(np.linspace(-1, 1, 65)).T @ x]
-                deep.append((np.nanmax(depths + [-1.0]) - max(known.values()))/(1e-3*side))
+                found = depths(pieces, shape(np.linspace(-1, 1, 65)).T @ x)
+                deep.append((np.nanmax([*found, -1.0]) - max(known.values()))/(1e-3*side))
                 poke.append(known["corner_"]/(1e-3*side))
             between.append(max(deep))
             corner.append(max(poke))

@@ -34,14 +34,14 @@ module law_cases
 
 contains
 
-  !> A law of the registry, by name.
+  !> A law of the registry, by name. The list is made once: it is of some thousand texts.
   function law_row(name) result(row)
     character(len=*), intent(in) :: name
     type(law_t) :: row
-    type(law_t), allocatable :: laws(:)
+    type(law_t), allocatable, save :: laws(:)
     integer :: i
 
-    call list_laws(laws)
+    if (.not. allocated(laws)) call list_laws(laws)
     do i = 1, size(laws)
       if (laws(i)%name == name) row = laws(i)
     end do

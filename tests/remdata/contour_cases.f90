@@ -107,6 +107,7 @@ contains
     do i = 1, size(into)
       into(i) = i
       do k = 1, i - 1
+        if (abs(scene%mesh%coordinates(1, i) - scene%mesh%coordinates(1, k)) > apart) cycle
         if (length_of(scene%mesh%coordinates(:, i) - scene%mesh%coordinates(:, k)) > apart) cycle
         into(i) = k
         exit

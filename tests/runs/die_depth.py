@@ -16,32 +16,44 @@ def cross(a, b):
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
-def depth(pieces, point):
-    """Depth of a point below the nearest point of a curve, negative outside; nan when that is beyond an open end."""
+def stationary(a, b, d):
+    """Places between -1 and 1 where the distance of each point from a parabola is stationary, nan for those that are none: (n, 3), of
+    a straight line (n, 1). `d` is the middle of the parabola less the points, (n, 2)."""
+    cubic = numpy.stack([numpy.full(len(d), 2 * a @ a), numpy.full(len(d), 3 * a @ b), b @ b + 2 * d @ a, d @ b], axis=1)
+    if not a.any():
+        xi = -cubic[:, 3:] / cubic[:, 2:3] + 0j
+    else:
+        companion = numpy.zeros((len(d), 3, 3))
+        companion[:, 0] = -cubic[:, 1:] / cubic[:, :1]
+        companion[:, 1, 0] = companion[:, 2, 1] = 1
+        xi = numpy.linalg.eigvals(companion)
+    return numpy.where((abs(xi.imag) < 1e-9) & (abs(xi.real) < 1), xi.real, numpy.nan)
+
+
+def depths(pieces, points):
+    """Depth of points (n, 2) below the nearest point of a curve, negative outside; nan when that is beyond an open end."""
     a = 0.5 * (pieces[:, 0] + pieces[:, 2]) - pieces[:, 1]
     b = 0.5 * (pieces[:, 2] - pieces[:, 0])
     c = pieces[:, 1]
-    best, found = numpy.inf, numpy.nan
+    best, found = numpy.full(len(points), numpy.inf), numpy.full(len(points), numpy.nan)
     for k in range(len(pieces)):
-        d = c[k] - point
-        roots = numpy.roots([2 * a[k] @ a[k], 3 * a[k] @ b[k], b[k] @ b[k] + 2 * d @ a[k], d @ b[k]])
-        for xi in [x.real for x in roots if abs(x.imag) < 1e-9 and abs(x.real) < 1]:
-            way = point - (c[k] + b[k] * xi + a[k] * xi * xi)
-            distance = numpy.hypot(*way)
-            if distance < best:
-                best, found = distance, -numpy.sign(cross(b[k] + 2 * a[k] * xi, way)) * distance
+        for xi in stationary(a[k], b[k], c[k] - points).T[:, :, None]:
+            way = points - (c[k] + b[k] * xi + a[k] * xi * xi)
+            distance = numpy.hypot(way[:, 0], way[:, 1])
+            nearer = distance < best        # false for nan
+            found = numpy.where(nearer, -numpy.sign(cross(b[k] + 2 * a[k] * xi, way)) * distance, found)
+            best = numpy.where(nearer, distance, best)
     closed = numpy.allclose(pieces[0, 0], pieces[-1, 2], rtol=0, atol=1e-12)
     for k in range(len(pieces) + 1):
-        vertex = pieces[k, 0] if k < len(pieces) else pieces[-1, 2]
-        distance = numpy.hypot(*(point - vertex))
-        if distance >= best - 1e-12:
-            continue
-        best = distance
+        way = points - (pieces[k, 0] if k < len(pieces) else pieces[-1, 2])
+        distance = numpy.hypot(way[:, 0], way[:, 1])
+        nearer = distance < best - 1e-12
+        best = numpy.where(nearer, distance, best)
         if k in (0, len(pieces)) and not closed:
-            found = numpy.nan
+            found = numpy.where(nearer, numpy.nan, found)
             continue
         before, after = b[k - 1] + 2 * a[k - 1], b[k % len(pieces)] - 2 * a[k % len(pieces)]
-        found = distance * numpy.sign(cross(before, after))
+        found = numpy.where(nearer, distance * numpy.sign(cross(before, after)), found)
     return found
 
 
@@ -66,16 +78,15 @@ def sampled(path, number=65):
                 state = place[f"points/{g}/state"][()]
                 pressures = state[:, :, [k for k, word in enumerate(names) if word in ("pressure", "corner_pressure")]]
                 turn = numpy.array([[numpy.cos(pilot[2]), -numpy.sin(pilot[2])], [numpy.sin(pilot[2]), numpy.cos(pilot[2])]])
-                worst = share = 0.0
-                where = None
-                for nodes in group["connectivity"][()]:
-                    x = (place["coordinates"][()][nodes] - pilot[:2]) @ turn
-                    side = numpy.hypot(*(first[nodes[2]] - first[nodes[0]]))
-                    for value, point in zip(xi, shape(xi).T @ x):
-                        d = depth(pieces, point)
-                        if d > worst:
-                            worst, where = d, (nodes.tolist(), round(float(value), 3))
-                        share = max(share, d / side) if d == d else share
+                connectivity, coordinates = group["connectivity"][()], place["coordinates"][()]
+                points = numpy.concatenate([shape(xi).T @ ((coordinates[nodes] - pilot[:2]) @ turn) for nodes in connectivity])
+                found = depths(pieces, points)
+                side = numpy.repeat([numpy.hypot(*(first[nodes[2]] - first[nodes[0]])) for nodes in connectivity], number)
+                share = max(0.0, *(found / side)[~numpy.isnan(found)])
+                found = numpy.where(found > 0, found, 0.0)      # nan too
+                k = int(found.argmax())
+                worst = float(found[k])
+                where = (connectivity[k // number].tolist(), round(float(xi[k % number]), 3)) if worst > 0 else None
                 rows.append({"step": int(step), "time": float(place.attrs["time"]), "group": name, "depth": worst, "share": share,
                              "where": where, "least_pressure": float(pressures.min()), "most_pressure": float(pressures.max())})
     return rows

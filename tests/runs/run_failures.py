@@ -136,7 +136,16 @@ def full_disk(checks):
 
 
 def report_says_why(checks, out, result, what):
-    """Of a run that has left no fields, lagareport repeats why, where the listing has it."""
+    """Of a run that has left no fields, lagareport repeats why, where the listing has it. What can be read is not drawn."""
+    sys.path.insert(0, os.path.join(SOURCE, "src", "report"))
+    from lagamine_report import ReportError, Run  # pylint: disable=import-outside-toplevel
+
+    try:
+        Run(out)
+    except ReportError:
+        pass
+    else:
+        return
     page = subprocess.run([os.path.join(BIN, "lagareport"), out, "--out", checks.path("page.html"), "--quiet"], text=True, check=False,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     listing = os.path.join(out, "upsetting.log")

@@ -208,6 +208,8 @@ def result_differences(first, second, previous=True):
         if not (os.path.isfile(one) and os.path.isfile(two)):
             wrong.append(f"{name} is not in both folders")
         elif name.endswith(".h5"):
+            if read_bytes(one) == read_bytes(two):      # the instants that it links to are files of the folder, compared as well
+                continue
             # Deck's path as it was called is not part of the state.
             inside = h5_differences(one, two, leave_out=("deck/path",))
             if inside:
