@@ -14,7 +14,7 @@
 !> none of it is viscous. Under loads that grow there is none to be looked for: a limit point is a limit load (goes_past_limits).
 module pseudo_transient
   use contact_changes, only: contact_states_t, recall_contact, remember_contact
-  use convergence, only: free_force, slope_along
+  use convergence, only: forces_of_others, free_force, slope_along
   use corrections, only: solve_correction
   use dofs, only: dofs_t, is_driven
   use elem_api, only: block_done, report_t
@@ -68,7 +68,7 @@ contains
       if (shift%value > 0) call add_diagonal(solve%pattern, solve%equation, shift%value*shift%volume, solve%values)
       call solve_correction(equations, residual, correction, error)
       if (allocated(error)) return
-      shift%uphill = slope_along(equations, correction, residual) < 0
+      shift%uphill = work_of(equations, correction, residual) < 0
       ! what is evaluated next has another matrix
       if (shift%uphill) shift%matrix = solve%values
     end associate
@@ -119,17 +119,27 @@ contains
       end if
       do k = 1, most_shifts
         associate (more => max((larger - 1)*shift%value, &
-                               2*abs(slope_along(equations, correction, residual))/sum(shift%volume*correction**2)))
+                               2*abs(work_of(equations, correction, residual))/sum(shift%volume*correction**2)))
           call add_diagonal(solve%pattern, solve%equation, more*shift%volume, solve%values)
           shift%value = shift%value + more
         end associate
         call solve_correction(equations, residual, correction, error)
         if (allocated(error)) exit
-        if (.not. slope_along(equations, correction, residual) < 0) exit
+        if (.not. work_of(equations, correction, residual) < 0) exit
       end do
     end associate
     shift%largest = max(shift%largest, shift%value)
   end subroutine turn_downhill
+
+  !> Work that the residual does on a correction found by the matrix at hand, below 0 uphill.
+  pure function work_of(equations, correction, residual) result(work)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: correction(:)   !! (ndof) [unknown]
+    real(wp), intent(in) :: residual(:)     !! (ndof) [residual]
+    real(wp) :: work
+
+    work = slope_along(equations, correction, residual - forces_of_others(equations, correction))
+  end function work_of
 
   !> Past a limit point equilibrium is looked for further on: where a die or a support moves, or no load grows. Under loads that
   !> grow, and nothing else that drives the part, the point is a limit load, and the run ends there. Loads that rest are borne at
