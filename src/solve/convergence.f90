@@ -185,10 +185,10 @@ contains
     end if
   end function slope_along
 
-  !> Forces that a correction of the other quantities takes on the motion, by the matrix at hand; 0 where one is solved for. They are
-  !> no part of the work of a correction: with K the matrix of the motion, residual - others = K du, and du K du is the energy that a
-  !> line search uses, above 0 unless the motion is past a limit point. du times the residual is not, as where a temperature alone is
-  !> out of balance and the motion follows it.
+  !> Forces that a correction of the other quantities takes on the motion, by the matrix at hand; 0 where one is solved for. They
+  !> are no part of the work of a correction: with K the matrix of the motion, residual - others = K du, and du K du is the energy
+  !> that a line search uses, above 0 unless the motion is past a limit point. du times the residual is not, as where a temperature
+  !> alone is out of balance and the motion follows it.
   pure function forces_of_others(equations, correction) result(others)
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: correction(:)   !! (ndof) [unknown]
