@@ -113,17 +113,23 @@ contains
     end associate
   end subroutine judge_start
 
-  !> A side that two cards of convection name, at one time: their exchanges add up.
+  !> A side, or a face of a sheet, that two cards of convection name, at one time: their exchanges add up.
   subroutine judge_exchange(scene, g, warnings)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g   !! number of the group
     type(string_t), allocatable, intent(inout) :: warnings(:)
     integer :: k, s, n
 
-    if (.not. cools_side(scene%groups(g))) return
+    if (.not. cools(scene%groups(g))) return
     do k = 1, g - 1
-      if (.not. cools_side(scene%groups(k))) cycle
+      if (.not. cools(scene%groups(k))) cycle
       if (.not. act_together(scene, scene%groups(g)%exchange%multiplier, scene%groups(k)%exchange%multiplier)) cycle
+      associate (these => scene%groups(g)%exchange%faces, those => scene%groups(k)%exchange%faces)
+        if (any(these .and. those) .and. scene%groups(g)%host == scene%groups(k)%host) &
+          call add(warnings, scene%groups(g)%name//' and '//scene%groups(k)%name &
+                   //': a face is on both, and has the sum of both exchanges')
+        if (any(these .or. those)) cycle
+      end associate
       associate (here => scene%groups(g)%connectivity, there => scene%groups(k)%connectivity)
         n = 0
         do s = 1, size(here, 2)
@@ -183,12 +189,12 @@ contains
     end function is_on
   end function act_together
 
-  pure function cools_side(group) result(yes)
+  pure function cools(group) result(yes)
     type(group_t), intent(in) :: group
     logical :: yes
 
-    yes = group%exchange%kind == by_convection .and. group%die == 0 .and. size(group%connectivity, 1) == 3
-  end function cools_side
+    yes = group%exchange%kind == by_convection .and. group%die == 0
+  end function cools
 
   !> A probe of the hardness of a steel that has none, or none of a phase that may form.
   subroutine judge_hardness(scene, warnings)

@@ -1,8 +1,10 @@
-!> FLUX, CONVE, RADIA and HEATS: heat that passes sides of bodies, or comes from their volume; THETA: its balance in time.
+!> FLUX, CONVE, RADIA and HEATS: heat that passes sides of bodies or faces of sheets, or comes from volumes; THETA: its balance
+!> in time.
 module cards_heat
   use card_groups, only: close_group, start_group
   use card_places, only: numbers_after_name, read_sides
   use cards_sides, only: refuse_inner_sides
+  use deck_card, only: deck_field_t
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
@@ -11,7 +13,7 @@ module cards_heat
   use kinds, only: wp
   use loads, only: by_convection, by_flux, by_radiation, exchange_t
   use quadrature, only: rule_gauss, rule_t
-  use scene, only: group_t, is_solid
+  use scene, only: group_t, is_solid, plane_state_names, plane_stress
   use scene_draft, only: close_card, draft_t, next_of_words, only_card, words_of
   use strategy, only: coupling_monolithic, scheme_theta, scheme_tr_bdf2
   use text, only: join, string_t, to_text
@@ -26,7 +28,7 @@ contains
 
   !> All cards `FLUX place Q q [lic]`, `CONVE place H h [lic] TS temperature [lic]` and
   !> `RADIA place EPS emissivity SIGMA constant ZERO temperature TS temperature [lic]`; rows after them: pairs of a temperature of
-  !> the surface and a factor. `HEATS body Q q [lic]` likewise.
+  !> the surface and a factor. `HEATS body Q q [lic]` likewise. In plane stress the place may be `body FACES 1 2`.
   subroutine read_exchanges(deck, draft, diagnostics)
     type(deck_t), intent(inout), target :: deck
     type(draft_t), intent(inout) :: draft
@@ -34,18 +36,25 @@ contains
     type(cursor_t) :: cursor
     type(group_t) :: group
     character(len=:), allocatable :: label
+    logical :: on_faces
     integer :: i, g, f
 
     do i = 1, size(deck%cards)
       associate (keyword => deck%cards(i)%keyword)
         if (all(keyword /= [character(len=5) :: 'FLUX', 'CONVE', 'RADIA', 'HEATS'])) cycle
         call cursor%open(deck%cards(i), diagnostics)
-        call start_group(keyword, draft, group)
+        on_faces = keyword /= 'HEATS' .and. is_faces(deck%cards(i)%head%fields)
+        if (on_faces) then
+          call start_group('FACES', draft, group)
+        else
+          call start_group(keyword, draft, group)
+        end if
         group%rule = rule_t(rule_gauss, npoint)
         f = 0
         if (draft%groups_sound) f = find_field(draft%scene%fields, 'temperature')
-        if (keyword == 'HEATS') then
+        if (keyword == 'HEATS' .or. on_faces) then
           call read_heated_body(cursor, draft, f, label, group)
+          if (on_faces) call read_faces(cursor, draft, label, group%exchange%faces)
         else
           call read_sides(cursor, draft, numbers_after_name(deck%cards(i)), label, group%connectivity, field=f)
           call refuse_inner_sides(cursor, draft, group%connectivity)
@@ -63,7 +72,40 @@ contains
     end do
   end subroutine read_exchanges
 
-  !> The body whose elements release heat.
+  !> A place that is the faces of a sheet: `body FACES`.
+  pure function is_faces(fields) result(yes)
+    type(deck_field_t), intent(in) :: fields(:)   !! (nfield) behind the keyword
+    logical :: yes
+
+    yes = size(fields) > 1
+    if (yes) yes = fields(2)%text == 'FACES'
+  end function is_faces
+
+  !> `FACES 1 2`: the faces of a sheet that pass heat, one or both of them.
+  subroutine read_faces(cursor, draft, label, faces)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    character(len=:), allocatable, intent(inout) :: label
+    logical, intent(inout) :: faces(2)
+    type(string_t), allocatable :: words(:)
+    integer :: k
+
+    if (cursor%failed()) return
+    call words_of('FACES', words)
+    call cursor%name('FACES', words, k)
+    do while (cursor%next_is_number() .or. .not. any(faces))
+      call cursor%integer('a face of the sheet, 1 or 2', k, lower=1, upper=2)
+      if (cursor%failed()) return
+      if (faces(k)) call cursor%fail('face '//to_text(k)//' is given twice')
+      label = label//trim(merge('+    ', '.face', any(faces)))//to_text(k)
+      faces(k) = .true.
+    end do
+    if (all(draft%scene%plane_state /= [0, plane_stress])) &
+      call cursor%fail('FACES are those of a sheet, STATE PLSTS: in '//trim(plane_state_names(draft%scene%plane_state)) &
+                       //' a body has no faces')
+  end subroutine read_faces
+
+  !> The body whose elements release heat, or pass it through their faces.
   subroutine read_heated_body(cursor, draft, field, label, group)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft

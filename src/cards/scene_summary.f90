@@ -6,7 +6,7 @@ module scene_summary
   use kinds, only: pi, wp
   use linear_api, only: solver_row_t
   use linear_registry, only: list_solvers
-  use loads, only: field_history_t
+  use loads, only: by_flux, by_radiation, field_history_t
   use quadrature, only: rule_along, rule_control, rule_equidistant, rule_t
   use remesher_windows, only: window_text
   use remeshing, only: criterion_names, has_limit, is_upper, ncriteria, never
@@ -205,7 +205,8 @@ contains
       if (scene%groups(g)%elem == 'CENTR') s = s//'^2'
       if (scene%groups(g)%elem == 'LOADF') s = found_by()
       if (scene%groups(g)%is_spring) s = ', '//to_text(scene%groups(g)%stiffness, 3)//' per volume'
-      if (any(scene%groups(g)%elem == [character(len=5) :: 'FLUX', 'CONVE', 'RADIA', 'HEATS'])) s = exchange_of(scene%groups(g))
+      if (any(scene%groups(g)%elem == [character(len=5) :: 'FLUX', 'CONVE', 'RADIA', 'HEATS', 'FACES'])) &
+        s = exchange_of(scene%groups(g))
       if (scene%groups(g)%source > 0) s = torch_of(scene%sources(scene%groups(g)%source))
       if (scene%groups(g)%temperature_history > 0) s = s//history_of(scene%histories(scene%groups(g)%temperature_history))
       if (scene%groups(g)%temperature_multiplier > 0) &
@@ -241,9 +242,9 @@ contains
       associate (exchange => group%exchange)
         s = ', '//to_text(exchange%amplitude)//times(exchange%multiplier)
         if (allocated(exchange%table)) s = s//' by temperature'
-        if (group%elem == 'FLUX' .or. group%elem == 'HEATS') return
+        if (exchange%kind == by_flux) return
         s = s//', surroundings '//to_text(exchange%surroundings)//times(exchange%surroundings_multiplier)
-        if (group%elem == 'RADIA') s = s//', absolute zero '//to_text(-exchange%zero)
+        if (exchange%kind == by_radiation) s = s//', absolute zero '//to_text(-exchange%zero)
       end associate
     end function exchange_of
 

@@ -2,15 +2,14 @@
 module driver_sources
   use drivers, only: at_body_effusivity, at_corner_place, at_die_effusivity, at_status, driver_source_t, drivers_t, flow_name, &
                      from_effusivity, from_field, from_flow, from_itself, from_nothing, from_state, from_stress, from_stretch, &
-                     from_unloading, &
-                     is_scalar, of_contact
+                     from_unloading, is_scalar, of_contact
   use fields, only: find_field
   use kinds, only: wp
   use heat_sources, only: work_name
   use law_api, only: driver_count, driver_t, driver_temperature, heat_law, law_t, solid_law
   use materials, only: has_number
   use point_temperatures, only: temperature_field
-  use scene, only: host_of, is_solid, plane_stress, role_contact, role_heat_contact, scene_t
+  use scene, only: host_of, is_solid, plane_stress, role_contact, role_heat_contact, role_volume_load, scene_t
   use state_variables, only: find_variable
   use strategy, only: coupling_monolithic
   use stress_measures, only: measure_names, nmeasure
@@ -42,10 +41,21 @@ contains
           n = driver_count(laws(law))
           if (n == 1 .and. group%role /= role_contact) n = 0
           m = n
-          if (is_heated_by_work(scene, g, laws(law)) .or. is_stretched(scene, g, laws(law))) m = n + 1
+          if (is_heated_by_work(scene, g, laws(law))) m = n + 1
+          if (laws(law)%kind == heat_law .and. stretching_group(scene, g) > 0) m = n + 1
+        else if (group%role == role_volume_load .and. group%brings_heat .and. stretching_group(scene, g) > 0) then
+          m = 1
         end if
         allocate (drivers(g)%value(m, 2, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
         allocate (drivers(g)%source(m))
+        if (m > n) then
+          if (stretching_group(scene, g) > 0) then
+            drivers(g)%source(m) = source_of_stretch(scene, g)
+          else
+            drivers(g)%source(m) = source_of_unloading(scene, source_of(scene, g, work_name))
+          end if
+          drivers(g)%value(m, :, :, :) = 1
+        end if
         if (n == 0) cycle
         if (group%role == role_contact) then
           call find_bodies_behind(scene, group%connectivity(2, :), drivers(g)%body, drivers(g)%element, drivers(g)%side)
@@ -55,14 +65,6 @@ contains
           if (is_asked_for(scene, g, laws(law)%drivers(k - 1))) &
             drivers(g)%source(k) = source_of(scene, g, laws(law)%drivers(k - 1)%name)
         end do
-        if (m > n) then
-          if (is_stretched(scene, g, laws(law))) then
-            drivers(g)%source(m) = source_of_stretch(scene, g)
-          else
-            drivers(g)%source(m) = source_of_unloading(scene, source_of(scene, g, work_name))
-          end if
-          drivers(g)%value(m, :, :, :) = 1
-        end if
         if (follows_temperature(scene, laws, g, drivers(g)%source)) then
           deallocate (drivers(g)%value)
           allocate (drivers(g)%value(n, 3, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
@@ -93,16 +95,19 @@ contains
     end do
   end function is_heated_by_work
 
-  !> Heat in a body whose thickness stretches.
-  pure function is_stretched(scene, g, law) result(yes)
+  !> The formulation on the elements of a group whose points stretch across the plane in large strain, 0 for none.
+  pure function stretching_group(scene, g) result(group)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g   !! number of the group
-    type(law_t), intent(in) :: law
-    logical :: yes
+    integer :: group
+    integer :: k
 
-    yes = law%kind == heat_law .and. scene%finite .and. scene%plane_state == plane_stress .and. scene%groups(g)%host > 0
-    if (yes) yes = find_variable(scene%groups(scene%groups(g)%host)%variables, 'stretch_zz') > 0
-  end function is_stretched
+    group = 0
+    if (.not. (scene%finite .and. scene%plane_state == plane_stress)) return
+    do k = 1, size(scene%groups)
+      if (host_of(scene, k) == host_of(scene, g) .and. find_variable(scene%groups(k)%variables, 'stretch_zz') > 0) group = k
+    end do
+  end function stretching_group
 
   !> The stretch across the plane of the body that a group is a formulation on.
   pure function source_of_stretch(scene, g) result(source)
@@ -112,9 +117,9 @@ contains
 
     source%kind = from_stretch
     allocate (source%group(size(scene%groups)), source%row(size(scene%groups)), source=0)
-    associate (host => scene%groups(g)%host)
-      source%group(host) = host
-      source%row(host) = scene%groups(host)%variables(find_variable(scene%groups(host)%variables, 'stretch_zz'))%first
+    associate (k => stretching_group(scene, g), body => host_of(scene, g))
+      source%group(body) = k
+      source%row(body) = scene%groups(k)%variables(find_variable(scene%groups(k)%variables, 'stretch_zz'))%first
     end associate
   end function source_of_stretch
 

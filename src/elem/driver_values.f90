@@ -115,7 +115,9 @@ contains
         case (from_stretch)
           ! so does this
           if (at == 2) cycle
-          own%value(k, 1, :, :) = solution%groups(group%host)%committed(own%source(k)%row(group%host), :, :)
+          associate (body => host_of(scene, g))
+            own%value(k, 1, :, :) = solution%groups(own%source(k)%group(body))%committed(own%source(k)%row(body), :, :)
+          end associate
           own%value(k, 2, :, :) = own%value(k, 1, :, :)
         case (from_itself)
           if (at == 1) own%value(k, at, :, :) = solution%groups(g)%committed(own%source(k)%row(g), :, :)

@@ -1,8 +1,12 @@
-!> HEATS: heat released in the volume of a body.
+!> HEATS: heat released in the volume of a body; FACES: heat that passes the faces of a sheet in plane stress.
 !>
 !> q per present volume, an amplitude (by the temperature, where a table is given) times a multiplier:
 !> F_i = -sum_k w_k sum phi_i q(T_k) dv at the instants k of the flow rule (elem_api). Linearised exactly, along the displacements
-!> too. Where temperatures stand on corners the source is lumped there, as the capacity is.
+!> too. Where temperatures stand on corners the source is lumped there, as the capacity is. In plane stress of finite strains dv
+!> has the thickness at the start of the step, as in PL8TM.
+!> The faces of a sheet have q per present area, as sides do (elem_heat_sides), and dv over the thickness for each of them: the
+!> temperature is one across the sheet, as of a fin.
+!> Source: H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, sec. 4.2 (thin rods that lose heat from their surface).
 module elem_heat_source
   use elem_api, only: block_inverted, elem_t, first_unknown, instant_t, layout_t, mode_advance, no_variables, report_t, that_reads
   use elem_heat_sides, only: flow_in
@@ -15,7 +19,7 @@ module elem_heat_source
   use scene, only: group_t, role_volume_load, scene_t
   implicit none
   private
-  public :: elem_heats_row
+  public :: elem_heats_row, elem_faces_row
 
   !> The temperature is the first of the element's unknowns.
   integer, parameter :: temperature = 1
@@ -25,8 +29,21 @@ contains
   function elem_heats_row() result(row)
     type(elem_t) :: row
 
-    row%name = 'HEATS'
-    row%purpose = 'heat released in the volume of a body'
+    row = common_row('HEATS', 'heat released in the volume of a body')
+  end function elem_heats_row
+
+  function elem_faces_row() result(row)
+    type(elem_t) :: row
+
+    row = common_row('FACES', 'heat through the faces of a sheet')
+  end function elem_faces_row
+
+  function common_row(name, purpose) result(row)
+    character(len=*), intent(in) :: name, purpose
+    type(elem_t) :: row
+
+    row%name = name
+    row%purpose = purpose
     row%nnode = 8
     row%role = role_volume_load
     allocate (row%unknowns, source=[that_reads('temperature'), that_reads('displacement')])
@@ -35,7 +52,7 @@ contains
     allocate (row%options(0))
     row%variables => no_variables
     row%compute => compute
-  end function elem_heats_row
+  end function common_row
 
   subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                      force, stiffness, report)
@@ -74,6 +91,11 @@ contains
         report%status = block_inverted
         report%element = first + e - 1
         return
+      end if
+      if (any(group%exchange%faces)) then
+        place%dv(:rule%npoint) = place%dv(:rule%npoint)*count(group%exchange%faces)/scene%section(1)
+      else if (size(drivers, 1) > 0) then
+        place%dv(:rule%npoint) = place%dv(:rule%npoint)*drivers(1, 1, :, e)
       end if
       do k = 1, instant%flow%n
         t(:n) = start(:n, e) + instant%flow%share(k)*du(:n, e)

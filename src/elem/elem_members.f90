@@ -6,7 +6,7 @@ submodule(elem_registry) elem_members
   use elem_cntdf, only: elem_cntdf_row
   use elem_die_heat, only: elem_dietm_row
   use elem_heat_contact, only: elem_cndtm_row, elem_cnttm_row
-  use elem_heat_source, only: elem_heats_row
+  use elem_heat_source, only: elem_faces_row, elem_heats_row
   use elem_heat_sides, only: elem_conve_row, elem_flux_row, elem_radia_row
   use elem_load_factor, only: elem_loadf_row
   use elem_pl8ls, only: elem_pl8ls_row
@@ -18,7 +18,7 @@ submodule(elem_registry) elem_members
 contains
 
   module procedure list_elems
-    allocate (elems(18))
+    allocate (elems(19))
     elems(1) = elem_pl8ls_row()
     elems(2) = elem_cnt2d_row()
     elems(3) = elem_cntdf_row()
@@ -37,6 +37,7 @@ contains
     elems(16) = elem_dietm_row()
     elems(17) = elem_bsprg_row()
     elems(18) = elem_loadf_row()
+    elems(19) = elem_faces_row()
   end procedure list_elems
 
 end submodule elem_members

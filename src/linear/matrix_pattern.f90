@@ -3,7 +3,7 @@ module matrix_pattern
   use kinds, only: wp
   implicit none
   private
-  public :: add_to_diagonal, matrix_pattern_t, quadratic_form
+  public :: add_to_diagonal, matrix_pattern_t
 
   type :: matrix_pattern_t
     integer :: neq = 0, nnz = 0
@@ -25,25 +25,5 @@ contains
       if (pattern%row(k) == pattern%column(k)) values(k) = values(k) + diagonal(pattern%row(k))
     end do
   end subroutine add_to_diagonal
-
-  !> x K x.
-  pure function quadratic_form(pattern, values, x) result(form)
-    class(matrix_pattern_t), intent(in) :: pattern
-    real(wp), intent(in) :: values(:)   !! (nnz) [residual/unknown]
-    real(wp), intent(in) :: x(:)        !! (neq) [unknown]
-    real(wp) :: form, off_diagonal
-    integer :: k
-
-    form = 0
-    off_diagonal = 0
-    do k = 1, pattern%nnz
-      if (pattern%row(k) == pattern%column(k)) then
-        form = form + values(k)*x(pattern%row(k))**2
-      else
-        off_diagonal = off_diagonal + values(k)*x(pattern%row(k))*x(pattern%column(k))
-      end if
-    end do
-    form = form + merge(2, 1, pattern%symmetric)*off_diagonal
-  end function quadratic_form
 
 end module matrix_pattern

@@ -91,9 +91,11 @@ module loads
   !> Kinds of heat exchange: a given flow, convection, radiation.
   integer, parameter :: by_flux = 1, by_convection = 2, by_radiation = 3
 
-  !> Heat that passes a side, or comes from a volume (elem_heat_sides, elem_heat_source).
+  !> Heat that passes a side, comes from a volume, or passes the faces of a sheet (elem_heat_sides, elem_heat_source).
   type :: exchange_t
     integer :: kind = by_flux
+    !> The faces of a sheet that heat passes; none where it passes sides, or comes from the volume.
+    logical :: faces(2) = .false.
     !> Heat flow per area, coefficient of convection, or emissivity times the constant of radiation; times a multiplier, 0 for none.
     real(wp) :: amplitude = 0.0_wp
     integer :: multiplier = 0

@@ -8,7 +8,8 @@ module convergence
   use kinds, only: wp
   implicit none
   private
-  public :: relative_residual, relative_motion, free_force, pilots_in_equilibrium, heat_in_balance, slope_along, weigh_quantities
+  public :: relative_residual, relative_motion, forces_of_others, free_force, pilots_in_equilibrium, heat_in_balance, slope_along, &
+            weigh_quantities
 
   !> Motions below this share of the mesh's size are round-off of coordinates; changes of another quantity below this share of its
   !> largest value likewise.
@@ -183,6 +184,39 @@ contains
       slope = sum(correction*residual, mask=equations%dofs%quantity == 1)
     end if
   end function slope_along
+
+  !> Forces that a correction of the other quantities takes on the motion, by the matrix at hand; 0 where one is solved for. They
+  !> are no part of the work of a correction: with K the matrix of the motion, residual - others = K du, and du K du is the energy
+  !> that a line search uses, above 0 unless the motion is past a limit point. du times the residual is not, as where a temperature
+  !> alone is out of balance and the motion follows it.
+  pure function forces_of_others(equations, correction) result(others)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: correction(:)   !! (ndof) [unknown]
+    real(wp) :: others(size(correction))    !! [residual]
+    integer :: dof(equations%solves(equations%now)%neq)
+    integer :: d, k, q
+
+    others = 0
+    if (count([(is_solved_for(equations, q), q=1, size(equations%dofs%quantities))]) < 2) return
+    associate (solve => equations%solves(equations%now))
+      do d = 1, size(correction)
+        if (solve%equation(d) > 0) dof(solve%equation(d)) = d
+      end do
+      do k = 1, solve%pattern%nnz
+        call add(dof(solve%pattern%row(k)), dof(solve%pattern%column(k)))
+        if (solve%pattern%symmetric) call add(dof(solve%pattern%column(k)), dof(solve%pattern%row(k)))
+      end do
+    end associate
+
+  contains
+
+    pure subroutine add(to, from)
+      integer, intent(in) :: to, from   !! unknowns of the row and the column of a nonzero
+
+      if (equations%dofs%quantity(to) /= 1 .or. equations%dofs%quantity(from) == 1) return
+      others(to) = others(to) + equations%solves(equations%now)%values(k)*correction(from)
+    end subroutine add
+  end function forces_of_others
 
   !> A quantity is among those of the solve under way.
   pure function is_solved_for(equations, q) result(yes)

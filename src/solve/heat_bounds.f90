@@ -71,7 +71,7 @@ contains
         if (.not. equations%dofs%is_free(d)) call widen(value(k) + du(d), low, high)
       end do
       do g = 1, size(scene%groups)
-        if (scene%groups(g)%role /= role_side_load) cycle
+        if (all(scene%groups(g)%role /= [role_side_load, role_volume_load])) cycle
         associate (exchange => scene%groups(g)%exchange)
           do at = 0, 1
             surroundings = exchange%surroundings

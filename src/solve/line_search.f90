@@ -1,5 +1,8 @@
 !> How far to go along a correction: the whole of it, unless that is too far.
 !>
+!> The residual along the correction is that of the motion; where temperatures are solved for with it, at those at the end of the
+!> correction: at a share s of it without what the rest of their correction does to the motion (forces_of_others).
+!>
 !> The whole is taken when the residual along the correction falls to `search_above` of what it was,
 !> or the whole residual falls. Otherwise the zero of the residual along the correction is sought by
 !> regula falsi in the bracket found (M.A. Crisfield, Non-linear Finite Element Analysis, vol. 1, sec. 9.2). Where
@@ -23,7 +26,7 @@
 !> whatever the residual: with the die in its matrix the next correction is the right one.
 module line_search
   use contact_changes, only: loses_a_die
-  use convergence, only: free_force, slope_along
+  use convergence, only: forces_of_others, free_force, slope_along
   use elem_api, only: block_done, report_t
   use equations, only: equations_t
   use evaluation, only: evaluate
@@ -66,13 +69,15 @@ contains
     real(wp), intent(inout) :: du(:)   !! (ndof) [unknown]
     real(wp), intent(out) :: s
     type(report_t), intent(out) :: report
-    real(wp) :: start(size(du)), trial, slope0, slope, enough, best, norm, norm0, near(2), far(2), touching, missed
+    real(wp), dimension(size(du)) :: start, others
+    real(wp) :: trial, slope0, slope, enough, best, norm, norm0, near(2), far(2), touching, missed
     logical :: accepted, lost
     integer :: k, most
 
     start = du
     trial = 1
-    slope0 = slope_along(equations, correction, residual)
+    others = forces_of_others(equations, correction)
+    slope0 = slope_along(equations, correction, residual - others)
     enough = merge(search_closely_above, search_above, manner%closely)
     if (manner%exactly) enough = search_exactly_above
     norm0 = free_force(equations, residual)
@@ -93,7 +98,7 @@ contains
         far = 0
         cycle
       end if
-      slope = slope_along(equations, correction, external - equations%force)
+      slope = slope_along(equations, correction, external - equations%force - (1 - trial)*others)
       norm = free_force(equations, external - equations%force)
       if (abs(slope) < best) then
         best = abs(slope)

@@ -16,7 +16,7 @@
 !> Under loads that grow there is no equilibrium to be looked for: a limit point is a limit load (goes_past_limits).
 module pseudo_transient
   use contact_changes, only: contact_states_t, recall_contact, remember_contact
-  use convergence, only: free_force
+  use convergence, only: forces_of_others, free_force, slope_along
   use corrections, only: solve_correction
   use dofs, only: dofs_t, is_driven
   use elem_api, only: block_done, report_t
@@ -27,7 +27,6 @@ module pseudo_transient
   use linear_solver, only: negative_eigenvalues
   use line_search, only: real_fall
   use loads, only: multiplier_at
-  use matrix_pattern, only: quadratic_form
   use pairs, only: pairs_differ, pairs_t
   use scene, only: role_contact, role_side_load, role_volume_load, scene_t
   use sections, only: section_forced
@@ -75,7 +74,8 @@ contains
       if (shift%value > 0) call add_diagonal(solve%pattern, solve%equation, shift%value*shift%volume, solve%values)
       call solve_correction(equations, residual, correction, error)
       if (allocated(error)) return
-      shift%uphill = work_along(equations, correction) < 0 .or. equations%downhill .and. negative_eigenvalues(solve%solver) > 0
+      shift%uphill = work_of(equations, correction, residual) < 0 &
+                     .or. equations%downhill .and. negative_eigenvalues(solve%solver) > 0
       ! what is evaluated next has another matrix
       if (.not. shift%uphill) return
       shift%matrix = solve%values
@@ -85,25 +85,7 @@ contains
     end associate
   end subroutine solve_shifted
 
-  !> c K c of a correction of the motion, by the matrix of now. Where temperatures are found in the same solve it is not the work of
-  !> the residual, a part of which they answer.
-  pure function work_along(equations, correction) result(work)
-    type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: correction(:)   !! (ndof) [unknown]
-    real(wp) :: work
-    real(wp) :: x(equations%solves(equations%now)%neq)
-    integer :: d
-
-    associate (solve => equations%solves(equations%now))
-      x = 0
-      do d = 1, equations%dofs%ndof
-        if (solve%equation(d) > 0 .and. equations%dofs%quantity(d) == 1) x(solve%equation(d)) = correction(d)
-      end do
-      work = quadratic_form(solve%pattern, solve%values, x)
-    end associate
-  end function work_along
-
-  !> The same by the matrices of all elements but those of contact.
+  !> c K c of a correction of the motion by the matrices of all elements but those of contact.
   pure function work_of_bodies(scene, equations, correction) result(work)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
@@ -178,18 +160,28 @@ contains
       end if
       do k = 1, most_shifts
         associate (more => max((larger - 1)*shift%value, &
-                               2*abs(work_along(equations, correction))/sum(shift%volume*correction**2)))
+                               2*abs(work_of(equations, correction, residual))/sum(shift%volume*correction**2)))
           call add_diagonal(solve%pattern, solve%equation, more*shift%volume, solve%values)
           shift%value = shift%value + more
         end associate
         call solve_correction(equations, residual, correction, error)
         if (allocated(error)) exit
-        if (work_along(equations, correction) < 0) cycle
+        if (work_of(equations, correction, residual) < 0) cycle
         if (.not. (equations%downhill .and. negative_eigenvalues(solve%solver) > 0)) exit
       end do
     end associate
     shift%largest = max(shift%largest, shift%value)
   end subroutine turn_downhill
+
+  !> Work that the residual does on a correction found by the matrix at hand, below 0 uphill.
+  pure function work_of(equations, correction, residual) result(work)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: correction(:)   !! (ndof) [unknown]
+    real(wp), intent(in) :: residual(:)     !! (ndof) [residual]
+    real(wp) :: work
+
+    work = slope_along(equations, correction, residual - forces_of_others(equations, correction))
+  end function work_of
 
   !> Past a limit point equilibrium is looked for further on: where a die or a support moves, or no load grows. Under loads that
   !> grow, and nothing else that drives the part, the point is a limit load, and the run ends there. Loads that rest are borne at

@@ -205,8 +205,8 @@ contains
     case%start = spread([(0.0_wp, i=1, ndof_of(case))], 2, 1)
   end function heat_case
 
-  !> A side that heat passes, FLUX, CONVE or RADIA, or a volume that releases it, HEATS, with displacements among its unknowns; all
-  !> at the temperature 0.
+  !> A side that heat passes, FLUX, CONVE or RADIA, a volume that releases it, HEATS, or faces of a sheet, FACES, with displacements
+  !> among its unknowns; all at the temperature 0.
   function heat_side_case(elem, plane_state, kinematics, exchange, at_corners, npoint, x) result(case)
     character(len=*), intent(in) :: elem, kinematics
     integer, intent(in) :: plane_state, npoint

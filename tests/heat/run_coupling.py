@@ -8,6 +8,8 @@ usage: run_coupling.py [-v] [-k]
   quadratically: r3 <= C r2^2 with one C for all steps, as in tests/runs/run_newton.py.
 - The same bits by any number of threads, and resumed from a checkpoint on the way.
 - `wall`: a scene of heat alone has no displacements, and no state of points.
+- `tube`: of a steel quenched in its bore, MONOLITHIC: where temperatures alone are out of balance at first, and the motion follows them, no
+  correction counts as one past a limit point, and none is searched to death: no step is cut back.
 - `billet`: hot, pressed and remeshed twice by lagacycle; the content of heat, the integral of T over the volume, is that of the old
   mesh to 1e-3, and temperatures stay within their old bounds to 1e-3 of their range (shape functions of 8 nodes pass between nodes).
 """
@@ -19,11 +21,35 @@ import sys
 
 sys.dont_write_bytecode = True
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-sys.path[:0] = [os.path.join(TESTS, folder) for folder in ("patch", "runs", "cycle")]
+sys.path[:0] = [os.path.join(TESTS, folder) for folder in ("heat", "patch", "runs", "cycle")]
+from hardening_steel import hardening_steel  # noqa: E402
 from patch_support import Checks, at_points, h5py, np  # noqa: E402
 from remeshed import cycle, tries  # noqa: E402
 from support import DONE, history, result_differences, run, said, write  # noqa: E402
 
+TUBE = """TITLE  A tube quenched in its bore
+STATE  AXISYM
+KINEM  SMALL
+BLOCK  bar PL8LS 4 steel
+   15. 0.  30. 0.  30. 5.  15. 5.
+   8 1.  1 1.
+LAW    steel ARBTHMET
+   STEEL base.met base
+   STRESS 1.
+ADDEL  bar PL8TM heat BILINEAR
+LAW    heat META
+   STEEL base.met base
+   ENERGY 1.
+START  T 860.
+FIXED  bar 1 Y
+CONVE  bar 4 H 5. TS 20.
+SOLVE  MONOLITHIC
+STRAT  0.01 1.E-6 {step} 9 3
+STOP   40.
+NORMS  FORCE 1.E-9 DISPL 1.E-8
+PROBE  outside POINT stress_zz 30. 0.
+END
+"""
 BAR = """TITLE  Thermoelastic block: heated at one end, squeezed
 STATE  PLSTN
 PARAM  step 1.E-3
@@ -216,6 +242,18 @@ def remeshed(checks):
         checks.that(all(b <= a + 0.1 for a, b in zip(core, core[1:])), "billet: the core cools all the while")
 
 
+def tube(checks):
+    """Steps of three lengths: the work of a correction is that of the matrix of the motion, which temperatures have no part in."""
+    write(os.path.join(checks.folder, "base.met"), hardening_steel("base", 1500, 6000))
+    for step in (1, 2, 5):
+        deck = write(os.path.join(checks.folder, f"tube_{step}.lag"), TUBE.format(step=step))
+        result = run([deck, "--out", os.path.join(checks.folder, f"tube_{step}")])
+        if checks.that(result.returncode == DONE, f"tube, steps of {step}: done", said(result)):
+            rows = history(os.path.join(checks.folder, f"tube_{step}"))
+            checks.that(rows["cutbacks"][-1] == 0, f"tube, steps of {step}: no cutback", rows["cutbacks"][-1])
+            checks.small(abs(rows["outside"][-1]/137 - 1), 0.02, f"tube, steps of {step}: hoop stress")
+
+
 def main():
     checks = Checks()
     decks = {way: write(os.path.join(checks.folder, f"bar_{way}.lag"), BAR.format(solve=way)) for way in WAYS}
@@ -224,6 +262,7 @@ def main():
     same_bits(checks, decks)
     quadratic(checks, os.path.join(checks.folder, "MONOLITHIC-one"))
     heat_alone(checks, os.path.join(checks.folder, "wall-one"))
+    tube(checks)
     remeshed(checks)
     checks.end()
 

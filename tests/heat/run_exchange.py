@@ -13,6 +13,10 @@ usage: run_exchange.py [-v] [-k]
 - `cylinder`: cooled by convection, Biot numbers 1 and 20: the series of Bessel's functions, and the order in time.
 - `wall_by_temperature`: LAMBDA linear in T: Kirchhoff's transform, T from a (T - T1) + b (T^2 - T1^2)/2 linear in place.
 - `source`: heat from the volume, a parabola; a body that only warms up.
+- `fin`: a sheet that loses heat through its faces (H.S. Carslaw, J.C. Jaeger, sec. 4.2): temperature and heat by cosh(m L), m = sqrt(2 h/(LAMBDA
+  thickness)), and the order in space; two cards of one face each are one of both.
+- `drawn`: a sheet drawn to 1.5 times its length, heated after that: heat of the volume is that of its thickness then, heat through its faces
+  that of their area.
 - `stated`: FLUX, HEATS and the power of GOLDAK by a LIC that rises and falls: all of it comes in, by all schemes.
 - `stefan`: freezing of a half space (F. Neumann): LAMBDA jumps and RHOC holds the latent heat: within 1 %.
 - `squeezed`: a block of perfect plasticity pressed to a plastic strain of 1 without loss of heat: QUINNEY sigma p/(rho c), in all ways of
@@ -243,6 +247,49 @@ def source(checks):
             checks.small(np.max(np.abs(run.history["heat_imbalance"])), 1e-11, f"{run.name}: books")
 
 
+FIN = (HEAD + "BLOCK fin PL8TM 4 steel {kind}\n   0. 0. 50. 0. 50. 2. 0. 2.\n   {n} 1. 1 1.\nLAW steel HEAT\n   50. 3.6\nSTART T 20.\n"
+       "IMPOS fin 4 T on 120.\nLIC on\n   0. 1.\n{cards}\n" + STEADY + TIGHT + "PROBE tip NODE T 50. 0.\nEND\n")
+
+
+def fin(checks):
+    """Heat through the faces of a sheet in plane stress, 1.5 thick, 2 wide and 50 long."""
+    both, each = "CONVE fin FACES 1 2 H 0.08 TS 20.", "CONVE fin FACES 1 H 0.08 TS 20.\nCONVE fin FACES 2 H 0.08 TS 20."
+    length = math.sqrt(2*0.08/(50*1.5))*50
+    power = 100*50*1.5*2*length/50*math.tanh(length)
+    for kind, order, bound in (("", 4, 1e-5), ("BILINEAR", 2, 1e-2)):
+        errors = []
+        for n in (5, 10, 20):
+            run = Run(checks, f"fin{kind}{n}", FIN.format(title="fin", state="PLSTS 1.5", kind=kind, n=n, cards=both if n < 20 else each))
+            if not run.ok:
+                return
+            errors.append(abs((run.history["tip"][-1] - 20)/100*math.cosh(length) - 1))
+            taken = run.history["heat_through_fin.4/IMPOS"][-1]
+        orders(checks, errors, order, f"fin {kind}")
+        checks.small(errors[-1], bound, f"fin {kind}: its tip")
+        checks.small(abs(taken/power - 1), bound, f"fin {kind}: heat at its root")
+        passed = sum(run.history[f"heat_through_fin.face{face}/CONVE"][-1] for face in (1, 2))
+        checks.small(abs(passed/taken + 1), 1e-8, f"fin {kind}: heat through its faces")
+
+
+def drawn(checks):
+    """The body is that of the cards of mechanics or of heat; 8 mm2 of it become a thinner sheet."""
+    for body, other in (("PL8LS 4 solid", "PL8TM hot"), ("PL8TM 4 hot", "PL8LS solid")):
+        for card, kind in (("HEATS s Q 36. on", "volume"), ("FLUX s FACES 1 2 Q 12. on", "faces")):
+            run = Run(checks, f"drawn-{body[:5]}-{kind}", f"TITLE drawn\nSTATE PLSTS 0.8\nKINEM LOG\nBLOCK s {body}\n   0. 0. 4. 0. 4. 2. 0. 2.\n"
+                      f"   1 1. 1 1.\nLAW solid EPLA\n   2.E5 .3\n   LINEAR 200. 200.\nADDEL s {other}\nLAW hot HEAT\n   50. 3.6\n{card}\n"
+                      "FIXED s 4 X\nFIXED s 1 Y\nMOVE s 2 X pull\nLIC pull\n   0. 0. 1. 2.\nLIC on\n   0. 0. 1. 0. 1.000001 1. 2. 1.\n"
+                      f"STRAT .05 1.E-7 .05 9 3\nSTOP 2.\n{TIGHT}PROBE t NODE T 4. 2.\n"
+                      f"PROBE thick MEAN stretch_zz s{'' if body[:5] == 'PL8LS' else '/PL8LS'}\n"
+                      "PROBE x NODE X 4. 2.\nPROBE y NODE Y 4. 2.\nEND\n")
+            if not run.ok:
+                return
+            thick, x, y = (run.history[name][-1] for name in ("thick", "x", "y"))
+            exact = (36*thick if kind == "volume" else 2*12/0.8)*x*y/(3.6*8)
+            checks.that(thick < 0.85, f"{run.name}: thinner", thick)
+            # heating begins over a millionth of its time
+            checks.small(abs(run.history["t"][-1]/exact - 1), 1e-6, f"{run.name}: {exact:.4f}")
+
+
 def stated(checks):
     """Heat that a LIC states comes in as stated, by every scheme and in steps of any length: 1.25 times its value at 1."""
     cards = (("flux", "FLUX wall 2 Q 3. on", 3*0.02), ("heats", "HEATS wall Q 3. on", 3*0.1*0.02),
@@ -340,7 +387,7 @@ def pressed_hot(checks):
 def main():
     """All cases."""
     checks = Checks()
-    for case in (radiation, wave, annulus, convection, flows, cylinder, by_temperature, source, stated, stefan, plastic, pressed_hot):
+    for case in (radiation, wave, annulus, convection, flows, cylinder, by_temperature, source, fin, drawn, stated, stefan, plastic, pressed_hot):
         case(checks)
     checks.end()
 

@@ -27,6 +27,7 @@ from real_runs import BIN, SOFT, SOURCE, Runs  # noqa: E402
 
 sys.path.insert(0, os.path.join(SOURCE, "src", "report"))
 from lagamine_report import Run, short_lines  # noqa: E402
+from lagamine_report.picture import titled  # noqa: E402
 from lagamine_report.geometry import Triangles, element_curves, element_sizes  # noqa: E402
 from lagamine_report.tables import read_notes  # noqa: E402
 from lagamine_report.words import brief  # noqa: E402
@@ -423,6 +424,13 @@ class ReportTest(unittest.TestCase):
         x = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [.5, -.2], [1, .5], [.5, 1], [0, .5]])
         area = float(element_sizes(element_curves(x, np.arange(8)[None, :]))[0])**2
         self.assertAlmostEqual(1 + 2 / 3 * .2 * (1 - 1 / 64), area, places=12)
+
+    def test_units_of_fields(self):
+        """Pictures name the unit of a field; a strain has none."""
+        run = Run(self.made())
+        for name, words in (("mises", "von Mises stress [stress]"), ("displacement", "size of the displacement [length]"),
+                            ("plastic_strain", "equivalent plastic strain")):
+            self.assertEqual(words, titled(run, run.steps[-1], name))
 
     def test_field_and_mirror(self):
         folder = self.made()

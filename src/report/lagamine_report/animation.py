@@ -8,10 +8,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
 from .errors import ReportError
+from .picture import titled
 from .reader import Run, Step
 from .scene_view import SceneView, colour_bar, scale_for, value_range
 from .style import figure
-from .words import brief, field_title
+from .words import brief
 
 MOST_FRAMES = 48
 ENDINGS = {".gif": "GIF", ".png": "PNG"}      # a PNG with several frames is an APNG, which browsers play
@@ -68,7 +69,7 @@ def _drawn(view: SceneView, steps: List[Step], field: str, scale) -> List[Image.
         drawn = view.field(axes, step, view.run.nodal(step, field), scale)
         axes.set_title(f"time {brief(step.time, 3)}")
         if not images:
-            colour_bar(fig, drawn, axes, field_title(field, view.run.axisymmetric))
+            colour_bar(fig, drawn, axes, titled(view.run, step, field))
             canvas.draw()
             fig.set_layout_engine("none")
         canvas.draw()

@@ -50,7 +50,7 @@ def page(run: Run, pictures: Sequence[Picture], version: str) -> str:
 <nav>{links}</nav>"""
     footer = f"""lagareport {escape(version)}, from {escape(os.path.basename(os.path.abspath(run.folder)))}/ of
 {escape(run.summary.get('program', 'lagamine'))} {escape(run.summary.get('version', ''))}.
-Lengths, forces and stresses are in the units of the deck."""
+Lengths, forces and stresses are in the units of the deck: [stress] stands for its unit of stress, and so on."""
     return document(run.title, header, sections, footer)
 
 

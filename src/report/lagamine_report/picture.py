@@ -12,7 +12,7 @@ from PIL import Image, ImageChops
 
 from .reader import Run, Step
 from .style import POINTS
-from .words import brief
+from .words import brief, field_title
 
 
 PAGE_DPI = 130      # of pictures of pixels in the page
@@ -117,6 +117,12 @@ class Picture:
         if not self.vector_file:
             self.vector_file = svg_bytes(self.figure)
         return self.vector_file
+
+
+def titled(run: Run, step: Step, field: str) -> str:
+    """A field with its unit, as the history writes it: `von Mises stress [stress]`."""
+    unit = run.unit(step, field)
+    return field_title(field, run.axisymmetric) + (f" [{unit}]" if unit else "")
 
 
 def when(run: Run, step: Step) -> str:

@@ -5,7 +5,7 @@ import numpy as np
 
 from .cells import GAP, TITLE, cells
 from .errors import ReportError
-from .picture import Picture, when
+from .picture import Picture, titled, when
 from .reader import Run, Step
 from .scene_view import SceneView, colour_bar, is_uniform, scale_for, value_range
 from .style import INK, SOFT, figure
@@ -117,7 +117,7 @@ def fields_picture(view: SceneView, names: Sequence[str], name: str = "fields", 
                          zorder=1.2)
         drawn = view.field(panel, step, values, scale, small)
         colour_bar(fig, drawn, panel)
-        panel.set_title(field_title(field, run.axisymmetric), fontsize=9.5 if small else 10.5)
+        panel.set_title(titled(run, step, field), fontsize=9.5 if small else 10.5)
         between = {"s": f"{brief(low)} … {brief(high)}", "fontsize": 8.5, "color": SOFT}
         if small:       # without axes
             panel.text(0.5, -0.02, transform=panel.transAxes, ha="center", va="top", **between)
@@ -148,7 +148,7 @@ def series_picture(view: SceneView, field: str, most: int = 8) -> Optional[Pictu
     for panel, step, value in zip(panels, steps, values):
         drawn = view.field(panel, step, value, scale, small=True)
         panel.set_title(f"time {brief(step.time, 3)}", fontsize=9, fontweight="normal", color=INK)
-    colour_bar(fig, drawn, panels[0].axes, field_title(field, run.axisymmetric), 0.8)
+    colour_bar(fig, drawn, panels[0].axes, titled(run, steps[-1], field), 0.8)
     return Picture("series" if field == "plastic_strain" else f"series_{field}",
                    f"{field_title(field, run.axisymmetric)} at saved steps, one scale for all", fig)
 

@@ -167,6 +167,11 @@ class Run:
                               f"the mesh {len(step.generation.coordinates)} nodes")
         return np.sqrt((values**2).sum(axis=1)) if values.ndim == 2 else values
 
+    def unit(self, step: Step, name: str) -> str:
+        """Unit of a field at the nodes, in words of the deck's units; empty where it has none."""
+        unit = _in_file(step.generation.path, lambda file: _attribute(file[f"{step.place}/node/{name}"], "unit", ""))
+        return "" if unit == "-" else unit
+
     def points(self, step: Step, group: Group) -> Optional[Tuple[List[str], np.ndarray]]:
         """Component names and state (element, point, component) of a group, None when it has none."""
         if "state" not in self.names(step, f"points/{group.number}"):
