@@ -26,8 +26,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.p
 from patch_support import Checks, Run  # noqa: E402
 
 BOUND = {"force": 0.02, "depth": 2.0, "balance": 1.0e-6, "imbalance": 0.01}
-# 2.0 to 2.14 by the kernels of five processors.
-DEEPER = {"bulge 10.5 plane": 2.5}
+# 3.2 before at points, whose augmentations went to and fro, and 3.7 in half the steps; now between points, and 1 at them.
+DEEPER = {"bulge 10.5 plane": 3.15}
 HEAD = """TITLE an edge of a deformable die
 STATE {state}
 KINEM LOG
@@ -159,7 +159,7 @@ CONE_BEFORE = {"imbalance": 0.057, "depth": 2.1}
 
 
 def depth_of(checks, name):
-    """Depth over the allowed, of the whole run."""
+    """Depth over the allowed, of the whole run: at points or between them, whichever is deeper."""
     state, text = "PLSTN", SLAVE
     if name in BULGES:
         state, place, height, elements, friction = BULGES[name]
@@ -169,7 +169,8 @@ def depth_of(checks, name):
     if not run.ok:
         return None
     with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
-        return json.load(file)["checks"]["max_penetration_sampled_over_allowed"]
+        found = json.load(file)["checks"]
+    return max(found["max_penetration_sampled_over_allowed"], found["max_penetration_over_allowed"])
 
 
 def force_and_depth(checks, name, scene, soft):
