@@ -10,10 +10,11 @@
 !> 35 (1998) 508-523). s begins so that the work on the correction is as much above zero as it was below (more, where other
 !> directions still lead uphill: J.J. More, D.C. Sorensen, Math. Programming 16 (1979) 1-20, for directions of negative curvature).
 !> It falls with the residual, and rises where that does or a correction goes too far. What is found at the end is an equilibrium:
-!> none of it is viscous. Where contact makes c K c negative, that of the bodies alone being positive, there may be no limit: points
-!> stick and slip, open and close, by a matrix that is not symmetric. A whole correction is taken then if the residual falls by half
-!> on it. That of bodies would fall so too, towards a branch that they do not come to: a heated column bulges against its own bend.
-!> Under loads that grow there is no equilibrium to be looked for: a limit point is a limit load (goes_past_limits).
+!> none of it is viscous. Where contact makes c K c negative, that of the bodies alone being positive, or the matrix is not
+!> symmetric, as where points stick and slip, there may be no limit. A whole correction is taken then if the residual falls by half
+!> on it. By a symmetric matrix of bodies it would fall so too, towards a branch that they do not come to: a heated column bulges
+!> against its own bend. Under loads that grow there is no equilibrium to be looked for: a limit point is a limit load
+!> (goes_past_limits).
 module pseudo_transient
   use contact_changes, only: contact_states_t, recall_contact, remember_contact
   use convergence, only: forces_of_others, free_force, slope_along
@@ -42,8 +43,8 @@ module pseudo_transient
     real(wp) :: value = 0.0_wp, largest = 0.0_wp
     !> Volume around every unknown of the motion, where a shift has been needed (ndof) [volume].
     real(wp), allocatable :: volume(:)
-    !> The last correction leads uphill, and does so by the matrix of bodies alone; the shifted matrix that it was found by (nnz)
-    !> [residual/unknown].
+    !> The last correction leads uphill, and does so by the symmetric matrix of bodies alone; the shifted matrix that it was found
+    !> by (nnz) [residual/unknown].
     logical :: uphill = .false., of_bodies = .false.
     real(wp), allocatable :: matrix(:)
   end type shift_t
@@ -79,6 +80,8 @@ contains
       ! what is evaluated next has another matrix
       if (.not. shift%uphill) return
       shift%matrix = solve%values
+      shift%of_bodies = .false.
+      if (.not. solve%pattern%symmetric) return
       work = work_of_bodies(scene, equations, correction)
       if (shift%value > 0) work = work + shift%value*sum(shift%volume*correction**2)
       shift%of_bodies = work < 0
@@ -112,8 +115,8 @@ contains
     end associate
   end function work_of_bodies
 
-  !> After a correction that leads uphill: where contact makes it so and the residual falls by half on it, it is taken, and the
-  !> motion moved by it; else it becomes one that leads downhill, by a larger shift.
+  !> After a correction that leads uphill: where no bodies alone make it so and the residual falls by half on it, it is taken, and
+  !> the motion moved by it; else it becomes one that leads downhill, by a larger shift.
   subroutine turn_downhill(scene, equations, solution, dt, external, residual, shift, correction, du, taken, report, error)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations

@@ -2,8 +2,9 @@
 !>
 !> Past a bifurcation or a limit point Newton's method converges to an equilibrium that a body does not stay in, as well as to one
 !> that it does: a heated column stays straight far above Euler's load. An equilibrium is stable under dead loads where the matrix
-!> has no negative eigenvalue (R. Hill, J. Mech. Phys. Solids 6 (1958) 236-249). The factors have them at no cost (dense_lu); they
-!> are those of the last correction, so the matrix of the equilibrium is factorised where they say that it is not stable.
+!> has no negative eigenvalue (R. Hill, J. Mech. Phys. Solids 6 (1958) 236-249). Of a matrix that is not symmetric, as with
+!> friction, pivots do not tell, and none is looked for. The factors have their number at no cost (dense_lu); they are those of the
+!> last correction, so the matrix of the equilibrium is factorised where they say that it is not stable.
 module stability
   use equations, only: equations_t
   use errors, only: error_t, exit_no_convergence
@@ -28,7 +29,7 @@ contains
 
     n = 0
     associate (solve => equations%solves(equations%now))
-      if (scene%load_factor%multiplier > 0 .or. .not. solve%own(displacement_field)) return
+      if (.not. (solve%pattern%symmetric .and. solve%own(displacement_field)) .or. scene%load_factor%multiplier > 0) return
       if (.not. (shifted .or. negative_eigenvalues(solve%solver) > 0)) return
       call use_working_precision(solve%solver, solve%pattern, error)
       if (.not. allocated(error)) call factorise(solve%solver, solve%values, error)
