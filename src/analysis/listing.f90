@@ -97,8 +97,8 @@ contains
     if (outcome%gave_way) write (listing%unit, '(a)') '  augmentation '//to_text(outcome%augmentations + 1) &
       //' of contact had no equilibrium: the one before it was kept'
     if (outcome%left_unstable) write (listing%unit, '(a)') '  the equilibrium found first is not stable: looked for again, downhill'
-    if (outcome%unstable > 0) write (listing%unit, '(a)') '  the equilibrium is not stable: its matrix has '// &
-      to_text(outcome%unstable)//' eigenvalues below 0'
+    if (outcome%unstable > 0) write (listing%unit, '(a)') '  the equilibrium is not stable: eigenvalues of its matrix below 0: ' &
+      //to_text(outcome%unstable)
     write (listing%unit, '(a)') '  strain increment '//to_text(outcome%strain, 3)//'  contact '//to_text(totals%stick) &
       //' stick '//to_text(totals%slip)//' slip '//to_text(totals%open)//' open  penetration ' &
       //to_text(totals%max_penetration, 3)//'  linear residual '//to_text(outcome%linear_residual, 2)

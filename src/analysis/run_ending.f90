@@ -86,9 +86,9 @@ contains
     end if
     call warn_of_confinement(scene, solution, warnings)
     call warn_of_passed_planes(scene, solution, warnings)
-    if (solution%unstable_steps > 0) call add_text(warnings, 'the equilibria of '//to_text(solution%unstable_steps) &
-      //' steps, the first at time '//to_text(solution%unstable_from, 6)//', are not stable: a perfect part stays in them, any '// &
-      'other buckles or necks (move nodes by a thousandth of the thickness to see how)')
+    if (solution%unstable_steps > 0) call add_text(warnings, 'equilibria are not stable in '//to_text(solution%unstable_steps) &
+      //' of '//to_text(solution%step)//' steps, first at time '//to_text(solution%unstable_from, 6)//': a perfect part stays ' &
+      //'in them, any other buckles or necks (move nodes by a thousandth of the thickness to see how)')
     if (run%exit_code /= exit_done) return
     call warn_of_webs(scene, solution, warnings)
     call warn_of_missing_austenite(scene, solution, warnings)

@@ -3,9 +3,9 @@
 !>
 !> A block LU factorisation (J.W. Demmel, N.J. Higham, R.S. Schreiber, Numer. Linear Algebra Appl. 2 (1995) 173-190): all work is
 !> in matrix products, also that of a solve; triangular solves of few rows reach a fifth of the speed of products. Blocks are
-!> so small that their inverses cost no accuracy (backward errors of 1e-16 in tests/solve). They are found pivot by pivot, so those
-!> below 0 are as many as the eigenvalues below 0 of a symmetric matrix (J.J. Sylvester's law of inertia), and odd where any
-!> other has a determinant below 0.
+!> so small that their inverses cost no accuracy (backward errors of 1e-16 in tests/solve). They are found pivot by pivot: a
+!> symmetric matrix has as many eigenvalues below 0 as there are pivots below 0 (law of inertia: G.H. Golub, C.F. Van Loan, Matrix
+!> Computations, 4th ed., 2013, sec. 8.1.5).
 !>
 !> Columns are cut into strips of fixed width, and a thread does whole strips: results do not depend on the number of threads.
 module dense_lu

@@ -12,7 +12,7 @@ module linear_api
   type, abstract :: factors_t
     !> Entries of the factors and operations of a factorisation, as planned.
     real(wp) :: entries = 0.0_wp, operations = 0.0_wp
-    !> Eigenvalues below 0 of the matrix factorised last; of one that is not symmetric only that they are odd is sure.
+    !> Eigenvalues below 0 of the matrix factorised last, where it is symmetric.
     integer :: negative = 0
   contains
     procedure(plan_i), deferred :: plan

@@ -22,8 +22,8 @@ module linear_mumps
   integer, parameter :: info_workspace = -9, info_workspace_integer = -8, info_singular = -10, info_memory = -13
   !> Places of the estimates of an analysis in INFOG and RINFOG.
   integer, parameter :: info_entries = 3, info_operations = 1
-  !> Pivots below 0 of a symmetric matrix in INFOG; the determinant's mantissa in RINFOG.
-  integer, parameter :: info_negative = 12, info_determinant = 12
+  !> Place of the number of pivots below 0 of a symmetric matrix in INFOG.
+  integer, parameter :: info_negative = 12
 
   interface
     subroutine dmumps(id)
@@ -88,7 +88,6 @@ contains
       id%icntl(6) = 0         ! no column permutation: the pattern is symmetric and diagonals are large
       id%icntl(7) = 1         ! order given
       id%icntl(14) = 30       ! extra workspace, percent
-      id%icntl(33) = 1        ! determinant, for its sign
       id%n = pattern%neq
       id%nz = pattern%nnz
       allocate (id%irn(pattern%nnz), id%jcn(pattern%nnz), id%a(pattern%nnz), id%perm_in(pattern%neq), id%rhs(pattern%neq))
@@ -131,14 +130,8 @@ contains
         id%icntl(14) = 4*id%icntl(14)
       end do
       sound = id%infog(1) >= 0
-      if (sound) then
-        if (id%sym > 0) then
-          self%negative = id%infog(info_negative)
-        else
-          self%negative = merge(1, 0, id%rinfog(info_determinant) < 0)
-        end if
-        return
-      end if
+      if (sound .and. id%sym > 0) self%negative = id%infog(info_negative)
+      if (sound) return
       select case (id%infog(1))
       case (info_singular)
         call fail(error, exit_no_convergence, 'the matrix is singular')

@@ -43,8 +43,6 @@ module linear_solver
     real(wp), allocatable :: values(:)
     !> The factors at hand are sound.
     logical :: sound = .false.
-    !> The matrix is symmetric.
-    logical :: symmetric = .false.
     !> Matrices factorised so far, and those that were the one before, whose factors were taken again.
     integer, public :: factorised = 0, reused = 0
     !> Entries of the factors and operations of a factorisation.
@@ -87,7 +85,6 @@ contains
 
     call release(solver)
     solver%position = position
-    solver%symmetric = pattern%symmetric
     allocate (solver%values(pattern%nnz))
     call start_rows(pattern, solver%row_start)
     do
@@ -245,15 +242,14 @@ contains
     end do
   end subroutine use_working_precision
 
-  !> Eigenvalues below 0 of the matrix at hand. Of one that is not symmetric only the sign of the determinant is sure: 1 where it is
-  !> below 0, else 0.
+  !> Eigenvalues below 0 of the symmetric matrix at hand, 0 without sound factors. Near 0 in size they are sure in working precision
+  !> alone.
   pure function negative_eigenvalues(solver) result(n)
     type(linear_solver_t), intent(in) :: solver
     integer :: n
 
     n = 0
     if (solver%sound) n = solver%stages(solver%made_by)%factors%negative
-    if (.not. solver%symmetric) n = mod(n, 2)
   end function negative_eigenvalues
 
   !> Solve, then correct by the residual while that is worth it.

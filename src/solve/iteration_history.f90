@@ -23,9 +23,9 @@ module iteration_history
     logical :: past_limit = .false.
   end type iteration_t
 
-  !> A residual this many times larger than the first one, after `patience` iterations, counts as divergence.
-  !> So many times the most iterations of a step are for corrections that keep to the way downhill.
+  !> Corrections that keep to the way downhill may take so many times the most iterations of a step (ITMAX).
   integer, parameter :: times_downhill = 3
+  !> A residual this many times larger than the first one, after `patience` iterations, counts as divergence.
   real(wp), parameter :: hopeless = 1.0e3_wp
   integer, parameter :: patience = 6
   !> The residual stagnates when the best of the last `patience` - 1 iterations is above this share of the best before, and
