@@ -12,7 +12,8 @@ module linear_api
   type, abstract :: factors_t
     !> Entries of the factors and operations of a factorisation, as planned.
     real(wp) :: entries = 0.0_wp, operations = 0.0_wp
-    !> Eigenvalues below 0 of the matrix factorised last, where it is symmetric.
+    !> Pivots below 0 of the matrix factorised last: as many as it has eigenvalues below 0 where it is symmetric; else an odd number
+    !> where its determinant is below 0, 1 by a member that exchanges rows.
     integer :: negative = 0
   contains
     procedure(plan_i), deferred :: plan

@@ -22,8 +22,8 @@ module linear_mumps
   integer, parameter :: info_workspace = -9, info_workspace_integer = -8, info_singular = -10, info_memory = -13
   !> Places of the estimates of an analysis in INFOG and RINFOG.
   integer, parameter :: info_entries = 3, info_operations = 1
-  !> Place of the number of pivots below 0 of a symmetric matrix in INFOG.
-  integer, parameter :: info_negative = 12
+  !> Places of the number of pivots below 0 of a symmetric matrix in INFOG, and of the mantissa of the determinant in RINFOG.
+  integer, parameter :: info_negative = 12, info_determinant = 12
 
   interface
     subroutine dmumps(id)
@@ -88,6 +88,7 @@ contains
       id%icntl(6) = 0         ! no column permutation: the pattern is symmetric and diagonals are large
       id%icntl(7) = 1         ! order given
       id%icntl(14) = 30       ! extra workspace, percent
+      id%icntl(33) = merge(0, 1, pattern%symmetric)   ! determinant
       id%n = pattern%neq
       id%nz = pattern%nnz
       allocate (id%irn(pattern%nnz), id%jcn(pattern%nnz), id%a(pattern%nnz), id%perm_in(pattern%neq), id%rhs(pattern%neq))
@@ -130,7 +131,7 @@ contains
         id%icntl(14) = 4*id%icntl(14)
       end do
       sound = id%infog(1) >= 0
-      if (sound .and. id%sym > 0) self%negative = id%infog(info_negative)
+      if (sound) self%negative = merge(id%infog(info_negative), merge(1, 0, id%rinfog(info_determinant) < 0), id%sym > 0)
       if (sound) return
       select case (id%infog(1))
       case (info_singular)

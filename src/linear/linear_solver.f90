@@ -11,7 +11,7 @@ module linear_solver
   use vectors, only: length_of
   implicit none
   private
-  public :: linear_solver_t, choose_solver, analyse, factorise, solve_linear, solve_unrefined, invert_at, negative_eigenvalues, &
+  public :: linear_solver_t, choose_solver, analyse, factorise, solve_linear, solve_unrefined, invert_at, negative_pivots, &
             release, return_to_chosen, use_working_precision
 
   !> Backward error of a solve that is accepted at last.
@@ -242,15 +242,15 @@ contains
     end do
   end subroutine use_working_precision
 
-  !> Eigenvalues below 0 of the symmetric matrix at hand, 0 without sound factors. Near 0 in size they are sure in working precision
-  !> alone.
-  pure function negative_eigenvalues(solver) result(n)
+  !> Pivots below 0 of the matrix at hand, 0 without sound factors: as many as eigenvalues below 0 where it is symmetric, an odd
+  !> number where its determinant is below 0. Near 0 in size they are sure in working precision alone.
+  pure function negative_pivots(solver) result(n)
     type(linear_solver_t), intent(in) :: solver
     integer :: n
 
     n = 0
     if (solver%sound) n = solver%stages(solver%made_by)%factors%negative
-  end function negative_eigenvalues
+  end function negative_pivots
 
   !> Solve, then correct by the residual while that is worth it.
   subroutine refine(solver, pattern, rhs, x, error)

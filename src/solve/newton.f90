@@ -397,7 +397,7 @@ contains
         outcome%reason = 'strain increment '//to_text(outcome%strain, 3)//' above '//to_text(scene%strategy%strain_bound, 3)
       end if
       if (outcome%converged .and. outcome%iterations > 0) then
-        call ways_to_leave(scene, equations, shift%value > 0, outcome%unstable, outcome%error)
+        call ways_to_leave(scene, equations, solution, shift%value > 0, outcome%unstable, outcome%error)
         if (outcome%unstable > 0 .and. .not. (equations%downhill .or. equations%takes_unstable)) &
           outcome%reason = 'the equilibrium found is not stable'
         outcome%converged = .not. (allocated(outcome%reason) .or. allocated(outcome%error))

@@ -25,13 +25,14 @@ module pseudo_transient
   use errors, only: error_t
   use evaluation, only: add_diagonal, evaluate
   use kinds, only: wp
-  use linear_solver, only: negative_eigenvalues
+  use linear_solver, only: negative_pivots
   use line_search, only: real_fall
   use loads, only: multiplier_at
   use pairs, only: pairs_differ, pairs_t
   use scene, only: role_contact, role_side_load, role_volume_load, scene_t
   use sections, only: section_forced
   use solution, only: solution_t
+  use stability, only: has_friction
   use volumes_of_unknowns, only: volumes_of_motion
   implicit none
   private
@@ -76,12 +77,12 @@ contains
       call solve_correction(equations, residual, correction, error)
       if (allocated(error)) return
       shift%uphill = work_of(equations, correction, residual) < 0 &
-                     .or. equations%downhill .and. negative_eigenvalues(solve%solver) > 0
+                     .or. equations%downhill .and. negative_pivots(solve%solver) > 0
       ! what is evaluated next has another matrix
       if (.not. shift%uphill) return
       shift%matrix = solve%values
       shift%of_bodies = .false.
-      if (.not. solve%pattern%symmetric) return
+      if (has_friction(scene, equations)) return
       work = work_of_bodies(scene, equations, correction)
       if (shift%value > 0) work = work + shift%value*sum(shift%volume*correction**2)
       shift%of_bodies = work < 0
@@ -170,7 +171,7 @@ contains
         call solve_correction(equations, residual, correction, error)
         if (allocated(error)) exit
         if (work_of(equations, correction, residual) < 0) cycle
-        if (.not. (equations%downhill .and. negative_eigenvalues(solve%solver) > 0)) exit
+        if (.not. (equations%downhill .and. negative_pivots(solve%solver) > 0)) exit
       end do
     end associate
     shift%largest = max(shift%largest, shift%value)

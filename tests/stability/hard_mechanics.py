@@ -490,6 +490,19 @@ def one_step_or_many(checks):
     return abs(ends[1]/ends[0] - 1)
 
 
+def slender_billet(checks):
+    """A slender billet bent by a two hundredth of its thickness, upset between rough dies: it buckles in long steps as in short ones, to its own side."""
+    ends = []
+    for step in (0.02, 0.1, 0.3):
+        run = checks.run(f"slender-billet-{step}", deck(
+            "PLSTN", "LOG", block("0. 0. 2. 0. 2. 10. 0. 10.", "4 1. 20 1.", " SIDE 2 MID 2.01 5.\n SIDE 4 MID 0.01 5.\n"),
+            "LAW m EPLA\n 200000. 0.3\n LINEAR 300. 500.\nLAW k COUL2D\n PENETR 1.E-3 PHI 0.3\n",
+            "DIE low\n SEGM -9. 0. 9. 0.\nDIE top PILOT 0. 10.\n SEGM 9. 10. -9. 10.\nCNT2D b 1 low k\nCNT2D b 3 top k\n"
+            "MOVE top Y go\nLIC go\n 0. 0. 1. -2.\nPROBE side NODE UX 2.01 5.\n", f"STRAT {step} 1.E-6 {step} 5 3"))
+        ends.append((run.history["force_y_top"][-1], run.history["side"][-1]))
+    return max(float(min(side for _, side in ends) < 1), max(abs(force/ends[0][0] - 1) for force, _ in ends))
+
+
 CASES = (
     Case("limit load", limit_load, 1e-3), Case("deep notch", deep_notch, 0.03), Case("penalty 1e-2 to 1e6", penalties, 1e-6),
     Case("rate exponent .005 to 1", rate_exponents, 0.003), Case("stiffness ratio 1e8", stiffness_ratio, 1e-5),
@@ -508,4 +521,4 @@ CASES = (
     Case("S-shaped dies", s_shaped, 1e-3), Case("rib thinner than elements", thin_rib, 0.5, LONG),
     Case("nearly incompressible", nearly_incompressible, 1e-9), Case("past the peak", past_the_peak, 1e-9),
     Case("another solver", other_solver, 1e-6), Case("three blocks for one", joined, 1e-8), Case("pressed often", pressed_often, 1e-5),
-    Case("one step or many", one_step_or_many, 1e-9))
+    Case("one step or many", one_step_or_many, 1e-9), Case("slender billet", slender_billet, 0.03))
