@@ -40,7 +40,7 @@ contains
         call start_group(merge('BSPRG', keyword(:5), keyword == 'SPRNG'), draft, group)
         group%rule%n = npoint
         call read_body(cursor, draft, group)
-        if (keyword == 'SPRNG') then
+        if (group%is_spring) then
           call read_springs(cursor, draft, directions, group)
         else if (keyword == 'BFORC') then
           call cursor%name('a direction', directions, group%direction)
@@ -53,7 +53,7 @@ contains
         end if
       end associate
       k = 0
-      if (group%elem /= 'BSPRG') call draft%multipliers%find(cursor, 'the name of a LIC', k)
+      if (.not. group%is_spring) call draft%multipliers%find(cursor, 'the name of a LIC', k)
       if (k > 0) then
         group%multiplier = draft%multipliers%item(k)
         group%name = group%name//'/'//draft%multipliers%words(k)%s
