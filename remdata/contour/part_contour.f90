@@ -30,15 +30,11 @@ module part_contour
   use vectors, only: length_of
   implicit none
   private
-  public :: contour_options_t, contour_t, contour_report_t, contact_limit_t, build_contours
+  public :: contour_options_t, contour_t, contour_report_t, build_contours
 
   !> Beginning or end of contact.
   type :: contact_limit_t
-    !> `kind_entry` or `kind_exit`, contour, and the arc that begins there.
-    integer :: kind = 0, contour = 0, arc = 0
-    integer :: group = 0, die = 0
-    !> Place among the contour's contacts, and the piece of the die.
-    integer :: contact = 0, piece = 0
+    integer :: kind = 0   !! `kind_entry` or `kind_exit`
     real(wp) :: point(2) = 0.0_wp   !! [length]
     !> Depth in the die: zero where the part leaves it, but not at a corner of the part [length].
     real(wp) :: depth = 0.0_wp
@@ -140,7 +136,7 @@ contains
         call add_body_contact_ends(contours(i)%contacts, scene%dies, loops(k), joints)
       end do
       call correct(scene, x, uncorrected, held, options, joints, contours(k))
-      call list_limits(k, contours(k), report%limits)
+      call list_limits(contours(k), report%limits)
       do i = 1, size(contours(k)%points)
         report%points = reshape([report%points, contours(k)%points(i)%point], [2, size(report%points, 2) + 1])
       end do
@@ -296,49 +292,27 @@ contains
   end function off_ends
 
   !> Beginnings and ends of contact of a contour, added to those before.
-  pure subroutine list_limits(number, contour, limits)
-    integer, intent(in) :: number
+  pure subroutine list_limits(contour, limits)
     type(contour_t), intent(in) :: contour
     type(contact_limit_t), allocatable, intent(inout) :: limits(:)
     type(contact_limit_t) :: one
     integer :: k
 
     do k = 1, size(contour%contacts)
-      associate (contact => contour%contacts(k))
+      associate (contact => contour%contacts(k), boundary => contour%boundary)
         if (contact%begins) then
-          one = limit_at(1)
+          one = contact_limit_t(kind_entry, joint_point(boundary, contact%first), contact%sections(1)%closest_points(1)%d)
           limits = [limits, one]
         end if
         if (contact%ends) then
-          one = limit_at(2)
+          associate (section => contact%sections(size(contact%sections)))
+            one = contact_limit_t(kind_exit, joint_point(boundary, contact%next), &
+                                  section%closest_points(size(section%closest_points))%d)
+          end associate
           limits = [limits, one]
         end if
       end associate
     end do
-
-  contains
-
-    pure function limit_at(which) result(limit)
-      integer, intent(in) :: which   !! 1 where it begins, 2 where it ends
-      type(contact_limit_t) :: limit
-
-      associate (contact => contour%contacts(k))
-        limit%kind = merge(kind_entry, kind_exit, which == 1)
-        limit%contour = number
-        limit%arc = merge(contact%first, contact%next, which == 1)
-        limit%group = contact%interval%group
-        limit%die = contact%number
-        limit%contact = k
-        limit%point = joint_point(contour%boundary, limit%arc)
-        associate (section => contact%sections(merge(1, size(contact%sections), which == 1)))
-          associate (closest => section%closest_points(merge(1, size(section%closest_points), which == 1)))
-            limit%piece = closest%piece
-            limit%depth = closest%d
-          end associate
-        end associate
-      end associate
-    end function limit_at
-
   end subroutine list_limits
 
   !> A contour that crosses itself or another one cannot be meshed.

@@ -67,40 +67,57 @@ contains
     type(die_t), intent(in) :: die          !! on its new sides
     type(new_mesh_t), intent(inout) :: mesh
     real(wp), intent(inout) :: largest
-    real(wp) :: normal(2), displacement(2), beside(2), missing
-    integer :: k, i, other
-    logical :: over
+    integer :: k, i, beside
 
     do k = 1, size(in_interval)
       if (.not. in_interval(k)) cycle
       do i = 1, 3
-        associate (node => mesh%sides(k)%nodes(i))
-          other = 0
-          if (i == 1) other = side_with(mesh, 3, node)
-          if (i == 3) other = side_with(mesh, 1, node)
-          ! the end of a side is moved with the side that it begins
-          if (i == 3 .and. other > 0) then
-            if (in_interval(other)) cycle
+        beside = 0
+        if (i == 1) beside = side_with(mesh, 3, mesh%sides(k)%nodes(i))
+        if (i == 3) beside = side_with(mesh, 1, mesh%sides(k)%nodes(i))
+        if (beside > 0) then
+          if (in_interval(beside)) then
+            ! the end of a side is moved with the side that it begins
+            if (i == 3) cycle
+            beside = 0
           end if
-          call find_missing_depth(contact, die, mesh%coordinates(:, node), normal, missing, over)
-          if (.not. over) cycle
-          displacement = missing*normal
-          if (other > 0) then
-            if (.not. in_interval(other)) then
-              associate (nodes => mesh%sides(other)%nodes)
-                beside = mesh%coordinates(:, nodes(3)) - mesh%coordinates(:, nodes(1))
-              end associate
-              displacement = moved_onto(normal, missing, beside)
-            end if
-          end if
-          mesh%coordinates(:, node) = mesh%coordinates(:, node) + displacement
-          associate (nodes => mesh%sides(k)%nodes)
-            largest = max(largest, length_of(displacement)/length_of(mesh%coordinates(:, nodes(3)) - mesh%coordinates(:, nodes(1))))
-          end associate
-        end associate
+        end if
+        call fit_node(contact, die, k, i, beside, mesh, largest)
       end do
     end do
   end subroutine fit_interval
+
+  !> One node of a side; along the side beside it where that is not in the interval.
+  pure subroutine fit_node(contact, die, side, i, beside, mesh, largest)
+    type(contact_t), intent(in) :: contact
+    type(die_t), intent(in) :: die
+    integer, intent(in) :: side, i   !! the node's side, and which of its nodes it is
+    integer, intent(in) :: beside    !! side along which it moves, 0 for none
+    type(new_mesh_t), intent(inout) :: mesh
+    real(wp), intent(inout) :: largest
+    real(wp) :: normal(2), displacement(2), missing
+    logical :: over
+
+    associate (node => mesh%sides(side)%nodes(i))
+      call find_missing_depth(contact, die, mesh%coordinates(:, node), normal, missing, over)
+      if (.not. over) return
+      displacement = missing*normal
+      if (beside > 0) displacement = moved_onto(normal, missing, chord_of(mesh, beside))
+      mesh%coordinates(:, node) = mesh%coordinates(:, node) + displacement
+    end associate
+    largest = max(largest, length_of(displacement)/length_of(chord_of(mesh, side)))
+  end subroutine fit_node
+
+  !> From the first to the last node of a side [length].
+  pure function chord_of(mesh, side) result(chord)
+    type(new_mesh_t), intent(in) :: mesh
+    integer, intent(in) :: side
+    real(wp) :: chord(2)
+
+    associate (nodes => mesh%sides(side)%nodes)
+      chord = mesh%coordinates(:, nodes(3)) - mesh%coordinates(:, nodes(1))
+    end associate
+  end function chord_of
 
   !> Side of the contour that has a node as its first or last one, 0 for none.
   pure function side_with(mesh, which, node) result(side)

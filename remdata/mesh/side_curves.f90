@@ -52,31 +52,40 @@ contains
     type(zone_t), intent(in) :: zones(:)                  !! (nzone)
     type(size_field_t), intent(in) :: field
     type(zone_point_t), intent(inout) :: points(:)   !! (npoint)
-    real(wp) :: arc_length, apart, most
-    integer :: z, i, k, pass
+    real(wp) :: most
+    integer :: z, i, k
 
     do z = 1, size(zones)
       do i = 1, 4
         associate (point => points(zones(z)%corners(i)))
           if (point%boundary == 0 .or. point%stays) cycle
           associate (boundary => boundaries(point%boundary))
-            arc_length = arc_length_at(boundary, point%position)
             most = least_share*size_at(field, zones(z)%material, on_boundary(boundary, point%position))
-            search: do pass = 1, 2
-              do k = 1, size(boundary%arcs)
-                if (pass == 1 .and. boundary%kinds(k) /= kind_corner) cycle
-                if (pass == 2 .and. all(boundary%kinds(k) /= [kind_entry, kind_exit])) cycle
-                apart = modulo(boundary%arc_length(k - 1) - arc_length, boundary_length(boundary))
-                if (min(apart, boundary_length(boundary) - apart) > most) cycle
-                point%position = position_t(k, boundary%arcs(k)%range(1))
-                exit search
-              end do
-            end do search
+            k = joint_near(boundary, arc_length_at(boundary, point%position), [kind_corner], most)
+            if (k == 0) k = joint_near(boundary, arc_length_at(boundary, point%position), [kind_entry, kind_exit], most)
+            if (k > 0) point%position = position_t(k, boundary%arcs(k)%range(1))
           end associate
         end associate
       end do
     end do
   end subroutine snap_to_joints
+
+  !> The first arc that begins with a joint of one of these kinds, no further along the boundary than `most` from an arc length; 0
+  !> where there is none.
+  pure function joint_near(boundary, arc_length, kinds, most) result(k)
+    type(boundary_curve_t), intent(in) :: boundary
+    real(wp), intent(in) :: arc_length, most   !! [length]
+    integer, intent(in) :: kinds(:)            !! (n)
+    integer :: k
+    real(wp) :: apart
+
+    do k = 1, size(boundary%arcs)
+      if (all(boundary%kinds(k) /= kinds)) cycle
+      apart = modulo(boundary%arc_length(k - 1) - arc_length, boundary_length(boundary))
+      if (.not. min(apart, boundary_length(boundary) - apart) > most) return
+    end do
+    k = 0
+  end function joint_near
 
   !> The curve of a side, with its breaks.
   pure subroutine draw_side(boundaries, layout, side, field, curve)

@@ -6,7 +6,6 @@ module summary_table
   use energy_books, only: damped_share, damping_advice, energy_imbalance, imbalance_advice
   use equations, only: equations_t
   use heat_books, only: has_heat, heat_imbalance
-  use heat_record, only: heat_record_t
   use history, only: circumference
   use kinds, only: wp
   use path_advice, only: motion_advice, stress_advice
@@ -19,7 +18,7 @@ module summary_table
   use spring_check, only: has_body_springs, spring_advice, spring_force, spring_share
   use strategy, only: coupling_once
   use system, only: cpu_seconds, peak_memory_mb
-  use text, only: string_t, to_text
+  use text, only: add_text, string_t, to_text
   implicit none
   private
   public :: summary_lines
@@ -34,121 +33,153 @@ contains
     type(solution_t), intent(in) :: solution
     type(totals_t), intent(in) :: totals
     type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
-    type(string_t), allocatable :: table(:), cut_lines(:)
+    type(string_t), allocatable :: table(:)
     integer :: t
 
     allocate (lines(0))
-    call put('')
-    call put(facts%status//': '//facts%stop_reason)
-    call put('  time '//to_text(solution%time)//' of '//to_text(scene%strategy%end_time)//', '//to_text(solution%step) &
-             //' steps, '//to_text(solution%iterations)//' iterations, '//to_text(solution%cutbacks)//' cutbacks')
-    call put('  volume drift '//to_text(100*(totals%volume/solution%initial_volume - 1), 3)//' % (without elastic strain ' &
-             //to_text(100*unloaded_drift(solution, totals), 3)//' %), energy imbalance ' &
-             //to_text(100*energy_imbalance(solution), 3)//' %, worst linear residual ' &
-             //to_text(solution%worst_linear_residual, 2))
-    call warn('energy imbalance '//to_text(100*energy_imbalance(solution), 3)//' %', imbalance_advice(solution))
-    if (solution%work%damping > 0) &
-      call put('  damping of steps that had no equilibrium near took '//to_text(100*damped_share(solution), 3) &
-               //' % of the energy that passed')
-    call warn('damping '//to_text(100*damped_share(solution), 3)//' % of the energy that passed', damping_advice(solution))
-    cut_lines = lines_of_cuts(scene, solution)
-    do t = 1, size(cut_lines)
-      call put(cut_lines(t)%s)
-    end do
-    if (has_heat(scene)) &
-      call put('  heat taken up '//to_text(circumference(scene)*solution%heat_stored, 4)//', come in ' &
-               //to_text(circumference(scene)*solution%heat_in, 4)//', released ' &
-               //to_text(circumference(scene)*solution%heat_released, 4)//'; imbalance ' &
-               //to_text(100*heat_imbalance(solution), 2)//' % of what passed')
-    call put_due()
-    if (has_heat(scene)) call put_heat(solution%heat)
-    if (scene%follows_path) then
-      call put('  errors of the path within steps: motion '//to_text(100*motion_error(solution%path), 3)//' % in sum, stress ' &
-               //to_text(100*stress_error(solution%path), 3)//' % at the end, ' &
-               //to_text(100*solution%path%stress_worst, 3)//' % at worst; '//to_text(solution%path%shortened) &
-               //' attempts shortened for them, '//to_text(solution%path%above)//' steps above the bounds')
-      call warn('error of the motion by the path within steps '//to_text(100*motion_error(solution%path), 3)//' %', &
-                motion_advice(solution%path))
-      call warn('error of the stress by the path within steps ' &
-                //to_text(100*stress_error(solution%path), 3)//' %', stress_advice(solution%path))
-    end if
-    if (has_body_springs(scene)) then
-      call put('  weak springs of bodies: force '//to_text(circumference(scene)*spring_force(scene, solution), 3) &
-               //' at the end, '//to_text(100*spring_share(scene, solution), 3)//' % of the largest force')
-      call warn('weak springs carry '//to_text(100*spring_share(scene, solution), 3)//' % of the largest force', &
-                spring_advice(scene, solution))
-    end if
+    call add_text(lines, '')
+    call add_text(lines, facts%status//': '//facts%stop_reason)
+    call add_text(lines, '  time '//to_text(solution%time)//' of '//to_text(scene%strategy%end_time)//', ' &
+                  //to_text(solution%step)//' steps, '//to_text(solution%iterations)//' iterations, ' &
+                  //to_text(solution%cutbacks)//' cutbacks')
+    call add_balances(solution, totals, lines)
+    lines = [lines, lines_of_cuts(scene, solution)]
+    if (has_heat(scene)) call add_heat(scene, equations, solution, lines)
+    if (scene%follows_path) call add_path(solution, lines)
+    if (has_body_springs(scene)) call add_springs(scene, solution, lines)
     do t = 1, size(facts%warnings)
-      call put('  WARNING: '//facts%warnings(t)%s)
+      call add_text(lines, '  WARNING: '//facts%warnings(t)%s)
     end do
-    if (size(scene%dies) == 0) then
-      call put('  no contact')
-    else
-      call put('  largest penetration at points of contact '//depth(solution%worst_penetration, solution%worst_penetration_ratio) &
-               //'; between them too '//depth(solution%worst_sample, solution%worst_sample_ratio))
-      call warn('points of contact are deeper in a die than allowed', advice_at_points(scene, solution))
-      call warn('sides between points of contact are deeper in a die than allowed', advice_between_points(scene, solution))
-      if (len(sides_that_span(scene, solution)) > 0) call put('  '//sides_that_span(scene, solution))
-    end if
-    call put('  '//to_text(sum(equations%solves%neq))//' equations, '//to_text(solid_elements(scene))//' elements, ' &
-             //to_text(facts%threads)//' threads, '//to_text(facts%wall, 4)//' s on the wall, ' &
-             //to_text(cpu_seconds(), 4)//' s of processor, '//to_text(peak_memory_mb(), 4)//' MB')
+    call add_contact(scene, solution, lines)
+    call add_text(lines, '  '//to_text(sum(equations%solves%neq))//' equations, '//to_text(solid_elements(scene))//' elements, ' &
+                  //to_text(facts%threads)//' threads, '//to_text(facts%wall, 4)//' s on the wall, ' &
+                  //to_text(cpu_seconds(), 4)//' s of processor, '//to_text(peak_memory_mb(), 4)//' MB')
     call closing_lines(facts%closing, table)
     lines = [lines, table]
-    call put('  seconds by effect and task:')
+    call add_text(lines, '  seconds by effect and task:')
     do t = 1, equations%timers%size()
-      call put('    '//equations%timers%name(t)//'  '//to_text(equations%timers%seconds(t), 4)//' s in ' &
-               //to_text(equations%timers%calls(t))//' calls')
+      call add_text(lines, '    '//equations%timers%name(t)//'  '//to_text(equations%timers%seconds(t), 4)//' s in ' &
+                    //to_text(equations%timers%calls(t))//' calls')
     end do
-    call put('')
-
-  contains
-
-    !> What no step has released yet.
-    subroutine put_due()
-      real(wp) :: heat
-
-      if (.not. (has_heat(scene) .and. allocated(equations%laws)) .or. scene%strategy%coupling /= coupling_once) return
-      heat = pending(scene, equations%laws, equations%drivers, solution)
-      if (abs(heat) > 0) call put('  heat of friction and plastic work of the last step, which the next one would release: ' &
-                                  //to_text(circumference(scene)*heat, 4))
-    end subroutine put_due
-
-    !> What accuracy in time was had, and temperatures that cannot be there.
-    subroutine put_heat(heat)
-      type(heat_record_t), intent(in) :: heat
-
-      if (heat%estimated > 0) &
-        call put('  estimated error in time: largest of a step '//to_text(heat%error_worst, 3)//', sum of all ' &
-                 //to_text(heat%error_sum, 3)//', at the end '//to_text(heat%error_now, 3)//', at most ' &
-                 //to_text(heat%error_largest, 3)//'; '//to_text(heat%shortened)//' attempts shortened for it, ' &
-                 //to_text(heat%above)//' steps of the least length above what is allowed')
-      if (heat%outside + heat%fallbacks > 0) &
-        call put('  temperatures beyond those around them in '//to_text(heat%outside)//' steps, by up to ' &
-                 //to_text(heat%excess, 3)//'; '//to_text(heat%fallbacks)//' steps made again to keep to them')
-    end subroutine put_heat
-
-    subroutine put(line)
-      character(len=*), intent(in) :: line
-
-      lines = [lines, string_t(line)]
-    end subroutine put
-
-    subroutine warn(what, advice)
-      character(len=*), intent(in) :: what, advice
-
-      if (len(advice) > 0) call put('  WARNING: '//what//': '//advice)
-    end subroutine warn
-
-    !> A depth, and its share of what is allowed where a law states that.
-    function depth(length, ratio) result(words)
-      real(wp), intent(in) :: length, ratio
-      character(len=:), allocatable :: words
-
-      words = to_text(length, 3)
-      if (states_penetration(scene)) words = words//', '//to_text(ratio, 3)//' of the allowed'
-    end function depth
-
+    call add_text(lines, '')
   end subroutine summary_lines
+
+  !> Volume, energy, linear equations, and damping.
+  subroutine add_balances(solution, totals, lines)
+    type(solution_t), intent(in) :: solution
+    type(totals_t), intent(in) :: totals
+    type(string_t), allocatable, intent(inout) :: lines(:)
+    character(len=:), allocatable :: damped
+
+    call add_text(lines, '  volume drift '//percent(totals%volume/solution%initial_volume - 1)//' (without elastic strain ' &
+                  //percent(unloaded_drift(solution, totals))//'), energy imbalance '//percent(energy_imbalance(solution)) &
+                  //', worst linear residual '//to_text(solution%worst_linear_residual, 2))
+    call warn(lines, 'energy imbalance '//percent(energy_imbalance(solution)), imbalance_advice(solution))
+    damped = percent(damped_share(solution))//' of the energy that passed'
+    if (solution%work%damping > 0) &
+      call add_text(lines, '  damping of steps that had no equilibrium near took '//damped)
+    call warn(lines, 'damping '//damped, damping_advice(solution))
+  end subroutine add_balances
+
+  !> Heat that was taken up, what no step has released yet, what accuracy in time was had, and temperatures that cannot be there.
+  subroutine add_heat(scene, equations, solution, lines)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    type(string_t), allocatable, intent(inout) :: lines(:)
+    real(wp) :: due
+
+    call add_text(lines, '  heat taken up '//to_text(circumference(scene)*solution%heat_stored, 4)//', come in ' &
+                  //to_text(circumference(scene)*solution%heat_in, 4)//', released ' &
+                  //to_text(circumference(scene)*solution%heat_released, 4)//'; imbalance ' &
+                  //to_text(100*heat_imbalance(solution), 2)//' % of what passed')
+    due = 0
+    if (allocated(equations%laws) .and. scene%strategy%coupling == coupling_once) &
+      due = pending(scene, equations%laws, equations%drivers, solution)
+    if (abs(due) > 0) &
+      call add_text(lines, '  heat of friction and plastic work of the last step, which the next one would release: ' &
+                    //to_text(circumference(scene)*due, 4))
+    associate (heat => solution%heat)
+      if (heat%estimated > 0) &
+        call add_text(lines, '  estimated error in time: largest of a step '//to_text(heat%error_worst, 3)//', sum of all ' &
+                      //to_text(heat%error_sum, 3)//', at the end '//to_text(heat%error_now, 3)//', at most ' &
+                      //to_text(heat%error_largest, 3)//'; '//to_text(heat%shortened)//' attempts shortened for it, ' &
+                      //to_text(heat%above)//' steps of the least length above what is allowed')
+      if (heat%outside + heat%fallbacks > 0) &
+        call add_text(lines, '  temperatures beyond those around them in '//to_text(heat%outside)//' steps, by up to ' &
+                      //to_text(heat%excess, 3)//'; '//to_text(heat%fallbacks)//' steps made again to keep to them')
+    end associate
+  end subroutine add_heat
+
+  !> Errors of the path within steps.
+  subroutine add_path(solution, lines)
+    type(solution_t), intent(in) :: solution
+    type(string_t), allocatable, intent(inout) :: lines(:)
+
+    associate (path => solution%path)
+      call add_text(lines, '  errors of the path within steps: motion '//percent(motion_error(path))//' in sum, stress ' &
+                    //percent(stress_error(path))//' at the end, '//percent(path%stress_worst)//' at worst; ' &
+                    //to_text(path%shortened)//' attempts shortened for them, '//to_text(path%above)//' steps above the bounds')
+      call warn(lines, 'error of the motion by the path within steps '//percent(motion_error(path)), motion_advice(path))
+      call warn(lines, 'error of the stress by the path within steps '//percent(stress_error(path)), stress_advice(path))
+    end associate
+  end subroutine add_path
+
+  !> Weak springs of bodies.
+  subroutine add_springs(scene, solution, lines)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(string_t), allocatable, intent(inout) :: lines(:)
+    character(len=:), allocatable :: share
+
+    share = percent(spring_share(scene, solution))//' of the largest force'
+    call add_text(lines, '  weak springs of bodies: force '//to_text(circumference(scene)*spring_force(scene, solution), 3) &
+                  //' at the end, '//share)
+    call warn(lines, 'weak springs carry '//share, spring_advice(scene, solution))
+  end subroutine add_springs
+
+  !> Penetrations.
+  subroutine add_contact(scene, solution, lines)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(string_t), allocatable, intent(inout) :: lines(:)
+
+    if (size(scene%dies) == 0) then
+      call add_text(lines, '  no contact')
+      return
+    end if
+    call add_text(lines, '  largest penetration at points of contact ' &
+                  //depth(scene, solution%worst_penetration, solution%worst_penetration_ratio) &
+                  //'; between them too '//depth(scene, solution%worst_sample, solution%worst_sample_ratio))
+    call warn(lines, 'points of contact are deeper in a die than allowed', advice_at_points(scene, solution))
+    call warn(lines, 'sides between points of contact are deeper in a die than allowed', advice_between_points(scene, solution))
+    if (len(sides_that_span(scene, solution)) > 0) call add_text(lines, '  '//sides_that_span(scene, solution))
+  end subroutine add_contact
+
+  !> What is wrong and what to do, where there is an advice.
+  subroutine warn(lines, what, advice)
+    type(string_t), allocatable, intent(inout) :: lines(:)
+    character(len=*), intent(in) :: what, advice
+
+    if (len(advice) > 0) call add_text(lines, '  WARNING: '//what//': '//advice)
+  end subroutine warn
+
+  !> A share in percent.
+  function percent(share) result(words)
+    real(wp), intent(in) :: share
+    character(len=:), allocatable :: words
+
+    words = to_text(100*share, 3)//' %'
+  end function percent
+
+  !> A depth, and its share of what is allowed where a law states that.
+  function depth(scene, length, ratio) result(words)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: length, ratio
+    character(len=:), allocatable :: words
+
+    words = to_text(length, 3)
+    if (states_penetration(scene)) words = words//', '//to_text(ratio, 3)//' of the allowed'
+  end function depth
 
 end module summary_table

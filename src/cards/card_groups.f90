@@ -2,13 +2,13 @@
 module card_groups
   use deck_cursor, only: cursor_t
   use deck_reader, only: card_t
-  use diagnostics, only: location_t
+  use diagnostics, only: diagnostics_t, location_t
   use elem_api, only: acts_on
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, find_elem
   implicit none
   private
-  public :: append_group, close_group, start_group
+  public :: append_group, close_group, refuse_second, start_group
 
 contains
 
@@ -31,6 +31,21 @@ contains
     end if
     allocate (group%variables(0))
   end subroutine start_group
+
+  !> What a card says of one place by one name is said once.
+  subroutine refuse_second(cursor, draft, group, what, diagnostics)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    type(group_t), intent(in) :: group
+    character(len=*), intent(in) :: what   !! it is, for the message
+    type(diagnostics_t), intent(in), target :: diagnostics
+    integer :: g
+
+    do g = 1, size(draft%scene%groups)
+      if (draft%scene%groups(g)%name == group%name .and. draft%scene%groups(g)%elem == group%elem) &
+        call cursor%fail(what//' is already given at '//diagnostics%place(draft%group_where(g)))
+    end do
+  end subroutine refuse_second
 
   !> The card ends: its group is added to the scene, or, where the card has a mistake, groups are noted as unsound.
   subroutine close_group(draft, cursor, card, group)

@@ -5,6 +5,7 @@ module cards_accuracy
   use deck_cursor, only: cursor_t
   use deck_reader, only: card_t, deck_t
   use diagnostics, only: diagnostics_t
+  use elem_api, only: body_acts_on
   use kinds, only: wp
   use law_api, only: contact_law
   use mesh_parts, only: mesh_parts_t
@@ -95,7 +96,7 @@ contains
     logical :: yes
     integer :: g
 
-    yes = any([(draft%scene%groups(g)%elem == 'PL8LS', g=1, size(draft%scene%groups))])
+    yes = any([(body_acts_on(draft%elems, draft%scene%groups(g), 'displacement'), g=1, size(draft%scene%groups))])
   end function has_motion
 
   !> STRESS, columns of any scene, of dies, and of probes, those of other operations too.

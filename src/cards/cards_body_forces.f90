@@ -1,6 +1,6 @@
 !> BFORC, CENTR and SPRNG on bodies: forces on the volume of bodies, a group of load elements each.
 module cards_body_forces
-  use card_groups, only: close_group, start_group
+  use card_groups, only: close_group, refuse_second, start_group
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
@@ -40,7 +40,7 @@ contains
         call start_group(merge('BSPRG', keyword(:5), keyword == 'SPRNG'), draft, group)
         group%rule%n = npoint
         call read_body(cursor, draft, group)
-        if (keyword == 'SPRNG') then
+        if (group%is_spring) then
           call read_springs(cursor, draft, directions, group)
         else if (keyword == 'BFORC') then
           call cursor%name('a direction', directions, group%direction)
@@ -53,12 +53,12 @@ contains
         end if
       end associate
       k = 0
-      if (group%elem /= 'BSPRG') call draft%multipliers%find(cursor, 'the name of a LIC', k)
+      if (.not. group%is_spring) call draft%multipliers%find(cursor, 'the name of a LIC', k)
       if (k > 0) then
         group%multiplier = draft%multipliers%item(k)
         group%name = group%name//'/'//draft%multipliers%words(k)%s
       end if
-      if (.not. cursor%failed()) call refuse_second(cursor, draft, group, diagnostics)
+      if (.not. cursor%failed()) call refuse_second(cursor, draft, group, 'this load', diagnostics)
       call close_group(draft, cursor, deck%cards(i), group)
     end do
   end subroutine read_body_forces
@@ -124,19 +124,5 @@ contains
                                 reshape(group%connectivity, [size(group%connectivity)]), group%name, own=.true.)
     end if
   end subroutine read_body
-
-  !> A load of one kind on one body by one multiplier is given once.
-  subroutine refuse_second(cursor, draft, group, diagnostics)
-    type(cursor_t), intent(inout) :: cursor
-    type(draft_t), intent(in) :: draft
-    type(group_t), intent(in) :: group
-    type(diagnostics_t), intent(in), target :: diagnostics
-    integer :: g
-
-    do g = 1, size(draft%scene%groups)
-      if (draft%scene%groups(g)%name == group%name .and. draft%scene%groups(g)%elem == group%elem) &
-        call cursor%fail('this load is already given at '//diagnostics%place(draft%group_where(g)))
-    end do
-  end subroutine refuse_second
 
 end module cards_body_forces

@@ -4,11 +4,11 @@ module cards_fields
   use card_groups, only: append_group
   use card_places, only: place_t, read_place
   use cards_laws, only: read_material
-  use cards_mesh, only: is_body_elem, read_option
+  use cards_mesh, only: read_option
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use elem_api, only: declare_fields
+  use elem_api, only: declare_fields, list_body_elems
   use field_places, only: refuse_unlike_nodes, refuse_without_field
   use fields, only: field_t, solved_with
   use law_api, only: law_of_material
@@ -62,7 +62,7 @@ contains
 
     group%role = role_second
     call read_body(cursor, draft, group%host)
-    call body_elems(draft, known)
+    call list_body_elems(draft%elems, known)
     call cursor%name('an element', known, k)
     if (k == 0) return
     group%elem = known(k)%s
@@ -97,21 +97,6 @@ contains
     if (body == 0 .and. draft%mesh_sound) call cursor%fail(''''//draft%places%words(k)%s//''' is a ' &
                                                            //draft%places%keywords(k)%s//', expected a body')
   end subroutine read_body
-
-  !> Names of the elements that bodies are made of.
-  subroutine body_elems(draft, known)
-    type(draft_t), intent(in) :: draft
-    type(string_t), allocatable, intent(out) :: known(:)
-    integer :: k, n
-
-    allocate (known(count([(is_body_elem(draft%elems(k)), k=1, size(draft%elems))])))
-    n = 0
-    do k = 1, size(draft%elems)
-      if (.not. is_body_elem(draft%elems(k))) cycle
-      n = n + 1
-      known(n)%s = draft%elems(k)%name
-    end do
-  end subroutine body_elems
 
   !> Fields that cards call by a word of their own, and these words.
   pure subroutine field_words(fields, place, words)

@@ -1,7 +1,7 @@
 !> FLUX, CONVE, RADIA and HEATS: heat that passes sides of bodies or faces of sheets, or comes from volumes; THETA: its balance
 !> in time.
 module cards_heat
-  use card_groups, only: close_group, start_group
+  use card_groups, only: close_group, refuse_second, start_group
   use card_places, only: numbers_after_name, read_sides
   use cards_sides, only: refuse_inner_sides
   use deck_card, only: deck_field_t
@@ -37,7 +37,7 @@ contains
     type(group_t) :: group
     character(len=:), allocatable :: label
     logical :: on_faces
-    integer :: i, g, f
+    integer :: i, f
 
     do i = 1, size(deck%cards)
       associate (keyword => deck%cards(i)%keyword)
@@ -63,10 +63,7 @@ contains
         call read_numbers(cursor, draft, keyword, group%exchange)
         call read_table(cursor, keyword, group%exchange)
         group%name = label//'/'//keyword
-        do g = 1, size(draft%scene%groups)
-          if (draft%scene%groups(g)%name == group%name) call cursor%fail('this is already given at ' &
-                                                                         //diagnostics%place(draft%group_where(g)))
-        end do
+        call refuse_second(cursor, draft, group, 'this', diagnostics)
       end associate
       call close_group(draft, cursor, deck%cards(i), group)
     end do

@@ -1,6 +1,6 @@
 !> COU2DC: heat between sides and dies; TDIE by cards_die_heat.
 module cards_heat_contact
-  use card_groups, only: append_group, start_group
+  use card_groups, only: append_group, refuse_second, start_group
   use card_places, only: read_sides
   use cards_die_heat, only: find_die, read_die
   use cards_sides, only: refuse_inner_sides
@@ -72,20 +72,16 @@ contains
     type(diagnostics_t), intent(in), target :: diagnostics
     type(group_t) :: group
     character(len=:), allocatable :: label
-    integer :: g
 
     call start_group('CNTTM', draft, group)
-    call read_sides(cursor, draft, huge(g), label, group%connectivity, field=field)
+    call read_sides(cursor, draft, huge(0), label, group%connectivity, field=field)
     call refuse_inner_sides(cursor, draft, group%connectivity)
     call find_die(cursor, draft, group%die)
     if (draft%groups_sound .and. field == 0) call cursor%fail('no body of this scene has a temperature among its unknowns (PL8TM)')
     if (group%die > 0) group%name = label//'/'//draft%scene%dies(group%die)%name
     if (.not. cursor%failed() .and. draft%groups_sound) call find_contact(cursor, draft, field, dies_sound, group)
     group%name = group%name//'/COU2DC'
-    do g = 1, size(draft%scene%groups)
-      if (draft%scene%groups(g)%name == group%name) call cursor%fail('this is already given at ' &
-                                                                     //diagnostics%place(draft%group_where(g)))
-    end do
+    call refuse_second(cursor, draft, group, 'this', diagnostics)
     call read_numbers(cursor, draft, group)
     call close_card(draft, cursor, card)
     if (cursor%failed()) then

@@ -1,16 +1,18 @@
 !> LOADF: a multiplier that is found, so that a displacement, or the work of its loads, follows another one.
 module cards_load_factor
+  use card_groups, only: start_group
   use card_places, only: node_text, place_t, read_place
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
+  use elem_api, only: has_unknown
   use field_places, only: refuse_without_field
   use fields, only: displacement_field
   use history_columns, only: own_columns_named
   use kinds, only: pi, wp
   use loads, only: multiplier_t
   use scene, only: axisymmetric, group_t
-  use scene_draft, only: close_card, draft_t, find_elem, only_card, words_of
+  use scene_draft, only: close_card, draft_t, only_card, words_of
   use text, only: string_t
   implicit none
   private
@@ -101,13 +103,13 @@ contains
     end associate
   end subroutine read_node
 
-  !> Pressures, tractions and forces on nodes have it, and nothing else.
+  !> Pressures, tractions and forces on nodes have it, and nothing else: elements that have it among their unknowns.
   subroutine refuse_other_uses(cursor, draft, name)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(in) :: draft
     character(len=*), intent(in) :: name
     integer :: g
-    logical :: used, other
+    logical :: used, other, has_it
 
     associate (scene => draft%scene, m => draft%scene%load_factor%multiplier)
       used = any(scene%forces%multiplier == m)
@@ -117,8 +119,9 @@ contains
       if (allocated(scene%sources)) other = other .or. any(scene%sources%multiplier == m)
       do g = 1, size(scene%groups)
         associate (group => scene%groups(g))
-          used = used .or. (group%elem == 'PRES2D' .and. group%multiplier == m)
-          other = other .or. (group%elem /= 'PRES2D' .and. group%multiplier == m) .or. group%temperature_multiplier == m &
+          has_it = has_unknown(draft%elems(group%elem_id), 'load_factor')
+          used = used .or. (has_it .and. group%multiplier == m)
+          other = other .or. (.not. has_it .and. group%multiplier == m) .or. group%temperature_multiplier == m &
                   .or. group%exchange%multiplier == m .or. group%exchange%surroundings_multiplier == m
         end associate
       end do
@@ -137,13 +140,10 @@ contains
 
     associate (factor => draft%scene%load_factor, forces => draft%scene%forces)
       factor%forces = pack([(k, k=1, size(forces))], forces%multiplier == factor%multiplier)
+      call start_group('LOADF', draft, group)
       group%name = name//'/found'
-      group%elem = 'LOADF'
-      group%elem_id = find_elem(draft%elems, group%elem)
-      group%role = draft%elems(group%elem_id)%role
       group%multiplier = factor%multiplier
       group%rule%n = 1
-      allocate (group%variables(0))
       ! the equation of work is no node's: any that moves
       node = draft%scene%groups(1)%connectivity(1, 1)
       if (factor%node > 0) node = factor%node

@@ -5,7 +5,7 @@ module cards_mesh
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
-  use elem_api, only: elem_t
+  use elem_api, only: elem_t, list_body_elems
   use mesh, only: side_set_t
   use mesh_parts, only: body_t, find_label, mesh_parts_t, sort_labels
   use scene, only: plane_stress, role_body
@@ -14,7 +14,7 @@ module cards_mesh
   use text, only: string_t, to_text
   implicit none
   private
-  public :: read_nodes, read_elements, read_side_sets, read_body_head, read_option, is_body_elem
+  public :: read_nodes, read_elements, read_side_sets, read_body_head, read_option
 
   !> Nodes of an element of a body; a rule of Gauss points it may have.
   integer, parameter :: nnode = 8
@@ -119,19 +119,13 @@ contains
     type(body_t), intent(inout) :: body
     type(string_t), allocatable :: known(:)
     logical :: names_element
-    integer :: k, n
+    integer :: k
 
     body%is_block = keyword == 'BLOCK'
     names_element = any(keyword == ['BLOCK', 'BODY '])
     call draft%places%define(cursor, 'the name of the body', keyword, item, diagnostics, body%name)
     if (names_element) then
-      allocate (known(count([(is_body_elem(draft%elems(k)), k=1, size(draft%elems))])))
-      n = 0
-      do k = 1, size(draft%elems)
-        if (.not. is_body_elem(draft%elems(k))) cycle
-        n = n + 1
-        known(n)%s = draft%elems(k)%name
-      end do
+      call list_body_elems(draft%elems, known)
       call cursor%name('an element', known, k)
       body%elem = known(max(k, 1))%s
     end if

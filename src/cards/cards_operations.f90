@@ -6,12 +6,11 @@ module cards_operations
   use accuracy_rules, only: fineness_t
   use card_names, only: names_t
   use cards_cuts, only: trim_keyword
-  use cards_mesh, only: is_body_elem
   use cards_sleep, only: put_to_sleep, sleep_keyword
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use elem_api, only: elem_t
+  use elem_api, only: body_acts_on, elem_t, list_body_elems
   use elem_registry, only: list_elems
   use fields, only: displacement_field
   use kinds, only: wp
@@ -111,16 +110,12 @@ contains
   subroutine list_refused(keywords)
     type(string_t), allocatable, intent(out) :: keywords(:)   !! (nkeyword)
     type(elem_t), allocatable :: elems(:)
-    type(string_t) :: more(1)
-    integer :: k
+    type(string_t), allocatable :: made(:)
 
     call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL START ACCURACY', keywords)
     call list_elems(elems)
-    do k = 1, size(elems)
-      if (.not. is_body_elem(elems(k))) cycle
-      more(1)%s = elems(k)%name
-      keywords = [keywords, more]
-    end do
+    call list_body_elems(elems, made)
+    keywords = [keywords, made]
   end subroutine list_refused
 
   !> The scene of an operation, by its number; on another mesh where one is given. Its clock begins where that of the operation
@@ -162,16 +157,18 @@ contains
   end subroutine read_operation
 
   !> Bodies that deform and conduct heat take over what the operation before has left of the heat of its last step.
-  pure subroutine keep_heat_due(scene)
+  subroutine keep_heat_due(scene)
     type(scene_t), intent(inout) :: scene
+    type(elem_t), allocatable :: elems(:)
     type(state_variable_t) :: due
     integer :: g
 
     if (.not. scene%fields(displacement_field)%declared) return
+    call list_elems(elems)
     due = state_variable(name_of_heat_due, 'energy/length^3', transfer_scalar)
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
-        if (group%elem /= 'PL8TM') cycle
+        if (.not. body_acts_on(elems, group, 'temperature')) cycle
         due%first = total_components(group%variables) + 1
         group%variables = [group%variables, due]
       end associate

@@ -1,5 +1,6 @@
 !> What drives the pilots of dies beside MOVE: FORCE and FREE release a component, SPRNG ties it to its position at the start.
 module cards_pilots
+  use card_groups, only: append_group, start_group
   use card_places, only: place_t, read_place
   use cards_body_forces, only: names_body
   use deck_cursor, only: cursor_t
@@ -8,7 +9,7 @@ module cards_pilots
   use kinds, only: pi, wp
   use loads, only: die_force_t
   use scene, only: axisymmetric, group_t
-  use scene_draft, only: close_card, draft_t, find_elem, words_of
+  use scene_draft, only: close_card, draft_t, words_of
   use text, only: string_t
   implicit none
   private
@@ -99,6 +100,7 @@ contains
     character(len=1), parameter :: components(3) = ['X', 'Y', 'A']
     integer :: g
 
+    call start_group('SPRNG', draft, group)
     call read_component(cursor, draft, group%die, group%component)
     call cursor%real('the stiffness', group%stiffness, lower=0.0_wp, strict_lower=.true., &
                      unit='force/length, for A moment/angle; of the full circumference')
@@ -109,13 +111,9 @@ contains
       if (draft%scene%groups(g)%name == group%name) &
         call cursor%fail('this die has a spring in this direction already, see '//diagnostics%place(draft%group_where(g)))
     end do
-    group%elem = 'SPRNG'
-    group%elem_id = find_elem(draft%elems, group%elem)
-    group%role = draft%elems(group%elem_id)%role
     group%rule%n = 1
-    allocate (group%variables(0), group%connectivity(0, 1))
-    draft%scene%groups = [draft%scene%groups, group]
-    draft%group_where = [draft%group_where, cursor%where()]
+    allocate (group%connectivity(0, 1))
+    call append_group(draft, group, cursor%where())
   end subroutine read_spring
 
   subroutine read_component(cursor, draft, die, component)

@@ -4,6 +4,7 @@ module cards_remesh
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
+  use elem_api, only: body_acts_on
   use fields, only: displacement_field
   use kinds, only: wp
   use remeshing, only: aspect_ratio, jacobian_ratio, largest_angle, least_angle, middle_share, never, scaled_jacobian, stroke_t
@@ -66,7 +67,7 @@ contains
     ratio%initial = 1
     do g = 1, size(draft%scene%groups)
       associate (group => draft%scene%groups(g))
-        if (group%elem /= 'PL8TM' .or. .not. allocated(group%variables)) cycle
+        if (.not. (body_acts_on(draft%elems, group, 'temperature') .and. allocated(group%variables))) cycle
         ratio%first = total_components(group%variables) + 1
         group%variables = [group%variables, ratio]
       end associate

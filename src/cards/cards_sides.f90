@@ -1,6 +1,6 @@
 !> CNT2D and PRES2D: elements that lie on sides of bodies.
 module cards_sides
-  use card_groups, only: append_group, close_group, start_group
+  use card_groups, only: append_group, close_group, refuse_second, start_group
   use card_places, only: numbers_after_name, read_sides
   use cards_laws, only: read_material
   use contact_penalties, only: tangential_share
@@ -157,7 +157,7 @@ contains
     type(cursor_t) :: cursor
     type(group_t) :: group
     character(len=:), allocatable :: label
-    integer :: i, k, g
+    integer :: i, k
 
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword /= 'PRES2D') cycle
@@ -172,10 +172,7 @@ contains
       if (k > 0) then
         group%multiplier = draft%multipliers%item(k)
         group%name = label//'/'//draft%multipliers%words(k)%s
-        do g = 1, size(draft%scene%groups)
-          if (draft%scene%groups(g)%name == group%name) call cursor%fail('this pressure is already given at ' &
-                                                                         //diagnostics%place(draft%group_where(g)))
-        end do
+        call refuse_second(cursor, draft, group, 'this pressure', diagnostics)
       end if
       call close_group(draft, cursor, deck%cards(i), group)
     end do

@@ -62,7 +62,7 @@ contains
         formula = ''
         if (from_run) then
           if (draft%scene%fields(f)%name /= 'temperature') call cursor%fail('another run gives temperatures, T')
-          call read_file_of_run(cursor, deck%path, file, run)
+          call read_file_of_run(cursor, draft%elems, deck%path, file, run)
           call read_instant_of_run(cursor, run, 'an instant of that run', value)
         else
           call cursor%real_or_formula('the value at the start', value, formula, draft%scene%fields(f)%unit)

@@ -3,7 +3,7 @@ module cards_temperature
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use elem_api, only: acts_on
+  use elem_api, only: acts_on, elem_t
   use fields, only: field_t, find_field
   use kinds, only: wp
   use law_api, only: asks_for, law_t
@@ -11,7 +11,8 @@ module cards_temperature
   use materials, only: material_t
   use other_run, only: nodes_of_body, read_file_of_run, read_instant_of_run, temperatures_at_nodes
   use run_temperatures, only: run_temperatures_t
-  use scene_draft, only: close_card, draft_t, find_elem
+  use scene, only: role_body
+  use scene_draft, only: close_card, draft_t
   use text, only: to_text
   implicit none
   private
@@ -74,7 +75,7 @@ contains
     integer :: k, before
     real(wp) :: share
 
-    call read_file_of_run(cursor, deck_path, history%source, run)
+    call read_file_of_run(cursor, draft%elems, deck_path, history%source, run)
     if (with_instant .and. .not. cursor%failed()) &
       call read_instant_of_run(cursor, run, 'the instant of that run at which this scene begins', history%begins)
     if (cursor%failed() .or. g == 0 .or. .not. (draft%mesh_sound .and. draft%groups_sound)) return
@@ -126,7 +127,7 @@ contains
     end do
   end subroutine refuse_other_source
 
-  !> The temperature as a field that is given: as PL8TM declares it on eight nodes.
+  !> The temperature as a field that is given: as bodies that conduct heat have it, on eight nodes.
   subroutine declare_given(draft, place)
     type(draft_t), intent(inout) :: draft
     integer, intent(out) :: place   !! in the scene's list of fields
@@ -134,12 +135,27 @@ contains
 
     place = find_field(draft%scene%fields, 'temperature')
     if (place > 0) return
-    field = draft%elems(find_elem(draft%elems, 'PL8TM'))%unknowns(1)%field
+    call find_declared(draft%elems, field)
     field%given = .true.
     field%declared = .true.
     draft%scene%fields = [draft%scene%fields, field]
     place = size(draft%scene%fields)
   end subroutine declare_given
+
+  !> The temperature as the first element of bodies that acts on it declares it.
+  pure subroutine find_declared(elems, field)
+    type(elem_t), intent(in) :: elems(:)   !! (nelem_row)
+    type(field_t), intent(out) :: field
+    integer :: k, u
+
+    do k = 1, size(elems)
+      if (elems(k)%role /= role_body .or. .not. acts_on(elems(k), 'temperature')) cycle
+      do u = 1, size(elems(k)%unknowns)
+        field = elems(k)%unknowns(u)%field
+        if (field%name == 'temperature') return
+      end do
+    end do
+  end subroutine find_declared
 
   !> The temperatures of other runs must last until the end of the scene.
   subroutine refuse_short_histories(deck, draft, diagnostics)

@@ -7,6 +7,7 @@ module other_run
   use box_tree, only: box_tree_t, build_tree
   use deck_cursor, only: cursor_t
   use deck_source, only: path_beside
+  use elem_api, only: elem_t, list_body_elems
   use errors, only: error_t
   use kinds, only: wp
   use nearest_element, only: box_of_element, find_element
@@ -24,18 +25,21 @@ module other_run
 contains
 
   !> `FROM file`: the file of a mesh of another run, its place relative to the deck.
-  subroutine read_file_of_run(cursor, deck_path, file, run)
+  subroutine read_file_of_run(cursor, elems, deck_path, file, run)
     type(cursor_t), intent(inout) :: cursor
+    type(elem_t), intent(in) :: elems(:)   !! (nelem_row)
     character(len=*), intent(in) :: deck_path
     character(len=:), allocatable, intent(out) :: file   !! as the card names it
     type(run_temperatures_t), intent(out) :: run         !! of no use where the cursor has failed
     character(len=:), allocatable :: from
+    type(string_t), allocatable :: conducting(:)
     type(error_t), allocatable :: error
 
     call cursor%word('FROM', from)
     call cursor%word('the file of a run, NAME.g01.h5', file)
     if (cursor%failed()) return
-    call read_run_temperatures(path_beside(deck_path, file), run, error)
+    call list_body_elems(elems, conducting, 'temperature')
+    call read_run_temperatures(path_beside(deck_path, file), conducting, run, error)
     if (allocated(error)) call cursor%fail(error%message)
   end subroutine read_file_of_run
 

@@ -15,7 +15,7 @@ module scene_reader
   use cards_load_factor, only: name_load_factor, read_load_factor
   use cards_loads, only: read_loads, read_multipliers
   use cards_pilots, only: read_pilots
-  use cards_mesh, only: is_body_elem, read_elements, read_nodes, read_side_sets
+  use cards_mesh, only: read_elements, read_nodes, read_side_sets
   use cards_probes, only: read_probes
   use cards_remesh, only: read_remesh
   use cards_section, only: read_section, read_state
@@ -31,7 +31,7 @@ module scene_reader
   use deck_reader, only: deck_t, refuse_unknown, row_t
   use diagnostics, only: diagnostics_t, location_t
   use driver_checks, only: refuse_missing_drivers
-  use elem_api, only: declare_fields, elem_t
+  use elem_api, only: declare_fields, elem_t, list_body_elems
   use elem_registry, only: list_elems
   use mesh_finish, only: finish_mesh
   use mesh_parts, only: mesh_parts_t, start_parts
@@ -142,19 +142,14 @@ contains
   subroutine known_cards(keywords)
     type(string_t), allocatable, intent(out) :: keywords(:)   !! (nkeyword)
     type(elem_t), allocatable :: elems(:)
-    type(string_t), allocatable :: more(:)
-    integer :: k
+    type(string_t), allocatable :: made(:)
 
     call list_elems(elems)
     call words_of('TITLE STATE SECTN KINEM NODES SIDES BLOCK BODY JOIN ADDEL LAW DIE CNT2D PRES2D BFORC CENTR TRACT TEMPE START ' &
                   //'OPERA ASLEEP FLUX CONVE RADIA HEATS GOLDAK COU2DC TDIE THETA FIXED MOVE IMPOS SOLVE FORCE FREE SPRNG ' &
                   //'LIC LOADF STRAT NORMS ACCURACY SOLVR STOP SAVE CKPT PROBE ESTIM REMSH TRIM PIERC ZPNT ZONE', keywords)
-    allocate (more(1))
-    do k = 1, size(elems)
-      if (.not. is_body_elem(elems(k))) cycle
-      more(1)%s = elems(k)%name
-      keywords = [keywords, more]
-    end do
+    call list_body_elems(elems, made)
+    keywords = [keywords, made]
   end subroutine known_cards
 
   subroutine refuse_empty(deck, diagnostics)

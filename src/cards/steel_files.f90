@@ -4,6 +4,8 @@ module steel_files
   use deck_reader, only: deck_field_t, deck_t, fingerprint_text, read_deck
   use deck_source, only: path_beside
   use diagnostics, only: diagnostics_t
+  use elem_api, only: elem_t, list_body_elems
+  use elem_registry, only: list_elems
   use errors, only: error_t
   use hash, only: sha256_length
   use run_temperatures, only: read_run_temperatures, run_temperatures_t, temperatures_digest
@@ -81,12 +83,16 @@ contains
     type(deck_field_t), intent(in) :: fields(:)   !! (nfield) of the card
     character(len=:), allocatable, intent(inout) :: text
     type(run_temperatures_t) :: run
+    type(elem_t), allocatable :: elems(:)
+    type(string_t), allocatable :: conducting(:)
     type(error_t), allocatable :: error
     character(len=sha256_length) :: digest
 
     if (size(fields) < 3) return
     if (fields(2)%numeric .or. fields(3)%numeric .or. upper_case(fields(2)%text) /= 'FROM') return
-    call read_run_temperatures(path_beside(deck%path, fields(3)%text), run, error)
+    call list_elems(elems)
+    call list_body_elems(elems, conducting, 'temperature')
+    call read_run_temperatures(path_beside(deck%path, fields(3)%text), conducting, run, error)
     if (allocated(error)) return
     call temperatures_digest(run, digest)
     text = text//fields(3)%text//' '//digest

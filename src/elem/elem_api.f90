@@ -13,16 +13,16 @@ module elem_api
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
   use pairs, only: pairs_t
-  use scene, only: generalised_plane_strain, group_t, scene_t
+  use scene, only: generalised_plane_strain, group_t, role_body, role_second, scene_t
   use state_variables, only: state_variable_t
-  use text, only: string_t
+  use text, only: add_text, string_t
   implicit none
   private
   public :: elem_t, flow_rule_t, instant_t, layout_t, report_t, totals_t, unknown_t
   public :: elem_compute_i, elem_variables_i, elem_measure_i, elem_augment_i
   public :: block_done, block_inverted, block_law_failed, block_without_source
-  public :: acts_on, add_totals, applies, declare_fields, first_unknown, group_temperature, has_unknown, layout_of, section_motion
-  public :: goes_on, of_displacement, of_pilot, of_section, that_reads, field_nodes, no_variables
+  public :: acts_on, add_totals, applies, body_acts_on, declare_fields, first_unknown, group_temperature, has_unknown, layout_of
+  public :: field_nodes, goes_on, list_body_elems, no_variables, of_displacement, of_pilot, of_section, section_motion, that_reads
   public :: mode_advance, mode_error, mode_restore
   public :: most_components
 
@@ -179,6 +179,8 @@ module elem_api
     logical :: follows = .false.
     !> Springs between a body and where it is on the first geometry.
     logical :: is_spring = .false.
+    !> A load that goes with the square of its multiplier.
+    logical :: squares_multiplier = .false.
     !> Its matrix is symmetric when the law's is; not with this option in large strain (-1: with any).
     logical :: symmetric = .true.
     integer :: unsymmetric_option = -1
@@ -339,6 +341,34 @@ contains
       if (elem%unknowns(k)%acts) yes = yes .or. elem%unknowns(k)%field%name == name
     end do
   end function acts_on
+
+  !> A group is a formulation on a body, and acts on a field.
+  pure function body_acts_on(elems, group, name) result(yes)
+    type(elem_t), intent(in) :: elems(:)   !! (nelem_row)
+    type(group_t), intent(in) :: group
+    character(len=*), intent(in) :: name   !! of the field
+    logical :: yes
+
+    yes = any(group%role == [role_body, role_second])
+    if (yes) yes = acts_on(elems(group%elem_id), name)
+  end function body_acts_on
+
+  !> Names of the elements that bodies are made of: all, or those that act on a field.
+  pure subroutine list_body_elems(elems, names, field)
+    type(elem_t), intent(in) :: elems(:)                   !! (nelem_row)
+    type(string_t), allocatable, intent(out) :: names(:)   !! (n)
+    character(len=*), intent(in), optional :: field        !! its name
+    integer :: k
+
+    allocate (names(0))
+    do k = 1, size(elems)
+      if (elems(k)%role /= role_body) cycle
+      if (present(field)) then
+        if (.not. acts_on(elems(k), field)) cycle
+      end if
+      call add_text(names, elems(k)%name)
+    end do
+  end subroutine list_body_elems
 
   !> An element has a field of the scene's list among its unknowns.
   pure function has_unknown(elem, name) result(yes)

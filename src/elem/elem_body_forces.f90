@@ -33,6 +33,7 @@ contains
     row = common_row()
     row%name = 'CENTR'
     row%purpose = 'centrifugal force on the volume of a body'
+    row%squares_multiplier = .true.
     row%compute => compute_centrifugal
   end function elem_centr_row
 

@@ -20,33 +20,28 @@
 !>
 !> An edge of the other body between two points is one more point of contact of the side (edge_contact).
 !>
-!> A body may face itself (own_contact): nothing tells then by its place whether a point is behind the wall that it belongs to or in
-!> the side that it has met, both are a depth. So a point goes on from the closest point of the last accepted instant, or takes the
-!> nearest gap. Only where it had none in reach, as in a first step, a depth counts that was none on the mesh as it began.
-!> The two sides that meet in the ground of a fold press on each other; beside any other corner a depth is the body itself.
+!> A body may face itself (own_contact, own_closest_point).
 module elem_cntdf
   use contact_point, only: act, at_penetration, at_piece, at_status, at_work, at_xi, contact_block, contact_point_t, meeting_t, &
-                           most_unknowns, no_surface, penalties, rest, share_to_contact, touching, show_on_axis, side_length, &
+                           most_unknowns, no_surface, penalties, rest, share_to_contact, show_on_axis, side_length, &
                            side_point, thinning
   use closest_point, only: closest_point_t
   use contact_penalties, only: allowed_penetration
-  use corner_faces, only: closest_on_piece
-  use curve_search, only: box_distance, closest_facing_point, closest_opposed_point, follow_closest_point, looks_at
+  use curve_search, only: box_distance, closest_facing_point
   use dies, only: die_t
   use edge_contact, only: press_edges
   use edge_release, only: edge_release_t, slide_past_edge
   use elem_api, only: elem_t, goes_on, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
   use elem_cnt2d, only: elem_cnt2d_row
-  use kept_side, only: beyond_all, handed_over_t, keep_closest_point
+  use kept_side, only: handed_over_t, keep_closest_point
   use kinds, only: eps, wp
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_open, law_t
+  use own_closest_point, only: find_own_closest_point
   use own_contact, only: faces_itself, pieces_to_meet
   use pair_forces, only: spread_force, spread_matrix
   use pairs, only: list_pieces, nodes_per_piece, pieces_in_reach
-  use parabolas, only: point_on, tangent_on
-  use piecewise_curves, only: adjacent_piece
-  use plane_vectors, only: cross, right_of
+  use plane_vectors, only: cross
   use quadrature, only: line_rule
   use rigid_contact, only: side_t
   use scene, only: axisymmetric, generalised_plane_strain, group_t, scene_t
@@ -58,13 +53,6 @@ module elem_cntdf
 
   !> At a vertex the normal turns about the closest point: turn d = 1 to some round-off.
   real(wp), parameter :: at_vertex = 64*eps
-  !> A point that was deeper behind a side of its body, on the mesh as it began, than this share of its own side is behind a wall:
-  !> no depth of contact is as large.
-  real(wp), parameter :: wall_thickness = 0.02_wp
-  !> Cosine of the largest angle between the sides of a slot that is shut, about 10 degrees: no element has a corner as sharp.
-  real(wp), parameter :: shut = 0.985_wp
-  !> A closest point as far along its side was at the end of it (parent coordinate).
-  real(wp), parameter :: at_corner = 0.999_wp
 
 contains
 
@@ -302,135 +290,6 @@ contains
 
     box = [minval(x(1, :) + du(1:3)), minval(x(2, :) + du(4:6)), maxval(x(1, :) + du(1:3)), maxval(x(2, :) + du(4:6))]
   end function box_of
-
-  !> Closest point of a body's own curve: what the point had at the start of the step, or the nearest gap.
-  pure subroutine find_own_closest_point(scene, group, element, die, may, point, phi, reach, committed, closest)
-    type(scene_t), intent(in) :: scene
-    type(group_t), intent(in) :: group
-    integer, intent(in) :: element
-    type(die_t), intent(in) :: die
-    logical, intent(in) :: may(:)   !! (npiece)
-    type(contact_point_t), intent(in) :: point
-    real(wp), intent(in) :: phi(3), reach, committed(:)
-    type(closest_point_t), intent(out) :: closest
-    type(closest_point_t) :: same
-    integer :: piece, end
-
-    call closest_opposed_point(die, point%x, point%e_r, reach, may, -1.0_wp, closest)
-    if (closest%piece > 0) then
-      if (is_own_node(closest)) closest%piece = 0
-    end if
-    piece = nint(committed(at_piece))
-    if (piece > 0) then
-      call follow_from(piece, committed(at_xi), same)
-    else
-      call closest_opposed_point(die, point%x, point%e_r, reach, may, 1.0_wp, same)
-    end if
-    call take(same, piece > 0, closest)
-    if (closest%piece > 0 .or. die%closed) return
-    ! flush with an open end of the curve, as on a line of symmetry
-    do end = 1, size(may), max(size(may) - 1, 1)
-      call closest_on_piece(die, end, point%x, merge(-1.0_wp, 1.0_wp, end == 1), beyond_all, same)
-      if (same%piece == 0) cycle
-      if (abs(same%d) < reach .and. looks_at(same, point%e_r)) call take(same, piece == end, closest)
-    end do
-
-  contains
-
-    !> The closest point from where it was. From a corner there are two ways, inside the body behind it: the side that is looked at.
-    pure subroutine follow_from(piece, xi, found)
-      integer, intent(in) :: piece
-      real(wp), intent(in) :: xi
-      type(closest_point_t), intent(out) :: found
-      type(closest_point_t) :: other
-      integer :: next
-
-      call follow_closest_point(die, point%x, point%e_r, reach, piece, xi, found)
-      if (.not. abs(xi) >= at_corner) return
-      next = adjacent_piece(die, piece, nint(xi))
-      if (next == 0) return
-      call follow_closest_point(die, point%x, point%e_r, reach, next, -anint(xi), other)
-      if (other%piece == 0 .or. .not. other%d > 0) return
-      if (found%piece > 0 .and. dot_product(found%normal, point%e_r) <= dot_product(other%normal, point%e_r)) return
-      found = other
-    end subroutine follow_from
-
-    !> What the point met before is nearer than a gap where it is a depth. A depth that was not met before may be a wall, and one
-    !> beside a common node the body itself.
-    pure subroutine take(other, was_met, closest)
-      type(closest_point_t), intent(in) :: other
-      logical, intent(in) :: was_met
-      type(closest_point_t), intent(inout) :: closest
-
-      if (other%piece == 0) return
-      if (.not. may(other%piece)) return
-      if (is_own_node(other)) return
-      if (closest%piece > 0 .and. other%d < 0 .and. other%d < closest%d) return
-      if (other%d > 0) then
-        if (is_next(other)) then
-          if (.not. is_slot(other)) return
-        else if (.not. was_met) then
-          if (is_wall(other)) return
-        end if
-      end if
-      closest = other
-    end subroutine take
-
-    !> Point and closest point are on two faces of one wall.
-    pure function is_wall(far) result(wall)
-      type(closest_point_t), intent(in) :: far
-      logical :: wall
-      real(wp) :: x(2, 3), y(2, 3), apart(2), across
-
-      associate (side => group%connectivity(:, element), other => scene%dies(group%die)%nodes(:, far%piece), &
-                 first => scene%mesh%coordinates)
-        x = first(:, side)
-        y = first(:, other)
-        apart = matmul(x, phi) - point_on(y, far%xi)
-        across = dot_product(apart, right_of(tangent_on(y, far%xi)))
-        if (far%at_vertex) across = sign(length_of(apart), across)
-        wall = across > wall_thickness*reach
-      end associate
-    end function is_wall
-
-    !> The side of the point and the one that it shares a node with have a slot between them, the ground of a fold, and no corner of
-    !> the body: by their chords, since parabolas that press on each other may bulge beside that node. A slot that is shut may have
-    !> turned over by the depth of contact.
-    pure function is_slot(found) result(slot)
-      type(closest_point_t), intent(in) :: found
-      logical :: slot
-      real(wp) :: before(2), after(2)
-      integer :: piece
-
-      associate (side => group%connectivity(:, element), other => scene%dies(group%die)%nodes(:, found%piece))
-        piece = found%piece
-        if (side(3) /= other(3)) piece = adjacent_piece(die, found%piece, -1)
-      end associate
-      before = die%pieces(:, 3, piece) - die%pieces(:, 1, piece)
-      piece = adjacent_piece(die, piece, 1)
-      after = die%pieces(:, 3, piece) - die%pieces(:, 1, piece)
-      slot = cross(before, after) > 0 .or. dot_product(before, after) < -shut*length_of(before)*length_of(after)
-    end function is_slot
-
-    !> The closest point is on a side that shares a node with that of the point.
-    pure function is_next(found) result(next)
-      type(closest_point_t), intent(in) :: found
-      logical :: next
-
-      associate (side => group%connectivity(:, element), other => scene%dies(group%die)%nodes(:, found%piece))
-        next = side(1) == other(1) .or. side(3) == other(3)
-      end associate
-    end function is_next
-
-    !> The point and its closest point are one node.
-    pure function is_own_node(found) result(own)
-      type(closest_point_t), intent(in) :: found
-      logical :: own
-
-      own = is_next(found) .and. abs(found%d) <= touching*reach
-    end function is_own_node
-
-  end subroutine find_own_closest_point
 
   !> Depth, slip and turn of the normal where a point meets a side, with their derivatives, and the motion of the closest
   !> point along the side. Unknowns 7 to 12 are those of the side met.

@@ -20,15 +20,15 @@ module elem_heat_contact
   use elem_api, only: elem_t, first_unknown, instant_t, layout_t, mode_advance, mode_error, of_pilot, report_t, unknown_t
   use elem_heat_sides, only: heat_side_row
   use fields, only: displacement_field, field_t, has_corners_only, on_pilots
+  use heat_contact_flows, only: add_exchange, add_friction, area_t, project_area
   use heat_contact_point, only: facing_t, find_facing, share_out, shares_t
-  use heat_contacts, only: flow_from_die, share_by_effusivity
+  use heat_contacts, only: share_by_effusivity
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
   use pairs, only: list_pieces, pieces_in_reach
   use quadrature, only: line_rule
   use scene, only: group_t, role_heat_contact, scene_t
-  use sections, only: thickness_at
   use shape_functions, only: line3
   use state_variables, only: find_variable
   use strategy, only: coupling_once
@@ -87,12 +87,13 @@ contains
     real(wp), intent(inout) :: stiffness(:, :, :)
     type(report_t), intent(out) :: report
     real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: y(2, 3), phi(3), dphi(3), length, thickness, area, darea(6), section(3), side, energy(2), due
+    real(wp) :: ends(2, 3, 2), y(2, 3), phi(3), dphi(3), section(3), side, due
     integer :: e, p, u, nnode, npiece, row_due, row_piece
-    integer :: pieces(pieces_in_reach*group%rule%n), along(6)
-    logical :: rigid, of_body, corners
+    integer :: pieces(pieces_in_reach*group%rule%n), along(6), nmoving
+    logical :: of_body, rigid, corners
     type(facing_t) :: facing
     type(shares_t) :: shares
+    type(area_t) :: area
 
     force = 0
     if (instant%tangent) stiffness = 0
@@ -106,13 +107,15 @@ contains
     row_piece = find_variable(group%variables, name_of_piece)
     u = first_unknown(layout, displacement_field)
     along = [u, u + 1, u + 2, u + nnode, u + nnode + 1, u + nnode + 2]
+    nmoving = merge(6, 0, u > 0 .and. kinematics%finite)
     section = scene%section
     if (kinematics%finite) section = instant%section
     npiece = 0
     call line_rule(group%rule, xi, weight)
     do e = 1, size(x, 3)
-      y = x(:, 1:3, e)
-      if (u > 0 .and. kinematics%finite) y = y + transpose(reshape(du(along, e), [3, 2]))
+      ends = spread(x(:, 1:3, e), 3, 2)
+      if (u > 0) ends(:, :, 2) = ends(:, :, 2) + transpose(reshape(du(along, e), [3, 2]))
+      y = ends(:, :, merge(2, 1, kinematics%finite))
       side = side_length(scene, group%connectivity(:, first + e - 1))
       if (.not. rigid) call list_pieces(instant%dies(group%die), instant%pairs(group%pairs)%piece(:, first + e - 1), npiece, pieces)
       do p = 1, size(xi)
@@ -124,108 +127,45 @@ contains
           report%unpaired = .true.
           cycle
         end if
-        length = dot_product(matmul(y, dphi), facing%along)
-        thickness = thickness_at(section, matmul(y, phi))
-        area = weight(p)*length*thickness
-        darea(1:3) = weight(p)*(dphi*facing%along(1)*thickness + length*section(2)*phi)
-        darea(4:6) = weight(p)*(dphi*facing%along(2)*thickness + length*section(3)*phi)
-        if (facing%found .and. length > 0) call add_exchange()
+        call project_area(weight(p), y, phi, dphi, facing%along, section, area)
+        if (facing%found .and. area%faces) call add_exchange(group%heat_contact, instant, facing, shares, area, along(:nmoving), &
+                                                             start(:, e), du(:, e), force(:, e), stiffness(:, :, e))
         if (row_due == 0 .or. .not. instant%content) cycle
         due = committed(row_due, p, e)*weight(p)*area_at(xi(p), section, x(:, 1:3, e))
-        if (scene%strategy%coupling /= coupling_once) then
-          energy = friction_energy(group%rule, of_body, xi, weight, p, &
-                                   drivers([at_friction_work, at_corner_work, at_corner_place], :, p, e), &
-                                   spread(section, 2, 2), reshape([x(:, 1:3, e), end_of_step()], [2, 3, 2]))
-          due = due + energy(2) - energy(1)
-        end if
+        if (scene%strategy%coupling /= coupling_once) call add_work_of_step(group, of_body, xi, weight, p, section, ends, &
+                                                                            drivers(:, :, p, e), due)
         trial(row_due, p, e) = 0
-        call add_friction()
+        call add_friction(instant, shares, share_of_side(group, drivers(:, 1, p, e)), group%heat_contact%friction*due, &
+                          force(:, e), report)
       end do
     end do
-
-  contains
-
-    !> Nodes of the side at the end of the step, as contact has them.
-    pure function end_of_step() result(z)
-      real(wp) :: z(2, 3)
-
-      z = x(:, 1:3, e)
-      if (u > 0) z = z + transpose(reshape(du(along, e), [3, 2]))
-    end function end_of_step
-
-    !> Exchange at the instants of the flow rule: one of the point, or one of each pair of ends.
-    subroutine add_exchange()
-      real(wp) :: t(6), pressure
-      integer :: k, i, j, n
-      type(shares_t) :: pair
-
-      n = shares%nside + shares%ndie
-      do k = 1, instant%flow%n
-        t(:n) = start(shares%place(:n), e) + instant%flow%share(k)*du(shares%place(:n), e)
-        pressure = (1 - instant%flow%share(k))*facing%pressure(1) + instant%flow%share(k)*facing%pressure(2)
-        if (shares%nside == 3) then
-          call add_flow(k, shares, 1.0_wp, t(:n), pressure)
-          cycle
-        end if
-        do i = 1, shares%nside
-          do j = 1, shares%ndie
-            pair = shares
-            pair%side = 0
-            pair%die = 0
-            pair%side(i) = 1
-            pair%die(j) = 1
-            call add_flow(k, pair, shares%side(i)*shares%die(j), t(:n), pressure)
-          end do
-        end do
-      end do
-    end subroutine add_exchange
-
-    !> The share `part` of the area exchanges between temperatures that are means by shares.
-    subroutine add_flow(k, means, part, t, pressure)
-      integer, intent(in) :: k
-      type(shares_t), intent(in) :: means
-      real(wp), intent(in) :: part, t(:), pressure
-      real(wp) :: q, slope, slope_die, gives(6), takes(6)
-      integer :: n, m, j
-
-      m = means%nside
-      n = m + means%ndie
-      call flow_from_die(group%heat_contact, facing%closed, pressure, facing%gap, dot_product(means%side(:m), t(:m)), &
-                         dot_product(means%die(:n - m), t(m + 1:n)), q, slope, slope_die)
-      gives(:m) = -means%side(:m)
-      gives(m + 1:n) = means%die(:n - m)
-      takes(:m) = slope*means%side(:m)
-      takes(m + 1:n) = slope_die*means%die(:n - m)
-      associate (place => means%place(:n), w => instant%flow%weight(k)*part)
-        force(place, e) = force(place, e) + gives(:n)*(w*q*area)
-        if (.not. instant%tangent) return
-        do j = 1, n
-          stiffness(place, place(j), e) = stiffness(place, place(j), e) &
-                                          + gives(:n)*(w*area*instant%flow%share(k)*takes(j))
-        end do
-        if (u == 0 .or. .not. kinematics%finite) return
-        do j = 1, 6
-          stiffness(place, along(j), e) = stiffness(place, along(j), e) + gives(:n)*(w*q*darea(j))
-        end do
-      end associate
-    end subroutine add_flow
-
-    !> Heat of friction to both.
-    subroutine add_friction()
-      real(wp) :: share, heat
-
-      heat = group%heat_contact%friction*due
-      share = group%heat_contact%share
-      if (share < 0) share = share_by_effusivity(drivers(at_body_effusivity, 1, p, e), drivers(at_die_effusivity, 1, p, e))
-      if (shares%ndie == 0) share = 1
-      associate (m => shares%nside, n => shares%nside + shares%ndie)
-        force(shares%place(:m), e) = force(shares%place(:m), e) - shares%side(:m)*(share*heat/instant%dt)
-        force(shares%place(m + 1:n), e) = force(shares%place(m + 1:n), e) - shares%die(:n - m)*((1 - share)*heat/instant%dt)
-      end associate
-      report%source = report%source + (heat/instant%dt)**2
-      report%heat_released = report%heat_released + heat
-    end subroutine add_friction
-
   end subroutine compute
+
+  !> Add the work that friction takes in the step under way.
+  pure subroutine add_work_of_step(group, of_body, xi, weight, p, section, ends, drivers, due)
+    type(group_t), intent(in) :: group
+    logical, intent(in) :: of_body                  !! the die is made of sides of a body
+    real(wp), intent(in) :: xi(:), weight(:)        !! (npoint) of the side [-]
+    integer, intent(in) :: p                        !! the point
+    real(wp), intent(in) :: section(3)
+    real(wp), intent(in) :: ends(2, 3, 2)           !! nodes of the side at both ends of the step [length]
+    real(wp), intent(in) :: drivers(:, :)           !! (ndriver, 2) of the point [unit of each driver]
+    real(wp), intent(inout) :: due                  !! [energy]
+    real(wp) :: energy(2)
+
+    energy = friction_energy(group%rule, of_body, xi, weight, p, &
+                             drivers([at_friction_work, at_corner_work, at_corner_place], :), spread(section, 2, 2), ends)
+    due = due + energy(2) - energy(1)
+  end subroutine add_work_of_step
+
+  !> Share of the heat of friction that the side gets: as the deck says, or by effusivities.
+  pure function share_of_side(group, drivers) result(share)
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: drivers(:)   !! (ndriver) at the start of the step
+    real(wp) :: share
+
+    share = group%heat_contact%share
+    if (share < 0) share = share_by_effusivity(drivers(at_body_effusivity), drivers(at_die_effusivity))
+  end function share_of_side
 
 end module elem_heat_contact

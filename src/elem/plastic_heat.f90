@@ -42,7 +42,7 @@ contains
     if (.not. (instant%solved(layout%field(temperature_place(layout))) .and. instant%solved(displacement_field))) return
     if (find_variable(group%variables, 'plastic_work') == 0) return
     do g = 1, size(scene%groups)
-      if (scene%groups(g)%role /= role_second .or. scene%groups(g)%elem /= 'PL8TM') cycle
+      if (scene%groups(g)%role /= role_second) cycle
       if (scene%groups(scene%groups(g)%host)%name /= group%name) cycle
       if (find_variable(scene%groups(g)%variables, work_heated) > 0) heated = g
     end do

@@ -46,6 +46,11 @@ module axis_wall
     real(wp), allocatable :: force(:)
   end type axis_wall_t
 
+  !> Places of the x of a side's three nodes in the lists of all forces, and of all entries of matrices (row, column).
+  type :: places_t
+    integer :: force(3) = 0, matrix(3, 3) = 0
+  end type places_t
+
 contains
 
   !> The sides of the bodies of an axisymmetric scene that belong to one element alone, unless all their radii are prescribed.
@@ -142,8 +147,8 @@ contains
     real(wp), intent(inout) :: matrix(:)   !! matrices of all elements, one after the other [force/length]
     type(report_t), intent(inout) :: report
     real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: phi(3), dphi(3), start(3), motion(3), r, before, part(3)
-    integer :: s, p, i, j, at, first, ndof, m, dof(3), nodes(3)
+    real(wp) :: start(3), motion(3)
+    integer :: s, first, dof(3), nodes(3)
 
     if (size(wall%group) == 0) return
     if (any(wall%held)) wall%force = 0
@@ -151,42 +156,66 @@ contains
     call line_rule(rule_t(rule_equidistant, npoint), xi, weight)
     do s = 1, size(wall%group)
       if (.not. active(wall%group(s))) cycle
-      associate (group => dofs%groups(wall%group(s)), e => wall%element(s))
+      associate (group => dofs%groups(wall%group(s)))
         first = first_of_x(group%layout%field, group%layout%first(1, :))
-        nodes = group%nodes(wall%local(:, s), e)
-        dof = group%dof(first - 1 + wall%local(:, s), e)
-        ndof = group%layout%ndof
+        nodes = group%nodes(wall%local(:, s), wall%element(s))
+        dof = group%dof(first - 1 + wall%local(:, s), wall%element(s))
         start = scene%mesh%coordinates(1, nodes) + displacement(1, nodes)
         motion = du(dof)
         ! no shape function is below -1/8, and only one at a time below 0
         if (9*minval(start + motion) - maxval(start + motion) > 0) cycle
-        do p = 1, npoint
-          call line3(xi(p), phi, dphi)
-          if (.not. any(dofs%is_free(dof) .and. abs(phi) > 0)) cycle
-          before = dot_product(phi, start)
-          r = before + dot_product(phi, motion)
-          if (before <= at_axis*wall%length(s) .and. min(r, before) < 0) &
-            report%jump = max(report%jump, abs(r - before)/wall%length(s))
-          if (.not. r < 0) cycle
-          if (before > at_axis*wall%length(s)) report%event = min(report%event, share_of_way(before, -r, wall%length(s)))
-          wall%held(p, s) = .true.
-          part = wall%stiffness(s)*r*phi
-          at = pattern%force_start(wall%group(s)) + (e - 1)*ndof + first - 1
-          m = pattern%matrix_start(wall%group(s)) + (e - 1)*ndof**2
-          do j = 1, 3
-            force(at + wall%local(j, s)) = force(at + wall%local(j, s)) + part(j)
-            wall%force(nodes(j)) = wall%force(nodes(j)) - part(j)
-            if (.not. tangent) cycle
-            do i = 1, 3
-              associate (k => m + (first - 2 + wall%local(j, s))*ndof + first - 1 + wall%local(i, s))
-                matrix(k) = matrix(k) + wall%stiffness(s)*phi(i)*phi(j)
-              end associate
-            end do
-          end do
-        end do
+        call press_side(s, nodes, first_places(pattern, wall, s, group%layout%ndof, first), xi, start, motion, &
+                        dofs%is_free(dof), tangent, wall, force, matrix, report)
       end associate
     end do
   end subroutine press_on_axis
+
+  !> Where the x of a side's nodes stand among the forces and matrices of all elements.
+  pure function first_places(pattern, wall, s, ndof, first) result(places)
+    type(pattern_t), intent(in) :: pattern
+    type(axis_wall_t), intent(in) :: wall
+    integer, intent(in) :: s, ndof, first   !! the side; unknowns of its element, and the first radial displacement among them
+    type(places_t) :: places
+    integer :: j, m
+
+    places%force = pattern%force_start(wall%group(s)) + (wall%element(s) - 1)*ndof + first - 1 + wall%local(:, s)
+    m = pattern%matrix_start(wall%group(s)) + (wall%element(s) - 1)*ndof**2
+    do j = 1, 3
+      places%matrix(:, j) = m + (first - 2 + wall%local(j, s))*ndof + first - 1 + wall%local(:, s)
+    end do
+  end function first_places
+
+  !> The points of one side that could meet the wall.
+  pure subroutine press_side(s, nodes, places, xi, start, motion, is_free, tangent, wall, force, matrix, report)
+    integer, intent(in) :: s, nodes(3)           !! the side and its nodes
+    type(places_t), intent(in) :: places
+    real(wp), intent(in) :: xi(:)                !! (npoint) its points [-]
+    real(wp), intent(in) :: start(3), motion(3)  !! radii of the nodes at the start of the step, and their motion [length]
+    logical, intent(in) :: is_free(3), tangent   !! nodes whose radius is an unknown; matrices are wanted
+    type(axis_wall_t), intent(inout) :: wall
+    real(wp), intent(inout) :: force(:), matrix(:)
+    type(report_t), intent(inout) :: report
+    real(wp) :: phi(3), dphi(3), r, before, part(3)
+    integer :: p, j
+
+    do p = 1, npoint
+      call line3(xi(p), phi, dphi)
+      if (.not. any(is_free .and. abs(phi) > 0)) cycle
+      before = dot_product(phi, start)
+      r = before + dot_product(phi, motion)
+      if (before <= at_axis*wall%length(s) .and. min(r, before) < 0) &
+        report%jump = max(report%jump, abs(r - before)/wall%length(s))
+      if (.not. r < 0) cycle
+      if (before > at_axis*wall%length(s)) report%event = min(report%event, share_of_way(before, -r, wall%length(s)))
+      wall%held(p, s) = .true.
+      part = wall%stiffness(s)*r*phi
+      do j = 1, 3
+        force(places%force(j)) = force(places%force(j)) + part(j)
+        wall%force(nodes(j)) = wall%force(nodes(j)) - part(j)
+        if (tangent) matrix(places%matrix(:, j)) = matrix(places%matrix(:, j)) + wall%stiffness(s)*phi*phi(j)
+      end do
+    end do
+  end subroutine press_side
 
   !> Place of the first radial displacement among the unknowns of an element.
   pure function first_of_x(field, first) result(place)

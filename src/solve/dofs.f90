@@ -3,13 +3,11 @@
 !> An unknown is a component of a field at a place: a displacement of a node, a motion of a die's pilot or of the section, a
 !> temperature of a node. Each is free (it has an equation) or prescribed (its motion is known: elimination, no penalty).
 module dofs
-  use elem_api, only: elem_t, field_nodes, layout_of, layout_t, most_components
-  use fields, only: field_t, find_field, on_nodes, on_pilots, on_section, pilot_field, section_field
+  use elem_api, only: elem_t, field_nodes, layout_of, layout_t
+  use fields, only: field_t, on_nodes, on_pilots, on_section
   use kinds, only: wp
-  use loads, only: instants_around, multiplier_at
   use pairs, only: most_pieces, nodes_per_piece, paired_nodes, pairs_t, start_pairs
-  use scene, only: is_later_operation, scene_t
-  use sections, only: section_forced, section_moved
+  use scene, only: group_t, scene_t
   use text, only: string_t
   implicit none
   private
@@ -58,6 +56,24 @@ module dofs
 
   !> Unknowns are numbered by where they stand, those of nodes first, then by field.
   integer, parameter :: places(3) = [on_nodes, on_pilots, on_section]
+
+  interface
+    !> Fixations, imposed displacements and pilots; an unknown held twice is listed once.
+    module subroutine list_prescribed(scene, dofs)
+      type(scene_t), intent(in) :: scene
+      type(dofs_t), intent(inout) :: dofs
+    end subroutine list_prescribed
+
+    !> Motion of the prescribed unknowns from time t0 (or from rest) to t1, in the order of the list.
+    pure module subroutine prescribed_motion(scene, dofs, fields, from_rest, t0, t1, motion)
+      type(scene_t), intent(in) :: scene
+      type(dofs_t), intent(in) :: dofs
+      type(field_t), intent(in) :: fields(:)   !! (nfield) with their values at t0
+      logical, intent(in) :: from_rest
+      real(wp), intent(in) :: t0, t1       !! [time]
+      real(wp), intent(out) :: motion(:)   !! (nprescribed) [unknown]
+    end subroutine prescribed_motion
+  end interface
 
 contains
 
@@ -115,7 +131,7 @@ contains
     type(elem_t), intent(in) :: elems(:)
     type(field_dofs_t), allocatable, intent(out) :: fields(:)
     type(layout_t) :: layout
-    integer :: g, u, f, e
+    integer :: g, u, f
 
     allocate (fields(size(scene%fields)))
     do f = 1, size(fields)
@@ -126,22 +142,30 @@ contains
       associate (group => scene%groups(g))
         layout = layout_of(elems(group%elem_id), size(group%connectivity, 1), group%option, scene%plane_state, scene%fields)
         do u = 1, layout%nfield
-          associate (number => fields(layout%field(u))%number)
-            select case (scene%fields(layout%field(u))%place)
-            case (on_nodes)
-              do e = 1, size(group%connectivity, 2)
-                number(:, group%connectivity(field_nodes(scene%fields(layout%field(u)), size(group%connectivity, 1)), e)) = 1
-              end do
-            case (on_pilots)
-              number(:, group%die) = 1
-            case default
-              number = 1
-            end select
-          end associate
+          call mark_places(group, scene%fields(layout%field(u)), fields(layout%field(u))%number)
         end do
       end associate
     end do
   end subroutine mark_unknowns
+
+  !> A 1 for every component of a field at the places of the elements of a group.
+  pure subroutine mark_places(group, field, number)
+    type(group_t), intent(in) :: group
+    type(field_t), intent(in) :: field
+    integer, intent(inout) :: number(:, :)   !! (ncomp, place)
+    integer :: e
+
+    select case (field%place)
+    case (on_nodes)
+      do e = 1, size(group%connectivity, 2)
+        number(:, group%connectivity(field_nodes(field, size(group%connectivity, 1)), e)) = 1
+      end do
+    case (on_pilots)
+      number(:, group%die) = 1
+    case default
+      number = 1
+    end select
+  end subroutine mark_places
 
   !> Quantities in the order of the fields, and that of each unknown.
   subroutine list_quantities(scene, dofs)
@@ -194,101 +218,20 @@ contains
     end select
   end function places_of
 
-  !> Fixations, imposed displacements and pilots; an unknown held twice is listed once.
-  subroutine list_prescribed(scene, dofs)
-    type(scene_t), intent(in) :: scene
-    type(dofs_t), intent(inout) :: dofs
-    type(prescribed_t) :: by_dof(dofs%ndof)
-    integer :: k, i, d
-
-    associate (pilot => dofs%fields(pilot_field)%number, section => dofs%fields(section_field)%number(:, 1))
-      do k = 1, size(pilot, 2)
-        if (pilot(1, k) > 0) by_dof(pilot(:, k))%dof = pilot(:, k)
-      end do
-      do k = 1, size(scene%die_forces)
-        d = pilot(scene%die_forces(k)%component, scene%die_forces(k)%die)
-        if (d > 0) by_dof(d)%dof = 0
-      end do
-      do k = 1, 3
-        if (section(k) == 0 .or. scene%section_drives(k)%kind == section_forced) cycle
-        by_dof(section(k))%dof = section(k)
-        if (scene%section_drives(k)%kind /= section_moved) cycle
-        by_dof(section(k)) = prescribed_t(section(k), scene%section(1)*scene%section_drives(k)%amplitude, &
-                                          scene%section_drives(k)%multiplier)
-      end do
-      do k = 1, size(scene%die_motions)
-        associate (motion => scene%die_motions(k))
-          if (pilot(1, motion%die) == 0) cycle
-          d = pilot(motion%component, motion%die)
-          by_dof(d) = prescribed_t(d, motion%amplitude, motion%multiplier, moved=is_later_operation(scene))
-        end associate
-      end do
-      if (allocated(scene%die_heats)) call list_die_temperatures()
-      if (allocated(scene%histories)) call list_given_values()
-      do k = 1, size(scene%fixations)
-        associate (fixation => scene%fixations(k))
-          do i = 1, size(fixation%nodes)
-            d = dofs%fields(fixation%field)%number(fixation%component, fixation%nodes(i))
-            ! a field of corners has nothing to impose in the middle of sides
-            if (d == 0) cycle
-            by_dof(d) = prescribed_t(d, fixation%amplitude, fixation%multiplier)
-            if (scene%fields(fixation%field)%imposed_as_value) &
-              by_dof(d) = prescribed_t(d, fixation%amplitude, fixation%multiplier, fixation%field, fixation%component, &
-                                       fixation%nodes(i))
-          end do
-        end associate
-      end do
-    end associate
-    dofs%prescribed = pack(by_dof, by_dof%dof > 0)
-
-  contains
-
-    !> Fields whose values are known beforehand.
-    subroutine list_given_values()
-      do k = 1, size(scene%histories)
-        associate (history => scene%histories(k))
-          do i = 1, size(history%nodes)
-            d = dofs%fields(history%field)%number(1, history%nodes(i))
-            if (d > 0) by_dof(d) = prescribed_t(d, field=history%field, component=1, place=history%nodes(i), history=k, row=i)
-          end do
-        end associate
-      end do
-    end subroutine list_given_values
-
-    !> Dies whose temperature is given: without a multiplier it stays as it began.
-    subroutine list_die_temperatures()
-      integer :: f
-
-      f = find_field(scene%fields, 'die_temperature')
-      if (f == 0) return
-      do k = 1, size(scene%die_heats)
-        associate (heat => scene%die_heats(k))
-          d = dofs%fields(f)%number(1, heat%die)
-          if (d == 0 .or. heat%capacity > 0) cycle
-          by_dof(d) = prescribed_t(d, heat%temperature, heat%multiplier, f, 1, heat%die)
-        end associate
-      end do
-    end subroutine list_die_temperatures
-
-  end subroutine list_prescribed
-
   !> Unknowns that are not prescribed, and that some element acts on: what elements only read of a field that ends beside them stays
   !> as it is.
   pure subroutine find_free(dofs)
     type(dofs_t), intent(inout) :: dofs
-    integer :: g, u, c, i, e
+    integer :: g, u, c, e
 
     allocate (dofs%is_free(dofs%ndof), source=.false.)
     do g = 1, size(dofs%groups)
       associate (layout => dofs%groups(g)%layout, dof => dofs%groups(g)%dof)
         do u = 1, layout%nfield
           if (.not. layout%acts(u)) cycle
-          do c = 1, most_components
-            if (layout%first(c, u) == 0) cycle
+          do c = 1, count(layout%first(:, u) > 0)
             do e = 1, size(dof, 2)
-              do i = layout%first(c, u), layout%first(c, u) + layout%count(u) - 1
-                dofs%is_free(dof(i, e)) = .true.
-              end do
+              dofs%is_free(dof(layout%first(c, u):layout%first(c, u) + layout%count(u) - 1, e)) = .true.
             end do
           end do
         end do
@@ -348,32 +291,43 @@ contains
     type(elem_t), intent(in) :: elem
     integer, intent(in) :: g
     type(dofs_t), intent(inout) :: dofs
-    integer, allocatable :: local(:)
-    integer :: e, u, c, at
+    integer :: u, c
 
     associate (own => dofs%groups(g))
       own%layout = layout_of(elem, size(own%nodes, 1), scene%groups(g)%option, scene%plane_state, scene%fields)
       if (.not. allocated(own%dof)) allocate (own%dof(own%layout%ndof, size(own%nodes, 2)))
       do u = 1, own%layout%nfield
-        associate (number => dofs%fields(own%layout%field(u))%number, n => own%layout%count(u))
+        associate (number => dofs%fields(own%layout%field(u))%number, first => own%layout%first)
           do c = 1, size(number, 1)
-            at = own%layout%first(c, u)
-            local = field_nodes(scene%fields(own%layout%field(u)), size(own%nodes, 1))
-            do e = 1, size(own%nodes, 2)
-              select case (scene%fields(own%layout%field(u))%place)
-              case (on_nodes)
-                own%dof(at:at + n - 1, e) = number(c, own%nodes(local, e))
-              case (on_pilots)
-                own%dof(at, e) = number(c, scene%groups(g)%die)
-              case default
-                own%dof(at, e) = number(c, 1)
-              end select
-            end do
+            call take_places(own%nodes, scene%groups(g)%die, scene%fields(own%layout%field(u)), number(c, :), &
+                             own%dof(first(c, u):first(c, u) + own%layout%count(u) - 1, :))
           end do
         end associate
       end do
     end associate
   end subroutine number_elements
+
+  !> Unknowns of one component of a field, of all elements of a group.
+  pure subroutine take_places(nodes, die, field, number, dof)
+    integer, intent(in) :: nodes(:, :)   !! (nnode, nelem)
+    integer, intent(in) :: die           !! of the group, 0 for none
+    type(field_t), intent(in) :: field
+    integer, intent(in) :: number(:)     !! (place) the component's unknowns
+    integer, intent(out) :: dof(:, :)    !! (count, nelem)
+    integer :: local(size(dof, 1)), e
+
+    select case (field%place)
+    case (on_nodes)
+      local = field_nodes(field, size(nodes, 1))
+      do e = 1, size(nodes, 2)
+        dof(:, e) = number(nodes(local, e))
+      end do
+    case (on_pilots)
+      dof = number(die)
+    case default
+      dof = number(1)
+    end select
+  end subroutine take_places
 
   !> A support or a die moves: some prescribed unknown that is a motion.
   pure function is_driven(dofs, motion) result(yes)
@@ -389,44 +343,6 @@ contains
       end associate
     end do
   end function is_driven
-
-  !> Motion of the prescribed unknowns from time t0 (or from rest) to t1, in the order of the list.
-  pure subroutine prescribed_motion(scene, dofs, fields, from_rest, t0, t1, motion)
-    type(scene_t), intent(in) :: scene
-    type(dofs_t), intent(in) :: dofs
-    type(field_t), intent(in) :: fields(:)   !! (nfield) with their values at t0
-    logical, intent(in) :: from_rest
-    real(wp), intent(in) :: t0, t1       !! [time]
-    real(wp), intent(out) :: motion(:)   !! (nprescribed) [unknown]
-    integer :: k, before, last
-    real(wp) :: share
-
-    last = 0
-    before = 0
-    share = 0
-    do k = 1, size(dofs%prescribed)
-      motion(k) = 0
-      associate (p => dofs%prescribed(k))
-        if (p%history > 0) then
-          associate (history => scene%histories(p%history))
-            if (p%history /= last) call instants_around(history%time, t1, before, share)
-            last = p%history
-            motion(k) = history%values(p%row, before)
-            if (share > 0) motion(k) = (1 - share)*motion(k) + share*history%values(p%row, before + 1)
-          end associate
-          motion(k) = motion(k) - fields(p%field)%value(p%component, p%place)
-        end if
-        if (p%multiplier == 0) cycle
-        motion(k) = multiplier_at(scene%multipliers(p%multiplier), t1)
-        if (p%field > 0) then
-          motion(k) = p%amplitude*motion(k) - fields(p%field)%value(p%component, p%place)
-          cycle
-        end if
-        if (p%moved .or. .not. from_rest) motion(k) = motion(k) - multiplier_at(scene%multipliers(p%multiplier), t0)
-        motion(k) = p%amplitude*motion(k)
-      end associate
-    end do
-  end subroutine prescribed_motion
 
   !> Advance all fields: nodes, pilots and section move, temperatures change.
   pure subroutine move_fields(dofs, motion, fields)

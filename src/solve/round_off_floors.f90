@@ -64,9 +64,10 @@ contains
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: field
     real(wp) :: sum
-    integer :: g, e, u, c, i, ndof, m
+    integer :: g, e, u, i, ndof, ncomp, m
 
     sum = 0
+    ncomp = size(equations%dofs%fields(field)%number, 1)
     do g = 1, size(scene%groups)
       if (.not. equations%solves(equations%now)%active(g)) cycle
       if (.not. (any(scene%groups(g)%role == [role_body, role_second]) .or. field /= displacement_field)) cycle
@@ -76,10 +77,9 @@ contains
           m = equations%solves(1)%pattern%matrix_start(g) + (e - 1)*ndof*ndof
           do u = 1, layout%nfield
             if (layout%field(u) /= field) cycle
-            do c = 1, size(equations%dofs%fields(field)%number, 1)
-              do i = layout%first(c, u), layout%first(c, u) + layout%count(u) - 1
-                sum = sum + equations%buffers%matrix(m + (i - 1)*ndof + i)**2
-              end do
+            ! the components of a field stand one behind the other
+            do i = layout%first(1, u), layout%first(1, u) + layout%count(u)*ncomp - 1
+              sum = sum + equations%buffers%matrix(m + (i - 1)*ndof + i)**2
             end do
           end do
         end do

@@ -1,7 +1,7 @@
 !> Temperatures that another run has saved: of the nodes of one of its meshes, at all saved instants.
 !>
 !> Read from `NAME.gNN.h5` and the files of its instants beside it (instant_files), each with its hash checked. Elements are those
-!> that conduct heat (PL8TM); places are where the mesh began.
+!> that conduct heat; places are where the mesh began.
 module run_temperatures
   use errors, only: error_t, exit_input, fail
   use hash, only: sha256_length, sha256_t
@@ -9,7 +9,7 @@ module run_temperatures
   use hdf5_file, only: hdf5_file_t
   use instant_files, only: instant_path
   use kinds, only: wp
-  use text, only: string_t
+  use text, only: join, string_t
   implicit none
   private
   public :: run_temperatures_t, elements_of_body, read_run_temperatures, temperatures_digest
@@ -25,14 +25,13 @@ module run_temperatures
   end type run_temperatures_t
 
   character(len=*), parameter :: ending = '.h5'
-  !> Ending of the name of a further formulation on a body.
-  character(len=*), parameter :: of_heat = '/PL8TM'
 
 contains
 
   !> Read all of it. Fails where a file is missing, damaged, or of a run without heat.
-  subroutine read_run_temperatures(path, run, error)
-    character(len=*), intent(in) :: path   !! NAME.gNN.h5
+  subroutine read_run_temperatures(path, conducting, run, error)
+    character(len=*), intent(in) :: path              !! NAME.gNN.h5
+    type(string_t), intent(in) :: conducting(:)       !! (n) names of the elements of bodies that conduct heat
     type(run_temperatures_t), intent(out) :: run
     type(error_t), allocatable, intent(out) :: error
     type(hdf5_file_t) :: file
@@ -46,7 +45,7 @@ contains
     end if
     call file%open(path, error)
     if (allocated(error)) return
-    call read_mesh(file, run)
+    call read_mesh(file, conducting, run)
     allocate (names(0))
     if (file%has('steps')) call file%list('steps', names)
     if (.not. file%failed() .and. size(names) == 0) call file%record_error(exit_input, 'holds no instant of a run')
@@ -60,14 +59,15 @@ contains
   end subroutine read_run_temperatures
 
   !> Nodes, and the elements that conduct heat.
-  subroutine read_mesh(file, run)
+  subroutine read_mesh(file, conducting, run)
     type(hdf5_file_t), intent(inout) :: file
+    type(string_t), intent(in) :: conducting(:)
     type(run_temperatures_t), intent(inout) :: run
     type(string_t), allocatable :: groups(:)
     character(len=:), allocatable :: elem
     type(string_t) :: name
     integer, allocatable :: nodes(:, :)
-    integer :: k
+    integer :: k, i, body
 
     call file%read('mesh/coordinates', run%coordinates)
     if (.not. file%failed()) call file%require_shape('mesh/coordinates', [2, -1])
@@ -76,7 +76,7 @@ contains
     do k = 1, size(groups)
       call file%read_attribute('mesh/groups/'//groups(k)%s, 'elem', elem)
       if (file%failed()) return
-      if (elem /= 'PL8TM') cycle
+      if (.not. any([(conducting(i)%s == elem, i=1, size(conducting))])) cycle
       call file%read_attribute('mesh/groups/'//groups(k)%s, 'name', name%s)
       call file%require_shape('mesh/groups/'//groups(k)%s//'/connectivity', [8, -1])
       call file%read('mesh/groups/'//groups(k)%s//'/connectivity', nodes)
@@ -85,13 +85,14 @@ contains
         call file%record_error(exit_input, 'an element has a node that is not there')
         return
       end if
-      if (index(name%s, of_heat, back=.true.) == len(name%s) - len(of_heat) + 1 .and. len(name%s) > len(of_heat)) &
-        name%s = name%s(:len(name%s) - len(of_heat))
+      ! a further formulation is named BODY/ELEM
+      body = len(name%s) - len('/'//elem)
+      if (body > 0 .and. index(name%s, '/'//elem, back=.true.) == body + 1) name%s = name%s(:body)
       run%connectivity = reshape([run%connectivity, nodes + 1], [8, size(run%connectivity, 2) + size(nodes, 2)])
       run%body = [run%body, spread(name, 1, size(nodes, 2))]
     end do
     if (.not. file%failed() .and. size(run%body) == 0) &
-      call file%record_error(exit_input, 'no body of this run conducts heat (PL8TM)')
+      call file%record_error(exit_input, 'no body of this run conducts heat ('//join(conducting, ', ')//')')
   end subroutine read_mesh
 
   !> Time and temperatures of one instant.

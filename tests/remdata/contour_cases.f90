@@ -1,13 +1,15 @@
 !> Scenes of blocks and dies in known states, for the tests of the contour.
 module contour_cases
   use block_mesh, only: block_t, mesh_block
-  use boundary_curves, only: boundary_curve_t, kind_entry
+  use boundary_curves, only: boundary_curve_t
   use contact_contour, only: find_contact_ends
   use contact_ends, only: contact_end_t
+  use contact_intervals, only: side_point_t
+  use contour_assembly, only: contact_t
   use dies, only: die_t, finish_die, present_die
   use fields, only: displacement_field, mechanical_fields, pilot_field
   use kinds, only: wp
-  use part_contour, only: contact_limit_t, contour_t
+  use part_contour, only: contour_t
   use quadrature, only: line_rule, rule_of_number
   use scene, only: axisymmetric, group_t, plane_strain, role_body, role_contact, scene_t
   use shape_functions, only: line3
@@ -16,8 +18,21 @@ module contour_cases
   use vectors, only: length_of
   implicit none
   private
-  public :: begin_scene, add_block, join_nodes, add_contact, add_die, polyline, place_limit, start, ends_of, touch, box, arc_side
-  public :: joints_of_kind
+  public :: begin_scene, add_block, join_nodes, add_contact, add_die, polyline, start, ends_of, touch, box, arc_side
+  public :: joints_of_kind, limit_place_t, limit_places
+
+  !> Where a beginning or an end of contact is.
+  type :: limit_place_t
+    !> Contour, and its arc that begins there.
+    integer :: contour = 0, arc = 0
+    integer :: group = 0
+    !> The die, its piece and the parent coordinate on it.
+    integer :: die = 0, piece = 0
+    real(wp) :: die_xi = 0.0_wp
+    !> Side of the loop and the parent coordinate on it.
+    integer :: side = 0
+    real(wp) :: part_xi = 0.0_wp
+  end type limit_place_t
 
 contains
 
@@ -248,27 +263,44 @@ contains
     allocate (joints, source=pack([(k, k=1, size(boundary%kinds))], [(any(boundary%kinds(k) == kinds), k=1, size(boundary%kinds))]))
   end function joints_of_kind
 
-  !> Where an end of contact is on the part and on the die: side of the loop, parent coordinates on it and on the piece of the die.
-  pure subroutine place_limit(contour, limit, side, part_xi, die_xi)
-    type(contour_t), intent(in) :: contour
-    type(contact_limit_t), intent(in) :: limit
-    integer, intent(out) :: side
-    real(wp), intent(out) :: part_xi, die_xi
+  !> Beginnings and ends of contact, in the order of the report of `build_contours`.
+  pure function limit_places(contours) result(places)
+    type(contour_t), intent(in) :: contours(:)
+    type(limit_place_t), allocatable :: places(:)
+    integer :: c, k
 
-    associate (contact => contour%contacts(limit%contact))
-      if (limit%kind == kind_entry) then
-        side = contact%interval%from%side
-        part_xi = contact%interval%from%xi
-        die_xi = contact%sections(1)%closest_points(1)%xi
-      else
-        side = contact%interval%to%side
-        part_xi = contact%interval%to%xi
-        associate (section => contact%sections(size(contact%sections)))
-          die_xi = section%closest_points(size(section%closest_points))%xi
+    allocate (places(0))
+    do c = 1, size(contours)
+      do k = 1, size(contours(c)%contacts)
+        associate (contact => contours(c)%contacts(k))
+          if (contact%begins) places = [places, place_of(contact, c, size(contours(c)%loop%sides, 2), .true.)]
+          if (contact%ends) places = [places, place_of(contact, c, size(contours(c)%loop%sides, 2), .false.)]
         end associate
-      end if
+      end do
+    end do
+  end function limit_places
+
+  pure function place_of(contact, contour, nside, begins) result(place)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: contour, nside
+    logical, intent(in) :: begins
+    type(limit_place_t) :: place
+    type(side_point_t) :: point
+
+    place%contour = contour
+    place%arc = merge(contact%first, contact%next, begins)
+    place%group = contact%interval%group
+    place%die = contact%number
+    associate (section => contact%sections(merge(1, size(contact%sections), begins)))
+      associate (closest => section%closest_points(merge(1, size(section%closest_points), begins)))
+        place%piece = closest%piece
+        place%die_xi = closest%xi
+      end associate
     end associate
-    side = modulo(side - 1, size(contour%loop%sides, 2)) + 1
-  end subroutine place_limit
+    point = contact%interval%to
+    if (begins) point = contact%interval%from
+    place%part_xi = point%xi
+    place%side = modulo(point%side - 1, nside) + 1
+  end function place_of
 
 end module contour_cases
