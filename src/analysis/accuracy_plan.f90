@@ -38,6 +38,8 @@ module accuracy_plan
     !> The mesh can be made finer, by factors that are whole over this.
     logical :: divisible = .false.
     integer :: parts = 1
+    !> Probes whose node or point, the nearest to a place, is another one on every mesh.
+    type(string_t), allocatable :: elsewhere(:)
     !> What is not known, and why.
     type(string_t), allocatable :: notes(:)
   end type accuracy_plan_t
@@ -206,6 +208,7 @@ contains
   pure function accuracy_warning(accuracy) result(words)
     type(accuracy_t), intent(in) :: accuracy
     character(len=:), allocatable :: words
+    integer :: k
 
     words = ''
     associate (reached => accuracy%reached, plan => accuracy%plan)
@@ -214,6 +217,8 @@ contains
         words = 'ACCURACY '//percent(plan%asked)//' was asked, '//percent(total(reached))//' is estimated of '//reached%name
         if (reached%space >= max(reached%time, reached%depth)) then
           words = words//': '//percent(reached%space)//' comes of the mesh'
+          if (any([(plan%elsewhere(k)%s == reached%name, k=1, size(plan%elsewhere))])) words = words//', on each of which the ' &
+            //'probe reads another node or point, the nearest to its place: ask for the place of a node'
           if (plan%divisible) words = words//'; give a finer one, or elements that are smaller where the stress changes fast'
         else if (reached%time >= reached%depth) then
           words = words//': '//percent(reached%time)//' comes of the steps; give shorter ones (STRAT)'

@@ -7,6 +7,7 @@ module accuracy_runs
   use accuracy_samples, only: join_forces, range_of
   use errors, only: error_t, exit_done, exit_no_convergence, fail
   use kinds, only: wp
+  use probes, only: is_elsewhere
   use remesher_options, only: has_contours
   use run_options, only: run_options_t
   use scene, only: scene_t
@@ -117,8 +118,12 @@ contains
   subroutine start_plan(scene, plan)
     type(scene_t), intent(in) :: scene
     type(accuracy_plan_t), intent(inout) :: plan
+    integer :: k
 
-    allocate (plan%pilots(0), plan%notes(0), plan%names(0), plan%scales(0), plan%columns(0))
+    allocate (plan%pilots(0), plan%notes(0), plan%names(0), plan%scales(0), plan%columns(0), plan%elsewhere(0))
+    do k = 1, size(scene%probes)
+      if (is_elsewhere(scene%probes(k), scene%mesh%origin)) call add_text(plan%elsewhere, scene%probes(k)%name)
+    end do
     plan%asked = scene%accuracy%asked
     plan%divisible = scene%accuracy%divisible
     if (has_contours(scene%remesher)) plan%parts = quarters

@@ -12,6 +12,7 @@ module cards_node_probes
   use scene, only: axisymmetric, is_solid
   use scene_draft, only: draft_t, words_of
   use text, only: string_t
+  use vectors, only: length_of
   implicit none
   private
   public :: read_node_probe, read_reaction_probe
@@ -64,6 +65,8 @@ contains
       if (of_body > 0) node = nearest_of_body(draft%scene%mesh%origin, draft%scene%groups(of_body), x)
     end if
     probe%nodes = [node]
+    probe%place = draft%scene%mesh%origin(:, node)
+    probe%apart = length_of(probe%place - x)
     if (probe%field > 0 .and. draft%scene%generation == 1) &
       call refuse_without_field(cursor, draft, probe%field, probe%nodes, node_text(draft, node), own=.false.)
     if (draft%scene%generation > 1) probe%offset = x - draft%scene%mesh%origin(:, node)

@@ -68,7 +68,7 @@ contains
     type(draft_t), intent(in) :: draft
     type(probe_t), intent(inout) :: probe
     character(len=:), allocatable :: component
-    real(wp) :: x(2), distance, nearest
+    real(wp) :: x(2), place(2), distance
     integer :: g, k, e, p
 
     call read_component(cursor, draft, component)
@@ -81,14 +81,15 @@ contains
       end do
       return
     end if
-    nearest = huge(nearest)
+    probe%apart = huge(distance)
     do g = 1, size(draft%scene%groups)
       associate (group => draft%scene%groups(g))
         k = find_component(group, component)
         if (k == 0) cycle
-        call nearest_point(draft%scene%mesh%origin, group, x, e, p, distance)
-        if (.not. distance < nearest) cycle
-        nearest = distance
+        call nearest_point(draft%scene%mesh%origin, group, x, e, p, place, distance)
+        if (.not. distance < probe%apart) cycle
+        probe%apart = distance
+        probe%place = place
         probe%group = g
         probe%element = e
         probe%point = p

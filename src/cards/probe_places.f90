@@ -61,14 +61,14 @@ contains
   end function nearest_of_body
 
   !> Integration point of a group nearest to x.
-  subroutine nearest_point(coordinates, group, x, element, point, distance)
+  subroutine nearest_point(coordinates, group, x, element, point, place, distance)
     real(wp), intent(in) :: coordinates(:, :)
     type(group_t), intent(in) :: group
     real(wp), intent(in) :: x(2)
     integer, intent(out) :: element, point
-    real(wp), intent(out) :: distance
+    real(wp), intent(out) :: place(2), distance
     real(wp), allocatable :: phi(:, :), dphi(:, :), xi(:, :), line(:), weight(:)
-    real(wp) :: d
+    real(wp) :: d, here(2)
     integer :: e, p, n
 
     n = size(group%connectivity, 1)
@@ -86,12 +86,15 @@ contains
     end if
     element = 0
     point = 0
+    place = x
     distance = huge(distance)
     do e = 1, size(group%connectivity, 2)
       do p = 1, size(phi, 2)
-        d = length_of(matmul(coordinates(:, group%connectivity(:, e)), phi(:, p)) - x)
+        here = matmul(coordinates(:, group%connectivity(:, e)), phi(:, p))
+        d = length_of(here - x)
         if (.not. d < distance) cycle
         distance = d
+        place = here
         element = e
         point = p
       end do

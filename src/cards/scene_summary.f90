@@ -7,6 +7,7 @@ module scene_summary
   use group_summary, only: group_text
   use linear_api, only: solver_row_t
   use linear_registry, only: list_solvers
+  use probes, only: is_elsewhere, probe_node, probe_point, probe_t
   use remesh_summary, only: add_remesh_lines
   use scene, only: axisymmetric, generalised_plane_strain, lacks_mesh, plane_state_names, scene_t
   use sections, only: section_drive_t, section_forced, section_moved, section_names
@@ -90,9 +91,23 @@ contains
       end associate
     end do
     do k = 1, size(scene%probes)
-      call add_text(lines, 'probe      '//padded(scene%probes(k)%name, 24)//'['//scene%probes(k)%unit//']')
+      call add_text(lines, 'probe      '//padded(scene%probes(k)%name, 24)//'['//scene%probes(k)%unit//']' &
+                    //place_words(scene, scene%probes(k)))
     end do
   end subroutine add_loads
+
+  !> Where the node or the point of a probe is in the deck's own mesh, and how far that is from the place asked for.
+  pure function place_words(scene, probe) result(words)
+    type(scene_t), intent(in) :: scene
+    type(probe_t), intent(in) :: probe
+    character(len=:), allocatable :: words
+
+    words = ''
+    if (.not. any(probe%kind == [probe_node, probe_point]) .or. probe%is_gone) return
+    words = ' '//trim(merge('node ', 'point', probe%kind == probe_node))//' at '//to_text(probe%place(1), 6)//' ' &
+            //to_text(probe%place(2), 6)
+    if (is_elsewhere(probe, scene%mesh%origin)) words = words//', '//to_text(probe%apart, 3)//' from the place asked for'
+  end function place_words
 
   !> Effects that are on, with what they add, and those that are off, with the reason.
   subroutine add_effects(effects, lines)

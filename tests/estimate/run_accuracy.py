@@ -195,6 +195,15 @@ def told_where_it_is_not(checks):
                 "a mesh that is written out is named", warned)
 
 
+def probe_beside_a_node(checks):
+    """The coordinate of the node nearest to a place where the deck's own mesh has none is that of another node on every mesh: told."""
+    text = ("TITLE a strip stretched\nSTATE PLSTN\nKINEM SMALL\nBLOCK strip PL8LS 4 m\n   0. 0.   5. 0.   5. 1.   0. 1.\n   3 1.   1 1.\nLAW m ELA\n   1000. 0.3\n"
+            "FIXED strip 4 XY\nMOVE strip 2 X t\nLIC t\n   0. 0.   1. .01\nSTRAT 0.5 1.E-3 0.5 5 3\nPROBE beside NODE X 2. 0.\nACCURACY 2 %\nEND\n")
+    _, summary, _ = call(checks, "beside", text)
+    warned = [w["text"] for w in summary["warnings"] if "ACCURACY" in w["text"]]
+    checks.that(len(warned) == 1 and "another node or point, the nearest to its place" in warned[0], "a probe that no mesh has at its place is named", warned)
+
+
 def none_of_supports(checks):
     """A tube that cools, free but for the plane of symmetry: the work of its supports is what equilibrium is off by, and not judged."""
     text = ("TITLE a tube cools\nSTATE AXISYM\nKINEM SMALL\nBLOCK tube PL8LS 4 m\n   30. 0.   40. 0.   40. 30.   30. 30.\n   4 1.   4 1.\n"
@@ -250,6 +259,7 @@ def main():
                 once_more(checks, scene, asked, folder, history)
     if not names:
         told_where_it_is_not(checks)
+        probe_beside_a_node(checks)
         none_of_supports(checks)
         steps_that_hardly_change(checks)
         no_pilot_ends(checks)

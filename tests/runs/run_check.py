@@ -67,6 +67,17 @@ def check_decks(checks):
         checks.that(re.search(r"(?m)^Expected: .* s per iteration", result.stdout) and "memory" in result.stdout, f"{name}: cost", result.stdout[-300:])
 
 
+def places_of_probes(checks):
+    """Where a probe reads is told, and how far that is from where it was to."""
+    deck = write(checks.path("places.lag"), LEAN.replace("END\n", "PROBE on NODE UX 1. 0.\nPROBE beside NODE UX 1.2 0.\nPROBE inside POINT stress_xx 1.5 0.5\nEND\n"))
+    text = run([deck, "--check"]).stdout
+    found = dict(re.findall(r"(?m)^probe +(\S+) +\[\S+\] (.*)$", text))
+    checks.that(found.get("on") == "node at 1 0", "a probe of a node: its place", found)
+    checks.that(found.get("beside") == "node at 1 0, 0.2 from the place asked for", "a probe beside a node: how far", found)
+    at = re.match(r"point at (\S+) (\S+), 0.408 from", found.get("inside", ""))
+    checks.that(at and abs(abs(float(at.group(1)) - 1.5) - 0.288675) < 1e-5, "a probe of the stress: its integration point", found)
+
+
 def laws(checks):
     """Every law of the manual has a card that names its parameters."""
     with open(os.path.join(SOURCE, "decks", "README.md"), encoding="utf-8") as manual:
@@ -135,6 +146,7 @@ def off_is_off(checks):
 def main():
     checks = Checks()
     check_decks(checks)
+    places_of_probes(checks)
     laws(checks)
     list_of_laws(checks)
     help_and_version(checks)
