@@ -10,7 +10,8 @@
 !> Of a matrix that is not symmetric the pivots tell whether their number is even or odd, by the sign of the determinant. Where
 !> bodies alone make it so, by pressures that follow or the choice of strains, it is nearly symmetric, and all are counted. With
 !> friction a pair may come from where points slip, with eigenvalues that are complex: one that is real is proven by an odd number,
-!> of the matrix or of one with viscous forces (pseudo_transient), K + s V, which has an odd number between two real ones.
+!> of the matrix or of one with viscous forces (pseudo_transient), K + s V, which has an odd number between two real ones. Where
+!> temperatures are found with the motion, it is judged at these temperatures.
 module stability
   use equations, only: equations_t
   use errors, only: error_t, exit_no_convergence
@@ -25,9 +26,11 @@ module stability
   private
   public :: has_friction, ways_to_leave
 
-  !> s is looked for by so many halvings at most of an interval that begins with this share of what the largest diagonal makes it.
+  !> s is looked for by so many halvings at most of an interval (of its logarithm) that begins with this share of its end.
   integer, parameter :: most_halvings = 12
   real(wp), parameter :: least_share = 1.0e-9_wp
+  !> What holds temperatures, over the largest number of the matrix.
+  real(wp), parameter :: hold = 1.0e10_wp
 
 contains
 
@@ -48,12 +51,36 @@ contains
       call use_working_precision(solve%solver, solve%pattern, error)
       if (.not. allocated(error)) call factorise(solve%solver, solve%values, error)
       if (.not. allocated(error)) n = negative_pivots(solve%solver)
-      if (n > 0 .and. mod(n, 2) == 0 .and. has_friction(scene, equations)) call prove(scene, equations, solution, n, error)
+      if (n > 0) call judge_motion(scene, equations, solution, n, error)
       if (.not. allocated(error)) return
       ! neither stable nor not
       if (error%code == exit_no_convergence) deallocate (error)
     end associate
   end subroutine ways_to_leave
+
+  !> Of so many pivots below 0 those of eigenvalues of the motion alone; an even number under friction must be proven.
+  subroutine judge_motion(scene, equations, solution, n, error)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(in) :: solution
+    integer, intent(inout) :: n
+    type(error_t), allocatable, intent(out) :: error
+    real(wp), allocatable :: matrix(:)
+    logical :: is_heat(equations%dofs%ndof)
+
+    associate (solve => equations%solves(equations%now))
+      is_heat = equations%dofs%quantity /= 1 .and. solve%equation > 0
+      matrix = solve%values
+      if (any(is_heat)) then
+        call add_diagonal(solve%pattern, solve%equation, merge(hold*maxval(abs(matrix)), 0.0_wp, is_heat), solve%values)
+        call factorise(solve%solver, solve%values, error)
+        n = 0
+        if (.not. allocated(error)) n = negative_pivots(solve%solver)
+      end if
+      if (n > 0 .and. mod(n, 2) == 0 .and. has_friction(scene, equations)) call prove(scene, equations, solution, n, error)
+      solve%values = matrix
+    end associate
+  end subroutine judge_motion
 
   !> Contact makes the matrix of the present solve one that is not symmetric.
   pure function has_friction(scene, equations) result(has)
@@ -66,14 +93,14 @@ contains
     end associate
   end function has_friction
 
-  !> An even number of pivots below 0 stays only where some viscous forces leave an odd one.
+  !> An even number of pivots below 0 stays only where some viscous forces leave an odd one. The matrix is changed.
   subroutine prove(scene, equations, solution, n, error)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(in) :: solution
     integer, intent(inout) :: n
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: volume(equations%dofs%ndof)
+    real(wp) :: volume(equations%dofs%ndof), around(0:equations%solves(equations%now)%pattern%neq)
     real(wp), allocatable :: matrix(:)
     real(wp) :: low, high, s
     integer :: k, left
@@ -81,7 +108,12 @@ contains
     volume = volumes_of_motion(scene, equations, solution)
     associate (solve => equations%solves(equations%now))
       matrix = solve%values
-      high = maxval(abs(matrix), mask=solve%pattern%row == solve%pattern%column)*count(volume > 0)/sum(volume)
+      around = 0
+      around(solve%equation) = volume
+      associate (row => solve%pattern%row)
+        high = maxval(abs(matrix)/merge(around(row), 1.0_wp, around(row) > 0), &
+                      mask=row == solve%pattern%column .and. around(row) > 0)
+      end associate
       low = least_share*high
       do k = 1, most_halvings
         s = sqrt(low*high)
@@ -97,7 +129,6 @@ contains
           high = s
         end if
       end do
-      solve%values = matrix
       if (mod(left, 2) == 0) n = 0
     end associate
   end subroutine prove
