@@ -155,16 +155,16 @@ contains
 
     !> Exchange at the instants of the flow rule: one of the point, or one of each pair of ends.
     subroutine add_exchange()
-      real(wp) :: t(6), pressure
+      real(wp) :: t(6), h(2)
       integer :: k, i, j, n
       type(shares_t) :: pair
 
       n = shares%nside + shares%ndie
       do k = 1, instant%flow%n
         t(:n) = start(shares%place(:n), e) + instant%flow%share(k)*du(shares%place(:n), e)
-        pressure = (1 - instant%flow%share(k))*facing%pressure(1) + instant%flow%share(k)*facing%pressure(2)
+        h = (1 - instant%flow%share(k))*facing%conductance(:, 1) + instant%flow%share(k)*facing%conductance(:, 2)
         if (shares%nside == 3) then
-          call add_flow(k, shares, 1.0_wp, t(:n), pressure)
+          call add_flow(k, shares, 1.0_wp, t(:n), h)
           cycle
         end if
         do i = 1, shares%nside
@@ -174,24 +174,24 @@ contains
             pair%die = 0
             pair%side(i) = 1
             pair%die(j) = 1
-            call add_flow(k, pair, shares%side(i)*shares%die(j), t(:n), pressure)
+            call add_flow(k, pair, shares%side(i)*shares%die(j), t(:n), h)
           end do
         end do
       end do
     end subroutine add_exchange
 
     !> The share `part` of the area exchanges between temperatures that are means by shares.
-    subroutine add_flow(k, means, part, t, pressure)
+    subroutine add_flow(k, means, part, t, h)
       integer, intent(in) :: k
       type(shares_t), intent(in) :: means
-      real(wp), intent(in) :: part, t(:), pressure
+      real(wp), intent(in) :: part, t(:), h(2)
       real(wp) :: q, slope, slope_die, gives(6), takes(6)
       integer :: n, m, j
 
       m = means%nside
       n = m + means%ndie
-      call flow_from_die(group%heat_contact, facing%closed, pressure, facing%gap, dot_product(means%side(:m), t(:m)), &
-                         dot_product(means%die(:n - m), t(m + 1:n)), q, slope, slope_die)
+      call flow_from_die(group%heat_contact, h, dot_product(means%side(:m), t(:m)), dot_product(means%die(:n - m), t(m + 1:n)), &
+                         q, slope, slope_die)
       gives(:m) = -means%side(:m)
       gives(m + 1:n) = means%die(:n - m)
       takes(:m) = slope*means%side(:m)
