@@ -18,7 +18,7 @@ module exchange_in_turns
   use vectors, only: length_of
   implicit none
   private
-  public :: exchange_t, begin_exchange, advance_exchange, end_exchange
+  public :: turns_t, begin_exchange, advance_exchange, end_exchange
 
   !> So many differences are kept.
   integer, parameter :: most_differences = 12
@@ -31,7 +31,7 @@ module exchange_in_turns
   !> A difference of which no more is left beside the others says nothing new.
   real(wp), parameter :: least_new = 1.0e-8_wp
 
-  type :: exchange_t
+  type :: turns_t
     !> Values that the turn begins with, `nstress` of stress, the rest of conductance, and g - x of the turn before.
     real(wp), allocatable :: x(:), f(:)   !! (nvalue) [stress], [power/area/temperature] or [-]
     integer :: nstress = 0
@@ -44,7 +44,7 @@ module exchange_in_turns
     !> Share of what is left of f that is handed over, by the last difference at the point itself.
     real(wp), allocatable :: share(:)   !! (nvalue) [-]
     integer :: n = 0
-  end type exchange_t
+  end type turns_t
 
 contains
 
@@ -53,7 +53,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(equations_t), intent(inout) :: equations
-    type(exchange_t), intent(out) :: exchange
+    type(turns_t), intent(out) :: exchange
     logical, intent(in), optional :: contact_alone   !! conductances alone
     integer :: n, m
 
@@ -77,7 +77,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(equations_t), intent(in) :: equations
-    type(exchange_t), intent(in) :: exchange
+    type(turns_t), intent(in) :: exchange
     real(wp), intent(out) :: values(:)   !! (nvalue) as x
 
     associate (n => exchange%nstress)
@@ -88,7 +88,7 @@ contains
 
   !> Values drive the points from now on.
   pure subroutine hand_over_values(exchange, equations)
-    type(exchange_t), intent(in) :: exchange
+    type(turns_t), intent(in) :: exchange
     type(equations_t), intent(inout) :: equations
 
     associate (n => exchange%nstress)
@@ -103,7 +103,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(equations_t), intent(inout) :: equations
-    type(exchange_t), intent(inout) :: exchange
+    type(turns_t), intent(inout) :: exchange
     real(wp), intent(inout) :: change   !! largest one of the turn, over DISPL; on return weighed, with that of the values [-]
     real(wp), allocatable :: g(:), x(:), f(:)
     real(wp) :: whole
@@ -142,7 +142,7 @@ contains
   !> The difference of f that goes with the last difference of x, which is there since it was handed over.
   pure subroutine keep_difference(f, exchange)
     real(wp), intent(in) :: f(:)   !! (nvalue) as x
-    type(exchange_t), intent(inout) :: exchange
+    type(turns_t), intent(inout) :: exchange
     integer :: i, k
 
     if (exchange%n == 0) return
@@ -156,7 +156,7 @@ contains
 
   !> Newest first: what a difference adds to those before takes its part out of f, and moves x.
   pure subroutine combine(exchange, x, f)
-    type(exchange_t), intent(in) :: exchange
+    type(turns_t), intent(in) :: exchange
     real(wp), intent(inout) :: x(:), f(:)   !! (nvalue) as x
     real(wp) :: direction(size(x), most_differences), motion(size(x), most_differences), before, share
     integer :: k, i, m
@@ -205,7 +205,7 @@ contains
   !> The step has ended: drivers follow the stress again.
   subroutine end_exchange(equations, exchange)
     type(equations_t), intent(inout) :: equations
-    type(exchange_t), intent(inout) :: exchange
+    type(turns_t), intent(inout) :: exchange
 
     if (.not. allocated(exchange%x)) return
     if (exchange%nstress > 0) call hand_over_stress(exchange%x(:0), equations%drivers)

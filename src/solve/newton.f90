@@ -12,7 +12,7 @@ module newton
   use elem_api, only: block_done, mode_advance, report_t
   use equations, only: equations_t
   use evaluation, only: evaluate, is_apart
-  use exchange_in_turns, only: advance_exchange, begin_exchange, end_exchange, exchange_t
+  use exchange_in_turns, only: advance_exchange, begin_exchange, end_exchange, turns_t
   use external_loads, only: external_forces
   use fields, only: displacement_field
   use heat_correction, only: follow_content, is_steep
@@ -112,7 +112,7 @@ contains
     !> A heat capacity varies much; past a limit point equilibrium is looked for further on.
     logical :: steep, goes_on
     !> Heat through contact is solved for with the motion: its conductances are exchanged first.
-    type(exchange_t) :: exchange
+    type(turns_t) :: exchange
     logical :: together
     logical :: changed, ends
     !> Line of the history with which the present search began: norms are judged from there on.

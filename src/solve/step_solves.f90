@@ -7,7 +7,7 @@ module step_solves
   use damping, only: prepare_damping
   use equations, only: equations_t
   use fields, only: displacement_field
-  use exchange_in_turns, only: advance_exchange, begin_exchange, end_exchange, exchange_t
+  use exchange_in_turns, only: advance_exchange, begin_exchange, end_exchange, turns_t
   use first_step_parts, only: solve_motion
   use heat_stages, only: is_heat_alone, solve_heat
   use kinds, only: wp
@@ -36,7 +36,7 @@ contains
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt   !! [time]
     type(outcome_t), intent(out) :: outcome
-    type(exchange_t) :: exchange
+    type(turns_t) :: exchange
     integer :: solved
 
     solved = corrections_of_motion(equations)
@@ -90,7 +90,7 @@ contains
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt   !! [time]
-    type(exchange_t), intent(out) :: exchange
+    type(turns_t), intent(out) :: exchange
     type(outcome_t), intent(out) :: outcome
     type(outcome_t) :: own
     real(wp) :: motion(equations%dofs%ndof), change
