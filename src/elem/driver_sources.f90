@@ -1,8 +1,8 @@
 !> Where the drivers of the points of each group come from: fields, states of other formulations, stress, the body behind.
 module driver_sources
-  use drivers, only: at_body_effusivity, at_corner_place, at_die_effusivity, at_status, driver_source_t, drivers_t, flow_name, &
-                     from_effusivity, from_field, from_flow, from_itself, from_nothing, from_state, from_stress, from_stretch, &
-                     from_unloading, is_scalar, of_contact
+  use drivers, only: at_body_effusivity, at_corner_place, at_die_effusivity, at_handed, at_status, driver_source_t, drivers_t, &
+                     flow_name, from_effusivity, from_field, from_flow, from_itself, from_nothing, from_state, from_stress, &
+                     from_stretch, from_unloading, heat_contact_drivers, is_scalar, not_handed, of_contact
   use fields, only: find_field
   use kinds, only: wp
   use heat_sources, only: work_name
@@ -189,11 +189,13 @@ contains
     integer :: k, n, v
 
     associate (group => scene%groups(g))
-      n = merge(at_die_effusivity, 0, group%host > 0)
+      n = merge(heat_contact_drivers, 0, group%host > 0)
       allocate (drivers%value(n, 2, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
       allocate (drivers%source(n))
       drivers%vary = n > 0
+      drivers%is_of_heat_contact = n > 0
       if (n == 0) return
+      drivers%value(at_handed:, :, :, :) = not_handed
       do k = at_status, at_corner_place
         v = find_variable(scene%groups(group%host)%variables, trim(of_contact(k)))
         if (v == 0) cycle

@@ -8,7 +8,8 @@
 !> The temperature of a body is found by the element itself, which has derivatives along it.
 !>
 !> Heat through contact has no law: its points are driven by what their contact keeps (names below), and by the effusivities of
-!> both bodies, those of the accepted state, where heat of friction is shared by them.
+!> both bodies, those of the accepted state, where heat of friction is shared by them. Conductances that are handed over
+!> (exchange_in_turns, contact_heat_tangent) take the place of those by the pressures and gaps that contact has reached.
 !>
 !> Behind the drivers of a law for heat that plastic work drives is one of the element: the volume that the work is per, free of
 !> elastic strain, over the volume of the point, at the start of the step. In plane stress of large strain, where work is per volume
@@ -21,9 +22,11 @@ module drivers
   use solution, only: group_state_t
   implicit none
   private
-  public :: stress_driver_count, hand_over_stress, from_nothing, from_field, from_state, from_flow, from_itself, &
+  public :: stress_driver_count, hand_over_stress, hand_over_conductance
+  public :: from_nothing, from_field, from_state, from_flow, from_itself, &
             from_effusivity, from_stress, from_unloading, from_stretch, flow_name, at_status, at_pressure, at_gap, at_die_piece, &
-            at_die_xi, at_friction_work, at_corner_work, at_corner_place, at_body_effusivity, at_die_effusivity, of_contact, &
+            at_die_xi, at_friction_work, at_corner_work, at_corner_place, at_body_effusivity, at_die_effusivity, at_handed, &
+            heat_contact_drivers, not_handed, of_contact, &
             driver_source_t, drivers_t, with_slopes, drives_heat, drivers_of_half, own_states_at_end, is_scalar
 
   !> Where a driver comes from. A state variable of the formulation itself is that at the start of the step.
@@ -32,9 +35,13 @@ module drivers
   !> Name of the flow stress of the body behind a side.
   character(len=*), parameter :: flow_name = 'flow_stress'
 
-  !> What drives heat through contact: state variables of the contact, and effusivities.
+  !> What drives heat through contact: state variables of the contact, effusivities, and conductances that are handed over (two
+  !> numbers, heat_contacts).
   integer, parameter :: at_status = 2, at_pressure = 3, at_gap = 4, at_die_piece = 5, at_die_xi = 6, at_friction_work = 7, &
-                        at_corner_work = 8, at_corner_place = 9, at_body_effusivity = 10, at_die_effusivity = 11
+                        at_corner_work = 8, at_corner_place = 9, at_body_effusivity = 10, at_die_effusivity = 11, &
+                        at_handed = 12, heat_contact_drivers = 13
+  !> Nothing is handed over, or contact knows nothing of the point.
+  real(wp), parameter :: not_handed = -1.0_wp
   character(len=20), parameter :: of_contact(at_status:at_corner_place) = &
                                   ['contact_status      ', 'pressure            ', 'penetration         ', 'die_piece           ', &
                                    'die_xi              ', 'friction_work       ', 'corner_friction_work', 'corner_place        ']
@@ -60,6 +67,8 @@ module drivers
     !> Measures of the stress at the end of the step that are handed over from one turn of the solves to the next (ndriver, npoint,
     !> nelem); not allocated where drivers follow the stress as it is tried.
     real(wp), allocatable :: handed(:, :, :)
+    !> They are of heat through a contact that moves; conductances are handed over to it.
+    logical :: is_of_heat_contact = .false., hands_conductance = .false.
     !> Of contact: group and element of the body behind each side, and its side 1 to 4 (nelem).
     integer, allocatable :: body(:), element(:), side(:)
     !> Of heat through contact with a deformable die: the same behind each of its pieces (npiece).
@@ -169,5 +178,15 @@ contains
       end associate
     end do
   end subroutine hand_over_stress
+
+  !> Conductances that heat through contact has at the end of the step, or not_handed.
+  pure subroutine hand_over_conductance(values, drivers)
+    real(wp), intent(in) :: values(:, :, :)       !! (2, npoint, nelem), as conductance_of gives them (heat_contacts); or of no size
+    type(drivers_t), intent(inout) :: drivers     !! of the group
+
+    drivers%hands_conductance = size(values) > 0
+    drivers%value(at_handed:heat_contact_drivers, 2, :, :) = not_handed
+    if (size(values) > 0) drivers%value(at_handed:heat_contact_drivers, 2, :, :) = values
+  end subroutine hand_over_conductance
 
 end module drivers

@@ -48,16 +48,16 @@ contains
     real(wp), intent(in) :: start(:), du(:)          !! (ndof) values at the start of the step, and motion [unknown]
     real(wp), intent(inout) :: force(:)              !! (ndof) [residual]
     real(wp), intent(inout) :: stiffness(:, :)       !! (ndof, ndof) [residual/unknown]
-    real(wp) :: t(6), pressure
+    real(wp) :: t(6), h(2)
     integer :: k, i, j, n
     type(shares_t) :: pair
 
     n = shares%nside + shares%ndie
     do k = 1, instant%flow%n
       t(:n) = start(shares%place(:n)) + instant%flow%share(k)*du(shares%place(:n))
-      pressure = (1 - instant%flow%share(k))*facing%pressure(1) + instant%flow%share(k)*facing%pressure(2)
+      h = (1 - instant%flow%share(k))*facing%conductance(:, 1) + instant%flow%share(k)*facing%conductance(:, 2)
       if (shares%nside == 3) then
-        call add_flow(contact, instant, facing, k, shares, 1.0_wp, t(:n), pressure, area, moving, force, stiffness)
+        call add_flow(contact, instant, k, shares, 1.0_wp, t(:n), h, area, moving, force, stiffness)
         cycle
       end if
       do i = 1, shares%nside
@@ -67,21 +67,20 @@ contains
           pair%die = 0
           pair%side(i) = 1
           pair%die(j) = 1
-          call add_flow(contact, instant, facing, k, pair, shares%side(i)*shares%die(j), t(:n), pressure, area, moving, &
-                        force, stiffness)
+          call add_flow(contact, instant, k, pair, shares%side(i)*shares%die(j), t(:n), h, area, moving, force, stiffness)
         end do
       end do
     end do
   end subroutine add_exchange
 
   !> The share `part` of the area exchanges between temperatures that are means by shares.
-  pure subroutine add_flow(contact, instant, facing, k, means, part, t, pressure, area, moving, force, stiffness)
+  pure subroutine add_flow(contact, instant, k, means, part, t, h, area, moving, force, stiffness)
     type(heat_contact_t), intent(in) :: contact
     type(instant_t), intent(in) :: instant
-    type(facing_t), intent(in) :: facing
     integer, intent(in) :: k   !! instant of the flow rule
     type(shares_t), intent(in) :: means
-    real(wp), intent(in) :: part, t(:), pressure   !! [-], [temperature], [stress]
+    real(wp), intent(in) :: part, t(:)   !! [-], [temperature]
+    real(wp), intent(in) :: h(2)         !! conductances (facing_t)
     type(area_t), intent(in) :: area
     integer, intent(in) :: moving(:)
     real(wp), intent(inout) :: force(:), stiffness(:, :)
@@ -90,8 +89,8 @@ contains
 
     m = means%nside
     n = m + means%ndie
-    call flow_from_die(contact, facing%closed, pressure, facing%gap, dot_product(means%side(:m), t(:m)), &
-                       dot_product(means%die(:n - m), t(m + 1:n)), q, slope, slope_die)
+    call flow_from_die(contact, h, dot_product(means%side(:m), t(:m)), dot_product(means%die(:n - m), t(m + 1:n)), q, slope, &
+                       slope_die)
     gives(:m) = -means%side(:m)
     gives(m + 1:n) = means%die(:n - m)
     takes(:m) = slope*means%side(:m)

@@ -3,8 +3,9 @@ module heat_contact_point
   use closest_point, only: closest_point_t
   use contact_point, only: contact_point_t, most_unknowns, side_point
   use curve_search, only: closest_facing_point
-  use drivers, only: at_die_piece, at_die_xi, at_gap, at_pressure, at_status
+  use drivers, only: at_die_piece, at_die_xi, at_gap, at_handed, at_pressure, at_status, heat_contact_drivers, not_handed
   use elem_api, only: instant_t, layout_t
+  use heat_contacts, only: conductance_of
   use kinds, only: wp
   use law_api, only: contact_open
   use parabolas, only: tangent_on
@@ -14,7 +15,7 @@ module heat_contact_point
   use vectors, only: length_of
   implicit none
   private
-  public :: facing_t, find_facing, share_out, shares_t, touching_still
+  public :: conductance_by_contact, facing_t, find_facing, share_out, shares_t, touching_still
 
   !> The temperature is the first of the element's unknowns, that of a rigid die the second.
   integer, parameter :: temperature = 1, of_die = 2
@@ -25,9 +26,11 @@ module heat_contact_point
 
   !> What a point faces.
   type :: facing_t
-    logical :: found = .false., closed = .false.
+    logical :: found = .false.
     integer :: piece = 0
-    real(wp) :: xi = 0.0_wp, pressure(2) = 0.0_wp, gap = 0.0_wp
+    real(wp) :: xi = 0.0_wp
+    !> Conductances at the start and at the end of the step (conductance_of in heat_contacts).
+    real(wp) :: conductance(2, 2) = 0.0_wp
     !> Unit tangent of the die, in the sense in which the side is walked.
     real(wp) :: along(2) = 0.0_wp
   end type facing_t
@@ -39,6 +42,27 @@ module heat_contact_point
   end type shares_t
 
 contains
+
+  !> Conductances of a point by what its contact has reached, not_handed where that knows nothing of a die.
+  pure function conductance_by_contact(group, drivers, side) result(h)
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: drivers(:)   !! at one end of the step
+    real(wp), intent(in) :: side         !! length of the side [length]
+    real(wp) :: h(2)
+
+    h = not_handed
+    if (nint(drivers(at_die_piece)) > 0) &
+      h = conductance_of(group%heat_contact, is_closed(drivers, side), drivers(at_pressure), -drivers(at_gap))
+  end function conductance_by_contact
+
+  !> The contact of a point bears, or it lies on the die.
+  pure function is_closed(drivers, side) result(closed)
+    real(wp), intent(in) :: drivers(:)   !! at one end of the step
+    real(wp), intent(in) :: side         !! length of the side [length]
+    logical :: closed
+
+    closed = nint(drivers(at_status)) /= contact_open .or. -drivers(at_gap) <= touching*side
+  end function is_closed
 
   !> What a point faces: by its contact, or by a search where that knows nothing.
   subroutine find_facing(scene, group, instant, drivers, phi, dphi, section, side, x, y, facing)
@@ -52,14 +76,20 @@ contains
     type(contact_point_t) :: point
     type(closest_point_t) :: closest
     real(wp), parameter :: still(6) = 0.0_wp
-    real(wp) :: reach
+    real(wp) :: reach, gap
+    logical :: closed
+    integer :: k
 
     if (size(drivers, 1) > 0) then
-      facing%pressure = drivers(at_pressure, :)
       facing%piece = nint(drivers(at_die_piece, 2))
       facing%xi = drivers(at_die_xi, 2)
-      facing%gap = -drivers(at_gap, 2)
-      facing%closed = nint(drivers(at_status, 2)) /= contact_open
+      do k = 1, 2
+        facing%conductance(:, k) = conductance_by_contact(group, drivers(:, k), side)
+      end do
+      if (facing%conductance(1, 1) < 0) facing%conductance(:, 1) = facing%conductance(:, 2)
+      if (.not. drivers(at_handed, 2) < 0) facing%conductance(:, 2) = drivers(at_handed:heat_contact_drivers, 2)
+      closed = is_closed(drivers(:, 2), side)
+      gap = -drivers(at_gap, 2)
     end if
     if (facing%piece == 0) then
       reach = max(group%heat_contact%reach, searched*side)
@@ -75,11 +105,12 @@ contains
       end if
       facing%piece = closest%piece
       facing%xi = closest%xi
-      facing%gap = -closest%d
+      if (facing%piece == 0) return
+      gap = -closest%d
+      closed = gap <= merge(touching, touching_still(group), size(drivers, 1) > 0)*side
+      facing%conductance = spread(conductance_of(group%heat_contact, closed, 0.0_wp, gap), 2, 2)
     end if
-    if (facing%piece == 0) return
-    facing%closed = facing%closed .or. facing%gap <= merge(touching, touching_still(group), size(drivers, 1) > 0)*side
-    facing%found = facing%closed .or. facing%gap <= group%heat_contact%reach
+    facing%found = closed .or. gap <= group%heat_contact%reach .or. any(facing%conductance > 0)
     if (allocated(scene%dies(group%die)%nodes)) then
       facing%along = tangent_on(instant%dies(group%die)%pieces(:, :, facing%piece), facing%xi)
     else

@@ -11,7 +11,7 @@ module heat_contacts
   use radiation, only: fourth_powers
   implicit none
   private
-  public :: die_heat_t, heat_contact_t, flow_from_die, jumps_at_opening, share_by_effusivity
+  public :: die_heat_t, heat_contact_t, conductance_of, flow_from_die, jumps_at_opening, largest_conductance, share_by_effusivity
 
   !> Numbers of the exchange of heat between sides and a die.
   type :: heat_contact_t
@@ -37,34 +37,58 @@ module heat_contacts
 
 contains
 
-  !> Heat that comes into the body per area, and its derivatives by the temperatures of the body and of the die.
-  pure subroutine flow_from_die(contact, closed, pressure, gap, t, t_die, q, slope, slope_die)
+  !> Conductance [power/area/temperature] and share of the radiation of a point: none beyond the reach, and of radiation none where
+  !> it touches.
+  pure function conductance_of(contact, closed, pressure, gap) result(h)
     type(heat_contact_t), intent(in) :: contact
     logical, intent(in) :: closed
-    real(wp), intent(in) :: pressure           !! [stress]
-    real(wp), intent(in) :: gap                !! [length]
-    real(wp), intent(in) :: t, t_die           !! [temperature]
-    real(wp), intent(out) :: q                 !! [power/area]
-    real(wp), intent(out) :: slope, slope_die  !! [power/area/temperature]
-    real(wp) :: h, factor, powers, by_body, by_die, unused
+    real(wp), intent(in) :: pressure   !! [stress]
+    real(wp), intent(in) :: gap        !! [length]
+    real(wp) :: h(2)
+    real(wp) :: factor, unused
 
+    h = 0
     if (closed) then
       factor = 1
       if (allocated(contact%by_pressure)) call value_in_table(contact%by_pressure, pressure, factor, unused)
-      h = contact%conductance*factor
-    else
+      h(1) = contact%conductance*factor
+    else if (gap <= contact%reach) then
       factor = 0
       if (allocated(contact%by_gap)) call value_in_table(contact%by_gap, gap, factor, unused)
-      h = contact%conductance*factor + contact%convection
+      h = [contact%conductance*factor + contact%convection, 1.0_wp]
     end if
-    q = h*(t_die - t)
-    slope = -h
-    slope_die = h
-    if (closed .or. .not. contact%radiation > 0) return
+  end function conductance_of
+
+  !> No point has more.
+  pure function largest_conductance(contact) result(h)
+    type(heat_contact_t), intent(in) :: contact
+    real(wp) :: h(2)   !! as above
+    real(wp) :: touching, apart
+
+    touching = 1
+    if (allocated(contact%by_pressure)) touching = maxval(contact%by_pressure(2, :))
+    apart = 0
+    if (allocated(contact%by_gap)) apart = maxval(contact%by_gap(2, :))
+    h = [max(contact%conductance*touching, contact%conductance*apart + contact%convection), 1.0_wp]
+  end function largest_conductance
+
+  !> Heat that comes into the body per area, and its derivatives by the temperatures of the body and of the die.
+  pure subroutine flow_from_die(contact, h, t, t_die, q, slope, slope_die)
+    type(heat_contact_t), intent(in) :: contact
+    real(wp), intent(in) :: h(2)               !! of the point (conductance_of)
+    real(wp), intent(in) :: t, t_die           !! [temperature]
+    real(wp), intent(out) :: q                 !! [power/area]
+    real(wp), intent(out) :: slope, slope_die  !! [power/area/temperature]
+    real(wp) :: powers, by_body, by_die
+
+    q = h(1)*(t_die - t)
+    slope = -h(1)
+    slope_die = h(1)
+    if (.not. h(2)*contact%radiation > 0) return
     call fourth_powers(t_die + contact%zero, t + contact%zero, powers, by_die, by_body)
-    q = q + contact%radiation*powers
-    slope = slope + contact%radiation*by_body
-    slope_die = slope_die + contact%radiation*by_die
+    q = q + h(2)*contact%radiation*powers
+    slope = slope + h(2)*contact%radiation*by_body
+    slope_die = slope_die + h(2)*contact%radiation*by_die
   end subroutine flow_from_die
 
   !> The conductance of a point that is about to open is another than that of one that has just opened, by more than a hundredth of

@@ -10,9 +10,11 @@
 !>
 !> They hold near equilibrium alone. Far from it the pressures of penalties change from one iterate to the next by many times the
 !> range of a table of conductances (PRESS): the conductance stays within its table, its linear continuation does not, and the
-!> temperatures of the next iterate are beyond all bounds. So Newton's method asks for these columns where its residual has become
-!> small (J. Nocedal, S.J. Wright, Numerical Optimization, 2nd ed., Springer 2006, sec. 11.2: the order of convergence is that of
-!> the matrices near the solution); before that pressure, gap and heat of friction are held.
+!> temperatures of the next iterate are beyond all bounds. So conductances are handed over first (exchange_in_turns), from those
+!> that the last step has left, whenever the residual is small. Once they hardly change they follow pressure and gap, and the
+!> columns are in the matrix whatever the residual: without them heat that leaves by the pressure that it lowers goes to and fro
+!> (J. Nocedal, S.J. Wright, Numerical Optimization, 2nd ed., Springer 2006, sec. 11.2: the order of convergence is that of the
+!> matrices near the solution).
 module contact_heat_tangent
   use drivers, only: at_corner_place, at_status
   use elem_api, only: instant_t, layout_t, report_t
@@ -20,16 +22,18 @@ module contact_heat_tangent
   use equations, only: equations_t
   use fields, only: displacement_field, find_field, pilot_field
   use kinds, only: wp
-  use scene, only: group_t, role_heat_contact, scene_t
+  use law_api, only: contact_open
+  use scene, only: group_t, scene_t
   use solution, only: solution_t
   use state_variables, only: find_variable
   use step_instants, only: make_instant
   implicit none
   private
-  public :: follow_contact
+  public :: couples_contact, follow_contact
 
-  !> Step of differences over the length of a side: far below the depth that penalties allow, far above the round-off of places.
-  real(wp), parameter :: little = 1.0e-7_wp
+  !> Step of differences over the length of a side, far below the depth that penalties allow; or, where that is less, over the least
+  !> depth or gap of its points, so that few open or close within it; and the least, far above the round-off of places.
+  real(wp), parameter :: little = 1.0e-7_wp, of_depth = 0.1_wp, least = 1.0e-10_wp
 
   !> One element of a group, as the element loop calls it.
   type :: evaluated_side_t
@@ -49,6 +53,18 @@ module contact_heat_tangent
 
 contains
 
+  !> The present solve has heat through contact together with the motion.
+  pure function couples_contact(scene, equations) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    logical :: yes
+    integer :: f
+
+    f = find_field(scene%fields, 'temperature')
+    yes = f > 0 .and. any(equations%drivers%is_of_heat_contact)
+    if (yes) yes = equations%solves(equations%now)%own(f) .and. equations%solves(equations%now)%own(displacement_field)
+  end function couples_contact
+
   !> Put the columns into the matrix of the last evaluation, which was at the motion `du`. Nothing is done where the present solve
   !> has no heat through contact together with the motion.
   subroutine follow_contact(scene, equations, solution, dt, du)
@@ -58,17 +74,14 @@ contains
     real(wp), intent(in) :: dt      !! [time]
     real(wp), intent(in) :: du(:)   !! (ndof) [unknown]
     type(instant_t) :: instant
-    integer :: g, e, f
+    integer :: g, e
 
-    f = find_field(scene%fields, 'temperature')
-    if (f == 0) return
-    if (.not. any(scene%groups%role == role_heat_contact .and. scene%groups%host > 0)) return
+    if (.not. couples_contact(scene, equations) .or. any(equations%drivers%hands_conductance)) return
     associate (solve => equations%solves(equations%now))
-      if (.not. (solve%own(f) .and. solve%own(displacement_field))) return
       call make_instant(scene, equations, solution, dt, du, .false., instant)
       instant%pairs = solution%pairs
       do g = 1, size(scene%groups)
-        if (scene%groups(g)%role /= role_heat_contact .or. scene%groups(g)%host == 0) cycle
+        if (.not. equations%drivers(g)%is_of_heat_contact) cycle
         do e = 1, size(scene%groups(g)%connectivity, 2)
           call follow_side(scene, equations, solution, instant, du, g, e)
         end do
@@ -106,7 +119,7 @@ contains
           if (i > 1 .and. node > 0) then
             if (any(heat%nodes(:i - 1) == node)) cycle
           end if
-          step = little*length
+          step = length_of_step(scene%groups(contact%g), contact%trial(:, :, 1), length)
           if (equations%dofs%is_angle(d)) step = step/equations%size
           call set_column(scene, equations, solution, instant, d, node, c, step, heat, contact)
         end do
@@ -133,7 +146,8 @@ contains
       do s = -1, 1, 2
         call move(s*step)
         call compute(scene, equations, instant, contact)
-        if (same_contact(scene%groups(contact%g), contact%trial, solution%groups(contact%g)%trial(:, :, contact%e))) then
+        if (same_contact(scene%groups(contact%g), scene%groups(heat%g)%heat_contact%friction > 0, contact%trial, &
+                         solution%groups(contact%g)%trial(:, :, contact%e))) then
           call drive(equations, contact, heat)
           call compute(scene, equations, instant, heat)
           force(:, s) = heat%force(:, 1)
@@ -174,9 +188,27 @@ contains
 
   end subroutine set_column
 
-  !> All points and corners of the side touch, stick and slip alike in two states.
-  pure function same_contact(group, one, other) result(same)
+  !> Step of the differences of a side.
+  pure function length_of_step(group, state, length) result(step)
+    type(group_t), intent(in) :: group          !! of contact
+    real(wp), intent(in) :: state(:, :)         !! (nstate, npoint) [unit of each component]
+    real(wp), intent(in) :: length              !! of the side [length]
+    real(wp) :: step
+    integer :: v
+
+    step = little*length
+    v = find_variable(group%variables, 'penetration')
+    if (v == 0) return
+    associate (depth => abs(state(group%variables(v)%first, :)))
+      if (any(depth > least*length)) step = min(step, of_depth*minval(depth, mask=depth > least*length))
+    end associate
+    step = max(step, least*length)
+  end function length_of_step
+
+  !> All points and corners of the side touch alike in two states; stick and slip alike too, where friction makes heat.
+  pure function same_contact(group, by_friction, one, other) result(same)
     type(group_t), intent(in) :: group
+    logical, intent(in) :: by_friction
     real(wp), intent(in) :: one(:, :, :), other(:, :)   !! (nstate, npoint, 1), (nstate, npoint) [unit of each component]
     logical :: same
     character(len=21), parameter :: names(2) = ['contact_status       ', 'corner_contact_status']
@@ -187,7 +219,8 @@ contains
       v = find_variable(group%variables, trim(names(k)))
       if (v == 0) cycle
       row = group%variables(v)%first
-      same = same .and. all(nint(one(row, :, 1)) == nint(other(row, :)))
+      same = same .and. all((nint(one(row, :, 1)) == contact_open) .eqv. (nint(other(row, :)) == contact_open))
+      if (by_friction) same = same .and. all(nint(one(row, :, 1)) == nint(other(row, :)))
     end do
   end function same_contact
 

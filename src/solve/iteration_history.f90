@@ -99,14 +99,12 @@ contains
     added = inner_share*sum(max(history%inner - 1, 0))
   end function difficulty_of_patches
 
-  !> Near the solution: the residual has fallen below a small share of the forces, and the set of points in contact is settled.
+  !> Near the solution: the residual has fallen below a small share of the forces.
   pure function is_near(history)
     type(iteration_t), intent(in) :: history(:)   !! (niteration)
     logical :: is_near
 
-    associate (last => history(size(history)))
-      is_near = last%force_norm < near_force .and. .not. last%contact_changed
-    end associate
+    is_near = history(size(history))%force_norm < near_force
   end function is_near
 
   !> The last searches were all short: they do not get past a turn of loading to unloading.

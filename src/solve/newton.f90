@@ -6,12 +6,13 @@
 module newton
   use augmentations, only: augment, augmentations_t, begin_augmentations, go_back, put_back
   use contact_changes, only: contact_set, note_contact, touching_dies
-  use contact_heat_tangent, only: follow_contact
+  use contact_heat_tangent, only: couples_contact, follow_contact
   use convergence, only: heat_in_balance, pilots_in_equilibrium, relative_motion, relative_residual, weigh_quantities
   use corrections, only: solve_correction
   use elem_api, only: block_done, mode_advance, report_t
   use equations, only: equations_t
   use evaluation, only: evaluate, is_apart
+  use exchange_in_turns, only: advance_exchange, begin_exchange, end_exchange, turns_t
   use external_loads, only: external_forces
   use fields, only: displacement_field
   use heat_correction, only: follow_content, is_steep
@@ -34,6 +35,11 @@ module newton
   implicit none
   private
   public :: solve_step
+
+  !> Conductances of contact follow its pressures and gaps once they change by no more than this, over their slack
+  !> (exchange_in_turns), or after so many exchanges.
+  real(wp), parameter :: near_change = 5.0e-3_wp
+  integer, parameter :: most_exchanges = 12
 
 contains
 
@@ -105,6 +111,9 @@ contains
     logical :: again, kept, afresh
     !> A heat capacity varies much; past a limit point equilibrium is looked for further on.
     logical :: steep, goes_on
+    !> Heat through contact is solved for with the motion: its conductances are exchanged first.
+    type(turns_t) :: exchange
+    logical :: together
     logical :: changed, ends
     !> Line of the history with which the present search began: norms are judged from there on.
     integer :: first
@@ -118,6 +127,12 @@ contains
       if (is_stage_done(scene, equations, outcome%history(first:)) .and. .not. is_missing_motion()) then
         call stiffen_contact()
         cycle
+      end if
+      if (together .and. any(equations%drivers%hands_conductance)) then
+        if (size(outcome%history) > first .and. is_near(outcome%history(first:))) then
+          call exchange_conductances()
+          cycle
+        end if
       end if
       if (is_in_equilibrium()) then
         call augment_contact(changed)
@@ -140,7 +155,17 @@ contains
 
     !> The motion that the step begins with: the prediction, unless contact would begin within it.
     subroutine start_motion()
+      integer :: g
+
       call begin_augmentations(size(scene%groups), made)
+      together = .false.
+      if (couples_contact(scene, equations) .and. solution%last_step > 0) then
+        do g = 1, size(solution%groups)
+          solution%groups(g)%trial = solution%groups(g)%committed
+        end do
+        call begin_exchange(scene, solution, equations, exchange, contact_alone=.true.)
+        together = any(equations%drivers%hands_conductance)
+      end if
       call return_to_chosen(equations%solves(equations%now)%solver)
       call external_forces(scene, equations%dofs, solution%time + dt, external)
       if (present(left)) external = external - left
@@ -200,6 +225,18 @@ contains
       call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
     end subroutine stiffen_contact
 
+    !> Heat through contact takes what contact has reached; once that hardly changes it follows it. Norms begin anew.
+    subroutine exchange_conductances()
+      real(wp) :: change
+
+      change = 0
+      call advance_exchange(scene, solution, equations, exchange, change)
+      if (change < near_change .or. exchange%n >= most_exchanges) call end_exchange(equations, exchange)
+      first = size(outcome%history) + 1
+      correction = 0
+      call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
+    end subroutine exchange_conductances
+
     !> The whole of the motion is made, contact has its whole penalties, and all norms are met.
     function is_in_equilibrium() result(is)
       logical :: is
@@ -234,7 +271,7 @@ contains
       type(manner_t) :: manner
 
       ends = .false.
-      if (is_near(outcome%history(first:))) call follow_contact(scene, equations, solution, dt, outcome%du)
+      if (together .or. is_near(outcome%history(first:))) call follow_contact(scene, equations, solution, dt, outcome%du)
       call add_missing(equations, missing, residual)
       call solve_for_correction()
       if (allocated(outcome%error)) then
@@ -376,6 +413,7 @@ contains
 
     !> What the attempt has found: an equilibrium, unless the step is too long for it to be taken.
     subroutine conclude()
+      if (together) call end_exchange(equations, exchange)
       outcome%augmentations = made%times
       outcome%gave_way = made%gave_way
       outcome%strain = report%strain

@@ -2,11 +2,12 @@
 !>
 !> Where fields of several quantities are solved for one after the other, a solve takes the motion of the others' unknowns as their
 !> own solve has found it in this step, or as predicted from the last step. Once in turns is first order in the step; in turns until
-!> nothing changes any more is the result of the monolithic solve. Stress that drives heat is handed over by stress_exchange.
+!> nothing changes any more is the result of the monolithic solve. What drives heat is handed over by exchange_in_turns.
 module step_solves
   use damping, only: prepare_damping
   use equations, only: equations_t
   use fields, only: displacement_field
+  use exchange_in_turns, only: advance_exchange, begin_exchange, end_exchange, turns_t
   use first_step_parts, only: solve_motion
   use heat_stages, only: is_heat_alone, solve_heat
   use kinds, only: wp
@@ -17,7 +18,6 @@ module step_solves
   use solution, only: solution_t
   use step_outcome, only: outcome_t
   use strategy, only: coupling_converged
-  use stress_exchange, only: advance_exchange, begin_exchange, end_exchange, stress_exchange_t
   use text, only: to_text
   implicit none
   private
@@ -36,7 +36,7 @@ contains
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt   !! [time]
     type(outcome_t), intent(out) :: outcome
-    type(stress_exchange_t) :: exchange
+    type(turns_t) :: exchange
     integer :: solved
 
     solved = corrections_of_motion(equations)
@@ -90,7 +90,7 @@ contains
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt   !! [time]
-    type(stress_exchange_t), intent(out) :: exchange
+    type(turns_t), intent(out) :: exchange
     type(outcome_t), intent(out) :: outcome
     type(outcome_t) :: own
     real(wp) :: motion(equations%dofs%ndof), change
@@ -109,7 +109,7 @@ contains
     do s = 1, size(solution%groups)
       solution%groups(s)%trial = solution%groups(s)%committed
     end do
-    call begin_exchange(scene, solution, equations, exchange)
+    if (scene%strategy%coupling == coupling_converged) call begin_exchange(scene, solution, equations, exchange)
     motion = 0
     if (solution%last_step > 0) call proportion(equations%dofs, solution%fields, dt/solution%last_step, motion)
     do turn = 1, most_turns

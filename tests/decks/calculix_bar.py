@@ -44,6 +44,27 @@ def lines_of(numbers):
     return [", ".join(map(str, numbers[k:k + 8])) + "," for k in range(0, len(numbers), 8)]
 
 
+def material():
+    """The steel, of all elements, and their temperature at the start."""
+    cards = ["*MATERIAL, NAME=STEEL", "*ELASTIC"] + [f"{e}, {POISSON}, {t}" for e, t in YOUNG]
+    cards += ["*PLASTIC"]
+    for t in (20.0, 400.0, 800.0):
+        cards += [f"{at(YIELD, t)}, 0., {t}", f"{at(YIELD, t) + at(HARDENING, t)}, 1., {t}"]
+    cards += [f"*EXPANSION, ZERO={HOT}", f"{ALPHA}", "*DENSITY", "1."]
+    for name, table in (("CONDUCTIVITY", LAMBDA), ("SPECIFIC HEAT", RHOC)):
+        cards += [f"*{name}"] + [f"{value}, {t}" for value, t in table]
+    return cards + ["*SOLID SECTION, ELSET=BAR, MATERIAL=STEEL", "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"ALL, {HOT}"]
+
+
+def steps(times, last, largest, films):
+    """One step from each time to the next: the least increment is a millionth of it."""
+    cards = []
+    for begin, end in zip((0.0,) + times, times + (last,)):
+        cards += ["*STEP, INC=100000", f"*UNCOUPLED TEMPERATURE-DISPLACEMENT, DELTMX={largest}", f"{(end - begin)/1000:.6g}, {end - begin:.6g}, {(end - begin)/1e6:.6g}, 10.",
+                  "*FILM", *films, "*NODE PRINT, NSET=ALL, FREQUENCY=100000", "NT, U", "*EL PRINT, ELSET=BAR, FREQUENCY=100000", "S", "*END STEP"]
+    return cards
+
+
 def input_deck(x, elements):
     """The text of the .inp file."""
     nodes, solid, count = extruded(x, elements)
@@ -58,25 +79,14 @@ def input_deck(x, elements):
     top = np.nonzero(nodes[:, 2] > THICKNESS - near)[0] + 1
     for node in top[1:]:
         cards += ["*EQUATION", "2", f"{node}, 3, 1., {top[0]}, 3, -1."]
-    cards += ["*MATERIAL, NAME=STEEL", "*ELASTIC"] + [f"{e}, {POISSON}, {t}" for e, t in YOUNG]
-    cards += ["*PLASTIC"]
-    for t in (20.0, 400.0, 800.0):
-        cards += [f"{at(YIELD, t)}, 0., {t}", f"{at(YIELD, t) + at(HARDENING, t)}, 1., {t}"]
-    cards += [f"*EXPANSION, ZERO={HOT}", f"{ALPHA}", "*DENSITY", "1."]
-    for name, table in (("CONDUCTIVITY", LAMBDA), ("SPECIFIC HEAT", RHOC)):
-        cards += [f"*{name}"] + [f"{value}, {t}" for value, t in table]
-    cards += ["*SOLID SECTION, ELSET=BAR, MATERIAL=STEEL", "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"ALL, {HOT}",
-              "*BOUNDARY", "X0, 1, 1", "Y0, 2, 2", "Z0, 3, 3"]
+    cards += material() + ["*BOUNDARY", "X0, 1, 1", "Y0, 2, 2", "Z0, 3, 3"]
     films = []
     for k, e in enumerate(elements, 1):
         for (a, b), face in FACES.items():
             for axis in (0, 1):
                 if min(x[e[a], axis], x[e[b], axis]) > half - near:
                     films.append(f"{k}, {face}, {BATH}, {FILM}")
-    # the least increment is a millionth of a step: one step from each time to the next
-    for begin, end in zip((0.0,) + TIMES, TIMES + (END,)):
-        cards += ["*STEP, INC=100000", f"*UNCOUPLED TEMPERATURE-DISPLACEMENT, DELTMX={LARGEST}", f"{(end - begin)/1000:.6g}, {end - begin:.6g}, {(end - begin)/1e6:.6g}, 10.",
-                  "*FILM", *films, "*NODE PRINT, NSET=ALL, FREQUENCY=100000", "NT, U", "*EL PRINT, ELSET=BAR, FREQUENCY=100000", "S", "*END STEP"]
+    cards += steps(TIMES, END, LARGEST, films)
     return "\n".join(cards) + "\n"
 
 

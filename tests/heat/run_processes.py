@@ -16,6 +16,7 @@ usage: run_processes.py [-v] [-k]
 - `pressed`: a ring quenched between rough dies, the upper one under a force that rests: Newton's method is not caught between points
   that stick and slip, where its matrix leads uphill; and an arch under a force that rests, which snaps through as it cools, to where it
   is pushed to by the same force when it is cold.
+- `exchanged`: a disc quenched under a light die whose conductance grows with the pressure, by turns and in one system.
 - `buckles`: a strip between walls that is heated beyond Euler's load (S.P. Timoshenko, J.M. Gere, Theory of Elastic Stability, 2nd ed.,
   section 2.1) bulges to the side that it is bent to by a fiftieth of its thickness, at any length of steps, and bears that load. A straight one stays as it is, and the run says
   that it is not stable.
@@ -126,6 +127,21 @@ def waits(checks):
               "STRAT 0.02 1.E-5 0.5 6 3\nSTOP 2.\nEND\n")
     if run.ok:
         checks.that(last(run, "step") < 120, "torch that is waited for: few steps")
+
+
+def exchanged(checks):
+    """Turns went to and fro (31 cutbacks), and one system without the columns of points that slide took 311 steps."""
+    for way, force, stop, most in (("CONVERGE", 2e4, 1.0, 60), ("MONOLITHIC", 2e3, 0.2, 60)):
+        run = Run(checks, f"exchanged-{way}", "TITLE disc\nSTATE AXISYM\nKINEM LOG\nBLOCK disc PL8LS 4 steel\n   20. 0.   60. 0.   60. 6.   20. 6.\n"
+                  "   10 1.   4 0.5\nLAW steel ARBTHMET\n   STEEL steel.met m\n   STRESS 1.\nADDEL disc PL8TM heat BILINEAR\nLAW heat META\n"
+                  "   STEEL steel.met m\n   ENERGY 1.\nSTART T 850.\nLAW film COUL2D\n   PENETR 1.E-3 PHI 0.15\nFIXED disc 1 Y\n"
+                  "DIE upper PILOT 0. 6.\n   SEGM 80. 6. 1. 6.\nCNT2D disc 3 upper film\nTDIE upper T 40.\nCOU2DC disc 3 upper H 10. REACH 1.\n"
+                  "   PRESS 0. 0.2   20. 1.\n   GAP 0. 0.2   0.05 0.05   0.5 0.02\nCONVE disc 2 4 H 4. TS 40.\n"
+                  f"FORCE upper Y {-force}/(2*pi) f\nLIC f\n   0. 1.\nSOLVE {way}\nSTRAT 0.001 1.E-6 0.5 6 3\nSTOP {stop}\nEND\n")
+        if not run.ok:
+            continue
+        checks.that(last(run, "cutbacks") <= 2, f"{run.name}: cutbacks", last(run, "cutbacks"))
+        checks.that(last(run, "step") <= most, f"{run.name}: steps", last(run, "step"))
 
 
 def pressed(checks):
@@ -330,6 +346,6 @@ def told(checks):
 if __name__ == "__main__":
     all_checks = Checks()
     law_file(all_checks)
-    for case in (melting, bree, waits, pressed, buckles, probes, mirrored, stretched, spent, told):
+    for case in (melting, bree, waits, pressed, exchanged, buckles, probes, mirrored, stretched, spent, told):
         case(all_checks)
     sys.exit(all_checks.end())
