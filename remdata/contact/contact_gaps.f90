@@ -4,6 +4,9 @@
 !> penetration. Two intervals with such a gap between them are joined: the contour keeps its distance from the die there (a negative
 !> depth), but no beginning and no end of contact is left for the mesh to resolve. A small gap is wider but only one or two elements
 !> long, as a coarse side leaves where it folds: it keeps its shape, and its ends are not resolved by the mesh either.
+!>
+!> A side that spans a bend of the die may be deep in it beside a point that is open. That is no gap: a node of the new mesh at such
+!> a place would press with all of the depth. Only where the contour is off the die a gap has a width.
 module contact_gaps
   use closest_point, only: closest_point_t
   use boundary_sides, only: loop_t
@@ -22,6 +25,8 @@ module contact_gaps
 
   !> Parent coordinates at which a side is sampled.
   real(wp), parameter :: samples(5) = [-1.0_wp, -0.5_wp, 0.0_wp, 0.5_wp, 1.0_wp]
+  !> Depth between points of contact up to which a side is taken to span a bend of the die, as a share of the side.
+  real(wp), parameter :: deepest = 0.1_wp
 
 contains
 
@@ -138,7 +143,7 @@ contains
           if (along(side_point) <= along(from) .or. along(side_point) >= along(until)) cycle
           call find_closest_point(die, pilot, point_on_side(loop, x, side_point), [1, size(die%pieces, 3)], .true., closest, &
                                   projected)
-          narrow = narrow .and. projected .and. abs(closest%d) <= widest*chord
+          narrow = narrow .and. projected .and. -closest%d <= widest*chord .and. closest%d <= deepest*chord
           if (.not. narrow) return
         end do
       end do
