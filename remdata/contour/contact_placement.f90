@@ -132,7 +132,8 @@ contains
 
     list = [intervals, short]
     call sort_intervals(list)
-    call close_gaps(scene, solution, loop, tags, x, options%narrow_gap, list)
+    call close_gaps(scene, solution, loop, tags, x, options%narrow_gap, list, &
+                    options%small_gap_width, options%small_gap_length)
     call part_by_length(options, list, intervals, short)
   end subroutine join_over_gaps
 
