@@ -6,8 +6,8 @@
 !> of the pressure the depth that acts is at most a/(1 - s), with the penetration a that is allowed. So the penalty presses with no
 !> more than AKP a s/(1 - s), which is none at the end of the way, and all that the depth makes at its beginning.
 !>
-!> Beyond the open end of the curve its last side goes on a little way, for bodies that are flush there (kept_side). On the second
-!> half of that way a point loses its pressure steadily: one that ended at once would leave positions without equilibrium.
+!> Beyond the open end of the curve its last side goes on a little way, for bodies that are flush there (kept_side). On the last
+!> third of that way a point loses its pressure steadily: one that ended at once would leave positions without equilibrium.
 module edge_release
   use closest_point, only: closest_point_t, past_end
   use contact_point, only: at_piece, at_status
@@ -26,7 +26,7 @@ module edge_release
   !> A point on the other face of an edge is on its own as long as it is less deep than this share of its side.
   real(wp), parameter :: shallow = 0.01_wp
   !> Bodies that are flush bear on each other in full up to here beyond the open end of the curve [-].
-  real(wp), parameter :: flush = 0.5_wp*beyond_all
+  real(wp), parameter :: flush = 2.0_wp/3*beyond_all
 
   !> What is left of the pressure of a point beyond an edge, and its change with the parent coordinate on the face [-].
   type :: edge_release_t
