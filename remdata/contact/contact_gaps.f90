@@ -4,6 +4,10 @@
 !> penetration. Two intervals with such a gap between them are joined: the contour keeps its distance from the die there (a negative
 !> depth), but no beginning and no end of contact is left for the mesh to resolve. A small gap is wider but only one or two elements
 !> long, as a coarse side leaves where it folds: it keeps its shape, and its ends are not resolved by the mesh either.
+!>
+!> A side that spans a bend of the die may be deep in it beside a point that is open. That is no gap: a node of the new mesh at such
+!> a place would press with all of the depth. Only where the contour is off the die a gap has a width; and a small gap with such a
+!> place in it is closed.
 module contact_gaps
   use closest_point, only: closest_point_t
   use boundary_sides, only: loop_t
@@ -22,10 +26,12 @@ module contact_gaps
 
   !> Parent coordinates at which a side is sampled.
   real(wp), parameter :: samples(5) = [-1.0_wp, -0.5_wp, 0.0_wp, 0.5_wp, 1.0_wp]
+  !> Depth between points of contact up to which a side is taken to span a bend of the die, as a share of the side.
+  real(wp), parameter :: deepest = 0.25_wp
 
 contains
 
-  pure subroutine close_gaps(scene, solution, loop, tags, x, widest, intervals)
+  pure subroutine close_gaps(scene, solution, loop, tags, x, widest, intervals, width, longest)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(loop_t), intent(in) :: loop
@@ -33,6 +39,7 @@ contains
     real(wp), intent(in) :: x(:, :)                                        !! nodes now (2, nnode) [length]
     real(wp), intent(in) :: widest                                         !! gap that is closed, as a share of the side
     type(contact_interval_t), allocatable, intent(inout) :: intervals(:)   !! (ninterval) in their order along the loop
+    real(wp), intent(in), optional :: width, longest   !! of small gaps (mark_small_gaps); none without them
     integer :: into(size(intervals)), i, next, n, nside
     logical :: stays
     type(contact_interval_t), allocatable :: list(:)
@@ -48,8 +55,7 @@ contains
         next = into(next)
       end do
       if (next == i .or. scene%groups(intervals(i)%group)%die /= scene%groups(intervals(next)%group)%die) cycle
-      if (.not. is_narrow(scene, solution, loop, x, widest, intervals(i)%group, last_in_contact(intervals(i)), &
-                          first_after(intervals(i), intervals(next), nside))) cycle
+      if (.not. is_closed(intervals(i), first_after(intervals(i), intervals(next), nside))) cycle
       call join_intervals(tags, nside, intervals(i), intervals(next), stays)
       if (.not. stays) into(i) = next
     end do
@@ -57,6 +63,23 @@ contains
     call move_alloc(list, intervals)
     call wrap_start(nside, intervals)
     call sort_intervals(intervals)
+
+  contains
+
+    !> The gap is narrow, or a small one with a place that is deep in the die.
+    pure function is_closed(interval, until) result(closed)
+      type(contact_interval_t), intent(in) :: interval
+      type(side_point_t), intent(in) :: until
+      logical :: closed
+      real(wp) :: depths(2), wide
+
+      depths = depths_between(scene, solution, loop, x, interval%group, last_in_contact(interval), until)
+      wide = widest
+      if (present(width) .and. depths(2) > widest) then
+        if (along(until) - along(interval%to) <= longest) wide = width
+      end if
+      closed = depths(1) >= -wide .and. depths(2) <= deepest
+    end function is_closed
   end subroutine close_gaps
 
   !> Mark the intervals that are followed by a small gap.
@@ -68,6 +91,7 @@ contains
     real(wp), intent(in) :: widest, longest                   !! width as a share of the side, and length in sides
     type(contact_interval_t), intent(inout) :: intervals(:)   !! (ninterval) in their order along the loop
     type(side_point_t) :: until
+    real(wp) :: depths(2)
     integer :: i, next
 
     do i = 1, size(intervals)
@@ -75,7 +99,8 @@ contains
       if (next == i .or. scene%groups(intervals(i)%group)%die /= scene%groups(intervals(next)%group)%die) cycle
       until = begins_after(intervals(i), intervals(next), size(loop%sides, 2))
       if (coincide(until, intervals(i)%to) .or. along(until) - along(intervals(i)%to) > longest) cycle
-      intervals(i)%small_gap = is_narrow(scene, solution, loop, x, widest, intervals(i)%group, intervals(i)%to, until)
+      depths = depths_between(scene, solution, loop, x, intervals(i)%group, intervals(i)%to, until)
+      intervals(i)%small_gap = depths(1) >= -widest .and. depths(2) <= deepest
     end do
   end subroutine mark_small_gaps
 
@@ -110,15 +135,16 @@ contains
     if (along(side_point) < along(interval%to)) side_point%side = side_point%side + nside
   end function first_after
 
-  !> The part is near the die everywhere between two points of a contour.
-  pure function is_narrow(scene, solution, loop, x, widest, group, from, until) result(narrow)
+  !> Smallest and largest depth in the die between two points of a contour, over the side there; huge where the die is not beside
+  !> it.
+  pure function depths_between(scene, solution, loop, x, group, from, until) result(depths)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(loop_t), intent(in) :: loop
-    real(wp), intent(in) :: x(:, :), widest
-    integer, intent(in) :: group   !! that faces the die
+    real(wp), intent(in) :: x(:, :)   !! nodes now (2, nnode) [length]
+    integer, intent(in) :: group      !! that faces the die
     type(side_point_t), intent(in) :: from, until
-    logical :: narrow
+    real(wp) :: depths(2)
     type(die_t) :: die
     type(closest_point_t) :: closest
     type(side_point_t) :: side_point
@@ -126,7 +152,7 @@ contains
     real(wp) :: chord
     integer :: k, i, side, number
 
-    narrow = .true.
+    depths = 0
     number = scene%groups(group)%die
     die = present_die(scene%dies(number), x)
     associate (pilot => solution%fields(pilot_field)%value(:, number))
@@ -138,12 +164,13 @@ contains
           if (along(side_point) <= along(from) .or. along(side_point) >= along(until)) cycle
           call find_closest_point(die, pilot, point_on_side(loop, x, side_point), [1, size(die%pieces, 3)], .true., closest, &
                                   projected)
-          narrow = narrow .and. projected .and. abs(closest%d) <= widest*chord
-          if (.not. narrow) return
+          depths = [min(depths(1), closest%d/chord), max(depths(2), closest%d/chord)]
+          if (.not. projected) depths = [-huge(chord), huge(chord)]
+          if (.not. projected) return
         end do
       end do
     end associate
-  end function is_narrow
+  end function depths_between
 
   !> Join two intervals: into the second one if they are of one group, otherwise they meet where the group of the first one ends.
   pure subroutine join_intervals(tags, nside, interval, next, stays)

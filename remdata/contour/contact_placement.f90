@@ -67,7 +67,7 @@ contains
                    options%least_contact, intervals, short)
     call extend_intervals(scene, solution, loop, options, intervals, short)
     if (options%least_free > 0) call end_in_corners(loop, tags, x, options%corner_turn, options%least_free, intervals)
-    call close_gaps(scene, solution, loop, tags, x, options%narrow_gap, intervals)
+    call join_over_gaps(scene, solution, loop, tags, x, options, intervals, short)
     call mark_small_gaps(scene, solution, loop, x, options%small_gap_width, options%small_gap_length, intervals)
     allocate (list(size(intervals)))
     n = 0
@@ -115,11 +115,39 @@ contains
     list = [intervals, pack(short, apart)]
     call sort_intervals(list)
     call extend_to_corners(scene, solution, loop, options%small_gap_length, list)
+    call part_by_length(options, list, intervals, short)
+  end subroutine extend_intervals
+
+  !> Join what narrow gaps part, points of contact too.
+  pure subroutine join_over_gaps(scene, solution, loop, tags, x, options, intervals, short)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(loop_t), intent(in) :: loop
+    type(side_tags_t), intent(in) :: tags
+    real(wp), intent(in) :: x(:, :)   !! nodes now (2, nnode) [length]
+    type(contour_options_t), intent(in) :: options
+    type(contact_interval_t), allocatable, intent(inout) :: intervals(:)   !! (ninterval) in their order along the loop
+    type(contact_interval_t), allocatable, intent(inout) :: short(:)       !! (nshort)
+    type(contact_interval_t), allocatable :: list(:)
+
+    list = [intervals, short]
+    call sort_intervals(list)
+    call close_gaps(scene, solution, loop, tags, x, options%narrow_gap, list, &
+                    options%small_gap_width, options%small_gap_length)
+    call part_by_length(options, list, intervals, short)
+  end subroutine join_over_gaps
+
+  !> Intervals, and those so short that they are contact at a point.
+  pure subroutine part_by_length(options, list, intervals, short)
+    type(contour_options_t), intent(in) :: options
+    type(contact_interval_t), intent(in) :: list(:)
+    type(contact_interval_t), allocatable, intent(inout) :: intervals(:), short(:)
+
     associate (length => along(list%to) - along(list%from))
       intervals = pack(list, length >= options%least_contact)
       short = pack(list, length < options%least_contact)
     end associate
-  end subroutine extend_intervals
+  end subroutine part_by_length
 
   !> Groups with points in contact: their status is zero when open. Sides that face their own body keep their contour
   !> (folded_sides).

@@ -5,22 +5,28 @@
 !> The side may rise beside the edge as it turns round it. What is left of the face is no wall that it rises into: with the share s
 !> of the pressure the depth that acts is at most a/(1 - s), with the penetration a that is allowed. So the penalty presses with no
 !> more than AKP a s/(1 - s), which is none at the end of the way, and all that the depth makes at its beginning.
+!>
+!> Beyond the open end of the curve its last side goes on a little way, for bodies that are flush there (kept_side). On the last
+!> third of that way a point loses its pressure steadily: one that ended at once would leave positions without equilibrium.
 module edge_release
   use closest_point, only: closest_point_t, past_end
   use contact_point, only: at_piece, at_status
   use corner_faces, only: closest_on_piece
   use corner_weights, only: handing_over
   use dies, only: die_t
+  use kept_side, only: beyond_all
   use kinds, only: wp
   use law_api, only: contact_open
   use piecewise_curves, only: adjacent_piece
   use vectors, only: length_of
   implicit none
   private
-  public :: edge_release_t, slide_past_edge
+  public :: edge_release_t, slide_past_edge, slide_past_end
 
   !> A point on the other face of an edge is on its own as long as it is less deep than this share of its side.
   real(wp), parameter :: shallow = 0.01_wp
+  !> Bodies that are flush bear on each other in full up to here beyond the open end of the curve [-].
+  real(wp), parameter :: flush = 2.0_wp/3*beyond_all
 
   !> What is left of the pressure of a point beyond an edge, and its change with the parent coordinate on the face [-].
   type :: edge_release_t
@@ -92,5 +98,18 @@ contains
       return
     end do
   end subroutine slide_past_edge
+
+  !> A point beyond the open end of the curve loses its pressure on the way.
+  pure subroutine slide_past_end(die, closest, release)
+    type(die_t), intent(in) :: die
+    type(closest_point_t), intent(in) :: closest    !! on the piece, or as far beyond its end as that goes on
+    type(edge_release_t), intent(inout) :: release
+
+    if (closest%piece == 0) return
+    if (.not. abs(closest%xi) > 1 + flush) return
+    if (adjacent_piece(die, closest%piece, nint(sign(1.0_wp, closest%xi))) /= 0) return
+    release%slope = -sign(1.0_wp, closest%xi)/(beyond_all - flush)
+    release%share = max(0.0_wp, 1 - (abs(closest%xi) - 1 - flush)/(beyond_all - flush))
+  end subroutine slide_past_end
 
 end module edge_release

@@ -30,7 +30,7 @@ module elem_cntdf
   use curve_search, only: box_distance, closest_facing_point
   use dies, only: die_t
   use edge_contact, only: press_edges
-  use edge_release, only: edge_release_t, slide_past_edge
+  use edge_release, only: edge_release_t, slide_past_edge, slide_past_end
   use elem_api, only: elem_t, goes_on, instant_t, layout_t, of_displacement, of_section, report_t, section_motion
   use elem_cnt2d, only: elem_cnt2d_row
   use kept_side, only: handed_over_t, keep_closest_point
@@ -185,6 +185,7 @@ contains
                              allowed_penetration(scene%materials(group%material))*side, committed(:nblock, p, e), nearest, &
                              closest, release)
       end if
+      if (.not. release%share < 1) call slide_past_end(die, closest, release)
       if (release%share < 1 .or. closest%piece /= kept_piece .or. nearest%piece == kept_piece) handed = handed_over_t()
     end subroutine find_closest_point
 

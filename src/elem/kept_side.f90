@@ -14,7 +14,7 @@ module kept_side
   public :: beyond_all, handed_over_t, keep_closest_point
 
   !> A side reaches this far beyond its ends (parent coordinate) for a point that was on it; beyond the open end of the curve less.
-  real(wp), parameter :: beyond = 0.2_wp, beyond_all = 0.05_wp
+  real(wp), parameter :: beyond = 0.2_wp, beyond_all = 0.075_wp
   !> From this parent coordinate on it hands over a point that was in contact; all the way of one that was not begins at its end.
   real(wp), parameter :: hands_over = 1.1_wp
 

@@ -1,7 +1,9 @@
 !> Thickness of the web under a die: the shortest way through a body from where it touches the die to its surface on the other side.
 !>
 !> From points along the sides in contact the closest points on all free sides of the body are found that lie across: the way leaves
-!> the one surface inwards and the other outwards, and the surfaces face away from each other.
+!> the one surface inwards and the other outwards, and the surfaces face away from each other. A side that is off the die by little
+!> beside the thickness looked for counts as one that touches: a sheet that is dished leaves the edge of the punch by some
+!> micrometres, and its web is there.
 module web_thickness
   use bodies, only: elements_at_middles
   use cuts, only: cut_t
@@ -29,6 +31,8 @@ module web_thickness
   real(wp), parameter :: facing_away = -0.5_wp
   !> Cosine of the angle between the way and the normals, at least: 70 degrees.
   real(wp), parameter :: steepest = 0.34_wp
+  !> Gap between the die and a side that counts as touching, as a share of the thickness at which the web parts.
+  real(wp), parameter :: near = 0.05_wp
 
 contains
 
@@ -42,7 +46,7 @@ contains
     type(offset_parabola_t) :: side
     real(wp) :: x(2, size(scene%mesh%coordinates, 2))
     logical :: of_body(size(x, 2))
-    integer :: g, e, i, n, status
+    integer :: g, e, i, n, status, depth
 
     x = present_coordinates(scene, solution)
     call list_sides(scene, cut%group, x, sides)
@@ -58,8 +62,12 @@ contains
       associate (group => scene%groups(g), state => solution%groups(g)%committed)
         if (group%die /= cut%die .or. group%role /= role_contact .or. group%material == 0) cycle
         status = group%variables(find_variable(group%variables, 'contact_status'))%first
+        depth = group%variables(find_variable(group%variables, 'penetration'))%first
         do e = 1, size(group%connectivity, 2)
-          if (.not. of_body(group%connectivity(2, e)) .or. all(nint(state(status, :, e)) <= 0)) cycle
+          if (.not. of_body(group%connectivity(2, e))) cycle
+          ! a point out of reach of the die has no depth
+          if (.not. any(nint(state(status, :, e)) > 0 .or. state(depth, :, e) < 0 .and. &
+                        state(depth, :, e) >= -near*cut%thickness)) cycle
           side%points = x(:, group%connectivity(:, e))
           do i = 1, samples
             n = n + 1

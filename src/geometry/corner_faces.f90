@@ -6,9 +6,9 @@
 !>   of its depths are those of round-off and of the last correction. It keeps to the face that its side lies on, which goes on
 !>   beyond the vertex where it has to: multipliers hold the pressure there, along the normal of that face. The other face is that
 !>   of the other side which ends there;
-!> - a point that presses one face of a corner stays on it, while it is shallow where the corner points to the part, and until its
-!>   side lies on the other face rather than on this one where the part fills it: a pressure that is held would turn with the face
-!>   from one iteration to the next, and back.
+!> - a point that presses one face of a corner stays on it, while it is shallow where the corner points to the part, and where the
+!>   part fills it until its side lies on the other face rather than on this one and is no more than a small gap away from it: a
+!>   pressure that is held would turn with the face from one iteration to the next, and back.
 module corner_faces
   use closest_point, only: closest_point_t, closest_within_piece, sense_of_turn, stationary_points, whole_piece
   use kinds, only: wp
@@ -86,9 +86,9 @@ contains
       turn = turn_at(curve, pressed, next, way)
       if (turn > 0) then
         call try_face(curve, point, e_r, reach, way, pressed, still_away, closest)
-        return
+        if (closest%piece == pressed .or. closest%d > -at_corner*reach) return
       end if
-      if (closest%at_vertex .or. .not. turn < 0) cycle
+      if (closest%at_vertex .or. .not. abs(turn) > 0) cycle
       call closest_on_piece(curve, pressed, point, real(way, wp), 0.0_wp, found)
       if (found%piece == 0 .or. .not. abs(found%d) < at_corner*reach) cycle
       closest = found
