@@ -77,7 +77,8 @@ contains
     integer :: i
 
     range = bend_range*length_of(side%x(:, 3) - side%x(:, 1))
-    call add_part(control, meet_node(side, nodes, 2, nodes(2)%face), control_shares(2))
+    own = meet_node(side, nodes, 2, nodes(2)%face)
+    call add_part(control, own, control_shares(2))
     control%meeting%normal = control%parts(1)%meeting%normal
     control%meeting%d = control_shares(2)*nodes(2)%face%d
     do i = 1, 3, 2

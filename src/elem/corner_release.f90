@@ -140,14 +140,15 @@ contains
     type(contact_point_t), intent(in) :: point
     type(release_t), intent(in) :: release
     real(wp) :: motion(ndof)   !! [length/unknown]
-    real(wp) :: relative(2, ndof), lever(2)
+    real(wp) :: relative(2, ndof), lever(2), tangent(2)
 
+    tangent = turned(release%tangent, side%pilot(3, 2))
     lever = point%x - side%pilot(1:2, 2)
     relative = point%dx(:, :ndof)
     relative(1, 7) = relative(1, 7) - 1
     relative(2, 8) = relative(2, 8) - 1
     relative(:, 9) = relative(:, 9) - [-lever(2), lever(1)]
-    motion = matmul(turned(release%tangent, side%pilot(3, 2)), relative)
+    motion = matmul(tangent, relative)
   end function motion_past_corner
 
 end module corner_release

@@ -70,13 +70,15 @@ contains
     real(wp), intent(in) :: du(:)                !! (ndof) motion of the local unknowns [unknown]
     real(wp), intent(in) :: start(:)             !! (ndof) their values at the start of the step [unknown]
     real(wp), intent(out) :: temperature(:, :)   !! (2, npoint) [temperature]
+    real(wp) :: nodal(2, 8)
     integer :: u, first, last
 
     u = temperature_place(layout)
     first = layout%first(1, u)
     last = first + layout%count(u) - 1
-    temperature(1, :) = matmul(nodal_temperatures(start(first:last)), phi(:, :size(temperature, 2)))
-    temperature(2, :) = matmul(nodal_temperatures(start(first:last) + du(first:last)), phi(:, :size(temperature, 2)))
+    nodal(1, :) = nodal_temperatures(start(first:last))
+    nodal(2, :) = nodal_temperatures(start(first:last) + du(first:last))
+    temperature = matmul(nodal, phi(:, :size(temperature, 2)))
   end subroutine point_temperatures_of
 
 end module point_temperatures

@@ -121,7 +121,7 @@ contains
     type(report_t), intent(out) :: report
     real(wp), allocatable :: trial(:, :, :)
 
-    trial = solution%groups(g)%trial(:, :, first:last)
+    allocate (trial, source=solution%groups(g)%trial(:, :, first:last))
     call run_block(scene, scene%groups(g), row, kinematics, laws, instant, dofs%groups(g)%nodes(:, first:last), &
                    dofs%groups(g)%dof(:, first:last), dofs%groups(g)%layout, first, du, &
                    solution%fields(displacement_field)%value, drivers%value(:, :, :, first:last), &
