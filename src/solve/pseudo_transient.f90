@@ -32,7 +32,7 @@ module pseudo_transient
   use scene, only: role_contact, role_side_load, role_volume_load, scene_t
   use sections, only: section_forced
   use solution, only: solution_t
-  use stability, only: has_friction
+  use stability, only: has_friction, work_of_bodies
   use volumes_of_unknowns, only: volumes_of_motion
   implicit none
   private
@@ -88,33 +88,6 @@ contains
       shift%of_bodies = work < 0
     end associate
   end subroutine solve_shifted
-
-  !> c K c of a correction of the motion by the matrices of all elements but those of contact.
-  pure function work_of_bodies(scene, equations, correction) result(work)
-    type(scene_t), intent(in) :: scene
-    type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: correction(:)   !! (ndof) [unknown]
-    real(wp) :: work
-    real(wp) :: motion(size(correction))
-    integer :: g, e, j, m, ndof
-
-    motion = merge(correction, 0.0_wp, equations%dofs%quantity == 1)
-    work = 0
-    associate (solve => equations%solves(equations%now))
-      do g = 1, size(scene%groups)
-        if (.not. solve%active(g) .or. scene%groups(g)%role == role_contact) cycle
-        associate (dof => equations%dofs%groups(g)%dof)
-          ndof = size(dof, 1)
-          do e = 1, size(dof, 2)
-            do j = 1, ndof
-              m = solve%pattern%matrix_start(g) + ((e - 1)*ndof + j - 1)*ndof
-              work = work + motion(dof(j, e))*dot_product(equations%buffers%matrix(m + 1:m + ndof), motion(dof(:, e)))
-            end do
-          end do
-        end associate
-      end do
-    end associate
-  end function work_of_bodies
 
   !> After a correction that leads uphill: where no bodies alone make it so and the residual falls by half on it, it is taken, and
   !> the motion moved by it; else it becomes one that leads downhill, by a larger shift.
