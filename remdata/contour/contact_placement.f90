@@ -130,7 +130,7 @@ contains
     type(contact_interval_t), allocatable, intent(inout) :: short(:)       !! (nshort)
     type(contact_interval_t), allocatable :: list(:)
 
-    list = [intervals, short]
+    allocate (list, source=[intervals, short])
     call sort_intervals(list)
     call close_gaps(scene, solution, loop, tags, x, options%narrow_gap, list, &
                     options%small_gap_width, options%small_gap_length)
