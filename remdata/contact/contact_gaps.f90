@@ -149,7 +149,7 @@ contains
     type(closest_point_t) :: closest
     type(side_point_t) :: side_point
     logical :: projected
-    real(wp) :: chord
+    real(wp) :: chord, share
     integer :: k, i, side, number
 
     depths = 0
@@ -164,9 +164,14 @@ contains
           if (along(side_point) <= along(from) .or. along(side_point) >= along(until)) cycle
           call find_closest_point(die, pilot, point_on_side(loop, x, side_point), [1, size(die%pieces, 3)], .true., closest, &
                                   projected)
-          depths = [min(depths(1), closest%d/chord), max(depths(2), closest%d/chord)]
-          if (.not. projected) depths = [-huge(chord), huge(chord)]
-          if (.not. projected) return
+          if (.not. projected) then
+            depths = [-huge(chord), huge(chord)]
+            return
+          end if
+          if (.not. abs(closest%d) > 0) cycle
+          ! a side of no length has any depth over it
+          share = closest%d/max(chord, epsilon(chord)*abs(closest%d))
+          depths = [min(depths(1), share), max(depths(2), share)]
         end do
       end do
     end associate
