@@ -19,8 +19,8 @@ module contact_heat_tangent
   use drivers, only: at_corner_place, at_status
   use elem_api, only: instant_t, layout_t, report_t
   use element_loop, only: gather_geometry, gather_matrix
-  use equations, only: equations_t
-  use fields, only: displacement_field, find_field, pilot_field
+  use equations, only: equations_t, solves_heat
+  use fields, only: displacement_field, pilot_field
   use kinds, only: wp
   use law_api, only: contact_open
   use scene, only: group_t, scene_t
@@ -58,11 +58,9 @@ contains
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     logical :: yes
-    integer :: f
 
-    f = find_field(scene%fields, 'temperature')
-    yes = f > 0 .and. any(equations%drivers%is_of_heat_contact)
-    if (yes) yes = equations%solves(equations%now)%own(f) .and. equations%solves(equations%now)%own(displacement_field)
+    yes = any(equations%drivers%is_of_heat_contact) .and. solves_heat(scene, equations) &
+          .and. equations%solves(equations%now)%own(displacement_field)
   end function couples_contact
 
   !> Put the columns into the matrix of the last evaluation, which was at the motion `du`. Nothing is done where the present solve

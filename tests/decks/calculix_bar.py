@@ -103,14 +103,19 @@ def read_answer(path):
     return {key: np.array(rows) for key, rows in blocks.items()}
 
 
-def main():
+def calculate(deck_of):
+    """Mesh of RESULTS (nodes, and elements by their places), and what CalculiX answers to NAME.inp, the deck that `deck_of` writes of it."""
     results, name = sys.argv[1:]
     with h5py.File(results) as file:
         x, elements = file["mesh/coordinates"][:], file["mesh/topology"][:]
     with open(name + ".inp", "w", encoding="utf-8") as file:
-        file.write(input_deck(x, elements))
+        file.write(deck_of(x, elements))
     subprocess.run(["ccx", os.path.basename(name)], cwd=os.path.dirname(os.path.abspath(name)), check=True, stdout=subprocess.DEVNULL)
-    held = read_answer(name + ".dat")
+    return x, elements, read_answer(name + ".dat")
+
+
+def main():
+    x, _, held = calculate(input_deck)
     places = {"core": (0, 0), "side": (x.max(), 0), "edge": (x.max(), x.max())}
     nodes = {label: int(np.hypot(*(x - place).T).argmin()) for label, place in places.items()}
     for time in TIMES:

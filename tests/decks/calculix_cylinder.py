@@ -5,14 +5,9 @@ usage: calculix_cylinder.py RESULTS.g01.h5 NAME
 Writes NAME.inp, the same mesh of axisymmetric elements of 8 nodes with 2x2 points (CAX8R), with temperatures at all of them; heat, then stress
 in each increment, of the steel of calculix_bar.py; runs ccx in the folder of NAME, and prints the stresses at the end next to axis and side.
 """
-import os
-import subprocess
-import sys
-
-import h5py
 import numpy as np
 
-from calculix_bar import BATH, FILM, lines_of, material, read_answer, steps
+from calculix_bar import BATH, FILM, calculate, lines_of, material, steps
 
 TIMES, END, LARGEST = (0.1, 2.0, 10.0), 150.0, 5.0      # s, s, largest change of temperature in an increment [K]
 SIDES = ((0, 1), (1, 2), (2, 3), (3, 0))
@@ -33,13 +28,8 @@ def input_deck(x, elements):
 
 
 def main():
-    results, name = sys.argv[1:]
-    with h5py.File(results) as file:
-        x, elements = file["mesh/coordinates"][:], file["mesh/topology"][:]
-    with open(name + ".inp", "w", encoding="utf-8") as file:
-        file.write(input_deck(x, elements))
-    subprocess.run(["ccx", os.path.basename(name)], cwd=os.path.dirname(os.path.abspath(name)), check=True, stdout=subprocess.DEVNULL)
-    stress = read_answer(name + ".dat")["stresses", END]
+    x, elements, answer = calculate(input_deck)
+    stress = answer["stresses", END]
     # the first element at the axis and the last one at the side, in the middle of the length
     below = [k for k, e in enumerate(elements, 1) if x[e[:2], 1].max() <= 0]
     for label, element, point in (("core", below[0], 1), ("side", below[-1], 2)):
