@@ -266,11 +266,11 @@ contains
     type(diagnostics_t), intent(inout), target :: diagnostics
     type(cursor_t) :: cursor
     type(string_t), allocatable :: words(:)
-    integer :: f, k
+    integer :: card, f, k
 
-    call only_card(deck, 'THETA', .false., diagnostics, k)
-    if (k == 0) return
-    call cursor%open(deck%cards(k), diagnostics)
+    call only_card(deck, 'THETA', .false., diagnostics, card)
+    if (card == 0) return
+    call cursor%open(deck%cards(card), diagnostics)
     associate (strategy => draft%scene%strategy)
       if (cursor%next_is_number()) then
         call cursor%real('theta, 1/2 (second order, with oscillations after a shock) to 1 (implicit Euler)', strategy%theta, &
@@ -300,7 +300,7 @@ contains
           call cursor%fail('TRBDF2 and TOL are for temperatures that are solved for alone: not with SOLVE MONOLITHIC')
       end associate
     end if
-    call close_card(draft, cursor, deck%cards(k))
+    call close_card(draft, cursor, deck%cards(card))
   end subroutine read_time_scheme
 
   !> `TOL tolerance`: the largest error in time of a step.

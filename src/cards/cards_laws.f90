@@ -58,6 +58,8 @@ contains
         end if
       end associate
       call close_card(draft, cursor, deck%cards(i))
+      ! a law whose card is wrong may lack numbers: no other card goes by it
+      if (cursor%failed()) draft%scene%materials(n)%law_id = 0
     end do
   end subroutine read_laws
 

@@ -10,7 +10,7 @@ module cards_sides
   use diagnostics, only: diagnostics_t
   use dies, only: is_deformable
   use kinds, only: wp
-  use law_api, only: contact_law, find_parameter, is_complete, law_of_material
+  use law_api, only: contact_law, find_parameter, law_of_material
   use quadrature, only: rule_along, rule_control, rule_of_number, rule_t
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, find_elem
@@ -260,7 +260,6 @@ contains
       if (material%law_id == 0) return
       place = find_parameter(draft%laws(material%law_id), 'M')
       if (place == 0) return
-      if (place > size(material%values)) return
       if (.not. material%values(place) < huge(1.0_wp)) return
     end associate
     do s = 1, size(group%connectivity, 2)
@@ -287,7 +286,7 @@ contains
       associate (material => draft%scene%materials(draft%owner(sides(2, k))))
         if (material%law_id == 0) cycle
         associate (law => draft%laws(material%law_id))
-          if (.not. associated(law%elastic) .or. .not. is_complete(law, material)) cycle
+          if (.not. associated(law%elastic)) cycle
           temperature = 0
           if (allocated(material%temperatures)) temperature = material%temperatures(1)
           call law%elastic(material, temperature, young, poisson)

@@ -212,7 +212,6 @@ contains
       associate (material => draft%scene%materials(group%material))
         law = material%law_id
         if (law == 0) return
-        if (size(material%values) == 0) return
         if (.not. knows_temperature(draft%laws(law), material)) &
           call cursor%fail('LAW '//material%name//' of body '//group%name//' is given at no temperature')
       end associate

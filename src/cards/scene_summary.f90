@@ -103,7 +103,7 @@ contains
     character(len=:), allocatable :: words
 
     words = ''
-    if (.not. any(probe%kind == [probe_node, probe_point]) .or. probe%is_gone) return
+    if (.not. any(probe%kind == [probe_node, probe_point]) .or. probe%is_gone .or. size(scene%mesh%origin, 2) == 0) return
     words = ' '//trim(merge('node ', 'point', probe%kind == probe_node))//' at '//to_text(probe%place(1), 6)//' ' &
             //to_text(probe%place(2), 6)
     if (is_elsewhere(probe, scene%mesh%origin)) words = words//', '//to_text(probe%apart, 3)//' from the place asked for'

@@ -59,6 +59,8 @@ contains
 
     longest = 0
     shortest = huge(shortest)
+    ! a die whose card is wrong has no sides
+    if (size(scene%dies(group%die)%nodes, 2) == 0) shortest = 0
     do k = 1, size(group%connectivity, 2)
       longest = max(longest, chord(scene, group%connectivity(:, k)))
     end do

@@ -45,13 +45,14 @@ module probes
 
 contains
 
-  !> The node or point that is read is not where it was asked for: on other meshes it is another one.
+  !> The node or point that is read is not where it was asked for: on other meshes it is another one. Not so before there is a mesh.
   pure function is_elsewhere(probe, coordinates) result(is)
     type(probe_t), intent(in) :: probe
     real(wp), intent(in) :: coordinates(:, :)   !! (2, nnode) of the deck's own mesh [length]
     logical :: is
 
-    is = probe%apart > same_place*maxval(maxval(coordinates, 2) - minval(coordinates, 2))
+    is = size(coordinates, 2) > 0
+    if (is) is = probe%apart > same_place*maxval(maxval(coordinates, 2) - minval(coordinates, 2))
   end function is_elsewhere
 
 end module probes
