@@ -40,6 +40,8 @@ module newton
   !> (exchange_in_turns), or after so many exchanges.
   real(wp), parameter :: near_change = 5.0e-3_wp
   integer, parameter :: most_exchanges = 12
+  !> The first motion is taken where it is found by this share of the most iterations.
+  real(wp), parameter :: sure_way = 0.5_wp
 
 contains
 
@@ -318,7 +320,8 @@ contains
       logical, intent(in) :: followed   !! the correction follows the heat content
       type(manner_t) :: manner
 
-      manner = manner_t(whole=caught(outcome%history(first:)) .and. .not. shift%value > 0, &
+      manner = manner_t(whole=caught(outcome%history(first:)) .and. .not. shift%value > 0 &
+                              .and. relative_motion(equations, solution%fields, correction, outcome%du) < 1, &
                         closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
       if (steep) manner = manner_t(exactly=.true.)
       if (equations%downhill) manner = manner_t(downhill=.true.)
@@ -434,6 +437,10 @@ contains
         outcome%converged = .false.
         outcome%reason = 'strain increment '//to_text(outcome%strain, 3)//' above '//to_text(scene%strategy%strain_bound, 3)
       end if
+      if (outcome%converged .and. is_lost_way()) then
+        outcome%converged = .false.
+        outcome%reason = to_text(outcome%first_iterations)//' iterations in the first step: it may have lost its way'
+      end if
       if (outcome%converged .and. outcome%iterations > 0) then
         call ways_to_leave(scene, equations, solution, shift%value > 0, outcome%unstable, outcome%error)
         if (outcome%unstable > 0 .and. .not. (equations%downhill .or. equations%takes_unstable)) &
@@ -444,6 +451,16 @@ contains
       outcome%residual = residual
       call put_back(made, solution)
     end subroutine conclude
+
+    !> The first motion of all was found by many corrections. No motion before it says where the way leads: of a slender part past its
+    !> load of buckling there are several equilibria, all of them stable, and many corrections may end in any of them.
+    function is_lost_way() result(is)
+      logical :: is
+
+      is = equations%mode == mode_advance .and. equations%solves(equations%now)%own(displacement_field) .and. &
+           .not. (solution%last_step > 0 .or. present(left) .or. equations%downhill .or. is_shortest(scene, dt))
+      if (is) is = outcome%first_iterations > sure_way*scene%strategy%max_iterations
+    end function is_lost_way
 
   end subroutine find_equilibrium
 

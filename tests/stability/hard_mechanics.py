@@ -490,17 +490,28 @@ def one_step_or_many(checks):
     return abs(ends[1]/ends[0] - 1)
 
 
-def slender_billet(checks):
+def slender_billet(checks, name="slender-billet", mesh="4 1. 20 1.", wide=2.0, points=4, friction=0.3, travel=2.0, steps=(0.02, 0.1, 0.3)):
     """A slender billet bent by a two hundredth of its thickness, upset between rough dies: it buckles in long steps as in short ones, to its own side."""
     ends = []
-    for step in (0.02, 0.1, 0.3):
-        run = checks.run(f"slender-billet-{step}", deck(
-            "PLSTN", "LOG", block("0. 0. 2. 0. 2. 10. 0. 10.", "4 1. 20 1.", " SIDE 2 MID 2.01 5.\n SIDE 4 MID 0.01 5.\n"),
-            "LAW m EPLA\n 200000. 0.3\n LINEAR 300. 500.\nLAW k COUL2D\n PENETR 1.E-3 PHI 0.3\n",
+    for step in steps:
+        run = checks.run(f"{name}-{step}", deck(
+            "PLSTN", "LOG", block(f"0. 0. {wide} 0. {wide} 10. 0. 10.", mesh, f" SIDE 2 MID {wide + 0.01} 5.\n SIDE 4 MID 0.01 5.\n",
+                                  points),
+            f"LAW m EPLA\n 200000. 0.3\n LINEAR 300. 500.\nLAW k COUL2D\n PENETR 1.E-3 PHI {friction}\n",
             "DIE low\n SEGM -9. 0. 9. 0.\nDIE top PILOT 0. 10.\n SEGM 9. 10. -9. 10.\nCNT2D b 1 low k\nCNT2D b 3 top k\n"
-            "MOVE top Y go\nLIC go\n 0. 0. 1. -2.\nPROBE side NODE UX 2.01 5.\n", f"STRAT {step} 1.E-6 {step} 5 3"))
+            f"MOVE top Y go\nLIC go\n 0. 0. 1. -{travel}\nPROBE side NODE UX {wide + 0.01} 5.\n", f"STRAT {step} 1.E-6 {step} 5 3"))
         ends.append((run.history["force_y_top"][-1], run.history["side"][-1]))
     return max(float(min(side for _, side in ends) < 1), max(abs(force/ends[0][0] - 1) for force, _ in ends))
+
+
+def slides_as_it_buckles(checks):
+    """Little friction: all points of contact are about to slip, and corrections are longer than the billet: it stays between its dies."""
+    return slender_billet(checks, "slides-as-it-buckles", "2 1. 10 1.", points=9, friction=0.15, steps=(0.02, 0.1, 0.15))
+
+
+def first_step_past_buckling(checks):
+    """The first step ends far past the load of buckling, where both sides are stable: the billet bulges to its own."""
+    return slender_billet(checks, "first-step", "6 1. 30 1.", wide=1.2, travel=1.0, steps=(0.05, 0.1))
 
 
 CASES = (
@@ -521,4 +532,5 @@ CASES = (
     Case("S-shaped dies", s_shaped, 1e-3), Case("rib thinner than elements", thin_rib, 0.5, LONG),
     Case("nearly incompressible", nearly_incompressible, 1e-9), Case("past the peak", past_the_peak, 1e-9),
     Case("another solver", other_solver, 1e-6), Case("three blocks for one", joined, 1e-8), Case("pressed often", pressed_often, 1e-5),
-    Case("one step or many", one_step_or_many, 1e-9), Case("slender billet", slender_billet, 0.03))
+    Case("one step or many", one_step_or_many, 1e-9), Case("slender billet", slender_billet, 0.03),
+    Case("slides as it buckles", slides_as_it_buckles, 0.03), Case("first step past buckling", first_step_past_buckling, 0.04))
