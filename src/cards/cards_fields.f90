@@ -8,7 +8,7 @@ module cards_fields
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use elem_api, only: declare_fields, list_body_elems
+  use element_fields, only: declare_fields, list_body_elems
   use field_places, only: refuse_unlike_nodes, refuse_without_field
   use fields, only: field_t, solved_with
   use law_api, only: law_of_material

@@ -3,7 +3,8 @@ module cards_temperature
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use elem_api, only: acts_on, elem_t
+  use elem_api, only: elem_t
+  use element_fields, only: acts_on
   use fields, only: field_t, find_field
   use kinds, only: wp
   use law_api, only: asks_for, law_t
