@@ -89,7 +89,7 @@ contains
     integer :: k, g
 
     body = 0
-    call draft%places%find(cursor, 'the name of a body', k)
+    call draft%places%find(cursor, 'the name of a body', k, not_of='DIE SIDES')
     if (k == 0) return
     do g = 1, size(draft%scene%groups)
       if (is_solid(draft%scene%groups(g)) .and. draft%scene%groups(g)%name == draft%places%words(k)%s) body = g
