@@ -21,7 +21,7 @@ module spurious_mode
   public :: has_mean_dilatation, has_spurious_mode, may_stand_alone, find_spurious_mode, spurious_limit
 
   !> A share above this is reported. The mode has 1; smooth motions have less than 0.05, corners that a body folds over up to 0.71.
-  !> With MEAN necks have up to 0.25, folded corners 0.73; elements that sawed in tension, by an earlier form of MEAN, 0.7 to 1.
+  !> With MEAN necks have up to 0.25, folded corners 0.73; elements that saw in tension (mean_dilatation) 0.7 to 1.
   real(wp), parameter :: spurious_limit = 0.9_wp
   !> Points of the elements that have the mode.
   integer, parameter :: reduced_rule = 4
