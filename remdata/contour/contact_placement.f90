@@ -7,9 +7,9 @@ module contact_placement
   use contour_assembly, only: contact_t
   use die_corner_contact, only: extend_to_corners
   use corner_ends, only: end_in_corners
-  use die_closest_points, only: section_t, sections_of_interval, start_at_contact_point
   use dies, only: present_die
   use fields, only: pilot_field
+  use interval_sections, only: section_t, sections_of_interval, start_at_contact_point
   use kinds, only: pi, wp
   use own_contact, only: faces_itself
   use point_contacts, only: find_points, lies_beside, point_contact_t

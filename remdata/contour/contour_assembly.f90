@@ -10,8 +10,8 @@ module contour_assembly
   use closest_point, only: closest_point_t
   use contact_intervals, only: along, contact_interval_t, is_shared, side_point_t
   use contact_overlaps, only: arcs_of_overlap, find_overlap, overlap_t
-  use die_closest_points, only: section_t
   use dies, only: die_t, is_deformable
+  use interval_sections, only: section_t
   use kinds, only: wp
   use offset_parabolas, only: point_at, tangent_at
   use plane_vectors, only: cross

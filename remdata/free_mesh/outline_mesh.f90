@@ -5,7 +5,7 @@
 !> elements are untangled.
 module outline_mesh
   use block_mesh, only: polygon_area
-  use body_outlines, only: divide_outlines, lay_out_outlines, outline_t
+  use body_outlines, only: outline_t
   use body_seams, only: seams_t
   use boundary_curves, only: boundary_curve_t, position_t
   use corner_mesh, only: corner_mesh_t, loops_around, loops_t, put_points
@@ -14,6 +14,7 @@ module outline_mesh
   use gmsh_call, only: gmsh_t, mesh_outline
   use gmsh_files, only: cell_t
   use kinds, only: wp
+  use outline_sides, only: divide_outlines, lay_out_outlines
   use quad_lists, only: quads_t, refuse_mesh
   use quad_mesher, only: fill_with_quads
   use side_curves, only: curve_t

@@ -1,7 +1,7 @@
 !> A run of a deck with ACCURACY: how fine it is, what is expected of it, and what it has reached.
 module accuracy_plan
-  use accuracy_laws, only: accuracy_law_t, asked_for, choose_fineness, difference, elements_of, errors_of, expected_seconds, &
-                           sample_t
+  use accuracy_costs, only: elements_of, expected_seconds
+  use accuracy_laws, only: accuracy_law_t, asked_for, choose_fineness, difference, errors_of, sample_t
   use accuracy_rules, only: fineness_t
   use json_writer, only: json_t
   use kinds, only: wp

@@ -155,11 +155,11 @@ contains
 
     if (.not. solution%fields(displacement_field)%declared) return
     do g = 1, size(scene%groups)
-      associate (group => scene%groups(g))
-        if (.not. has_spurious_mode(group, scene%finite)) cycle
+      associate (group => scene%groups(g), elem => equations%elems(scene%groups(g)%elem_id))
+        if (.not. has_spurious_mode(elem, group, scene%finite)) cycle
         associate (u => solution%fields(displacement_field))
-          call group_geometry(scene, group, equations%elems(group%elem_id), u%value, x)
-          call find_spurious_mode(scene, group, x, u%last_increment, share, element)
+          call group_geometry(scene, group, elem, u%value, x)
+          call find_spurious_mode(scene, elem, group, x, u%last_increment, share, element)
         end associate
         if (.not. share > solution%worst_spurious) cycle
         solution%worst_spurious = share

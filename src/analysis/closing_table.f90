@@ -9,7 +9,7 @@
 !> - Time: errors that come of the path within steps are of order 1 in sum; those of heat of order 1, or 2 (TR-BDF2, and
 !>   theta = 1/2). Seconds go with the number of steps, at the same iterations a step.
 module closing_table
-  use accuracy_laws, only: grown_seconds
+  use accuracy_costs, only: grown_seconds
   use accuracy_plan, only: accuracy_lines, accuracy_t, add_accuracy
   use cost_file, only: cost_t, ntask, remesher_task
   use csv_reader, only: read_csv

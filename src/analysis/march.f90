@@ -147,7 +147,7 @@ contains
     associate (group => scene%groups(solution%spurious_group), percent => to_text(100*solution%worst_spurious, 3)//' %')
       motion = 'moves in the way that 4 integration points do not see ('//percent//' of its strain); ' &
                //'PL8LS with 9 points and MEAN has no such motion'
-      if (has_mean_dilatation(group)) then
+      if (has_mean_dilatation(run%equations%elems(group%elem_id), group)) then
         motion = 'changes its volume in a way that the pressure of MEAN does not see (spurious_mode '//percent//'); ' &
                  //'compare with 4 points, or a finer mesh'
       end if

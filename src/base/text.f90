@@ -117,22 +117,39 @@ contains
     list = [list, item]
   end subroutine add_text
 
-  !> The known word closest to `word`, or '' when none is close enough to be a typing error.
+  !> The known word closest to `word`, or '' when none is close enough to be a typing error; of words equally close the one that
+  !> begins as it does.
   pure function nearest_word(word, known) result(nearest)
     character(len=*), intent(in) :: word
     type(string_t), intent(in) :: known(:)   !! (nknown)
     character(len=:), allocatable :: nearest
     integer :: i, d, best
+    logical :: closer
 
     nearest = ''
     best = max(2, len(word)/2) + 1
     do i = 1, size(known)
       d = edit_distance(upper_case(word), upper_case(known(i)%s))
-      if (d < best) then
+      ! not a letter in common
+      if (d >= max(len(word), len(known(i)%s))) cycle
+      closer = d < best
+      if (d == best .and. nearest /= '') closer = goes_on(known(i)%s) .and. .not. goes_on(nearest)
+      if (closer) then
         best = d
         nearest = known(i)%s
       end if
     end do
+
+  contains
+
+    !> It begins with the word.
+    pure function goes_on(longer) result(yes)
+      character(len=*), intent(in) :: longer
+      logical :: yes
+
+      yes = index(upper_case(longer), upper_case(word)) == 1
+    end function goes_on
+
   end function nearest_word
 
   !> Levenshtein's distance: the least number of letters inserted, removed or changed.

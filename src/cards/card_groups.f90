@@ -3,7 +3,7 @@ module card_groups
   use deck_cursor, only: cursor_t
   use deck_reader, only: card_t
   use diagnostics, only: diagnostics_t, location_t
-  use elem_api, only: acts_on
+  use element_fields, only: acts_on
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, find_elem
   implicit none

@@ -2,7 +2,7 @@
 module card_names
   use deck_cursor, only: cursor_t
   use diagnostics, only: diagnostics_t, location_t
-  use text, only: nearest_word, string_t, upper_case
+  use text, only: add_text, nearest_word, string_t, upper_case
   implicit none
   private
   public :: names_t
@@ -74,16 +74,30 @@ contains
     self%used = [self%used, .false.]
   end subroutine define
 
-  !> Read the name of a thing that some card defines: its number in `words`, 0 after a mistake.
-  subroutine find(self, cursor, what, k)
+  !> Read the name of a thing that some card defines: its number in `words`, 0 after a mistake. Where names of some cards are meant
+  !> the message proposes these alone; another name is found too, and it is for the caller to refuse it.
+  subroutine find(self, cursor, what, k, of, not_of)
     class(names_t), intent(inout) :: self
     type(cursor_t), intent(inout) :: cursor
     character(len=*), intent(in) :: what
     integer, intent(out) :: k
+    character(len=*), intent(in), optional :: of, not_of   !! keywords of cards that are meant, or are not, with blanks between
+    type(string_t), allocatable :: meant(:)
     character(len=:), allocatable :: word
+    integer :: i
 
+    allocate (meant(0))
+    do i = 1, size(self%words)
+      if (present(of)) then
+        if (.not. is_among(self%keywords(i)%s, of)) cycle
+      end if
+      if (present(not_of)) then
+        if (is_among(self%keywords(i)%s, not_of)) cycle
+      end if
+      call add_text(meant, self%words(i)%s)
+    end do
     word = cursor%peek_word()
-    call cursor%name(what, self%words, k)
+    call cursor%name(what, self%words, k, meant)
     if (k > 0) then
       self%used(k) = .true.
     else if (word /= '') then
@@ -91,6 +105,13 @@ contains
       call self%mention(nearest_word(word, self%words))
     end if
   end subroutine find
+
+  pure function is_among(keyword, keywords) result(yes)
+    character(len=*), intent(in) :: keyword, keywords
+    logical :: yes
+
+    yes = index(' '//keywords//' ', ' '//keyword//' ') > 0
+  end function is_among
 
   !> A word on a card that could not be read to its end: if it is a name, it counts as used.
   subroutine mention(self, word)

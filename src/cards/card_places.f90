@@ -161,7 +161,11 @@ contains
       if (k == 1) call read_labelled_node(cursor, draft, place)
       if (k == 2) call read_point(cursor, draft, place)
     case default
-      call draft%places%find(cursor, 'a place', k)
+      if (dies) then
+        call draft%places%find(cursor, 'a place', k)
+      else
+        call draft%places%find(cursor, 'a place', k, not_of='DIE')
+      end if
       if (k == 0) return
       if (dies .and. draft%places%keywords(k)%s == 'DIE') then
         place%label = draft%places%words(k)%s
@@ -219,7 +223,7 @@ contains
     die = 0
     advice = ''
     if (present(instead)) advice = ': use '//instead
-    call draft%places%find(cursor, 'the name of a die', k)
+    call draft%places%find(cursor, 'the name of a die', k, of='DIE')
     if (k == 0) return
     if (draft%places%keywords(k)%s /= 'DIE') then
       call cursor%fail(''''//draft%places%words(k)%s//''' is no DIE')

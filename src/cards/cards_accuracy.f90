@@ -5,7 +5,7 @@ module cards_accuracy
   use deck_cursor, only: cursor_t
   use deck_reader, only: card_t, deck_t
   use diagnostics, only: diagnostics_t
-  use elem_api, only: body_acts_on
+  use element_fields, only: body_acts_on
   use kinds, only: wp
   use law_api, only: contact_law
   use mesh_parts, only: mesh_parts_t

@@ -208,7 +208,7 @@ contains
       call cursor%open(deck%cards(i), diagnostics)
       set = 0
       do k = 1, 2
-        call draft%places%find(cursor, 'the name of a BLOCK', place)
+        call draft%places%find(cursor, 'the name of a BLOCK', place, of='BLOCK')
         if (place > 0) then
           if (draft%places%keywords(place)%s /= 'BLOCK') &
             call cursor%fail(''''//draft%places%words(place)%s//''' is a '//draft%places%keywords(place)%s//', expected a BLOCK')

@@ -108,7 +108,7 @@ contains
     integer :: k, g
 
     allocate (group%connectivity(8, 0))
-    call draft%places%find(cursor, 'the name of a body', k)
+    call draft%places%find(cursor, 'the name of a body', k, not_of='DIE SIDES')
     if (k == 0) return
     group%name = draft%places%words(k)%s
     if (any(draft%places%keywords(k)%s == ['SIDES', 'DIE  '])) then

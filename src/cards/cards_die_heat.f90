@@ -77,7 +77,7 @@ contains
     integer :: k
 
     die = 0
-    call draft%places%find(cursor, 'the name of a DIE', k)
+    call draft%places%find(cursor, 'the name of a DIE', k, of='DIE')
     if (k == 0) return
     if (draft%places%keywords(k)%s == 'DIE') then
       die = draft%places%item(k)

@@ -8,7 +8,7 @@ module cards_fields
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use elem_api, only: declare_fields, list_body_elems
+  use element_fields, only: declare_fields, list_body_elems
   use field_places, only: refuse_unlike_nodes, refuse_without_field
   use fields, only: field_t, solved_with
   use law_api, only: law_of_material
@@ -89,7 +89,7 @@ contains
     integer :: k, g
 
     body = 0
-    call draft%places%find(cursor, 'the name of a body', k)
+    call draft%places%find(cursor, 'the name of a body', k, not_of='DIE SIDES')
     if (k == 0) return
     do g = 1, size(draft%scene%groups)
       if (is_solid(draft%scene%groups(g)) .and. draft%scene%groups(g)%name == draft%places%words(k)%s) body = g

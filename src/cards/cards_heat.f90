@@ -113,7 +113,7 @@ contains
 
     label = ''
     allocate (group%connectivity(8, 0))
-    call draft%places%find(cursor, 'the name of a body', k)
+    call draft%places%find(cursor, 'the name of a body', k, not_of='DIE SIDES')
     if (k == 0) return
     label = draft%places%words(k)%s
     do g = 1, size(draft%scene%groups)

@@ -189,12 +189,13 @@ contains
       end if
       material%values = [material%values, value]
     end do
-    if (line%curve) call read_curve(cursor, n, material%curve)
+    if (line%curve) call read_curve(cursor, line, n, material%curve)
   end subroutine read_row
 
   !> Rows of two numbers, the first of them ascending.
-  subroutine read_curve(cursor, n, curve)
+  subroutine read_curve(cursor, line, n, curve)
     type(cursor_t), intent(inout) :: cursor
+    type(law_line_t), intent(in) :: line
     integer, intent(in) :: n
     real(wp), allocatable, intent(out) :: curve(:, :)
     integer :: i
@@ -202,13 +203,13 @@ contains
     allocate (curve(2, n), source=0.0_wp)
     do i = 1, n
       if (cursor%failed()) return
-      call cursor%next_row('the two numbers of point '//to_text(i)//' of '//to_text(n))
+      call cursor%next_row(line%abscissa//' and '//line%ordinate//' of point '//to_text(i)//' of '//to_text(n))
       if (i == 1) then
-        call cursor%real('the abscissa', curve(1, i))
+        call cursor%real(line%abscissa, curve(1, i))
       else
-        call cursor%real('the abscissa', curve(1, i), lower=curve(1, i - 1), strict_lower=.true.)
+        call cursor%real(line%abscissa, curve(1, i), lower=curve(1, i - 1), strict_lower=.true.)
       end if
-      call cursor%real('the ordinate', curve(2, i))
+      call cursor%real(line%ordinate, curve(2, i))
     end do
   end subroutine read_curve
 

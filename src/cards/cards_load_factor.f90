@@ -5,7 +5,7 @@ module cards_load_factor
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use elem_api, only: has_unknown
+  use element_fields, only: has_unknown
   use field_places, only: refuse_without_field
   use fields, only: displacement_field
   use history_columns, only: own_columns_named

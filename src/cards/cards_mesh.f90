@@ -5,7 +5,8 @@ module cards_mesh
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
-  use elem_api, only: elem_t, list_body_elems
+  use elem_api, only: elem_t
+  use element_fields, only: list_body_elems
   use mesh, only: side_set_t
   use mesh_parts, only: body_t, find_label, mesh_parts_t, sort_labels
   use scene, only: plane_stress, role_body

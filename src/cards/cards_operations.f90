@@ -10,8 +10,9 @@ module cards_operations
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use elem_api, only: body_acts_on, elem_t, list_body_elems
+  use elem_api, only: elem_t
   use elem_registry, only: list_elems
+  use element_fields, only: body_acts_on, list_body_elems
   use fields, only: displacement_field
   use kinds, only: wp
   use remesh, only: remesh_t

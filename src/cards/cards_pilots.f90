@@ -126,7 +126,8 @@ contains
     call words_of('X Y A', directions)
     call read_place(cursor, draft, .true., place)
     die = place%die
-    if (die == 0) call cursor%fail('expected the name of a DIE (or NODE, POINT on a FORCE card)')
+    if (die == 0) call cursor%fail('expected the name of a DIE (or NODE, POINT on a FORCE card), found ''' &
+                                   //place%label//'''; TRACT and PRES2D load sides')
     call cursor%name('a direction', directions, component)
   end subroutine read_component
 

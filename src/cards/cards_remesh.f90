@@ -4,7 +4,7 @@ module cards_remesh
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use elem_api, only: body_acts_on
+  use element_fields, only: body_acts_on
   use fields, only: displacement_field
   use kinds, only: wp
   use remeshing, only: aspect_ratio, jacobian_ratio, largest_angle, least_angle, middle_share, never, scaled_jacobian, stroke_t

@@ -45,7 +45,7 @@ contains
         call read_sides(cursor, draft, huge(k), label, group%connectivity)
       end if
       call refuse_inner_sides(cursor, draft, group%connectivity)
-      call draft%places%find(cursor, 'the name of a DIE', k)
+      call draft%places%find(cursor, 'the name of a DIE', k, of='DIE')
       if (k > 0) then
         if (draft%places%keywords(k)%s /= 'DIE') &
           call cursor%fail(''''//draft%places%words(k)%s//''' is a '//draft%places%keywords(k)%s//', expected a DIE')
@@ -122,7 +122,7 @@ contains
     integer, allocatable, intent(out) :: sides(:, :)   !! (3, nside)
     integer :: k
 
-    call draft%places%find(cursor, 'the name of a DIE', k)
+    call draft%places%find(cursor, 'the name of a DIE', k, of='DIE')
     allocate (sides(3, 0))
     label = draft%places%words(k)%s
     if (draft%mesh_sound) sides = draft%scene%dies(draft%places%item(k))%nodes([3, 2, 1], :)

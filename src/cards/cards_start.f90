@@ -8,7 +8,7 @@ module cards_start
   use deck_parameters, only: parameters_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use elem_api, only: acts_on
+  use element_fields, only: acts_on
   use field_places, only: refuse_without_field
   use kinds, only: wp
   use loads, only: instants_around, start_t

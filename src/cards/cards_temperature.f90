@@ -3,7 +3,8 @@ module cards_temperature
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use elem_api, only: acts_on, elem_t
+  use elem_api, only: elem_t
+  use element_fields, only: acts_on
   use fields, only: field_t, find_field
   use kinds, only: wp
   use law_api, only: asks_for, law_t
@@ -37,7 +38,7 @@ contains
     do i = 1, size(deck%cards)
       if (deck%cards(i)%keyword /= 'TEMPE') cycle
       call cursor%open(deck%cards(i), diagnostics)
-      call draft%places%find(cursor, 'the name of a body', k)
+      call draft%places%find(cursor, 'the name of a body', k, not_of='DIE SIDES')
       g = 0
       if (k > 0) g = body_group(draft, draft%places%words(k)%s)
       if (k > 0 .and. g == 0) call cursor%fail(''''//draft%places%words(k)%s//''' is a '//draft%places%keywords(k)%s &
@@ -213,7 +214,8 @@ contains
         law = material%law_id
         if (law == 0) return
         if (.not. knows_temperature(draft%laws(law), material)) &
-          call cursor%fail('LAW '//material%name//' of body '//group%name//' is given at no temperature')
+          call cursor%fail('LAW '//material%name//' of body '//group%name//' does not depend on the temperature: it has no rows ' &
+                           //'TEMP')
       end associate
     end associate
   end subroutine check_body

@@ -174,7 +174,7 @@ contains
     integer :: k, g
 
     group = 0
-    call draft%places%find(cursor, 'the name of a body', k)
+    call draft%places%find(cursor, 'the name of a body', k, not_of='DIE SIDES')
     if (k == 0) return
     if (any(draft%places%keywords(k)%s == ['SIDES', 'DIE  '])) then
       call cursor%fail(''''//draft%places%words(k)%s//''' is a '//draft%places%keywords(k)%s//', expected a body')

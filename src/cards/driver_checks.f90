@@ -2,7 +2,7 @@
 module driver_checks
   use diagnostics, only: diagnostics_t
   use driver_sources, only: driver_of_others, missing_driver
-  use elem_api, only: acts_on
+  use element_fields, only: acts_on
   use law_api, only: find_parameter, heat_law
   use materials, only: has_number
   use scene, only: host_of, role_body, role_second

@@ -2,7 +2,8 @@
 module field_places
   use deck_cursor, only: cursor_t
   use diagnostics, only: diagnostics_t, location_t
-  use elem_api, only: acts_on, applies
+  use elem_api, only: applies
+  use element_fields, only: acts_on
   use fields, only: find_field, has_corners_only
   use scene, only: role_body, role_second
   use scene_draft, only: draft_t

@@ -7,7 +7,8 @@ module other_run
   use box_tree, only: box_tree_t, build_tree
   use deck_cursor, only: cursor_t
   use deck_source, only: path_beside
-  use elem_api, only: elem_t, list_body_elems
+  use elem_api, only: elem_t
+  use element_fields, only: list_body_elems
   use errors, only: error_t
   use kinds, only: wp
   use nearest_element, only: box_of_element, find_element

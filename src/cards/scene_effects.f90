@@ -2,7 +2,8 @@
 module scene_effects
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use elem_api, only: elem_t, has_unknown
+  use elem_api, only: elem_t
+  use element_fields, only: has_unknown
   use kinds, only: wp
   use law_api, only: asks_for, find_parameter, law_of_material, law_t
   use materials, only: material_t

@@ -31,8 +31,9 @@ module scene_reader
   use deck_reader, only: deck_t, refuse_unknown, row_t
   use diagnostics, only: diagnostics_t, location_t
   use driver_checks, only: refuse_missing_drivers
-  use elem_api, only: declare_fields, elem_t, list_body_elems
+  use elem_api, only: elem_t
   use elem_registry, only: list_elems
+  use element_fields, only: declare_fields, list_body_elems
   use mesh_finish, only: finish_mesh
   use mesh_parts, only: mesh_parts_t, start_parts
   use patch_checks, only: settle_patches

@@ -4,8 +4,9 @@ module steel_files
   use deck_reader, only: deck_field_t, deck_t, fingerprint_text, read_deck
   use deck_source, only: path_beside
   use diagnostics, only: diagnostics_t
-  use elem_api, only: elem_t, list_body_elems
+  use elem_api, only: elem_t
   use elem_registry, only: list_elems
+  use element_fields, only: list_body_elems
   use errors, only: error_t
   use hash, only: sha256_length
   use run_temperatures, only: read_run_temperatures, run_temperatures_t, temperatures_digest

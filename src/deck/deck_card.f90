@@ -1,6 +1,6 @@
 !> A deck as its reader delivers it: cards, rows, fields.
 module deck_card
-  use deck_field, only: deck_field_t
+  use deck_field, only: deck_field_t, letters
   use diagnostics, only: diagnostics_t, location_t
   use kinds, only: wp
   use text, only: nearest_word, string_t
@@ -78,7 +78,6 @@ contains
     type(deck_t), intent(in) :: deck
     type(string_t), intent(in) :: known_keywords(:)   !! (nkeyword)
     type(diagnostics_t), intent(inout) :: diagnostics
-    character(len=:), allocatable :: nearest
     integer :: i, k
 
     do i = 1, size(deck%cards)
@@ -87,12 +86,30 @@ contains
         if (known_keywords(k)%s == deck%cards(i)%keyword) exit
       end do
       if (k <= size(known_keywords)) cycle
-      nearest = nearest_word(deck%cards(i)%keyword, known_keywords)
-      if (nearest /= '') nearest = '; nearest: '''//nearest//''''
       call diagnostics%add(location_t(deck%cards(i)%head%file, deck%cards(i)%head%line, 1), deck%cards(i)%keyword, &
-                           'there is no such card'//nearest)
+                           'there is no such card'//advice_on(deck%cards(i)%keyword, known_keywords))
     end do
   end subroutine refuse_unknown
+
+  !> What was meant by a keyword that is none: a data row, a card of another kind of file, a known one misspelt.
+  pure function advice_on(keyword, known_keywords) result(advice)
+    character(len=*), intent(in) :: keyword
+    type(string_t), intent(in) :: known_keywords(:)   !! (nkeyword)
+    character(len=:), allocatable :: advice
+    integer :: k
+
+    if (scan(keyword(1:1), letters) == 0) then
+      advice = '; a data row begins with a blank'
+      return
+    end if
+    do k = 1, size(marks)
+      if (keyword /= marks(k)) cycle
+      advice = ' here; it makes '//trim(kinds(k))//', which '''//trim(calls(k))//''' reads'
+      return
+    end do
+    advice = nearest_word(keyword, known_keywords)
+    if (advice /= '') advice = '; nearest: '''//advice//''''
+  end function advice_on
 
   !> What the cards say and nothing else, for a fingerprint which does not change with comments, blanks,
   !> file names or the way a number is written. One line per row; numbers with all their digits.

@@ -1,9 +1,10 @@
 !> PARAM lines, overrides `-p NAME=VALUE`, and the value of a field which may use parameters.
 module deck_definitions
-  use deck_expression, only: evaluate, fill_in, is_formula, looks_numeric
+  use deck_expression, only: evaluate, fill_in
   use deck_field, only: deck_field_t, scan_fields
   use deck_parameters, only: parameter_t, parameters_t, valid_name
   use diagnostics, only: diagnostics_t, location_t
+  use expression_forms, only: is_formula, looks_numeric
   use text, only: nearest_word, string_t
   implicit none
   private

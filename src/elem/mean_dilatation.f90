@@ -24,9 +24,11 @@ module mean_dilatation
   use kinds, only: wp
   implicit none
   private
-  public :: dilatation_t, mean_option, find_fields, hidden_change, mean_volumes, share_dilatation, share_pressure, add_mean_matrix
+  public :: dilatation_t, mean_option, mean_word
+  public :: find_fields, hidden_change, mean_volumes, share_dilatation, share_pressure, add_mean_matrix
 
-  !> Place of the option MEAN among those of PL8LS.
+  !> The option of an element that has it, and its place among those of PL8LS.
+  character(len=*), parameter :: mean_word = 'MEAN'
   integer, parameter :: mean_option = 1
 
   !> Fields of the dilatation in an element.

@@ -10,8 +10,9 @@
 !> flow goes the same way. Measure: the square of that over half the square of the strain, 1 at most.
 !> Where an element deforms less than the mean of the group that mean is its measure.
 module spurious_mode
+  use elem_api, only: elem_t, has_option
   use kinds, only: wp
-  use mean_dilatation, only: dilatation_t, hidden_change, mean_option
+  use mean_dilatation, only: dilatation_t, hidden_change, mean_word
   use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
   use scene, only: axisymmetric, group_t, is_solid, scene_t
   use solid_terms, only: first_element
@@ -20,7 +21,7 @@ module spurious_mode
   public :: has_mean_dilatation, has_spurious_mode, may_stand_alone, find_spurious_mode, spurious_limit
 
   !> A share above this is reported. The mode has 1; smooth motions have less than 0.05, corners that a body folds over up to 0.71.
-  !> With MEAN necks have up to 0.25, folded corners 0.73; elements that sawed in tension, by an earlier form of MEAN, 0.7 to 1.
+  !> With MEAN necks have up to 0.25, folded corners 0.73; elements that saw in tension (mean_dilatation) 0.7 to 1.
   real(wp), parameter :: spurious_limit = 0.9_wp
   !> Points of the elements that have the mode.
   integer, parameter :: reduced_rule = 4
@@ -30,20 +31,22 @@ module spurious_mode
 contains
 
   !> Whether a group's elements have motions that their points do not see, or with MEAN, in large strain, their pressures.
-  elemental function has_spurious_mode(group, finite) result(yes)
+  pure function has_spurious_mode(elem, group, finite) result(yes)
+    type(elem_t), intent(in) :: elem     !! of the group
     type(group_t), intent(in) :: group
     logical, intent(in) :: finite
     logical :: yes
 
-    yes = (is_solid(group) .and. group%rule%n == reduced_rule) .or. (has_mean_dilatation(group) .and. finite)
+    yes = (is_solid(group) .and. group%rule%n == reduced_rule) .or. (has_mean_dilatation(elem, group) .and. finite)
   end function has_spurious_mode
 
-  !> PL8LS with the option MEAN.
-  elemental function has_mean_dilatation(group) result(yes)
+  !> The elements of a group have the option MEAN.
+  pure function has_mean_dilatation(elem, group) result(yes)
+    type(elem_t), intent(in) :: elem     !! of the group
     type(group_t), intent(in) :: group
     logical :: yes
 
-    yes = group%elem == 'PL8LS' .and. group%option == mean_option
+    yes = has_option(elem, group, mean_word)
   end function has_mean_dilatation
 
   !> Whether a motion of a group may go unresisted. With MEAN hardening and shear resist.
@@ -55,8 +58,9 @@ contains
   end function may_stand_alone
 
   !> Largest share among the elements of a group, and where.
-  pure subroutine find_spurious_mode(scene, group, x, motion, share, element)
+  pure subroutine find_spurious_mode(scene, elem, group, x, motion, share, element)
     type(scene_t), intent(in) :: scene
+    type(elem_t), intent(in) :: elem       !! of the group
     type(group_t), intent(in) :: group
     real(wp), intent(in) :: x(:, :, :)     !! (2, 8, nelem) nodes at the end of the motion [length]
     real(wp), intent(in) :: motion(:, :)   !! (2, nnode) of all nodes [length]
@@ -73,7 +77,7 @@ contains
     do e = 1, size(x, 3)
       u = motion(:, group%connectivity(:, e))
       call square_of_strain(all, scene%plane_state == axisymmetric, x(:, :, e), u, whole(e), volume(e))
-      if (has_mean_dilatation(group)) then
+      if (has_mean_dilatation(elem, group)) then
         call first_element(scene, all, group%connectivity(:, e), own)
         hidden(e) = 2*square_of_hidden(all, scene%plane_state == axisymmetric, own, x(:, :, e), u)
       else

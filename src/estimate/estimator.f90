@@ -14,12 +14,12 @@ module estimator
   use kinds, only: wp
   use law_api, only: law_elastic_i, law_t
   use loads, only: multiplier_at
-  use patch_recovery, only: find_patches, patches_t
   use quad8_geometry, only: derivatives, quad8_rule_t
   use recovered_errors, only: fields_of_rule, fields_t, missing_squares, ncomp, npoint
   use scene, only: is_solid, scene_t
   use sections, only: thickness_at
   use solution, only: solution_t
+  use vertex_patches, only: find_patches, patches_t
   implicit none
   private
   public :: estimator_t, set_up_estimator, estimate_errors, stress_error_now

@@ -8,12 +8,13 @@
 !> Int. J. Num. Meth. Engng 24 (1987) 337-357 (error by recovery, energy norm).
 module recovered_errors
   use kinds, only: wp
-  use patch_recovery, only: fit_patches, ncomp => nvalue, patches_t, polynomials_t, recover
+  use patch_recovery, only: fit_patches, ncomp => nvalue, polynomials_t, recover
   use plane_vectors, only: cross
   use quad8_geometry, only: quad8_rule, quad8_rule_t
   use quadrature, only: square_rule
   use sections, only: thickness_at
   use shape_functions, only: quad4
+  use vertex_patches, only: patches_t
   implicit none
   private
   public :: fields_t, fields_of_rule, missing_squares, ncomp, npoint

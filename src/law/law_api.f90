@@ -81,8 +81,9 @@ module law_api
     !> The word that chooses this line among its neighbours of kind `line_choice`.
     character(len=:), allocatable :: word
     type(parameter_t), allocatable :: parameters(:)
-    !> Rows of two numbers follow (a curve).
+    !> Rows of two numbers follow (a curve), and what these are.
     logical :: curve = .false.
+    character(len=:), allocatable :: abscissa, ordinate
   end type law_line_t
 
   type :: law_t
@@ -284,11 +285,12 @@ contains
     if (present(replaces)) p%replaces = replaces
   end function parameter
 
-  !> A line of a card; with `word` it is one of several to choose from.
-  pure function law_line(parameters, word, pairs, curve) result(line)
+  !> A line of a card; with `word` it is one of several to choose from; with the two numbers of a curve its rows follow.
+  pure function law_line(parameters, word, pairs, abscissa, ordinate) result(line)
     type(parameter_t), intent(in) :: parameters(:)   !! (nparameter)
     character(len=*), intent(in), optional :: word
-    logical, intent(in), optional :: pairs, curve
+    logical, intent(in), optional :: pairs
+    character(len=*), intent(in), optional :: abscissa, ordinate
     type(law_line_t) :: line
 
     allocate (line%parameters, source=parameters)
@@ -300,7 +302,10 @@ contains
     if (present(pairs)) then
       if (pairs) line%kind = line_pairs
     end if
-    if (present(curve)) line%curve = curve
+    line%curve = present(abscissa) .and. present(ordinate)
+    if (.not. line%curve) return
+    line%abscissa = abscissa
+    line%ordinate = ordinate
   end function law_line
 
   !> Index of a parameter of a line among all values of a material, 0 when unknown.

@@ -50,7 +50,7 @@ contains
                            parameter('E0', '-', 'strain offset', above=0.0_wp), &
                            parameter('N', '-', 'exponent', lower=0.0_wp, upper=1.0_wp)], word='SWIFT'), &
                  law_line([parameter('NPOINT', '-', 'rows: plastic strain, yield stress', lower=1.0_wp)], &
-                          word='TABLE', curve=.true.), &
+                          word='TABLE', abscissa='the plastic strain', ordinate='the yield stress'), &
                  law_line([parameter('HKIN', 'stress', 'modulus of kinematic hardening', lower=0.0_wp, default=0.0_wp), &
                            parameter('RATE0', '1/time', 'reference rate of COWPER or JOHNSON', lower=0.0_wp, default=0.0_wp, &
                                      turns_on=.true.), &

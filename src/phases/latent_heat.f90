@@ -5,14 +5,14 @@
 !> dL/dT = c_A - c_i, the capacities of austenite and of the phase (G. Kirchhoff, Ann. Phys. Chem. 179 (1858) 177): numbers of
 !> a file need not be so.
 module latent_heat
-  use dual_numbers, only: dual_t, operator(*), operator(-)
+  use dual_numbers, only: dual_t, operator(*), operator(+), operator(-)
   use heat_of_phases, only: heat_taken
   use kinds, only: wp
   use steels, only: austenite, bainite, martensite, prop_content, prop_latent, prop_rhoc, steel_t, tempered
   use temperature_curves, only: curve_at, dual_curve_at, is_given, same_curve
   implicit none
   private
-  public :: complete_latent, lacks_latent, latent_of, heat_of_tempering, left_by_cycle
+  public :: complete_latent, lacks_latent, heat_of_tempering, left_by_cycle, release_latent
 
 contains
 
@@ -48,6 +48,17 @@ contains
     latent = dual_t()
     if (is_given(steel%properties(prop_latent, phase))) latent = dual_curve_at(steel%properties(prop_latent, phase), temperature)
   end function latent_of
+
+  !> Latent heat of a phase that forms from austenite.
+  pure subroutine release_latent(steel, phase, temperature, formed, heat)
+    type(steel_t), intent(in) :: steel
+    integer, intent(in) :: phase
+    type(dual_t), intent(in) :: temperature   !! [degC]
+    type(dual_t), intent(in) :: formed        !! fraction
+    type(dual_t), intent(inout) :: heat       !! [MJ/m3]
+
+    heat = heat + latent_of(steel, phase, temperature)*formed
+  end subroutine release_latent
 
   !> Heat that martensite or bainite releases when it is tempered, per fraction: none where that of what is tempered is unknown.
   pure function heat_of_tempering(steel, phase, temperature) result(heat)

@@ -2,27 +2,21 @@
 !>
 !> The way is divided at the nodes of the steel (`steels`: temperatures at fixed distances, and where curves begin, end or bend), so
 !> that the end temperature may move while a step is iterated without any jump of the result, and its derivative is exact (dual
-!> numbers). In a sub-step the temperature of kinetics is that in its middle: order 2 in the width of the sub-steps. Each phase
-!> answers the logarithm w_i by which it alone would divide the austenite; together they divide it by exp(sum w_i) and share what
-!> forms in proportion: exact for one phase, order 2 for several. What forms as a fraction of the whole volume is taken from the
-!> austenite half before, half after that. Fractions stay in [0, 1]; austenite is what is left.
+!> numbers). In a sub-step the temperature of kinetics is that in its middle: order 2 in the width of the sub-steps. Fractions stay
+!> in [0, 1]; austenite is what is left.
 !> Where stress acts on the kinetics (stress_kinetics), it is linear in time between both ends of the step.
 module phase_step
-  use austenite_kinetics, only: form_austenite, grow_grains
-  use avrami, only: grow_avrami
-  use cct_histories, only: cct_increments
-  use dual_numbers, only: dual_t, exp, log, operator(*), operator(+), operator(-), operator(/)
+  use austenite_decomposition, only: cool_by_histories, transform
+  use dual_numbers, only: dual_t, log, operator(*), operator(+), operator(-), operator(/)
   use kinds, only: wp
-  use latent_heat, only: heat_of_tempering, latent_of
-  use li_kinetics, only: grow_li
-  use martensite_kinetics, only: grow_martensite, martensite_start, total_martensite
-  use phase_state, only: at_coldest, at_grain, at_hollomon_jaffe, at_rate, at_tempering, first_growth, first_incubation, &
-                         cold_as_mixture, never_cold, set_hardness, state_size
-  use steels, only: austenite, bainite, ferrite, first_diffusive, kinetics_avrami, kinetics_li, kinetics_none, last_diffusive, &
-                    martensite, pearlite, phase_count, steel_t, tempered, unknown_temperature
-  use stress_kinetics, only: hastened, shift_of_phase, stressed_span
-  use temperature_curves, only: dual_curve_at, is_given
-  use tempering, only: add_hollomon_jaffe, join_hollomon_jaffe, make_younger, temper
+  use martensite_kinetics, only: martensite_start
+  use phase_growth, only: forms, grow
+  use phase_state, only: at_coldest, at_rate, cold_as_mixture, first_growth, first_incubation, never_cold, set_hardness, state_size
+  use phase_tempering, only: temper_phases
+  use reheating, only: heat_up
+  use steels, only: austenite, bainite, ferrite, first_diffusive, last_diffusive, martensite, phase_count, steel_t, tempered, &
+                    unknown_temperature
+  use stress_kinetics, only: hastened, shift_of_phase
   implicit none
   private
   public :: advance_phases
@@ -33,8 +27,6 @@ module phase_step
   integer, parameter :: most_parts = 64
   !> Where the cooling rate of hardness is taken [degC].
   real(wp), parameter :: rate_temperature = 700.0_wp
-  !> A phase of which austenite has left no more than this has nothing to remember of its tempering.
-  real(wp), parameter :: nothing_left = 1.0e-6_wp
 
 contains
 
@@ -151,37 +143,6 @@ contains
     if (active > 1) parts = max(1, min(most_parts, ceiling(min(most/most_growth, real(most_parts, wp)))))
   end function parts_of
 
-  !> A phase may form by diffusion at a temperature.
-  pure function forms(steel, phase, temperature) result(yes)
-    type(steel_t), intent(in) :: steel
-    integer, intent(in) :: phase
-    real(wp), intent(in) :: temperature
-    logical :: yes
-
-    associate (kinetics => steel%kinetics(phase))
-      yes = kinetics%kind /= kinetics_none .and. temperature > kinetics%low .and. temperature < kinetics%high
-    end associate
-  end function forms
-
-  !> The logarithm by which one phase alone divides what can form in a time at one temperature, and the fraction of the whole volume
-  !> that forms beside.
-  pure subroutine grow(steel, phase, time, temperature, incubation, growth, w, volume)
-    type(steel_t), intent(in) :: steel
-    integer, intent(in) :: phase
-    type(dual_t), intent(in) :: time, temperature
-    type(dual_t), intent(inout) :: incubation, growth
-    type(dual_t), intent(out) :: w, volume
-
-    volume = dual_t()
-    select case (steel%kinetics(phase)%kind)
-    case (kinetics_avrami)
-      call grow_avrami(steel%kinetics(phase), time, temperature, incubation, growth, w, volume)
-    case (kinetics_li)
-      call grow_li(steel%kinetics(phase), steel%li_sum, steel%li_slope, time, temperature, growth, w)
-    end select
-    if (w%value < 0) w = dual_t()   ! round-off
-  end subroutine grow
-
   !> All that happens between two temperatures of one sub-step.
   pure subroutine sub_step(steel, time, from, to, stress, s, heat)
     type(steel_t), intent(in) :: steel
@@ -199,220 +160,6 @@ contains
     if (any(steel%temper_rate > 0)) call temper_phases(steel, time, middle, before, s, heat)
     call settle(s)
   end subroutine sub_step
-
-  !> Fraction that is tempered, or can be.
-  pure function to_temper(s) result(fraction)
-    type(dual_t), intent(in) :: s(:)
-    real(wp) :: fraction
-
-    fraction = s(martensite)%value + s(bainite)%value + s(tempered)%value
-  end function to_temper
-
-  !> Austenite from all other phases, in proportion, and its grains. Of what is left, tempering goes on.
-  pure subroutine heat_up(steel, time, temperature, s, heat)
-    type(steel_t), intent(in) :: steel
-    type(dual_t), intent(in) :: time, temperature
-    type(dual_t), intent(inout) :: s(:), heat
-    type(dual_t) :: formed, left, lost
-    integer :: i
-
-    call form_austenite(steel, time, temperature, s(austenite), formed)
-    call grow_grains(steel, time, temperature, s(austenite), formed, s(at_grain))
-    if (formed%value > 0) then
-      left = dual_t()
-      do i = 2, phase_count
-        left = left + s(i)
-      end do
-      do i = 2, phase_count
-        if (.not. s(i)%value > 0) cycle
-        lost = formed*s(i)/left
-        s(i) = s(i) - lost
-        call release(steel, i, temperature, -lost, heat)
-      end do
-      s(austenite) = s(austenite) + formed
-    end if
-    do i = first_diffusive, last_diffusive
-      call forget_growth(steel, i, temperature%value, s)
-    end do
-    s(at_coldest) = dual_t(never_cold)
-    if (.not. s(martensite)%value > nothing_left) s(at_tempering) = dual_t()
-    if (.not. s(bainite)%value > nothing_left) s(at_tempering + 1) = dual_t()
-    if (.not. to_temper(s) > nothing_left) s(at_hollomon_jaffe) = dual_t()
-  end subroutine heat_up
-
-  !> Above the temperatures at which a phase forms its nuclei dissolve.
-  pure subroutine forget_growth(steel, phase, temperature, s)
-    type(steel_t), intent(in) :: steel
-    integer, intent(in) :: phase
-    real(wp), intent(in) :: temperature   !! [degC]
-    type(dual_t), intent(inout) :: s(:)
-
-    if (temperature < steel%kinetics(phase)%high) return
-    s(first_incubation + phase - first_diffusive) = dual_t()
-    s(first_growth + phase - first_diffusive) = dual_t()
-  end subroutine forget_growth
-
-  !> What the histories of a CCT diagram give down to Ms, as far as there is austenite.
-  pure subroutine cool_by_histories(steel, time, from, to, stress, s, heat)
-    type(steel_t), intent(in) :: steel
-    type(dual_t), intent(in) :: time, from, to, stress(2)
-    type(dual_t), intent(inout) :: s(:), heat
-    type(dual_t) :: dz(3), total, ms, finish, share
-    integer :: i
-
-    ms = martensite_start(steel, s(ferrite) + s(pearlite) + s(bainite)) + shift_of_phase(steel%isig, martensite, stress)
-    if (from%value <= ms%value) return
-    finish = to
-    share = dual_t(1.0_wp)
-    if (to%value < ms%value) then
-      finish = ms
-      share = (from - ms)/(from - to)
-    end if
-    call cct_increments(steel%cct, share*time, from, finish, s(at_grain), s(ferrite:bainite), dz)
-    total = dual_t()
-    do i = 1, 3
-      if (dz(i)%value < 0) dz(i) = dual_t()
-      total = total + dz(i)
-    end do
-    if (.not. total%value > 0) return
-    do i = 1, 3
-      if (total%value > s(austenite)%value) dz(i) = dz(i)*s(austenite)/total
-      call release(steel, ferrite + i - 1, 0.5_wp*(from + to), dz(i), heat)
-      s(ferrite + i - 1) = s(ferrite + i - 1) + dz(i)
-    end do
-    if (total%value > s(austenite)%value) total = s(austenite)
-    s(austenite) = s(austenite) - total
-  end subroutine cool_by_histories
-
-  !> Ferrite, pearlite, bainite and martensite from austenite.
-  pure subroutine transform(steel, time, from, to, stress, s, heat)
-    type(steel_t), intent(in) :: steel
-    type(dual_t), intent(in) :: time, from, to, stress(2, 2)
-    type(dual_t), intent(inout) :: s(:), heat
-    type(dual_t), dimension(ferrite:martensite) :: w, volume, dz
-    type(dual_t) :: total, total_volume, room, formed, middle, own, span, ms(2), coldest(2), by_diffusion, cold(2)
-    integer :: i
-
-    middle = 0.5_wp*(from + to)
-    w = dual_t()
-    volume = dual_t()
-    do i = ferrite, bainite
-      own = middle
-      span = time
-      call stressed_span(steel, i, from, to, stress, own, span)
-      if (forms(steel, i, own%value)) then
-        call grow(steel, i, span, own, s(first_incubation + i - ferrite), s(first_growth + i - ferrite), w(i), volume(i))
-        call limit_growth(steel, i, own, s, w(i), volume(i))
-      else if (.not. s(i)%value > 0) then
-        ! those beside what has formed stay: it can go on
-        call forget_growth(steel, i, own%value, s)
-      end if
-    end do
-    by_diffusion = s(ferrite) + s(pearlite) + s(bainite)
-    ms(1) = martensite_start(steel, by_diffusion)
-    coldest(1) = s(at_coldest)
-    ! a point that begins cold is at its coldest before it is heated
-    cold = [from - shift_of_phase(steel%isig, martensite, stress(:, 1)), to - shift_of_phase(steel%isig, martensite, stress(:, 2))]
-    if (cold(1)%value < cold(2)%value) cold(2) = cold(1)
-    call grow_martensite(steel, by_diffusion, cold(2), s(at_coldest), w(martensite))
-    coldest(2) = s(at_coldest)
-    total = sum_of(w)
-    total_volume = sum_of(volume)
-    if (.not. (total%value + total_volume%value > 0 .and. s(austenite)%value > 0)) return
-    if (total_volume%value > 0) then
-      ! (z - v/2) exp(-w) - v/2 is not below 0
-      room = 2.0_wp*s(austenite)*exp(-total)/(1.0_wp + exp(-total))
-      if (total_volume%value > room%value) then
-        do i = ferrite, bainite
-          volume(i) = volume(i)*(room/total_volume)
-        end do
-        total_volume = room
-      end if
-    end if
-    formed = (s(austenite) - 0.5_wp*total_volume)*(1.0_wp - exp(-total))
-    dz = volume
-    do i = ferrite, martensite
-      if (w(i)%value > 0) dz(i) = dz(i) + formed*w(i)/total
-    end do
-    if (steel%martensite_total) then
-      ms(2) = martensite_start(steel, by_diffusion + sum_of(dz(:bainite)))
-      dz(martensite) = total_martensite(steel, ms, coldest, s(austenite), sum_of(dz(:bainite)))
-    end if
-    do i = ferrite, martensite
-      if (.not. dz(i)%value > 0) cycle
-      call release(steel, i, middle, dz(i), heat)
-      s(i) = s(i) + dz(i)
-    end do
-    s(austenite) = s(austenite) - sum_of(dz)
-  end subroutine transform
-
-  pure function sum_of(parts) result(total)
-    type(dual_t), intent(in) :: parts(:)   !! (any number)
-    type(dual_t) :: total
-
-    total = dual_t(sum(parts%value), sum(parts%slope))
-  end function sum_of
-
-  !> Of a phase that has a largest fraction, only the rest up to there can form.
-  pure subroutine limit_growth(steel, phase, temperature, s, w, volume)
-    type(steel_t), intent(in) :: steel
-    integer, intent(in) :: phase
-    type(dual_t), intent(in) :: temperature, s(:)
-    type(dual_t), intent(inout) :: w, volume
-    type(dual_t) :: room
-
-    if (.not. (is_given(steel%kinetics(phase)%limit) .and. s(austenite)%value > 0)) return
-    room = dual_curve_at(steel%kinetics(phase)%limit, temperature) - s(phase)
-    if (volume%value > 0) then
-      if (room%value < volume%value) volume = room
-      if (room%value <= 0) volume = dual_t()
-      room = room - volume
-    end if
-    if (room%value >= s(austenite)%value) return
-    if (room%value <= 0) then
-      w = dual_t()
-    else
-      w = -log(1.0_wp - room/s(austenite)*(1.0_wp - exp(-w)))
-    end if
-  end subroutine limit_growth
-
-  !> Martensite and bainite become tempered; the time counts for P where there is something to temper. What has formed in the
-  !> sub-step, and what austenite has taken, is tempered for half of it in the mean: half of what is new joins before, half after.
-  pure subroutine temper_phases(steel, time, temperature, before, s, heat)
-    type(steel_t), intent(in) :: steel
-    type(dual_t), intent(in) :: time, temperature
-    type(dual_t), intent(in) :: before(2)   ! martensite and bainite at the start of the sub-step
-    type(dual_t), intent(inout) :: s(:), heat
-    integer, parameter :: phases(2) = [martensite, bainite]
-    type(dual_t) :: w, gone, half, mean
-    integer :: k
-
-    if (to_temper(s) > nothing_left) call add_hollomon_jaffe(steel, time, temperature, s(at_hollomon_jaffe))
-    do k = 1, 2
-      if (.not. s(phases(k))%value > 0) cycle
-      mean = 0.5_wp*(before(k) + s(phases(k)))
-      half = mean - before(k)
-      call make_younger(steel, k, before(k), half, s(at_tempering + k - 1))
-      call temper(steel, k, time, temperature, s(at_tempering + k - 1), w)
-      gone = mean*(1.0_wp - exp(-w))
-      if (gone%value > s(phases(k))%value) gone = s(phases(k))
-      call join_hollomon_jaffe(steel, k, temperature, s(at_tempering + k - 1), s(tempered), gone, s(at_hollomon_jaffe))
-      call make_younger(steel, k, mean - gone, half, s(at_tempering + k - 1))
-      s(phases(k)) = s(phases(k)) - gone
-      s(tempered) = s(tempered) + gone
-      heat = heat + heat_of_tempering(steel, phases(k), temperature)*gone
-    end do
-  end subroutine temper_phases
-
-  !> Latent heat of a phase that forms from austenite.
-  pure subroutine release(steel, phase, temperature, formed, heat)
-    type(steel_t), intent(in) :: steel
-    integer, intent(in) :: phase
-    type(dual_t), intent(in) :: temperature, formed
-    type(dual_t), intent(inout) :: heat
-
-    heat = heat + latent_of(steel, phase, temperature)*formed
-  end subroutine release
 
   !> Round-off: no fraction below 0, and austenite is what the others leave.
   pure subroutine settle(s)

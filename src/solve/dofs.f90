@@ -3,7 +3,8 @@
 !> An unknown is a component of a field at a place: a displacement of a node, a motion of a die's pilot or of the section, a
 !> temperature of a node. Each is free (it has an equation) or prescribed (its motion is known: elimination, no penalty).
 module dofs
-  use elem_api, only: elem_t, field_nodes, layout_of, layout_t
+  use elem_api, only: elem_t, field_nodes, layout_t
+  use element_fields, only: layout_of
   use fields, only: field_t, on_nodes, on_pilots, on_section
   use kinds, only: wp
   use pairs, only: most_pieces, nodes_per_piece, paired_nodes, pairs_t, start_pairs

@@ -12,7 +12,7 @@ module path_bounds
   use equations, only: equations_t
   use kinds, only: eps, wp
   use path_error, only: at_corner, bend_of, estimate_path, on_nodes
-  use path_record, only: mean_square, stress_before, stress_scale
+  use path_record, only: mean_square, path_record_t, path_step_t, stress_before, stress_scale
   use scene, only: scene_t
   use solution, only: solution_t
   use step_outcome, only: outcome_t
@@ -45,169 +45,189 @@ contains
     real(wp), intent(in) :: dt        !! [time]
     logical, intent(in) :: at_hand    !! factors of a matrix of this step are
     type(outcome_t), intent(inout) :: outcome
-    logical :: done
+    logical :: quiet, last, done
     integer :: timer
 
     if (.not. (outcome%converged .and. scene%follows_path)) return
     call equations%timers%add('path error', timer)
     call equations%timers%start(timer)
+    last = .not. solution%time + dt < scene%strategy%end_time*(1 - 64*eps)
     outcome%path%bend = bend_of(equations, solution, dt, outcome%du)
-    if (is_quiet()) then
-      outcome%path%interpolated = .true.
-      outcome%path%motion = mean_square(on_nodes(equations, outcome%du))
-      if (solution%path%quiet_bend < huge(solution%path%quiet_bend)) &
-        outcome%path%growth = max(growth_in_quiet*solution%path%quiet_length/dt, 1.0_wp)
-      call equations%timers%stop(timer)
-      return
+    quiet = is_quiet(scene, solution, dt, outcome%path%bend, last)
+    if (quiet) then
+      call go_on_in_quiet(equations, solution%path, dt, outcome)
+    else
+      call estimate_path(scene, equations, solution, dt, at_hand, last, outcome, done)
     end if
-    call estimate_path(scene, equations, solution, dt, at_hand, is_last(), outcome, done)
     call equations%timers%stop(timer)
-    if (.not. outcome%converged) return
+    if (quiet .or. .not. outcome%converged) return
     outcome%path%estimated = done
-    if (done) call find_spare()
+    if (done) call find_spare(scene%strategy, solution%path, outcome%path)
     if (solution%path%unbounded > 0) return
     if (done) then
-      call find_sizes()
-      call bound_motion()
-      if (outcome%converged) call bound_stress()
+      call find_sizes(scene%strategy, solution, dt, outcome%path)
+      call bound_motion(scene%strategy, solution%path, dt, outcome)
+      if (outcome%converged) call bound_stress(scene%strategy, solution, dt, outcome)
     else if (dt > scene%strategy%least_step) then
-      call shorten(without_halves, 'the path within the step cannot be followed')
+      call shorten(without_halves, 'the path within the step cannot be followed', outcome)
     end if
-
-  contains
-
-    !> The step needs no estimate. The last one of the run has one, and those before and after a corner of a multiplier.
-    pure function is_quiet() result(yes)
-      logical :: yes
-
-      associate (record => solution%path)
-        yes = record%quiet > 0 .and. dt <= record%quiet_length .and. outcome%path%bend <= record%quiet_bend &
-              .and. .not. (record%tried_length > 0 .or. is_last())
-        ! on a new mesh in any case
-        if (yes .and. record%quiet_bend < huge(record%quiet_bend)) &
-          yes = .not. (at_corner(scene, solution%time) .or. at_corner(scene, solution%time + dt))
-      end associate
-    end function is_quiet
-
-    !> The end of the scene.
-    pure logical function is_last()
-      is_last = .not. solution%time + dt < scene%strategy%end_time*(1 - 64*eps)
-    end function is_last
-
-    !> Error of the motion over the motion, or over what it is in the mean of the time where that is more; error of the stress over
-    !> what the deck allows.
-    subroutine find_sizes()
-      associate (step => outcome%path, allowed => allowed_stress())
-        if (step%motion_error > 0) step%sizes(of_motion) = step%motion_error/scale_of_motion()
-        if (allowed > 0) step%sizes(of_stress) = abs(step%stress_error)/allowed
-      end associate
-    end subroutine find_sizes
-
-    pure function scale_of_motion() result(scale)
-      real(wp) :: scale
-
-      scale = outcome%path%motion
-      if (solution%time > 0) scale = max(scale, solution%path%moved/solution%time*dt)
-    end function scale_of_motion
-
-    pure function allowed_stress() result(allowed)
-      real(wp) :: allowed
-
-      allowed = scene%strategy%rate_bound*stress_scale(solution%path, outcome%path%stress)
-    end function allowed_stress
-
-    !> The share goes with the length.
-    subroutine bound_motion()
-      associate (step => outcome%path, allowed => scene%strategy%path_bound)
-        if (.not. (allowed > 0 .and. step%motion_error > 0)) return
-        call bound(allowed, aim*allowed/step%sizes(of_motion), of_motion, 'motion')
-      end associate
-    end subroutine bound_motion
-
-    !> What a step adds goes with the square of its length. An error against that of the steps before has all the room.
-    subroutine bound_stress()
-      real(wp) :: allowed, change, least, before, room, next
-
-      associate (step => outcome%path, record => solution%path)
-        allowed = allowed_stress()
-        if (.not. (allowed > 0 .and. abs(step%stress_error) > 0)) return
-        before = sign(1.0_wp, step%stress_error)*stress_before(step, dt, record)
-        change = abs(step%stress - record%stress)*dt/(record%pending_time + dt)
-        least = max(scene%strategy%rate_bound*min(change, step%stress), allowed*dt/(solution%time + dt))
-        room = max(allowed - max(before, 0.0_wp), least)
-        next = max(allowed - step%left*max(before + abs(step%stress_error), 0.0_wp), least)
-        if (abs(step%stress_error) > room) next = room
-        call bound(room/allowed, sqrt(aim*next/abs(step%stress_error)), of_stress, 'stress')
-      end associate
-    end subroutine bound_stress
-
-    !> How many times as long the step could be, for errors no larger than by default, or than the deck allows.
-    subroutine find_spare()
-      type(strategy_t) :: default
-      real(wp) :: room
-
-      associate (step => outcome%path)
-        if (step%motion_error > 0) &
-          step%spare = aim*tighter(default%path_bound, scene%strategy%path_bound)*step%motion/step%motion_error
-        if (.not. abs(step%stress_error) > 0) return
-        room = tighter(default%rate_bound, scene%strategy%rate_bound)*stress_scale(solution%path, step%stress)
-        step%spare = min(step%spare, sqrt(aim*room/abs(step%stress_error)))
-      end associate
-    end subroutine find_spare
-
-    !> The smaller bound; 0 is none.
-    pure function tighter(default, of_deck) result(bound)
-      real(wp), intent(in) :: default, of_deck   !! [-]
-      real(wp) :: bound
-
-      bound = default
-      if (of_deck > 0) bound = min(default, of_deck)
-    end function tighter
-
-    subroutine bound(allowed, factor, which, name)
-      real(wp), intent(in) :: allowed
-      real(wp), intent(in) :: factor   !! of the length, for the error aimed at
-      integer, intent(in) :: which
-      character(len=*), intent(in) :: name
-
-      associate (step => outcome%path, error => outcome%path%sizes(which))
-        if (error <= allowed) then
-          step%growth = min(step%growth, max(factor, least_factor))
-        else if (is_in_vain(which)) then
-          step%above = .true.
-          step%no_better = .true.
-          step%growth = min(step%growth, 1.0_wp)
-        else if (dt > scene%strategy%least_step) then
-          call shorten(min(max(factor, least_factor), most_factor), 'error of the '//name//' by the path within the step ' &
-                       //to_text(error, 3)//' above '//to_text(allowed, 3))
-        else
-          step%above = .true.
-          step%growth = min(step%growth, 1.0_wp)
-        end if
-      end associate
-    end subroutine bound
-
-    !> The attempt before was longer, and its error hardly larger.
-    pure function is_in_vain(which) result(yes)
-      integer, intent(in) :: which
-      logical :: yes
-
-      associate (record => solution%path)
-        yes = record%tried_length > dt
-        if (yes) yes = outcome%path%sizes(which) > record%tried_sizes(which)*(dt/record%tried_length)**least_order
-      end associate
-    end function is_in_vain
-
-    subroutine shorten(factor, reason)
-      real(wp), intent(in) :: factor
-      character(len=*), intent(in) :: reason
-
-      outcome%converged = .false.
-      outcome%event = factor
-      outcome%event_reason = reason
-      outcome%path%too_long = .true.
-    end subroutine shorten
-
   end subroutine judge_path
+
+  !> The step needs no estimate. The last one of the run has one, and those before and after a corner of a multiplier.
+  pure function is_quiet(scene, solution, dt, bend, last) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt     !! [time]
+    real(wp), intent(in) :: bend   !! of the path (bend_of)
+    logical, intent(in) :: last    !! step of the run
+    logical :: yes
+
+    associate (record => solution%path)
+      yes = record%quiet > 0 .and. dt <= record%quiet_length .and. bend <= record%quiet_bend &
+            .and. .not. (record%tried_length > 0 .or. last)
+      ! on a new mesh in any case
+      if (yes .and. record%quiet_bend < huge(record%quiet_bend)) &
+        yes = .not. (at_corner(scene, solution%time) .or. at_corner(scene, solution%time + dt))
+    end associate
+  end function is_quiet
+
+  !> A step without an estimate: its motion, and how much longer the next may be.
+  subroutine go_on_in_quiet(equations, record, dt, outcome)
+    type(equations_t), intent(in) :: equations
+    type(path_record_t), intent(in) :: record
+    real(wp), intent(in) :: dt   !! [time]
+    type(outcome_t), intent(inout) :: outcome
+
+    outcome%path%interpolated = .true.
+    outcome%path%motion = mean_square(on_nodes(equations, outcome%du))
+    if (record%quiet_bend < huge(record%quiet_bend)) &
+      outcome%path%growth = max(growth_in_quiet*record%quiet_length/dt, 1.0_wp)
+  end subroutine go_on_in_quiet
+
+  !> How many times as long the step could be, for errors no larger than by default, or than the deck allows.
+  pure subroutine find_spare(strategy, record, step)
+    type(strategy_t), intent(in) :: strategy
+    type(path_record_t), intent(in) :: record
+    type(path_step_t), intent(inout) :: step
+    type(strategy_t) :: default
+    real(wp) :: room
+
+    if (step%motion_error > 0) &
+      step%spare = aim*tighter(default%path_bound, strategy%path_bound)*step%motion/step%motion_error
+    if (.not. abs(step%stress_error) > 0) return
+    room = tighter(default%rate_bound, strategy%rate_bound)*stress_scale(record, step%stress)
+    step%spare = min(step%spare, sqrt(aim*room/abs(step%stress_error)))
+  end subroutine find_spare
+
+  !> The smaller bound; 0 is none.
+  pure function tighter(default, of_deck) result(bound)
+    real(wp), intent(in) :: default, of_deck   !! [-]
+    real(wp) :: bound
+
+    bound = default
+    if (of_deck > 0) bound = min(default, of_deck)
+  end function tighter
+
+  !> Error of the motion over the motion, or over what it is in the mean of the time where that is more; error of the stress over
+  !> what the deck allows.
+  pure subroutine find_sizes(strategy, solution, dt, step)
+    type(strategy_t), intent(in) :: strategy
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt   !! [time]
+    type(path_step_t), intent(inout) :: step
+    real(wp) :: scale, allowed
+
+    scale = step%motion
+    if (solution%time > 0) scale = max(scale, solution%path%moved/solution%time*dt)
+    if (step%motion_error > 0) step%sizes(of_motion) = step%motion_error/scale
+    allowed = strategy%rate_bound*stress_scale(solution%path, step%stress)
+    if (allowed > 0) step%sizes(of_stress) = abs(step%stress_error)/allowed
+  end subroutine find_sizes
+
+  !> The share goes with the length.
+  subroutine bound_motion(strategy, record, dt, outcome)
+    type(strategy_t), intent(in) :: strategy
+    type(path_record_t), intent(in) :: record
+    real(wp), intent(in) :: dt   !! [time]
+    type(outcome_t), intent(inout) :: outcome
+
+    associate (step => outcome%path, allowed => strategy%path_bound)
+      if (.not. (allowed > 0 .and. step%motion_error > 0)) return
+      call bound(strategy, record, dt, allowed, aim*allowed/step%sizes(of_motion), of_motion, 'motion', outcome)
+    end associate
+  end subroutine bound_motion
+
+  !> What a step adds goes with the square of its length. An error against that of the steps before has all the room.
+  subroutine bound_stress(strategy, solution, dt, outcome)
+    type(strategy_t), intent(in) :: strategy
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt   !! [time]
+    type(outcome_t), intent(inout) :: outcome
+    real(wp) :: allowed, change, least, before, room, next
+
+    associate (step => outcome%path, record => solution%path)
+      allowed = strategy%rate_bound*stress_scale(record, step%stress)
+      if (.not. (allowed > 0 .and. abs(step%stress_error) > 0)) return
+      before = sign(1.0_wp, step%stress_error)*stress_before(step, dt, record)
+      change = abs(step%stress - record%stress)*dt/(record%pending_time + dt)
+      least = max(strategy%rate_bound*min(change, step%stress), allowed*dt/(solution%time + dt))
+      room = max(allowed - max(before, 0.0_wp), least)
+      next = max(allowed - step%left*max(before + abs(step%stress_error), 0.0_wp), least)
+      if (abs(step%stress_error) > room) next = room
+      call bound(strategy, record, dt, room/allowed, sqrt(aim*next/abs(step%stress_error)), of_stress, 'stress', outcome)
+    end associate
+  end subroutine bound_stress
+
+  !> An error up to what is allowed bounds the next step; one above it shortens this one, or is counted where that is in vain.
+  subroutine bound(strategy, record, dt, allowed, factor, which, name, outcome)
+    type(strategy_t), intent(in) :: strategy
+    type(path_record_t), intent(in) :: record
+    real(wp), intent(in) :: dt        !! [time]
+    real(wp), intent(in) :: allowed   !! [-]
+    real(wp), intent(in) :: factor    !! of the length, for the error aimed at
+    integer, intent(in) :: which      !! of_motion or of_stress
+    character(len=*), intent(in) :: name
+    type(outcome_t), intent(inout) :: outcome
+
+    associate (step => outcome%path, error => outcome%path%sizes(which))
+      if (error <= allowed) then
+        step%growth = min(step%growth, max(factor, least_factor))
+      else if (is_in_vain(record, dt, error, which)) then
+        step%above = .true.
+        step%no_better = .true.
+        step%growth = min(step%growth, 1.0_wp)
+      else if (dt > strategy%least_step) then
+        call shorten(min(max(factor, least_factor), most_factor), 'error of the '//name//' by the path within the step ' &
+                     //to_text(error, 3)//' above '//to_text(allowed, 3), outcome)
+      else
+        step%above = .true.
+        step%growth = min(step%growth, 1.0_wp)
+      end if
+    end associate
+  end subroutine bound
+
+  !> The attempt before was longer, and its error hardly larger.
+  pure function is_in_vain(record, dt, error, which) result(yes)
+    type(path_record_t), intent(in) :: record
+    real(wp), intent(in) :: dt      !! [time]
+    real(wp), intent(in) :: error   !! of this attempt [-]
+    integer, intent(in) :: which    !! of_motion or of_stress
+    logical :: yes
+
+    yes = record%tried_length > dt
+    if (yes) yes = error > record%tried_sizes(which)*(dt/record%tried_length)**least_order
+  end function is_in_vain
+
+  !> The step is made again with this share of its length.
+  pure subroutine shorten(factor, reason, outcome)
+    real(wp), intent(in) :: factor   !! [-]
+    character(len=*), intent(in) :: reason
+    type(outcome_t), intent(inout) :: outcome
+
+    outcome%converged = .false.
+    outcome%event = factor
+    outcome%event_reason = reason
+    outcome%path%too_long = .true.
+  end subroutine shorten
 
 end module path_bounds

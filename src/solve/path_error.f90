@@ -18,10 +18,10 @@ module path_error
   use fields, only: displacement_field
   use kinds, only: eps, wp
   use kinematics_api, only: first_history
+  use known_motion, only: proportion
   use path_record, only: mean_square, path_step_t, stress_scale
   use path_states, only: advance_beside, begin_beside, has_path, root_energy, unbalanced_forces
   use path_stress, only: stress_with_motion
-  use predictor, only: proportion
   use round_off_floors, only: round_off_motion
   use scene, only: scene_t
   use solution, only: solution_t

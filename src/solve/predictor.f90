@@ -27,13 +27,14 @@
 !> iteration to spread.
 module predictor
   use acceptance, only: is_first_step
-  use dofs, only: dofs_t, is_driven, prescribed_motion
+  use dofs, only: is_driven
   use elem_api, only: block_done, report_t
   use equations, only: equations_t, solves_heat
   use errors, only: error_t
   use evaluation, only: evaluate, is_apart
-  use fields, only: displacement_field, field_t, pilot_field
+  use fields, only: displacement_field, pilot_field
   use kinds, only: wp
+  use known_motion, only: find_known_motion, find_missing_motion, known_motion_t, proportion
   use onset_motion, only: extend_onset
   use path_bend, only: bend_of_path
   use resting_bodies, only: leave_at_rest
@@ -41,17 +42,14 @@ module predictor
   use scene, only: scene_t
   use seating, only: seat_dies
   use solution, only: solution_t
-  use turning_back, only: reversed_unknowns, turn_back
   implicit none
   private
-  public :: predict, proportion, lagging_dies, leaving_dies, work_of_dies
+  public :: predict, lagging_dies, leaving_dies, work_of_dies
 
   !> Change of penetration, as a share of the side, below which contact goes on as before.
   real(wp), parameter :: smooth_contact = 2.0e-3_wp
   !> Share of the last motion that shows which points load; backwards, which unload.
   real(wp), parameter :: onset = 0.02_wp
-  !> A missing motion below this share of the motion is round-off: of times, and of their differences.
-  real(wp), parameter :: round_off = 1.0e-10_wp
 
 contains
 
@@ -71,79 +69,40 @@ contains
     type(report_t), intent(out) :: report
     type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: left(:)     !! (ndie) dies that leave the part: they start where they go
-    !> Unknowns that are given, that belong to dies where they go, that turn back.
-    logical, dimension(size(du)) :: fixed, at_place, back
-    !> Dies that turn back; the start is that of an earlier turn; it is at the onset of the motion of a new mesh.
-    logical :: dies(size(scene%dies)), goes_on, begun
-    !> Motion of prescribed unknowns in the step, and the bend of the path [unknown].
-    real(wp) :: motion(size(equations%dofs%prescribed)), bend(size(du))
-    real(wp) :: ratio   !! length of the step over that of the last one, 0 without one [-]
+    type(known_motion_t) :: known
+    !> The start is at the onset of the motion of a new mesh.
+    logical :: begun
+    real(wp) :: bend(size(du))   !! of the path [unknown]
 
     equations%slides = .false.
-    call find_given()
-    call find_turning()
+    call find_known_motion(scene, equations, solution, dt, go_on, left, known)
+    staying = known%staying
     kept = .false.
     bend = 0
-    call try_from(ratio)
+    call try_from(known%ratio)
     begun = .false.
     if (is_first_on_mesh()) call start_on_new_mesh()
     if (allocated(error)) return
-    if (.not. (begun .or. goes_on) .and. report%status == block_done .and. report%event >= 1 &
+    if (.not. (begun .or. known%goes_on) .and. report%status == block_done .and. report%event >= 1 &
         .and. report%jump > smooth_contact) then
-      kept = is_driven(equations%dofs, motion)
-      call start_from(merge(ratio, onset*ratio, kept))
+      kept = is_driven(equations%dofs, known%motion)
+      call start_from(merge(known%ratio, onset*known%ratio, kept))
     end if
-    if (report%status /= block_done .and. abs(ratio) > 0) then
+    if (report%status /= block_done .and. abs(known%ratio) > 0) then
       kept = .false.
       call start_from(0.0_wp)
     end if
-    call find_missing()
+    call find_missing_motion(equations, known, du, missing)
 
   contains
-
-    !> What is known of the motion: that of prescribed unknowns, of unknowns of other solves, of dies that leave the part.
-    subroutine find_given()
-      integer :: k
-
-      ! what moves at once does so in the first step, not while equilibrium is restored at fixed time
-      call prescribed_motion(scene, equations%dofs, solution%fields, dt > 0 .and. .not. solution%last_step > 0, solution%time, &
-                             solution%time + dt, motion)
-      goes_on = .false.
-      if (present(go_on)) goes_on = go_on
-      fixed = .not. equations%solves(equations%now)%is_own .or. goes_on
-      at_place = .false.
-      if (.not. present(left)) return
-      associate (pilot => equations%dofs%fields(pilot_field)%number)
-        do k = 1, size(left)
-          if (left(k)) at_place(pack(pilot(:, k), pilot(:, k) > 0)) = .true.
-        end do
-      end associate
-    end subroutine find_given
-
-    !> What turns back: dies and supports that do so, and what they move. Where anything does, other motions stay as they are.
-    subroutine find_turning()
-      logical :: turning(size(du))
-      real(wp) :: before(size(du))
-
-      ratio = 0
-      if (solution%last_step > 0) ratio = dt/solution%last_step
-      back = at_place
-      if (.not. goes_on .and. ratio > 0) then
-        call proportion(equations%dofs, solution%fields, ratio, before)
-        back = back .or. reversed_unknowns(equations%dofs, before, motion)
-      end if
-      call turn_back(scene, equations%dofs, solution, back, turning, dies)
-      back = turning
-      staying = .false.
-      if (any(back)) staying = is_motion() .and. .not. back
-    end subroutine find_turning
 
     !> The first step on a new mesh, where mechanics alone is solved for and contact does not begin within the step.
     function is_first_on_mesh() result(is)
       logical :: is
 
-      is = is_first_step(solution%probation) .and. .not. (any(back) .or. goes_on) .and. ratio > 0 .and. report%event >= 1 &
-           .and. .not. solves_heat(scene, equations) .and. equations%solves(equations%now)%own(displacement_field)
+      is = is_first_step(solution%probation) .and. .not. (any(known%back) .or. known%goes_on) .and. known%ratio > 0 &
+           .and. report%event >= 1 .and. .not. solves_heat(scene, equations) &
+           .and. equations%solves(equations%now)%own(displacement_field)
     end function is_first_on_mesh
 
     !> Start from a share of the last motion. Where contact alone tells that it is not to be begun with, for another evaluation
@@ -151,9 +110,9 @@ contains
     subroutine try_from(share)
       real(wp), intent(in) :: share
 
-      if (.not. (present(given) .or. goes_on .or. any(back) .or. is_first_step(solution%probation)) &
+      if (.not. (present(given) .or. known%goes_on .or. any(known%back) .or. is_first_step(solution%probation)) &
           .and. abs(share) > 0 .and. dt > scene%strategy%least_step .and. is_apart(scene, equations)) then
-        if (is_driven(equations%dofs, motion)) then
+        if (is_driven(equations%dofs, known%motion)) then
           call start_from(share, alone=.true.)
           if (report%status == block_done .and. report%between) call try_bend(share)
           if (report%status == block_done .and. (report%event < 1 .or. report%jump > smooth_contact)) return
@@ -178,11 +137,11 @@ contains
 
     !> Start at the motion of the onset, with contact kept; where there is none, as on any mesh.
     subroutine start_on_new_mesh()
-      if (.not. is_driven(equations%dofs, motion)) return
+      if (.not. is_driven(equations%dofs, known%motion)) return
       kept = .true.
-      call start_from(onset*ratio)
+      call start_from(onset*known%ratio)
       if (report%status == block_done) then
-        call find_missing()
+        call find_missing_motion(equations, known, du, missing)
         call extend_onset(equations, external, missing, du, begun, error)
         if (allocated(error)) return
         if (begun) call evaluate(scene, equations, solution, dt, du, .true., report, predicted=.true., kept=.true.)
@@ -192,38 +151,8 @@ contains
       end if
       if (begun) return
       kept = .false.
-      call start_from(ratio)
+      call start_from(known%ratio)
     end subroutine start_on_new_mesh
-
-    !> What prescribed unknowns miss of their motion; a rest that is round-off is made now.
-    subroutine find_missing()
-      integer :: i
-
-      missing = 0
-      do i = 1, size(motion)
-        associate (d => equations%dofs%prescribed(i)%dof)
-          if (.not. equations%solves(equations%now)%is_own(d)) cycle
-          missing(d) = motion(i) - du(d)
-          if (abs(missing(d)) > round_off*abs(motion(i))) cycle
-          du(d) = motion(i)
-          missing(d) = 0
-        end associate
-      end do
-    end subroutine find_missing
-
-    !> Unknowns of nodes and of dies that are motions (ndof).
-    function is_motion() result(yes)
-      logical :: yes(size(du))
-      integer :: f
-
-      yes = .false.
-      do f = 1, size(equations%dofs%fields)
-        if (f /= displacement_field .and. f /= pilot_field) cycle
-        associate (number => equations%dofs%fields(f)%number)
-          yes(pack(number, number > 0)) = .true.
-        end associate
-      end do
-    end function is_motion
 
     !> Evaluate at the last motion times a share, with the bend of the path where it is the whole of it; what is given is taken as
     !> it is.
@@ -234,20 +163,20 @@ contains
       integer :: k
 
       call proportion(equations%dofs, solution%fields, share, du)
-      if (.not. abs(share - ratio) > 0) du = du + bend
-      where (back) du = -onset*du
+      if (.not. abs(share - known%ratio) > 0) du = du + bend
+      where (known%back) du = -onset*du
       call leave_at_rest(scene, equations%dofs, equations%loose, solution, solution%time + dt, du, &
                          equations%resting)
       call leave_dies_at_rest(scene, equations%dofs, solution, external, du)
-      if (.not. goes_on) call seat_dies(scene, equations%dofs, solution, external, equations%size, du)
-      if (present(given)) du = merge(given, du, fixed)
-      do k = 1, size(motion)
+      if (.not. known%goes_on) call seat_dies(scene, equations%dofs, solution, external, equations%size, du)
+      if (present(given)) du = merge(given, du, known%fixed)
+      do k = 1, size(known%motion)
         associate (p => equations%dofs%prescribed(k))
-          if (p%history > 0 .or. at_place(p%dof)) du(p%dof) = motion(k)
+          if (p%history > 0 .or. known%at_place(p%dof)) du(p%dof) = known%motion(k)
         end associate
       end do
       whole = .not. present(alone)
-      call evaluate(scene, equations, solution, dt, du, whole, report, predicted=.true., kept=kept, turning=dies, &
+      call evaluate(scene, equations, solution, dt, du, whole, report, predicted=.true., kept=kept, turning=known%dies, &
                     contact_alone=alone)
     end subroutine start_from
 
@@ -295,24 +224,5 @@ contains
 
     leaving = lags .and. (work < 0 .and. 2*now < before .or. .not. abs(work) > 0 .and. now == 0 .and. before > 0)
   end function leaving_dies
-
-  !> The last accepted motion of all unknowns times `ratio`.
-  pure subroutine proportion(dofs, fields, ratio, du)
-    type(dofs_t), intent(in) :: dofs
-    type(field_t), intent(in) :: fields(:)   !! (nfield)
-    real(wp), intent(in) :: ratio
-    real(wp), intent(out) :: du(:)   !! (ndof) [unknown]
-    integer :: f, k, c
-
-    do f = 1, size(fields)
-      associate (number => dofs%fields(f)%number)
-        do k = 1, size(number, 2)
-          do c = 1, size(number, 1)
-            if (number(c, k) > 0) du(number(c, k)) = ratio*fields(f)%last_increment(c, k)
-          end do
-        end do
-      end associate
-    end do
-  end subroutine proportion
 
 end module predictor

@@ -11,9 +11,9 @@ module step_solves
   use first_step_parts, only: solve_motion
   use heat_stages, only: is_heat_alone, solve_heat
   use kinds, only: wp
+  use known_motion, only: proportion
   use own_crossings, only: find_own_crossing, own_crossing_t
   use path_bounds, only: judge_path
-  use predictor, only: proportion
   use scene, only: scene_t
   use solution, only: solution_t
   use step_outcome, only: outcome_t

@@ -1,8 +1,9 @@
 !> Scenes of one element, built in code, for the tests of the ELEM family.
 module element_cases
   use dies, only: die_t, finish_die
-  use elem_api, only: elem_t, first_unknown, has_unknown, instant_t, layout_of, layout_t, report_t, section_motion, totals_t
+  use elem_api, only: elem_t, first_unknown, instant_t, layout_t, report_t, section_motion, totals_t
   use elem_registry, only: list_elems
+  use element_fields, only: has_unknown, layout_of
   use fields, only: displacement_field, mechanical_fields
   use kinds, only: wp
   use kinematics_api, only: kinematics_t

@@ -4,8 +4,9 @@
 module pair_cases
   use contact_point, only: at_piece
   use dies, only: place_edges, place_on_nodes
-  use elem_api, only: elem_t, instant_t, layout_of, report_t
+  use elem_api, only: elem_t, instant_t, report_t
   use element_cases, only: elem_row, kinematics_row, step_of_differences
+  use element_fields, only: layout_of
   use fields, only: mechanical_fields
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
