@@ -403,9 +403,13 @@ contains
     type(quad8_rule_t) :: rule
     type(dilatation_t) :: own
     real(wp) :: nx(8), ny(8), detj, dv, volume(group%rule%n), m(group%rule%n), shared(4, group%rule%n), stress(4), strain(4)
+    real(wp) :: thickness(3)
     integer :: e, p, k, kept
 
     call quad8_rule(group%rule%n, rule)
+    ! small strains: the section stays where it was, as the nodes do
+    thickness = scene%section
+    if (scene%finite) thickness = section
     k = find_variable(law%history, 'plastic_work')
     if (k > 0) k = group%variables(find_variable(group%variables, 'plastic_work'))%first
     kept = find_variable(group%variables, 'stored_work')
@@ -413,7 +417,7 @@ contains
     do e = 1, size(x, 3)
       do p = 1, group%rule%n
         call derivatives(rule%dphi(:, :, p), x(:, :, e), nx, ny, detj)
-        volume(p) = detj*rule%weight(p)*thickness_at(section, matmul(x(:, :, e), rule%phi(:, p)))
+        volume(p) = detj*rule%weight(p)*thickness_at(thickness, matmul(x(:, :, e), rule%phi(:, p)))
         if (scene%plane_state == plane_stress .and. scene%finite) volume(p) = volume(p)*state(size(state, 1), p, e)
       end do
       totals%volume = totals%volume + sum(volume)
