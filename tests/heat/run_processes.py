@@ -309,6 +309,15 @@ def told(checks):
             lines = [line["text"] for line in summary(run)["warnings"] if "below absolute zero" in line["text"]]
             checks.that(len(lines) == cold, f"radiates from {start} with ZERO {zero}: told", summary(run)["warnings"])
             checks.that(abs(run.history["heat_through_bar/GOLDAK"][-1]) == 0, "a torch without power heats nothing")
+    # a body that nothing heats or cools, beside one that air cools
+    for more, isolated in (("", True), ("JOIN hot 2 cold 4\n", False), ("HEATS hot Q 1.\n", False), ("START T 900+x hot\n", False),
+                           ("IMPOS hot 4 T on 900.\nLIC on\n   0. 1.\n", False), ("DIE d SIDES hot 2\nCOU2DC cold 4 d H 1.\n", False)):
+        run = Run(checks, f"isolated-{more[:5].strip() or 'alone'}", "TITLE isolated\nSTATE PLSTN\nKINEM SMALL\nBLOCK hot PL8TM 4 s BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+                  "   2 1.   2 1.\nBLOCK cold PL8TM 4 s BILINEAR\n   4. 0.   8. 0.   8. 4.   4. 4.\n   2 1.   2 1.\nLAW s HEAT\n   30. 4.5\nSTART T 900.\n"
+                  f"CONVE cold 2 H 1. TS 20.\n{more}STRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
+        if run.ok:
+            lines = [line["text"] for line in summary(run)["warnings"] if "keeps its temperature" in line["text"]]
+            checks.that(len(lines) == isolated and all(line.startswith("hot: ") and " of 900:" in line for line in lines), f"{run.name}: told", lines)
     # 273.15 for -273.15
     for zero in (0., -273.15, 273.15, 20.):
         run = Run(checks, f"zero-{zero:g}", "TITLE zero\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
