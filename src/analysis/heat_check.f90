@@ -1,5 +1,6 @@
 !> What can be said of the heat of a deck before it runs: torches beside their bodies, dies beside sides, sides cooled twice, sides
-!> that radiate below absolute zero, steels without hardness, steels that begin below absolute zero, austenite that is too cold.
+!> that radiate below absolute zero, steels without hardness, steels that begin below absolute zero, austenite that is too cold,
+!> bodies whose temperature never changes.
 module heat_check
   use absolute_zeros, only: judge_zeros
   use contact_outlook, only: gaps_at_rest
@@ -9,6 +10,7 @@ module heat_check
   use fields, only: displacement_field, field_t, find_field
   use hardness, only: has_hardness
   use heat_contact_point, only: touching_still
+  use isolated_bodies, only: judge_isolated
   use kinds, only: wp
   use law_api, only: find_parameter, heat_law, law_t
   use loads, only: by_convection, by_radiation, multiplier_at
@@ -51,6 +53,7 @@ contains
       call judge_radiation(scene, g, warnings)
     end do
     call judge_zeros(scene, laws, warnings)
+    if (.not. lacks_mesh(scene)) call judge_isolated(scene, laws, warnings)
     call judge_hardness(scene, warnings)
     call judge_cycle_heat(scene, laws, warnings)
     if (scene%fields(displacement_field)%declared) return

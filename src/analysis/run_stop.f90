@@ -68,7 +68,8 @@ contains
       //'elements with 4 integration points has a motion that nothing resists, 9 points with MEAN have none'
     if (loses_touch(scene)) &
       advice = advice//'; heat that jumps as a point opens (COU2DC) may leave no equilibrium to a part that shrinks away from a ' &
-               //'die: let PRESS begin, at pressure 0, with what GAP and HO give at gap 0'
+               //'die: let PRESS begin, at pressure 0, with what GAP and HO give at gap 0, and grow over a pressure of 1e-5 of ' &
+               //'Young''s modulus or more'
     what = 'no convergence'
     if (is_steep(scene, run%equations%laws)) advice = advice//'; friction by M has no bound by the pressure but PHI: PHI 1 ' &
       //'beside M, above which an equilibrium need not exist'
@@ -86,17 +87,20 @@ contains
     if (allocated(late)) error%advice = error%advice//' (and '//late%message//')'
   end subroutine stop_here
 
-  !> Heat at a contact, found together with the motion, jumps where points open.
+  !> Heat at a contact, found together with the motion, jumps where points open, or all but jumps: over a pressure by which the body
+  !> is strained as by some hundredths of a degree.
   pure function loses_touch(scene)
     type(scene_t), intent(in) :: scene
     logical :: loses_touch
+    real(wp), parameter :: little = 1.0e-6_wp   ! of Young's modulus
     integer :: g
 
     loses_touch = .false.
     if (scene%strategy%coupling == coupling_once .or. .not. scene%fields(displacement_field)%declared) return
     do g = 1, size(scene%groups)
       if (scene%groups(g)%role /= role_heat_contact) cycle
-      loses_touch = loses_touch .or. jumps_at_opening(scene%groups(g)%heat_contact)
+      loses_touch = loses_touch .or. jumps_at_opening(scene%groups(g)%heat_contact, &
+                                                     little*scene%groups(scene%groups(g)%host)%modulus)
     end do
   end function loses_touch
 

@@ -67,6 +67,7 @@ contains
     type(elem_t) :: row
 
     row = heat_side_row(name, purpose, role_heat_contact)
+    row%follows = .true.
     row%compute => compute
   end function common_row
 

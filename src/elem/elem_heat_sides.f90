@@ -67,7 +67,6 @@ contains
     row%role = role
     allocate (row%unknowns, source=[that_reads('temperature'), that_reads('displacement')])
     row%unknowns(1)%acts = .true.
-    row%follows = .true.
     row%effect = 'heat'
     allocate (row%options(0))
     row%variables => no_variables

@@ -17,7 +17,7 @@ module elem_pl8ls
   use law_api, only: driver_count, driver_temperature, law_done, law_t, solid_law
   use mean_dilatation, only: dilatation_t, mean_option, share_dilatation, share_pressure
   use plane_stress_points, only: update_plane_stress
-  use plastic_heat, only: add_rows_of_heat, heated_by_work, latent_slopes, move_along, ncomponent, shares_of_work, &
+  use plastic_heat, only: add_rows_of_heat, heated_by_work, latent_slopes, ncomponent, shares_of_work, &
                           volumes_at
   use point_temperatures, only: nodal_temperatures, point_temperatures_of, projected_functions, temperature_field, temperature_place
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
@@ -89,7 +89,8 @@ contains
     real(wp), dimension(8, group%rule%n, size(x, 3)) :: nx, ny, zx
     real(wp) :: dv(group%rule%n, size(x, 3)), f(5, group%rule%n, size(x, 3)), tangent(4, 5, group%rule%n, size(x, 3))
     real(wp) :: given(driver_count(law), 2, group%rule%n*size(x, 3)), section(3, 2)
-    real(wp) :: functions(8, group%rule%n), warmer(4, group%rule%n, size(x, 3))   ! d(stress)/d(temperature)
+    real(wp) :: functions(8, group%rule%n), warmer(5, group%rule%n, size(x, 3))   ! d(stress, plastic work)/d(temperature)
+    real(wp), allocatable :: by_work(:, :, :)   ! d(plastic work)/dh, where it heats in the solve under way
     integer :: status(group%rule%n, size(x, 3))
     integer :: e, n, nb, nstate
 
@@ -105,7 +106,12 @@ contains
       return
     end do
     call find_drivers()
-    call update_points(committed, given, f, trial, tangent, status)
+    if (instant%tangent .and. heated_by_work(scene, group, layout, instant) > 0) then
+      allocate (by_work(ncomponent, group%rule%n, nb))
+      call update_points(committed, given, f, trial, tangent, status, by_work)
+    else
+      call update_points(committed, given, f, trial, tangent, status)
+    end if
     if (scene%plane_state == plane_stress .and. kinematics%finite) dv = dv*trial(nstate, :, :)
     do e = 1, nb
       if (any(status(:, e) /= law_done) .and. report%status == 0) then
@@ -168,20 +174,21 @@ contains
     end subroutine find_drivers
 
     !> State at the end of a step from the state `before`; in plane stress the motion across the plane is found.
-    subroutine update_points(before, driven, g, after, moduli, answers)
+    subroutine update_points(before, driven, g, after, moduli, answers, along)
       real(wp), intent(in), contiguous :: before(:, :, :), driven(:, :, :)
       real(wp), intent(inout), contiguous :: g(:, :, :)
       real(wp), intent(inout), contiguous :: after(:, :, :)
       real(wp), intent(out), contiguous :: moduli(:, :, :, :)
       integer, intent(out), contiguous :: answers(:, :)
+      real(wp), intent(out), contiguous, optional :: along(:, :, :)   !! d(plastic work)/dh
 
       if (scene%plane_state == plane_stress) then
         call update_plane_stress(kinematics, law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, driven, &
-                                 g, before, after, moduli, answers)
+                                 g, before, after, moduli, answers, along)
         after(nstate, :, :) = before(nstate, :, :)*g(5, :, :)
       else
         call kinematics%update(law, scene%materials(group%material), instant%dt, group%rule%n*nb, nstate, driven, &
-                               g, before, after, moduli, answers)
+                               g, before, after, moduli, answers, along)
       end if
     end subroutine update_points
 
@@ -189,7 +196,7 @@ contains
     subroutine couple_to_temperature()
       if (.not. instant%solved(layout%field(temperature_place(layout)))) return
       call add_columns_of_temperature()
-      if (heated_by_work(scene, group, layout, instant) > 0) call add_work()
+      if (allocated(by_work)) call add_work()
       if (size(drivers, 2) == 4 .and. instant%mode == mode_advance .and. instant%content) call add_latent()
     end subroutine couple_to_temperature
 
@@ -236,7 +243,7 @@ contains
     !> d(force)/d(temperature): the forces of d(stress dv)/d(temperature) at the points, by central differences of the whole update
     !> (any law, any kinematics); error eps**(2/3).
     subroutine add_columns_of_temperature()
-      real(wp), dimension(4, group%rule%n, nb) :: high, low
+      real(wp), dimension(5, group%rule%n, nb) :: high, low
       real(wp) :: change, shape(8, layout%count(temperature_place(layout))), unused(n, n)
       integer :: u, k, p
 
@@ -244,32 +251,43 @@ contains
       change = epsilon(1.0_wp)**(1.0_wp/3)*maxval(abs(given(driver_temperature, :, :)))
       ! nothing has a temperature yet: any number serves
       if (.not. change > 0) change = epsilon(1.0_wp)**(1.0_wp/3)
-      call stresses_at(change, high)
-      call stresses_at(-change, low)
-      high = (high - low)/(2*change)
-      warmer = high
+      call answers_at(change, high)
+      call answers_at(-change, low)
+      warmer = (high - low)/(2*change)
       do k = 1, layout%count(u)
         shape(:, k) = nodal_temperatures(merge(1.0_wp, 0.0_wp, [(p == k, p=1, layout%count(u))]))
       end do
       do e = 1, nb
         do k = 1, layout%count(u)
-          low(:, :, e) = high(:, :, e)*spread(matmul(shape(:, k), functions), 1, 4)
-          call forces_of(e, .false., low(:, :, e), dv(:, e), stiffness(:n, layout%first(1, u) + k - 1, e), unused)
+          low(:4, :, e) = warmer(:4, :, e)*spread(matmul(shape(:, k), functions), 1, 4)
+          call forces_of(e, .false., low(:4, :, e), dv(:, e), stiffness(:n, layout%first(1, u) + k - 1, e), unused)
         end do
       end do
     end subroutine add_columns_of_temperature
 
-    !> Stresses at the end of the step, times the volume over that of the trial state, were all temperatures higher.
-    subroutine stresses_at(change, stress)
+    !> Stresses at the end of the step, times the volume over that of the trial state, and the plastic work of the step, were all
+    !> temperatures higher. Work done before would cost digits.
+    subroutine answers_at(change, answers)
       real(wp), intent(in) :: change
-      real(wp), intent(out) :: stress(:, :, :)
-      real(wp) :: other(nstate, group%rule%n, nb), g(5, group%rule%n, nb)
+      real(wp), intent(out) :: answers(:, :, :)   !! (5, npoint, nelem)
+      real(wp) :: without(nstate, group%rule%n, nb), other(nstate, group%rule%n, nb), g(5, group%rule%n, nb)
 
+      without = committed
+      if (allocated(by_work)) without(place_of_work(), :, :) = 0
       g = f
-      call update_at(committed, change, g, other)
-      stress = other(1:4, :, :)
-      if (scene%plane_state == plane_stress .and. kinematics%finite) stress = stress*spread(g(5, :, :)/f(5, :, :), 1, 4)
-    end subroutine stresses_at
+      call update_at(without, change, g, other)
+      answers(:4, :, :) = other(1:4, :, :)
+      if (scene%plane_state == plane_stress .and. kinematics%finite) &
+        answers(:4, :, :) = answers(:4, :, :)*spread(g(5, :, :)/f(5, :, :), 1, 4)
+      answers(5, :, :) = 0
+      if (allocated(by_work)) answers(5, :, :) = other(place_of_work(), :, :)
+    end subroutine answers_at
+
+    pure function place_of_work() result(row)
+      integer :: row
+
+      row = group%variables(find_variable(group%variables, 'plastic_work'))%first
+    end function place_of_work
 
     !> State at the end of the step from the state `before`, were temperatures higher and the motion g.
     subroutine update_at(before, change, g, other)
@@ -291,41 +309,18 @@ contains
       call update_points(before, shifted, g, other, unused, answers)
     end subroutine update_at
 
-    !> d(heat)/d(motion) and d(heat)/d(temperature) of the plastic work, by differences of the whole update. The work of the step
-    !> alone is looked at, so that what was done before costs no digits; it bends over elastic strains, some 1e-3, of which a step
-    !> of 1e-10 is 1e-7.
+    !> d(heat)/d(motion) and d(heat)/d(temperature) of the plastic work.
     subroutine add_work()
-      real(wp), parameter :: step = 1.0e-10_wp
-      real(wp) :: slopes(ncomponent + 1, group%rule%n, nb)
-      real(wp), dimension(nstate, group%rule%n, nb) :: without, other
-      real(wp) :: g(5, group%rule%n, nb), done(group%rule%n, nb), change
-      integer :: c, work
+      real(wp) :: slopes(ncomponent + 1, group%rule%n, nb), share(group%rule%n, nb)
 
-      work = group%variables(find_variable(group%variables, 'plastic_work'))%first
-      if (.not. any(abs(trial(work, :, :) - committed(work, :, :)) > 0)) return
-      without = committed
-      without(work, :, :) = 0
-      g = f
-      call update_at(without, 0.0_wp, g, other)
-      done = other(work, :, :)
-      slopes = 0
-      do c = 1, merge(ncomponent - 1, ncomponent, scene%plane_state == plane_stress)
-        g = f
-        call move_along(c, step, kinematics%finite, g)
-        call update_at(without, 0.0_wp, g, other)
-        slopes(c, :, :) = (other(work, :, :) - done)/step
-      end do
-      change = sqrt(epsilon(1.0_wp))*maxval(abs(given(driver_temperature, :, :)))
-      if (change > 0) then
-        g = f
-        call update_at(without, change, g, other)
-        slopes(ncomponent + 1, :, :) = (other(work, :, :) - done)/change
-      end if
-      call shares_of_work(scene, group, instant, layout, rule, start, done)
+      slopes(:ncomponent, :, :) = by_work
+      slopes(ncomponent + 1, :, :) = warmer(5, :, :)
+      if (.not. any(abs(slopes) > 0)) return
+      call shares_of_work(scene, group, instant, layout, rule, start, share)
       if (kinematics%finite .and. scene%plane_state /= plane_stress) then
-        call add_rows_of_heat(instant, layout, rule, volumes_of_work(), nx, ny, motion_across(), done, slopes, stiffness)
+        call add_rows_of_heat(instant, layout, rule, volumes_of_work(), nx, ny, motion_across(), share, slopes, stiffness)
       else
-        call add_rows_of_heat(instant, layout, rule, volumes_of_mesh(), nx, ny, motion_across(), done, slopes, stiffness)
+        call add_rows_of_heat(instant, layout, rule, volumes_of_mesh(), nx, ny, motion_across(), share, slopes, stiffness)
       end if
     end subroutine add_work
 
@@ -375,7 +370,7 @@ contains
       do i = 1, nb
         do p = 1, group%rule%n
           call latent_slopes(scene%plane_state == plane_stress, drivers(:, 4, p, i), trial(1:4, p, i), tangent(:, :, p, i), &
-                             warmer(:, p, i), slopes(:, p, i))
+                             warmer(:4, p, i), slopes(:, p, i))
         end do
       end do
       call add_rows_of_heat(instant, layout, rule, volumes_of_mesh(), nx, ny, motion_across(), share, slopes, stiffness)
@@ -408,9 +403,13 @@ contains
     type(quad8_rule_t) :: rule
     type(dilatation_t) :: own
     real(wp) :: nx(8), ny(8), detj, dv, volume(group%rule%n), m(group%rule%n), shared(4, group%rule%n), stress(4), strain(4)
+    real(wp) :: thickness(3)
     integer :: e, p, k, kept
 
     call quad8_rule(group%rule%n, rule)
+    ! small strains: the section stays where it was, as the nodes do
+    thickness = scene%section
+    if (scene%finite) thickness = section
     k = find_variable(law%history, 'plastic_work')
     if (k > 0) k = group%variables(find_variable(group%variables, 'plastic_work'))%first
     kept = find_variable(group%variables, 'stored_work')
@@ -418,7 +417,7 @@ contains
     do e = 1, size(x, 3)
       do p = 1, group%rule%n
         call derivatives(rule%dphi(:, :, p), x(:, :, e), nx, ny, detj)
-        volume(p) = detj*rule%weight(p)*thickness_at(section, matmul(x(:, :, e), rule%phi(:, p)))
+        volume(p) = detj*rule%weight(p)*thickness_at(thickness, matmul(x(:, :, e), rule%phi(:, p)))
         if (scene%plane_state == plane_stress .and. scene%finite) volume(p) = volume(p)*state(size(state, 1), p, e)
       end do
       totals%volume = totals%volume + sum(volume)

@@ -530,15 +530,17 @@ contains
     real(wp), intent(in) :: section(3), x(:, :, :), state(:, :, :), before(:, :, :)
     type(totals_t), intent(out) :: totals
     type(quad8_rule_t) :: rule
-    real(wp) :: nx(8), ny(8), detj
+    real(wp) :: nx(8), ny(8), detj, thickness(3)
     integer :: e, p
 
     if (group%host > 0) return
+    thickness = scene%section
+    if (scene%finite) thickness = section
     call quad8_rule(group%rule%n, rule)
     do e = 1, size(x, 3)
       do p = 1, group%rule%n
         call derivatives(rule%dphi(:, :, p), x(:, :, e), nx, ny, detj)
-        totals%volume = totals%volume + detj*rule%weight(p)*thickness_at(section, matmul(x(:, :, e), rule%phi(:, p)))
+        totals%volume = totals%volume + detj*rule%weight(p)*thickness_at(thickness, matmul(x(:, :, e), rule%phi(:, p)))
       end do
     end do
     totals%unloaded_volume = totals%volume

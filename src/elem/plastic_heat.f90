@@ -21,7 +21,7 @@ module plastic_heat
   use stress_measures, only: von_mises
   implicit none
   private
-  public :: add_rows_of_heat, heated_by_work, latent_slopes, move_along, ncomponent, shares_of_work, volumes_at
+  public :: add_rows_of_heat, heated_by_work, latent_slopes, ncomponent, shares_of_work, volumes_at
 
   !> Components of h: xx, xy, yx, yy, zz.
   integer, parameter :: ncomponent = 5
@@ -47,27 +47,6 @@ contains
       if (find_variable(scene%groups(g)%variables, work_heated) > 0) heated = g
     end do
   end function heated_by_work
-
-  !> The motion of a step, moved along a component of h.
-  pure subroutine move_along(component, step, finite, f)
-    integer, intent(in) :: component       !! of h
-    real(wp), intent(in) :: step           !! [-]
-    logical, intent(in) :: finite
-    real(wp), intent(inout) :: f(:, :, :)  !! (5, npoint, nelem) dx(n+1)/dx(n), or 1 + h where strains are small [-]
-    real(wp) :: g(5, size(f, 2), size(f, 3))
-    integer :: row, column
-
-    if (.not. finite) then
-      f(component, :, :) = f(component, :, :) + step
-    else if (component == 5) then
-      f(5, :, :) = f(5, :, :)*(1 + step)
-    else
-      g = f
-      row = (component - 1)/2
-      column = mod(component - 1, 2)
-      f(2*row + 1:2*row + 2, :, :) = g(2*row + 1:2*row + 2, :, :) + step*g(2*column + 1:2*column + 2, :, :)
-    end if
-  end subroutine move_along
 
   !> The share of the plastic work that becomes heat, at the points of a block of elements.
   pure subroutine shares_of_work(scene, group, instant, layout, rule, start, share)

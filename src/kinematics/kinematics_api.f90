@@ -32,8 +32,9 @@ module kinematics_api
     !> Stress of a block of n points from the motion of the step.
     !>
     !> `f` = dx(n+1)/dx(n) with the components xx, xy, yx, yy, zz. `tangent` = d stress / d h with
-    !> h = d(du)/dx(n+1) in the same order, the exact derivative of this update.
-    pure subroutine kinematics_update_i(law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status)
+    !> h = d(du)/dx(n+1) in the same order, the exact derivative of this update. `by_work` may be asked for where the history
+    !> of the law has `plastic_work`.
+    pure subroutine kinematics_update_i(law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status, by_work)
       import :: law_t, material_t, wp
       type(law_t), intent(in) :: law
       type(material_t), intent(in) :: material
@@ -45,6 +46,7 @@ module kinematics_api
       real(wp), intent(out) :: trial(nstate, n)      !! [unit of each component]
       real(wp), intent(out) :: tangent(4, 5, n)      !! [stress]
       integer, intent(out) :: status(n)              !! answers of the law
+      real(wp), intent(out), optional :: by_work(5, n)   !! d(plastic work)/dh [stress]
     end subroutine kinematics_update_i
   end interface
 

@@ -10,7 +10,7 @@
 module kinematics_jaumann
   use kinds, only: wp
   use kinematics_api, only: first_history, kinematics_t
-  use law_api, only: law_not_converged, law_t
+  use law_api, only: law_not_converged, law_t, row_of_work, tangent_rows
   use materials, only: material_t
   use step_frame, only: frame_t, has_tensors, turn_answer, turn_history, turned
   implicit none
@@ -30,7 +30,7 @@ contains
     row%update => update
   end function kinematics_jaumann_row
 
-  pure subroutine update(law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status)
+  pure subroutine update(law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status, by_work)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt
@@ -38,13 +38,16 @@ contains
     real(wp), intent(in) :: drivers(:, :, :), f(5, n), committed(nstate, n)
     real(wp), intent(out) :: trial(nstate, n), tangent(4, 5, n)
     integer, intent(out) :: status(n)
-    real(wp) :: e(4, n), de(4, 5, n), stress(4, n), elastic(4, n), history(nstate - first_history + 1, n), law_tangent(4, 4, n)
+    real(wp), intent(out), optional :: by_work(5, n)
+    real(wp) :: e(4, n), de(4, 5, n), stress(4, n), elastic(4, n), history(nstate - first_history + 1, n)
+    real(wp), allocatable :: law_tangent(:, :, :)   ! (4 or more, 4, n)
     real(wp), parameter :: engineering(4) = [1.0_wp, 1.0_wp, 2.0_wp, 1.0_wp]
     type(frame_t) :: frame(n)
     real(wp) :: fixed(4)
     logical :: no_middle(n), turning
     integer :: i, j
 
+    allocate (law_tangent(tangent_rows(law, material, present(by_work)), 4, n))
     turning = has_tensors(law, material)
     do i = 1, n
       ! det(1 + f), zero for half a turn: there is no mid-step
@@ -63,14 +66,22 @@ contains
       if (turning) then
         fixed = turned(frame(i), e(:, i), shear=2.0_wp)
         call turn_history(law, material, frame(i), history(:, i))
-        call turn_answer(frame(i), fixed, de(:, 1:4, i), law_tangent(:, :, i), stress(:, i), elastic(:, i), tangent(:, 1:4, i))
-        tangent(:, 5, i) = turned(frame(i), law_tangent(:, 4, i))*de(4, 5, i)
+        if (present(by_work)) then
+          call turn_answer(frame(i), fixed, de(:, 1:4, i), law_tangent(:, :, i), stress(:, i), elastic(:, i), &
+                           tangent(:, 1:4, i), by_work(:4, i))
+        else
+          call turn_answer(frame(i), fixed, de(:, 1:4, i), law_tangent(:, :, i), stress(:, i), elastic(:, i), tangent(:, 1:4, i))
+        end if
+        tangent(:, 5, i) = turned(frame(i), law_tangent(:4, 4, i))*de(4, 5, i)
       else
+        if (present(by_work)) by_work(:4, i) = matmul(law_tangent(row_of_work, :3, i), de(:3, 1:4, i))
         do j = 1, 4
-          tangent(:, j, i) = law_tangent(:, 1, i)*de(1, j, i) + law_tangent(:, 2, i)*de(2, j, i) + law_tangent(:, 3, i)*de(3, j, i)
+          tangent(:, j, i) = law_tangent(:4, 1, i)*de(1, j, i) + law_tangent(:4, 2, i)*de(2, j, i) &
+                             + law_tangent(:4, 3, i)*de(3, j, i)
         end do
-        tangent(:, 5, i) = law_tangent(:, 4, i)*de(4, 5, i)
+        tangent(:, 5, i) = law_tangent(:4, 4, i)*de(4, 5, i)
       end if
+      if (present(by_work)) by_work(5, i) = law_tangent(row_of_work, 4, i)*de(4, 5, i)
       trial(1:4, i) = stress(:, i)
       trial(5:8, i) = elastic(:, i)/engineering
       trial(first_history:, i) = history(:, i)

@@ -7,7 +7,7 @@
 module kinematics_log
   use kinds, only: wp
   use kinematics_api, only: first_history, kinematics_t
-  use law_api, only: law_t, tangent_rows
+  use law_api, only: law_t, row_of_volume, row_of_work, tangent_rows
   use materials, only: material_t
   use plane_tensors, only: exp_twice, half_log
   use step_frame, only: frame_of_step, frame_t, has_tensors, turn_answer, turn_history, turned
@@ -26,7 +26,7 @@ contains
     row%update => update
   end function kinematics_log_row
 
-  pure subroutine update(law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status)
+  pure subroutine update(law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status, by_work)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt
@@ -34,18 +34,21 @@ contains
     real(wp), intent(in) :: drivers(:, :, :), f(5, n), committed(nstate, n)
     real(wp), intent(out) :: trial(nstate, n), tangent(4, 5, n)
     integer, intent(out) :: status(n)
+    real(wp), intent(out), optional :: by_work(5, n)
     real(wp) :: e(4, n), de(4, 5, n), tau(4, n), elastic(4, n), history(nstate - first_history + 1, n)
-    real(wp) :: law_tangent(tangent_rows(law, material), 4, n)
+    real(wp), allocatable :: law_tangent(:, :, :)   ! (4 or more, 4, n)
     type(frame_t) :: frame(n)
     real(wp) :: fixed(4, n), less
-    logical :: turning
+    logical :: turning, swelling
     integer :: i, j, k
 
+    allocate (law_tangent(tangent_rows(law, material, present(by_work)), 4, n))
     do i = 1, n
       call half_log(push_forward(f(:, i), exp_twice(committed(5:8, i))), e(:, i), de(:, :, i))
       e(3, i) = 2*e(3, i)
     end do
     turning = has_tensors(law, material)
+    swelling = tangent_rows(law, material) >= row_of_volume
     if (turning) then
       fixed = e
       do i = 1, n
@@ -57,7 +60,13 @@ contains
     do i = 1, n
       if (turning) then
         call turn_history(law, material, frame(i), history(:, i))
-        call turn_answer(frame(i), fixed(:, i), de(:, 1:4, i), law_tangent(:, :, i), tau(:, i), elastic(:, i), tangent(:, 1:4, i))
+        if (present(by_work)) then
+          call turn_answer(frame(i), fixed(:, i), de(:, 1:4, i), law_tangent(:, :, i), tau(:, i), elastic(:, i), &
+                           tangent(:, 1:4, i), by_work(:4, i))
+        else
+          call turn_answer(frame(i), fixed(:, i), de(:, 1:4, i), law_tangent(:, :, i), tau(:, i), elastic(:, i), &
+                           tangent(:, 1:4, i))
+        end if
         law_tangent(:4, 4, i) = turned(frame(i), law_tangent(:4, 4, i))
       end if
       ! 1/J
@@ -68,6 +77,7 @@ contains
       if (turning) then
         tangent(:, 1:4, i) = tangent(:, 1:4, i)*less
       else
+        if (present(by_work)) by_work(:4, i) = matmul(law_tangent(row_of_work, :3, i), de(:3, 1:4, i))
         do j = 1, 4
           do k = 1, 4
             tangent(k, j, i) = (law_tangent(k, 1, i)*de(1, j, i) + law_tangent(k, 2, i)*de(2, j, i) &
@@ -76,12 +86,13 @@ contains
         end do
       end if
       tangent(:, 5, i) = law_tangent(:4, 4, i)*less
-      if (size(law_tangent, 1) > 4) then
+      if (present(by_work)) by_work(5, i) = law_tangent(row_of_work, 4, i)
+      if (swelling) then
         ! the elastic volume depends on the stress
         do j = 1, 4
-          tangent(:, j, i) = tangent(:, j, i) - trial(1:4, i)*dot_product(law_tangent(5, 1:3, i), de(1:3, j, i))
+          tangent(:, j, i) = tangent(:, j, i) - trial(1:4, i)*dot_product(law_tangent(row_of_volume, 1:3, i), de(1:3, j, i))
         end do
-        tangent(:, 5, i) = tangent(:, 5, i) - trial(1:4, i)*law_tangent(5, 4, i)
+        tangent(:, 5, i) = tangent(:, 5, i) - trial(1:4, i)*law_tangent(row_of_volume, 4, i)
         cycle
       end if
       tangent(:, 5, i) = tangent(:, 5, i) - trial(1:4, i)

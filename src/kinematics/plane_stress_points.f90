@@ -21,8 +21,10 @@ module plane_stress_points
 
 contains
 
-  !> As `kinematics%update`, with the stretch f(5, :) across the plane as a result.
-  pure subroutine update_plane_stress(kinematics, law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status)
+  !> As `kinematics%update`, with the stretch f(5, :) across the plane as a result; `by_work` is along the plane, with that stretch
+  !> as it follows.
+  pure subroutine update_plane_stress(kinematics, law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status, &
+                                      by_work)
     type(kinematics_t), intent(in) :: kinematics
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
@@ -34,6 +36,7 @@ contains
     real(wp), intent(out) :: trial(nstate, n)      !! [unit of each component]
     real(wp), intent(out) :: tangent(4, 5, n)      !! [stress]
     integer, intent(out) :: status(n)              !! answers of the law
+    real(wp), intent(out), optional :: by_work(5, n)   !! d(plastic work)/dh [stress]
     real(wp) :: strain(n), low(n), high(n), step
     integer :: i, iteration
     logical :: met(n)
@@ -47,7 +50,7 @@ contains
       else
         f(5, :) = 1 + strain
       end if
-      call kinematics%update(law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status)
+      call kinematics%update(law, material, dt, n, nstate, drivers, f, committed, trial, tangent, status, by_work)
       if (any(status /= law_done)) return
       do i = 1, n
         met(i) = abs(trial(4, i)) <= max(share_of_stress*maxval(abs(trial(1:3, i))), round_off_strain*abs(tangent(4, 5, i)))
@@ -68,6 +71,11 @@ contains
     end do
     where (.not. met) status = law_not_converged
     call condense(n, tangent, trial)
+    if (.not. present(by_work)) return
+    do i = 1, n
+      if (tangent(4, 5, i) > 0) by_work(:4, i) = by_work(:4, i) - by_work(5, i)/tangent(4, 5, i)*tangent(4, :4, i)
+      by_work(5, i) = 0
+    end do
   end subroutine update_plane_stress
 
   !> Stresses in the plane at sigma_zz = 0, along the tangent: the strain across the plane is known to round-off, which a large bulk

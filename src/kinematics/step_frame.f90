@@ -6,7 +6,7 @@
 !> In the plane R turns by the angle atan2(f_yx - f_xy, f_xx + f_yy). In small steps a tensor turns with Jaumann's spin.
 module step_frame
   use kinds, only: wp
-  use law_api, only: is_needed, law_t
+  use law_api, only: is_needed, law_t, row_of_work
   use materials, only: material_t
   implicit none
   private
@@ -89,15 +89,16 @@ contains
   end subroutine turn_history
 
   !> Turn a law's response forward; `tangent` becomes d tau / d h (4 components of h) instead of the law's own.
-  pure subroutine turn_answer(frame, e, de, law_tangent, tau, elastic, tangent)
+  pure subroutine turn_answer(frame, e, de, law_tangent, tau, elastic, tangent, by_work)
     type(frame_t), intent(in) :: frame
     real(wp), intent(in) :: e(4)                !! trial strain in the fixed frame, engineering shear [-]
     real(wp), intent(in) :: de(4, 4)            !! its derivative by h [-]
-    real(wp), intent(in) :: law_tangent(4, 4)   !! [stress]
+    real(wp), intent(in) :: law_tangent(:, :)   !! (4, 4) [stress]; row_of_work where `by_work` is wanted
     real(wp), intent(inout) :: tau(4)           !! [stress]
     real(wp), intent(inout) :: elastic(4)       !! elastic strain with the engineering shear [-]
     real(wp), intent(out) :: tangent(4, 4)      !! [stress]
-    real(wp) :: spin_e(4), spin_tau(4)
+    real(wp), intent(out), optional :: by_work(4)   !! d(plastic work)/dh [stress]
+    real(wp) :: spin_e(4), spin_tau(4), along(4)
     integer :: j
 
     tau = turned(frame, tau)
@@ -105,8 +106,9 @@ contains
     spin_e = [-e(3), e(3), 2*(e(1) - e(2)), 0.0_wp]
     spin_tau = [-2*tau(3), 2*tau(3), tau(1) - tau(2), 0.0_wp]
     do j = 1, 4
-      tangent(:, j) = turned(frame, matmul(law_tangent, turned(frame, de(:, j) - frame%dangle(j)*spin_e, back=.true., &
-                                                               shear=2.0_wp))) + frame%dangle(j)*spin_tau
+      along = turned(frame, de(:, j) - frame%dangle(j)*spin_e, back=.true., shear=2.0_wp)
+      tangent(:, j) = turned(frame, matmul(law_tangent(:4, :), along)) + frame%dangle(j)*spin_tau
+      if (present(by_work)) by_work(j) = dot_product(law_tangent(row_of_work, :), along)
     end do
   end subroutine turn_answer
 

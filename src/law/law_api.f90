@@ -21,6 +21,7 @@ module law_api
   public :: parameter, law_line, find_parameter, law_of_material, asks_for, is_needed, has_symmetric_tangent, &
             tangent_rows
   public :: driver_count, driver_temperature
+  public :: row_of_volume, row_of_work
   public :: law_done, law_not_converged
   public :: contact_open, contact_stick, contact_slip
   public :: solid_law, contact_law, heat_law, kind_names
@@ -40,6 +41,10 @@ module law_api
   integer, parameter :: contact_open = 0
   integer, parameter :: contact_stick = 1
   integer, parameter :: contact_slip = 2
+
+  !> Rows of the tangent of a law for solids below those of the stress, d()/d(trial strain): tr(elastic strain) of laws with
+  !> `swells_with`, and the `plastic_work` of those whose history has it.
+  integer, parameter :: row_of_volume = 5, row_of_work = 6
 
   !> The temperature is the first driver of every law.
   integer, parameter :: driver_temperature = 1
@@ -149,7 +154,7 @@ module law_api
       real(wp), intent(out) :: stress(:, :)           !! (4, n) [stress]
       real(wp), intent(out) :: elastic_strain(:, :)   !! (4, n) [-]
       real(wp), intent(out) :: history(:, :)          !! (nhistory, n) [unit of each component]
-      real(wp), intent(out) :: tangent(:, :, :)       !! (4, 4, n) [stress]; (5, 4, n): `swells_with`
+      real(wp), intent(out) :: tangent(:, :, :)       !! (4, 4, n) [stress]; where there is room also row_of_volume, row_of_work
       integer, intent(out) :: status(:)               !! (n) law_done or another answer
     end subroutine law_update_i
 
@@ -380,14 +385,17 @@ contains
     if (.not. yes .and. variable%or_needs > 0) yes = has_number(material, variable%or_needs)
   end function is_needed
 
-  !> Rows of the tangent of a law with the numbers of a material: 4, or 5 (`swells_with`).
-  pure function tangent_rows(law, material) result(rows)
+  !> Rows of the tangent of a law with the numbers of a material: 4, with row_of_volume, or with all.
+  pure function tangent_rows(law, material, with_work) result(rows)
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
+    logical, intent(in), optional :: with_work   !! room for row_of_work
     integer :: rows
 
     rows = 4
-    if (law%swells_with > 0) rows = merge(5, 4, has_number(material, law%swells_with))
+    if (law%swells_with > 0) rows = merge(row_of_volume, 4, has_number(material, law%swells_with))
+    if (.not. present(with_work)) return
+    if (with_work) rows = row_of_work
   end function tangent_rows
 
   !> The tangent of a law with the numbers of a material is symmetric.

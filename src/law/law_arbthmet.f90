@@ -11,7 +11,7 @@
 !> Sources: those of phase_point and stress_kinetics.
 module law_arbthmet
   use kinds, only: wp
-  use law_api, only: driver_temperature, law_line, law_t, parameter, parameter_t
+  use law_api, only: driver_temperature, law_line, law_t, parameter, parameter_t, row_of_volume, row_of_work
   use materials, only: has_number, material_t
   use phase_mechanics, only: has_yield, lacking_mechanical_data, lacking_viscosity, mixture_moduli
   use phase_point, only: first_hardening, first_phases, flow_stress_of_point, place_cowper, place_isig, place_melt, place_rate, &
@@ -95,7 +95,7 @@ contains
     real(wp), intent(in) :: dt, drivers(:, :, :), trial_strain(:, :), committed(:, :)
     real(wp), intent(out) :: stress(:, :), elastic_strain(:, :), history(:, :), tangent(:, :, :)
     integer, intent(out) :: status(:)
-    real(wp) :: z(phase_count, 2), temperature(2), start(size(committed, 1))
+    real(wp) :: z(phase_count, 2), temperature(2), start(size(committed, 1)), by_work(4)
     logical :: follows
     integer :: n, row
 
@@ -120,8 +120,9 @@ contains
         if (follows) history(first_phases:first_phases + phase_count - 1, n) = z(:, 2)
       end if
       call return_of_point(material, dt, temperature, z, trial_strain(:, n), stress(:, n), elastic_strain(:, n), history(:, n), &
-                           tangent(:4, :, n), status(n))
-      if (size(tangent, 1) > 4) tangent(5, :, n) = [1, 1, 0, 1]
+                           tangent(:4, :, n), by_work, status(n))
+      if (size(tangent, 1) >= row_of_volume) tangent(row_of_volume, :, n) = [1, 1, 0, 1]
+      if (size(tangent, 1) >= row_of_work) tangent(row_of_work, :, n) = by_work
       if (row > 0) history(row:row + 1, n) = measures_of(stress(:, n))
     end do
   end subroutine update

@@ -8,7 +8,7 @@ module law_epla
   use elasticity, only: moduli
   use hardening, only: yield_linear, yield_swift, yield_table, yield_voce
   use kinds, only: wp
-  use law_api, only: driver_temperature, find_parameter, law_line, law_t, parameter
+  use law_api, only: driver_temperature, find_parameter, law_line, law_t, parameter, row_of_work
   use materials, only: bracket_temperature, has_number, material_t, values_at
   use radial_return, only: flow_stress_at, flow_t, return_point
   use rate_dependence, only: rate_cowper, rate_johnson
@@ -101,7 +101,7 @@ contains
     real(wp), intent(out) :: stress(:, :), elastic_strain(:, :), history(:, :), tangent(:, :, :)
     integer, intent(out) :: status(:)
     type(flow_t) :: flow
-    real(wp) :: values(size(material%values))
+    real(wp) :: values(size(material%values)), by_work(4)
     integer :: n, k
 
     flow = options_of(material)
@@ -109,14 +109,16 @@ contains
       call numbers_of(material%values, flow)
       do n = 1, size(trial_strain, 2)
         call return_point(flow, material%curve, material%curve, dt, trial_strain(:, n), committed(:, n), stress(:, n), &
-                          elastic_strain(:, n), history(:, n), tangent(:, :, n), status(n))
+                          elastic_strain(:, n), history(:, n), tangent(:4, :, n), by_work, status(n))
+        if (size(tangent, 1) >= row_of_work) tangent(row_of_work, :, n) = by_work
       end do
     else
       do n = 1, size(trial_strain, 2)
         call numbers_at(material, drivers(driver_temperature, 2, n), values, flow, k)
         call return_point(flow, material%curves(:, :, k), material%curves(:, :, min(k + 1, size(material%curves, 3))), dt, &
                           trial_strain(:, n), committed(:, n), stress(:, n), elastic_strain(:, n), history(:, n), &
-                          tangent(:, :, n), status(n))
+                          tangent(:4, :, n), by_work, status(n))
+        if (size(tangent, 1) >= row_of_work) tangent(row_of_work, :, n) = by_work
       end do
     end if
   end subroutine update

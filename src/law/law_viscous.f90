@@ -9,7 +9,7 @@ module law_viscous
   use elasticity, only: moduli
   use hardening, only: yield_gsell, yield_norton
   use kinds, only: wp
-  use law_api, only: driver_temperature, law_line, law_not_converged, law_t, parameter
+  use law_api, only: driver_temperature, law_line, law_not_converged, law_t, parameter, row_of_work
   use materials, only: material_t, values_at
   use radial_return, only: flow_stress_at, flow_t, return_point
   use rate_dependence, only: rate_power
@@ -79,7 +79,7 @@ contains
     real(wp), intent(in) :: dt, drivers(:, :, :), trial_strain(:, :), committed(:, :)
     real(wp), intent(out) :: stress(:, :), elastic_strain(:, :), history(:, :), tangent(:, :, :)
     integer, intent(out) :: status(:)
-    real(wp) :: values(size(material%values))
+    real(wp) :: values(size(material%values)), by_work(4)
     type(flow_t) :: flow
     integer :: n
 
@@ -90,7 +90,8 @@ contains
         flow = norton_hoff(values)
       end if
       call return_point(flow, material%curve, material%curve, dt, trial_strain(:, n), committed(:, n), stress(:, n), &
-                        elastic_strain(:, n), history(:, n), tangent(:, :, n), status(n))
+                        elastic_strain(:, n), history(:, n), tangent(:4, :, n), by_work, status(n))
+      if (size(tangent, 1) >= row_of_work) tangent(row_of_work, :, n) = by_work
     end do
   end subroutine update_evpnh
 
@@ -99,14 +100,15 @@ contains
     real(wp), intent(in) :: dt, drivers(:, :, :), trial_strain(:, :), committed(:, :)
     real(wp), intent(out) :: stress(:, :), elastic_strain(:, :), history(:, :), tangent(:, :, :)
     integer, intent(out) :: status(:)
-    real(wp) :: values(size(material%values))
+    real(wp) :: values(size(material%values)), by_work(4)
     integer :: n
 
     do n = 1, size(trial_strain, 2)
       call values_at(material, drivers(driver_temperature, 2, n), values)
       call return_point(gsell_jonas(values, drivers(driver_temperature, 2, n)), material%curve, material%curve, dt, &
                         trial_strain(:, n), committed(:, n), stress(:, n), elastic_strain(:, n), history(:, n), &
-                        tangent(:, :, n), status(n))
+                        tangent(:4, :, n), by_work, status(n))
+      if (size(tangent, 1) >= row_of_work) tangent(row_of_work, :, n) = by_work
       ! below absolute zero
       if (.not. drivers(driver_temperature, 2, n) + values(place_absolute) > 0) status(n) = law_not_converged
     end do

@@ -45,7 +45,8 @@ module phase_point
 contains
 
   !> One point whose fractions are known at both ends of the step.
-  pure subroutine return_of_point(material, dt, temperature, z, trial_strain, stress, elastic_strain, history, tangent, status)
+  pure subroutine return_of_point(material, dt, temperature, z, trial_strain, stress, elastic_strain, history, tangent, by_work, &
+                                  status)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt                  !! [time]
     real(wp), intent(in) :: temperature(2)      !! at both ends of the step [degC]
@@ -54,9 +55,10 @@ contains
     real(wp), intent(out) :: stress(4), elastic_strain(4)   !! [stress], [-]
     real(wp), intent(inout) :: history(:)       !! (nhistory) [unit of each component]
     real(wp), intent(out) :: tangent(4, 4)      !! [stress]
+    real(wp), intent(out) :: by_work(4)         !! d(work)/d(trial strain) [stress]
     integer, intent(out) :: status
     type(flow_t) :: flow
-    real(wp) :: trial(4), curve(curve_rows, phase_count), known(return_rows), found(return_rows), dg, a, q
+    real(wp) :: trial(4), curve(curve_rows, phase_count), known(return_rows), found(return_rows), deviator(4), dg, a, q
 
     associate (steel => material%steel, hardened => history(first_hardening:first_hardening + phase_count - 1))
       call elastic_flow(material, z(:, 2), temperature(2), flow)
@@ -68,13 +70,15 @@ contains
       a = 1 + 3*flow%shear*dg
       known = 0
       found = 0
+      by_work = 0
       status = law_done
       if (flows(material)) then
         call carry_hardening(steel, z(:, 1), z(:, 2), temperature(2), hardened)
         if (is_molten(material, temperature(2))) hardened = 0
         if (rate_row(material) > 0) known(return_rows) = history(rate_row(material))
         call flow_of_mixture(material, z(:, 2), hardened, temperature(2), dt, known(return_rows), a, flow, curve)
-        call return_point(flow, curve, curve, dt, trial, known, stress, elastic_strain, found, tangent, status)
+        call return_point(flow, curve, curve, dt, trial, known, stress, elastic_strain, found, tangent, by_work, &
+                          status)
         if (has_yield(steel) .and. .not. flow%below(1) > 0) status = law_not_converged
         if (.not. is_molten(material, temperature(2))) hardened = hardened + found(row_plastic)
         if (flow%rate_row > 0) history(rate_row(material)) = found(flow%rate_row)
@@ -89,6 +93,10 @@ contains
       elastic_strain = with_deviator_over(a, elastic_strain)
       tangent = tangent/a
       tangent(normal, normal) = tangent(normal, normal) + flow%bulk*(1 - 1/a)
+      ! the work of transformation plasticity is q^2 dG, q^2 = 3/2 s:s
+      deviator = stress*[1, 1, 2, 1]
+      deviator(normal) = deviator(normal) - sum(stress(normal))/3
+      by_work = by_work/a + (3*dg)*matmul(deviator, tangent)
     end if
     q = von_mises(stress)
     history(row_plastic) = history(row_plastic) + found(row_plastic)

@@ -43,7 +43,8 @@ module radial_return
 contains
 
   !> One point: trial elastic strain to stress, elastic strain, history (plastic strain, plastic work, ...), tangent.
-  pure subroutine return_point(flow, below, above, dt, trial_strain, committed, stress, elastic_strain, history, tangent, status)
+  pure subroutine return_point(flow, below, above, dt, trial_strain, committed, stress, elastic_strain, history, tangent, by_work, &
+                               status)
     type(flow_t), intent(in) :: flow
     real(wp), intent(in) :: below(:, :)          !! (2, npoint) plastic strain [-], yield stress [stress] at the temperature below
     real(wp), intent(in) :: above(:, :)          !! (2, npoint) plastic strain [-], yield stress [stress] at the temperature above
@@ -54,10 +55,12 @@ contains
     real(wp), intent(out) :: elastic_strain(4)   !! [-]
     real(wp), intent(out) :: history(:)          !! (nhistory) [unit of each component]
     real(wp), intent(out) :: tangent(4, 4)       !! [stress]
+    real(wp), intent(out) :: by_work(4)          !! d(plastic work)/d(trial strain) [stress]
     integer, intent(out) :: status
     real(wp) :: driving(4), back(4), mean, q, g3, start, limit, factor, exponent, sy, slope, dp
 
     status = law_done
+    by_work = 0
     stress = hooke_stress(flow%bulk, flow%shear, trial_strain)
     elastic_strain = trial_strain
     history = committed
@@ -91,6 +94,7 @@ contains
     else
       call rate_factor(flow%rate_form, flow%rate, committed(flow%rate_row), factor, exponent)
       start = start*factor
+      dp = committed(flow%rate_row)*dt
       call return_with_rate(flow, below, above, committed(1), q, g3, limit, dt, dp, sy, slope, status)
       history(flow%rate_row) = dp/dt
       if (.not. dp > 0) then
@@ -104,6 +108,8 @@ contains
     elastic_strain = trial_strain - factor*[driving(1), driving(2), 2*driving(3), driving(4)]
     history(1) = committed(1) + dp
     history(2) = committed(2) + 0.5_wp*(start + sy)*dp
+    ! dq_trial = (g3 + slope) d dp, and 3 G/q times the driving deviator along the strain
+    by_work = (0.5_wp*(start + sy + slope*dp)/(g3 + slope)*3*flow%shear/q)*driving
     if (flow%back_row > 0) then
       back = back + (1.5_wp*dp/q)*driving
       stress = stress + (2*flow%kinematic/3)*back
@@ -161,21 +167,25 @@ contains
     status = law_not_converged
   end subroutine return_at_rest
 
-  !> The same with flow by rate, `sy` and `slope` = d sy/d dp with the factor of the rate; dp = 0 where it is below round-off.
+  !> The same with flow by rate, `sy` and `slope` = d sy/d dp with the factor of the rate; dp = 0 where it is below round-off. It is
+  !> sought from the dp given, that of the rate of the last step.
   !>
   !> Unknown z = ln(dp g3/q) < 0. Newton's method takes the residual of the logarithms of both sides while flow is a small part
   !> of the trial strain (a power is straight there), and the residual itself where it is most of it.
   pure subroutine return_with_rate(flow, below, above, p, q, g3, limit, dt, dp, sy, slope, status)
     type(flow_t), intent(in) :: flow
     real(wp), intent(in) :: below(:, :), above(:, :), p, q, g3, limit, dt
-    real(wp), intent(out) :: dp, sy, slope
+    real(wp), intent(inout) :: dp
+    real(wp), intent(out) :: sy, slope
     integer, intent(inout) :: status
-    real(wp) :: lower, upper, z, share, residual, growth, factor, exponent, step
+    real(wp) :: lower, upper, z, begin, share, residual, growth, factor, exponent, step
     integer :: iteration
     integer, parameter :: max_iterations = 100  ! bisection alone reaches round-off of z in 60
 
     lower = least_flow
     upper = 0
+    begin = upper
+    if (dp > 0) begin = log(dp*g3/q)
     z = lower
     do iteration = 1, max_iterations
       share = exp(z)
@@ -191,6 +201,7 @@ contains
         if (residual <= 0) return
         z = log(0.5_wp)
         if (limit > 0) z = log(1 - limit/q)
+        if (begin > lower .and. begin < upper) z = begin
         if (.not. (z > lower .and. z < upper)) z = 0.5_wp*(lower + upper)
         cycle
       end if

@@ -4,12 +4,12 @@
 !> the return after the phases that form under x, x = m(S(e, x)): two equations, solved by Newton's method with differences. What
 !> forms swells and so lowers the mean stress that lets it form: to repeat S would diverge.
 !> Tangent: d sigma = C de + S_x dx and dx = B d sigma, B = dm/d sigma, give d sigma = C de + S_x (I - B S_x)^-1 B C de. It is not
-!> symmetric. What forms changes the volume free of stress: tr(elastic strain) has derivatives of its own, the fifth row.
+!> symmetric. What forms changes the volume free of stress: tr(elastic strain) has derivatives of its own (row_of_volume).
 module stressed_phases
   use kinds, only: eps, wp
-  use law_api, only: law_done, law_not_converged
+  use law_api, only: law_done, law_not_converged, row_of_volume, row_of_work
   use materials, only: material_t
-  use phase_point, only: first_phases, place_stress, place_time, return_of_point, stress_row
+  use phase_point, only: first_phases, place_stress, place_time, return_of_point, row_work, stress_row
   use phase_state, only: state_size
   use phase_step, only: advance_phases
   use steels, only: phase_count
@@ -24,7 +24,7 @@ module stressed_phases
 
   !> What a point answers to a stress on its kinetics.
   type :: answer_t
-    real(wp) :: stress(4), elastic(4), tangent(4, 4)
+    real(wp) :: stress(4), elastic(4), tangent(4, 4), work, by_work(4)
     integer :: status
   end type answer_t
 
@@ -48,10 +48,10 @@ contains
     real(wp), intent(in) :: committed(:)        !! (nhistory) [unit of each component]
     real(wp), intent(out) :: stress(4), elastic_strain(4)   !! [stress], [-]
     real(wp), intent(out) :: history(:)         !! (nhistory) [unit of each component]
-    real(wp), intent(out) :: tangent(:, :)      !! (4, 4) [stress], or (5, 4): d tr(elastic strain)/d trial strain [-]
+    real(wp), intent(out) :: tangent(:, :)      !! (4, 4) [stress], or with row_of_volume [-] and row_of_work [stress]
     integer, intent(out) :: status
     type(answer_t) :: here
-    real(wp) :: x(2), residual(2), by_x(5, 2), b(2, 4), correction(2), scale, by_strain(2, 4)
+    real(wp) :: x(2), residual(2), by_x(row_of_work, 2), b(2, 4), correction(2), scale, by_strain(2, 4)
     integer :: iteration
 
     x = committed(stress_row(material):stress_row(material) + 1)
@@ -73,7 +73,8 @@ contains
     status = here%status
     by_strain = solved_each(matmul(b, by_x(:4, :)), matmul(b, here%tangent))
     tangent(:4, :) = here%tangent + matmul(by_x(:4, :), by_strain)
-    if (size(tangent, 1) > 4) tangent(5, :) = [1, 1, 0, 1] + matmul(by_x(5, :), by_strain)
+    if (size(tangent, 1) >= row_of_volume) tangent(row_of_volume, :) = [1, 1, 0, 1] + matmul(by_x(row_of_volume, :), by_strain)
+    if (size(tangent, 1) >= row_of_work) tangent(row_of_work, :) = here%by_work + matmul(by_x(row_of_work, :), by_strain)
   end subroutine return_under_stress
 
   !> The share of a correction after which the residual is less.
@@ -108,7 +109,8 @@ contains
     z(:, 1) = committed(first_phases:first_phases + phase_count - 1)
     z(:, 2) = history(first_phases:first_phases + phase_count - 1)
     call return_of_point(material, dt, temperature, z, trial_strain, answer%stress, answer%elastic, history, answer%tangent, &
-                         answer%status)
+                         answer%by_work, answer%status)
+    answer%work = history(row_work) - committed(row_work)
   end subroutine answer_to
 
   !> Phases at the end of the step, at the temperature of the point and under x.
@@ -125,12 +127,13 @@ contains
                         stresses/material%values(place_stress))
   end subroutine follow_kinetics
 
-  !> Derivative of the stress and of tr(elastic strain) by x, central differences, and of the measures by the stress.
+  !> Derivative of the stress, of tr(elastic strain) and of the plastic work by x, central differences, and of the measures by the
+  !> stress.
   pure subroutine slopes_of(material, dt, temperature, trial_strain, committed, x, scale, here, by_x, b)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt, temperature(2), trial_strain(4), committed(:), x(2), scale
     type(answer_t), intent(in) :: here
-    real(wp), intent(out) :: by_x(5, 2), b(2, 4)   !! of stress and tr(elastic strain); of the measures
+    real(wp), intent(out) :: by_x(row_of_work, 2), b(2, 4)   !! of what the rows of a tangent are of; of the measures
     type(answer_t) :: high, low
     real(wp) :: other(2), mean, unused(size(committed))
     integer :: k
@@ -142,7 +145,8 @@ contains
       other(k) = x(k) - eps**(1.0_wp/3)*scale
       call answer_to(material, dt, temperature, trial_strain, committed, other, low, unused)
       by_x(:4, k) = high%stress - low%stress
-      by_x(5, k) = sum(high%elastic([1, 2, 4]) - low%elastic([1, 2, 4]))
+      by_x(row_of_volume, k) = sum(high%elastic([1, 2, 4]) - low%elastic([1, 2, 4]))
+      by_x(row_of_work, k) = high%work - low%work
       by_x(:, k) = by_x(:, k)/(2*eps**(1.0_wp/3)*scale)
     end do
     mean = (here%stress(1) + here%stress(2) + here%stress(4))/3

@@ -92,22 +92,23 @@ contains
   end subroutine flow_from_die
 
   !> The conductance of a point that is about to open is another than that of one that has just opened, by more than a hundredth of
-  !> H.
-  pure function jumps_at_opening(contact) result(yes)
+  !> H; or by more than half of it under a little pressure, which is as much as a jump to the mechanics.
+  pure function jumps_at_opening(contact, little) result(yes)
     type(heat_contact_t), intent(in) :: contact
+    real(wp), intent(in) :: little   !! [stress]
     logical :: yes
-    real(wp), parameter :: share = 0.01_wp
-    real(wp) :: touching, apart, unused
+    real(wp), parameter :: share(2) = [0.01_wp, 0.5_wp]
+    real(wp) :: touching(2), apart, unused
 
-    touching = contact%conductance
+    touching = 1
     if (allocated(contact%by_pressure)) then
-      call value_in_table(contact%by_pressure, 0.0_wp, touching, unused)
-      touching = contact%conductance*touching
+      call value_in_table(contact%by_pressure, 0.0_wp, touching(1), unused)
+      call value_in_table(contact%by_pressure, little, touching(2), unused)
     end if
     apart = 0
     if (allocated(contact%by_gap)) call value_in_table(contact%by_gap, 0.0_wp, apart, unused)
     apart = contact%conductance*apart + contact%convection
-    yes = abs(touching - apart) > share*contact%conductance
+    yes = any(abs(contact%conductance*touching - apart) > share*contact%conductance)
   end function jumps_at_opening
 
   !> Share of friction heat that goes into a body: its effusivity over the sum of both (half spaces that rub have one temperature

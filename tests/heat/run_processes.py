@@ -12,6 +12,7 @@ usage: run_processes.py [-v] [-k]
 - `probes`: the mean temperature of a body is the heat that it took up over its capacity; the extremes are those of its nodes.
 - `mirrored`: a quench of a tooth and of its mirror image, whose nodes are numbered otherwise: the same steps, iterations and temperatures.
 - `stretched`: a bar drawn to twice its length conducts a quarter of the heat, in plane stress as in generalised plane strain.
+- `first_geometry`: sides that lose heat stay where they began with small strains, as volumes do.
 - `told`: warnings before a run.
 - `pressed`: a ring quenched between rough dies, the upper one under a force that rests: Newton's method is not caught between points
   that stick and slip, where its matrix leads uphill; and an arch under a force that rests, which snaps through as it cools, to where it
@@ -288,6 +289,20 @@ def stretched(checks):
                 checks.small(abs(flow/(10*100/10*10*0.5/4) - 1), 3e-4, f"{run.name}: {flow:.3f}")
 
 
+def first_geometry(checks):
+    """With small strains sides stay where they began: a block that shrinks by 4 % as it cools loses what one without expansion loses."""
+    for state in ("PLSTN", "AXISYM", "PLSTS"):
+        for solve in ("ONCE", "MONOLITHIC"):
+            runs = [Run(checks, f"first-{state}-{solve}-{alpha}", f"TITLE first\nSTATE {state}\nKINEM SMALL\nBLOCK b PL8LS 4 s\n   2. 0. 10. 0. 10. 4. 2. 4.\n"
+                        f"   3 1. 2 1.\nLAW s ELATH\n   200000. 0.3 {alpha}\nADDEL b PL8TM h BILINEAR\nLAW h HEAT\n   30. 4.5\nSTART T 500.\nFIXED b 1 Y\n"
+                        f"FIXED POINT 2. 0. X\nCONVE b 2 H 3. TS 20.\nRADIA b 3 EPS 0.8 SIGMA 5.67E-9 ZERO 273.15 TS 20.\nFLUX b 4 Q -50.\nSOLVE {solve}\n"
+                        "STRAT 0.1 1.E-3 0.2 5 3\nSTOP 4.\nPROBE t NODE T 10. 4.\nEND\n") for alpha in ("0.", "1.E-4")]
+            if all(run.ok for run in runs):
+                for name in ("t", "heat_through_b.2/CONVE", "heat_through_b.3/RADIA", "heat_through_b.4/FLUX"):
+                    still, moved = (last(run, name) for run in runs)
+                    checks.small(abs(moved/still - 1), 1e-7, f"{runs[0].name[:-3]}: {name}, {still:.6g}")
+
+
 def told(checks):
     steel = "STEEL s\nSOURCE 'round numbers'\nTEMPS MS 300\nMARTEN BETA 0.011\nPHASE ALL\n   LAMBDA 30\n   RHOC 4.5\nEND\n"
     with open(os.path.join(checks.folder, "soft.met"), "w") as file:
@@ -309,6 +324,15 @@ def told(checks):
             lines = [line["text"] for line in summary(run)["warnings"] if "below absolute zero" in line["text"]]
             checks.that(len(lines) == cold, f"radiates from {start} with ZERO {zero}: told", summary(run)["warnings"])
             checks.that(abs(run.history["heat_through_bar/GOLDAK"][-1]) == 0, "a torch without power heats nothing")
+    # a body that nothing heats or cools, beside one that air cools
+    for more, isolated in (("", True), ("JOIN hot 2 cold 4\n", False), ("HEATS hot Q 1.\n", False), ("START T 900+x hot\n", False),
+                           ("IMPOS hot 4 T on 900.\nLIC on\n   0. 1.\n", False), ("DIE d SIDES hot 2\nCOU2DC cold 4 d H 1.\n", False)):
+        run = Run(checks, f"isolated-{more[:5].strip() or 'alone'}", "TITLE isolated\nSTATE PLSTN\nKINEM SMALL\nBLOCK hot PL8TM 4 s BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+                  "   2 1.   2 1.\nBLOCK cold PL8TM 4 s BILINEAR\n   4. 0.   8. 0.   8. 4.   4. 4.\n   2 1.   2 1.\nLAW s HEAT\n   30. 4.5\nSTART T 900.\n"
+                  f"CONVE cold 2 H 1. TS 20.\n{more}STRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
+        if run.ok:
+            lines = [line["text"] for line in summary(run)["warnings"] if "keeps its temperature" in line["text"]]
+            checks.that(len(lines) == isolated and all(line.startswith("hot: ") and " of 900:" in line for line in lines), f"{run.name}: told", lines)
     # 273.15 for -273.15
     for zero in (0., -273.15, 273.15, 20.):
         run = Run(checks, f"zero-{zero:g}", "TITLE zero\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
@@ -346,6 +370,6 @@ def told(checks):
 if __name__ == "__main__":
     all_checks = Checks()
     law_file(all_checks)
-    for case in (melting, bree, waits, pressed, exchanged, buckles, probes, mirrored, stretched, spent, told):
+    for case in (melting, bree, waits, pressed, exchanged, buckles, probes, mirrored, stretched, first_geometry, spent, told):
         case(all_checks)
     sys.exit(all_checks.end())

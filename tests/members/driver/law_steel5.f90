@@ -7,7 +7,7 @@ module law_steel5
   use elasticity, only: moduli
   use hardening, only: most_numbers
   use kinds, only: wp
-  use law_api, only: law_line, law_t, parameter
+  use law_api, only: law_line, law_t, parameter, row_of_work
   use materials, only: material_t
   use radial_return, only: flow_stress_at, flow_t, return_point
   use state_variables, only: state_variable, transfer_scalar
@@ -60,11 +60,13 @@ contains
     real(wp), intent(out) :: stress(:, :), elastic_strain(:, :), history(:, :), tangent(:, :, :)
     integer, intent(out) :: status(:)
     real(wp), parameter :: none(2, 0) = reshape([real(wp) ::], [2, 0])
+    real(wp) :: by_work(4)
     integer :: n
 
     do n = 1, size(trial_strain, 2)
       call return_point(flow_of(material, drivers(driver_hydrogen, 2, n)), none, none, dt, trial_strain(:, n), committed(:, n), &
-                        stress(:, n), elastic_strain(:, n), history(:, n), tangent(:, :, n), status(n))
+                        stress(:, n), elastic_strain(:, n), history(:, n), tangent(:4, :, n), by_work, status(n))
+      if (size(tangent, 1) >= row_of_work) tangent(row_of_work, :, n) = by_work
     end do
   end subroutine update
 
