@@ -1,0 +1,109 @@
+!> Free nodes of a new mesh that lie in a rigid die, moved out of it.
+!>
+!> Contact holds the nodes of a side; between them a free side may be in the die, where this bends by a radius that is small beside
+!> the side. A node of the new mesh at such a place would press with all of its depth at once: a thousandth of a side is ten times
+!> what the penalty of PENETR allows, and more than the part can bear. So it stands on the die's surface. (What the contour follows
+!> beside an end of contact is left to contact_overlaps.)
+module free_nodes_out
+  use closest_point, only: closest_point_t
+  use die_closest_points, only: find_closest_point
+  use dies, only: is_deformable
+  use kinds, only: wp
+  use new_scene, only: middle_position
+  use part_contour, only: contour_t
+  use plane_vectors, only: turned
+  use scene, only: scene_t
+  use vectors, only: length_of
+  use zone_mesh, only: new_mesh_t
+  implicit none
+  private
+  public :: move_free_nodes_out
+
+  !> At most so deep, over the side: deeper ones are beyond the opposite face of a thin die.
+  real(wp), parameter :: deepest = 0.1_wp
+  !> A node nearer than this to a point of contact is that point, over the side.
+  real(wp), parameter :: same_place = 1.0e-6_wp
+
+contains
+
+  !> `scene` has the new mesh.
+  pure subroutine move_free_nodes_out(contours, pilots, mesh, scene, largest)
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
+    real(wp), intent(in) :: pilots(:, :)         !! (3, ndie) where they are now [length and radian]
+    type(new_mesh_t), intent(inout) :: mesh
+    type(scene_t), intent(inout) :: scene
+    real(wp), intent(out) :: largest             !! move of a node over the length of its side
+    logical :: in_contact(size(mesh%coordinates, 2))
+    integer :: side_of(size(mesh%sides)), k, i
+    real(wp) :: moves(2, size(mesh%coordinates, 2)), length
+
+    largest = 0
+    in_contact = .false.
+    side_of = 0
+    do k = 1, size(mesh%sides)
+      associate (contour => contours(mesh%sides(k)%boundary), position => middle_position(contours, mesh%sides(k)))
+        associate (arc => contour%boundary%arcs(position%arc))
+          if (arc%die > 0) then
+            in_contact(mesh%sides(k)%nodes) = .true.
+          else if (arc%side <= size(contour%loop%sides, 2)) then
+            side_of(k) = arc%side
+          end if
+        end associate
+      end associate
+    end do
+    ! the ends of sides, then their middles, which go with the ends
+    do i = 1, 2
+      moves = 0
+      do k = 1, size(mesh%sides)
+        associate (nodes => mesh%sides(k)%nodes)
+          length = length_of(mesh%coordinates(:, nodes(3)) - mesh%coordinates(:, nodes(1)))
+          if (i == 1) then
+            call find_way_out(k, nodes(1), length, moves(:, nodes(1)))
+            call find_way_out(k, nodes(3), length, moves(:, nodes(3)))
+          else
+            call find_way_out(k, nodes(2), length, moves(:, nodes(2)))
+          end if
+          largest = max(largest, maxval(hypot(moves(1, nodes), moves(2, nodes)))/length)
+        end associate
+      end do
+      mesh%coordinates = mesh%coordinates + moves
+      if (i == 2) exit
+      do k = 1, size(mesh%sides)
+        associate (nodes => mesh%sides(k)%nodes)
+          mesh%coordinates(:, nodes(2)) = mesh%coordinates(:, nodes(2)) + 0.5_wp*(moves(:, nodes(1)) + moves(:, nodes(3)))
+        end associate
+      end do
+    end do
+    if (largest > 0) scene%mesh%coordinates = mesh%coordinates
+
+  contains
+
+    !> The move of a node out of the dies that its side faces.
+    pure subroutine find_way_out(k, node, length, move)
+      integer, intent(in) :: k, node
+      real(wp), intent(in) :: length       !! of the side [length]
+      real(wp), intent(inout) :: move(2)   !! [length]
+      type(closest_point_t) :: closest
+      logical :: over
+      integer :: g
+
+      if (side_of(k) == 0 .or. in_contact(node)) return
+      associate (contour => contours(mesh%sides(k)%boundary), x => mesh%coordinates(:, node))
+        do g = 1, size(contour%points)
+          if (length_of(contour%points(g)%point - x) < same_place*length) return
+        end do
+        do g = 1, size(scene%groups)
+          if (scene%groups(g)%die == 0) cycle
+          if (is_deformable(scene%dies(scene%groups(g)%die)) .or. .not. contour%tags%on_group(g, side_of(k))) cycle
+          associate (die => scene%dies(scene%groups(g)%die), pilot => pilots(:, scene%groups(g)%die))
+            call find_closest_point(die, pilot, x, [1, size(die%pieces, 3)], .true., closest, over)
+            if (.not. over .or. closest%d <= 0 .or. closest%d > deepest*length) cycle
+            move = -closest%d*turned(closest%normal, pilot(3))
+          end associate
+        end do
+      end associate
+    end subroutine find_way_out
+
+  end subroutine move_free_nodes_out
+
+end module free_nodes_out
